@@ -1,0 +1,14 @@
+// VTK XML unstructured grids (.vtu) for ParaView.
+#pragma once
+
+#include <filesystem>
+
+#include "meshes/line_mesh.h"
+
+namespace deflect {
+
+/// Writes mesh and fields as ASCII VTU, lengths in mm, groups as the cell array "group" with their names in field data.
+/// Numbers round-trip. The file is written whole or not at all; throws InputError when it cannot be written.
+void write_vtu(const std::filesystem::path&, const LineMesh&, const FieldData&);
+
+}  // namespace deflect

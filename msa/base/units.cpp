@@ -1,0 +1,159 @@
+#include "msa/base/units.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include "msa/base/error.h"
+#include "msa/base/spatial.h"
+
+namespace deflect {
+namespace {
+
+/// SI value = number · times / over; both are exact in binary where a unit allows, so that 125.5 mm is the double
+/// nearest to 0.1255.
+struct Unit {
+  const char* name;
+  double times;
+  double over = 1;
+};
+
+struct Row {
+  Dimension dimension;
+  const char* words;
+  std::vector<Unit> units;  // preferred first
+};
+
+// Inch = 0.0254 m, pound-force = 4.4482216152605 N (both exact by definition).
+const double inch = 0.0254, lbf = 4.4482216152605;
+
+const std::vector<Row>& table() {
+  static const std::vector<Row> rows = {
+      {Dimension::none, "a plain number", {}},
+      {Dimension::ratio, "a ratio", {{"%", 1, 100}}},
+      {Dimension::length, "a length", {{"mm", 1, 1e3}, {"m", 1}, {"cm", 1, 100}, {"um", 1, 1e6}, {"in", inch}}},
+      {Dimension::angle, "an angle", {{"deg", pi, 180}, {"rad", 1}, {"mrad", 1, 1e3}}},
+      {Dimension::area, "an area", {{"mm^2", 1, 1e6}, {"m^2", 1}, {"in^2", inch * inch}}},
+      {Dimension::second_moment,
+       "a second moment of area",
+       {{"mm^4", 1, 1e12}, {"m^4", 1}, {"cm^4", 1, 1e8}, {"in^4", inch * inch * inch * inch}}},
+      {Dimension::force, "a force", {{"N", 1}, {"kN", 1e3}, {"lbf", lbf}, {"kip", lbf * 1e3}}},
+      {Dimension::moment, "a moment", {{"Nmm", 1, 1e3}, {"Nm", 1}, {"kNm", 1e3}, {"lbf*in", lbf * inch}}},
+      {Dimension::stress,
+       "a stress or modulus",
+       {{"GPa", 1e9}, {"MPa", 1e6}, {"Pa", 1}, {"N/mm^2", 1e6}, {"psi", lbf / (inch * inch)}}},
+      {Dimension::stiffness,
+       "a stiffness (force per length)",
+       {{"N/mm", 1e3}, {"N/m", 1}, {"kN/mm", 1e6}, {"N/um", 1e6}, {"lbf/in", lbf / inch}}},
+      {Dimension::rotational_stiffness,
+       "a rotational stiffness (moment per angle)",
+       {{"Nmm/rad", 1, 1e3}, {"Nm/rad", 1}, {"kNm/rad", 1e3}, {"lbf*in/rad", lbf * inch}}},
+  };
+  return rows;
+}
+
+const Row& row(Dimension d) {
+  return *std::find_if(table().begin(), table().end(), [d](const Row& r) { return r.dimension == d; });
+}
+
+std::string_view trim(std::string_view s) {
+  const auto from = s.find_first_not_of(" \t");
+  if (from == s.npos) return {};
+  return s.substr(from, s.find_last_not_of(" \t") - from + 1);
+}
+
+/// The number at the start of the text; `rest` is what follows it.
+bool leading_number(std::string_view text, double& value, std::string_view& rest) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || !std::isfinite(value)) return false;
+  rest = trim(text.substr(static_cast<std::size_t>(end - text.data())));
+  return true;
+}
+
+std::string unit_list(const Row& r) {
+  std::string list;
+  for (const Unit& u : r.units) list += (list.empty() ? "" : ", ") + std::string(u.name);
+  return list;
+}
+
+}  // namespace
+
+std::vector<std::string> units_of(Dimension d) {
+  std::vector<std::string> names;
+  for (const Unit& u : row(d).units) names.emplace_back(u.name);
+  return names;
+}
+
+std::string describe(Dimension d) { return row(d).words; }
+
+double parse_number(std::string_view text) {
+  double value = 0;
+  std::string_view rest;
+  if (!leading_number(trim(text), value, rest) || !rest.empty())
+    throw InputError(fmt::format("'{}' is not a finite number", text));
+  return value;
+}
+
+double parse_quantity(std::string_view text, Dimension dimension) {
+  const Row& r = row(dimension);
+  double value = 0;
+  std::string_view unit;
+  if (!leading_number(trim(text), value, unit))
+    throw InputError(fmt::format("'{}' is not {}: write a finite number{}", text, r.words,
+                                 r.units.empty() ? "" : fmt::format(" and a unit, one of {}", unit_list(r))));
+  if (unit.empty()) {
+    if (dimension == Dimension::none || dimension == Dimension::ratio) return value;
+    throw InputError(
+        fmt::format("'{}' has no unit: write {}, for example '{} {}'", text, r.words, text, r.units.front().name));
+  }
+  for (const Unit& u : r.units)
+    if (unit == u.name) return value * u.times / u.over;
+  if (r.units.empty()) throw InputError(fmt::format("'{}' must be a plain number without a unit", text));
+  for (const Row& other : table())
+    for (const Unit& u : other.units)
+      if (unit == u.name)
+        throw InputError(
+            fmt::format("'{}' is {}, where {} is wanted (units: {})", text, other.words, r.words, unit_list(r)));
+  const std::string hint = nearest(unit, units_of(dimension));
+  throw InputError(fmt::format("'{}' has the unknown unit '{}'{} (units of {}: {})", text, unit,
+                               hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), r.words,
+                               unit_list(r)));
+}
+
+std::string format_quantity(double value, Dimension dimension) {
+  const Row& r = row(dimension);
+  if (r.units.empty() || dimension == Dimension::ratio) return fmt::format("{}", value);
+  const Unit& u = r.units.front();
+  const double scaled = value * u.over / u.times;
+  for (int digits = 1; digits <= 17; ++digits) {
+    const double rounded = parse_number(fmt::format("{:.{}g}", scaled, digits));
+    const std::string text = fmt::format("{} {}", rounded, u.name);
+    if (parse_quantity(text, dimension) == value) return text;
+  }
+  for (const Unit& other : r.units)  // the preferred unit cannot hit this double; the SI unit can
+    if (other.times == 1 && other.over == 1) return fmt::format("{} {}", value, other.name);
+  return fmt::format("{:.17g} {}", scaled, u.name);
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
+  for (const std::string& candidate : known) {
+    std::vector<std::size_t> previous(candidate.size() + 1), current(candidate.size() + 1);
+    std::iota(previous.begin(), previous.end(), std::size_t{0});
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      current[0] = i + 1;
+      for (std::size_t j = 0; j < candidate.size(); ++j)
+        current[j + 1] = std::min({previous[j + 1] + 1, current[j] + 1, previous[j] + (word[i] != candidate[j])});
+      std::swap(previous, current);
+    }
+    if (previous.back() < best_distance) best_distance = previous.back(), best = candidate;
+  }
+  return best;
+}
+
+}  // namespace deflect

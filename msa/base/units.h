@@ -1,0 +1,43 @@
+// Units at the borders. Inside everything is SI (m, N, Pa, rad, kg, K); a text such as "125.5 mm" is read here.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace deflect {
+
+enum class Dimension {
+  none,                  ///< a plain number
+  ratio,                 ///< a plain number or "1 %"
+  length,                ///< m
+  angle,                 ///< rad
+  area,                  ///< m²
+  second_moment,         ///< m⁴
+  force,                 ///< N
+  moment,                ///< Nm
+  stress,                ///< Pa
+  stiffness,             ///< N/m
+  rotational_stiffness,  ///< Nm/rad
+};
+
+/// Units accepted for a dimension, the preferred one first: {"mm", "m", "um", "in"}.
+std::vector<std::string> units_of(Dimension);
+
+/// "a length", "a stiffness (force per length)": for messages.
+std::string describe(Dimension);
+
+/// The value in SI of "125.5 mm". Throws InputError naming the text and the units that fit: on a missing, unknown
+/// or misplaced unit, on a number that is not finite, on trailing text.
+double parse_quantity(std::string_view text, Dimension);
+
+/// The shortest text in the preferred unit that parse_quantity turns back into exactly `value`.
+std::string format_quantity(double value, Dimension);
+
+/// A finite decimal number that spans the whole text, or InputError.
+double parse_number(std::string_view text);
+
+/// The member of `known` with the smallest edit distance to `word`, or "" when none is near.
+std::string nearest(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace deflect

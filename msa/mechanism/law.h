@@ -1,0 +1,85 @@
+// Parameters of the laws that an elastic freedom of a joint can follow: force along (or moment about) one axis
+// against relative displacement. Data only: `analytic/law_deflection.h` and `msa/frame/build_law.h` each turn the
+// parameters into mechanics by their own route.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace deflect {
+
+/// Isotropic linear-elastic solid. E in Pa. Exactly one of ν and G (Pa) is given, the other follows: E = 2G(1 + ν).
+struct Material {
+  double E = 0;
+  std::optional<double> nu, G;
+
+  double poisson() const { return nu ? *nu : E / (2 * *G) - 1; }
+  double shear_modulus() const { return G ? *G : E / (2 * (1 + *nu)); }
+};
+
+/// Constant stiffness: N/m on a translation, Nm/rad on a rotation.
+struct LinearLaw {
+  double stiffness = 0;
+};
+
+/// Hertz point contact of two bodies of one material; acts in both senses (a ball in its housing).
+/// `radius` is the paper's effective radius R' of (24) in m: for a sphere of radius R on a plane R' = R/2.
+struct HertzPointLaw {
+  std::string material;
+  double radius = 0;
+  Material solid;  ///< resolved from the name by configure()
+};
+
+/// Hertz line contact, linearised as in the paper's (28)–(30): no bulk term.
+/// radius: effective radius R' of (24), for a line contact 1/R' = 1/r1 + 1/r2; length: of the line. Both m.
+struct HertzLineLaw {
+  std::string material;
+  double radius = 0, length = 0;
+  Material solid;
+};
+
+/// A round pin, simply supported at its ends and loaded in the middle (31)–(32). Diameter and length in m.
+struct PinBendingLaw {
+  std::string material;
+  double diameter = 0, length = 0;
+  Material solid;
+};
+
+/// Torsion of a solid round motor shaft (4), felt along a prismatic joint through a pulley of `pulley_radius` (5).
+struct MotorShaftLaw {
+  std::string material;
+  double diameter = 0, length = 0, pulley_radius = 0;
+  Material solid;
+};
+
+/// A drive cable (7): cross-section `area` (m²); free length in m, or the actuator's extension where absent.
+struct CableLaw {
+  std::string material;
+  double area = 0;
+  std::optional<double> length;
+  Material solid;
+};
+
+/// Two cables of a rotational transmission, side by side (8).
+struct CablePairLaw {
+  std::string material;
+  double area_1 = 0, length_1 = 0, area_2 = 0, length_2 = 0;
+  Material solid;
+};
+
+/// Timing belt (9)–(10): specific stiffness c_sp (stiffness of a belt of unit width and unit length, N/m), width b,
+/// free lengths L1 and L2 of the tight and slack side (m).
+struct BeltLaw {
+  double specific_stiffness = 0, width = 0, tight_length = 0, slack_length = 0;
+};
+
+using Law = std::variant<LinearLaw, HertzPointLaw, HertzLineLaw, PinBendingLaw, MotorShaftLaw, CableLaw, CablePairLaw,
+                         BeltLaw>;
+
+/// The name of each alternative in device files, in the order of the variant.
+inline constexpr const char* law_names[] = {"linear",      "hertz_point", "hertz_line", "pin_bending",
+                                            "motor_shaft", "cable",       "cable_pair", "belt"};
+static_assert(std::size(law_names) == std::variant_size_v<Law>);
+
+}  // namespace deflect
