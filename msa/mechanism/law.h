@@ -3,6 +3,7 @@
 // parameters into mechanics by their own route.
 #pragma once
 
+#include <iterator>
 #include <optional>
 #include <string>
 #include <variant>

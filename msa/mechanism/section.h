@@ -1,6 +1,7 @@
 // Cross-sections and their geometry.
 #pragma once
 
+#include <iterator>
 #include <optional>
 #include <variant>
 

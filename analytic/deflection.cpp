@@ -1,0 +1,128 @@
+#include "analytic/deflection.h"
+
+#include <cmath>
+#include <optional>
+
+#include "msa/base/spatial.h"
+
+namespace deflect::analytic {
+namespace {
+
+double stiffness(const LinearLaw& l, const AsPrinted&) { return l.stiffness; }
+double stiffness(const HertzLineLaw& l, const AsPrinted& p) {
+  return line_contact_stiffness(l.length, effective_modulus(l.solid, p));
+}
+double stiffness(const PinBendingLaw& l, const AsPrinted&) {
+  return pin_bending_stiffness(l.solid, l.diameter, l.length);
+}
+double stiffness(const MotorShaftLaw& l, const AsPrinted&) { return motor_shaft_stiffness(l); }
+double stiffness(const CableLaw& l, const AsPrinted&) { return cable_stiffness(l.solid, l.area, *l.length); }
+double stiffness(const CablePairLaw& l, const AsPrinted&) {
+  return cable_stiffness(l.solid, l.area_1, l.length_1) + cable_stiffness(l.solid, l.area_2, l.length_2);
+}
+double stiffness(const BeltLaw& l, const AsPrinted&) { return belt_stiffness(l); }
+
+/// The stiffness of contact and pin side by side, where (33) is taken as printed and the laws are those two.
+std::optional<double> printed_universal_joint(const std::vector<Law>& laws, const AsPrinted& p) {
+  if (!p.count(Erratum::ujoint_parallel)) return {};
+  const HertzLineLaw* contact = nullptr;
+  const PinBendingLaw* pin = nullptr;
+  for (const Law& law : laws) {
+    if (const auto* l = std::get_if<HertzLineLaw>(&law)) contact = l;
+    if (const auto* l = std::get_if<PinBendingLaw>(&law)) pin = l;
+  }
+  if (!contact || !pin) return {};
+  return stiffness(*contact, p) + stiffness(*pin, p);
+}
+
+bool part_of_universal_joint(const Law& law) {
+  return std::holds_alternative<HertzLineLaw>(law) || std::holds_alternative<PinBendingLaw>(law);
+}
+
+/// Sum over laws in series of `one(law)`, with `both(k)` for a universal joint's two laws taken together.
+template <class One, class Both>
+double in_series(const std::vector<Law>& laws, const AsPrinted& p, One one, Both both) {
+  const std::optional<double> k = printed_universal_joint(laws, p);
+  double sum = k ? both(*k) : 0;
+  for (const Law& law : laws)
+    if (!k || !part_of_universal_joint(law)) sum += one(law);
+  return sum;
+}
+
+}  // namespace
+
+double effective_modulus(const Material& m, const AsPrinted& p) {
+  const double sum = 2 * (1 - m.poisson() * m.poisson()) / m.E;
+  return (p.count(Erratum::contact_modulus) ? 1 : 2) / sum;
+}
+
+double point_contact_deflection(double R, double E, double force) {
+  return std::copysign(std::pow(std::abs(force) / (E * std::sqrt(8 * R / 9)), 2.0 / 3), force);
+}
+
+double point_contact_compliance(double R, double E, double force) {
+  return 1 / (E * std::sqrt(2 * R * std::abs(point_contact_deflection(R, E, force))));
+}
+
+double point_contact_radius(double R, double E, double force) { return std::cbrt(3 * std::abs(force) * R / E); }
+
+double line_contact_stiffness(double length, double E) { return pi * length * E / 4; }
+
+double line_contact_half_width(double R, double length, double E, double force) {
+  return 2 * std::sqrt(2 * std::abs(force) * R / (pi * length * E));
+}
+
+double pin_bending_stiffness(const Material& m, double diameter, double length) {
+  return 48 * m.E * pi * std::pow(diameter, 4) / 64 / std::pow(length, 3);
+}
+
+double motor_shaft_stiffness(const MotorShaftLaw& l) {
+  const double J = pi * std::pow(l.diameter, 4) / 32;
+  return J * l.solid.shear_modulus() / l.length / (l.pulley_radius * l.pulley_radius);
+}
+
+double cable_stiffness(const Material& m, double area, double length) { return area * m.E / length; }
+
+double belt_stiffness(const BeltLaw& l) {
+  return l.width * l.specific_stiffness * (l.tight_length + l.slack_length) / (l.tight_length * l.slack_length);
+}
+
+double deflection(const Law& law, double force, const AsPrinted& p) {
+  if (const auto* l = std::get_if<HertzPointLaw>(&law))
+    return point_contact_deflection(l->radius, effective_modulus(l->solid, p), force);
+  return force * compliance(law, force, p);
+}
+
+double compliance(const Law& law, double force, const AsPrinted& p) {
+  return std::visit(
+      [&](const auto& l) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(l)>, HertzPointLaw>)
+          return point_contact_compliance(l.radius, effective_modulus(l.solid, p), force);
+        else
+          return 1 / stiffness(l, p);
+      },
+      law);
+}
+
+double stored_energy(const Law& law, double force, const AsPrinted& p) {
+  // δ ∝ f^{2/3} stores 2/5 of f δ, δ ∝ f one half.
+  return (std::holds_alternative<HertzPointLaw>(law) ? 0.4 : 0.5) * force * deflection(law, force, p);
+}
+
+double deflection(const std::vector<Law>& laws, double force, const AsPrinted& p) {
+  return in_series(
+      laws, p, [&](const Law& l) { return deflection(l, force, p); }, [&](double k) { return force / k; });
+}
+
+double compliance(const std::vector<Law>& laws, double force, const AsPrinted& p) {
+  return in_series(
+      laws, p, [&](const Law& l) { return compliance(l, force, p); }, [](double k) { return 1 / k; });
+}
+
+double stored_energy(const std::vector<Law>& laws, double force, const AsPrinted& p) {
+  return in_series(
+      laws, p, [&](const Law& l) { return stored_energy(l, force, p); },
+      [&](double k) { return force * force / (2 * k); });
+}
+
+}  // namespace deflect::analytic

@@ -1,0 +1,48 @@
+// The laws of joints and drives as the methodology uses them: deflection for a given force, since forces are what
+// passes through a chain. Equation numbers are those of Ahmad, Andersson, Sellgren.
+#pragma once
+
+#include <vector>
+
+#include "analytic/erratum.h"
+#include "msa/mechanism/law.h"
+
+namespace deflect::analytic {
+
+/// Which equations are taken as printed.
+using AsPrinted = std::set<Erratum>;
+
+/// E' of (23) for two bodies of one material: 2/E' = 2 (1 − ν²)/E, as printed 1/E' = the same. Pa.
+double effective_modulus(const Material&, const AsPrinted& = {});
+
+/// Point contact, from (26): δ = (F / (E' √(8R'/9)))^{2/3} and its derivative, the inverse of (27). SI, F of any sign.
+double point_contact_deflection(double R, double E_effective, double force);
+double point_contact_compliance(double R, double E_effective, double force);
+/// Contact radius r of (22). m.
+double point_contact_radius(double R, double E_effective, double force);
+
+/// Line contact: k = π l E'/4 (30), half width b = 2 √(2 F R'/(π l E')) (28). SI.
+double line_contact_stiffness(double length, double E_effective);
+double line_contact_half_width(double R, double length, double E_effective, double force);
+
+/// Pin, simply supported, loaded in the middle: k = 48 E I/L³ (32).
+double pin_bending_stiffness(const Material&, double diameter, double length);
+
+/// Along the slide: motor shaft J G/L (4) through the pulley, k/r² (5); cable EA/L (7), cable pair (8), belt (10). N/m.
+double motor_shaft_stiffness(const MotorShaftLaw&);
+double cable_stiffness(const Material&, double area, double length);
+double belt_stiffness(const BeltLaw&);
+
+/// Deflection of one law under a force (N; Nm for a linear law on a rotation), its derivative (infinite for an unloaded
+/// point contact) and the stored energy f δ − ∫δ df.
+double deflection(const Law&, double force, const AsPrinted& = {});
+double compliance(const Law&, double force, const AsPrinted& = {});
+double stored_energy(const Law&, double force, const AsPrinted& = {});
+
+/// Laws of one freedom in series; contact and bending of a universal joint's pin as if in parallel where (33) is taken
+/// as printed.
+double deflection(const std::vector<Law>&, double force, const AsPrinted& = {});
+double compliance(const std::vector<Law>&, double force, const AsPrinted& = {});
+double stored_energy(const std::vector<Law>&, double force, const AsPrinted& = {});
+
+}  // namespace deflect::analytic

@@ -1,0 +1,66 @@
+#include "msa/base/stiffness_checks.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace deflect {
+namespace {
+
+double weighing_length(const Matrix6& K) {
+  const double translation = K.topLeftCorner<3, 3>().trace(), rotation = K.bottomRightCorner<3, 3>().trace();
+  return translation > 0 && rotation > 0 ? std::sqrt(rotation / translation) : 1;
+}
+
+Vector6 weights(double length) {
+  Vector6 w = Vector6::Ones();
+  w.tail<3>().setConstant(length);
+  return w;
+}
+
+Matrix6 weighed(const Matrix6& K, double length) {
+  const Vector6 inverse = weights(length).cwiseInverse();
+  return inverse.asDiagonal() * K * inverse.asDiagonal();
+}
+
+}  // namespace
+
+StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffness>& legs, double tolerance) {
+  StiffnessChecks out;
+  const double length = weighing_length(K_SI);
+  const Matrix6 K = weighed(K_SI, length);
+  const double scale = K.cwiseAbs().maxCoeff();
+  if (!std::isfinite(scale)) {
+    out = {false, false, false, "the stiffness is not finite"};
+    return out;
+  }
+  const double asymmetry = (K - K.transpose()).cwiseAbs().maxCoeff();
+  out.symmetric = asymmetry <= tolerance * scale;
+  if (!out.symmetric)
+    out.failure += fmt::format("K = K^T fails: the largest difference is {:.3g} of the largest entry; ",
+                               asymmetry / scale);
+  const Vector6 eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Matrix6>((K + K.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues();
+  out.positive = eigenvalues(0) >= -tolerance * eigenvalues(5);
+  if (!out.positive)
+    out.failure += fmt::format("K >= 0 fails: the smallest eigenvalue is {:.3g} of the largest; ",
+                               eigenvalues(0) / eigenvalues(5));
+  for (const LegStiffness& leg : legs) {
+    const Matrix6 K_c = weighed(leg.K, length);
+    const double leg_scale = K_c.cwiseAbs().maxCoeff();
+    for (Eigen::Index j = 0; j < leg.passive_twists.cols(); ++j) {
+      const Vector6 twist = weights(length).cwiseProduct(leg.passive_twists.col(j));
+      const double resisted = (K_c * twist).cwiseAbs().maxCoeff();
+      if (resisted <= tolerance * leg_scale * twist.norm()) continue;
+      if (out.passive_joints_free)
+        out.failure += fmt::format("K_c J_q = 0 fails: {} resists passive freedom {} with {:.3g} of its stiffness; ",
+                                   leg.name, j + 1, resisted / (leg_scale * twist.norm()));
+      out.passive_joints_free = false;
+    }
+  }
+  if (!out.failure.empty()) out.failure.resize(out.failure.size() - 2);
+  return out;
+}
+
+}  // namespace deflect

@@ -1,0 +1,29 @@
+// Whether a 6×6 stiffness can be trusted: K = Kᵀ, K ⪰ 0, and legs that their passive joints leave free, K_c J_q = 0.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "msa/base/spatial.h"
+
+namespace deflect {
+
+/// One leg's stiffness at T and the twists at T of its passive joints (columns), SI, base axes.
+struct LegStiffness {
+  std::string name;
+  Matrix6 K;
+  Matrix6X passive_twists;
+};
+
+struct StiffnessChecks {
+  bool symmetric = true, positive = true, passive_joints_free = true;
+  std::string failure;  ///< which check failed, where, by how much; empty when all hold
+
+  bool all() const { return symmetric && positive && passive_joints_free; }
+};
+
+/// Rotations are weighed by the length ℓ = √(tr K_θθ / tr K_δδ) so that the verdict does not depend on units. Each
+/// quantity may differ from zero by `tolerance` of the largest entry (eigenvalue) of what it is made from.
+StiffnessChecks check_stiffness(const Matrix6& K, const std::vector<LegStiffness>& legs, double tolerance = 1e-9);
+
+}  // namespace deflect

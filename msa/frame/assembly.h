@@ -1,0 +1,38 @@
+// The reduced tangent stiffness Tᵀ K T: pattern and scatter positions once, values for every state of the springs.
+#pragma once
+
+#include <vector>
+
+#include "msa/frame/elimination.h"
+#include "msa/frame/sparse_cholesky.h"
+
+namespace deflect::frame {
+
+class Assembly {
+ public:
+  Assembly(const Model&, const Elimination&);
+
+  const SparsePattern& pattern() const { return pattern_; }
+  /// Values in the pattern's order for the tangent stiffness of each spring (in the model's order).
+  std::vector<double> values(const VectorX& spring_tangents) const;
+
+ private:
+  struct ReducedSpring {
+    std::vector<Term> form;      // over q
+    std::vector<int> positions;  // of (i, j), i ≥ j, row by row
+  };
+  SparsePattern pattern_;
+  std::vector<double> beams_;  // the part that no state changes
+  std::vector<ReducedSpring> springs_;
+};
+
+/// Σ over beams and springs of what they pull at the freedoms: f_int(u), and the springs' tangents at u.
+VectorX internal_forces(const Model&, const VectorX& u, VectorX& spring_tangents);
+
+/// The same for the tangent structure, in which spring i is linear with stiffness spring_tangents(i).
+VectorX tangent_forces(const Model&, const VectorX& u, const VectorX& spring_tangents);
+
+/// form(u).
+double evaluate(const LinearForm&, const VectorX& u);
+
+}  // namespace deflect::frame

@@ -1,0 +1,40 @@
+// Two-node straight beam in space, exact at its nodes for loads at its nodes.
+#pragma once
+
+#include <string>
+
+#include "msa/base/spatial.h"
+
+namespace deflect::frame {
+
+using Vector12 = Eigen::Matrix<double, 12, 1>;
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+
+/// Rigidities about local axes, x along the member: N, Nm², Nm², Nm². Shear rigidities GAs_y (N, deflection along local
+/// y, bending about z) and GAs_z; infinite for an Euler–Bernoulli beam.
+struct BeamRigidity {
+  double EA, EIy, EIz, GJ, GAs_y, GAs_z;
+};
+
+struct Beam {
+  int a = 0, b = 0;  ///< nodes
+  Matrix3 R_WM;      ///< columns: local x (from a to b), y, z in base axes
+  double length = 0;
+  BeamRigidity rigidity;
+  std::string name, part;  ///< "leg 1 guideway [2]"; "guideway" groups energies
+};
+
+/// Stiffness in local axes on [u_a; θ_a; u_b; θ_b]. Timoshenko: Φ = 12EI/(GAs L²); Φ = 0 is Euler–Bernoulli
+/// (J. S. Przemieniecki, Theory of Matrix Structural Analysis, 1968, eq. (5.116)).
+Matrix12 local_stiffness(const BeamRigidity&, double length);
+
+/// The same in base axes.
+Matrix12 stiffness(const Beam&);
+
+/// [u_a; θ_a; u_b; θ_b] of a structure's displacements u.
+Vector12 end_displacements(const Beam&, const VectorX& u);
+
+/// End forces in local axes, [f_a; m_a; f_b; m_b] acting on the beam, for nodal displacements in base axes.
+Vector12 end_forces(const Beam&, const Vector12& d_W);
+
+}  // namespace deflect::frame

@@ -1,0 +1,31 @@
+// From a mechanism at a pose to a structure.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "msa/frame/model.h"
+#include "msa/mechanism/configuration.h"
+
+namespace deflect::frame {
+
+/// How members are divided: by part name, the fractions of the length at which nodes stand, from 0 to 1. A part that
+/// is not named is one element.
+using MemberDivision = std::map<std::string, std::vector<double>>;
+
+struct MechanismModel {
+  Model model;
+  int ground = 0;    ///< fixed
+  int platform = 0;  ///< at T, the platform's body
+  int tool = 0;      ///< at T, behind the tool's joint
+};
+
+/// World, base joint, legs, platform, tool joint. Bodies are nodes with lever arms; joints between a member and a body
+/// act on that body's node directly.
+MechanismModel build(const Configuration&, const MemberDivision& = {});
+
+/// One leg between the world and a free platform node at T; base and tool joints left out.
+MechanismModel build_leg(const Configuration&, std::size_t leg, const MemberDivision& = {});
+
+}  // namespace deflect::frame

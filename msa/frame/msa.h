@@ -1,0 +1,52 @@
+// The second theory: matrix structural analysis of a mechanism at a pose. It sees the configuration and nothing of the
+// closed form in `analytic`.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "msa/frame/build.h"
+#include "msa/frame/solver.h"
+
+namespace deflect::frame {
+
+/// Response of the tool point T to one wrench [f; m] at T, base axes, SI.
+struct MsaSolution {
+  Vector6 displacement;     ///< [δ; θ] of T
+  Solution state;           ///< of MsaModel::model(): not converged is said here
+  /// Strain energy by part, J, largest first. ½Fᵀd where everything is linear.
+  std::vector<std::pair<std::string, double>> energies;
+};
+
+/// A mechanism at one pose, factorised once for all its load cases.
+class MsaModel {
+ public:
+  explicit MsaModel(const Configuration&, const MemberDivision& = {});
+  MsaModel(const MsaModel&) = delete;
+  MsaModel& operator=(const MsaModel&) = delete;
+
+  const Model& model() const { return built_.model; }
+  const MechanismModel& mechanism() const { return built_; }
+
+  MsaSolution solve(const Vector6& F_T_W);
+
+  /// Tangent stiffness at T of the structure in a state: reactions to unit displacements of T. As computed, not
+  /// symmetrised. A direction in which nothing holds T has zero stiffness.
+  Matrix6 stiffness(const Solution& state);
+
+  /// Tangent stiffness of one leg alone at T, and the twists of its passive joints there (columns), in the same state.
+  Matrix6 leg_stiffness(std::size_t leg, const Solution& state) const;
+  Matrix6X passive_twists(std::size_t leg) const;
+
+  /// Reaction of the world on the base at the base origin, [f; m].
+  Vector6 base_reaction(const Vector6& F_T_W, const Solution& state) const;
+
+ private:
+  Configuration configuration_;
+  MemberDivision division_;
+  MechanismModel built_;
+  Solver solver_;
+};
+
+}  // namespace deflect::frame

@@ -1,0 +1,92 @@
+#include "msa/mechanism/six_psu.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "msa/base/error.h"
+
+namespace deflect {
+namespace {
+
+constexpr double third = 2 * pi / 3;
+
+Vector3 on_circle(double radius, double angle) {
+  return {radius * std::cos(angle), radius * std::sin(angle), 0};
+}
+
+double side(int leg) { return leg % 2 == 1 ? 1 : -1; }
+double pair_angle(int leg) { return third * ((leg - 1) / 2); }
+
+Vector3 base_joint(const SixPsu& k, int leg) {
+  return on_circle(k.base_radius, pair_angle(leg) + side(leg) * k.base_angle / 2);
+}
+
+Vector3 platform_joint(const SixPsu& k, int leg) {
+  return on_circle(k.platform_radius, pair_angle(leg) + side(leg) * (third / 2 - k.platform_angle / 2));
+}
+
+}  // namespace
+
+SixPsuLeg leg_at(const SixPsu& k, int leg, const Pose& pose) {
+  SixPsuLeg g;
+  g.p_WA = base_joint(k, leg);
+  g.p_WC = pose.p_WT + pose.R_WT * platform_joint(k, leg);
+  g.radial = g.p_WA.normalized();
+  const Vector3 d = g.p_WC - g.p_WA;
+  const double beside = std::hypot(d.x(), d.y());
+  if (!(beside <= k.link_length))
+    throw ModelError(fmt::format(
+        "leg {}: the link does not reach: its platform joint is {:.6g} mm beside the guideway, the link is {:.6g} mm "
+        "long",
+        leg, 1e3 * beside, 1e3 * k.link_length));
+  g.slider = d.z() - std::sqrt(k.link_length * k.link_length - beside * beside);
+  if (g.slider < k.slider_min || g.slider > k.slider_max)
+    throw ModelError(fmt::format("leg {}: the slider would stand at {:.6g} mm, outside its range of {:.6g} to {:.6g} mm",
+                                 leg, 1e3 * g.slider, 1e3 * k.slider_min, 1e3 * k.slider_max));
+  g.p_WB = g.p_WA + g.slider * Vector3::UnitZ();
+  return g;
+}
+
+Pose centred_pose(const SixPsu& k, double slider) {
+  const double beside = (platform_joint(k, 1) - base_joint(k, 1)).norm();
+  if (!(beside <= k.link_length))
+    throw ModelError(fmt::format("the links do not reach from the base circle to the platform circle: {:.6g} mm are "
+                                 "to be bridged by {:.6g} mm",
+                                 1e3 * beside, 1e3 * k.link_length));
+  Pose pose;
+  pose.p_WT.z() = slider + std::sqrt(k.link_length * k.link_length - beside * beside);
+  return pose;
+}
+
+ForwardKinematics forward_kinematics(const SixPsu& k, const std::array<double, 6>& sliders, const Pose& start) {
+  ForwardKinematics result{start};
+  const double L = k.link_length;
+  for (result.iterations = 0; result.iterations < 50; ++result.iterations) {
+    // Closure r_i = (|BC|² − L²)/2L, in metres near the solution; its row is [nᵀ, ((C − T) × n)ᵀ] with n = BC/L.
+    Vector6 r;
+    Matrix6 J;
+    result.closure_error = 0;
+    for (int i = 0; i < 6; ++i) {
+      const Vector3 c = result.pose.R_WT * platform_joint(k, i + 1);
+      const Vector3 b = base_joint(k, i + 1) + sliders[static_cast<std::size_t>(i)] * Vector3::UnitZ();
+      const Vector3 link = result.pose.p_WT + c - b;
+      r(i) = (link.squaredNorm() - L * L) / (2 * L);
+      J.row(i) << link.transpose() / L, c.cross(link).transpose() / L;
+      result.closure_error = std::max(result.closure_error, std::abs(link.norm() - L));
+    }
+    if (result.closure_error < 1e-15) break;
+    const Eigen::FullPivLU<Matrix6> lu(J);
+    if (!lu.isInvertible()) return result;
+    const Vector6 step = lu.solve(-r);
+    if (!step.allFinite() || step.head<3>().norm() > 10 * L) return result;
+    result.pose.p_WT += step.head<3>();
+    result.pose.R_WT = rotation_from_vector(step.tail<3>()) * result.pose.R_WT;
+    if (step.head<3>().norm() < 1e-16 && step.tail<3>().norm() < 1e-15) break;
+  }
+  result.converged = result.closure_error < 1e-12;
+  return result;
+}
+
+}  // namespace deflect
