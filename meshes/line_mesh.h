@@ -38,4 +38,9 @@ struct FieldData {
   std::vector<CellField> cells;
 };
 
+/// What the exporters rely on: indices within range, one finite value per point or cell, field names that are
+/// neither empty nor used twice nor "group". A caller that breaks this has a defect: std::invalid_argument
+/// naming the place.
+void check(const LineMesh&, const FieldData&);
+
 }  // namespace deflect

@@ -80,11 +80,16 @@ class Builder {
     attach(to, model.nodes[static_cast<std::size_t>(to)].position);
   }
 
-  void finish() {
-    for (const Pending& p : pending_)
+  std::vector<std::pair<int, int>> finish() {
+    std::vector<std::pair<int, int>> arms;
+    const auto position = [this](int node) { return model.nodes[static_cast<std::size_t>(node)].position; };
+    for (const Pending& p : pending_) {
+      if ((position(p.a) - position(p.b)).norm() > 1e-9) arms.emplace_back(p.a, p.b);
       model.connect(p.a, p.b, p.p, p.joint ? p.joint->R_WJ : Matrix3::Identity(),
                     p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,
                     p.joint ? p.joint->part : "");
+    }
+    return arms;
   }
 
   Model model;
@@ -122,7 +127,7 @@ MechanismModel build(const Configuration& c, const MemberDivision& division) {
   if (out.tool != out.platform) b.joint(out.platform, out.tool, c.tool, "tool");
   for (const PlacedLeg& leg : c.legs) b.chain(leg, base, out.platform);
   b.model.fix(out.ground, "ground");
-  b.finish();
+  out.arms = b.finish();
   out.model = std::move(b.model);
   return out;
 }
@@ -134,7 +139,7 @@ MechanismModel build_leg(const Configuration& c, std::size_t leg, const MemberDi
   out.platform = out.tool = b.body("platform", c.pose.p_WT);
   b.chain(c.legs[leg], out.ground, out.platform);
   b.model.fix(out.ground, "ground");
-  b.finish();
+  out.arms = b.finish();
   out.model = std::move(b.model);
   return out;
 }

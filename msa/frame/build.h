@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "msa/frame/model.h"
@@ -19,6 +20,8 @@ struct MechanismModel {
   int ground = 0;    ///< fixed
   int platform = 0;  ///< at T, the platform's body
   int tool = 0;      ///< at T, behind the tool's joint
+  /// Pairs of nodes that a rigid arm of a body lies between; for pictures.
+  std::vector<std::pair<int, int>> arms;
 };
 
 /// World, base joint, legs, platform, tool joint. Bodies are nodes with lever arms; joints between a member and a body

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analytic/erratum.h"
+#include "msa/frame/build.h"
 #include "msa/mechanism/description.h"
 
 namespace deflect {
@@ -41,5 +42,33 @@ double relative_difference(const Vector6& a, const Vector6& b);
 /// Centre (0) and corners of the cube of the device's workspace: 1…4 upper face, 5…8 lower, each in the order
 /// (+,+), (−,+), (−,−), (+,−) of (x, y).
 std::vector<ValidationPoint> cube_points(const Mechanism&);
+
+/// x y z roll pitch yaw in mm and deg, R = Rz(yaw) Ry(pitch) Rx(roll), and back.
+Pose pose_from(const Vector6& mm_deg);
+Vector6 mm_deg_from(const Pose&);
+
+/// The pose above the centre with the sliders at the workspace's nominal length; members are divided there.
+Pose home_pose(const Mechanism&);
+
+/// Both theories at one pose under one wrench (N, Nmm at T, base axes). Throws ModelError naming the check where one of
+/// the checks fails, NumericalError where a theory does not converge.
+struct SolveResult;
+SolveResult solve(const Mechanism&, const Vector6& pose_mm_deg, const Vector6& load_N_Nmm,
+                  const frame::MemberDivision&);
+
+/// `load_N` along x, y and z at every point by both theories, checks at every point and load as in solve(). The theory
+/// as printed is added where errata are asked for; its checks are not enforced.
+Validation validate(const Mechanism&, const std::vector<ValidationPoint>&, double load_N, const std::set<Erratum>&,
+                    const frame::MemberDivision&);
+
+/// The price of one erratum: deflection along the load as printed / corrected at the points, smallest and largest ratio
+/// for loads along x, y, z. `refused` says why there is no number where the variant has no solution somewhere.
+struct ErratumPrice {
+  Erratum erratum;
+  Vector3 smallest, largest;
+  std::string failed_check;  ///< of the stiffness as printed, at the first point where one fails; may be empty
+  std::string refused;
+};
+std::vector<ErratumPrice> price_errata(const Mechanism&, const std::vector<ValidationPoint>&, double load_N);
 
 }  // namespace deflect

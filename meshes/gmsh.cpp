@@ -1,0 +1,116 @@
+#include "meshes/gmsh.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <mutex>
+#include <string>
+
+#include "meshes/gmsh_module.h"
+#include "meshes/load_gmsh.h"
+#include "msa/base/error.h"
+
+namespace deflect::gmsh {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double most_elements = 1e6;
+
+/// Runs `call` on the module, one call at a time because Gmsh is not thread-safe. A failed load is tried
+/// again.
+template <typename Call>
+std::string with_module(Call call) {
+  static std::mutex mutex;
+  static const Module* module = nullptr;
+  const std::lock_guard lock(mutex);
+  if (module == nullptr) module = &load_module(module_folders());
+  return call(*module);
+}
+
+bool is_positive(double x) { return std::isfinite(x) && x > 0; }
+
+void check_subdivision(const std::vector<double>& lengths, double size) {
+  if (!is_positive(size)) throw InputError(fmt::format("element size {} m: a positive number is wanted", size));
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    if (!is_positive(lengths[i]))
+      throw InputError(fmt::format("member {} has length {} m: a positive number is wanted", i + 1, lengths[i]));
+    if (lengths[i] / size > most_elements)
+      throw InputError(
+          fmt::format("element size {} m asks for more than {:.0f} elements in member {}, which is {} m "
+                      "long; choose a larger size",
+                      size, most_elements, i + 1, lengths[i]));
+  }
+}
+
+/// Gmsh can fail without a word.
+bool is_subdivision(const std::vector<double>& positions) {
+  return positions.size() >= 2 && positions.front() == 0 && positions.back() == 1 &&
+         std::adjacent_find(positions.begin(), positions.end(), std::greater_equal<>()) == positions.end();
+}
+
+[[noreturn]] void refuse_file(const fs::path& path, const std::string& reason) {
+  throw InputError(fmt::format("{}: cannot be written ({})", path.string(), reason));
+}
+
+/// Gmsh does not look whether its writes succeed: on a full disk the last section stays without its end.
+bool is_complete(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  const std::streamoff length = std::min<std::streamoff>(in.tellg(), 32);
+  in.seekg(-length, std::ios::end);
+  std::string tail(static_cast<std::size_t>(std::max<std::streamoff>(length, 0)), ' ');
+  in.read(tail.data(), length);
+  return in && tail.find("\n$End") != std::string::npos && tail.back() == '\n';
+}
+
+/// Removes the file when it goes out of scope; after a rename there is none to remove.
+struct Neighbour {
+  fs::path path;
+  explicit Neighbour(fs::path p) : path(std::move(p)) {}
+  ~Neighbour() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+  Neighbour(const Neighbour&) = delete;
+  Neighbour& operator=(const Neighbour&) = delete;
+};
+
+}  // namespace
+
+std::vector<std::vector<double>> subdivide(const std::vector<double>& lengths, double element_size) {
+  check_subdivision(lengths, element_size);
+  if (lengths.empty()) return {};
+  // Lengths in elements keep Gmsh's numbers far from its tolerances whatever the scale. A member below one element is
+  // one element, however short it is.
+  std::vector<double> sizes;
+  for (const double length : lengths) sizes.push_back(std::max(length / element_size, 0.5));
+  std::vector<std::vector<double>> positions;
+  const std::string error = with_module([&](const Module& module) { return module.subdivide(sizes, positions); });
+  if (!error.empty()) throw ModelError(fmt::format("Gmsh cannot subdivide the members: {}", error));
+  if (positions.size() != lengths.size() || !std::all_of(positions.begin(), positions.end(), is_subdivision))
+    throw ModelError("Gmsh gave no subdivision of the members and did not say why");
+  return positions;
+}
+
+void write_msh(const fs::path& path, const LineMesh& mesh, const FieldData& fields) {
+  check(mesh, fields);
+  std::error_code error;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+  fs::path part = path;
+  part += fmt::format(".part{}.msh", ::getpid());  // Gmsh takes the format from the extension
+  const Neighbour neighbour(part);
+  errno = 0;
+  if (!std::ofstream(part)) refuse_file(path, std::strerror(errno));
+  const std::string message =
+      with_module([&](const Module& module) { return module.write_msh(part.string(), mesh, fields); });
+  if (!message.empty()) refuse_file(path, "Gmsh: " + message);
+  if (!is_complete(part)) refuse_file(path, "Gmsh's file is cut short: is the disk full?");
+  fs::rename(part, path, error);
+  if (error) refuse_file(path, error.message());
+}
+
+}  // namespace deflect::gmsh

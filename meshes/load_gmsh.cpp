@@ -1,0 +1,70 @@
+#include "meshes/load_gmsh.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+#include "msa/base/error.h"
+
+namespace deflect::gmsh {
+namespace fs = std::filesystem;
+namespace {
+
+/// The module, or null and why not.
+const Module* try_load(const fs::path& file, std::string& reason) {
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    reason = error ? error.message() : "no such file";
+    return nullptr;
+  }
+  void* const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    const char* const said = ::dlerror();
+    reason = said != nullptr ? said : "cannot be loaded";
+    return nullptr;
+  }
+  using Entry = const Module* (*)();
+  const auto entry = reinterpret_cast<Entry>(::dlsym(library, module_symbol));
+  const Module* const module = entry != nullptr ? entry() : nullptr;
+  if (module != nullptr && module->build == std::string(module_build)) return module;
+  reason = module == nullptr
+               ? std::string("is not a module of deflect")
+               : fmt::format("is of another build ({}, wanted: {})", module->build, module_build);
+  ::dlclose(library);
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<fs::path> module_folders() {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  if (const char* const chosen = std::getenv("DEFLECT_PLUGIN_DIR"); chosen != nullptr && *chosen != 0)
+    folders.push_back(fs::absolute(chosen, error));
+  const fs::path own = fs::read_symlink("/proc/self/exe", error).parent_path();
+  if (!own.empty()) {
+    folders.push_back(own);
+    folders.push_back((own.parent_path() / DEFLECT_LIBDIR / "deflect").lexically_normal());
+  }
+  folders.emplace_back(fs::path(DEFLECT_FULL_LIBDIR) / "deflect");
+  if (!own.empty()) folders.push_back(own.parent_path());
+  return folders;
+}
+
+const Module& load_module(const std::vector<fs::path>& folders) {
+  std::string tried;
+  for (const fs::path& folder : folders) {
+    std::string reason;
+    if (const Module* const module = try_load(folder / module_file, reason)) return *module;
+    tried += fmt::format("\n  {}: {}", (folder / module_file).string(), reason);
+  }
+  throw ModelError(fmt::format(
+      "the module {} with Gmsh cannot be loaded; set DEFLECT_PLUGIN_DIR to its folder, or install deflect "
+      "again together with Gmsh's library. Looked at:{}",
+      module_file, tried.empty() ? " no folder" : tried));
+}
+
+}  // namespace deflect::gmsh

@@ -1,0 +1,63 @@
+#include "meshes/structure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meshes/gmsh.h"
+
+namespace deflect {
+
+frame::MemberDivision divide_members(const Configuration& c, double element_size) {
+  std::vector<std::string> parts;
+  std::vector<double> lengths;
+  for (const PlacedLeg& leg : c.legs)
+    for (const PlacedPart& part : leg.parts)
+      if (const auto* m = std::get_if<PlacedMember>(&part)) {
+        const auto at = std::find(parts.begin(), parts.end(), m->part) - parts.begin();
+        if (static_cast<std::size_t>(at) == parts.size()) {
+          parts.push_back(m->part);
+          lengths.push_back(0);
+        }
+        double& longest = lengths[static_cast<std::size_t>(at)];
+        longest = std::max(longest, m->length());
+      }
+  const std::vector<std::vector<double>> fractions = gmsh::subdivide(lengths, element_size);
+  frame::MemberDivision out;
+  for (std::size_t i = 0; i < parts.size(); ++i) out[parts[i]] = fractions[i];
+  return out;
+}
+
+LineMesh lines_of(const frame::MechanismModel& m) {
+  LineMesh mesh;
+  for (const frame::Node& node : m.model.nodes) mesh.points.push_back(node.position);
+  const auto group = [&mesh](const std::string& name) {
+    const auto found = std::find(mesh.groups.begin(), mesh.groups.end(), name);
+    if (found != mesh.groups.end()) return static_cast<int>(found - mesh.groups.begin());
+    mesh.groups.push_back(name);
+    return static_cast<int>(mesh.groups.size()) - 1;
+  };
+  for (const frame::Beam& beam : m.model.beams) mesh.cells.push_back({beam.a, beam.b, group(beam.part)});
+  for (const auto& [a, b] : m.arms) mesh.cells.push_back({a, b, group("rigid")});
+  return mesh;
+}
+
+FieldData fields_of(const frame::MechanismModel& m, const VectorX& u) {
+  FieldData out;
+  out.points = {{"displacement_mm", {}}, {"rotation_rad", {}}};
+  out.cells = {{"axial_force_N", {}}, {"bending_moment_Nmm", {}}, {"torque_Nmm", {}}};
+  for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    out.points[0].values.push_back(1e3 * u.segment<3>(at));
+    out.points[1].values.push_back(u.segment<3>(at + 3));
+  }
+  for (const frame::Beam& beam : m.model.beams) {
+    const frame::Vector12 f = end_forces(beam, end_displacements(beam, u));
+    out.cells[0].values.push_back(f(6));  // pull of the far end along x: tension positive
+    out.cells[1].values.push_back(1e3 * std::max(std::hypot(f(4), f(5)), std::hypot(f(10), f(11))));
+    out.cells[2].values.push_back(1e3 * f(9));
+  }
+  for (CellField& field : out.cells) field.values.resize(m.model.beams.size() + m.arms.size(), 0);
+  return out;
+}
+
+}  // namespace deflect

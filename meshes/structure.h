@@ -1,0 +1,21 @@
+// Between structures and meshes: how members are divided, and a solved structure as lines with fields.
+#pragma once
+
+#include "meshes/line_mesh.h"
+#include "msa/frame/msa.h"
+#include "msa/mechanism/configuration.h"
+
+namespace deflect {
+
+/// Divides every member with Gmsh at about `element_size` (m) where the configuration stands; legs share the
+/// division of the longest member of a part, so that the topology is one for all poses.
+frame::MemberDivision divide_members(const Configuration&, double element_size);
+
+/// Beams and the rigid arms of bodies as cells, one group per part ("guideway", "link", …, "rigid").
+LineMesh lines_of(const frame::MechanismModel&);
+
+/// Displacements (mm), rotations (rad) of nodes; axial force (N), largest bending moment and torque (Nmm) of
+/// elements.
+FieldData fields_of(const frame::MechanismModel&, const VectorX& u);
+
+}  // namespace deflect

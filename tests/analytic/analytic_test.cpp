@@ -1,0 +1,218 @@
+// The closed-form theory against itself by second routes: inverses, eliminations, derivatives.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "analytic/member.h"
+#include "analytic/model.h"
+#include "msa/base/stiffness_checks.h"
+#include "tests/support/devices.h"
+
+namespace deflect::analytic {
+namespace {
+
+using test::device;
+
+PlacedMember member() {
+  PlacedMember m;
+  m.p_W_start = Vector3(0.1, 0, 0);
+  m.p_W_end = Vector3(0.1, 0.02, 0.07);
+  m.R_WM = axes_along_x(m.p_W_end - m.p_W_start, Vector3::UnitX());
+  m.section = properties({RectangleSection{0.006, 0.009}}, 0.3);
+  m.E = 210e9;
+  m.G = 80e9;
+  return m;
+}
+
+TEST(Member, ComplianceIsTheInverseOfTheTipStiffnessThatThePaperMeans) {
+  const PlacedMember m = member();
+  const double L = m.length(), EIy = m.E * m.section.Iy, EIz = m.E * m.section.Iz;
+  Matrix6 K = Matrix6::Zero();  // (35) with L² in (2,6) and 4EI/L in (5,5)
+  K.diagonal() << m.E * m.section.A / L, 12 * EIz / pow(L, 3), 12 * EIy / pow(L, 3), m.G * m.section.J / L, 4 * EIy / L,
+      4 * EIz / L;
+  K(1, 5) = K(5, 1) = -6 * EIz / (L * L);
+  K(2, 4) = K(4, 2) = 6 * EIy / (L * L);
+  EXPECT_LE((tip_compliance(m) * K - Matrix6::Identity()).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(Member, AsPrintedDiffersWhereThePaperErrs) {
+  const PlacedMember m = member();
+  const Matrix6 K = tip_compliance_guideway_as_printed(m).inverse();
+  const double L = m.length();
+  EXPECT_NEAR(K(1, 5) / (-6 * m.E * m.section.Iz / pow(L, 3)), 1, 1e-12);
+  EXPECT_NEAR(K(4, 4) / (6 * m.E * m.section.Iy / L), 1, 1e-12);
+  EXPECT_GT(std::abs(K(1, 5) - K(5, 1)), 0.1 * std::abs(K(1, 5)));
+  PlacedMember vertical = m;
+  vertical.p_W_end = vertical.p_W_start + Vector3(0, 0, 0.1);
+  EXPECT_THROW(link_axes_as_printed(vertical), ModelError);
+}
+
+const Law every_law[] = {
+    LinearLaw{4e5},
+    HertzPointLaw{"", 0.004, {210e9, 0.3, {}}},
+    HertzLineLaw{"", 0.0015, 0.01, {210e9, 0.3, {}}},
+    PinBendingLaw{"", 0.003, 0.01, {210e9, 0.3, {}}},
+    MotorShaftLaw{"", 0.006, 0.05, 0.01, {210e9, 0.3, {}}},
+    CableLaw{"", 1e-6, 0.08, {150e9, 0.3, {}}},
+    CablePairLaw{"", 1e-6, 0.08, 2e-6, 0.3, {150e9, 0.3, {}}},
+    BeltLaw{2e6, 0.01, 0.1, 0.3},
+};
+
+class EveryLaw : public ::testing::TestWithParam<Law> {};
+
+TEST_P(EveryLaw, ComplianceIsTheDerivativeAndEnergyTheWorkStored) {
+  EXPECT_EQ(deflection(GetParam(), 0), 0);
+  for (const double f : {-200.0, -3.0, 0.02, 7.0, 50.0}) {
+    const double h = 1e-5 * std::abs(f);
+    EXPECT_NEAR((deflection(GetParam(), f + h) - deflection(GetParam(), f - h)) / (2 * h), compliance(GetParam(), f),
+                1e-8 * compliance(GetParam(), f));
+    // dU = f dδ
+    EXPECT_NEAR((stored_energy(GetParam(), f + h) - stored_energy(GetParam(), f - h)) / (2 * h),
+                f * compliance(GetParam(), f), 1e-8 * std::abs(f) * compliance(GetParam(), f));
+    EXPECT_DOUBLE_EQ(deflection(GetParam(), -f), -deflection(GetParam(), f));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Family, EveryLaw, ::testing::ValuesIn(every_law));
+
+TEST(Laws, UniversalJointOfTheDeviceIs39kNPerMmInSeriesAnd1850AsPrinted) {
+  const Material steel{210e9, 0.3, {}};
+  const std::vector<Law> joint = {HertzLineLaw{"", 0.0015, 0.01, steel}, PinBendingLaw{"", 0.003, 0.01, steel}};
+  EXPECT_NEAR(1e-6 / compliance(joint, 1), 39.2, 0.05);
+  EXPECT_NEAR(1e-6 / compliance(joint, 1, {Erratum::ujoint_parallel}), 1852, 1);
+}
+
+TEST(Laws, ContactAsPrintedIsHalfAsStiff) {
+  const Material steel{210e9, 0.3, {}};
+  EXPECT_DOUBLE_EQ(effective_modulus(steel, {Erratum::contact_modulus}), effective_modulus(steel) / 2);
+  EXPECT_NEAR(effective_modulus(steel), 210e9 / 0.91, 1e-3);
+}
+
+class EveryPose : public ::testing::Test {
+ protected:
+  Mechanism m = device("haptic-6psu-ideal-joints");
+};
+
+// K_c = C⁻¹ − C⁻¹ J_q (J_qᵀ C⁻¹ J_q)⁻¹ J_qᵀ C⁻¹, the other way to release passive joints.
+TEST_F(EveryPose, ReleaseOfPassiveJointsAgreesWithTheFormulaInStiffness) {
+  for (const Pose& pose : test::random_poses(m, 20)) {
+    const AnalyticModel model(configure(m, pose));
+    const AnalyticSolution s = model.solve(Vector6::Unit(0) * 50);
+    for (std::size_t leg = 0; leg < 6; ++leg) {
+      const Chain& c = model.chains()[leg];
+      ASSERT_EQ(c.J_q.cols(), 5);
+      const Matrix6 K = c.C.inverse();
+      const Matrix6 released =
+          K - K * c.J_q * (c.J_q.transpose() * K * c.J_q).inverse() * c.J_q.transpose() * K;
+      const Matrix6 K_c = model.leg_stiffness(leg, s);
+      // The formula subtracts nearly equal matrices: it loses what K is larger than K_c by.
+      EXPECT_LE((K_c - released).cwiseAbs().maxCoeff(), 1e-11 * K.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+// The leg of this device is a two-force member: statics alone gives its stiffness.
+TEST_F(EveryPose, LegIsATwoForceMember) {
+  for (const Pose& pose : test::random_poses(m, 20)) {
+    const AnalyticModel model(configure(m, pose));
+    const AnalyticSolution s = model.solve(Vector6::Unit(1) * 50);
+    Matrix6 K = Matrix6::Zero();
+    for (int leg = 1; leg <= 6; ++leg) {
+      const SixPsuLeg g = leg_at(test::six_psu(m), leg, pose);
+      const Vector3 n = (g.p_WC - g.p_WB).normalized();
+      const double I = pi * std::pow(0.008, 4) / 64, A = pi * 16e-6, E = 210e9, L = g.slider;
+      const double bending = (1 - n.z() * n.z()) * L * L * L / (3 * E * I), axial = n.z() * n.z() * L / (E * A);
+      Vector6 line;
+      line << n, (g.p_WC - pose.p_WT).cross(n);
+      K += line * line.transpose() / (bending + axial + 0.1255 / (E * pi * 9e-6));
+    }
+    EXPECT_LE((model.stiffness(s) - K).norm(), 1e-12 * K.norm());
+    EXPECT_LE((s.displacement - K.inverse() * Vector6::Unit(1) * 50).norm(), 1e-12 * s.displacement.norm());
+  }
+}
+
+TEST_F(EveryPose, LegWrenchesBalanceTheLoad) {
+  std::mt19937 random(3);
+  const Mechanism contact = device("haptic-6psu");
+  for (const Pose& pose : test::random_poses(m, 20)) {
+    const Vector6 F = test::random_wrench(random);
+    const AnalyticSolution s = AnalyticModel(configure(contact, pose)).solve(F);
+    ASSERT_TRUE(s.converged);
+    Vector6 sum = Vector6::Zero();
+    for (const Vector6& w : s.leg_wrenches) sum += w;
+    EXPECT_LE((sum - F).norm(), 1e-12 * F.norm());
+  }
+}
+
+TEST_F(EveryPose, EnergyIsHalfTheWorkOfALinearDeviceAndLessOfOneWithContacts) {
+  const Vector6 F = Vector6::Unit(0) * 50;
+  const auto stored_over_work = [&](const Mechanism& device) {
+    const AnalyticModel model(configure(device, test::home(device)));
+    const AnalyticSolution s = model.solve(F);
+    double sum = 0;
+    for (const auto& [part, energy] : model.energies(s)) sum += energy;
+    return sum / F.dot(s.displacement);
+  };
+  EXPECT_NEAR(stored_over_work(m), 0.5, 1e-13);
+  const double contact = stored_over_work(device("haptic-6psu"));
+  EXPECT_LT(contact, 0.5);  // between 0.4, all Hertz, and 0.5
+  EXPECT_GT(contact, 0.49);
+}
+
+TEST_F(EveryPose, TangentStiffnessIsTheDerivativeOfTheLoad) {
+  const Mechanism contact = device("haptic-6psu");
+  const AnalyticModel model(configure(contact, test::random_poses(m, 1).front()));
+  std::mt19937 random(5);
+  const Vector6 F = test::random_wrench(random);
+  const Matrix6 C = model.stiffness(model.solve(F)).inverse();
+  for (int i = 0; i < 6; ++i) {
+    const double h = i < 3 ? 1e-3 : 1e-5;
+    const Vector6 dF = Vector6::Unit(i) * h;
+    const Vector6 slope = (model.solve(F + dF).displacement - model.solve(F - dF).displacement) / (2 * h);
+    EXPECT_LE((slope - C.col(i)).norm(), 1e-6 * C.col(i).norm()) << i;
+  }
+}
+
+// A published script eliminates the passive joints as K_c = C⁻¹ − C⁻¹J_q(J_qᵀC⁻¹J_q)⁻¹J_qᵀ and another as
+// (C + J_qJ_qᵀ)⁻¹: both must be caught.
+TEST_F(EveryPose, WrongEliminationsAreRejectedByTheChecks) {
+  const AnalyticModel model(configure(m, test::random_poses(m, 1).front()));
+  const Chain& c = model.chains()[2];
+  const Matrix6 K = c.C.inverse();
+  const Matrix6 forgotten = K - K * c.J_q * (c.J_q.transpose() * K * c.J_q).inverse() * c.J_q.transpose();
+  EXPECT_FALSE(check_stiffness(forgotten, {{"leg 3", forgotten, c.J_q}}).all());
+  const Matrix6 mixed = (c.C + c.J_q * c.J_q.transpose()).inverse();
+  const StiffnessChecks checks = check_stiffness(mixed, {{"leg 3", mixed, c.J_q}});
+  EXPECT_TRUE(checks.symmetric && checks.positive);
+  EXPECT_FALSE(checks.passive_joints_free);
+  const Matrix6 locked = K;
+  EXPECT_FALSE(check_stiffness(locked, {{"leg 3", locked, c.J_q}}).passive_joints_free);
+}
+
+TEST(Refusal, ARigidChainIsNamed) {
+  Mechanism m = device("haptic-6psu-ideal-joints");
+  std::erase_if(m.leg, [](const auto& part) { return std::holds_alternative<Member>(part.second); });
+  try {
+    AnalyticModel(configure(m, test::home(m))).solve(Vector6::Unit(0));
+    FAIL();
+  } catch (const ModelError& e) {
+    EXPECT_NE(std::string(e.what()).find("leg 1: the chain is rigid"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Errata, NamesAreReadAndMisreadOnesExplained) {
+  EXPECT_TRUE(parse_errata("").empty());
+  EXPECT_TRUE(parse_errata("none").empty());
+  EXPECT_EQ(parse_errata("all").size(), errata().size());
+  EXPECT_EQ(parse_errata("passive-joints,ujoint-parallel"),
+            (std::set<Erratum>{Erratum::passive_joints, Erratum::ujoint_parallel}));
+  try {
+    parse_errata("passive-joint");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("did you mean 'passive-joints'?"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace deflect::analytic

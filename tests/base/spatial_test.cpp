@@ -1,0 +1,75 @@
+#include "msa/base/spatial.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "msa/base/stiffness_checks.h"
+
+namespace deflect {
+namespace {
+
+TEST(Spatial, ShiftedTwistsAndWrenchesDoTheSameWork) {
+  const Vector3 p(0.1, -0.2, 0.3);
+  const Matrix6 X = shift_twist(p);
+  Vector6 d, F;
+  d << 1, 2, 3, 0.4, 0.5, 0.6;
+  F << -3, 1, 2, 0.1, -0.7, 0.2;
+  EXPECT_NEAR((X * d).dot(F), d.dot(X.transpose() * F), 1e-15);
+  EXPECT_LE(((X * d).head<3>() - (d.head<3>() + d.tail<3>().cross(p))).norm(), 1e-16);
+  EXPECT_LE((shift_twist(-p) * X - Matrix6::Identity()).norm(), 1e-16);
+}
+
+TEST(Spatial, RollPitchYawComeBack) {
+  for (const double pitch : {-1.5, -0.3, 0.0, 0.9, 1.57}) {
+    const Vector3 rpy(0.4, pitch, -2.0);
+    const Matrix3 R = rotation_from_rpy(rpy(0), rpy(1), rpy(2));
+    EXPECT_LE((rpy_from_rotation(R) - rpy).norm(), 1e-12) << pitch;
+  }
+  const Matrix3 upright = rotation_from_rpy(0.3, pi / 2, 0.5);  // only yaw − roll is defined here
+  const Vector3 rpy = rpy_from_rotation(upright);
+  EXPECT_LE((rotation_from_rpy(rpy(0), rpy(1), rpy(2)) - upright).norm(), 1e-15);
+  // Rz(yaw) Ry(pitch) Rx(roll): a yaw of 90° takes x to y.
+  EXPECT_LE((rotation_from_rpy(0, 0, pi / 2) * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-16);
+}
+
+TEST(Spatial, AxesAlongXAreRightHandedAndRefuseAParallelReference) {
+  const Matrix3 R = axes_along_x({1, 1, 0}, {0, 1, 0});
+  EXPECT_NEAR(R.determinant(), 1, 1e-15);
+  EXPECT_GT(R.col(1).y(), 0);
+  EXPECT_THROW(axes_along_x({0, 0, 2}, {0, 0, 1}), std::invalid_argument);
+}
+
+TEST(StiffnessChecks, FindEachFaultByName) {
+  Matrix6 K = Matrix6::Zero();
+  K.diagonal() << 1e5, 2e5, 3e5, 400, 500, 600;
+  EXPECT_TRUE(check_stiffness(K, {}).all());
+  Matrix6 asymmetric = K;
+  asymmetric(0, 1) = 1;  // 1e-5 of the scale
+  EXPECT_FALSE(check_stiffness(asymmetric, {}).symmetric);
+  EXPECT_NE(check_stiffness(asymmetric, {}).failure.find("K = K^T"), std::string::npos);
+  EXPECT_FALSE(check_stiffness(-K, {}).positive);
+  Matrix6 coupled = K;
+  coupled(0, 4) = coupled(4, 0) = 1e5;  // > √(1e5 · 500)
+  EXPECT_FALSE(check_stiffness(coupled, {}).positive);
+  Matrix6X twist = Vector6::Unit(5);
+  const StiffnessChecks held = check_stiffness(K, {{"leg 2", K, twist}});
+  EXPECT_FALSE(held.passive_joints_free);
+  EXPECT_NE(held.failure.find("leg 2 resists passive freedom 1"), std::string::npos);
+  Matrix6 released = K;
+  released(5, 5) = 0;
+  EXPECT_TRUE(check_stiffness(K, {{"leg 2", released, twist}}).all());
+  K(3, 3) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(check_stiffness(K, {}).all());
+}
+
+TEST(StiffnessChecks, DoNotDependOnUnits) {
+  Matrix6 K = Matrix6::Zero();
+  K.diagonal() << 1e5, 2e5, 3e5, 400, 500, 600;
+  K(0, 3) = 1e-5 * std::sqrt(1e5 * 400);
+  EXPECT_EQ(check_stiffness(K, {}).symmetric, check_stiffness(stiffness_in_mm(K), {}).symmetric);
+  EXPECT_EQ(check_stiffness(K, {}).failure, check_stiffness(stiffness_in_mm(K), {}).failure);
+}
+
+}  // namespace
+}  // namespace deflect

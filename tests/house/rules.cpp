@@ -1,0 +1,195 @@
+#include "tests/house/rules.h"
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "msa/base/files.h"
+
+namespace deflect::house {
+namespace {
+
+using Rooms = std::set<std::string>;
+
+/// Who may look into whom; every room may look into itself.
+const std::map<std::string, Rooms>& table() {
+  static const std::map<std::string, Rooms> rooms = {
+      {"msa/base", {}},
+      {"msa/mechanism", {"msa/base"}},
+      {"msa/frame", {"msa/base", "msa/mechanism"}},
+      {"analytic", {"msa/base", "msa/mechanism"}},
+      {"meshes", {"msa/base", "msa/mechanism", "msa/frame"}},
+      {"validation", {"msa/base", "msa/mechanism", "msa/frame", "analytic", "meshes"}},
+      {"tests", {"msa/base", "msa/mechanism", "msa/frame", "analytic", "meshes", "validation"}},
+  };
+  return rooms;
+}
+
+/// Where a third-party library may be included: in files whose path matches `where`, and in no more than
+/// `files`.
+struct Confinement {
+  const char* library;
+  const char* includes;
+  const char* where;
+  const char* rule;
+  std::size_t files;
+};
+constexpr std::size_t any_number = 1000000;
+
+const Confinement confinements[] = {
+    {"CHOLMOD", "(suitesparse/)?cholmod.*|Eigen/CholmodSupport", "msa/frame/[^/]+\\.cpp",
+     "one .cpp file of msa/frame", 1},
+    {"SPQR", "(suitesparse/)?(SuiteSparseQR.*|spqr.*)|Eigen/SPQRSupport", "msa/frame/[^/]+\\.cpp",
+     "one .cpp file of msa/frame", 1},
+    {"Gmsh", "gmsh\\.h.*", "meshes/gmsh_[^/]+\\.cpp", "meshes/gmsh_*.cpp", any_number},
+    {"yaml-cpp", "yaml-cpp/.*", "msa/mechanism/[^/]*(reader|writer)[^/]*\\.cpp",
+     "the reader and the writer of msa/mechanism", any_number},
+    {"CLI11", "CLI/.*", "validation/cli/[^/]+\\.cpp", "one .cpp file of validation/cli", 1},
+    {"nlohmann json", "nlohmann/.*", "validation/.*", "validation", any_number},
+    {"GoogleTest", "g(test|mock)/.*", "tests/.*", "tests", any_number},
+};
+
+struct Include {
+  int line;
+  std::string name;  ///< empty when it could not be read off
+  bool quoted;
+};
+
+std::vector<Include> includes_of(const std::string& text) {
+  static const std::regex directive(R"(\s*#\s*include(_next)?\b(.*))");
+  static const std::regex named(R"(\s*(["<])([^">]+)[">].*)");
+  std::vector<Include> found;
+  std::istringstream lines(text);
+  std::string line;
+  std::smatch match;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.find("include") == std::string::npos || !std::regex_match(line, match, directive)) continue;
+    const std::string rest = match[2];
+    if (std::regex_match(rest, match, named))
+      found.push_back({number, match[2], match[1] == "\""});
+    else
+      found.push_back({number, "", false});
+  }
+  return found;
+}
+
+std::string list(const Rooms& rooms) {
+  std::string text;
+  for (const std::string& room : rooms) text += (text.empty() ? "" : ", ") + room;
+  return text.empty() ? "no other room" : text;
+}
+
+/// The broken rule, or nothing.
+std::string judge_own(const std::string& from, const Include& include, const std::set<std::string>& paths) {
+  if (!paths.contains(include.name))
+    return "there is no such file; an own header is named by its path from the root, others stand in <>";
+  if (!include.quoted) return "an own header is included with quotes";
+  const std::string to = room_of(include.name);
+  if (from == to) return "";
+  if (to == "tests") return "nothing includes tests";
+  if (from == "analytic" && to == "msa/frame")
+    return "the two theories never include each other: analytic may include " + list(table().at(from));
+  if (from.empty() || to.empty()) return "one of the two files is in no room of the table";
+  return table().at(from).contains(to) ? "" : from + " may include " + list(table().at(from));
+}
+
+}  // namespace
+
+std::string room_of(const std::string& path) {
+  for (const auto& [room, others] : table())
+    if (path.starts_with(room + "/")) return room;
+  return "";
+}
+
+std::vector<std::string> include_violations(const std::vector<Source>& sources) {
+  std::set<std::string> paths;
+  for (const Source& source : sources) paths.insert(source.path);
+
+  std::vector<std::string> violations;
+  std::map<const Confinement*, std::set<std::string>> users;
+  for (const Source& source : sources) {
+    const std::string from = room_of(source.path);
+    for (const Include& include : includes_of(source.text)) {
+      const auto refuse = [&](const std::string& rule) {
+        violations.push_back(source.path + ":" + std::to_string(include.line) + ": includes " +
+                             (include.name.empty() ? "a macro" : include.name) + ": " + rule);
+      };
+      if (include.name.empty()) {
+        refuse("the file's name must stand there");
+        continue;
+      }
+      if (include.quoted || !room_of(include.name).empty()) {
+        if (const std::string rule = judge_own(from, include, paths); !rule.empty()) refuse(rule);
+        continue;
+      }
+      for (const Confinement& c : confinements) {
+        if (!std::regex_match(include.name, std::regex(c.includes))) continue;
+        users[&c].insert(source.path);
+        if (!std::regex_match(source.path, std::regex(c.where)))
+          refuse(std::string(c.library) + " belongs into " + c.rule);
+        else if (users[&c].size() > c.files)
+          refuse(std::string(c.library) + " belongs into " + c.rule + ", and " + *users[&c].begin() +
+                 " includes it already");
+      }
+    }
+  }
+  return violations;
+}
+
+std::vector<std::string> length_violations(const std::vector<Source>& sources, int limit) {
+  std::vector<std::string> violations;
+  for (const auto& [path, text] : sources) {
+    const bool open_end = !text.empty() && text.back() != '\n';
+    const auto lines = std::count(text.begin(), text.end(), '\n') + (open_end ? 1 : 0);
+    if (lines > limit)
+      violations.push_back(path + ": " + std::to_string(lines) + " lines, at most " + std::to_string(limit));
+  }
+  return violations;
+}
+
+std::vector<std::string> top_level_violations(const std::vector<std::string>& names,
+                                              const std::string& gitignore) {
+  static const std::set<std::string> fixed = {
+      "CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "analytic", "meshes", "msa",
+      "tests",          "validation"};
+  std::vector<std::string> patterns;
+  std::istringstream lines(gitignore);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('/')) line.erase(0, 1);
+    if (line.ends_with('/')) line.pop_back();
+    if (!line.empty()) patterns.push_back(line);
+  }
+  const auto ignored = [&](std::string_view name) {
+    return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {
+      if (!pattern.ends_with('*')) return name == pattern;
+      pattern.remove_suffix(1);
+      return name.starts_with(pattern);
+    });
+  };
+  std::vector<std::string> violations;
+  for (const std::string& name : names)
+    if (!fixed.contains(name) && !name.starts_with('.') && !ignored(name))
+      violations.push_back(name + ": does not belong to the top level");
+  return violations;
+}
+
+std::vector<Source> read_sources(const std::filesystem::path& root,
+                                 const std::vector<std::string>& extensions) {
+  namespace fs = std::filesystem;
+  std::vector<Source> sources;
+  for (const char* top : {"msa", "analytic", "meshes", "validation", "tests"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string extension = entry.path().extension().string();
+      if (!entry.is_regular_file() ||
+          std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+        continue;
+      sources.push_back({fs::relative(entry.path(), root).generic_string(), read_text(entry.path())});
+    }
+  std::sort(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return a.path < b.path; });
+  return sources;
+}
+
+}  // namespace deflect::house

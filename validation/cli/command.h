@@ -1,0 +1,31 @@
+// A command of the program: its options as data, so that only main.cpp knows the parser, and what it does.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace deflect::cli {
+
+struct Option {
+  std::string flags;  ///< "--load", or "device" for a positional argument
+  std::string value;  ///< what to write for the value in the help: "fx,fy,fz,mx,my,mz"; empty for a flag
+  std::string help;
+  std::variant<std::string*, bool*, double*> target;
+  bool required = false;
+};
+
+/// run() prints the report for a person on standard output and throws InputError, ModelError or NumericalError.
+struct Command {
+  std::string name, help, example;
+  std::vector<Option> options;
+  std::function<void()> run;
+};
+
+Command solve_command();
+Command validate_command();
+Command devices_command();
+
+}  // namespace deflect::cli

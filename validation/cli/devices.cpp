@@ -1,0 +1,89 @@
+#include "validation/cli/devices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "meshes/structure.h"
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/base/units.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/cli/command.h"
+#include "validation/compare/theories.h"
+
+namespace deflect::cli {
+namespace fs = std::filesystem;
+
+fs::path data_folder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed = program.parent_path().parent_path() / DEFLECT_INSTALL_DATA;
+  if (!error && fs::is_directory(installed / "devices", error)) return installed;
+  return program.parent_path() / DEFLECT_INSTALL_DATA;  // the build tree
+}
+
+std::vector<std::string> device_names() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(data_folder() / "devices", error))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+fs::path device_file(const std::string& name) {
+  const std::vector<std::string> names = device_names();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return data_folder() / "devices" / (name + ".yaml");
+  if (name.find('/') != name.npos || name.ends_with(".yaml") || fs::exists(name)) return name;
+  const std::string hint = nearest(name, names);
+  throw InputError(fmt::format("there is no device '{}'{}: name a built-in one ({}) or a file", name,
+                               hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), fmt::join(names, ", ")));
+}
+
+std::vector<double> parse_list(const std::string& option, const std::string& text,
+                               const std::vector<std::size_t>& counts, const std::string& wanted) {
+  std::vector<double> values;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    try {
+      values.push_back(parse_number(std::string_view(text).substr(from, to - from)));
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("{} '{}': number {}: {}; write {}", option, text, values.size() + 1, e.what(), wanted));
+    }
+    from = to + 1;
+  }
+  if (std::find(counts.begin(), counts.end(), values.size()) == counts.end())
+    throw InputError(fmt::format("{} '{}': {} number{}; write {}", option, text, values.size(),
+                                 values.size() == 1 ? "" : "s", wanted));
+  return values;
+}
+
+frame::MemberDivision divide(const Mechanism& m, const std::string& element_size) {
+  double size = 0;
+  try {
+    size = parse_quantity(element_size, Dimension::length);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("--element-size: {}", e.what()));
+  }
+  if (!(size > 0)) throw InputError(fmt::format("--element-size: '{}' must be greater than zero", element_size));
+  return divide_members(configure(m, home_pose(m)), size);
+}
+
+Command devices_command() {
+  auto name = std::make_shared<std::string>();
+  return {"devices",
+          "List the built-in devices, or print one as a file to start one's own from",
+          "deflect devices haptic-6psu > my-device.yaml",
+          {{"name", "NAME", "device to print; without it all are listed", name.get(), false}},
+          [name] {
+            if (!name->empty()) {
+              fmt::print("{}", read_text(device_file(*name)));
+              return;
+            }
+            for (const std::string& each : device_names())
+              fmt::print("{:<26} {}\n", each, read_mechanism(device_file(each)).about);
+          }};
+}
+
+}  // namespace deflect::cli

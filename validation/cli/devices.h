@@ -1,0 +1,29 @@
+// Built-in devices and the arguments that commands share.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "msa/frame/build.h"
+#include "msa/mechanism/description.h"
+
+namespace deflect::cli {
+
+/// Where the program's devices and effects are: share/deflect beside an installed program, the source tree otherwise.
+std::filesystem::path data_folder();
+
+/// Names of the built-in devices, sorted.
+std::vector<std::string> device_names();
+
+/// The file of a built-in device's name, or of a path. Throws InputError with the nearest name.
+std::filesystem::path device_file(const std::string& name_or_path);
+
+/// "1,2.5,-3" → numbers; exactly one of `counts` of them, or InputError naming the option and what it wants.
+std::vector<double> parse_list(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts,
+                               const std::string& wanted);
+
+/// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose.
+frame::MemberDivision divide(const Mechanism&, const std::string& element_size);
+
+}  // namespace deflect::cli

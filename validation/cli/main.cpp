@@ -1,0 +1,74 @@
+// deflect: the stiffness of mechanisms by two independent theories. Exit codes: 0 done, 2 bad input or usage, 3 a model
+// that cannot be, 4 a numerical failure, 70 a bug.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <new>
+
+#include "msa/base/error.h"
+#include "validation/cli/command.h"
+
+namespace {
+
+using deflect::cli::Command;
+using deflect::cli::Option;
+
+// OpenBLAS, where it is the BLAS: one thread, since the systems of mechanisms are small and threads only cost.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
+void declare(CLI::App& app, const Option& option) {
+  CLI::Option* o = std::visit(
+      [&](auto* target) -> CLI::Option* {
+        if constexpr (std::is_same_v<decltype(target), bool*>)
+          return app.add_flag(option.flags, *target, option.help);
+        else
+          return app.add_option(option.flags, *target, option.help)->type_name(option.value);
+      },
+      option.target);
+  o->required(option.required);
+}
+
+int fail(int code, const char* what, const char* message) {
+  fmt::print(stderr, "deflect: {}{}\n", what, message);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (openblas_set_num_threads) openblas_set_num_threads(1);
+  CLI::App app("deflect: how far a mechanism's tool point moves under load, by two independent theories", "deflect");
+  app.set_version_flag("--version", DEFLECT_VERSION);
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 2 bad input or usage, 3 a model that cannot be, 4 a numerical failure, 70 a bug.");
+
+  const std::vector<Command> commands = {deflect::cli::solve_command(), deflect::cli::validate_command(),
+                                         deflect::cli::devices_command()};
+  std::vector<CLI::App*> parsers;
+  for (const Command& command : commands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.help);
+    sub->footer("Example:\n  " + command.example);
+    for (const Option& option : command.options) declare(*sub, option);
+    parsers.push_back(sub);
+  }
+  try {
+    app.parse(argc, argv);
+    for (std::size_t i = 0; i < commands.size(); ++i)
+      if (parsers[i]->parsed()) commands[i].run();
+    if (std::fflush(stdout) != 0) return fail(2, "", "standard output cannot be written");
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  } catch (const deflect::InputError& e) {
+    return fail(2, "", e.what());
+  } catch (const deflect::ModelError& e) {
+    return fail(3, "", e.what());
+  } catch (const deflect::NumericalError& e) {
+    return fail(4, "", e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(4, "", "out of memory");
+  } catch (const std::exception& e) {
+    return fail(70, "a bug, please report it: ", e.what());
+  }
+}

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include "meshes/gmsh.h"
+#include "meshes/vtu.h"
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/mechanism/device_file.h"
+#include "msa/mechanism/six_psu.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/compare/solve_result.h"
+#include "validation/compare/theories.h"
+#include "validation/report/solve_results.h"
+
+namespace deflect::cli {
+namespace {
+
+struct Arguments {
+  std::string device, pose, joints, load, json, out, element_size = "25 mm";
+};
+
+Vector6 six(const std::vector<double>& values) {
+  Vector6 v = Vector6::Zero();
+  for (std::size_t i = 0; i < values.size(); ++i) v(static_cast<Eigen::Index>(i)) = values[i];
+  return v;
+}
+
+Vector6 pose_of(const Mechanism& m, const Arguments& a) {
+  if (a.pose.empty() == a.joints.empty())
+    throw InputError("give either --pose x,y,z,roll,pitch,yaw (mm, deg) or --joints q1,…,q6 (mm)");
+  if (!a.pose.empty())
+    return six(parse_list("--pose", a.pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg"));
+  const std::vector<double> q = parse_list("--joints", a.joints, {6}, "the six sliders in mm");
+  const SixPsu& k = std::get<SixPsu>(m.kinematics);
+  std::array<double, 6> sliders{};
+  double mean = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    sliders[i] = q[i] / 1e3;
+    mean += sliders[i] / 6;
+  }
+  const ForwardKinematics found = forward_kinematics(k, sliders, centred_pose(k, mean));
+  if (!found.converged)
+    throw ModelError(fmt::format("--joints {}: the sliders fit no assembly of the device near the untilted one "
+                                 "(closure error {:.3g} mm after {} steps)",
+                                 a.joints, 1e3 * found.closure_error, found.iterations));
+  return mm_deg_from(found.pose);
+}
+
+void write_structure(const std::filesystem::path& folder, const SolveResult& r) {
+  gmsh::write_msh(folder / "deflected.msh", r.mesh, r.fields);
+  write_vtu(folder / "deflected.vtu", r.mesh, r.fields);
+}
+
+void run(const Arguments& a) {
+  const Mechanism m = read_mechanism(device_file(a.device));
+  const Vector6 load = a.load.empty()
+                           ? Vector6(Vector6::Zero())
+                           : six(parse_list("--load", a.load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm"));
+  const SolveResult r = solve(m, pose_of(m, a), load, divide(m, a.element_size));
+  if (!a.json.empty()) write_text(a.json, solve_json(r));
+  if (!a.out.empty()) write_structure(a.out, r);
+  fmt::print("{}\n{}", m.name, solve_report(r));
+  if (load.isZero(0) && r.msa.stiffness_mm.isZero(1e-9))
+    fmt::print("Without load the contacts have no stiffness; give --load for the stiffness under it.\n");
+  if (!a.out.empty()) fmt::print("Deflected structure: {0}/deflected.msh, {0}/deflected.vtu\n", a.out);
+}
+
+}  // namespace
+
+Command solve_command() {
+  auto a = std::make_shared<Arguments>();
+  return {"solve",
+          "One pose, one load: displacement and 6x6 stiffness of the tool point by both theories, the share of each part "
+          "in the compliance, the checks",
+          "deflect solve haptic-6psu --pose 25,25,198.9,0,0,0 --load 50,0,0,0,0,0 --json result.json --out result",
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in the base frame, mm and deg", &a->pose},
+           {"--joints", "q1,...,q6", "slider positions in mm, instead of --pose", &a->joints},
+           {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
+           {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
+           {"--json", "FILE", "write the result", &a->json},
+           {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

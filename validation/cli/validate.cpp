@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "meshes/structure.h"
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/compare/theories.h"
+#include "validation/measurement/points_file.h"
+#include "validation/report/errata_table.h"
+#include "validation/report/fig10.h"
+#include "validation/report/validation_results.h"
+
+namespace deflect::cli {
+namespace {
+
+struct Arguments {
+  std::string device, points, as_printed, json, out, element_size = "25 mm";
+  double load_N = 50;
+  bool errata = false, mesh_study = false;
+};
+
+void print_mesh_study(const Mechanism& m, const std::vector<ValidationPoint>& points, double load_N) {
+  fmt::print("\nMesh: largest relative difference of the two theories as the elements shrink.\n");
+  fmt::print("{:>12}  {:>16}  {:>10}\n", "element", "elements per leg", "difference");
+  for (const double size_mm : {200.0, 100.0, 50.0, 25.0, 10.0, 5.0, 2.0}) {
+    const frame::MemberDivision division = divide_members(configure(m, home_pose(m)), size_mm / 1e3);
+    std::size_t elements = 0;
+    for (const auto& [part, at] : division) elements += at.size() - 1;
+    fmt::print("{:>9} mm  {:>16}  {:>10.2g}\n", size_mm, elements,
+               validate(m, points, load_N, {}, division).max_relative_difference);
+  }
+}
+
+void run(const Arguments& a) {
+  const Mechanism m = read_mechanism(device_file(a.device));
+  const std::set<Erratum> as_printed = parse_errata(a.as_printed);
+  if (!std::isfinite(a.load_N) || a.load_N == 0)
+    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.load_N));
+  const std::vector<ValidationPoint> points = a.points.empty() ? cube_points(m) : read_points(a.points);
+  const Validation v = validate(m, points, a.load_N, as_printed, divide(m, a.element_size));
+  const std::vector<ErratumPrice> prices = a.errata ? price_errata(m, points, a.load_N) : std::vector<ErratumPrice>{};
+  if (!a.json.empty()) write_text(a.json, validation_json(v));
+  const std::filesystem::path folder = a.out;
+  if (!a.out.empty()) {
+    render(fig10(v), folder);
+    write_text(folder / "validation.csv", validation_csv(v));
+    if (a.errata) write_text(folder / "errata.csv", errata_csv(prices));
+  }
+  fmt::print("{}", validation_table(v));
+  if (a.errata) fmt::print("\n{}", errata_table(prices));
+  if (a.mesh_study) print_mesh_study(m, points, a.load_N);
+  if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
+}
+
+}  // namespace
+
+Command validate_command() {
+  auto a = std::make_shared<Arguments>();
+  std::string errata_help = "errata of the paper to take as printed, joined by commas, or all:";
+  for (const ErratumInfo& e : errata()) errata_help += fmt::format("\n{} {}: {}", e.name, e.equations, e.as_printed);
+  return {"validate",
+          "Analytic theory against MSA at the nine points of the device's cube (or --points) for a force along x, y and z: "
+          "table of errors, Fig. 10",
+          "deflect validate haptic-6psu --out figures --as-printed passive-joints,ujoint-parallel",
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg", &a->points},
+           {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
+           {"--as-printed", "ERRATA", errata_help, &a->as_printed},
+           {"--errata", "", "the price of each erratum, one at a time", &a->errata},
+           {"--mesh-study", "", "the difference of the theories for finer and finer meshes", &a->mesh_study},
+           {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
+           {"--json", "FILE", "write the result", &a->json},
+           {"--out", "DIR", "write Fig. 10 as SVG, PDF, PNG and the table as CSV", &a->out}},
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

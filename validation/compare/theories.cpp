@@ -1,0 +1,188 @@
+#include "validation/compare/theories.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analytic/model.h"
+#include "meshes/structure.h"
+#include "msa/base/error.h"
+#include "msa/base/stiffness_checks.h"
+#include "msa/frame/msa.h"
+#include "msa/mechanism/configuration.h"
+#include "msa/mechanism/six_psu.h"
+#include "validation/compare/solve_result.h"
+
+namespace deflect {
+namespace {
+
+StiffnessChecks checks(const analytic::AnalyticModel& model, const analytic::AnalyticSolution& s) {
+  std::vector<LegStiffness> legs;
+  for (std::size_t i = 0; i < model.chains().size(); ++i)
+    legs.push_back({model.chains()[i].name, model.leg_stiffness(i, s), model.chains()[i].J_q});
+  return check_stiffness(model.stiffness(s), legs);
+}
+
+StiffnessChecks checks(frame::MsaModel& model, const frame::Solution& s, const Configuration& c) {
+  std::vector<LegStiffness> legs;
+  for (std::size_t i = 0; i < c.legs.size(); ++i)
+    legs.push_back({c.legs[i].name, model.leg_stiffness(i, s), model.passive_twists(i)});
+  return check_stiffness(model.stiffness(s), legs);
+}
+
+void enforce(const StiffnessChecks& c, const char* theory, const std::string& where) {
+  if (!c.all()) throw ModelError(fmt::format("{}: the {} stiffness fails a check: {}", where, theory, c.failure));
+}
+
+/// Both theories at one pose; errors say where.
+struct Pair {
+  Pair(const Mechanism& m, const Vector6& pose_mm_deg, const frame::MemberDivision& division)
+      : where(fmt::format("{} at ({})", m.name, fmt::join(pose_mm_deg.data(), pose_mm_deg.data() + 6, ", "))),
+        configuration(configure(m, pose_from(pose_mm_deg))),
+        analytic(configuration),
+        msa(configuration, division) {}
+
+  void solve(const Vector6& F) {
+    a = analytic.solve(F);
+    f = msa.solve(F);
+    if (!a.converged)
+      throw NumericalError(fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})", where,
+                                       a.iterations, a.misfit));
+    if (!f.state.converged)
+      throw NumericalError(fmt::format("{}: the MSA did not converge in {} steps (residual {:.3g})", where,
+                                       f.state.iterations, f.state.residual));
+    enforce(checks(analytic, a), "analytic", where);
+    enforce(checks(msa, f.state, configuration), "MSA", where);
+  }
+
+  std::string where;
+  Configuration configuration;
+  analytic::AnalyticModel analytic;
+  frame::MsaModel msa;
+  analytic::AnalyticSolution a;
+  frame::MsaSolution f;
+};
+
+Vector6 along(int axis, double force) { return force * Vector6::Unit(axis); }
+
+}  // namespace
+
+Pose pose_from(const Vector6& v) {
+  const Vector3 angle = v.tail<3>() * pi / 180;
+  return {v.head<3>() / 1e3, rotation_from_rpy(angle(0), angle(1), angle(2))};
+}
+
+Vector6 mm_deg_from(const Pose& pose) {
+  Vector6 v;
+  v << 1e3 * pose.p_WT, rpy_from_rotation(pose.R_WT) * 180 / pi;
+  return v;
+}
+
+Pose home_pose(const Mechanism& m) {
+  if (!(m.workspace.nominal_slider > 0))
+    throw InputError(fmt::format("{}: the device has no workspace; add for example 'workspace: {{nominal_slider: 80 mm, "
+                                 "cube_edge: 50 mm}}' to its file",
+                                 m.name));
+  return centred_pose(std::get<SixPsu>(m.kinematics), m.workspace.nominal_slider);
+}
+
+std::vector<ValidationPoint> cube_points(const Mechanism& m) {
+  const Vector6 centre = mm_deg_from(home_pose(m));
+  const double half = 1e3 * m.workspace.cube_edge / 2;
+  std::vector<ValidationPoint> points{{"0", centre}};
+  for (const double z : {+1.0, -1.0})
+    for (const auto& [x, y] : {std::pair{+1, +1}, {-1, +1}, {-1, -1}, {+1, -1}}) {
+      Vector6 p = centre;
+      p.head<3>() += half * Vector3(x, y, z);
+      points.push_back({std::to_string(points.size()), p});
+    }
+  return points;
+}
+
+double relative_difference(const Vector6& a, const Vector6& b) {
+  const auto relative = [](double difference, double size) {
+    return size > 0 ? difference / size : difference > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+  };
+  const double translation = b.head<3>().norm(), rotation = b.tail<3>().norm();
+  // Displacements come in mm: 1e-9 rad per metre of translation is 1e-12 rad per mm.
+  return std::max(relative((a - b).head<3>().norm(), translation),
+                  relative((a - b).tail<3>().norm(), std::max(rotation, 1e-12 * translation)));
+}
+
+SolveResult solve(const Mechanism& m, const Vector6& pose, const Vector6& load, const frame::MemberDivision& division) {
+  Pair pair(m, pose, division);
+  pair.solve(wrench_from_mm(load));
+  SolveResult r;
+  r.pose_mm_deg = pose;
+  r.load_N_Nmm = load;
+  r.analytic = {twist_in_mm(pair.a.displacement), stiffness_in_mm(pair.analytic.stiffness(pair.a))};
+  r.msa = {twist_in_mm(pair.f.displacement), stiffness_in_mm(pair.msa.stiffness(pair.f.state))};
+  r.relative_difference = relative_difference(r.analytic.displacement_mm_rad, r.msa.displacement_mm_rad);
+  r.symmetric = r.positive = r.passive_joints_free = true;  // or solve() would not have returned
+  double total = 0;
+  for (const auto& [part, energy] : pair.f.energies) total += energy;
+  if (total > 0)
+    for (const auto& [part, energy] : pair.f.energies) r.shares.emplace_back(part, energy / total);
+  r.mesh = lines_of(pair.msa.mechanism());
+  r.fields = fields_of(pair.msa.mechanism(), pair.f.state.u);
+  return r;
+}
+
+Validation validate(const Mechanism& m, const std::vector<ValidationPoint>& points, double load_N,
+                    const std::set<Erratum>& as_printed, const frame::MemberDivision& division) {
+  Validation v;
+  v.device = m.name;
+  v.as_printed = as_printed;
+  double squares = 0;
+  for (const ValidationPoint& point : points) {
+    Pair pair(m, point.pose_mm_deg, division);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector6 F = along(axis, load_N);
+      pair.solve(F);
+      ValidationRow row;
+      row.point = point;
+      row.axis = axis;
+      row.load_N = load_N;
+      row.analytic = twist_in_mm(pair.a.displacement);
+      row.msa = twist_in_mm(pair.f.displacement);
+      if (!as_printed.empty())
+        row.as_printed = twist_in_mm(analytic::AnalyticModel(pair.configuration, as_printed).solve(F).displacement);
+      row.relative_difference = relative_difference(row.analytic, row.msa);
+      v.max_relative_difference = std::max(v.max_relative_difference, row.relative_difference);
+      squares += row.relative_difference * row.relative_difference;
+      v.rows.push_back(row);
+    }
+  }
+  v.rms_relative_difference = v.rows.empty() ? 0 : std::sqrt(squares / static_cast<double>(v.rows.size()));
+  return v;
+}
+
+std::vector<ErratumPrice> price_errata(const Mechanism& m, const std::vector<ValidationPoint>& points, double load_N) {
+  std::vector<ErratumPrice> prices;
+  for (const ErratumInfo& erratum : errata()) {
+    ErratumPrice price{erratum.erratum, Vector3::Constant(std::numeric_limits<double>::infinity()),
+                       Vector3::Constant(-std::numeric_limits<double>::infinity()), "", ""};
+    try {
+      for (const ValidationPoint& point : points) {
+        const Configuration c = configure(m, pose_from(point.pose_mm_deg));
+        const analytic::AnalyticModel corrected(c), printed(c, {erratum.erratum});
+        for (int axis = 0; axis < 3; ++axis) {
+          const Vector6 F = along(axis, load_N);
+          const analytic::AnalyticSolution s = printed.solve(F);
+          const double ratio = s.displacement(axis) / corrected.solve(F).displacement(axis);
+          price.smallest(axis) = std::min(price.smallest(axis), ratio);
+          price.largest(axis) = std::max(price.largest(axis), ratio);
+          if (price.failed_check.empty()) price.failed_check = checks(printed, s).failure;
+        }
+      }
+    } catch (const ModelError& e) {
+      price.refused = e.what();
+    }
+    prices.push_back(std::move(price));
+  }
+  return prices;
+}
+
+}  // namespace deflect

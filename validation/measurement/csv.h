@@ -1,0 +1,59 @@
+// A strict reader of CSV tables with a header row.
+//
+// UTF-8 with or without byte order mark; lines end with LF or CRLF; cells are separated by commas, or by
+// semicolons where the header is, and then numbers may have decimal commas (one sort per file). Cells may be
+// quoted, "" inside quotes is a quote, spaces around a cell do not count. Blank lines may stand at the end
+// only.
+//
+// Every refusal is one InputError that begins with "file:line:" and says what to do.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace deflect {
+
+class CsvTable {
+ public:
+  const std::vector<std::string>& header() const { return header_; }
+  std::size_t rows() const { return lines_.size(); }
+
+  /// Column of that name, counted from 0.
+  std::optional<std::size_t> column(std::string_view name) const;
+
+  /// The cell without quotes; valid as long as the table is neither moved nor destroyed.
+  std::string_view text(std::size_t row, std::size_t column) const;
+
+  /// The cell as a finite number; InputError for anything else, an empty cell included.
+  double number(std::size_t row, std::size_t column) const;
+
+  /// Line of the file on which the row begins, counted from 1.
+  std::size_t line(std::size_t row) const { return lines_[row]; }
+
+  /// InputError "file:line: column 'name': message" for a cell, "file:line: message" for the header.
+  [[noreturn]] void refuse(std::size_t row, std::size_t column, std::string_view message) const;
+  [[noreturn]] void refuse_header(std::string_view message) const;
+
+ private:
+  friend class CsvParser;
+  struct Cell {
+    std::uint32_t begin = 0, size = 0;  // of bytes_: views would not survive a move, and weigh twice as much
+  };
+  std::string file_, bytes_;
+  std::vector<std::string> header_;
+  std::vector<Cell> cells_;  // row by row
+  std::vector<std::uint32_t> lines_;
+  std::size_t header_line_ = 1;
+  bool decimal_comma_ = false;
+};
+
+/// The table in the text; `file` is for messages only. Refuses text without rows.
+CsvTable parse_csv(std::string text, std::string file);
+
+/// The same of a file.
+CsvTable read_csv(const std::string& file);
+
+}  // namespace deflect

@@ -1,0 +1,61 @@
+#include "validation/report/errata_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "validation/report/text.h"
+
+namespace deflect {
+namespace {
+
+std::string range(double low, double high) {
+  const std::string a = fmt::format("{:.4g}", low), b = fmt::format("{:.4g}", high);
+  return a == b ? a : a + " ... " + b;
+}
+
+std::string quoted(std::string text) {
+  for (std::size_t at = 0; (at = text.find('"', at)) != text.npos; at += 2) text.insert(at, 1, '"');
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return '"' + text + '"';
+}
+
+std::string remark(const ErratumPrice& p) {
+  if (!p.refused.empty()) return "no solution";
+  return p.failed_check.empty() ? "-" : p.failed_check.substr(0, p.failed_check.find(':'));
+}
+
+}  // namespace
+
+std::string errata_table(const std::vector<ErratumPrice>& prices) {
+  std::vector<std::vector<std::string>> rows{{"erratum", "equations", "x", "y", "z", "check that fails"}};
+  for (const ErratumPrice& p : prices) {
+    std::vector<std::string> row{info(p.erratum).name, info(p.erratum).equations};
+    for (int axis = 0; axis < 3; ++axis)
+      row.push_back(p.refused.empty() ? range(p.smallest(axis), p.largest(axis)) : "-");
+    row.push_back(remark(p));
+    rows.push_back(std::move(row));
+  }
+  std::string text =
+      "Price of each erratum: deflection along the load as printed / corrected, smallest ... largest of "
+      "the points.\n" +
+      aligned(rows);
+  for (const ErratumPrice& p : prices)
+    if (!p.refused.empty()) text += fmt::format("{}: {}\n", info(p.erratum).name, p.refused);
+  return text;
+}
+
+std::string errata_csv(const std::vector<ErratumPrice>& prices) {
+  std::string csv = "erratum,equations";
+  for (const char axis : {'x', 'y', 'z'}) csv += fmt::format(",ratio_{0}_min,ratio_{0}_max", axis);
+  csv += ",failed_check,refused\n";
+  for (const ErratumPrice& p : prices) {
+    csv += fmt::format("{},{}", info(p.erratum).name, quoted(info(p.erratum).equations));
+    for (int axis = 0; axis < 3; ++axis)
+      csv += p.refused.empty() ? fmt::format(",{},{}", p.smallest(axis), p.largest(axis)) : ",,";
+    csv += fmt::format(",{},{}\n", quoted(p.failed_check), quoted(p.refused));
+  }
+  return csv;
+}
+
+}  // namespace deflect

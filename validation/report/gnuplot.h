@@ -1,0 +1,34 @@
+// Figures by gnuplot, run as a child process: one script body, three files of one look.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace deflect {
+
+/// A figure as gnuplot commands with inline data. The body sets neither terminal nor output nor encoding; its
+/// font sizes are points, its line widths points at `lw 1`, and it may count on the common look set by
+/// render(): open border, tics outside, grey grid, typographic minus.
+struct Figure {
+  std::string name;  ///< of the files, without suffix: letters, digits, '-', '_', '.'
+  std::string body;
+  double width_mm = 160, height_mm = 100;
+};
+
+/// Writes name.svg, name.pdf and name.png (200 dpi) into the folder, creating it, and returns their paths.
+/// All three are drawn before the first is written, so a refused script leaves the folder as it was, and each
+/// file is replaced whole. The same figure gives the same bytes. Throws InputError when gnuplot is not
+/// installed or the folder cannot be written, std::logic_error with gnuplot's own words when it refuses the
+/// script.
+std::vector<std::filesystem::path> render(const Figure&, const std::filesystem::path& folder);
+
+/// The text as a gnuplot string that prints as it is, wherever `noenhanced` is set; control characters become
+/// spaces.
+std::string gnuplot_quote(std::string_view text);
+
+/// The same for a label of a tic, where gnuplot would take a percent sign as a format.
+std::string gnuplot_tic_label(std::string_view text);
+
+}  // namespace deflect

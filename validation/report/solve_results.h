@@ -1,0 +1,19 @@
+// One pose and one load as JSON, by the contract of `solve --json`, and as a report for a person.
+#pragma once
+
+#include <string>
+
+#include "validation/compare/solve_result.h"
+
+namespace deflect {
+
+/// {"pose", "load", "analytic": {"displacement", "stiffness"}, "msa": {the same}, "relative_difference",
+/// "checks", "shares": [{"part", "share"}, …] as in the result}; mm, rad, N, Nmm, deg. Throws NumericalError
+/// naming a number that is not finite.
+std::string solve_json(const SolveResult&);
+
+/// Pose, load, displacement by both theories, the MSA's stiffness and how far the analytic one is from it,
+/// shares from the largest down, checks.
+std::string solve_report(const SolveResult&);
+
+}  // namespace deflect

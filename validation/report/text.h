@@ -1,0 +1,24 @@
+// Text for people: UTF-8 lengths, lines, aligned tables.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace deflect {
+
+/// Code points of a UTF-8 text.
+std::size_t letters(std::string_view utf8);
+
+/// The text, or its beginning and "…" where it has more than `most` letters.
+std::string clip(std::string_view utf8, std::size_t most);
+
+/// Lines of at most `most` letters, broken at spaces; a longer word gets a line of its own.
+std::vector<std::string> wrap(std::string_view text, std::size_t most);
+
+/// Rows as lines of aligned columns with two spaces between them: the first column to the left, the others to
+/// the right, nothing behind the last. Rows may have different lengths.
+std::string aligned(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace deflect

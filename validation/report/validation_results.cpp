@@ -1,0 +1,151 @@
+#include "validation/report/validation_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "msa/base/error.h"
+#include "validation/report/by_point.h"
+#include "validation/report/json_text.h"
+#include "validation/report/text.h"
+
+namespace deflect {
+namespace {
+
+/// 7 for "7"; text for "P7", "007" and "+7", which an integer would not give back.
+Json json_label(const std::string& label) {
+  long long number = 0;
+  const auto [end, error] = std::from_chars(label.data(), label.data() + label.size(), number);
+  if (error == std::errc() && end == label.data() + label.size() && std::to_string(number) == label) return number;
+  return label;
+}
+
+std::string csv_text(const std::string& text) {
+  if (!text.empty() && text.find_first_of(",;\"\r\n") == std::string::npos && text.front() != ' ' && text.back() != ' ')
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  return quoted + "\"";
+}
+
+std::string csv_number(double value, const std::string& what) {
+  if (!std::isfinite(value)) throw NumericalError(fmt::format("result '{}' is {}, not a number to write", what, value));
+  return fmt::format("{}", value);
+}
+
+constexpr const char* pose_columns[] = {"x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg"};
+constexpr const char* displacement_columns[] = {"ux_mm", "uy_mm", "uz_mm", "thx_rad", "thy_rad", "thz_rad"};
+
+std::string row_name(const ValidationRow& row) {
+  return fmt::format("point {}, load along {}", row.point.label, axis_names[row.axis]);
+}
+
+std::string millimetres(const ValidationRow* row, const Vector6 ValidationRow::*theory) {
+  return row ? fmt::format("{:.6f}", (row->*theory)[row->axis]) : "–";
+}
+
+std::string difference(double value) { return fmt::format("{:.1e}", value); }
+
+std::vector<std::vector<std::string>> two_theories(const std::vector<PointRows>& points) {
+  std::vector<std::vector<std::string>> lines = {
+      {"point", "analytic x", "analytic y", "analytic z", "MSA x", "MSA y", "MSA z", "difference"}};
+  for (const PointRows& p : points) {
+    std::vector<std::string> line = {p.point->label};
+    for (const ValidationRow* row : p.rows) line.push_back(millimetres(row, &ValidationRow::analytic));
+    for (const ValidationRow* row : p.rows) line.push_back(millimetres(row, &ValidationRow::msa));
+    double largest = 0;
+    for (const ValidationRow* row : p.rows)
+      if (row && (std::isnan(row->relative_difference) || row->relative_difference > largest))
+        largest = row->relative_difference;  // nothing is larger than a NaN, so it stays
+    line.push_back(difference(largest));
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::vector<std::vector<std::string>> with_printed(const std::vector<PointRows>& points) {
+  std::vector<std::vector<std::string>> lines = {
+      {"point", "load", "as printed", "corrected", "MSA", "corrected/printed", "difference"}};
+  for (const PointRows& p : points)
+    for (const ValidationRow* row : p.rows) {
+      if (!row) continue;
+      const double corrected = row->analytic[row->axis];
+      const double printed = row->as_printed ? (*row->as_printed)[row->axis] : 0;
+      lines.push_back({p.point->label, axis_names[row->axis], row->as_printed ? fmt::format("{:.6f}", printed) : "–",
+                       millimetres(row, &ValidationRow::analytic), millimetres(row, &ValidationRow::msa),
+                       printed != 0 ? fmt::format("{:.3f}", corrected / printed) : "–",
+                       difference(row->relative_difference)});
+    }
+  return lines;
+}
+
+}  // namespace
+
+std::string validation_json(const Validation& validation) {
+  Json points = Json::array();
+  for (const ValidationRow& row : validation.rows) {
+    const std::string name = row_name(row);
+    Json entry;
+    entry["point"] = json_label(row.point.label);
+    entry["pose"] = json_numbers(row.point.pose_mm_deg, name + ", pose");
+    entry["load_axis"] = axis_names[row.axis];
+    entry["load_N"] = json_number(row.load_N, name + ", load_N");
+    entry["analytic"] = json_numbers(row.analytic, name + ", analytic");
+    entry["msa"] = json_numbers(row.msa, name + ", msa");
+    if (row.as_printed) entry["as_printed"] = json_numbers(*row.as_printed, name + ", as_printed");
+    points.push_back(std::move(entry));
+  }
+  Json result;
+  result["device"] = validation.device;
+  result["points"] = std::move(points);
+  result["max_relative_difference"] = json_number(validation.max_relative_difference, "max_relative_difference");
+  result["rms_relative_difference"] = json_number(validation.rms_relative_difference, "rms_relative_difference");
+  return json_text(result);
+}
+
+std::string validation_csv(const Validation& validation) {
+  const bool printed = has_as_printed(validation);
+  std::string text = fmt::format("point,{},load_axis,load_N", fmt::join(pose_columns, ","));
+  const auto theories = printed ? std::vector{"analytic", "msa", "as_printed"} : std::vector{"analytic", "msa"};
+  for (const char* theory : theories)
+    for (const char* column : displacement_columns) text += fmt::format(",{}_{}", theory, column);
+  text += ",relative_difference\n";
+
+  for (const ValidationRow& row : validation.rows) {
+    const std::string name = row_name(row);
+    const auto numbers = [&](const Vector6& values, const char* what) {
+      for (const double value : values) text.append(",").append(csv_number(value, name + ", " + what));
+    };
+    text += csv_text(row.point.label);
+    numbers(row.point.pose_mm_deg, "pose");
+    text += fmt::format(",{},{}", axis_names[row.axis], csv_number(row.load_N, name + ", load_N"));
+    numbers(row.analytic, "analytic");
+    numbers(row.msa, "msa");
+    if (row.as_printed)
+      numbers(*row.as_printed, "as_printed");
+    else if (printed)
+      text.append(6, ',');
+    text += fmt::format(",{}\n", csv_number(row.relative_difference, name + ", relative_difference"));
+  }
+  return text;
+}
+
+std::string validation_table(const Validation& validation) {
+  const std::vector<PointRows> points = by_point(validation);
+  const bool printed = has_as_printed(validation);
+  std::string text = fmt::format("{}: deflection of the tool point along a load of {} in x, y, z (mm, base axes)\n",
+                                 validation.device, load_text(validation));
+  if (printed)
+    text += fmt::format(
+        "as printed: analytic theory with {}\n"
+        "corrected/printed: how many times too stiff the theory is as printed\n",
+        errata_text(validation));
+  text.append("\n").append(aligned(printed ? with_printed(points) : two_theories(points)));
+  return text + fmt::format("\nanalytic against MSA, relative: largest {:.1e}, rms {:.1e}, {} cases\n",
+                            validation.max_relative_difference, validation.rms_relative_difference,
+                            validation.rows.size());
+}
+
+}  // namespace deflect

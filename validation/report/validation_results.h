@@ -1,0 +1,27 @@
+// The validation as files and as a table: JSON by the contract of `validate --json`, CSV, text for a person.
+// Displacements of the tool point in base axes, mm and rad. JSON and CSV hold numbers that read back exactly;
+// a number that is not finite throws NumericalError naming it.
+#pragma once
+
+#include <string>
+
+#include "validation/compare/theories.h"
+
+namespace deflect {
+
+/// {"device", "points": [{"point", "pose", "load_axis", "load_N", "analytic", "msa", "as_printed" where
+/// present}, …], "max_relative_difference", "rms_relative_difference"}. "point" is an integer where the label
+/// is one.
+std::string validation_json(const Validation&);
+
+/// One line per row: point, x_mm … yaw_deg, load_axis, load_N, analytic_ux_mm … analytic_thz_rad, msa_…,
+/// as_printed_… (where any row has it; empty where that row has none), relative_difference.
+std::string validation_csv(const Validation&);
+
+/// One line per point: deflection along the load by both theories (mm) and the larger relative difference.
+/// With the theory as printed, one line per point and load: as printed, corrected, MSA and corrected / as
+/// printed, which is how many times too stiff the printed theory is. Ends with the largest and the rms
+/// difference.
+std::string validation_table(const Validation&);
+
+}  // namespace deflect
