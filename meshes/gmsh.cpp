@@ -8,12 +8,15 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <mutex>
+#include <sstream>
 #include <string>
 
 #include "meshes/gmsh_module.h"
 #include "meshes/load_gmsh.h"
 #include "msa/base/error.h"
+#include "msa/base/files.h"
 
 namespace deflect::gmsh {
 namespace fs = std::filesystem;
@@ -57,14 +60,20 @@ bool is_subdivision(const std::vector<double>& positions) {
   throw InputError(fmt::format("{}: cannot be written ({})", path.string(), reason));
 }
 
-/// Gmsh does not look whether its writes succeed: on a full disk the last section stays without its end.
-bool is_complete(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  const std::streamoff length = std::min<std::streamoff>(in.tellg(), 32);
-  in.seekg(-length, std::ios::end);
-  std::string tail(static_cast<std::size_t>(std::max<std::streamoff>(length, 0)), ' ');
-  in.read(tail.data(), length);
-  return in && tail.find("\n$End") != std::string::npos && tail.back() == '\n';
+/// Gmsh does not look whether its writes succeed: a full disk leaves sections without their end, or none at all.
+bool is_complete(const std::string& text, const LineMesh& mesh, const FieldData& fields) {
+  std::size_t begun = 0, ended = 0, elements = 0, node_data = 0, element_data = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with('$')) continue;
+    ++(line.starts_with("$End") ? ended : begun);
+    elements += line == "$EndElements";
+    node_data += line == "$EndNodeData";
+    element_data += line == "$EndElementData";
+  }
+  return begun > 0 && begun == ended && text.back() == '\n' && elements == (mesh.cells.empty() ? 0u : 1u) &&
+         node_data == (mesh.points.empty() ? 0 : fields.points.size()) &&
+         element_data == (mesh.cells.empty() ? 0 : fields.cells.size());
 }
 
 /// Removes the file when it goes out of scope; after a rename there is none to remove.
@@ -108,7 +117,7 @@ void write_msh(const fs::path& path, const LineMesh& mesh, const FieldData& fiel
   const std::string message =
       with_module([&](const Module& module) { return module.write_msh(part.string(), mesh, fields); });
   if (!message.empty()) refuse_file(path, "Gmsh: " + message);
-  if (!is_complete(part)) refuse_file(path, "Gmsh's file is cut short: is the disk full?");
+  if (!is_complete(read_text(part), mesh, fields)) refuse_file(path, "Gmsh's file is cut short: is the disk full?");
   fs::rename(part, path, error);
   if (error) refuse_file(path, error.message());
 }

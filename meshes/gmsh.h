@@ -23,7 +23,7 @@ std::vector<std::vector<double>> subdivide(const std::vector<double>& lengths, d
 
 /// Writes mesh and fields as MSH 4.1 (ASCII, 16 digits), lengths in mm, one physical group per group, one
 /// view per field. Opens in Gmsh, whose format knows no double quotes in names (written as single ones) and
-/// no long ones (cut after 100 bytes). The file is written whole or not at all; throws InputError when it
+/// no long ones (cut after 200 bytes). The file is written whole or not at all; throws InputError when it
 /// cannot be written, std::invalid_argument as check(mesh, fields) does, ModelError when the module cannot be
 /// loaded.
 void write_msh(const std::filesystem::path&, const LineMesh&, const FieldData&);

@@ -8,6 +8,7 @@
 #include <clocale>
 #include <cstddef>
 #include <exception>
+#include <set>
 #include <string_view>
 
 // Gmsh brings OpenMP along or not, and the module follows it.
@@ -23,7 +24,7 @@ namespace api = ::gmsh;
 
 constexpr double mm_per_m = 1000;
 constexpr int line_element = 1;
-constexpr std::size_t longest_name = 100;  // Gmsh's readers keep lines of names in 128 bytes
+constexpr std::size_t longest_name = 200;  // Gmsh refuses files with names near 256 bytes
 
 class Session {
  public:
@@ -147,11 +148,15 @@ void add_mesh(const LineMesh& mesh) {
   }
 
   std::vector<int> entities;
+  std::set<std::string> names = {""};
   for (std::size_t g = 0; g < groups; ++g) {
     const int entity = entities.emplace_back(api::model::addDiscreteEntity(1));
     api::model::mesh::addNodes(1, entity, nodes[g].tags, nodes[g].xyz);
     const int physical = api::model::addPhysicalGroup(1, {entity});
-    api::model::setPhysicalName(1, physical, printable(mesh.groups[g]));
+    const std::string name = printable(mesh.groups[g]);
+    std::string own = name;  // Gmsh drops a name that it has already
+    for (int k = 2; !names.insert(own).second; ++k) own = name + " (" + std::to_string(k) + ")";
+    api::model::setPhysicalName(1, physical, own);
   }
   if (const Nodes& unused = nodes[groups]; !unused.tags.empty())
     api::model::mesh::addNodes(0, api::model::addDiscreteEntity(0), unused.tags, unused.xyz);
@@ -190,7 +195,7 @@ std::string write_msh(const std::string& file, const LineMesh& mesh, const Field
   });
 }
 
-constexpr Module table = {module_build, subdivide, write_msh};
+constexpr Module table = {module_interface, DEFLECT_VERSION, subdivide, write_msh};
 
 }  // namespace
 }  // namespace deflect::gmsh

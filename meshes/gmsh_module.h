@@ -1,6 +1,6 @@
 // The border between deflect and the module deflect_gmsh, which alone is linked with Gmsh. Both sides come
-// from one build, which `build` proves, so C++ types may cross; exceptions may not: failures come back as
-// text.
+// from one build, which `interface` and `version` prove, so C++ types may cross; exceptions may not: failures come back
+// as text.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@
 namespace deflect::gmsh {
 
 struct Module {
-  const char* build;  ///< module_build of the module; first, so that a stranger's module can still be read
+  int interface;        ///< module_interface; first, so that it can be read whatever follows
+  const char* version;  ///< of deflect
 
   /// Node positions as fractions of the lengths, which are given in element sizes; unchecked. Returns Gmsh's message,
   /// empty on success.
@@ -23,6 +24,6 @@ struct Module {
 
 inline constexpr const char* module_file = "deflect_gmsh.so";
 inline constexpr const char* module_symbol = "deflect_gmsh_module";  ///< const Module* (*)()
-inline constexpr const char* module_build = "deflect " DEFLECT_VERSION ", module interface 1";
+inline constexpr int module_interface = 1;                           ///< to be raised when Module changes
 
 }  // namespace deflect::gmsh

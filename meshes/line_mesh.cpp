@@ -27,8 +27,7 @@ void check_name(const std::string& name, std::set<std::string>& names) {
 }
 
 void check_size(const std::string& name, std::size_t values, std::size_t wanted, const char* places) {
-  if (values != wanted)
-    refuse(fmt::format("field \"{}\" has {} values for {} {}", name, values, wanted, places));
+  if (values != wanted) refuse(fmt::format("field \"{}\" has {} values for {} {}", name, values, wanted, places));
 }
 
 }  // namespace

@@ -29,10 +29,9 @@ const Module* try_load(const fs::path& file, std::string& reason) {
   using Entry = const Module* (*)();
   const auto entry = reinterpret_cast<Entry>(::dlsym(library, module_symbol));
   const Module* const module = entry != nullptr ? entry() : nullptr;
-  if (module != nullptr && module->build == std::string(module_build)) return module;
-  reason = module == nullptr
-               ? std::string("is not a module of deflect")
-               : fmt::format("is of another build ({}, wanted: {})", module->build, module_build);
+  if (module != nullptr && module->interface == module_interface && module->version == std::string(DEFLECT_VERSION))
+    return module;
+  reason = module == nullptr ? "is not a module of deflect" : "belongs to another version of deflect";
   ::dlclose(library);
   return nullptr;
 }
@@ -61,10 +60,10 @@ const Module& load_module(const std::vector<fs::path>& folders) {
     if (const Module* const module = try_load(folder / module_file, reason)) return *module;
     tried += fmt::format("\n  {}: {}", (folder / module_file).string(), reason);
   }
-  throw ModelError(fmt::format(
-      "the module {} with Gmsh cannot be loaded; set DEFLECT_PLUGIN_DIR to its folder, or install deflect "
-      "again together with Gmsh's library. Looked at:{}",
-      module_file, tried.empty() ? " no folder" : tried));
+  throw ModelError(
+      fmt::format("the module {} with Gmsh cannot be loaded; set DEFLECT_PLUGIN_DIR to its folder, or install deflect "
+                  "again together with Gmsh's library. Looked at:{}",
+                  module_file, tried.empty() ? " no folder" : tried));
 }
 
 }  // namespace deflect::gmsh

@@ -49,8 +49,7 @@ class Writer {
 
   /// One line per element of `range`, whose text `print(element)` gives.
   template <typename Range, typename Print>
-  void array(std::string_view type, std::string_view name, std::string_view more, const Range& range,
-             Print print) {
+  void array(std::string_view type, std::string_view name, std::string_view more, const Range& range, Print print) {
     line(R"(<DataArray type="{}" Name="{}"{} format="ascii">)", type, escaped(name), more);
     for (const auto& element : range) (text_ += print(element)) += '\n';
     line("</DataArray>");
@@ -82,14 +81,12 @@ void write_vtu(const std::filesystem::path& path, const LineMesh& mesh, const Fi
   w.line(R"(<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">)");
   w.line("<UnstructuredGrid>");
   w.line("<FieldData>");
-  w.array("String", "group_names", fmt::format(R"( NumberOfTuples="{}")", mesh.groups.size()), mesh.groups,
-          codes);
+  w.array("String", "group_names", fmt::format(R"( NumberOfTuples="{}")", mesh.groups.size()), mesh.groups, codes);
   w.line("</FieldData>");
   w.line(R"(<Piece NumberOfPoints="{}" NumberOfCells="{}">)", mesh.points.size(), mesh.cells.size());
 
   w.line("<PointData>");
-  for (const PointField& field : fields.points)
-    w.array("Float64", field.name, vectors, field.values, numbers);
+  for (const PointField& field : fields.points) w.array("Float64", field.name, vectors, field.values, numbers);
   w.line("</PointData>");
   w.line("<CellData>");
   w.array("Int32", "group", "", mesh.cells, [](const LineCell& c) { return fmt::format("{}", c.group); });
@@ -98,12 +95,10 @@ void write_vtu(const std::filesystem::path& path, const LineMesh& mesh, const Fi
   w.line("</CellData>");
 
   w.line("<Points>");
-  w.array("Float64", "points_mm", vectors, mesh.points,
-          [](const Vector3& p) { return numbers(mm_per_m * p); });
+  w.array("Float64", "points_mm", vectors, mesh.points, [](const Vector3& p) { return numbers(mm_per_m * p); });
   w.line("</Points>");
   w.line("<Cells>");
-  w.array("Int64", "connectivity", "", mesh.cells,
-          [](const LineCell& c) { return fmt::format("{} {}", c.a, c.b); });
+  w.array("Int64", "connectivity", "", mesh.cells, [](const LineCell& c) { return fmt::format("{} {}", c.a, c.b); });
   w.array("Int64", "offsets", "", mesh.cells,
           [end = 0](const LineCell&) mutable { return fmt::format("{}", end += 2); });
   w.array("UInt8", "types", "", mesh.cells, [](const LineCell&) { return fmt::format("{}", vtk_line); });

@@ -11,7 +11,7 @@
 namespace deflect::frame {
 namespace {
 
-constexpr double shift = 1e-10, null_below = 1e-11;
+constexpr double shift = 1e-10, null_below = 1e-11, unstrained_below = 1e-12;
 
 /// y = K x for a matrix of which the lower triangle is stored.
 MatrixX times(const SparsePattern& p, const std::vector<double>& values, const MatrixX& x) {
@@ -37,6 +37,47 @@ std::string describe_motion(const Model& m, const VectorX& u) {
   const Vector3 direction = (turns ? rotation : translation).normalized();
   return fmt::format("node '{}' {} ({:.3f}, {:.3f}, {:.3f})", m.nodes[static_cast<std::size_t>(node)].name,
                      turns ? "turns freely about" : "moves freely along", direction.x(), direction.y(), direction.z());
+}
+
+/// The largest translation, or rotation times `length`, is 1.
+VectorX normalised(const Model& m, VectorX u, double length) {
+  double size = 0;
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    size = std::max(size, std::abs(u(i)) * (i < static_cast<Eigen::Index>(6 * m.nodes.size()) && i % 6 >= 3 ? length : 1));
+  return u / size;
+}
+
+/// Combinations of the (normalised) candidates that strain no element, whatever its stiffness: beside a member that is
+/// 1e12 times stiffer the others look free, but a motion that strains them is none.
+MatrixX unstrained(const Model& m, const MatrixX& candidates, double length) {
+  // Gram matrix of strain energies, every element scaled to the energy that a motion of size 1 of one end could store.
+  MatrixX strain = MatrixX::Zero(candidates.cols(), candidates.cols());
+  Vector12 reach = Vector12::Ones();
+  reach.segment<3>(3).setConstant(1 / length);
+  reach.segment<3>(9).setConstant(1 / length);
+  for (const Beam& beam : m.beams) {
+    const Matrix12 K = stiffness(beam);
+    MatrixX d(12, candidates.cols());
+    d << candidates.middleRows<6>(6 * beam.a), candidates.middleRows<6>(6 * beam.b);
+    strain += d.transpose() * K * d / reach.cwiseAbs2().dot(K.diagonal());
+  }
+  for (const Spring& spring : m.springs) {
+    if (!(tangent_at_force(spring.law, 1) > 0)) continue;
+    Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(candidates.cols());
+    double size = 0;
+    for (const Term& t : spring.elongation) {
+      d += t.coefficient * candidates.row(t.dof);
+      size += t.coefficient * t.coefficient;
+    }
+    if (size > 0) strain += d.transpose() * d / size;
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(strain);
+  MatrixX U(m.dofs(), 0);
+  for (Eigen::Index j = 0; j < candidates.cols() && eigen.eigenvalues()(j) < unstrained_below; ++j) {
+    U.conservativeResize(Eigen::NoChange, j + 1);
+    U.col(j) = normalised(m, candidates * eigen.eigenvectors().col(j), length);
+  }
+  return U;
 }
 
 }  // namespace
@@ -67,15 +108,15 @@ MatrixX free_motions(const Model& m, const Elimination& e, const SparsePattern& 
     X = Eigen::HouseholderQR<MatrixX>(X).householderQ() * MatrixX::Identity(n, block);
   }
   const Eigen::SelfAdjointEigenSolver<MatrixX> ritz(X.transpose() * times(p, scaled, X));
-  std::vector<VectorX> motions;
+  const double length = characteristic_length(m);
+  MatrixX candidates(m.dofs(), 0);
   for (int j = 0; j < block && ritz.eigenvalues()(j) < null_below; ++j) {
     const VectorX q = scale.asDiagonal() * (X * ritz.eigenvectors().col(j));
     const VectorX u = e.expand(q, VectorX::Zero(static_cast<Eigen::Index>(m.constraints.size())));
-    motions.push_back(u / u.cwiseAbs().maxCoeff());
+    candidates.conservativeResize(Eigen::NoChange, j + 1);
+    candidates.col(j) = normalised(m, u, length);
   }
-  MatrixX U(m.dofs(), static_cast<Eigen::Index>(motions.size()));
-  for (std::size_t j = 0; j < motions.size(); ++j) U.col(static_cast<Eigen::Index>(j)) = motions[j];
-  return U;
+  return unstrained(m, candidates, length);
 }
 
 void refuse_mechanism(const Model& m, const Elimination& e, const SparsePattern& p, const std::vector<double>& values) {

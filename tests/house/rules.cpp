@@ -48,7 +48,7 @@ const Confinement confinements[] = {
     {"yaml-cpp", "yaml-cpp/.*", "msa/mechanism/[^/]*(reader|writer)[^/]*\\.cpp",
      "the reader and the writer of msa/mechanism", any_number},
     {"CLI11", "CLI/.*", "validation/cli/[^/]+\\.cpp", "one .cpp file of validation/cli", 1},
-    {"nlohmann json", "nlohmann/.*", "validation/.*", "validation", any_number},
+    {"nlohmann json", "nlohmann/.*", "(validation|tests)/.*", "validation and tests", any_number},
     {"GoogleTest", "g(test|mock)/.*", "tests/.*", "tests", any_number},
 };
 

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
         Site{"Tube", "sections.guide_rod", "{shape: tube, outer_diameter: 8 mm, inner_diameter: 5 mm}"},
         Site{"Flat", "sections.guide_rod", "{shape: rectangle, width_y: 6 mm, height_z: 7 mm}"},
         Site{"OneLeg", "leg[4].guideway.bending_factor", "0.6"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& site) { return std::string(site.param.name); });
 
 TEST(BothTheories, FlexuresInPassiveJointsMakeLegsCarryMomentsAndStillAgree) {
   Mechanism m = device("haptic-6psu");

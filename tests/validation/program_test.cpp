@@ -1,0 +1,158 @@
+// The program as a user meets it: the contract's commands, results, files and exit codes.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace deflect {
+namespace {
+
+using nlohmann::json;
+using test::contents;
+using test::deflect;
+using test::Folder;
+
+TEST(Program, ValidateWritesTheContractsJsonAndTheFigure) {
+  const Folder folder;
+  const auto run = deflect("validate haptic-6psu --json '" + (folder / "v.json").string() + "' --out '" +
+                           (folder / "out").string() + "'");
+  ASSERT_EQ(run.code, 0) << run.out;
+  const json v = json::parse(contents(folder / "v.json"));
+  ASSERT_EQ(v["points"].size(), 27u);
+  const char* axes[] = {"x", "y", "z"};
+  for (std::size_t i = 0; i < 27; ++i) {
+    const json& p = v["points"][i];
+    EXPECT_EQ(p["point"], i / 3);
+    EXPECT_EQ(p["load_axis"], axes[i % 3]);
+    EXPECT_EQ(p["load_N"], 50);
+    EXPECT_EQ(p["pose"].size(), 6u);
+    EXPECT_EQ(p["analytic"].size(), 6u);
+    EXPECT_EQ(p["msa"].size(), 6u);
+  }
+  EXPECT_NEAR(v["points"][0]["pose"][2].get<double>(), 173.898547, 1e-6);
+  EXPECT_LT(v["max_relative_difference"].get<double>(), 1e-7);
+  EXPECT_LE(v["rms_relative_difference"].get<double>(), v["max_relative_difference"].get<double>());
+  for (const char* name : {"fig10.svg", "fig10.pdf", "fig10.png", "validation.csv"})
+    EXPECT_GT(contents(folder / "out" / name).size(), 1000u) << name;
+}
+
+TEST(Program, SolveWritesTheContractsJsonAndTheDeflectedStructure) {
+  const Folder folder;
+  const auto run = deflect("solve haptic-6psu-ideal-joints --pose 25,25,198.898547,0,0,0 --load 50,0,0,0,0,0 --json '" +
+                           (folder / "s.json").string() + "' --out '" + (folder / "out").string() + "'");
+  ASSERT_EQ(run.code, 0) << run.out;
+  const json s = json::parse(contents(folder / "s.json"));
+  EXPECT_NEAR(s["analytic"]["displacement"][0].get<double>(), 0.703127, 0.51e-6);
+  EXPECT_NEAR(s["msa"]["displacement"][0].get<double>(), 0.703127, 0.51e-6);
+  for (const char* theory : {"analytic", "msa"}) {
+    ASSERT_EQ(s[theory]["stiffness"].size(), 6u);
+    for (const json& row : s[theory]["stiffness"]) EXPECT_EQ(row.size(), 6u);
+  }
+  EXPECT_LT(s["relative_difference"].get<double>(), 1e-9);
+  for (const char* check : {"symmetric", "positive", "passive_joints_free"}) EXPECT_EQ(s["checks"][check], true);
+  double sum = 0;
+  for (const json& share : s["shares"]) sum += share["share"].get<double>();
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_EQ(s["shares"][0]["part"], "guideway");
+  EXPECT_NE(contents(folder / "out" / "deflected.msh").find("displacement_mm"), std::string::npos);
+  EXPECT_NE(contents(folder / "out" / "deflected.vtu").find("displacement_mm"), std::string::npos);
+}
+
+TEST(Program, SameCallSameBytes) {
+  const Folder folder;
+  for (const char* name : {"a", "b"})
+    ASSERT_EQ(deflect("solve haptic-6psu --pose 10,-5,180,3,-2,4 --load 5,6,7,100,200,300 --json '" +
+                      (folder / name).string() + "'")
+                  .code,
+              0);
+  EXPECT_EQ(contents(folder / "a"), contents(folder / "b"));
+}
+
+TEST(Program, JointsReachTheSamePoseAsThePoseItself) {
+  const Folder folder;
+  ASSERT_EQ(deflect("solve haptic-6psu --joints 80,80,80,80,80,80 --load 50,0,0 --json '" + (folder / "q").string() + "'").code, 0);
+  const json s = json::parse(contents(folder / "q"));
+  EXPECT_NEAR(s["pose"][2].get<double>(), 173.898547, 1e-6);
+  EXPECT_NEAR(s["pose"][0].get<double>(), 0, 1e-9);
+}
+
+TEST(Program, DevicesListsAndPrintsAFileToStartFrom) {
+  const auto list = deflect("devices");
+  EXPECT_EQ(list.code, 0);
+  EXPECT_NE(list.out.find("haptic-6psu-ideal-joints"), std::string::npos);
+  const Folder folder;
+  const std::string mine = (folder / "my.yaml").string();
+  ASSERT_EQ(deflect("devices haptic-6psu > '" + mine + "'").code, 0);
+  EXPECT_EQ(deflect("solve '" + mine + "' --pose 0,0,174 --load 50,0,0").code, 0);
+}
+
+TEST(Program, PointsComeFromAFile) {
+  const Folder folder;
+  std::ofstream(folder / "p.csv") << "pose,x_mm,y_mm,z_mm,yaw_deg,note\nnear,0,0,170,5,one\nfar,10,0,180,0,two\n";
+  const auto run = deflect("validate haptic-6psu --points '" + (folder / "p.csv").string() + "' --json '" +
+                           (folder / "v.json").string() + "'");
+  ASSERT_EQ(run.code, 0) << run.out;
+  const json v = json::parse(contents(folder / "v.json"));
+  ASSERT_EQ(v["points"].size(), 6u);
+  EXPECT_EQ(v["points"][3]["point"], "far");
+}
+
+struct Refusal {
+  const char* name;
+  const char* arguments;
+  int code;
+  const char* says;
+};
+
+class Refused : public ::testing::TestWithParam<Refusal> {};
+
+TEST_P(Refused, WithCodeAndReasonAndNoFile) {
+  const Folder folder;
+  const auto run = deflect(std::string(GetParam().arguments) + " --json '" + (folder / "r.json").string() + "'");
+  EXPECT_EQ(run.code, GetParam().code) << run.out;
+  EXPECT_NE(run.out.find(GetParam().says), std::string::npos) << run.out;
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.json"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Inputs, Refused,
+    ::testing::Values(
+        Refusal{"UnknownDevice", "validate haptic-6pus", 2, "did you mean 'haptic-6psu'?"},
+        Refusal{"MissingFile", "validate ./none.yaml", 2, "none.yaml"},
+        Refusal{"UnknownOption", "validate haptic-6psu --frobnicate", 2, "frobnicate"},
+        Refusal{"NoPose", "solve haptic-6psu", 2, "--pose"},
+        Refusal{"PoseAndJoints", "solve haptic-6psu --pose 0,0,170 --joints 1,2,3,4,5,6", 2, "either --pose"},
+        Refusal{"ShortPose", "solve haptic-6psu --pose 0,0", 2, "2 numbers"},
+        Refusal{"WordInPose", "solve haptic-6psu --pose 0,zero,170", 2, "number 2: 'zero' is not a finite number"},
+        Refusal{"NanLoad", "solve haptic-6psu --pose 0,0,170 --load nan,0,0", 2, "not a finite number"},
+        Refusal{"OutOfReach", "solve haptic-6psu --pose 300,0,170 --load 1,0,0", 3, "the link does not reach"},
+        Refusal{"SliderRange", "solve haptic-6psu --pose 0,0,400 --load 1,0,0", 3, "outside its range"},
+        Refusal{"NoAssembly", "solve haptic-6psu --joints 20,200,20,200,20,200 --load 1,0,0", 3, "no assembly"},
+        Refusal{"UnknownErratum", "validate haptic-6psu --as-printed pasive-joints", 2, "did you mean 'passive-joints'?"},
+        Refusal{"ElementWithoutUnit", "validate haptic-6psu --element-size 25", 2, "--element-size: '25' has no unit"},
+        Refusal{"ElementNegative", "validate haptic-6psu --element-size '-1 mm'", 2, "greater than zero"},
+        Refusal{"ZeroForce", "validate haptic-6psu --force 0", 2, "other than zero"},
+        Refusal{"UnwritableFolder", "validate haptic-6psu --out /proc/none", 2, "/proc/none"}),
+    [](const auto& refusal) { return std::string(refusal.param.name); });
+
+TEST(Program, HelpOfEveryCommandSaysWhatItDoesWithAnExample) {
+  for (const char* command : {"solve", "validate", "devices"}) {
+    const auto run = deflect(std::string(command) + " --help");
+    EXPECT_EQ(run.code, 0);
+    EXPECT_NE(run.out.find("Example:\n  deflect " + std::string(command)), std::string::npos) << run.out;
+  }
+  EXPECT_EQ(deflect("--help").code, 0);
+  EXPECT_EQ(deflect("").code, 2);
+}
+
+TEST(Program, AsPrintedShowsThePriceBesideTheCorrectedTheory) {
+  const auto run = deflect("validate haptic-6psu --as-printed passive-joints --errata");
+  ASSERT_EQ(run.code, 0) << run.out;
+  EXPECT_NE(run.out.find("as printed"), std::string::npos);
+  EXPECT_NE(run.out.find("passive-joints"), std::string::npos);
+  EXPECT_NE(run.out.find("K_c J_q = 0 fails"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace deflect
