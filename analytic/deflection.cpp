@@ -22,6 +22,17 @@ double stiffness(const CablePairLaw& l, const AsPrinted&) {
 }
 double stiffness(const BeltLaw& l, const AsPrinted&) { return belt_stiffness(l); }
 
+/// p κ and ln(2 (R1 + R2)/(p κ)) of a line contact with bulk; the logarithm is infinite without load.
+struct BulkLine {
+  double kappa, p_kappa, logarithm;
+};
+
+BulkLine bulk_line(const HertzLineBulkLaw& l, double force) {
+  const double nu = l.solid.poisson(), kappa = (1 - nu * nu) / (pi * l.solid.E);
+  const double p_kappa = kappa * std::abs(force) / l.length;
+  return {kappa, p_kappa, std::log(2 * (l.radius_1 + l.radius_2) / p_kappa)};
+}
+
 /// The stiffness of contact and pin side by side, where (33) is taken as printed and the laws are those two.
 std::optional<double> printed_universal_joint(const std::vector<Law>& laws, const AsPrinted& p) {
   if (!p.count(Erratum::ujoint_parallel)) return {};
@@ -72,6 +83,17 @@ double line_contact_half_width(double R, double length, double E, double force) 
   return 2 * std::sqrt(2 * std::abs(force) * R / (pi * length * E));
 }
 
+double bulk_line_deflection(const HertzLineBulkLaw& l, double force) {
+  if (force == 0) return 0;
+  const BulkLine b = bulk_line(l, force);
+  return std::copysign(2 * b.p_kappa * (b.logarithm - 1), force);
+}
+
+double bulk_line_compliance(const HertzLineBulkLaw& l, double force) {
+  const BulkLine b = bulk_line(l, force);
+  return 2 * b.kappa / l.length * (b.logarithm - 2);
+}
+
 double pin_bending_stiffness(const Material& m, double diameter, double length) {
   return 48 * m.E * pi * std::pow(diameter, 4) / 64 / std::pow(length, 3);
 }
@@ -90,6 +112,7 @@ double belt_stiffness(const BeltLaw& l) {
 double deflection(const Law& law, double force, const AsPrinted& p) {
   if (const auto* l = std::get_if<HertzPointLaw>(&law))
     return point_contact_deflection(l->radius, effective_modulus(l->solid, p), force);
+  if (const auto* l = std::get_if<HertzLineBulkLaw>(&law)) return bulk_line_deflection(*l, force);
   return force * compliance(law, force, p);
 }
 
@@ -98,6 +121,8 @@ double compliance(const Law& law, double force, const AsPrinted& p) {
       [&](const auto& l) {
         if constexpr (std::is_same_v<std::decay_t<decltype(l)>, HertzPointLaw>)
           return point_contact_compliance(l.radius, effective_modulus(l.solid, p), force);
+        else if constexpr (std::is_same_v<std::decay_t<decltype(l)>, HertzLineBulkLaw>)
+          return bulk_line_compliance(l, force);
         else
           return 1 / stiffness(l, p);
       },
@@ -105,6 +130,11 @@ double compliance(const Law& law, double force, const AsPrinted& p) {
 }
 
 double stored_energy(const Law& law, double force, const AsPrinted& p) {
+  if (const auto* l = std::get_if<HertzLineBulkLaw>(&law)) {
+    if (force == 0) return 0;
+    const BulkLine b = bulk_line(*l, force);
+    return std::abs(force) * b.p_kappa * (b.logarithm - 1.5);
+  }
   // δ ∝ f^{2/3} stores 2/5 of f δ, δ ∝ f one half.
   return (std::holds_alternative<HertzPointLaw>(law) ? 0.4 : 0.5) * force * deflection(law, force, p);
 }

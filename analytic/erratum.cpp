@@ -14,7 +14,7 @@ const std::vector<ErratumInfo>& errata() {
       {Erratum::contact_modulus, "contact-modulus", "(23)",
        "the effective modulus is half of Hertz's: 1/E' where 2/E' belongs"},
       {Erratum::line_contact, "line-contact", "(30)",
-       "line contact without the bulk of the bodies; kept as printed by default, see the law hertz_line"},
+       "line contact without the bulk of the bodies: what the law hertz_line is; hertz_line_bulk has it"},
       {Erratum::ujoint_parallel, "ujoint-parallel", "(33)",
        "the universal joint's contact and pin side by side, where the force passes one after the other"},
       {Erratum::guideway_matrix, "guideway-matrix", "(35)",

@@ -24,8 +24,7 @@ namespace {
 
 constexpr double most_elements = 1e6;
 
-/// Runs `call` on the module, one call at a time because Gmsh is not thread-safe. A failed load is tried
-/// again.
+/// Runs `call` on the module, one call at a time because Gmsh is not thread-safe. A failed load is tried again.
 template <typename Call>
 std::string with_module(Call call) {
   static std::mutex mutex;
@@ -44,8 +43,8 @@ void check_subdivision(const std::vector<double>& lengths, double size) {
       throw InputError(fmt::format("member {} has length {} m: a positive number is wanted", i + 1, lengths[i]));
     if (lengths[i] / size > most_elements)
       throw InputError(
-          fmt::format("element size {} m asks for more than {:.0f} elements in member {}, which is {} m "
-                      "long; choose a larger size",
+          fmt::format("element size {} m asks for more than {:.0f} elements in member {}, which is {} m long; "
+                      "choose a larger size",
                       size, most_elements, i + 1, lengths[i]));
   }
 }

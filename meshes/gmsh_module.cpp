@@ -1,5 +1,5 @@
-// The module deflect_gmsh. Gmsh keeps its state in globals, is left unusable by a failed mesh, and throws
-// std::string: every call here is one session, begun with defaults and ended whatever happens.
+// The module deflect_gmsh. Gmsh keeps its state in globals, is left unusable by a failed mesh, and throws std::string:
+// every call here is one session, begun with defaults and ended whatever happens.
 #include "meshes/gmsh_module.h"
 
 #include <gmsh.h>
@@ -11,7 +11,7 @@
 #include <set>
 #include <string_view>
 
-// Gmsh brings OpenMP along or not, and the module follows it.
+// Null where Gmsh was built without OpenMP.
 extern "C" {
 int omp_get_max_threads() __attribute__((weak));
 void omp_set_num_threads(int) __attribute__((weak));
@@ -24,7 +24,7 @@ namespace api = ::gmsh;
 
 constexpr double mm_per_m = 1000;
 constexpr int line_element = 1;
-constexpr std::size_t longest_name = 200;  // Gmsh refuses files with names near 256 bytes
+constexpr std::size_t longest_name = 120;  // with a number behind it less than the 127 that Gmsh writes
 
 class Session {
  public:
@@ -106,7 +106,7 @@ std::string subdivide(const std::vector<double>& lengths, std::vector<std::vecto
   });
 }
 
-/// Names stand in double quotes without any escape, on a line that is read into a buffer of fixed length.
+/// Names stand in double quotes without any escape, in buffers of fixed length.
 std::string printable(std::string name) {
   if (name.size() > longest_name) {
     std::size_t end = longest_name;
@@ -148,12 +148,12 @@ void add_mesh(const LineMesh& mesh) {
   }
 
   std::vector<int> entities;
-  std::set<std::string> names = {""};
+  std::set<std::string> names;
   for (std::size_t g = 0; g < groups; ++g) {
     const int entity = entities.emplace_back(api::model::addDiscreteEntity(1));
     api::model::mesh::addNodes(1, entity, nodes[g].tags, nodes[g].xyz);
     const int physical = api::model::addPhysicalGroup(1, {entity});
-    const std::string name = printable(mesh.groups[g]);
+    const std::string name = mesh.groups[g].empty() ? "unnamed" : printable(mesh.groups[g]);
     std::string own = name;  // Gmsh drops a name that it has already
     for (int k = 2; !names.insert(own).second; ++k) own = name + " (" + std::to_string(k) + ")";
     api::model::setPhysicalName(1, physical, own);
@@ -179,8 +179,7 @@ std::string write_msh(const std::string& file, const LineMesh& mesh, const Field
   return in_session([&] {
     api::option::setNumber("Mesh.MshFileVersion", 4.1);
     api::option::setNumber("Mesh.Binary", 0);
-    api::option::setNumber("Mesh.SaveAll",
-                           1);  // also the points that no cell uses, which fields have values at
+    api::option::setNumber("Mesh.SaveAll", 1);  // fields have values at points that no cell uses, too
     api::option::setNumber("PostProcessing.SaveMesh", 0);
     api::option::setNumber("PostProcessing.SaveInterpolationMatrices", 0);  // a line's are known to every reader
     add_mesh(mesh);

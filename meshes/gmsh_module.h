@@ -1,6 +1,5 @@
-// The border between deflect and the module deflect_gmsh, which alone is linked with Gmsh. Both sides come
-// from one build, which `interface` and `version` prove, so C++ types may cross; exceptions may not: failures come back
-// as text.
+// The border between deflect and the module deflect_gmsh, which alone is linked with Gmsh. Both sides come from one
+// build, which `interface` and `version` prove, so C++ types may cross; exceptions may not: failures come back as text.
 #pragma once
 
 #include <string>

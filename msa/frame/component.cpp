@@ -35,6 +35,10 @@ SpringLaw spring(const HertzPointLaw& law) {
 
 SpringLaw spring(const HertzLineLaw& law) { return LinearSpring{pi / 2 * contact_modulus(law.solid) * law.length}; }
 
+SpringLaw spring(const HertzLineBulkLaw& law) {
+  return BulkLineSpring{1 / (2 * pi * contact_modulus(law.solid)), law.radius_1, law.radius_2, law.length};
+}
+
 SpringLaw spring(const PinBendingLaw& law) {
   Model m;
   const double half = law.length / 2;

@@ -25,8 +25,43 @@ struct PowerSpring {
   double at_force(double f) const { return tangent(std::pow(std::abs(f) / k, 1 / n)); }
 };
 
+/// Two cylinders in line contact with the bulk of both: δ = p κ Σ (2 ln(4 R_i/a) − 1) at the half width a of p = F/l,
+/// a² = 8 p κ R1 R2/(R1 + R2), κ = (1 − ν²)/(π E) (K. L. Johnson, Contact Mechanics, 1985, §5.6). F(δ) is found by
+/// Newton; the tangent vanishes at δ = 0.
+struct BulkLineSpring {
+  double kappa = 0, R1 = 0, R2 = 0, length = 0;
+  double half_width(double p) const { return std::sqrt(8 * p * kappa * R1 * R2 / (R1 + R2)); }
+  double approach(double p) const {
+    const double a = half_width(p);
+    return p * kappa * (2 * std::log(4 * R1 / a) + 2 * std::log(4 * R2 / a) - 2);
+  }
+  double slope(double p) const {  // dδ/dp; ln a grows by half of ln p, twice
+    const double a = half_width(p);
+    return kappa * (2 * std::log(4 * R1 / a) + 2 * std::log(4 * R2 / a) - 4);
+  }
+  double line_load(double d) const {
+    double p = 0;
+    if (d == 0) return p;
+    // The slope falls with p, so that from p = 0 upwards Newton on a concave function never overshoots the root.
+    p = std::abs(d) / (kappa * 40);
+    for (int i = 0; i < 100; ++i) {
+      const double step = (std::abs(d) - approach(p)) / slope(p);
+      p += step;
+      if (std::abs(step) <= 1e-16 * p) break;
+    }
+    return p;
+  }
+  double force(double d) const { return std::copysign(length * line_load(d), d); }
+  double tangent(double d) const { return d == 0 ? 0 : length / slope(line_load(d)); }
+  double energy(double d) const {  // ∫F dδ = F δ − ∫δ dF, and ∫δ dp = p (δ + p κ)/2
+    const double p = line_load(d);
+    return length * (p * std::abs(d) - p * (std::abs(d) + p * kappa) / 2);
+  }
+  double at_force(double f) const { return f == 0 ? 0 : length / slope(std::abs(f) / length); }
+};
+
 /// at_force(f) is the tangent stiffness once the force |f| is reached: where Newton starts.
-using SpringLaw = std::variant<LinearSpring, PowerSpring>;
+using SpringLaw = std::variant<LinearSpring, PowerSpring, BulkLineSpring>;
 
 inline double force(const SpringLaw& law, double d) {
   return std::visit([d](const auto& l) { return l.force(d); }, law);

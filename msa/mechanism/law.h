@@ -1,5 +1,5 @@
 // Parameters of the laws that an elastic freedom of a joint can follow: force along (or moment about) one axis
-// against relative displacement. Data only: `analytic/law_deflection.h` and `msa/frame/build_law.h` each turn the
+// against relative displacement. Data only: `analytic/deflection.h` and `msa/frame/component.h` each turn the
 // parameters into mechanics by their own route.
 #pragma once
 
@@ -40,6 +40,14 @@ struct HertzLineLaw {
   Material solid;
 };
 
+/// Line contact of two cylinders of one material with the bulk of both, from their centres (K. L. Johnson, Contact
+/// Mechanics, 1985, §5.6). Radii and length in m; holds while the contact is much narrower than the radii.
+struct HertzLineBulkLaw {
+  std::string material;
+  double radius_1 = 0, radius_2 = 0, length = 0;
+  Material solid;
+};
+
 /// A round pin, simply supported at its ends and loaded in the middle (31)–(32). Diameter and length in m.
 struct PinBendingLaw {
   std::string material;
@@ -76,11 +84,11 @@ struct BeltLaw {
 };
 
 using Law = std::variant<LinearLaw, HertzPointLaw, HertzLineLaw, PinBendingLaw, MotorShaftLaw, CableLaw, CablePairLaw,
-                         BeltLaw>;
+                         BeltLaw, HertzLineBulkLaw>;
 
 /// The name of each alternative in device files, in the order of the variant.
 inline constexpr const char* law_names[] = {"linear",      "hertz_point", "hertz_line", "pin_bending",
-                                            "motor_shaft", "cable",       "cable_pair", "belt"};
+                                            "motor_shaft", "cable",       "cable_pair", "belt",       "hertz_line_bulk"};
 static_assert(std::size(law_names) == std::variant_size_v<Law>);
 
 }  // namespace deflect

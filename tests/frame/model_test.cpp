@@ -90,7 +90,8 @@ TEST_P(EverySpring, StartingTangentIsTheOneAtThatForce) {
 
 INSTANTIATE_TEST_SUITE_P(Family, EverySpring,
                          ::testing::Values(SpringLaw{LinearSpring{3e5}}, SpringLaw{PowerSpring{1e9, 1.5}},
-                                           SpringLaw{PowerSpring{1e8, 1.1}}));
+                                           SpringLaw{PowerSpring{1e8, 1.1}},
+                                           SpringLaw{BulkLineSpring{1.4e-12, 0.03, 0.04, 2.0}}));
 
 /// Two nodes at one point, the first fixed; a connection between them.
 Model two_bodies(const std::array<ConnectionFreedom, 6>& freedoms, const Matrix3& R = Matrix3::Identity()) {

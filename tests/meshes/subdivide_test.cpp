@@ -100,7 +100,7 @@ TEST(Subdivide, WorksAfterFailures) {
   EXPECT_NE(module.write_msh(scratch / "no such folder/a.msh", small_mesh(), {}), "");
   EXPECT_EQ(subdivide({1}, 0.1), before);
   Positions ignored;
-  puts(module.subdivide({1, 0}, ignored).c_str());for(auto& x:ignored){ for(auto y:x) printf("%g ",y); puts("");}
+  module.subdivide({1, 0}, ignored);  // fails without a word
   EXPECT_EQ(subdivide({1}, 0.1), before);
 }
 

@@ -121,6 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
         Site{"GuideRoot", "leg.actuator.rx", "{law: linear, stiffness: 5e6 Nmm/rad}"},
         Site{"Carriage", "leg.carriage.tx", "{law: linear, stiffness: 800 N/mm}"},
         Site{"BallContact", "leg.ball_joint.tz", "{law: hertz_point, material: steel, radius: 4 mm}", 1e-7},
+        Site{"PinContactWithBulk", "leg.universal_joint.tz",
+             "{law: hertz_line_bulk, material: steel, radius_1: 3 mm, radius_2: 3 mm, length: 10 mm}", 1e-7},
         Site{"BallFlexure", "leg.ball_joint.rx", "{law: linear, stiffness: 1e5 Nmm/rad}"},
         Site{"UniversalSpin", "leg.universal_joint.rx", "{law: linear, stiffness: 1e5 Nmm/rad}"},
         Site{"PlatformMount", "leg.mount.tz", "{law: linear, stiffness: 3000 N/mm}"},

@@ -1,6 +1,9 @@
 // Published Hertz contacts, by the closed form and by the spring that the MSA makes of the same law. N, mm.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "analytic/deflection.h"
 #include "msa/frame/component.h"
 
@@ -50,6 +53,20 @@ TEST(CylindersVm191, LinearisedApproachIsTheChordAndLeavesTheBulkOut) {
   EXPECT_NEAR(closed, 1.199714 * 1.199714 / (2 * R), 1e-6);
   EXPECT_NEAR(spring, closed, 1e-15);
   EXPECT_NEAR(0.4181 / closed, 3.28, 0.01);
+}
+
+// With the bulk of both cylinders from their centres Johnson's formula gives 0.3995 mm where VM191 has 0.4181 mm: 4.4 %
+// less, since the bodies of VM191 are held farther away.
+TEST(CylindersVm191, BulkOfBothCylindersExplainsTheApproach) {
+  Material material;  // both cylinders have (1 − ν²)/E = 3.125e-5
+  material.E = 32000;
+  material.nu = 0;
+  const HertzLineBulkLaw law{"m", 10, 13, 1, material};
+  const double a = 1.199714;
+  const double johnson = 3200 * 3.125e-5 / std::numbers::pi * (2 * std::log(40 / a) + 2 * std::log(52 / a) - 2);
+  EXPECT_NEAR(analytic::bulk_line_deflection(law, 3200), johnson, 1e-6);
+  EXPECT_NEAR(force(frame::spring_of(law), analytic::bulk_line_deflection(law, 3200)), 3200, 1e-9);
+  EXPECT_NEAR(analytic::bulk_line_deflection(law, 3200) / 0.4181, 0.956, 0.001);
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ void run(const Arguments& a) {
                            ? Vector6(Vector6::Zero())
                            : six(parse_list("--load", a.load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm"));
   const SolveResult r = solve(m, pose_of(m, a), load, divide(m, a.element_size));
-  if (!a.json.empty()) write_text(a.json, solve_json(r));
   if (!a.out.empty()) write_structure(a.out, r);
+  if (!a.json.empty()) write_text(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));
   if (load.isZero(0) && r.msa.stiffness_mm.isZero(1e-9))
     fmt::print("Without load the contacts have no stiffness; give --load for the stiffness under it.\n");

@@ -44,13 +44,13 @@ void run(const Arguments& a) {
   const std::vector<ValidationPoint> points = a.points.empty() ? cube_points(m) : read_points(a.points);
   const Validation v = validate(m, points, a.load_N, as_printed, divide(m, a.element_size));
   const std::vector<ErratumPrice> prices = a.errata ? price_errata(m, points, a.load_N) : std::vector<ErratumPrice>{};
-  if (!a.json.empty()) write_text(a.json, validation_json(v));
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
     render(fig10(v), folder);
     write_text(folder / "validation.csv", validation_csv(v));
     if (a.errata) write_text(folder / "errata.csv", errata_csv(prices));
   }
+  if (!a.json.empty()) write_text(a.json, validation_json(v));
   fmt::print("{}", validation_table(v));
   if (a.errata) fmt::print("\n{}", errata_table(prices));
   if (a.mesh_study) print_mesh_study(m, points, a.load_N);

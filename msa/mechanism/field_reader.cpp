@@ -1,0 +1,290 @@
+#include "msa/mechanism/field_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "msa/base/error.h"
+
+namespace deflect {
+namespace {
+
+using Kind = YamlNode::Kind;
+
+const char* example_of(Dimension d) {
+  switch (d) {
+    case Dimension::none: return "0.3";
+    case Dimension::ratio: return "1 %";
+    case Dimension::length: return "10 mm";
+    case Dimension::angle: return "20 deg";
+    case Dimension::area: return "20 mm^2";
+    case Dimension::second_moment: return "200 mm^4";
+    case Dimension::force: return "10 N";
+    case Dimension::moment: return "100 Nmm";
+    case Dimension::stress: return "210 GPa";
+    case Dimension::stiffness: return "500 N/mm";
+    case Dimension::rotational_stiffness: return "100000 Nmm/rad";
+  }
+  return "";
+}
+
+std::string example(const char* key, Dimension d) { return fmt::format("{}: {}", key, example_of(d)); }
+
+std::string words(const Range& r, Dimension d) {
+  const bool low = r.low > -std::numeric_limits<double>::infinity(),
+             high = r.high < std::numeric_limits<double>::infinity();
+  const std::string from = low ? format_quantity(r.low, d) : "", to = high ? format_quantity(r.high, d) : "";
+  if (low && high) return fmt::format("{} {} and {}", r.open ? "strictly between" : "between", from, to);
+  return fmt::format("{} {}", r.open ? "above" : "at least", from);
+}
+
+/// A name can be a segment of a path.
+bool is_name(const std::string& s) {
+  const auto letter = [](unsigned char c) { return std::isalpha(c) || c == '_' || c >= 0x80; };
+  return !s.empty() && letter(static_cast<unsigned char>(s.front())) &&
+         std::all_of(s.begin(), s.end(), [&](unsigned char c) { return letter(c) || std::isdigit(c) || c == '-'; });
+}
+
+YamlNode untagged(YamlNode node) {
+  node.ours = false;
+  for (YamlNode& child : node.children) child = untagged(std::move(child));
+  return node;
+}
+
+}  // namespace
+
+std::string FieldReader::message(const YamlNode& at, const std::string& path, const std::string& what) const {
+  const std::string line = at.line > 0 ? fmt::format("{}:", at.line) : "";
+  return fmt::format("{}:{} {}{}{}", origin_, line, path, path.empty() ? "" : ": ", what);
+}
+
+void FieldReader::fail(const YamlNode& at, const std::string& path, const std::string& what) const {
+  throw InputError(message(at, path, what));
+}
+
+void FieldReader::note(const YamlNode& node, const std::string& path) {
+  if (node.ours) ours_.insert(path);
+}
+
+void FieldReader::note_all(const YamlNode& node, const std::string& path) {
+  note(node, path);
+  for (std::size_t i = 0; i < node.children.size(); ++i)
+    note_all(node.children[i], joined(path, node.kind == Kind::map ? node.keys[i] : std::to_string(i)));
+}
+
+void FieldReader::refuse_unknown(const std::vector<std::string>& known) const {
+  const YamlNode& map = *level_.map;
+  for (std::size_t i = 0; i < map.keys.size(); ++i) {
+    if (std::find(known.begin(), known.end(), map.keys[i]) != known.end()) continue;
+    YamlNode at;
+    at.line = map.children[i].key_line;
+    fail(at, joined(path_, map.keys[i]), "unknown key" + suggestion(map.keys[i], known));
+  }
+}
+
+void FieldReader::read(const YamlNode& map, const std::function<void()>& fields) {
+  if (map.kind != Kind::map)
+    fail(map, path_, map.kind == Kind::null ? "is empty: a map of fields 'key: value' is wanted"
+                                            : "a map of fields 'key: value' is wanted");
+  const Level outer = std::exchange(level_, Level{&map, {}, "", ""});
+  fields();
+  refuse_unknown(level_.asked);
+  for (const std::string& error : {level_.missing, level_.broken})
+    if (!error.empty()) throw InputError(error);
+  level_ = outer;
+}
+
+const YamlNode* FieldReader::find(const char* key, bool needed, const std::string& sample, const char* about) {
+  level_.asked.emplace_back(key);
+  const YamlNode* node = level_.map->child(key);
+  if (node) note(*node, joined(path_, key));
+  if (node || !needed || !level_.missing.empty()) return node;
+  YamlNode at;
+  at.line = level_.map->key_line > 0 ? level_.map->key_line : level_.map->line;
+  level_.missing = message(at, path_, fmt::format("'{}' is missing ({}): write for example '{}'", key, about, sample));
+  return nullptr;
+}
+
+std::string FieldReader::scalar(const YamlNode& node, const std::string& path, const std::string& sample) const {
+  YamlNode at = node;
+  if (node.kind == Kind::null) at.line = node.key_line;
+  if (node.kind == Kind::null) fail(at, path, fmt::format("has no value: write for example '{}'", sample));
+  if (node.kind != Kind::scalar)
+    fail(at, path, fmt::format("a single value is wanted, not a {}: write for example '{}'",
+                               node.kind == Kind::map ? "map" : "list", sample));
+  return node.text;
+}
+
+double FieldReader::number(const YamlNode& node, const std::string& path, const Quantity& q,
+                           const std::string& sample) const {
+  const std::string text = scalar(node, path, sample);
+  double value = 0;
+  try {
+    value = parse_quantity(text, q.dimension);
+  } catch (const InputError& e) {
+    fail(node, path, e.what());
+  }
+  if (!q.range.holds(value)) fail(node, path, fmt::format("'{}' must be {}", text, words(q.range, q.dimension)));
+  return value;
+}
+
+void FieldReader::quantity(const char* key, double& value, const Quantity& q, const char* about) {
+  const std::string sample = example(key, q.dimension);
+  if (const YamlNode* node = find(key, !q.otherwise, sample, about))
+    value = number(*node, joined(path_, key), q, sample);
+  else if (q.otherwise)
+    value = *q.otherwise;
+}
+
+void FieldReader::quantity_if_given(const char* key, std::optional<double>& value, const Quantity& q,
+                                    const char* about) {
+  const std::string sample = example(key, q.dimension);
+  value.reset();
+  if (const YamlNode* node = find(key, false, sample, about)) value = number(*node, joined(path_, key), q, sample);
+}
+
+void FieldReader::integer(const char* key, int& value, int low, int high, const char* about) {
+  const std::string sample = fmt::format("{}: {}", key, low);
+  const YamlNode* node = find(key, true, sample, about);
+  if (!node) return;
+  const std::string path = joined(path_, key), text = scalar(*node, path, sample);
+  for (value = low; value <= high; ++value)
+    if (text == std::to_string(value)) return;
+  fail(*node, path, fmt::format("'{}' must be a whole number from {} to {}", text, low, high));
+}
+
+void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const char* about) {
+  const std::string unit = example_of(d), sample = fmt::format("{}: [{}, {}, {}]", key, unit, unit, unit);
+  value.setZero();
+  const YamlNode* node = find(key, false, sample, about);
+  if (!node) return;
+  const std::string path = joined(path_, key);
+  if (node->kind != Kind::list || node->children.size() != 3)
+    fail(*node, path, fmt::format("a list of three values is wanted: write for example '{}'", sample));
+  for (int i = 0; i < 3; ++i) {
+    const YamlNode& item = node->children[static_cast<std::size_t>(i)];
+    const std::string item_path = joined(path, std::to_string(i));
+    note(item, item_path);
+    value(i) = number(item, item_path, {d, {}, std::nullopt}, sample);
+  }
+}
+
+void FieldReader::text(const char* key, std::string& value, Need need, const char* about) {
+  const std::string sample = fmt::format("{}: \"text\"", key);
+  value.clear();
+  const YamlNode* node = find(key, need == Need::required, sample, about);
+  if (!node) return;
+  value = scalar(*node, joined(path_, key), sample);
+  if (value.empty() && need == Need::required)
+    fail(*node, joined(path_, key), fmt::format("is empty: write for example '{}'", sample));
+}
+
+void FieldReader::word(const char* key, std::string& value, const Words& w, const char* about) {
+  const std::string sample = fmt::format("{}: {}", key, w.allowed.empty() ? "name" : w.allowed.front());
+  const YamlNode* node = find(key, !w.otherwise, sample, about);
+  if (!node && w.decides) {  // nothing can be said about the other keys: a misspelt one is near
+    for (const std::string& other : level_.map->keys)
+      if (nearest(other, level_.asked) == key) refuse_unknown(level_.asked);
+    throw InputError(level_.missing);
+  }
+  if (!node) {
+    value = w.otherwise.value_or("");
+    return;
+  }
+  value = scalar(*node, joined(path_, key), sample);
+  if (std::find(w.allowed.begin(), w.allowed.end(), value) == w.allowed.end())
+    fail(*node, joined(path_, key), fmt::format("unknown {} '{}'{}", w.what, value, suggestion(value, w.allowed)));
+}
+
+void FieldReader::any(const char* key, std::string& yaml, const char* about) {
+  const std::string sample = fmt::format("{}: 0.5", key);
+  const YamlNode* node = find(key, true, sample, about);
+  if (!node) return;
+  if (node->kind == Kind::null) scalar(*node, joined(path_, key), sample);
+  note_all(*node, joined(path_, key));
+  yaml = flow_yaml(untagged(*node));
+}
+
+void FieldReader::object(const char* key, Need need, bool, const std::function<void()>& fields, const char* about) {
+  const YamlNode* node = find(key, need == Need::required, fmt::format("{}: {{…}}", key), about);
+  if (!node) return;
+  const std::string outer = std::exchange(path_, joined(path_, key));
+  read(*node, fields);
+  path_ = outer;
+}
+
+void FieldReader::element(const YamlNode& node, const std::string& path, Elements& all, std::size_t i) {
+  note(node, path);
+  const std::string outer = std::exchange(path_, path);
+  read(node, [&] { all.describe_element(*this, i); });
+  path_ = outer;
+}
+
+void FieldReader::read_entries(const YamlNode& map, Elements& all) {
+  if (map.kind != Kind::map) fail(map, path_, "named entries 'name: {…}' are wanted");
+  for (std::size_t i = 0; i < map.children.size(); ++i) {
+    const YamlNode& child = map.children[i];
+    const std::string path = joined(path_, map.keys[i]);
+    if (!is_name(map.keys[i]))
+      fail(child, path, "a name begins with a letter and consists of letters, digits, '_' and '-'");
+    all.add(map.keys[i]);
+    element(child, path, all, all.size() - 1);
+  }
+}
+
+void FieldReader::entries(const char* key, Elements& all, Need need, const char* about) {
+  const YamlNode* node = find(key, need == Need::required, fmt::format("{}: {{name: {{…}}}}", key), about);
+  if (!node) return;
+  const std::string outer = std::exchange(path_, joined(path_, key));
+  read_entries(*node, all);
+  if (need == Need::required && all.size() == 0) fail(*node, path_, "has no entries, at least one is needed");
+  path_ = outer;
+}
+
+void FieldReader::elements(const YamlNode& list, Elements& all) {
+  for (const YamlNode& item : list.children) {
+    const std::size_t i = all.size();
+    all.add("");
+    element(item, joined(path_, std::to_string(i)), all, i);
+  }
+}
+
+void FieldReader::list(const char* key, Elements& all, const char* about) {
+  const YamlNode* node = find(key, false, "", about);
+  if (!node) return;
+  if (node->kind != Kind::list) fail(*node, joined(path_, key), "a list '- {…}' is wanted");
+  const std::string outer = std::exchange(path_, joined(path_, key));
+  elements(*node, all);
+  path_ = outer;
+}
+
+void FieldReader::one_or_list(const char* key, Elements& all, const char* about) {
+  const YamlNode* node = level_.map->child(key);
+  if (!node || node->kind == Kind::list) return list(key, all, about);
+  level_.asked.emplace_back(key);
+  all.add("");
+  element(*node, joined(joined(path_, key), "0"), all, all.size() - 1);
+}
+
+std::size_t FieldReader::alternative(const std::vector<std::string>& keys, std::size_t) {
+  std::vector<std::size_t> there;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (level_.map->child(keys[i])) there.push_back(i);
+  if (there.size() == 1) return there.front();
+  for (const std::string& key : level_.map->keys)
+    if (there.empty() && !nearest(key, keys).empty()) refuse_unknown(keys);
+  YamlNode at;
+  at.line = level_.map->key_line > 0 ? level_.map->key_line : level_.map->line;
+  fail(at, path_, fmt::format("{} of '{}' is wanted", there.empty() ? "one" : "only one", fmt::join(keys, "', '")));
+}
+
+void FieldReader::require(bool holds, const char* key, const std::string& what) {
+  if (holds || !level_.broken.empty()) return;
+  const YamlNode* node = level_.map->child(key);
+  level_.broken = message(node ? *node : *level_.map, joined(path_, key), what);
+}
+
+}  // namespace deflect
