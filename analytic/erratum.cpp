@@ -18,7 +18,7 @@ const std::vector<ErratumInfo>& errata() {
       {Erratum::ujoint_parallel, "ujoint-parallel", "(33)",
        "the universal joint's contact and pin side by side, where the force passes one after the other"},
       {Erratum::guideway_matrix, "guideway-matrix", "(35)",
-       "entry (2,6) with L^3 for L^2, entry (5,5) 6EI/L for 4EI/L: an asymmetric stiffness"},
+       "entry (2,6) with L^3 for L^2, numbers in N and mm, entry (5,5) 6EI/L for 4EI/L: an asymmetric stiffness"},
       {Erratum::link_matrix, "link-matrix", "(41)", "E missing in two entries, taken in N and mm"},
       {Erratum::link_frame, "link-frame", "(40)", "the link's frame is undefined where the link is vertical: refused there"},
       {Erratum::passive_joints, "passive-joints", "(45), (46)",

@@ -38,7 +38,7 @@ Matrix6 tip_compliance(const PlacedMember& m) {
 Matrix6 tip_compliance_guideway_as_printed(const PlacedMember& m) {
   Matrix6 K = tip_stiffness(m);
   const double L = m.length();
-  K(1, 5) = -6 * m.E * m.section.Iz / (L * L * L);
+  K(1, 5) = -6 * m.E * m.section.Iz / (L * L * (1e3 * L));
   K(4, 4) = 6 * m.E * m.section.Iy / L;
   return K.inverse();
 }

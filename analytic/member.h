@@ -14,7 +14,8 @@ namespace deflect::analytic {
 /// with fy L/GAs_y and fz L/GAs_z added for a Timoshenko member.
 Matrix6 tip_compliance(const PlacedMember&);
 
-/// The inverse of (35) as printed, for a guideway: entry (2,6) carries −6EI/L³ and entry (5,5) 6EI/L.
+/// The inverse of (35) as printed, for a guideway: entry (2,6) carries −6EI/L³, which has not the unit of
+/// its place and is taken as a number in the paper's N and mm, and entry (5,5) 6EI/L.
 Matrix6 tip_compliance_guideway_as_printed(const PlacedMember&);
 
 /// The inverse of (41) as printed, for a link, in the axes of (40): E is missing in the axial entry, π r²/L, and in

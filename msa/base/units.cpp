@@ -67,7 +67,7 @@ std::string_view trim(std::string_view s) {
 
 /// The number at the start of the text; `rest` is what follows it.
 bool leading_number(std::string_view text, double& value, std::string_view& rest) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || !std::isfinite(value)) return false;
   rest = trim(text.substr(static_cast<std::size_t>(end - text.data())));
@@ -111,7 +111,11 @@ double parse_quantity(std::string_view text, Dimension dimension) {
         fmt::format("'{}' has no unit: write {}, for example '{} {}'", text, r.words, text, r.units.front().name));
   }
   for (const Unit& u : r.units)
-    if (unit == u.name) return value * u.times / u.over;
+    if (unit == u.name) {
+      const double si = value * u.times / u.over;
+      if (!std::isfinite(si)) throw InputError(fmt::format("'{}' is too large for {}", text, r.words));
+      return si;
+    }
   if (r.units.empty()) throw InputError(fmt::format("'{}' must be a plain number without a unit", text));
   for (const Row& other : table())
     for (const Unit& u : other.units)
@@ -129,12 +133,13 @@ std::string format_quantity(double value, Dimension dimension) {
   if (r.units.empty() || dimension == Dimension::ratio) return fmt::format("{}", value);
   const Unit& u = r.units.front();
   const double scaled = value * u.over / u.times;
-  for (int digits = 1; digits <= 17; ++digits) {
+  // Beyond the range of the preferred unit, or where rounding makes it miss, the SI unit stands.
+  for (int digits = 1; digits <= 17 && std::isfinite(scaled); ++digits) {
     const double rounded = parse_number(fmt::format("{:.{}g}", scaled, digits));
     const std::string text = fmt::format("{} {}", rounded, u.name);
     if (parse_quantity(text, dimension) == value) return text;
   }
-  for (const Unit& other : r.units)  // the preferred unit cannot hit this double; the SI unit can
+  for (const Unit& other : r.units)
     if (other.times == 1 && other.over == 1) return fmt::format("{} {}", value, other.name);
   return fmt::format("{:.17g} {}", scaled, u.name);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "msa/base/error.h"
 #include "msa/frame/stability.h"
@@ -64,12 +65,17 @@ Solution Solver::solve(const VectorX& load, const VectorX& values, const NewtonO
   const VectorX f = elimination_.reduce(load);
   const VectorX first = internal_forces(model_, s.u, s.spring_tangents);
   const double force = std::max(largest(load), largest(first));
+  if (force == 0) {  // nothing drives it: every spring is at rest
+    s.converged = true;
+    return s;
+  }
   // A spring at rest may have no stiffness (Hertz). The matrix of a step never takes less than a small part of the
   // stiffness at full load, which slows nothing that carries load and keeps an idle spring from blocking the step.
   const VectorX loaded = starting_tangents(force);
   const VectorX floor = 1e-8 * loaded;
   const bool linear = all_linear(model_);
   VectorX r = f - elimination_.reduce(first);
+  double previous_step = std::numeric_limits<double>::infinity();
   for (s.iterations = 1; s.iterations <= options.max_iterations; ++s.iterations) {
     factor(s.iterations == 1 ? loaded : VectorX(s.spring_tangents.cwiseMax(floor)));
     const VectorX step = cholesky_.solve(r);
@@ -91,7 +97,9 @@ Solution Solver::solve(const VectorX& load, const VectorX& values, const NewtonO
     const double scale = largest(f) + largest(pulls);
     s.residual = scale > 0 ? largest(r) / scale : 0;
     const bool small_step = largest(step) <= options.tolerance * largest(q);
-    s.converged = small_step || s.residual == 0 || (linear && s.iterations == 3);
+    const bool stalled = s.residual < 1e-9 && largest(step) > 0.5 * previous_step;  // rounding is all that is left
+    previous_step = largest(step);
+    s.converged = small_step || stalled || s.residual == 0 || (linear && s.iterations == 3);
     if (s.converged) break;
   }
   s.converged = s.converged && std::isfinite(s.residual) && s.residual < 1e-7;

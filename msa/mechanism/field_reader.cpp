@@ -16,17 +16,28 @@ using Kind = YamlNode::Kind;
 
 const char* example_of(Dimension d) {
   switch (d) {
-    case Dimension::none: return "0.3";
-    case Dimension::ratio: return "1 %";
-    case Dimension::length: return "10 mm";
-    case Dimension::angle: return "20 deg";
-    case Dimension::area: return "20 mm^2";
-    case Dimension::second_moment: return "200 mm^4";
-    case Dimension::force: return "10 N";
-    case Dimension::moment: return "100 Nmm";
-    case Dimension::stress: return "210 GPa";
-    case Dimension::stiffness: return "500 N/mm";
-    case Dimension::rotational_stiffness: return "100000 Nmm/rad";
+    case Dimension::none:
+      return "0.3";
+    case Dimension::ratio:
+      return "1 %";
+    case Dimension::length:
+      return "10 mm";
+    case Dimension::angle:
+      return "20 deg";
+    case Dimension::area:
+      return "20 mm^2";
+    case Dimension::second_moment:
+      return "200 mm^4";
+    case Dimension::force:
+      return "10 N";
+    case Dimension::moment:
+      return "100 Nmm";
+    case Dimension::stress:
+      return "210 GPa";
+    case Dimension::stiffness:
+      return "500 N/mm";
+    case Dimension::rotational_stiffness:
+      return "100000 Nmm/rad";
   }
   return "";
 }
@@ -57,7 +68,9 @@ YamlNode untagged(YamlNode node) {
 }  // namespace
 
 std::string FieldReader::message(const YamlNode& at, const std::string& path, const std::string& what) const {
-  const std::string line = at.line > 0 ? fmt::format("{}:", at.line) : "";
+  // An empty value has no place of its own; its key has.
+  const int number = at.kind == Kind::null && at.key_line > 0 ? at.key_line : at.line;
+  const std::string line = number > 0 ? fmt::format("{}:", number) : "";
   return fmt::format("{}:{} {}{}{}", origin_, line, path, path.empty() ? "" : ": ", what);
 }
 
@@ -75,23 +88,28 @@ void FieldReader::note_all(const YamlNode& node, const std::string& path) {
     note_all(node.children[i], joined(path, node.kind == Kind::map ? node.keys[i] : std::to_string(i)));
 }
 
-void FieldReader::refuse_unknown(const std::vector<std::string>& known) const {
-  const YamlNode& map = *level_.map;
-  for (std::size_t i = 0; i < map.keys.size(); ++i) {
-    if (std::find(known.begin(), known.end(), map.keys[i]) != known.end()) continue;
-    YamlNode at;
-    at.line = map.children[i].key_line;
-    fail(at, joined(path_, map.keys[i]), "unknown key" + suggestion(map.keys[i], known));
-  }
+void FieldReader::refuse_key(std::size_t i, const std::vector<std::string>& known) const {
+  YamlNode at;
+  at.line = level_.map->children[i].key_line;
+  const std::string& key = level_.map->keys[i];
+  fail(at, joined(path_, key), "unknown key" + suggestion(key, known));
+}
+
+void FieldReader::refuse_misspelt(const std::vector<std::string>& keys) const {
+  for (std::size_t i = 0; i < level_.map->keys.size(); ++i)
+    if (!nearest(level_.map->keys[i], keys).empty()) refuse_key(i, keys);
 }
 
 void FieldReader::read(const YamlNode& map, const std::function<void()>& fields) {
   if (map.kind != Kind::map)
-    fail(map, path_, map.kind == Kind::null ? "is empty: a map of fields 'key: value' is wanted"
-                                            : "a map of fields 'key: value' is wanted");
+    fail(map, path_,
+         map.kind == Kind::null ? "is empty: a map of fields 'key: value' is wanted"
+                                : "a map of fields 'key: value' is wanted");
   const Level outer = std::exchange(level_, Level{&map, {}, "", ""});
   fields();
-  refuse_unknown(level_.asked);
+  for (std::size_t i = 0; i < map.keys.size(); ++i)
+    if (std::find(level_.asked.begin(), level_.asked.end(), map.keys[i]) == level_.asked.end())
+      refuse_key(i, level_.asked);
   for (const std::string& error : {level_.missing, level_.broken})
     if (!error.empty()) throw InputError(error);
   level_ = outer;
@@ -109,12 +127,11 @@ const YamlNode* FieldReader::find(const char* key, bool needed, const std::strin
 }
 
 std::string FieldReader::scalar(const YamlNode& node, const std::string& path, const std::string& sample) const {
-  YamlNode at = node;
-  if (node.kind == Kind::null) at.line = node.key_line;
-  if (node.kind == Kind::null) fail(at, path, fmt::format("has no value: write for example '{}'", sample));
+  if (node.kind == Kind::null) fail(node, path, fmt::format("has no value: write for example '{}'", sample));
   if (node.kind != Kind::scalar)
-    fail(at, path, fmt::format("a single value is wanted, not a {}: write for example '{}'",
-                               node.kind == Kind::map ? "map" : "list", sample));
+    fail(node, path,
+         fmt::format("a single value is wanted, not a {}: write for example '{}'",
+                     node.kind == Kind::map ? "map" : "list", sample));
   return node.text;
 }
 
@@ -185,9 +202,8 @@ void FieldReader::text(const char* key, std::string& value, Need need, const cha
 void FieldReader::word(const char* key, std::string& value, const Words& w, const char* about) {
   const std::string sample = fmt::format("{}: {}", key, w.allowed.empty() ? "name" : w.allowed.front());
   const YamlNode* node = find(key, !w.otherwise, sample, about);
-  if (!node && w.decides) {  // nothing can be said about the other keys: a misspelt one is near
-    for (const std::string& other : level_.map->keys)
-      if (nearest(other, level_.asked) == key) refuse_unknown(level_.asked);
+  if (!node && w.decides) {  // the other keys cannot be judged without it
+    refuse_misspelt({key});
     throw InputError(level_.missing);
   }
   if (!node) {
@@ -209,7 +225,7 @@ void FieldReader::any(const char* key, std::string& yaml, const char* about) {
 }
 
 void FieldReader::object(const char* key, Need need, bool, const std::function<void()>& fields, const char* about) {
-  const YamlNode* node = find(key, need == Need::required, fmt::format("{}: {{…}}", key), about);
+  const YamlNode* node = find(key, need == Need::required, fmt::format("{}: {{...}}", key), about);
   if (!node) return;
   const std::string outer = std::exchange(path_, joined(path_, key));
   read(*node, fields);
@@ -224,7 +240,7 @@ void FieldReader::element(const YamlNode& node, const std::string& path, Element
 }
 
 void FieldReader::read_entries(const YamlNode& map, Elements& all) {
-  if (map.kind != Kind::map) fail(map, path_, "named entries 'name: {…}' are wanted");
+  if (map.kind != Kind::map) fail(map, path_, "named entries 'name: {...}' are wanted");
   for (std::size_t i = 0; i < map.children.size(); ++i) {
     const YamlNode& child = map.children[i];
     const std::string path = joined(path_, map.keys[i]);
@@ -236,7 +252,7 @@ void FieldReader::read_entries(const YamlNode& map, Elements& all) {
 }
 
 void FieldReader::entries(const char* key, Elements& all, Need need, const char* about) {
-  const YamlNode* node = find(key, need == Need::required, fmt::format("{}: {{name: {{…}}}}", key), about);
+  const YamlNode* node = find(key, need == Need::required, fmt::format("{}: {{name: {{...}}}}", key), about);
   if (!node) return;
   const std::string outer = std::exchange(path_, joined(path_, key));
   read_entries(*node, all);
@@ -255,7 +271,7 @@ void FieldReader::elements(const YamlNode& list, Elements& all) {
 void FieldReader::list(const char* key, Elements& all, const char* about) {
   const YamlNode* node = find(key, false, "", about);
   if (!node) return;
-  if (node->kind != Kind::list) fail(*node, joined(path_, key), "a list '- {…}' is wanted");
+  if (node->kind != Kind::list) fail(*node, joined(path_, key), "a list '- {...}' is wanted");
   const std::string outer = std::exchange(path_, joined(path_, key));
   elements(*node, all);
   path_ = outer;
@@ -274,8 +290,7 @@ std::size_t FieldReader::alternative(const std::vector<std::string>& keys, std::
   for (std::size_t i = 0; i < keys.size(); ++i)
     if (level_.map->child(keys[i])) there.push_back(i);
   if (there.size() == 1) return there.front();
-  for (const std::string& key : level_.map->keys)
-    if (there.empty() && !nearest(key, keys).empty()) refuse_unknown(keys);
+  if (there.empty()) refuse_misspelt(keys);
   YamlNode at;
   at.line = level_.map->key_line > 0 ? level_.map->key_line : level_.map->line;
   fail(at, path_, fmt::format("{} of '{}' is wanted", there.empty() ? "one" : "only one", fmt::join(keys, "', '")));

@@ -13,7 +13,8 @@ namespace deflect {
 class FieldReader final : public FieldVisitor {
  public:
   /// Messages begin "origin:line: path: "; without a line where the tree has none. `path`: where the tree stands.
-  explicit FieldReader(std::string origin, std::string path = "") : origin_(std::move(origin)), path_(std::move(path)) {}
+  explicit FieldReader(std::string origin, std::string path = "")
+      : origin_(std::move(origin)), path_(std::move(path)) {}
 
   /// Calls `fields` (a describe) on the map `root`; InputError when the map does not fit.
   void read(const YamlNode& root, const std::function<void()>& fields);
@@ -48,7 +49,8 @@ class FieldReader final : public FieldVisitor {
 
   std::string message(const YamlNode&, const std::string& path, const std::string& what) const;
   [[noreturn]] void fail(const YamlNode&, const std::string& path, const std::string& what) const;
-  void refuse_unknown(const std::vector<std::string>& known) const;
+  [[noreturn]] void refuse_key(std::size_t i, const std::vector<std::string>& known) const;
+  void refuse_misspelt(const std::vector<std::string>& keys) const;
   const YamlNode* find(const char* key, bool needed, const std::string& example, const char* about);
   std::string scalar(const YamlNode&, const std::string& path, const std::string& example) const;
   double number(const YamlNode&, const std::string& path, const Quantity&, const std::string& example) const;

@@ -141,8 +141,9 @@ void fields(FieldVisitor& v, Member& member) {
   v.require(member.from != member.to, "to", "must be another point than 'from'");
 
   std::string beam = beam_theory_names[static_cast<std::size_t>(member.beam)];
-  v.word("beam", beam, {"beam theory", {std::begin(beam_theory_names), std::end(beam_theory_names)},
-                        beam_theory_names[0]}, "beam theory");
+  v.word("beam", beam,
+         {"beam theory", {std::begin(beam_theory_names), std::end(beam_theory_names)}, beam_theory_names[0]},
+         "beam theory");
   member.beam = static_cast<BeamTheory>(index_of(beam_theory_names, beam));
   const Section* section = v.surroundings.sections ? find(*v.surroundings.sections, member.section) : nullptr;
   const auto* given = section ? std::get_if<GivenSection>(&section->shape) : nullptr;
@@ -160,7 +161,7 @@ void describe_fixture(FieldVisitor& v, const char* key, Joint& joint, const char
   joint.axes = axes;
   v.surroundings.on_actuator = false;
   const auto body = [&] {
-    v.word("joint", joint.type, {"joint type here (what yields is given a law)", {"fixed"}, "fixed"}, "joint type");
+    v.word("joint", joint.type, {"joint type of base or tool", {"fixed"}, "fixed"}, "joint type");
     describe_laws(v, joint);
   };
   v.object(key, Need::optional, false, body, about);
@@ -245,9 +246,9 @@ void describe(FieldVisitor& v, Section& s) {
 
 void describe(FieldVisitor& v, Law& law) {
   tagged(v, law, "law", "law", law_names, "force against relative displacement");
-  v.require(!v.surroundings.rotation || std::holds_alternative<LinearLaw>(law), "law",
-            fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes 'linear'",
-                        law_names[law.index()]));
+  v.require(
+      !v.surroundings.rotation || std::holds_alternative<LinearLaw>(law), "law",
+      fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes 'linear'", law_names[law.index()]));
 }
 
 void describe(FieldVisitor& v, Part& part) {
@@ -279,9 +280,7 @@ void describe(FieldVisitor& v, Mechanism& m) {
   v.text("name", m.name, Need::required, "name of the device");
   v.text("about", m.about, Need::optional, "one line about the device");
   v.text("source", m.source, Need::optional, "where the numbers are from");
-  const auto family = [&] {
-    tagged(v, m.kinematics, "family", "family", family_names, "family of mechanisms");
-  };
+  const auto family = [&] { tagged(v, m.kinematics, "family", "family", family_names, "family of mechanisms"); };
   v.object("kinematics", Need::required, false, family, "family and dimensions");
 
   NamedElements<Material> materials(m.materials);
@@ -303,8 +302,9 @@ void describe(FieldVisitor& v, Mechanism& m) {
   };
   v.object("workspace", Need::optional, w.nominal_slider == 0 && w.cube_edge == 0, cube, "where it is validated");
   describe_rig(v, m.load_cell, m.sensor);
-  v.object("tolerances", Need::optional, false, [&] { describe_tolerances(v, m.tolerances); },
-           "standard deviations from machine to machine");
+  v.object(
+      "tolerances", Need::optional, false, [&] { describe_tolerances(v, m.tolerances); },
+      "standard deviations from machine to machine");
 }
 
 }  // namespace deflect

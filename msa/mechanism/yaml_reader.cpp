@@ -80,7 +80,6 @@ class Builder : public YAML::EventHandler {
     if (anchor) refuse_anchor(mark.line + 1);
     if (!tag.empty() && tag != "?" && tag != "!" && tag != "!ours")
       fail(mark.line + 1, fmt::format("unknown tag '{}': the one tag known is !ours", tag));
-    if (tag == "!ours" && open_.empty() && kind == Kind::map) fail(mark.line + 1, "!ours stands before single values");
     YamlNode out;
     out.kind = kind;
     out.line = mark.line + 1;
@@ -128,6 +127,18 @@ class Builder : public YAML::EventHandler {
   std::vector<Open> open_;
 };
 
+class Ignore : public YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
 /// Bytes of the UTF-8 sequence that begins here, 0 when there is none.
 std::size_t utf8_length(std::string_view s) {
   const auto byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
@@ -152,9 +163,31 @@ void check_characters(std::string_view text, const std::string& origin) {
     if ((c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7f)
       throw InputError(fmt::format("{}:{}: control character 0x{:02x}: a device file is text", origin, line, c));
     const std::size_t n = utf8_length(text.substr(i));
-    if (n == 0) throw InputError(fmt::format("{}:{}: byte 0x{:02x} is not UTF-8: save the file as UTF-8", origin, line, c));
+    if (n == 0)
+      throw InputError(fmt::format("{}:{}: byte 0x{:02x} is not UTF-8: save the file as UTF-8", origin, line, c));
     if (c == '\n') ++line;
     i += n;
+  }
+}
+
+void parse(const std::string& text, YAML::EventHandler& handler) {
+  std::istringstream in(text);
+  YAML::Parser parser(in);
+  while (parser.HandleNextDocument(handler)) {
+  }
+}
+
+/// Before anything is made of the events: those that precede a syntax error can be nonsense.
+void check_syntax(const std::string& text, const std::string& origin) {
+  Ignore ignore;
+  try {
+    parse(text, ignore);
+  } catch (const YAML::Exception& e) {
+    const bool open = e.msg == YAML::ErrorMsg::DOC_IN_SCALAR || e.msg == YAML::ErrorMsg::EOF_IN_SCALAR;
+    const auto lines = static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+    throw InputError(fmt::format("{}:{}: not valid YAML: {}", origin,
+                                 std::clamp(e.mark.line + 1, 1, std::max(lines, 1)),
+                                 open ? "a quotation is not closed" : e.msg));
   }
 }
 
@@ -162,19 +195,12 @@ void check_characters(std::string_view text, const std::string& origin) {
 
 YamlNode parse_yaml(std::string_view text, const std::string& origin) {
   check_characters(text, origin);
-  // The end mark makes yaml-cpp notice a quotation that is never closed.
-  std::istringstream in(std::string(text) + (text.ends_with('\n') ? "...\n" : "\n...\n"));
+  check_syntax(std::string(text), origin);
+  // yaml-cpp closes a quotation by itself at the end of the text, but not at the end of a document.
+  check_syntax(std::string(text) + "\n...\n", origin);
   Builder builder(origin);
-  try {
-    YAML::Parser parser(in);
-    while (parser.HandleNextDocument(builder)) {
-    }
-  } catch (const YAML::Exception& e) {
-    const bool unclosed = e.msg == YAML::ErrorMsg::DOC_IN_SCALAR || e.msg == YAML::ErrorMsg::EOF_IN_SCALAR;
-    const auto last = static_cast<int>(std::count(text.begin(), text.end(), '\n')) + !text.ends_with('\n');
-    throw InputError(fmt::format("{}:{}: not valid YAML: {}", origin, std::clamp(e.mark.line + 1, 1, std::max(last, 1)),
-                                 unclosed ? "a quotation is not closed" : e.msg));
-  }
+  parse(std::string(text), builder);
+  builder.root.line = std::max(builder.root.line, 1);
   return std::move(builder.root);
 }
 

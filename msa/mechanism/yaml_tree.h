@@ -22,9 +22,9 @@ struct YamlNode {
   int line = 0, key_line = 0;      ///< 1-based, 0 where there is no file: of the value, of its key
 
   // Written: set by FieldWriter only.
-  bool implied = false;   ///< a default or an absent field: known to edits, not part of the file
-  bool entries = false;   ///< a map of named entries, not of fields
-  bool collapses = false; ///< a list that stands without its dash when it has one element
+  bool implied = false;    ///< a default or an absent field: known to edits, not part of the file
+  bool entries = false;    ///< a map of named entries, not of fields
+  bool collapses = false;  ///< a list that stands without its dash when it has one element
   std::optional<double> number;
   Dimension dimension = Dimension::none;
 

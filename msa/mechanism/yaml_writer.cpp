@@ -70,13 +70,14 @@ const YamlNode& shown(const YamlNode& node) {
 
 std::string tag(const YamlNode& node) { return node.ours ? "!ours " : ""; }
 
-std::string key_text(const std::string& key) { return plain_safe(key) && key.find(',') == key.npos ? key : quotation(key); }
+std::string key_text(const std::string& key) {
+  return plain_safe(key) && key.find(',') == key.npos ? key : quotation(key);
+}
 
 bool leaf(const YamlNode& node) {
   if (node.kind == Kind::map) return false;
-  return node.kind != Kind::list || std::all_of(node.children.begin(), node.children.end(), [](const YamlNode& c) {
-           return c.kind == Kind::scalar;
-         });
+  return node.kind != Kind::list || std::all_of(node.children.begin(), node.children.end(),
+                                                [](const YamlNode& c) { return c.kind == Kind::scalar; });
 }
 
 void block(std::string& out, const YamlNode& map, int depth) {
@@ -88,8 +89,8 @@ void block(std::string& out, const YamlNode& map, int depth) {
     if (depth == 0 && nested) out += "\n";
     out += fmt::format("{}{}:", margin, key_text(map.keys[i]));
     if (!nested || (depth > 0 && node.kind == Kind::map && leaves)) {
-      out += fmt::format(" {}{}\n", tag(node), leaf(node) && node.kind == Kind::scalar ? scalar(node, false)
-                                                                                     : flow_yaml(node));
+      out += fmt::format(" {}{}\n", tag(node),
+                         leaf(node) && node.kind == Kind::scalar ? scalar(node, false) : flow_yaml(node));
     } else if (node.kind == Kind::map) {
       out += node.ours ? " !ours\n" : "\n";
       block(out, node, depth + 1);

@@ -39,7 +39,7 @@ TEST(Member, AsPrintedDiffersWhereThePaperErrs) {
   const PlacedMember m = member();
   const Matrix6 K = tip_compliance_guideway_as_printed(m).inverse();
   const double L = m.length();
-  EXPECT_NEAR(K(1, 5) / (-6 * m.E * m.section.Iz / pow(L, 3)), 1, 1e-12);
+  EXPECT_NEAR(K(1, 5) / (-6e-3 * m.E * m.section.Iz / pow(L, 3)), 1, 1e-12);  // N/mm read as N
   EXPECT_NEAR(K(4, 4) / (6 * m.E * m.section.Iy / L), 1, 1e-12);
   EXPECT_GT(std::abs(K(1, 5) - K(5, 1)), 0.1 * std::abs(K(1, 5)));
   PlacedMember vertical = m;

@@ -77,7 +77,7 @@ TEST(SixPsu, ForwardKinematicsComesBackToThePose) {
 
 TEST(SixPsu, ForwardKinematicsSaysWhenThereIsNoAssembly) {
   const ForwardKinematics f =
-      forward_kinematics(six_psu(haptic()), {0.02, 0.2, 0.02, 0.2, 0.02, 0.2}, test::home(haptic()));
+      forward_kinematics(six_psu(haptic()), {0.02, 0.5, 0.02, 0.5, 0.02, 0.5}, test::home(haptic()));
   EXPECT_FALSE(f.converged);
 }
 

@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"NanLoad", "solve haptic-6psu --pose 0,0,170 --load nan,0,0", 2, "not a finite number"},
         Refusal{"OutOfReach", "solve haptic-6psu --pose 300,0,170 --load 1,0,0", 3, "the link does not reach"},
         Refusal{"SliderRange", "solve haptic-6psu --pose 0,0,400 --load 1,0,0", 3, "outside its range"},
-        Refusal{"NoAssembly", "solve haptic-6psu --joints 20,200,20,200,20,200 --load 1,0,0", 3, "no assembly"},
+        Refusal{"NoAssembly", "solve haptic-6psu --joints 20,500,20,500,20,500 --load 1,0,0", 3, "no assembly"},
         Refusal{"UnknownErratum", "validate haptic-6psu --as-printed pasive-joints", 2, "did you mean 'passive-joints'?"},
         Refusal{"ElementWithoutUnit", "validate haptic-6psu --element-size 25", 2, "--element-size: '25' has no unit"},
         Refusal{"ElementNegative", "validate haptic-6psu --element-size '-1 mm'", 2, "greater than zero"},

@@ -117,10 +117,9 @@ double relative_difference(const Vector6& a, const Vector6& b) {
   const auto relative = [](double difference, double size) {
     return size > 0 ? difference / size : difference > 0 ? std::numeric_limits<double>::infinity() : 0.0;
   };
-  const double translation = b.head<3>().norm(), rotation = b.tail<3>().norm();
-  // Displacements come in mm: 1e-9 rad per metre of translation is 1e-12 rad per mm.
-  return std::max(relative((a - b).head<3>().norm(), translation),
-                  relative((a - b).tail<3>().norm(), std::max(rotation, 1e-12 * translation)));
+  const double translation = b.head<3>().norm(), rotation = b.tail<3>().norm();  // mm, rad
+  return std::max(relative((a - b).head<3>().norm(), std::max(translation, rotation * 1.0)),
+                  relative((a - b).tail<3>().norm(), std::max(rotation, translation / 1000.0)));
 }
 
 SolveResult solve(const Mechanism& m, const Vector6& pose, const Vector6& load, const frame::MemberDivision& division) {

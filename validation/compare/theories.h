@@ -35,8 +35,9 @@ struct Validation {
   double max_relative_difference = 0, rms_relative_difference = 0;
 };
 
-/// The larger of |δa − δb| / |δb| and |θa − θb| / |θb|, Euclidean norms of the translation and of the rotation; a
-/// rotation below 1e-9 of translation per metre, which is rounding, counts against that floor.
+/// The larger of |δa − δb| / |δb| and |θa − θb| / |θb| for displacements in mm and rad, Euclidean norms of translation
+/// and rotation. Where symmetry makes one of the two vanish its rounding is measured by the other: a rotation against at
+/// least |δb| / 1 m, a translation against at least |θb| · 1 mm.
 double relative_difference(const Vector6& a, const Vector6& b);
 
 /// Centre (0) and corners of the cube of the device's workspace: 1…4 upper face, 5…8 lower, each in the order

@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include "msa/base/error.h"
+#include "msa/mechanism/device_file.h"
+#include "msa/mechanism/field_reader.h"
+#include "msa/mechanism/field_writer.h"
+#include "msa/mechanism/mechanism_tree.h"
+#include "msa/mechanism/tree_edit.h"
+
+namespace deflect {
+namespace {
+
+constexpr int leg_count = 6;
+
+/// "leg[4].guideway.E" as 4 and "guideway.E".
+std::pair<int, std::string> leg_and_rest(const std::string& path, const std::string& where) {
+  for (int leg = 1; leg <= leg_count; ++leg)
+    if (const std::string head = fmt::format("leg[{}].", leg); path.starts_with(head))
+      return {leg, path.substr(head.size())};
+  throw InputError(
+      fmt::format("{}{}: one leg is written leg[1] to leg[{}], then a dot and the field", where, path, leg_count));
+}
+
+YamlNode variation_node(int leg, const std::string& path, YamlNode value) {
+  YamlNode node, number, text;
+  node.kind = YamlNode::Kind::map;
+  number.kind = text.kind = YamlNode::Kind::scalar;
+  number.text = std::to_string(leg);
+  text.text = path;
+  node.add("leg", number);
+  node.add("path", text);
+  node.add("value", std::move(value));
+  return node;
+}
+
+/// Adds the variation and drops those of the same leg that it covers. It comes last, so that it holds.
+void put(YamlNode& variations, YamlNode added) {
+  const auto covered = [&](const YamlNode& old) {
+    const std::string &path = old.child("path")->text, &above = added.child("path")->text;
+    return old.child("leg")->text == added.child("leg")->text && (path + ".").starts_with(above + ".");
+  };
+  std::erase_if(variations.children, covered);
+  variations.children.push_back(std::move(added));
+  variations.implied = false;
+}
+
+MarkedLeg marked_leg(const Mechanism& m, int leg, const YamlNode& tree) {
+  if (leg < 1 || leg > leg_count)
+    throw InputError(fmt::format("{}: there is no leg {}, legs are 1 to {}", m.name, leg, leg_count));
+  const auto varied = varied_legs(m, tree.child("variations"), m.name);
+  const auto found = varied.find(leg);
+  return found == varied.end() ? MarkedLeg{m.leg, m.ours} : found->second;
+}
+
+void edit_one_leg(YamlNode& tree, const Mechanism& m, const Edit& edit, const YamlNode& value,
+                  const std::string& where) {
+  const auto [number, path] = leg_and_rest(edit.path, where);
+  const MarkedLeg leg = marked_leg(m, number, tree);
+  YamlNode parts = tree_of(leg.parts, leg.ours, m);
+  const std::string inside = fmt::format("{}leg[{}].", where, number);
+  const std::vector<Place> all = places(parts, path, inside);
+  for (const Place& place : all) change(parts, place, edit.action, value, inside);
+  for (const Place& place : all)
+    put(*tree.child("variations"), variation_node(number, path_of(parts, place), stripped(at(parts, place))));
+}
+
+const char* sign(Edit::Action action) {
+  return action == Edit::Action::set ? "=" : action == Edit::Action::append ? "+=" : "*=";
+}
+
+}  // namespace
+
+MarkedLeg varied(const MarkedLeg& leg, const Variation& v, const YamlNode& value, const Mechanism& m,
+                 const std::string& origin) {
+  const std::string where = value.line > 0 ? fmt::format("{}:{}: ", origin, value.line) : origin + ": ";
+  const std::string name = fmt::format("leg[{}]", v.leg), inside = fmt::format("{}{}.", where, name);
+  YamlNode tree = tree_of(leg.parts, leg.ours, m);
+  set_line(tree, value.line);
+  for (const Place& place : places(tree, v.path, inside)) change(tree, place, Edit::Action::set, value, inside);
+
+  MarkedLeg out;
+  FieldReader reader(origin, name);
+  reader.surroundings = surroundings_of(m);
+  NamedElements<Part> elements(out.parts);
+  reader.read_entries(stripped(tree), elements);
+  for (const std::string& path : reader.ours()) out.ours.insert("leg" + path.substr(name.size()));
+  return out;
+}
+
+std::map<int, MarkedLeg> varied_legs(const Mechanism& m, const YamlNode* variations, const std::string& origin) {
+  std::map<int, MarkedLeg> legs;
+  for (std::size_t i = 0; i < m.variations.size(); ++i) {
+    const Variation& v = m.variations[i];
+    MarkedLeg& leg = legs.try_emplace(v.leg, MarkedLeg{m.leg, m.ours}).first->second;
+    leg = varied(leg, v, *variations->children[i].child("value"), m, origin);
+  }
+  return legs;
+}
+
+Named<Part> leg_parts(const Mechanism& m, int leg) { return marked_leg(m, leg, tree_of(m)).parts; }
+
+Mechanism edited(const Mechanism& m, const Edit& edit) {
+  const std::string origin = fmt::format("edit '{} {} {}'", edit.path, sign(edit.action), edit.value);
+  YamlNode value = parse_yaml(edit.value, origin);
+  set_line(value, 0);
+  YamlNode tree = tree_of(m);
+  if (edit.path.starts_with("leg["))
+    edit_one_leg(tree, m, edit, value, origin + ": ");
+  else
+    for (const Place& place : places(tree, edit.path, origin + ": "))
+      change(tree, place, edit.action, value, origin + ": ");
+  return mechanism_of(stripped(tree), origin);
+}
+
+}  // namespace deflect

@@ -1,0 +1,30 @@
+// Between a tree and a whole mechanism, with everything that a file is checked for.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "msa/mechanism/description.h"
+#include "msa/mechanism/yaml_tree.h"
+
+namespace deflect {
+
+/// Reads and checks a tree as a device file; InputError "origin:line: path: …".
+Mechanism mechanism_of(const YamlNode& tree, const std::string& origin);
+
+/// The parts of one leg with the values among them that are assumed ("leg.guideway.bending_factor").
+struct MarkedLeg {
+  Named<Part> parts;
+  std::set<std::string> ours;
+};
+
+/// The leg with one variation in it, checked. `value` is the variation's value as a node: its tags are kept, messages
+/// name `origin` and the node's line.
+MarkedLeg varied(const MarkedLeg&, const Variation&, const YamlNode& value, const Mechanism& surroundings,
+                 const std::string& origin);
+
+/// The legs that have variations, by number. `variations` is the list in the tree that `m` was read from.
+std::map<int, MarkedLeg> varied_legs(const Mechanism& m, const YamlNode* variations, const std::string& origin);
+
+}  // namespace deflect
