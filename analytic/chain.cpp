@@ -52,9 +52,10 @@ Matrix6 stiffness_of(const Matrix6X& N, const Matrix6& C, const std::string& nam
   const MatrixX G = N.transpose() * C * N;
   const Eigen::FullPivLU<MatrixX> lu(G);
   if (!lu.isInvertible())
-    throw ModelError(fmt::format("{}: the chain is rigid against {} of the wrenches that it carries: its stiffness is "
-                                 "infinite; give a member, joint or actuator of it some compliance",
-                                 name, G.cols() - lu.rank()));
+    throw ModelError(
+        fmt::format("{}: the chain is rigid against {} of the wrenches that it carries: its stiffness is "
+                    "infinite; give a member, joint or actuator of it some compliance",
+                    name, G.cols() - lu.rank()));
   return N * lu.solve(N.transpose());
 }
 
@@ -89,8 +90,8 @@ Chain chain_of(const PlacedLeg& leg, const Vector3& p_W, const AsPrinted& p) {
       add_member(chain, *member, p_W, chain.members.empty(), p);
     else
       add_joint(chain, std::get<PlacedJoint>(part), p_W, p);
-  chain.N = p.count(Erratum::passive_joints) ? Matrix6X(Matrix6::Identity())
-                                             : carried_wrenches(chain.J_q, weighing_length);
+  chain.N =
+      p.count(Erratum::passive_joints) ? Matrix6X(Matrix6::Identity()) : carried_wrenches(chain.J_q, weighing_length);
   return chain;
 }
 

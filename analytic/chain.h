@@ -11,7 +11,8 @@
 
 namespace deflect::analytic {
 
-/// A freedom that yields by its laws: unit relative motion moves T by `twist`; under a wrench F at T it carries twistᵀF.
+/// A freedom that yields by its laws: unit relative motion moves T by `twist`; under a wrench F at T it carries
+/// twistᵀF.
 struct ElasticFreedom {
   Vector6 twist;
   std::vector<Law> laws;

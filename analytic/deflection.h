@@ -26,7 +26,8 @@ double line_contact_stiffness(double length, double E_effective);
 double line_contact_half_width(double R, double length, double E_effective, double force);
 
 /// The same with the bulk of both cylinders, radii R1 and R2: with p = F/l and κ = (1 − ν²)/(π E),
-/// δ = 2 p κ (ln(2 (R1 + R2)/(p κ)) − 1), which is Johnson's δ = p κ Σ (2 ln(4 R_i/a) − 1) at a² = 8 p κ R1 R2/(R1 + R2).
+/// δ = 2 p κ (ln(2 (R1 + R2)/(p κ)) − 1), which is Johnson's δ = p κ Σ (2 ln(4 R_i/a) − 1) at a² = 8 p κ R1 R2/(R1 +
+/// R2).
 double bulk_line_deflection(const HertzLineBulkLaw&, double force);
 double bulk_line_compliance(const HertzLineBulkLaw&, double force);
 

@@ -22,9 +22,9 @@ enum class Erratum {
 
 struct ErratumInfo {
   Erratum erratum;
-  const char* name;       ///< on the command line: "passive-joints"
-  const char* equations;  ///< "(45), (46)"
-  const char* as_printed; ///< what the variant does, in one sentence
+  const char* name;        ///< on the command line: "passive-joints"
+  const char* equations;   ///< "(45), (46)"
+  const char* as_printed;  ///< what the variant does, in one sentence
 };
 
 const std::vector<ErratumInfo>& errata();

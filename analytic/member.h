@@ -22,7 +22,8 @@ Matrix6 tip_compliance_guideway_as_printed(const PlacedMember&);
 /// entry (4,4), 4I/L. They have no unit of stiffness; the numbers are taken in the paper's N and mm.
 Matrix6 tip_compliance_link_as_printed(const PlacedMember&);
 
-/// The axes of (40): z along the link, x horizontal. Throws ModelError where the link is vertical and they are undefined.
+/// The axes of (40): z along the link, x horizontal. Throws ModelError where the link is vertical and they are
+/// undefined.
 Matrix3 link_axes_as_printed(const PlacedMember&);
 
 /// A compliance at the member's tip in axes R_WM, moved to the point T and turned into base axes (21).

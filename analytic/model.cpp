@@ -22,9 +22,10 @@ Linearised linearise(const Chain& c, const VectorX& lambda, double least, const 
   const MatrixX G = c.N.transpose() * c.tangent_compliance(F, least, p) * c.N;
   const Eigen::FullPivLU<MatrixX> lu(G);
   if (!lu.isInvertible())
-    throw ModelError(fmt::format("{}: the chain is rigid in a direction that it carries: its stiffness is infinite; "
-                                 "give a member, joint or actuator of it some compliance",
-                                 c.name));
+    throw ModelError(
+        fmt::format("{}: the chain is rigid in a direction that it carries: its stiffness is infinite; "
+                    "give a member, joint or actuator of it some compliance",
+                    c.name));
   Linearised out;
   out.G_inverse = lu.inverse();
   out.offset = lambda - out.G_inverse * (c.N.transpose() * c.deflection(F, p));

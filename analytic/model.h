@@ -15,7 +15,7 @@ namespace deflect::analytic {
 struct AnalyticSolution {
   Vector6 displacement = Vector6::Zero();  ///< [δ; θ] of T
   Vector6 load = Vector6::Zero();
-  std::vector<Vector6> leg_wrenches;       ///< what the platform exerts on each leg, at T
+  std::vector<Vector6> leg_wrenches;  ///< what the platform exerts on each leg, at T
   bool converged = false;
   int iterations = 0;
   double misfit = 0;  ///< how far the legs' ends and the platform disagree, relative to the displacement

@@ -8,8 +8,7 @@ namespace deflect {
 
 Matrix3 rotation_from_rpy(double roll, double pitch, double yaw) {
   using Eigen::AngleAxisd;
-  return (AngleAxisd(yaw, Vector3::UnitZ()) * AngleAxisd(pitch, Vector3::UnitY()) *
-          AngleAxisd(roll, Vector3::UnitX()))
+  return (AngleAxisd(yaw, Vector3::UnitZ()) * AngleAxisd(pitch, Vector3::UnitY()) * AngleAxisd(roll, Vector3::UnitX()))
       .toRotationMatrix();
 }
 

@@ -38,8 +38,8 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
   const double asymmetry = (K - K.transpose()).cwiseAbs().maxCoeff();
   out.symmetric = asymmetry <= tolerance * scale;
   if (!out.symmetric)
-    out.failure += fmt::format("K = K^T fails: the largest difference is {:.3g} of the largest entry; ",
-                               asymmetry / scale);
+    out.failure +=
+        fmt::format("K = K^T fails: the largest difference is {:.3g} of the largest entry; ", asymmetry / scale);
   const Vector6 eigenvalues =
       Eigen::SelfAdjointEigenSolver<Matrix6>((K + K.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues();
   out.positive = eigenvalues(0) >= -tolerance * eigenvalues(5);

@@ -124,8 +124,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
             fmt::format("'{}' is {}, where {} is wanted (units: {})", text, other.words, r.words, unit_list(r)));
   const std::string hint = nearest(unit, units_of(dimension));
   throw InputError(fmt::format("'{}' has the unknown unit '{}'{} (units of {}: {})", text, unit,
-                               hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), r.words,
-                               unit_list(r)));
+                               hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), r.words, unit_list(r)));
 }
 
 std::string format_quantity(double value, Dimension dimension) {

@@ -35,9 +35,7 @@ void substitute(Expression& e, const std::vector<Expression>& rows, const std::v
 struct Weights {
   int nodal;      // freedoms of nodes
   double length;  // a rotation of 1 rad counts as this many metres
-  double operator()(int dof, double c) const {
-    return std::abs(c) / (dof < nodal && dof % 6 >= 3 ? length : 1);
-  }
+  double operator()(int dof, double c) const { return std::abs(c) / (dof < nodal && dof % 6 >= 3 ? length : 1); }
 };
 
 }  // namespace
@@ -86,7 +84,8 @@ Elimination eliminate(const Model& m) {
     if (largest <= 1e-9 * scale) {
       Redundancy r{static_cast<int>(k), {}};
       for (const auto& [index, c] : e)
-        if (index >= n && index != n + static_cast<int>(k) && std::abs(c) > 1e-12) r.implied_by.push_back({index - n, c});
+        if (index >= n && index != n + static_cast<int>(k) && std::abs(c) > 1e-12)
+          r.implied_by.push_back({index - n, c});
       out.redundant.push_back(std::move(r));
       out.pivot.push_back(-1);
       continue;

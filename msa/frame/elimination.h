@@ -16,11 +16,11 @@ struct Redundancy {
 };
 
 struct Elimination {
-  int independent = 0;            ///< number of q
-  std::vector<int> dof_of_q;      ///< the freedom that each q is
-  std::vector<LinearForm> T;      ///< by freedom: terms over q
-  std::vector<LinearForm> G;      ///< by freedom: terms over constraints
-  std::vector<int> pivot;         ///< by constraint: the freedom it eliminated, −1 where redundant
+  int independent = 0;        ///< number of q
+  std::vector<int> dof_of_q;  ///< the freedom that each q is
+  std::vector<LinearForm> T;  ///< by freedom: terms over q
+  std::vector<LinearForm> G;  ///< by freedom: terms over constraints
+  std::vector<int> pivot;     ///< by constraint: the freedom it eliminated, −1 where redundant
   std::vector<Redundancy> redundant;
 
   /// u for given q and constraint values.

@@ -28,7 +28,8 @@ std::string Model::dof_name(int dof) const {
 
 LinearForm translation_of(const Model& m, int node, const Vector3& p, const Vector3& axis, double factor) {
   LinearForm form;
-  const Vector3 turning = (p - m.nodes[static_cast<std::size_t>(node)].position).cross(axis);  // axis·(θ × r) = θ·(r × axis)
+  const Vector3 turning =
+      (p - m.nodes[static_cast<std::size_t>(node)].position).cross(axis);  // axis·(θ × r) = θ·(r × axis)
   for (int i = 0; i < 3; ++i)
     if (axis(i) != 0) form.push_back({6 * node + i, factor * axis(i)});
   for (int i = 0; i < 3; ++i)

@@ -45,7 +45,7 @@ struct ConnectionFreedom {
 };
 
 struct Model {
-  std::vector<Node> nodes;  ///< node i owns the freedoms 6i … 6i+5: [ux uy uz θx θy θz]
+  std::vector<Node> nodes;           ///< node i owns the freedoms 6i … 6i+5: [ux uy uz θx θy θz]
   std::vector<std::string> scalars;  ///< further freedoms, numbered after those of the nodes
   std::vector<Beam> beams;
   std::vector<Spring> springs;

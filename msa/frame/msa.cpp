@@ -22,7 +22,14 @@ Matrix6 stiffness_at(const Model& free_model, int node, const VectorX& spring_ta
   Matrix6 K;
   for (int i = 0; i < 6; ++i)
     K.col(i) = constraint_forces(tangent, solver.elimination(), U.col(i), loads.col(i)).tail<6>();
-  return K;
+  // Reactions are differences of forces as large as the stiffest member's: below their rounding K is zero, which is
+  // what an unloaded contact leaves of a leg.
+  double stiffest = 0;
+  for (const Beam& beam : held.beams) stiffest = std::max(stiffest, beam.rigidity.EA / beam.length);
+  Vector6 per_length = Vector6::Ones();
+  per_length.tail<3>().setConstant(1 / characteristic_length(held));
+  const double size = (per_length.asDiagonal() * K * per_length.asDiagonal()).cwiseAbs().maxCoeff();
+  return size < 1e-13 * stiffest ? Matrix6(Matrix6::Zero()) : K;
 }
 
 }  // namespace

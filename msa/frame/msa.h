@@ -13,8 +13,8 @@ namespace deflect::frame {
 
 /// Response of the tool point T to one wrench [f; m] at T, base axes, SI.
 struct MsaSolution {
-  Vector6 displacement;     ///< [δ; θ] of T
-  Solution state;           ///< of MsaModel::model(): not converged is said here
+  Vector6 displacement;  ///< [δ; θ] of T
+  Solution state;        ///< of MsaModel::model(): not converged is said here
   /// Strain energy by part, J, largest first. ½Fᵀd where everything is linear.
   std::vector<std::pair<std::string, double>> energies;
 };

@@ -17,7 +17,8 @@ constexpr double shift = 1e-10, null_below = 1e-11, unstrained_below = 1e-12;
 MatrixX times(const SparsePattern& p, const std::vector<double>& values, const MatrixX& x) {
   MatrixX y = MatrixX::Zero(x.rows(), x.cols());
   for (int j = 0; j < p.n; ++j)
-    for (int k = p.column_start[static_cast<std::size_t>(j)]; k < p.column_start[static_cast<std::size_t>(j) + 1]; ++k) {
+    for (int k = p.column_start[static_cast<std::size_t>(j)]; k < p.column_start[static_cast<std::size_t>(j) + 1];
+         ++k) {
       const int i = p.row[static_cast<std::size_t>(k)];
       const double v = values[static_cast<std::size_t>(k)];
       y.row(i) += v * x.row(j);
@@ -43,7 +44,8 @@ std::string describe_motion(const Model& m, const VectorX& u) {
 VectorX normalised(const Model& m, VectorX u, double length) {
   double size = 0;
   for (Eigen::Index i = 0; i < u.size(); ++i)
-    size = std::max(size, std::abs(u(i)) * (i < static_cast<Eigen::Index>(6 * m.nodes.size()) && i % 6 >= 3 ? length : 1));
+    size =
+        std::max(size, std::abs(u(i)) * (i < static_cast<Eigen::Index>(6 * m.nodes.size()) && i % 6 >= 3 ? length : 1));
   return u / size;
 }
 

@@ -67,8 +67,8 @@ Law resolved(Law law, const Mechanism& m, double actuator) {
   return law;
 }
 
-PlacedJoint placed(const Joint& joint, const std::string& part, const Vector3& p, const Matrix3& R,
-                   const Mechanism& m, double actuator) {
+PlacedJoint placed(const Joint& joint, const std::string& part, const Vector3& p, const Matrix3& R, const Mechanism& m,
+                   double actuator) {
   const JointType* type = find_joint_type(joint.type);
   if (!type) throw InputError(fmt::format("{}: there is no joint type '{}'", part, joint.type));
   PlacedJoint j{part, p, R, freedoms_of(*type), {}};

@@ -58,8 +58,8 @@ using Part = std::variant<Joint, Member>;
 /// the base circle and at 120°·k ± (60° − platform_angle/2) on the platform circle.
 struct SixPsu {
   double base_radius = 0, platform_radius = 0, link_length = 0;
-  double base_angle = 0, platform_angle = 0;   ///< rad: angle between the two joints of a pair
-  double slider_min = 0, slider_max = 0;       ///< limits of the free length L1 = |AB|
+  double base_angle = 0, platform_angle = 0;  ///< rad: angle between the two joints of a pair
+  double slider_min = 0, slider_max = 0;      ///< limits of the free length L1 = |AB|
 };
 
 using Kinematics = std::variant<SixPsu>;
@@ -91,8 +91,8 @@ struct Sensor {
 
 /// Standard deviations of what differs from machine to machine within its drawing.
 struct Tolerances {
-  double modulus = 0, guide_diameter = 0, load = 0;                            ///< relative
-  double joint_position = 0, link_length = 0, actuator_repeatability = 0;      ///< m
+  double modulus = 0, guide_diameter = 0, load = 0;                        ///< relative
+  double joint_position = 0, link_length = 0, actuator_repeatability = 0;  ///< m
 };
 
 struct Mechanism {
@@ -100,15 +100,15 @@ struct Mechanism {
   Kinematics kinematics;
   Named<Material> materials;
   Named<Section> sections;
-  Named<Part> leg;               ///< every leg, base to platform
+  Named<Part> leg;  ///< every leg, base to platform
   std::vector<Variation> variations;
-  Joint base;                    ///< between the world and the machine, at the base origin, axes "base"
-  Joint tool;                    ///< between the platform and the tool point T, axes "platform"
+  Joint base;  ///< between the world and the machine, at the base origin, axes "base"
+  Joint tool;  ///< between the platform and the tool point T, axes "platform"
   Workspace workspace;
   LoadCell load_cell;
   Sensor sensor;
   Tolerances tolerances;
-  std::set<std::string> ours;    ///< paths of values that the source does not state and we assumed (YAML tag !ours)
+  std::set<std::string> ours;  ///< paths of values that the source does not state and we assumed (YAML tag !ours)
 };
 
 }  // namespace deflect

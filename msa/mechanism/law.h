@@ -87,8 +87,8 @@ using Law = std::variant<LinearLaw, HertzPointLaw, HertzLineLaw, PinBendingLaw, 
                          BeltLaw, HertzLineBulkLaw>;
 
 /// The name of each alternative in device files, in the order of the variant.
-inline constexpr const char* law_names[] = {"linear",      "hertz_point", "hertz_line", "pin_bending",
-                                            "motor_shaft", "cable",       "cable_pair", "belt",       "hertz_line_bulk"};
+inline constexpr const char* law_names[] = {"linear", "hertz_point", "hertz_line", "pin_bending",    "motor_shaft",
+                                            "cable",  "cable_pair",  "belt",       "hertz_line_bulk"};
 static_assert(std::size(law_names) == std::variant_size_v<Law>);
 
 }  // namespace deflect

@@ -12,9 +12,7 @@ namespace {
 
 constexpr double third = 2 * pi / 3;
 
-Vector3 on_circle(double radius, double angle) {
-  return {radius * std::cos(angle), radius * std::sin(angle), 0};
-}
+Vector3 on_circle(double radius, double angle) { return {radius * std::cos(angle), radius * std::sin(angle), 0}; }
 
 double side(int leg) { return leg % 2 == 1 ? 1 : -1; }
 double pair_angle(int leg) { return third * ((leg - 1) / 2); }
@@ -43,8 +41,9 @@ SixPsuLeg leg_at(const SixPsu& k, int leg, const Pose& pose) {
         leg, 1e3 * beside, 1e3 * k.link_length));
   g.slider = d.z() - std::sqrt(k.link_length * k.link_length - beside * beside);
   if (g.slider < k.slider_min || g.slider > k.slider_max)
-    throw ModelError(fmt::format("leg {}: the slider would stand at {:.6g} mm, outside its range of {:.6g} to {:.6g} mm",
-                                 leg, 1e3 * g.slider, 1e3 * k.slider_min, 1e3 * k.slider_max));
+    throw ModelError(
+        fmt::format("leg {}: the slider would stand at {:.6g} mm, outside its range of {:.6g} to {:.6g} mm", leg,
+                    1e3 * g.slider, 1e3 * k.slider_min, 1e3 * k.slider_max));
   g.p_WB = g.p_WA + g.slider * Vector3::UnitZ();
   return g;
 }
@@ -52,9 +51,10 @@ SixPsuLeg leg_at(const SixPsu& k, int leg, const Pose& pose) {
 Pose centred_pose(const SixPsu& k, double slider) {
   const double beside = (platform_joint(k, 1) - base_joint(k, 1)).norm();
   if (!(beside <= k.link_length))
-    throw ModelError(fmt::format("the links do not reach from the base circle to the platform circle: {:.6g} mm are "
-                                 "to be bridged by {:.6g} mm",
-                                 1e3 * beside, 1e3 * k.link_length));
+    throw ModelError(
+        fmt::format("the links do not reach from the base circle to the platform circle: {:.6g} mm are "
+                    "to be bridged by {:.6g} mm",
+                    1e3 * beside, 1e3 * k.link_length));
   Pose pose;
   pose.p_WT.z() = slider + std::sqrt(k.link_length * k.link_length - beside * beside);
   return pose;

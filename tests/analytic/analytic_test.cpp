@@ -103,8 +103,7 @@ TEST_F(EveryPose, ReleaseOfPassiveJointsAgreesWithTheFormulaInStiffness) {
       const Chain& c = model.chains()[leg];
       ASSERT_EQ(c.J_q.cols(), 5);
       const Matrix6 K = c.C.inverse();
-      const Matrix6 released =
-          K - K * c.J_q * (c.J_q.transpose() * K * c.J_q).inverse() * c.J_q.transpose() * K;
+      const Matrix6 released = K - K * c.J_q * (c.J_q.transpose() * K * c.J_q).inverse() * c.J_q.transpose() * K;
       const Matrix6 K_c = model.leg_stiffness(leg, s);
       // The formula subtracts nearly equal matrices: it loses what K is larger than K_c by.
       EXPECT_LE((K_c - released).cwiseAbs().maxCoeff(), 1e-11 * K.cwiseAbs().maxCoeff());

@@ -16,9 +16,7 @@ constexpr double none = std::numeric_limits<double>::infinity();
 
 class EveryBeam : public ::testing::TestWithParam<BeamRigidity> {
  protected:
-  Beam beam() const {
-    return {0, 1, axes_along_x({1, 2, 3}, {0, 0, 1}), std::sqrt(14.0) * 0.1, GetParam(), "", ""};
-  }
+  Beam beam() const { return {0, 1, axes_along_x({1, 2, 3}, {0, 0, 1}), std::sqrt(14.0) * 0.1, GetParam(), "", ""}; }
 };
 
 TEST_P(EveryBeam, StiffnessIsSymmetricAndSemidefinite) {
@@ -66,8 +64,10 @@ TEST_P(EveryBeam, TwoElementsInSeriesAreOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Family, EveryBeam,
-                         ::testing::Values(BeamRigidity{1e7, 40, 40, 30, none, none}, BeamRigidity{1e7, 40, 90, 30, none, none},
-                                           BeamRigidity{1e7, 40, 40, 30, 3e6, 3e6}, BeamRigidity{1e7, 40, 90, 30, 2e5, 7e4}));
+                         ::testing::Values(BeamRigidity{1e7, 40, 40, 30, none, none},
+                                           BeamRigidity{1e7, 40, 90, 30, none, none},
+                                           BeamRigidity{1e7, 40, 40, 30, 3e6, 3e6},
+                                           BeamRigidity{1e7, 40, 90, 30, 2e5, 7e4}));
 
 class EverySpring : public ::testing::TestWithParam<SpringLaw> {};
 
@@ -199,7 +199,8 @@ TEST(Elimination, ReducedFormKeepsEveryConstraint) {
   for (int i = 0; i < 5; ++i) {
     std::array<ConnectionFreedom, 6> f;
     f[static_cast<std::size_t>(i)].rigid = false;
-    m.connect(i, i + 1, test::random_vector(random, 0.3), rotation_from_vector(test::random_vector(random, 3)), f, "j", "j");
+    m.connect(i, i + 1, test::random_vector(random, 0.3), rotation_from_vector(test::random_vector(random, 3)), f, "j",
+              "j");
   }
   for (Constraint& c : m.constraints) c.value = test::uniform(random, -1, 1);
   const Elimination e = eliminate(m);
@@ -285,8 +286,8 @@ TEST(Solver, RigidAndVeryStiffLinksGiveTheSameAnswer) {
     return VectorX(Solver(m).solve(load).u.tail<6>());
   };
   const VectorX rigid = tip_for(0);
-  // The link itself yields: its compliance is that of the member over the ratio, seen through a lever of its own length.
-  // Rounding: the unit roundoff times the ratio times a condition of the order of 100.
+  // The link itself yields: its compliance is that of the member over the ratio, seen through a lever of its own
+  // length. Rounding: the unit roundoff times the ratio times a condition of the order of 100.
   for (const double stiffer : {1e6, 1e9})
     EXPECT_LE((tip_for(stiffer) - rigid).norm(), (100 / stiffer + 1e-14 * stiffer) * rigid.norm()) << stiffer;
 }

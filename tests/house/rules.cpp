@@ -40,8 +40,8 @@ struct Confinement {
 constexpr std::size_t any_number = 1000000;
 
 const Confinement confinements[] = {
-    {"CHOLMOD", "(suitesparse/)?cholmod.*|Eigen/CholmodSupport", "msa/frame/[^/]+\\.cpp",
-     "one .cpp file of msa/frame", 1},
+    {"CHOLMOD", "(suitesparse/)?cholmod.*|Eigen/CholmodSupport", "msa/frame/[^/]+\\.cpp", "one .cpp file of msa/frame",
+     1},
     {"SPQR", "(suitesparse/)?(SuiteSparseQR.*|spqr.*)|Eigen/SPQRSupport", "msa/frame/[^/]+\\.cpp",
      "one .cpp file of msa/frame", 1},
     {"Gmsh", "gmsh\\.h.*", "meshes/gmsh_[^/]+\\.cpp", "meshes/gmsh_*.cpp", any_number},
@@ -150,8 +150,7 @@ std::vector<std::string> length_violations(const std::vector<Source>& sources, i
   return violations;
 }
 
-std::vector<std::string> top_level_violations(const std::vector<std::string>& names,
-                                              const std::string& gitignore) {
+std::vector<std::string> top_level_violations(const std::vector<std::string>& names, const std::string& gitignore) {
   static const std::set<std::string> fixed = {
       "CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "analytic", "meshes", "msa",
       "tests",          "validation"};
@@ -176,15 +175,13 @@ std::vector<std::string> top_level_violations(const std::vector<std::string>& na
   return violations;
 }
 
-std::vector<Source> read_sources(const std::filesystem::path& root,
-                                 const std::vector<std::string>& extensions) {
+std::vector<Source> read_sources(const std::filesystem::path& root, const std::vector<std::string>& extensions) {
   namespace fs = std::filesystem;
   std::vector<Source> sources;
   for (const char* top : {"msa", "analytic", "meshes", "validation", "tests"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension().string();
-      if (!entry.is_regular_file() ||
-          std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+      if (!entry.is_regular_file() || std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
         continue;
       sources.push_back({fs::relative(entry.path(), root).generic_string(), read_text(entry.path())});
     }

@@ -27,11 +27,9 @@ std::vector<std::string> length_violations(const std::vector<Source>& sources, i
 
 /// Names at the top level that are neither of the fixed ones, nor hidden, nor matched by `gitignore`, whose
 /// patterns may begin or end with '/' and end with '*'.
-std::vector<std::string> top_level_violations(const std::vector<std::string>& names,
-                                              const std::string& gitignore);
+std::vector<std::string> top_level_violations(const std::vector<std::string>& names, const std::string& gitignore);
 
 /// All files with these extensions below the rooms and `tests`, sorted by path.
-std::vector<Source> read_sources(const std::filesystem::path& root,
-                                 const std::vector<std::string>& extensions);
+std::vector<Source> read_sources(const std::filesystem::path& root, const std::vector<std::string>& extensions);
 
 }  // namespace deflect::house

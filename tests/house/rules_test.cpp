@@ -11,8 +11,8 @@ using Messages = std::vector<std::string>;
 /// What is said about a file with one include, in a tree where every room has a header.
 std::string judge(const std::string& path, const std::string& include) {
   std::vector<Source> sources = {{path, "#pragma once\n#include " + include + "\n"}};
-  for (const char* header : {"msa/base/a.h", "msa/mechanism/a.h", "msa/frame/a.h", "analytic/a.h",
-                             "meshes/a.h", "meshes/gmsh.h", "validation/compare/a.h", "tests/support/a.h"})
+  for (const char* header : {"msa/base/a.h", "msa/mechanism/a.h", "msa/frame/a.h", "analytic/a.h", "meshes/a.h",
+                             "meshes/gmsh.h", "validation/compare/a.h", "tests/support/a.h"})
     if (path != header) sources.push_back({header, ""});
   const Messages messages = include_violations(sources);
   if (messages.size() > 1) ADD_FAILURE() << messages.size() << " messages on one include";
@@ -46,8 +46,7 @@ TEST(Rooms, MessageNamesFileLineAndRule) {
 
 TEST(Rooms, AFileInNoRoomMayNotBeUsed) {
   EXPECT_NE(judge("msa/cellar/x.cpp", "\"msa/base/a.h\""), "");
-  EXPECT_EQ(include_violations({{"validation/x.cpp", "#include \"msa/cellar/a.h\""}, {"msa/cellar/a.h", ""}})
-                .size(),
+  EXPECT_EQ(include_violations({{"validation/x.cpp", "#include \"msa/cellar/a.h\""}, {"msa/cellar/a.h", ""}}).size(),
             1u);
 }
 
@@ -63,8 +62,7 @@ TEST(Includes, AreFullPathsInQuotes) {
 TEST(Includes, AreFoundHoweverTheyAreSpaced) {
   const std::string bad = "\"analytic/a.h\"";
   for (const std::string line : {"#include", "  #include", "#  include", "#\tinclude  ", "# include_next"})
-    EXPECT_EQ(include_violations({{"msa/frame/x.cpp", line + bad + " // why"}, {"analytic/a.h", ""}}).size(),
-              1u)
+    EXPECT_EQ(include_violations({{"msa/frame/x.cpp", line + bad + " // why"}, {"analytic/a.h", ""}}).size(), 1u)
         << line;
   EXPECT_TRUE(include_violations({{"msa/frame/x.cpp", "// #include " + bad}, {"analytic/a.h", ""}}).empty());
 }
@@ -102,10 +100,9 @@ TEST(Includes, ThirdPartyLibrariesKeepTheirPlace) {
 TEST(Includes, ALibraryOfOneFileIsRefusedInASecond) {
   const std::string use = "#include <cholmod.h>\n";
   EXPECT_TRUE(include_violations({{"msa/frame/a.cpp", use + use}}).empty());
-  EXPECT_EQ(
-      include_violations({{"msa/frame/a.cpp", use}, {"msa/frame/b.cpp", "\n\n" + use}}),
-      Messages{"msa/frame/b.cpp:3: includes cholmod.h: CHOLMOD belongs into one .cpp file of msa/frame, and "
-               "msa/frame/a.cpp includes it already"});
+  EXPECT_EQ(include_violations({{"msa/frame/a.cpp", use}, {"msa/frame/b.cpp", "\n\n" + use}}),
+            Messages{"msa/frame/b.cpp:3: includes cholmod.h: CHOLMOD belongs into one .cpp file of msa/frame, and "
+                     "msa/frame/a.cpp includes it already"});
 }
 
 TEST(Length, CountsAnUnfinishedLastLine) {
@@ -115,12 +112,11 @@ TEST(Length, CountsAnUnfinishedLastLine) {
 
 TEST(TopLevel, OnlyFixedHiddenAndIgnoredNames) {
   const std::string gitignore = "/build/\n/build-*/\n\ncompile_commands.json\n";
-  EXPECT_TRUE(top_level_violations(
-                  {"msa", "README.md", ".ci", "build", "build-debug", "compile_commands.json"}, gitignore)
-                  .empty());
-  EXPECT_EQ(
-      top_level_violations({"msa", "docs", "builder"}, gitignore),
-      (Messages{"docs: does not belong to the top level", "builder: does not belong to the top level"}));
+  EXPECT_TRUE(
+      top_level_violations({"msa", "README.md", ".ci", "build", "build-debug", "compile_commands.json"}, gitignore)
+          .empty());
+  EXPECT_EQ(top_level_violations({"msa", "docs", "builder"}, gitignore),
+            (Messages{"docs: does not belong to the top level", "builder: does not belong to the top level"}));
 }
 
 }  // namespace

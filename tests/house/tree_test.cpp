@@ -21,17 +21,14 @@ std::string lines(const std::vector<std::string>& messages) {
 
 TEST(Tree, IncludesKeepToTheTableOfRooms) {
   const std::vector<Source> sources = read_sources(root, {".h", ".cpp"});
-  for (const char* room :
-       {"msa/base", "msa/mechanism", "msa/frame", "analytic", "meshes", "validation", "tests"})
-    EXPECT_TRUE(
-        std::any_of(sources.begin(), sources.end(), [&](const Source& s) { return room_of(s.path) == room; }))
+  for (const char* room : {"msa/base", "msa/mechanism", "msa/frame", "analytic", "meshes", "validation", "tests"})
+    EXPECT_TRUE(std::any_of(sources.begin(), sources.end(), [&](const Source& s) { return room_of(s.path) == room; }))
         << "nothing was read in " << room;
   EXPECT_EQ(lines(include_violations(sources)), "");
 }
 
 TEST(Tree, SourcesAreCppAndHAndLiveInRooms) {
-  for (const Source& source :
-       read_sources(root, {".cc", ".cxx", ".c", ".hpp", ".hh", ".hxx", ".ipp", ".inl"}))
+  for (const Source& source : read_sources(root, {".cc", ".cxx", ".c", ".hpp", ".hh", ".hxx", ".ipp", ".inl"}))
     ADD_FAILURE() << source.path << ": sources are called .cpp and .h, so that the other rules see them";
   for (const Source& source : read_sources(root, {".h", ".cpp"}))
     EXPECT_NE(room_of(source.path), "") << source.path << ": in no room of the table";

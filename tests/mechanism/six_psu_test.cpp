@@ -54,7 +54,8 @@ TEST(SixPsu, LegsStandInPairsThatAThirdOfATurnPermutes) {
   for (const Pose& pose : test::random_poses(haptic(), 10)) {
     const Pose turned{third * pose.p_WT, third * pose.R_WT * third.transpose()};
     for (int leg = 1; leg <= 6; ++leg) {
-      const SixPsuLeg a = leg_at(six_psu(haptic()), leg, pose), b = leg_at(six_psu(haptic()), (leg + 1) % 6 + 1, turned);
+      const SixPsuLeg a = leg_at(six_psu(haptic()), leg, pose),
+                      b = leg_at(six_psu(haptic()), (leg + 1) % 6 + 1, turned);
       EXPECT_LE((third * a.p_WC - b.p_WC).norm(), 1e-15);
       EXPECT_NEAR(a.slider, b.slider, 1e-15);
     }
@@ -88,8 +89,9 @@ TEST(SixPsu, RefusesByLegAndLimit) {
             std::string::npos);
   pose = test::home(haptic());
   pose.p_WT.z() += 0.15;
-  EXPECT_NE(refusal(six_psu(haptic()), 2, pose).find("leg 2: the slider would stand at 230 mm, outside its range of 10 to"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(six_psu(haptic()), 2, pose).find("leg 2: the slider would stand at 230 mm, outside its range of 10 to"),
+      std::string::npos);
   EXPECT_THROW(configure(haptic(), pose), ModelError);
   Mechanism wide = haptic();
   std::get<SixPsu>(wide.kinematics).base_radius = 0.4;

@@ -71,7 +71,10 @@ TEST(Program, SameCallSameBytes) {
 
 TEST(Program, JointsReachTheSamePoseAsThePoseItself) {
   const Folder folder;
-  ASSERT_EQ(deflect("solve haptic-6psu --joints 80,80,80,80,80,80 --load 50,0,0 --json '" + (folder / "q").string() + "'").code, 0);
+  ASSERT_EQ(
+      deflect("solve haptic-6psu --joints 80,80,80,80,80,80 --load 50,0,0 --json '" + (folder / "q").string() + "'")
+          .code,
+      0);
   const json s = json::parse(contents(folder / "q"));
   EXPECT_NEAR(s["pose"][2].get<double>(), 173.898547, 1e-6);
   EXPECT_NEAR(s["pose"][0].get<double>(), 0, 1e-9);
@@ -129,7 +132,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"OutOfReach", "solve haptic-6psu --pose 300,0,170 --load 1,0,0", 3, "the link does not reach"},
         Refusal{"SliderRange", "solve haptic-6psu --pose 0,0,400 --load 1,0,0", 3, "outside its range"},
         Refusal{"NoAssembly", "solve haptic-6psu --joints 20,500,20,500,20,500 --load 1,0,0", 3, "no assembly"},
-        Refusal{"UnknownErratum", "validate haptic-6psu --as-printed pasive-joints", 2, "did you mean 'passive-joints'?"},
+        Refusal{"UnknownErratum", "validate haptic-6psu --as-printed pasive-joints", 2,
+                "did you mean 'passive-joints'?"},
         Refusal{"ElementWithoutUnit", "validate haptic-6psu --element-size 25", 2, "--element-size: '25' has no unit"},
         Refusal{"ElementNegative", "validate haptic-6psu --element-size '-1 mm'", 2, "greater than zero"},
         Refusal{"ZeroForce", "validate haptic-6psu --force 0", 2, "other than zero"},

@@ -79,11 +79,10 @@ TEST(BothTheories, AgreeAtTiltedPosesUnderForcesAndMoments) {
   EXPECT_LT(worst_difference(device("haptic-6psu"), 200), 1e-7);
 }
 
-TEST(BothTheories, DoNotDependOnTheMesh) {
-  EXPECT_LT(worst_difference(device("haptic-6psu"), 20, four_each), 1e-7);
-}
+TEST(BothTheories, DoNotDependOnTheMesh) { EXPECT_LT(worst_difference(device("haptic-6psu"), 20, four_each), 1e-7); }
 
-/// Every elastic site and law of the description, switched on in turn; linear laws must agree to 1e-9, contacts to 1e-7.
+/// Every elastic site and law of the description, switched on in turn; linear laws must agree to 1e-9, contacts to
+/// 1e-7.
 struct Site {
   const char* name;
   const char* path;
@@ -116,7 +115,8 @@ INSTANTIATE_TEST_SUITE_P(
              "{law: motor_shaft, material: steel, diameter: 4 mm, length: 30 mm, pulley_radius: 8 mm}"},
         Site{"ActuatorCable", "leg.actuator.tz", "{law: cable, material: steel, area: 0.5 mm^2}"},
         Site{"ActuatorCablePair", "leg.actuator.tz",
-             "{law: cable_pair, material: steel, area_1: 0.5 mm^2, length_1: 90 mm, area_2: 0.3 mm^2, length_2: 140 mm}"},
+             "{law: cable_pair, material: steel, area_1: 0.5 mm^2, length_1: 90 mm, area_2: 0.3 mm^2, length_2: 140 "
+             "mm}"},
         Site{"ActuatorBelt", "leg.actuator.tz",
              "{law: belt, specific_stiffness: 900 N/mm, width: 6 mm, tight_length: 90 mm, slack_length: 200 mm}"},
         Site{"ShaftAndCableInSeries", "leg.actuator.tz",

@@ -33,7 +33,8 @@ TEST_P(ShortCantilever, OneElementIsExactAndMoreChangeNothing) {
   const double L = 0.1255, E = 210e9, nu = 0.3, G = E / (2 * (1 + nu));
   const SectionProperties s = properties({RoundSection{0.010}}, nu);
   const bool shear = GetParam().beam == BeamTheory::timoshenko;
-  const frame::BeamRigidity r{E * s.A,  E * s.Iy, E * s.Iz, G * s.J, shear ? G * s.As_y : none, shear ? G * s.As_z : none};
+  const frame::BeamRigidity r{
+      E * s.A, E * s.Iy, E * s.Iz, G * s.J, shear ? G * s.As_y : none, shear ? G * s.As_z : none};
   for (const int elements : {1, 2, 7, 32}) {
     const frame::Model m = cantilever(L, elements, r);
     for (const int across : {1, 2}) {

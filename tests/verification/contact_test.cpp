@@ -10,8 +10,9 @@
 namespace deflect {
 namespace {
 
-// Ansys VM63: elastic sphere R 8 mm, E 1000 N/mm², ν 0.3, on a rigid plane, F = 60π N: contact radius 1.0096354 mm (theory;
-// printed 1.010), approach 0.1274205 mm, dF/dδ 2218.979 N/mm. Against a rigid plane 2/E' = (1 − ν²)/E; R' = R/2.
+// Ansys VM63: elastic sphere R 8 mm, E 1000 N/mm², ν 0.3, on a rigid plane, F = 60π N: contact radius 1.0096354 mm
+// (theory; printed 1.010), approach 0.1274205 mm, dF/dδ 2218.979 N/mm. Against a rigid plane 2/E' = (1 − ν²)/E; R' =
+// R/2.
 constexpr double vm63_force = 188.49555921538757;  // 60π
 
 TEST(SphereOnPlaneVm63, ClosedForm) {

@@ -49,7 +49,8 @@ std::vector<double> parse_list(const std::string& option, const std::string& tex
     try {
       values.push_back(parse_number(std::string_view(text).substr(from, to - from)));
     } catch (const InputError& e) {
-      throw InputError(fmt::format("{} '{}': number {}: {}; write {}", option, text, values.size() + 1, e.what(), wanted));
+      throw InputError(
+          fmt::format("{} '{}': number {}: {}; write {}", option, text, values.size() + 1, e.what(), wanted));
     }
     from = to + 1;
   }

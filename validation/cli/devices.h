@@ -20,8 +20,8 @@ std::vector<std::string> device_names();
 std::filesystem::path device_file(const std::string& name_or_path);
 
 /// "1,2.5,-3" → numbers; exactly one of `counts` of them, or InputError naming the option and what it wants.
-std::vector<double> parse_list(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts,
-                               const std::string& wanted);
+std::vector<double> parse_list(const std::string& option, const std::string& text,
+                               const std::vector<std::size_t>& counts, const std::string& wanted);
 
 /// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose.
 frame::MemberDivision divide(const Mechanism&, const std::string& element_size);

@@ -40,9 +40,10 @@ Vector6 pose_of(const Mechanism& m, const Arguments& a) {
   }
   const ForwardKinematics found = forward_kinematics(k, sliders, centred_pose(k, mean));
   if (!found.converged)
-    throw ModelError(fmt::format("--joints {}: the sliders fit no assembly of the device near the untilted one "
-                                 "(closure error {:.3g} mm after {} steps)",
-                                 a.joints, 1e3 * found.closure_error, found.iterations));
+    throw ModelError(
+        fmt::format("--joints {}: the sliders fit no assembly of the device near the untilted one "
+                    "(closure error {:.3g} mm after {} steps)",
+                    a.joints, 1e3 * found.closure_error, found.iterations));
   return mm_deg_from(found.pose);
 }
 
@@ -53,9 +54,9 @@ void write_structure(const std::filesystem::path& folder, const SolveResult& r) 
 
 void run(const Arguments& a) {
   const Mechanism m = read_mechanism(device_file(a.device));
-  const Vector6 load = a.load.empty()
-                           ? Vector6(Vector6::Zero())
-                           : six(parse_list("--load", a.load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm"));
+  const Vector6 load =
+      a.load.empty() ? Vector6(Vector6::Zero())
+                     : six(parse_list("--load", a.load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm"));
   const SolveResult r = solve(m, pose_of(m, a), load, divide(m, a.element_size));
   if (!a.out.empty()) write_structure(a.out, r);
   if (!a.json.empty()) write_text(a.json, solve_json(r));
@@ -69,18 +70,19 @@ void run(const Arguments& a) {
 
 Command solve_command() {
   auto a = std::make_shared<Arguments>();
-  return {"solve",
-          "One pose, one load: displacement and 6x6 stiffness of the tool point by both theories, the share of each part "
-          "in the compliance, the checks",
-          "deflect solve haptic-6psu --pose 25,25,198.9,0,0,0 --load 50,0,0,0,0,0 --json result.json --out result",
-          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-           {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in the base frame, mm and deg", &a->pose},
-           {"--joints", "q1,...,q6", "slider positions in mm, instead of --pose", &a->joints},
-           {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
-           {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
-           {"--json", "FILE", "write the result", &a->json},
-           {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
-          [a] { run(*a); }};
+  return {
+      "solve",
+      "One pose, one load: displacement and 6x6 stiffness of the tool point by both theories, the share of each part "
+      "in the compliance, the checks",
+      "deflect solve haptic-6psu --pose 25,25,198.9,0,0,0 --load 50,0,0,0,0,0 --json result.json --out result",
+      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+       {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in the base frame, mm and deg", &a->pose},
+       {"--joints", "q1,...,q6", "slider positions in mm, instead of --pose", &a->joints},
+       {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
+       {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
+       {"--json", "FILE", "write the result", &a->json},
+       {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
+      [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli

@@ -63,20 +63,21 @@ Command validate_command() {
   auto a = std::make_shared<Arguments>();
   std::string errata_help = "errata of the paper to take as printed, joined by commas, or all:";
   for (const ErratumInfo& e : errata()) errata_help += fmt::format("\n{} {}: {}", e.name, e.equations, e.as_printed);
-  return {"validate",
-          "Analytic theory against MSA at the nine points of the device's cube (or --points) for a force along x, y and z: "
-          "table of errors, Fig. 10",
-          "deflect validate haptic-6psu --out figures --as-printed passive-joints,ujoint-parallel",
-          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-           {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg", &a->points},
-           {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
-           {"--as-printed", "ERRATA", errata_help, &a->as_printed},
-           {"--errata", "", "the price of each erratum, one at a time", &a->errata},
-           {"--mesh-study", "", "the difference of the theories for finer and finer meshes", &a->mesh_study},
-           {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
-           {"--json", "FILE", "write the result", &a->json},
-           {"--out", "DIR", "write Fig. 10 as SVG, PDF, PNG and the table as CSV", &a->out}},
-          [a] { run(*a); }};
+  return {
+      "validate",
+      "Analytic theory against MSA at the nine points of the device's cube (or --points) for a force along x, y and z: "
+      "table of errors, Fig. 10",
+      "deflect validate haptic-6psu --out figures --as-printed passive-joints,ujoint-parallel",
+      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+       {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg", &a->points},
+       {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
+       {"--as-printed", "ERRATA", errata_help, &a->as_printed},
+       {"--errata", "", "the price of each erratum, one at a time", &a->errata},
+       {"--mesh-study", "", "the difference of the theories for finer and finer meshes", &a->mesh_study},
+       {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
+       {"--json", "FILE", "write the result", &a->json},
+       {"--out", "DIR", "write Fig. 10 as SVG, PDF, PNG and the table as CSV", &a->out}},
+      [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli

@@ -94,9 +94,10 @@ Vector6 mm_deg_from(const Pose& pose) {
 
 Pose home_pose(const Mechanism& m) {
   if (!(m.workspace.nominal_slider > 0))
-    throw InputError(fmt::format("{}: the device has no workspace; add for example 'workspace: {{nominal_slider: 80 mm, "
-                                 "cube_edge: 50 mm}}' to its file",
-                                 m.name));
+    throw InputError(
+        fmt::format("{}: the device has no workspace; add for example 'workspace: {{nominal_slider: 80 mm, "
+                    "cube_edge: 50 mm}}' to its file",
+                    m.name));
   return centred_pose(std::get<SixPsu>(m.kinematics), m.workspace.nominal_slider);
 }
 

@@ -23,7 +23,7 @@ struct ValidationRow {
   ValidationPoint point;
   int axis = 0;  ///< 0, 1, 2: force along x, y, z
   double load_N = 0;
-  Vector6 analytic, msa;        ///< corrected analytic theory; MSA
+  Vector6 analytic, msa;              ///< corrected analytic theory; MSA
   std::optional<Vector6> as_printed;  ///< analytic with the errata asked for, where any were
   double relative_difference = 0;     ///< of analytic and MSA, see relative_difference()
 };
@@ -36,8 +36,8 @@ struct Validation {
 };
 
 /// The larger of |δa − δb| / |δb| and |θa − θb| / |θb| for displacements in mm and rad, Euclidean norms of translation
-/// and rotation. Where symmetry makes one of the two vanish its rounding is measured by the other: a rotation against at
-/// least |δb| / 1 m, a translation against at least |θb| · 1 mm.
+/// and rotation. Where symmetry makes one of the two vanish its rounding is measured by the other: a rotation against
+/// at least |δb| / 1 m, a translation against at least |θb| · 1 mm.
 double relative_difference(const Vector6& a, const Vector6& b);
 
 /// Centre (0) and corners of the cube of the device's workspace: 1…4 upper face, 5…8 lower, each in the order
