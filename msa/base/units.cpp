@@ -34,23 +34,54 @@ const std::vector<Row>& table() {
   static const std::vector<Row> rows = {
       {Dimension::none, "a plain number", {}},
       {Dimension::ratio, "a ratio", {{"%", 1, 100}}},
-      {Dimension::length, "a length", {{"mm", 1, 1e3}, {"m", 1}, {"cm", 1, 100}, {"um", 1, 1e6}, {"in", inch}}},
+      {Dimension::length,
+       "a length",
+       {{"mm", 1, 1e3}, {"m", 1}, {"cm", 1, 100}, {"um", 1, 1e6}, {"in", inch}, {"ft", 12 * inch}}},
       {Dimension::angle, "an angle", {{"deg", pi, 180}, {"rad", 1}, {"mrad", 1, 1e3}}},
       {Dimension::area, "an area", {{"mm^2", 1, 1e6}, {"m^2", 1}, {"in^2", inch * inch}}},
       {Dimension::second_moment,
        "a second moment of area",
        {{"mm^4", 1, 1e12}, {"m^4", 1}, {"cm^4", 1, 1e8}, {"in^4", inch * inch * inch * inch}}},
       {Dimension::force, "a force", {{"N", 1}, {"kN", 1e3}, {"lbf", lbf}, {"kip", lbf * 1e3}}},
-      {Dimension::moment, "a moment", {{"Nmm", 1, 1e3}, {"Nm", 1}, {"kNm", 1e3}, {"lbf*in", lbf * inch}}},
+      {Dimension::moment,
+       "a moment",
+       {{"Nmm", 1, 1e3}, {"Nm", 1}, {"kNm", 1e3}, {"lbf*in", lbf * inch}, {"kip*in", lbf * 1e3 * inch}}},
       {Dimension::stress,
        "a stress or modulus",
-       {{"GPa", 1e9}, {"MPa", 1e6}, {"Pa", 1}, {"N/mm^2", 1e6}, {"psi", lbf / (inch * inch)}}},
+       {{"GPa", 1e9},
+        {"MPa", 1e6},
+        {"Pa", 1},
+        {"N/mm^2", 1e6},
+        {"psi", lbf / (inch * inch)},
+        {"ksi", lbf * 1e3 / (inch * inch)}}},
       {Dimension::stiffness,
        "a stiffness (force per length)",
-       {{"N/mm", 1e3}, {"N/m", 1}, {"kN/mm", 1e6}, {"N/um", 1e6}, {"lbf/in", lbf / inch}}},
+       {{"N/mm", 1e3},
+        {"N/m", 1},
+        {"kN/mm", 1e6},
+        {"N/um", 1e6},
+        {"lbf/in", lbf / inch},
+        {"kip/in", lbf * 1e3 / inch}}},
       {Dimension::rotational_stiffness,
        "a rotational stiffness (moment per angle)",
-       {{"Nmm/rad", 1, 1e3}, {"Nm/rad", 1}, {"kNm/rad", 1e3}, {"lbf*in/rad", lbf * inch}}},
+       {{"Nmm/rad", 1, 1e3},
+        {"Nm/rad", 1},
+        {"kNm/rad", 1e3},
+        {"lbf*in/rad", lbf * inch},
+        {"kip*in/rad", lbf * 1e3 * inch}}},
+      {Dimension::line_load,
+       "a line load (force per length)",
+       {{"N/mm", 1e3},
+        {"N/m", 1},
+        {"kN/m", 1e3},
+        {"lbf/in", lbf / inch},
+        {"lbf/ft", lbf / (12 * inch)},
+        {"kip/in", lbf * 1e3 / inch},
+        {"kip/ft", lbf * 1e3 / (12 * inch)}}},
+      {Dimension::density, "a density", {{"kg/m^3", 1}, {"kg/mm^3", 1e9}, {"g/cm^3", 1e3}}},
+      {Dimension::thermal_expansion, "a thermal expansion", {{"1/K", 1}}},
+      {Dimension::temperature, "a temperature difference", {{"K", 1}}},
+      {Dimension::acceleration, "an acceleration", {{"m/s^2", 1}, {"mm/s^2", 1, 1e3}, {"in/s^2", inch}}},
   };
   return rows;
 }
@@ -73,6 +104,8 @@ bool leading_number(std::string_view text, double& value, std::string_view& rest
   rest = trim(text.substr(static_cast<std::size_t>(end - text.data())));
   return true;
 }
+
+double in_si(double number, const Unit& u) { return number * u.times / u.over; }
 
 std::string unit_list(const Row& r) {
   std::string list;
@@ -112,7 +145,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   }
   for (const Unit& u : r.units)
     if (unit == u.name) {
-      const double si = value * u.times / u.over;
+      const double si = in_si(value, u);
       if (!std::isfinite(si)) throw InputError(fmt::format("'{}' is too large for {}", text, r.words));
       return si;
     }
@@ -134,9 +167,10 @@ std::string format_quantity(double value, Dimension dimension) {
   const double scaled = value * u.over / u.times;
   // Beyond the range of the preferred unit, or where rounding makes it miss, the SI unit stands.
   for (int digits = 1; digits <= 17 && std::isfinite(scaled); ++digits) {
-    const double rounded = parse_number(fmt::format("{:.{}g}", scaled, digits));
-    const std::string text = fmt::format("{} {}", rounded, u.name);
-    if (parse_quantity(text, dimension) == value) return text;
+    double rounded = 0;
+    std::string_view rest;
+    if (leading_number(fmt::format("{:.{}g}", scaled, digits), rounded, rest) && in_si(rounded, u) == value)
+      return fmt::format("{} {}", rounded, u.name);
   }
   for (const Unit& other : r.units)
     if (other.times == 1 && other.over == 1) return fmt::format("{} {}", value, other.name);

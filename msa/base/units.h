@@ -19,6 +19,11 @@ enum class Dimension {
   stress,                ///< Pa
   stiffness,             ///< N/m
   rotational_stiffness,  ///< Nm/rad
+  line_load,             ///< N/m
+  density,               ///< kg/m³
+  thermal_expansion,     ///< 1/K
+  temperature,           ///< K, a difference
+  acceleration,          ///< m/s²
 };
 
 /// Units accepted for a dimension, the preferred one first: {"mm", "m", "um", "in"}.

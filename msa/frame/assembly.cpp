@@ -22,23 +22,22 @@ struct ReducedBeam {
 };
 
 ReducedBeam reduced(const Beam& beam, const Elimination& e) {
-  std::array<int, 12> dofs{};
-  for (int i = 0; i < 6; ++i) {
-    dofs[static_cast<std::size_t>(i)] = 6 * beam.a + i;
-    dofs[static_cast<std::size_t>(i) + 6] = 6 * beam.b + i;
-  }
+  std::vector<int> dofs;  // those of end a count only where the beam has no relative motion of its own
+  for (int i = 0; i < 6 && beam.relative < 0; ++i) dofs.push_back(6 * beam.a + i);
+  for (int i = 0; i < 6; ++i) dofs.push_back(beam.relative < 0 ? 6 * beam.b + i : beam.relative + i);
   ReducedBeam out;
   for (const int dof : dofs)
     for (const Term& t : e.T[static_cast<std::size_t>(dof)]) out.q.push_back(t.dof);
   std::sort(out.q.begin(), out.q.end());
   out.q.erase(std::unique(out.q.begin(), out.q.end()), out.q.end());
-  MatrixX B = MatrixX::Zero(12, static_cast<Eigen::Index>(out.q.size()));
-  for (std::size_t i = 0; i < 12; ++i)
+  MatrixX B = MatrixX::Zero(static_cast<Eigen::Index>(dofs.size()), static_cast<Eigen::Index>(out.q.size()));
+  for (std::size_t i = 0; i < dofs.size(); ++i)
     for (const Term& t : e.T[static_cast<std::size_t>(dofs[i])]) {
       const auto column = std::lower_bound(out.q.begin(), out.q.end(), t.dof) - out.q.begin();
       B(static_cast<Eigen::Index>(i), column) += t.coefficient;
     }
-  out.K = B.transpose() * stiffness(beam) * B;
+  const auto ends = static_cast<Eigen::Index>(dofs.size());
+  out.K = B.transpose() * stiffness(beam).bottomRightCorner(ends, ends) * B;
   return out;
 }
 
@@ -69,8 +68,12 @@ VectorX beam_forces(const Model& m, const VectorX& u) {
   VectorX f = VectorX::Zero(m.dofs());
   for (const Beam& beam : m.beams) {
     const Vector12 pull = stiffness(beam) * end_displacements(beam, u);
-    f.segment<6>(6 * beam.a) += pull.head<6>();
-    f.segment<6>(6 * beam.b) += pull.tail<6>();
+    if (beam.relative < 0) {
+      f.segment<6>(6 * beam.a) += pull.head<6>();
+      f.segment<6>(6 * beam.b) += pull.tail<6>();
+    } else {
+      f.segment<6>(beam.relative) += pull.tail<6>();
+    }
   }
   return f;
 }

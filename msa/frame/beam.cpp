@@ -43,7 +43,10 @@ Matrix12 stiffness(const Beam& beam) {
 
 Vector12 end_displacements(const Beam& beam, const VectorX& u) {
   Vector12 d;
-  d << u.segment<6>(6 * beam.a), u.segment<6>(6 * beam.b);
+  if (beam.relative < 0)
+    d << u.segment<6>(6 * beam.a), u.segment<6>(6 * beam.b);
+  else
+    d << Vector6::Zero(), u.segment<6>(beam.relative);
   return d;
 }
 

@@ -22,6 +22,9 @@ struct Beam {
   double length = 0;
   BeamRigidity rigidity;
   std::string name, part;  ///< "leg 1 guideway [2]"; "guideway" groups energies
+  /// First of six scalars that hold the motion of end b relative to the body of end a, [δ; θ] in base axes at b; −1
+  /// where the nodes' own displacements say it well enough. See `relative.h`.
+  int relative = -1;
 };
 
 /// Stiffness in local axes on [u_a; θ_a; u_b; θ_b]. Timoshenko: Φ = 12EI/(GAs L²); Φ = 0 is Euler–Bernoulli
@@ -31,7 +34,8 @@ Matrix12 local_stiffness(const BeamRigidity&, double length);
 /// The same in base axes.
 Matrix12 stiffness(const Beam&);
 
-/// [u_a; θ_a; u_b; θ_b] of a structure's displacements u.
+/// [u_a; θ_a; u_b; θ_b] of a structure's displacements u; where the beam has its own relative motion, that motion with
+/// a at rest, which strains it alike.
 Vector12 end_displacements(const Beam&, const VectorX& u);
 
 /// End forces in local axes, [f_a; m_a; f_b; m_b] acting on the beam, for nodal displacements in base axes.

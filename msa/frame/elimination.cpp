@@ -91,8 +91,12 @@ Elimination eliminate(const Model& m) {
       continue;
     }
     int pivot = -1;
+    if (const auto wanted = e.find(m.constraints[k].eliminates);
+        wanted != e.end() && weight(wanted->first, wanted->second) >= 1e-6 * largest)
+      pivot = wanted->first;
+    const bool chosen = pivot >= 0;
     for (const auto& [dof, c] : e) {
-      if (dof >= n) break;
+      if (dof >= n || chosen) break;
       if (weight(dof, c) < 0.3 * largest) continue;
       if (pivot < 0 || uses[static_cast<std::size_t>(dof)] < uses[static_cast<std::size_t>(pivot)]) pivot = dof;
     }

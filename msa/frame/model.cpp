@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace deflect::frame {
@@ -69,6 +70,8 @@ void Model::join(int a, int b, const std::string& name) {
 void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std::array<ConnectionFreedom, 6>& freedoms,
                     const std::string& name, const std::string& part) {
   static constexpr std::array<const char*, 6> names = {"tx", "ty", "tz", "rx", "ry", "rz"};
+  if (std::all_of(freedoms.begin(), freedoms.end(), [](const ConnectionFreedom& f) { return f.rigid; }))
+    welds.emplace_back(a, b);
   for (std::size_t half = 0; half < 6; half += 3) {
     // Three rigid freedoms say the same in any axes; base axes give the sparsest equations.
     const bool all_rigid = freedoms[half].rigid && freedoms[half + 1].rigid && freedoms[half + 2].rigid;
@@ -77,7 +80,10 @@ void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std:
       const Vector3 axis = all_rigid ? Vector3(Vector3::Unit(column)) : Vector3(R.col(column));
       LinearForm form = relative(*this, a, b, p, axis, half == 3);
       const std::string label = fmt::format("{} {}", name, names[i]);
-      if (freedoms[i].rigid) constraints.push_back({std::move(form), 0, label});
+      if (freedoms[i].rigid)
+        constraints.push_back({std::move(form), 0, label});
+      else if (freedoms[i].laws.empty())
+        releases.push_back({std::move(form), label});
       const auto& laws = freedoms[i].laws;
       for (std::size_t k = 0; k + 1 < laws.size(); ++k) {  // δ = s₁ + s₂ + …; each but the last has its own freedom
         const int s = dofs();

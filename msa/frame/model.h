@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "msa/base/spatial.h"
@@ -36,6 +37,13 @@ struct Constraint {
   LinearForm form;
   double value = 0;
   std::string name;
+  int eliminates = -1;  ///< the freedom to eliminate with it, where it may; −1 leaves the choice to the elimination
+};
+
+/// A freedom that a connection leaves free: nothing resists form(u).
+struct Release {
+  LinearForm form;
+  std::string name;
 };
 
 /// One of the six freedoms between the two sides of a connection: free, rigid, or elastic by laws in series.
@@ -50,6 +58,8 @@ struct Model {
   std::vector<Beam> beams;
   std::vector<Spring> springs;
   std::vector<Constraint> constraints;
+  std::vector<Release> releases;           ///< for words about motions; they take no part in equilibrium
+  std::vector<std::pair<int, int>> welds;  ///< nodes of one rigid body
 
   int dofs() const { return static_cast<int>(6 * nodes.size() + scalars.size()); }
   /// "node 'leg 1 B' uz".

@@ -14,14 +14,14 @@ Matrix6 stiffness_at(const Model& free_model, int node, const VectorX& spring_ta
   Solver solver(held);
   MatrixX values = MatrixX::Zero(first + 6, 6);
   values.bottomRows<6>().setIdentity();
-  const MatrixX loads = MatrixX::Zero(held.dofs(), 6);
+  const MatrixX loads = MatrixX::Zero(solver.model().dofs(), 6);
   const MatrixX U = solver.linear(spring_tangents, loads, values);
-  Model tangent = held;
+  Model tangent = solver.model();
   for (std::size_t i = 0; i < tangent.springs.size(); ++i)
     tangent.springs[i].law = LinearSpring{spring_tangents(static_cast<Eigen::Index>(i))};
   Matrix6 K;
   for (int i = 0; i < 6; ++i)
-    K.col(i) = constraint_forces(tangent, solver.elimination(), U.col(i), loads.col(i)).tail<6>();
+    K.col(i) = constraint_forces(tangent, solver.elimination(), U.col(i), loads.col(i)).segment<6>(first);
   // Reactions are differences of forces as large as the stiffest member's: below their rounding K is zero, which is
   // what an unloaded contact leaves of a leg.
   double stiffest = 0;
@@ -35,7 +35,9 @@ Matrix6 stiffness_at(const Model& free_model, int node, const VectorX& spring_ta
 }  // namespace
 
 MsaModel::MsaModel(const Configuration& c, const MemberDivision& division)
-    : configuration_(c), division_(division), built_(build(configuration_, division_)), solver_(built_.model) {}
+    : configuration_(c), division_(division), built_(build(configuration_, division_)), solver_(built_.model) {
+  built_.model = solver_.model();  // with what the solver added to it
+}
 
 MsaSolution MsaModel::solve(const Vector6& F_T_W) {
   VectorX load = VectorX::Zero(built_.model.dofs());
@@ -43,7 +45,7 @@ MsaSolution MsaModel::solve(const Vector6& F_T_W) {
   MsaSolution out;
   out.state = solver_.solve(load);
   out.displacement = out.state.u.segment<6>(6 * built_.tool);
-  out.energies = frame::energies(built_.model, out.state.u);
+  out.energies = frame::energies(solver_.model(), out.state.u);
   std::stable_sort(out.energies.begin(), out.energies.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   return out;
@@ -87,9 +89,9 @@ Matrix6X MsaModel::passive_twists(std::size_t leg) const {
 }
 
 Vector6 MsaModel::base_reaction(const Vector6& F_T_W, const Solution& state) const {
-  VectorX load = VectorX::Zero(built_.model.dofs());
+  VectorX load = VectorX::Zero(solver_.model().dofs());
   load.segment<6>(6 * built_.tool) = F_T_W;
-  return constraint_forces(built_.model, solver_.elimination(), state.u, load).head<6>();
+  return constraint_forces(solver_.model(), solver_.elimination(), state.u, load).head<6>();
 }
 
 }  // namespace deflect::frame

@@ -26,7 +26,9 @@ class MsaModel {
   MsaModel(const MsaModel&) = delete;
   MsaModel& operator=(const MsaModel&) = delete;
 
-  const Model& model() const { return built_.model; }
+  const Model& model() const { return solver_.model(); }
+  /// Idle spins that were held, redundant constraints, poor conditioning.
+  const std::vector<std::string>& notes() const { return solver_.notes(); }
   const MechanismModel& mechanism() const { return built_; }
 
   MsaSolution solve(const Vector6& F_T_W);

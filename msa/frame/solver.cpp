@@ -1,10 +1,13 @@
 #include "msa/frame/solver.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "msa/base/error.h"
+#include "msa/frame/relative.h"
 #include "msa/frame/stability.h"
 
 namespace deflect::frame {
@@ -26,44 +29,113 @@ bool all_linear(const Model& m) {
   return std::all_of(m.springs.begin(), m.springs.end(), [](const Spring& s) { return is_linear(s.law); });
 }
 
+/// The vector with zeros behind it where the solver's model has grown.
+VectorX padded(const VectorX& v, std::size_t size) {
+  VectorX out = VectorX::Zero(static_cast<Eigen::Index>(size));
+  out.head(v.size()) = v;
+  return out;
+}
+
+MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
+  MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(rows), m.cols());
+  out.topRows(m.rows()) = m;
+  return out;
+}
+
 }  // namespace
 
-Solver::Solver(const Model& m)
-    : model_(m), elimination_(eliminate(m)), assembly_(m, elimination_), cholesky_(assembly_.pattern()) {
-  check_consistent(m, elimination_, constraint_values(m));
+Solver::Solver(Model m) : model_(std::make_unique<Model>(std::move(m))) {
+  use_relative_motion(*model_);
+  prepare();
+  if (held_idle_spins()) prepare();
+  note_redundant();
+}
+
+void Solver::prepare() {
+  elimination_ = std::make_unique<Elimination>(eliminate(*model_));
+  check_consistent(*model_, *elimination_, constraint_values(*model_));
+  assembly_ = std::make_unique<Assembly>(*model_, *elimination_);
+  cholesky_ = std::make_unique<SparseCholesky>(assembly_->pattern());
+  factored_ = false;
+}
+
+/// Looks for motions that nothing resists, springs as at 1 N; throws unless all are idle spins, which it holds.
+bool Solver::held_idle_spins() {
+  if (elimination_->independent == 0) return false;
+  const VectorX tangents = starting_tangents(1);
+  const std::vector<double> values = assembly_->values(tangents);
+  const double condition = cholesky_->factor(values);
+  if (condition >= suspicious) {
+    factored_tangents_ = tangents;
+    factored_ = true;
+    return false;
+  }
+  const std::vector<FreeMotion> motions = free_motions_of(*model_, *elimination_, assembly_->pattern(), values);
+  if (motions.empty()) {
+    notes_.push_back(explain_condition(*model_, *elimination_, assembly_->pattern(), values, condition));
+    return false;
+  }
+  std::string list;
+  std::size_t count = 0;
+  for (const FreeMotion& motion : motions)
+    if (!motion.idle) list += fmt::format("\n  {}: {}", ++count, describe(*model_, motion));
+  if (count > 0)
+    throw ModelError(fmt::format("the structure cannot stand: {} motion{} that nothing resists{}", count,
+                                 count == 1 ? "" : "s", list));
+  for (const FreeMotion& motion : motions) {
+    hold(*model_, motion);
+    notes_.push_back(fmt::format("{} spins idly about its own axis: harmless, held", motion.bodies.front().name));
+  }
+  return true;
+}
+
+void Solver::note_redundant() {
+  for (const Redundancy& r : elimination_->redundant) {
+    std::string names;
+    for (std::size_t i = 0; i < std::min<std::size_t>(r.implied_by.size(), 6); ++i)
+      names +=
+          fmt::format("{}'{}'", i ? ", " : "", model_->constraints[static_cast<std::size_t>(r.implied_by[i].dof)].name);
+    notes_.push_back(fmt::format("constraint '{}' is redundant: {} already imply it",
+                                 model_->constraints[static_cast<std::size_t>(r.constraint)].name, names));
+  }
 }
 
 void Solver::factor(const VectorX& tangents) {
   if (factored_ && factored_tangents_ == tangents) return;
   factored_ = false;
-  const std::vector<double> values = assembly_.values(tangents);
-  if (elimination_.independent > 0) {
-    const double condition = cholesky_.factor(values);
-    if (condition < suspicious) refuse_mechanism(model_, elimination_, assembly_.pattern(), values);
-    if (condition == 0) throw ModelError("the structure's stiffness is not positive definite");
+  if (elimination_->independent > 0) {
+    const std::vector<double> values = assembly_->values(tangents);
+    if (cholesky_->factor(values) == 0) {
+      std::string list;
+      for (const FreeMotion& motion : free_motions_of(*model_, *elimination_, assembly_->pattern(), values))
+        list += "\n  " + describe(*model_, motion);
+      throw ModelError("in this state of its springs the structure cannot stand" + list);
+    }
   }
   factored_tangents_ = tangents;
   factored_ = true;
 }
 
 VectorX Solver::starting_tangents(double force) const {
-  VectorX k(static_cast<Eigen::Index>(model_.springs.size()));
-  for (std::size_t s = 0; s < model_.springs.size(); ++s)
-    k(static_cast<Eigen::Index>(s)) = tangent_at_force(model_.springs[s].law, force);
+  VectorX k(static_cast<Eigen::Index>(model_->springs.size()));
+  for (std::size_t s = 0; s < model_->springs.size(); ++s)
+    k(static_cast<Eigen::Index>(s)) = tangent_at_force(model_->springs[s].law, force);
   return k;
 }
 
 Solution Solver::solve(const VectorX& load, const NewtonOptions& options) {
-  return solve(load, constraint_values(model_), options);
+  return solve(load, constraint_values(*model_), options);
 }
 
-Solution Solver::solve(const VectorX& load, const VectorX& values, const NewtonOptions& options) {
-  check_consistent(model_, elimination_, values);
+Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, const NewtonOptions& options) {
+  const VectorX load = padded(given_load, static_cast<std::size_t>(model_->dofs()));
+  const VectorX values = padded(given_values, model_->constraints.size());
+  check_consistent(*model_, *elimination_, values);
   Solution s;
-  VectorX q = VectorX::Zero(elimination_.independent);
-  s.u = elimination_.expand(q, values);
-  const VectorX f = elimination_.reduce(load);
-  const VectorX first = internal_forces(model_, s.u, s.spring_tangents);
+  VectorX q = VectorX::Zero(elimination_->independent);
+  s.u = elimination_->expand(q, values);
+  const VectorX f = elimination_->reduce(load);
+  const VectorX first = internal_forces(*model_, s.u, s.spring_tangents);
   const double force = std::max(largest(load), largest(first));
   if (force == 0) {  // nothing drives it: every spring is at rest
     s.converged = true;
@@ -73,26 +145,26 @@ Solution Solver::solve(const VectorX& load, const VectorX& values, const NewtonO
   // stiffness at full load, which slows nothing that carries load and keeps an idle spring from blocking the step.
   const VectorX loaded = starting_tangents(force);
   const VectorX floor = 1e-8 * loaded;
-  const bool linear = all_linear(model_);
-  VectorX r = f - elimination_.reduce(first);
+  const bool linear = all_linear(*model_);
+  VectorX r = f - elimination_->reduce(first);
   double previous_step = std::numeric_limits<double>::infinity();
   for (s.iterations = 1; s.iterations <= options.max_iterations; ++s.iterations) {
     factor(s.iterations == 1 ? loaded : VectorX(s.spring_tangents.cwiseMax(floor)));
-    const VectorX step = cholesky_.solve(r);
+    const VectorX step = cholesky_->solve(r);
     // Backtrack until the potential falls; where what is to be gained drowns in its rounding, the full step is right.
     double length = 1;
     if (!linear) {
-      const double before = potential(model_, s.u, load), slope = -r.dot(step);
+      const double before = potential(*model_, s.u, load), slope = -r.dot(step);
       const double rounding = 1e-13 * (std::abs(load.dot(s.u)) + std::abs(before));
       while (length > 1e-6 && std::abs(slope) > rounding) {
-        const double after = potential(model_, elimination_.expand(q + length * step, values), load);
+        const double after = potential(*model_, elimination_->expand(q + length * step, values), load);
         if (after <= before + 1e-4 * length * slope + rounding) break;
         length /= 2;
       }
     }
     q += length * step;
-    s.u = elimination_.expand(q, values);
-    const VectorX pulls = elimination_.reduce(internal_forces(model_, s.u, s.spring_tangents));
+    s.u = elimination_->expand(q, values);
+    const VectorX pulls = elimination_->reduce(internal_forces(*model_, s.u, s.spring_tangents));
     r = f - pulls;
     const double scale = largest(f) + largest(pulls);
     s.residual = scale > 0 ? largest(r) / scale : 0;
@@ -106,21 +178,23 @@ Solution Solver::solve(const VectorX& load, const VectorX& values, const NewtonO
   return s;
 }
 
-MatrixX Solver::linear(const VectorX& tangents, const MatrixX& loads, const MatrixX& values) {
-  for (Eigen::Index c = 0; c < values.cols(); ++c) check_consistent(model_, elimination_, values.col(c));
+MatrixX Solver::linear(const VectorX& tangents, const MatrixX& given_loads, const MatrixX& given_values) {
+  const MatrixX loads = padded_rows(given_loads, static_cast<std::size_t>(model_->dofs()));
+  const MatrixX values = padded_rows(given_values, model_->constraints.size());
+  for (Eigen::Index c = 0; c < values.cols(); ++c) check_consistent(*model_, *elimination_, values.col(c));
   factor(tangents);
   // One step of refinement: the first solution's residual is formed from the elements, not from the assembled matrix.
-  MatrixX q = MatrixX::Zero(elimination_.independent, loads.cols());
+  MatrixX q = MatrixX::Zero(elimination_->independent, loads.cols());
   for (int pass = 0; pass < 2; ++pass) {
-    MatrixX R(elimination_.independent, loads.cols());
+    MatrixX R(elimination_->independent, loads.cols());
     for (Eigen::Index c = 0; c < loads.cols(); ++c) {
-      const VectorX u = elimination_.expand(q.col(c), values.col(c));
-      R.col(c) = elimination_.reduce(loads.col(c) - tangent_forces(model_, u, tangents));
+      const VectorX u = elimination_->expand(q.col(c), values.col(c));
+      R.col(c) = elimination_->reduce(loads.col(c) - tangent_forces(*model_, u, tangents));
     }
-    q += cholesky_.solve(R);
+    q += cholesky_->solve(R);
   }
-  MatrixX U(model_.dofs(), loads.cols());
-  for (Eigen::Index c = 0; c < loads.cols(); ++c) U.col(c) = elimination_.expand(q.col(c), values.col(c));
+  MatrixX U(model_->dofs(), loads.cols());
+  for (Eigen::Index c = 0; c < loads.cols(); ++c) U.col(c) = elimination_->expand(q.col(c), values.col(c));
   return U;
 }
 

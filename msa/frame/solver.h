@@ -1,6 +1,9 @@
 // Static equilibrium of a structure: f_int(u) = f under u = T q + G b.
 #pragma once
 
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "msa/frame/assembly.h"
@@ -13,7 +16,7 @@ struct NewtonOptions {
 };
 
 struct Solution {
-  VectorX u;                ///< by freedom: m, rad, and the scalars' unit
+  VectorX u;                ///< by freedom of Solver::model(), the given ones first: m, rad, and the scalars' unit
   VectorX spring_tangents;  ///< N/m or Nm/rad at u
   bool converged = false;
   int iterations = 0;
@@ -23,13 +26,21 @@ struct Solution {
 /// Keeps elimination, ordering and symbolic analysis of one structure for all its load cases and spring states.
 class Solver {
  public:
-  /// Throws ModelError for constraints that contradict each other. The model must outlive the solver.
-  explicit Solver(const Model&);
+  /// Refuses before any load: ModelError for constraints that contradict each other, and for a structure that cannot
+  /// stand, naming every body that moves, how, and what would hold it. A straight member that only spins about its own
+  /// axis is held and noted. Very stiff members get relative coordinates (relative.h).
+  explicit Solver(Model);
 
-  const Elimination& elimination() const { return elimination_; }
+  /// The structure that is solved: the given one, with the constraints and coordinates that were added behind its own.
+  const Model& model() const { return *model_; }
+  const Elimination& elimination() const { return *elimination_; }
 
-  /// One load by freedom (dofs()), constraint values as in the model. Newton with a line search on the potential
-  /// where a spring is nonlinear. Throws ModelError naming what moves when the structure cannot stand.
+  /// What a user should know: idle spins that were held, redundant constraints, poor conditioning.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+  /// One load by freedom (of the given model, or of model()), constraint values as in the model. Newton with a line
+  /// search on the potential where a spring is nonlinear. Throws ModelError when a state loses the stiffness that keeps
+  /// the structure standing.
   Solution solve(const VectorX& load, const NewtonOptions& options = {});
 
   /// As above for other constraint values (prescribed displacements).
@@ -40,13 +51,17 @@ class Solver {
   MatrixX linear(const VectorX& spring_tangents, const MatrixX& loads, const MatrixX& values);
 
  private:
+  void prepare();
+  bool held_idle_spins();
+  void note_redundant();
   void factor(const VectorX& spring_tangents);
   VectorX starting_tangents(double force) const;
 
-  const Model& model_;
-  Elimination elimination_;
-  Assembly assembly_;
-  SparseCholesky cholesky_;
+  std::unique_ptr<Model> model_;  // pointers, so that a solver can be moved and rebuilt
+  std::unique_ptr<Elimination> elimination_;
+  std::unique_ptr<Assembly> assembly_;
+  std::unique_ptr<SparseCholesky> cholesky_;
+  std::vector<std::string> notes_;
   bool factored_ = false;
   VectorX factored_tangents_;  // the state that the factor belongs to
 };

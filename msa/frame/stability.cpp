@@ -2,133 +2,192 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "msa/base/error.h"
+#include "msa/frame/assembly.h"
 
 namespace deflect::frame {
 namespace {
 
-constexpr double shift = 1e-10, null_below = 1e-11, unstrained_below = 1e-12;
+constexpr double at_rest = 1e-7;  // of the largest motion
 
-/// y = K x for a matrix of which the lower triangle is stored.
-MatrixX times(const SparsePattern& p, const std::vector<double>& values, const MatrixX& x) {
-  MatrixX y = MatrixX::Zero(x.rows(), x.cols());
-  for (int j = 0; j < p.n; ++j)
-    for (int k = p.column_start[static_cast<std::size_t>(j)]; k < p.column_start[static_cast<std::size_t>(j) + 1];
-         ++k) {
-      const int i = p.row[static_cast<std::size_t>(k)];
-      const double v = values[static_cast<std::size_t>(k)];
-      y.row(i) += v * x.row(j);
-      if (i != j) y.row(j) += v * x.row(i);
-    }
-  return y;
+/// "leg 1 link" of "leg 1 link [3]".
+std::string base_name(const std::string& name) { return name.substr(0, name.rfind(" [")); }
+
+std::string listed(const std::vector<std::string>& names, std::size_t most) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i ? ", " : "") + names[i];
+  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return text;
 }
 
-std::string describe_motion(const Model& m, const VectorX& u) {
-  Eigen::Index most = 0;
-  u.cwiseAbs().maxCoeff(&most);
-  const auto nodal = static_cast<Eigen::Index>(6 * m.nodes.size());
-  if (most >= nodal) return fmt::format("{} slides freely", m.dof_name(static_cast<int>(most)));
-  const Eigen::Index node = most / 6;
-  const Vector3 translation = u.segment<3>(6 * node), rotation = u.segment<3>(6 * node + 3);
-  const bool turns = most % 6 >= 3;
-  const Vector3 direction = (turns ? rotation : translation).normalized();
-  return fmt::format("node '{}' {} ({:.3f}, {:.3f}, {:.3f})", m.nodes[static_cast<std::size_t>(node)].name,
-                     turns ? "turns freely about" : "moves freely along", direction.x(), direction.y(), direction.z());
+/// By node, the number of the body it belongs to: nodes joined by beams and welds.
+std::vector<int> bodies(const Model& m) {
+  std::vector<int> parent(m.nodes.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&parent](int i) {
+    while (parent[static_cast<std::size_t>(i)] != i) i = parent[static_cast<std::size_t>(i)];
+    return i;
+  };
+  const auto join = [&](int a, int b) {
+    const int low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
+    parent[static_cast<std::size_t>(high)] = low;
+  };
+  for (const Beam& beam : m.beams) join(beam.a, beam.b);
+  for (const auto& [a, b] : m.welds) join(a, b);
+  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root(static_cast<int>(i));
+  return parent;
 }
 
-/// The largest translation, or rotation times `length`, is 1.
-VectorX normalised(const Model& m, VectorX u, double length) {
-  double size = 0;
-  for (Eigen::Index i = 0; i < u.size(); ++i)
-    size =
-        std::max(size, std::abs(u(i)) * (i < static_cast<Eigen::Index>(6 * m.nodes.size()) && i % 6 >= 3 ? length : 1));
-  return u / size;
+std::string body_name(const Model& m, const std::vector<int>& nodes) {
+  const auto inside = [&](int node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
+  std::vector<std::string> names;
+  const auto add = [&names](const std::string& name) {
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const Beam& beam : m.beams)
+    if (inside(beam.a)) add(base_name(beam.name));
+  if (names.empty())
+    for (const int node : nodes) add(fmt::format("node '{}'", m.nodes[static_cast<std::size_t>(node)].name));
+  return listed(names, 3);
 }
 
-/// Combinations of the (normalised) candidates that strain no element, whatever its stiffness: beside a member that is
-/// 1e12 times stiffer the others look free, but a motion that strains them is none.
-MatrixX unstrained(const Model& m, const MatrixX& candidates, double length) {
-  // Gram matrix of strain energies, every element scaled to the energy that a motion of size 1 of one end could store.
-  MatrixX strain = MatrixX::Zero(candidates.cols(), candidates.cols());
-  Vector12 reach = Vector12::Ones();
-  reach.segment<3>(3).setConstant(1 / length);
-  reach.segment<3>(9).setConstant(1 / length);
-  for (const Beam& beam : m.beams) {
-    const Matrix12 K = stiffness(beam);
-    MatrixX d(12, candidates.cols());
-    d << candidates.middleRows<6>(6 * beam.a), candidates.middleRows<6>(6 * beam.b);
-    strain += d.transpose() * K * d / reach.cwiseAbs2().dot(K.diagonal());
-  }
-  for (const Spring& spring : m.springs) {
-    if (!(tangent_at_force(spring.law, 1) > 0)) continue;
-    Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(candidates.cols());
-    double size = 0;
-    for (const Term& t : spring.elongation) {
-      d += t.coefficient * candidates.row(t.dof);
-      size += t.coefficient * t.coefficient;
-    }
-    if (size > 0) strain += d.transpose() * d / size;
-  }
-  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(strain);
-  MatrixX U(m.dofs(), 0);
-  for (Eigen::Index j = 0; j < candidates.cols() && eigen.eigenvalues()(j) < unstrained_below; ++j) {
-    U.conservativeResize(Eigen::NoChange, j + 1);
-    U.col(j) = normalised(m, candidates * eigen.eigenvectors().col(j), length);
+/// Columns combined so that each leads in a freedom in which the others rest: motions come apart.
+MatrixX taken_apart(MatrixX U) {
+  for (Eigen::Index j = 0; j < U.cols(); ++j) {
+    Eigen::Index row = 0, column = 0;
+    U.rightCols(U.cols() - j).cwiseAbs().maxCoeff(&row, &column);
+    U.col(j).swap(U.col(j + column));
+    U.col(j) /= U(row, j);
+    for (Eigen::Index k = 0; k < U.cols(); ++k)
+      if (k != j) U.col(k) -= U(row, k) * U.col(j);
   }
   return U;
 }
 
-}  // namespace
-
-MatrixX free_motions(const Model& m, const Elimination& e, const SparsePattern& p, const std::vector<double>& values,
-                     int limit) {
-  const int n = p.n, block = std::min(limit, n);
-  VectorX scale(n);  // Jacobi scaling; a freedom with no stiffness at all keeps its own
-  for (int j = 0; j < n; ++j) {
-    const double d = values[static_cast<std::size_t>(p.column_start[static_cast<std::size_t>(j)])];
-    scale(j) = d > 0 ? 1 / std::sqrt(d) : 1;
+/// One straight member that turns about its own axis and takes nothing else along.
+bool is_idle(const Model& m, const FreeMotion& motion, double length) {
+  if (motion.bodies.size() != 1 || motion.bodies[0].screw.translation) return false;
+  const MovingBody& body = motion.bodies[0];
+  if (body.nodes.size() < 2 || std::abs(body.screw.pitch) > 1e-9 * length) return false;
+  for (const int node : body.nodes) {
+    const Vector3 r = m.nodes[static_cast<std::size_t>(node)].position - body.screw.point;
+    if (r.cross(body.screw.axis).norm() > 1e-7 * length) return false;
   }
-  std::vector<double> scaled = values;
-  for (int j = 0; j < n; ++j)
-    for (int k = p.column_start[static_cast<std::size_t>(j)]; k < p.column_start[static_cast<std::size_t>(j) + 1]; ++k)
-      scaled[static_cast<std::size_t>(k)] *= scale(j) * scale(p.row[static_cast<std::size_t>(k)]);
-  std::vector<double> shifted = scaled;
-  for (int j = 0; j < n; ++j) shifted[static_cast<std::size_t>(p.column_start[static_cast<std::size_t>(j)])] += shift;
-  SparseCholesky cholesky(p);
-  if (cholesky.factor(shifted) == 0) throw ModelError("the stiffness is not positive: a spring or section is negative");
-
-  // Starting block: fixed quasi-random numbers, so that the answer is the same every time.
-  MatrixX X(n, block);
-  for (int j = 0; j < block; ++j)
-    for (int i = 0; i < n; ++i) X(i, j) = std::sin(12.9898 * (i + 1) + 78.233 * (j + 1));
-  for (int iteration = 0; iteration < 4; ++iteration) {
-    X = cholesky.solve(X);
-    X = Eigen::HouseholderQR<MatrixX>(X).householderQ() * MatrixX::Identity(n, block);
-  }
-  const Eigen::SelfAdjointEigenSolver<MatrixX> ritz(X.transpose() * times(p, scaled, X));
-  const double length = characteristic_length(m);
-  MatrixX candidates(m.dofs(), 0);
-  for (int j = 0; j < block && ritz.eigenvalues()(j) < null_below; ++j) {
-    const VectorX q = scale.asDiagonal() * (X * ritz.eigenvectors().col(j));
-    const VectorX u = e.expand(q, VectorX::Zero(static_cast<Eigen::Index>(m.constraints.size())));
-    candidates.conservativeResize(Eigen::NoChange, j + 1);
-    candidates.col(j) = normalised(m, u, length);
-  }
-  return unstrained(m, candidates, length);
+  return true;
 }
 
-void refuse_mechanism(const Model& m, const Elimination& e, const SparsePattern& p, const std::vector<double>& values) {
-  const MatrixX motions = free_motions(m, e, p, values);
-  if (motions.cols() == 0) return;
-  std::string list;
-  for (Eigen::Index j = 0; j < motions.cols(); ++j)
-    list += fmt::format("\n  {}: {}", j + 1, describe_motion(m, motions.col(j)));
-  throw ModelError(fmt::format("the structure cannot stand: {} motion{} with nothing to resist{}{}", motions.cols(),
-                               motions.cols() == 1 ? "" : "s", motions.cols() == 8 ? " (or more)" : "", list));
+FreeMotion motion_of(const Model& m, const VectorX& u, const std::vector<int>& body_of, double length) {
+  FreeMotion motion;
+  motion.u = u;
+  for (std::size_t first = 0; first < m.nodes.size(); ++first) {
+    if (body_of[first] != static_cast<int>(first)) continue;
+    MovingBody body;
+    double largest = 0;
+    Eigen::Index mover = 0;
+    for (std::size_t i = first; i < m.nodes.size(); ++i) {
+      if (body_of[i] != static_cast<int>(first)) continue;
+      body.nodes.push_back(static_cast<int>(i));
+      const auto at = static_cast<Eigen::Index>(6 * i);
+      const double size = std::max(u.segment<3>(at).norm(), length * u.segment<3>(at + 3).norm());
+      if (size > largest) largest = size, mover = static_cast<Eigen::Index>(i);
+    }
+    if (largest < at_rest) continue;
+    body.name = body_name(m, body.nodes);
+    body.screw = screw_of(m.nodes[static_cast<std::size_t>(mover)].position, u.segment<3>(6 * mover),
+                          u.segment<3>(6 * mover + 3));
+    motion.bodies.push_back(std::move(body));
+  }
+  for (const Release& r : m.releases)
+    if (std::abs(evaluate(r.form, u)) > at_rest) motion.joints.push_back(r.name);
+  motion.idle = is_idle(m, motion, length);
+  return motion;
+}
+
+std::string words(const Screw& s) {
+  const auto tidy = [](double x) { return std::abs(x) < 5e-7 ? 0.0 : x; };
+  const std::string axis =
+      fmt::format("({:.3g}, {:.3g}, {:.3g})", tidy(s.axis.x()), tidy(s.axis.y()), tidy(s.axis.z()));
+  if (s.translation) return "slides along " + axis;
+  const std::string through = fmt::format("through ({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * tidy(s.point.x()),
+                                          1e3 * tidy(s.point.y()), 1e3 * tidy(s.point.z()));
+  const std::string advance =
+      std::abs(s.pitch) > 1e-9 ? fmt::format(", advancing {:.4g} mm per rad", 1e3 * s.pitch) : "";
+  return fmt::format("turns about {} {}{}", axis, through, advance);
+}
+
+}  // namespace
+
+Screw screw_of(const Vector3& p, const Vector3& v, const Vector3& w) {
+  Screw s;
+  if (w.norm() <= 1e-9 * v.norm()) {
+    s.translation = true;
+    s.axis = v.normalized();
+    return s;
+  }
+  s.axis = w.normalized();
+  s.point = p + w.cross(v) / w.squaredNorm();
+  s.point -= s.axis * s.axis.dot(s.point - p);  // the point of the axis nearest to p
+  s.pitch = s.axis.dot(v) / w.norm();
+  Eigen::Index most = 0;
+  s.axis.cwiseAbs().maxCoeff(&most);
+  if (s.axis(most) < 0) s.axis = -s.axis;  // a screw has no sense of its own; the pitch keeps its hand
+  return s;
+}
+
+std::vector<FreeMotion> free_motions_of(const Model& m, const Elimination& e, const SparsePattern& p,
+                                        const std::vector<double>& values) {
+  const MatrixX U = taken_apart(unstrained(m, soft_motions(m, e, p, values)));
+  const std::vector<int> body_of = bodies(m);
+  std::vector<FreeMotion> motions;
+  for (Eigen::Index j = 0; j < U.cols(); ++j)
+    motions.push_back(motion_of(m, normalised(m, U.col(j)), body_of, characteristic_length(m)));
+  return motions;
+}
+
+std::string describe(const Model& m, const FreeMotion& motion) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(motion.bodies.size(), 3); ++i)
+    text += fmt::format("{}{} {}", i ? "; " : "", motion.bodies[i].name, words(motion.bodies[i].screw));
+  if (motion.bodies.size() > 3) text += fmt::format("; and {} more bodies", motion.bodies.size() - 3);
+  if (motion.bodies.empty()) {  // a scalar freedom, or a node freedom that nothing takes part in
+    Eigen::Index most = 0;
+    motion.u.cwiseAbs().maxCoeff(&most);
+    text = m.dof_name(static_cast<int>(most)) + " moves freely";
+  }
+  if (!motion.joints.empty())
+    text += fmt::format(". To hold it, lock or spring one of: {}", listed(motion.joints, 6));
+  else if (!motion.bodies.empty())
+    text += fmt::format(". To hold it, support node '{}'",
+                        m.nodes[static_cast<std::size_t>(motion.bodies[0].nodes.front())].name);
+  return text;
+}
+
+void hold(Model& m, const FreeMotion& idle) {
+  const MovingBody& body = idle.bodies.front();
+  m.constraints.push_back({rotation_of(body.nodes.front(), body.screw.axis), 0, "idle spin of " + body.name});
+}
+
+std::string explain_condition(const Model& m, const Elimination& e, const SparsePattern& p,
+                              const std::vector<double>& values, double reciprocal_condition) {
+  const MatrixX motions = soft_motions(m, e, p, values);
+  const std::string head =
+      fmt::format("the stiffness is ill-conditioned (reciprocal condition {:.1e})", reciprocal_condition);
+  if (motions.cols() == 0) return head;
+  const VectorX strain = strain_of(m, motions.col(0));
+  Eigen::Index soft = 0;
+  strain.maxCoeff(&soft);
+  const auto name = [&m](Eigen::Index i) {
+    const auto k = static_cast<std::size_t>(i);
+    return k < m.beams.size() ? m.beams[k].name : m.springs[k - m.beams.size()].name;
+  };
+  double stiffest = 0;
+  std::string stiff;
+  for (const Beam& b : m.beams)
+    if (const double k = b.rigidity.EA / b.length; k > stiffest) stiffest = k, stiff = b.name;
+  return fmt::format("{}: '{}' is too soft beside '{}'; check its section, material or units", head, name(soft), stiff);
 }
 
 }  // namespace deflect::frame

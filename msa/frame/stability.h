@@ -1,21 +1,53 @@
-// Why a structure cannot stand: which parts move, and how, with nothing to resist.
+// Why a structure cannot stand: which bodies move, and how, with nothing to resist; and which of such motions are
+// harmless.
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "msa/frame/elimination.h"
-#include "msa/frame/sparse_cholesky.h"
+#include "msa/frame/free_motions.h"
 
 namespace deflect::frame {
 
-/// Motions u (columns, by freedom, largest translation or rotation 1) that the reduced stiffness `values` resists with
-/// less than 1e-11 of its scale: near null vectors of the Jacobi-scaled matrix by shifted block inverse iteration.
-/// At most `limit` are returned.
-MatrixX free_motions(const Model&, const Elimination&, const SparsePattern&, const std::vector<double>& values,
-                     int limit = 8);
+/// A small rigid motion: rotation by 1 rad about the axis through `point`, with `pitch` metres of travel along it per
+/// radian; or a pure translation along the axis.
+struct Screw {
+  bool translation = false;
+  Vector3 axis = Vector3::Zero(), point = Vector3::Zero();  ///< unit vector; m
+  double pitch = 0;
+};
 
-/// Throws ModelError that names each free motion by the node that moves most and its direction; returns when there is
-/// none (the matrix is merely ill-conditioned).
-void refuse_mechanism(const Model&, const Elimination&, const SparsePattern&, const std::vector<double>& values);
+/// Nodes that beams and rigid joints hold together, moving as one.
+struct MovingBody {
+  std::string name;  ///< its members ("leg 1 link"), or its nodes
+  std::vector<int> nodes;
+  Screw screw;
+};
+
+/// One way in which a structure can move without strain.
+struct FreeMotion {
+  VectorX u;  ///< by freedom; largest translation or rotation times the structure's size is 1
+  std::vector<MovingBody> bodies;
+  std::vector<std::string> joints;  ///< free freedoms of joints that move: locking any one of them would hold it
+  bool idle = false;                ///< one straight member turning about its own axis: it moves nothing else
+};
+
+/// Motions that no element resists, taken apart so that each moves as little as possible. Independent of any load.
+std::vector<FreeMotion> free_motions_of(const Model&, const Elimination&, const SparsePattern&,
+                                        const std::vector<double>& values);
+
+/// "leg 1 link turns about the axis (0, 0.6, 0.8) through (…) mm; held by locking … or by a support at node …".
+std::string describe(const Model&, const FreeMotion&);
+
+/// The screw of a body whose point p moves by v (m) while it turns by w (rad).
+Screw screw_of(const Vector3& p, const Vector3& v, const Vector3& w);
+
+/// Constraints that hold idle motions, one each: the rotation of one node about the member's axis.
+void hold(Model&, const FreeMotion& idle);
+
+/// Of a structure without free motion but with a condition too poor for its digits: the softest and the stiffest part
+/// along the worst motion, as a sentence.
+std::string explain_condition(const Model&, const Elimination&, const SparsePattern&, const std::vector<double>& values,
+                              double reciprocal_condition);
 
 }  // namespace deflect::frame

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "msa/base/error.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/field_reader.h"
@@ -44,18 +46,19 @@ void put(YamlNode& variations, YamlNode added) {
   variations.implied = false;
 }
 
-MarkedLeg marked_leg(const Mechanism& m, int leg, const YamlNode& tree) {
+MarkedLeg marked_leg(const Mechanism& m, int leg) {
   if (leg < 1 || leg > leg_count)
     throw InputError(fmt::format("{}: there is no leg {}, legs are 1 to {}", m.name, leg, leg_count));
-  const auto varied = varied_legs(m, tree.child("variations"), m.name);
-  const auto found = varied.find(leg);
-  return found == varied.end() ? MarkedLeg{m.leg, m.ours} : found->second;
+  const bool varies =
+      std::any_of(m.variations.begin(), m.variations.end(), [&](const auto& v) { return v.leg == leg; });
+  if (!varies) return {m.leg, m.ours};
+  return varied_legs(m, tree_of(m).child("variations"), m.name).at(leg);
 }
 
 void edit_one_leg(YamlNode& tree, const Mechanism& m, const Edit& edit, const YamlNode& value,
                   const std::string& where) {
   const auto [number, path] = leg_and_rest(edit.path, where);
-  const MarkedLeg leg = marked_leg(m, number, tree);
+  const MarkedLeg leg = marked_leg(m, number);
   YamlNode parts = tree_of(leg.parts, leg.ours, m);
   const std::string inside = fmt::format("{}leg[{}].", where, number);
   const std::vector<Place> all = places(parts, path, inside);
@@ -97,7 +100,7 @@ std::map<int, MarkedLeg> varied_legs(const Mechanism& m, const YamlNode* variati
   return legs;
 }
 
-Named<Part> leg_parts(const Mechanism& m, int leg) { return marked_leg(m, leg, tree_of(m)).parts; }
+Named<Part> leg_parts(const Mechanism& m, int leg) { return marked_leg(m, leg).parts; }
 
 Mechanism edited(const Mechanism& m, const Edit& edit) {
   const std::string origin = fmt::format("edit '{} {} {}'", edit.path, sign(edit.action), edit.value);

@@ -38,11 +38,25 @@ const char* example_of(Dimension d) {
       return "500 N/mm";
     case Dimension::rotational_stiffness:
       return "100000 Nmm/rad";
+    case Dimension::line_load:
+      return "2 N/mm";
+    case Dimension::density:
+      return "7850 kg/m^3";
+    case Dimension::thermal_expansion:
+      return "12e-6 1/K";
+    case Dimension::temperature:
+      return "20 K";
+    case Dimension::acceleration:
+      return "9.81 m/s^2";
   }
   return "";
 }
 
-std::string example(const char* key, Dimension d) { return fmt::format("{}: {}", key, example_of(d)); }
+/// "key: value", and "value" where an entry is the value itself.
+std::string example(std::string_view key, const std::string& value) {
+  return key.empty() ? value : fmt::format("{}: {}", key, value);
+}
+std::string example(std::string_view key, Dimension d) { return example(key, example_of(d)); }
 
 std::string words(const Range& r, Dimension d) {
   const bool low = r.low > -std::numeric_limits<double>::infinity(),
@@ -52,11 +66,13 @@ std::string words(const Range& r, Dimension d) {
   return fmt::format("{} {}", r.open ? "above" : "at least", from);
 }
 
-/// A name can be a segment of a path.
-bool is_name(const std::string& s) {
+/// A name can be a segment of a path; a loose one need not, but can be a part of a file's name.
+bool is_name(const std::string& s, bool loose) {
   const auto letter = [](unsigned char c) { return std::isalpha(c) || c == '_' || c >= 0x80; };
-  return !s.empty() && letter(static_cast<unsigned char>(s.front())) &&
-         std::all_of(s.begin(), s.end(), [&](unsigned char c) { return letter(c) || std::isdigit(c) || c == '-'; });
+  const auto first = [&](unsigned char c) { return letter(c) || (loose && std::isdigit(c)); };
+  return !s.empty() && first(static_cast<unsigned char>(s.front())) && s.back() != ' ' &&
+         std::all_of(s.begin(), s.end(),
+                     [&](unsigned char c) { return letter(c) || std::isdigit(c) || c == '-' || (loose && c == ' '); });
 }
 
 YamlNode untagged(YamlNode node) {
@@ -174,7 +190,7 @@ void FieldReader::integer(const char* key, int& value, int low, int high, const 
 }
 
 void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const char* about) {
-  const std::string unit = example_of(d), sample = fmt::format("{}: [{}, {}, {}]", key, unit, unit, unit);
+  const std::string unit = example_of(d), sample = example(key, fmt::format("[{0}, {0}, {0}]", unit));
   value.setZero();
   const YamlNode* node = find(key, false, sample, about);
   if (!node) return;
@@ -197,6 +213,18 @@ void FieldReader::text(const char* key, std::string& value, Need need, const cha
   value = scalar(*node, joined(path_, key), sample);
   if (value.empty() && need == Need::required)
     fail(*node, joined(path_, key), fmt::format("is empty: write for example '{}'", sample));
+}
+
+void FieldReader::texts(const char* key, std::vector<std::string>& values, Need need, const char* about) {
+  const std::string sample = example(key, "[name, name]");
+  values.clear();
+  const YamlNode* node = find(key, need == Need::required, sample, about);
+  if (!node) return;
+  const std::string path = joined(path_, key);
+  if (node->kind != Kind::list) return values.push_back(scalar(*node, path, sample));
+  for (std::size_t i = 0; i < node->children.size(); ++i)
+    values.push_back(scalar(node->children[i], joined(path, std::to_string(i)), sample));
+  if (values.empty()) fail(*node, path, fmt::format("is empty: write for example '{}'", sample));
 }
 
 void FieldReader::word(const char* key, std::string& value, const Words& w, const char* about) {
@@ -235,7 +263,15 @@ void FieldReader::object(const char* key, Need need, bool, const std::function<v
 void FieldReader::element(const YamlNode& node, const std::string& path, Elements& all, std::size_t i) {
   note(node, path);
   const std::string outer = std::exchange(path_, path);
-  read(node, [&] { all.describe_element(*this, i); });
+  if (all.plain()) {
+    YamlNode map;
+    map.kind = Kind::map;
+    map.line = map.key_line = node.key_line;
+    map.add("", node);
+    read(map, [&] { all.describe_element(*this, i); });
+  } else {
+    read(node, [&] { all.describe_element(*this, i); });
+  }
   path_ = outer;
 }
 
@@ -244,8 +280,11 @@ void FieldReader::read_entries(const YamlNode& map, Elements& all) {
   for (std::size_t i = 0; i < map.children.size(); ++i) {
     const YamlNode& child = map.children[i];
     const std::string path = joined(path_, map.keys[i]);
-    if (!is_name(map.keys[i]))
-      fail(child, path, "a name begins with a letter and consists of letters, digits, '_' and '-'");
+    if (!is_name(map.keys[i], all.loose_names()))
+      fail(child, path,
+           all.loose_names()
+               ? "a name begins with a letter or a digit and consists of letters, digits, '_', '-' and spaces"
+               : "a name begins with a letter and consists of letters, digits, '_' and '-'");
     all.add(map.keys[i]);
     element(child, path, all, all.size() - 1);
   }
@@ -298,8 +337,10 @@ std::size_t FieldReader::alternative(const std::vector<std::string>& keys, std::
 
 void FieldReader::require(bool holds, const char* key, const std::string& what) {
   if (holds || !level_.broken.empty()) return;
+  YamlNode at;  // the field, or the key of the map that lacks it
+  at.line = level_.map->key_line > 0 ? level_.map->key_line : level_.map->line;
   const YamlNode* node = level_.map->child(key);
-  level_.broken = message(node ? *node : *level_.map, joined(path_, key), what);
+  level_.broken = message(node ? *node : at, joined(path_, key), what);
 }
 
 }  // namespace deflect

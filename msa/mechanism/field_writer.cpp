@@ -71,6 +71,14 @@ void FieldWriter::text(const char* key, std::string& value, Need need, const cha
   add(key, scalar(value, true), need == Need::optional && value.empty());
 }
 
+void FieldWriter::texts(const char* key, std::vector<std::string>& values, Need, const char*) {
+  YamlNode list;
+  list.kind = Kind::list;
+  for (const std::string& value : values) list.children.push_back(scalar(value));
+  list.collapses = true;
+  add(key, std::move(list), values.empty());
+}
+
 void FieldWriter::word(const char* key, std::string& value, const Words& w, const char*) {
   add(key, scalar(value), w.otherwise == value);
 }
@@ -111,7 +119,8 @@ void FieldWriter::entries(const char* key, Elements& all, Need need, const char*
   node.entries = true;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string path = joined(joined(path_, key), all.name(i));
-    node.add(all.name(i), filled(path, [&] { all.describe_element(*this, i); }));
+    YamlNode entry = filled(path, [&] { all.describe_element(*this, i); });
+    node.add(all.name(i), all.plain() ? *entry.child("") : std::move(entry));
     node.children.back().ours = ours_.contains(path);
   }
   add(key, std::move(node), need == Need::optional && all.size() == 0);

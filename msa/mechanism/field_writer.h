@@ -25,6 +25,7 @@ class FieldWriter final : public FieldVisitor {
   void integer(const char*, int&, int low, int high, const char*) override;
   void vector3(const char*, Vector3&, Dimension, const char*) override;
   void text(const char*, std::string&, Need, const char*) override;
+  void texts(const char*, std::vector<std::string>&, Need, const char*) override;
   void word(const char*, std::string&, const Words&, const char*) override;
   void any(const char*, std::string&, const char*) override;
   void object(const char*, Need, bool absent, const std::function<void()>&, const char*) override;

@@ -46,6 +46,8 @@ class Elements {
   virtual std::string name(std::size_t) const = 0;  ///< "" in a list
   virtual void add(const std::string& name) = 0;
   virtual void describe_element(class FieldVisitor&, std::size_t) = 0;
+  virtual bool plain() const { return false; }        ///< an entry is one value, which is described under the key ""
+  virtual bool loose_names() const { return false; }  ///< a name may begin with a digit and hold spaces
 };
 
 /// What the description says elsewhere and a field depends on.
@@ -67,6 +69,7 @@ class FieldVisitor {
   virtual void integer(const char* key, int&, int low, int high, const char* about) = 0;
   virtual void vector3(const char* key, Vector3&, Dimension, const char* about) = 0;  ///< zero where absent
   virtual void text(const char* key, std::string&, Need, const char* about) = 0;
+  virtual void texts(const char* key, std::vector<std::string>&, Need, const char* about) = 0;  ///< one or a list
   virtual void word(const char* key, std::string&, const Words&, const char* about) = 0;
   virtual void any(const char* key, std::string& yaml, const char* about) = 0;  ///< YAML, kept in flow style
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <unordered_map>
 
 #include "msa/base/error.h"
 #include "msa/mechanism/yaml_tree.h"
@@ -92,18 +93,16 @@ class Builder : public YAML::EventHandler {
     if (anchor) refuse_anchor(line);
     if (tag != "?" && tag != "!") fail(line, fmt::format("'{}': a tag stands before the value, not the key", text));
     YamlNode& map = open_.back().node;
-    const auto first = std::find(map.keys.begin(), map.keys.end(), text) - map.keys.begin();
-    const bool doubled = static_cast<std::size_t>(first) < map.keys.size();
+    const auto [first, fresh] = open_.back().index.emplace(text, map.keys.size());
     map.keys.push_back(text);
     open_.back().key_line = line;
-    if (doubled)
-      fail(line, fmt::format("given twice, first on line {}: remove one",
-                             map.children[static_cast<std::size_t>(first)].key_line));
+    if (!fresh)
+      fail(line, fmt::format("given twice, first on line {}: remove one", map.children[first->second].key_line));
   }
 
   void open(YamlNode node) {
     if (wants_key()) fail(node.line, "a key must be a name, not a list or a map");
-    open_.push_back({std::move(node), 0});
+    open_.push_back({std::move(node), 0, {}});
   }
   void close() {
     YamlNode done = std::move(open_.back().node);
@@ -122,6 +121,7 @@ class Builder : public YAML::EventHandler {
   struct Open {
     YamlNode node;
     int key_line;
+    std::unordered_map<std::string, std::size_t> index;  // of a map's keys
   };
   std::string origin_;
   std::vector<Open> open_;
@@ -178,13 +178,13 @@ void parse(const std::string& text, YAML::EventHandler& handler) {
 }
 
 /// Before anything is made of the events: those that precede a syntax error can be nonsense.
-void check_syntax(const std::string& text, const std::string& origin) {
+void check_syntax(const std::string& text, const std::string& end, const std::string& origin) {
   Ignore ignore;
   try {
-    parse(text, ignore);
+    parse(text + end, ignore);
   } catch (const YAML::Exception& e) {
     const bool open = e.msg == YAML::ErrorMsg::DOC_IN_SCALAR || e.msg == YAML::ErrorMsg::EOF_IN_SCALAR;
-    const auto lines = static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+    const auto lines = static_cast<int>(std::count(text.begin(), text.end(), '\n')) + !text.ends_with('\n');
     throw InputError(fmt::format("{}:{}: not valid YAML: {}", origin,
                                  std::clamp(e.mark.line + 1, 1, std::max(lines, 1)),
                                  open ? "a quotation is not closed" : e.msg));
@@ -195,9 +195,9 @@ void check_syntax(const std::string& text, const std::string& origin) {
 
 YamlNode parse_yaml(std::string_view text, const std::string& origin) {
   check_characters(text, origin);
-  check_syntax(std::string(text), origin);
+  check_syntax(std::string(text), "", origin);
   // yaml-cpp closes a quotation by itself at the end of the text, but not at the end of a document.
-  check_syntax(std::string(text) + "\n...\n", origin);
+  check_syntax(std::string(text), "\n...\n", origin);
   Builder builder(origin);
   parse(std::string(text), builder);
   builder.root.line = std::max(builder.root.line, 1);

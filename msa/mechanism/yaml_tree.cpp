@@ -35,7 +35,7 @@ void set_line(YamlNode& node, int line) {
 }
 
 std::string joined(const std::string& path, std::string_view key) {
-  return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+  return path.empty() || key.empty() ? fmt::format("{}{}", path, key) : fmt::format("{}.{}", path, key);
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& known) {

@@ -50,7 +50,7 @@ YamlNode stripped(const YamlNode&);
 /// The node and all below it stand on this line.
 void set_line(YamlNode&, int line);
 
-/// "a.b", or "b" where `path` is empty.
+/// "a.b", or the other where one is empty.
 std::string joined(const std::string& path, std::string_view key);
 
 /// ", did you mean 'x'? (known: …)": the end of a message about a word that is not among `known`.

@@ -1,0 +1,67 @@
+#include "msa/frame/relative.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "msa/frame/elimination.h"
+
+namespace deflect::frame {
+namespace {
+
+double softest(const Model& m) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Beam& b : m.beams) least = std::min({least, b.rigidity.EIy / b.length, b.rigidity.EIz / b.length});
+  return least;
+}
+
+void make_relative(Model& m, Beam& beam) {
+  beam.relative = m.dofs();
+  for (int i = 0; i < 6; ++i) m.scalars.push_back(fmt::format("deformation {} of {}", i + 1, beam.name));
+  const Vector3 arm = m.nodes[static_cast<std::size_t>(beam.b)].position;
+  for (int i = 0; i < 6; ++i) {
+    const Vector3 axis = Vector3::Unit(i % 3);
+    LinearForm form = i < 3 ? translation_of(m, beam.a, arm, axis, -1) : rotation_of(beam.a, axis, -1);
+    form.push_back({6 * beam.b + i, 1});
+    form.push_back({beam.relative + i, -1});
+    m.constraints.push_back({std::move(form), 0, beam.name, 6 * beam.b + i});
+  }
+}
+
+/// The elongation becomes a coordinate; the constraint that defines it eliminates what it was made from.
+void make_relative(Model& m, Spring& spring) {
+  const int elongation = m.dofs();
+  m.scalars.push_back("elongation of " + spring.name);
+  LinearForm form = spring.elongation;
+  const auto most = std::max_element(form.begin(), form.end(), [](const Term& a, const Term& b) {
+    return std::abs(a.coefficient) < std::abs(b.coefficient);
+  });
+  const int eliminates = most->dof;
+  form.push_back({elongation, -1});
+  m.constraints.push_back({std::move(form), 0, spring.name, eliminates});
+  spring.elongation = {{elongation, 1}};
+}
+
+}  // namespace
+
+std::vector<std::string> use_relative_motion(Model& m, double ratio) {
+  std::vector<std::string> names;
+  const double limit = ratio * softest(m);
+  for (Beam& beam : m.beams)
+    if (beam.relative < 0 && std::min(beam.rigidity.EIy, beam.rigidity.EIz) / beam.length > limit) {
+      make_relative(m, beam);
+      names.push_back(beam.name);
+    }
+  const double length = characteristic_length(m);
+  for (Spring& spring : m.springs) {
+    const auto* linear = std::get_if<LinearSpring>(&spring.law);
+    if (linear && spring.elongation.size() > 1 && linear->k * length * length > limit * 1e4) {
+      make_relative(m, spring);
+      names.push_back(spring.name);
+    }
+  }
+  return names;
+}
+
+}  // namespace deflect::frame
