@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -32,25 +33,39 @@ Linearised linearise(const Chain& c, const VectorX& lambda, double least, const 
   return out;
 }
 
-std::string direction_in_words(const Vector6& d) {
-  return fmt::format("translation ({:.3f}, {:.3f}, {:.3f}) m with rotation ({:.3f}, {:.3f}, {:.3f}) rad", d(0), d(1),
-                     d(2), d(3), d(4), d(5));
+/// Rotations weighed so that forces and moments of a desk-top device compare: 0.1 m.
+Vector6 weights() {
+  Vector6 w = Vector6::Ones();
+  w.tail<3>().setConstant(10);
+  return w;
 }
 
-/// K t = F; where the legs leave a motion free, the smallest t, provided that the load does not drive that motion.
-Vector6 displaced(const Matrix6& K, const Vector6& F) {
-  Vector6 weight = Vector6::Ones();  // lengths in decimetres make forces and moments of a desk-top device comparable
-  weight.tail<3>().setConstant(10);
-  const Matrix6 scaled = weight.asDiagonal() * K * weight.asDiagonal();
+std::string free_motion(const Matrix6& scaled) {
+  const Vector6 d = weights().cwiseProduct(Eigen::JacobiSVD<Matrix6>(scaled, Eigen::ComputeFullV).matrixV().col(5));
+  const Vector3 v = d.head<3>(), w = d.tail<3>();
+  if (w.norm() < 1e-6 * v.norm())
+    return fmt::format("translation along ({:.3f}, {:.3f}, {:.3f})", v(0) / v.norm(), v(1) / v.norm(), v(2) / v.norm());
+  const Vector3 through = 1e3 * w.cross(v) / w.squaredNorm();  // from T
+  return fmt::format(
+      "rotation about ({:.3f}, {:.3f}, {:.3f}) through the tool point + ({:.4g}, {:.4g}, {:.4g}) mm, advancing {:.4g} "
+      "mm "
+      "per rad",
+      w(0) / w.norm(), w(1) / w.norm(), w(2) / w.norm(), through(0), through(1), through(2),
+      1e3 * w.dot(v) / w.squaredNorm());
+}
+
+/// K t = F. A platform that can move freely is refused whatever the load; only an erratum that takes the moments' arms
+/// away is solved for the smallest t, provided that the load does not drive the free motion.
+Vector6 displaced(const Matrix6& K, const Vector6& F, const AsPrinted& p) {
+  const Matrix6 scaled = weights().asDiagonal() * K * weights().asDiagonal();
   Eigen::CompleteOrthogonalDecomposition<Matrix6> cod;
   cod.setThreshold(1e-13);
   cod.compute(scaled);
-  const Vector6 f = weight.cwiseProduct(F), x = cod.solve(f);
-  if (cod.rank() < 6 && (scaled * x - f).norm() > 1e-9 * f.norm()) {
-    const Vector6 free = weight.cwiseProduct((f - scaled * x).normalized());
-    throw ModelError("the platform cannot stand: no leg resists the motion " + direction_in_words(free / free.norm()));
-  }
-  return weight.cwiseProduct(x);
+  const Vector6 f = weights().cwiseProduct(F), x = cod.solve(f);
+  const bool driven = (scaled * x - f).norm() > 1e-9 * f.norm();
+  if (cod.rank() < 6 && (driven || !p.count(Erratum::tcp_transfer)))
+    throw ModelError("the platform cannot stand: the legs do not resist its " + free_motion(scaled));
+  return weights().cwiseProduct(x);
 }
 
 }  // namespace
@@ -89,7 +104,7 @@ AnalyticSolution AnalyticModel::solve(const Vector6& F) const {
       K += chains_[i].N * legs[i].G_inverse * chains_[i].N.transpose();
       rest -= chains_[i].N * legs[i].offset;
     }
-    t = displaced(K, rest);
+    t = displaced(K, rest, as_printed_);
     double change = 0, size = 0;
     for (std::size_t i = 0; i < chains_.size(); ++i) {
       const VectorX next = legs[i].G_inverse * (chains_[i].N.transpose() * t) + legs[i].offset;

@@ -29,7 +29,8 @@ class AnalyticModel {
   const std::vector<Chain>& chains() const { return chains_; }
 
   /// Legs' forces and the platform's displacement in equilibrium, contacts at their load: Newton on the legs' forces.
-  /// Throws ModelError when the legs leave the platform free in a direction of the load.
+  /// Throws ModelError naming the motion when the legs leave the platform free to move, whatever the
+  /// load.
   AnalyticSolution solve(const Vector6& F_T_W) const;
 
   /// Tangent stiffness at T in the solution's state.

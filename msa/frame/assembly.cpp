@@ -67,12 +67,12 @@ int position(const SparsePattern& p, int row, int column) {
 VectorX beam_forces(const Model& m, const VectorX& u) {
   VectorX f = VectorX::Zero(m.dofs());
   for (const Beam& beam : m.beams) {
-    const Vector12 pull = stiffness(beam) * end_displacements(beam, u);
+    const Vector12 pulls = pull(beam, end_displacements(beam, u));
     if (beam.relative < 0) {
-      f.segment<6>(6 * beam.a) += pull.head<6>();
-      f.segment<6>(6 * beam.b) += pull.tail<6>();
+      f.segment<6>(6 * beam.a) += pulls.head<6>();
+      f.segment<6>(6 * beam.b) += pulls.tail<6>();
     } else {
-      f.segment<6>(beam.relative) += pull.tail<6>();
+      f.segment<6>(beam.relative) += pulls.tail<6>();
     }
   }
   return f;

@@ -19,10 +19,33 @@ void add_axial(Matrix12& K, double k, int a) {
   K(a, a + 6) = K(a + 6, a) = -k;
 }
 
-Matrix12 to_local(const Matrix3& R_WM) {
-  Matrix12 X = Matrix12::Zero();
-  for (int i = 0; i < 12; i += 3) X.block<3, 3>(i, i) = R_WM.transpose();
-  return X;
+/// Forces and couples of bending in one plane for v_a, θ_a, v_b, θ_b: the rows of add_bending times the displacements.
+void bend(Vector12& f, const Vector12& d, double EI, double GAs, double L, int va, int ta, double sign) {
+  const int vb = va + 6, tb = ta + 6;
+  const double phi = 12 * EI / (GAs * L * L), c = EI / ((1 + phi) * L * L * L);
+  const double shear = c * (12 * (d(va) - d(vb)) + sign * 6 * L * (d(ta) + d(tb)));
+  const double couple = sign * 6 * L * c * (d(va) - d(vb));
+  f(va) = shear;
+  f(vb) = -shear;
+  f(ta) = couple + c * L * L * ((4 + phi) * d(ta) + (2 - phi) * d(tb));
+  f(tb) = couple + c * L * L * ((2 - phi) * d(ta) + (4 + phi) * d(tb));
+}
+
+Vector12 turned(const Matrix3& R, const Vector12& d) {
+  Vector12 out;
+  for (int i = 0; i < 12; i += 3) out.segment<3>(i).noalias() = R * d.segment<3>(i);
+  return out;
+}
+
+Vector12 local_pull(const BeamRigidity& r, double L, const Vector12& d) {
+  Vector12 f;
+  f(0) = r.EA / L * (d(0) - d(6));
+  f(3) = r.GJ / L * (d(3) - d(9));
+  f(6) = -f(0);
+  f(9) = -f(3);
+  bend(f, d, r.EIz, r.GAs_y, L, 1, 5, +1);
+  bend(f, d, r.EIy, r.GAs_z, L, 2, 4, -1);
+  return f;
 }
 
 }  // namespace
@@ -37,9 +60,17 @@ Matrix12 local_stiffness(const BeamRigidity& r, double L) {
 }
 
 Matrix12 stiffness(const Beam& beam) {
-  const Matrix12 X = to_local(beam.R_WM);
-  return X.transpose() * local_stiffness(beam.rigidity, beam.length) * X;
+  const Matrix12 local = local_stiffness(beam.rigidity, beam.length);
+  Matrix12 K;
+  for (int j = 0; j < 12; j += 3)
+    for (int i = 0; i < 12; i += 3) {
+      const Matrix3 turned_once = beam.R_WM * local.block<3, 3>(i, j);
+      K.block<3, 3>(i, j).noalias() = turned_once * beam.R_WM.transpose();
+    }
+  return K;
 }
+
+Vector12 pull(const Beam& beam, const Vector12& d_W) { return turned(beam.R_WM, end_forces(beam, d_W)); }
 
 Vector12 end_displacements(const Beam& beam, const VectorX& u) {
   Vector12 d;
@@ -51,7 +82,7 @@ Vector12 end_displacements(const Beam& beam, const VectorX& u) {
 }
 
 Vector12 end_forces(const Beam& beam, const Vector12& d_W) {
-  return local_stiffness(beam.rigidity, beam.length) * (to_local(beam.R_WM) * d_W);
+  return local_pull(beam.rigidity, beam.length, turned(beam.R_WM.transpose(), d_W));
 }
 
 }  // namespace deflect::frame

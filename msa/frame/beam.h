@@ -34,6 +34,9 @@ Matrix12 local_stiffness(const BeamRigidity&, double length);
 /// The same in base axes.
 Matrix12 stiffness(const Beam&);
 
+/// stiffness(beam) · d without forming the matrix: forces on the ends in base axes for displacements in base axes.
+Vector12 pull(const Beam&, const Vector12& d_W);
+
 /// [u_a; θ_a; u_b; θ_b] of a structure's displacements u; where the beam has its own relative motion, that motion with
 /// a at rest, which strains it alike.
 Vector12 end_displacements(const Beam&, const VectorX& u);

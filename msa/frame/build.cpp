@@ -42,6 +42,7 @@ struct Pending {
   Vector3 p;
   const PlacedJoint* joint;  // nullptr: rigid
   std::string name;
+  bool ends_leg = false;
 };
 
 class Builder {
@@ -78,18 +79,20 @@ class Builder {
       }
     }
     attach(to, model.nodes[static_cast<std::size_t>(to)].position);
+    pending_.back().ends_leg = true;
   }
 
-  std::vector<std::pair<int, int>> finish() {
-    std::vector<std::pair<int, int>> arms;
+  void finish(MechanismModel& out) {
     const auto position = [this](int node) { return model.nodes[static_cast<std::size_t>(node)].position; };
     for (const Pending& p : pending_) {
-      if ((position(p.a) - position(p.b)).norm() > 1e-9) arms.emplace_back(p.a, p.b);
+      if ((position(p.a) - position(p.b)).norm() > 1e-9) out.arms.emplace_back(p.a, p.b);
+      const std::size_t constraints = model.constraints.size(), springs = model.springs.size();
       model.connect(p.a, p.b, p.p, p.joint ? p.joint->R_WJ : Matrix3::Identity(),
                     p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,
                     p.joint ? p.joint->part : "");
+      if (p.ends_leg) out.attachments.push_back({constraints, model.constraints.size(), springs, model.springs.size()});
     }
-    return arms;
+    out.model = std::move(model);
   }
 
   Model model;
@@ -120,27 +123,25 @@ MechanismModel build(const Configuration& c, const MemberDivision& division) {
   Builder b(division);
   MechanismModel out;
   out.ground = b.body("ground", c.base.p_W);
-  const int base = rigid(c.base) ? out.ground : b.body("base", c.base.p_W);
+  out.base = rigid(c.base) ? out.ground : b.body("base", c.base.p_W);
   out.platform = b.body("platform", c.pose.p_WT);
   out.tool = rigid(c.tool) ? out.platform : b.body("tool", c.tool.p_W);
-  if (base != out.ground) b.joint(out.ground, base, c.base, "base");
+  if (out.base != out.ground) b.joint(out.ground, out.base, c.base, "base");
   if (out.tool != out.platform) b.joint(out.platform, out.tool, c.tool, "tool");
-  for (const PlacedLeg& leg : c.legs) b.chain(leg, base, out.platform);
+  for (const PlacedLeg& leg : c.legs) b.chain(leg, out.base, out.platform);
   b.model.fix(out.ground, "ground");
-  out.arms = b.finish();
-  out.model = std::move(b.model);
+  b.finish(out);
   return out;
 }
 
 MechanismModel build_leg(const Configuration& c, std::size_t leg, const MemberDivision& division) {
   Builder b(division);
   MechanismModel out;
-  out.ground = b.body("ground", c.base.p_W);
+  out.ground = out.base = b.body("ground", c.base.p_W);
   out.platform = out.tool = b.body("platform", c.pose.p_WT);
   b.chain(c.legs[leg], out.ground, out.platform);
   b.model.fix(out.ground, "ground");
-  out.arms = b.finish();
-  out.model = std::move(b.model);
+  b.finish(out);
   return out;
 }
 

@@ -18,10 +18,16 @@ using MemberDivision = std::map<std::string, std::vector<double>>;
 struct MechanismModel {
   Model model;
   int ground = 0;    ///< fixed
+  int base = 0;      ///< the base's body; the ground where the base is rigid
   int platform = 0;  ///< at T, the platform's body
   int tool = 0;      ///< at T, behind the tool's joint
   /// Pairs of nodes that a rigid arm of a body lies between; for pictures.
   std::vector<std::pair<int, int>> arms;
+  /// By leg, what attaches it to the platform: ranges [first, last) of the model's constraints and springs.
+  struct Attachment {
+    std::size_t first_constraint = 0, last_constraint = 0, first_spring = 0, last_spring = 0;
+  };
+  std::vector<Attachment> attachments;
 };
 
 /// World, base joint, legs, platform, tool joint. Bodies are nodes with lever arms; joints between a member and a body

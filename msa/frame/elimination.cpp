@@ -4,39 +4,70 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <utility>
 
 #include "msa/base/error.h"
 
 namespace deflect::frame {
 namespace {
 
-using Expression = std::map<int, double>;  // freedoms, and constraint values numbered after them
+/// A linear form being worked on: values by index (freedoms, then constraint values) and the indices that were touched.
+class Expression {
+ public:
+  explicit Expression(std::size_t size) : values_(size, 0) {}
 
-/// Replaces eliminated freedoms by what they were eliminated to, until none is left.
-void substitute(Expression& e, const std::vector<Expression>& rows, const std::vector<char>& eliminated) {
-  const auto n = static_cast<int>(eliminated.size());
-  for (bool again = true; again;) {
-    again = false;
-    for (auto it = e.begin(); it != e.end() && it->first < n;) {
-      if (!eliminated[static_cast<std::size_t>(it->first)]) {
-        ++it;
-        continue;
-      }
-      const auto [dof, factor] = *it;
-      e.erase(it);
-      for (const auto& [index, c] : rows[static_cast<std::size_t>(dof)]) e[index] += factor * c;
-      again = true;
-      break;
+  void add(int index, double value) {
+    double& v = values_[static_cast<std::size_t>(index)];
+    if (v == 0) touched_.push_back(index);
+    v += value;
+  }
+  double take(int index) { return std::exchange(values_[static_cast<std::size_t>(index)], 0); }
+  double at(int index) const { return values_[static_cast<std::size_t>(index)]; }
+
+  /// Replaces eliminated freedoms by what they were eliminated to, until none is left: touched_ grows as it is walked.
+  void substitute(const std::vector<LinearForm>& rows, const std::vector<char>& eliminated) {
+    for (std::size_t i = 0; i < touched_.size(); ++i) {
+      const auto dof = static_cast<std::size_t>(touched_[i]);
+      if (dof >= eliminated.size() || !eliminated[dof]) continue;
+      const double factor = take(touched_[i]);
+      if (factor == 0) continue;
+      for (const Term& t : rows[dof]) add(t.dof, factor * t.coefficient);
     }
   }
-}
+
+  /// The terms that are not zero, ascending; the expression is empty afterwards.
+  LinearForm drain() {
+    std::sort(touched_.begin(), touched_.end());
+    LinearForm form;
+    for (const int index : touched_)
+      if (const double value = take(index); value != 0) form.push_back({index, value});
+    touched_.clear();
+    return form;
+  }
+
+ private:
+  std::vector<double> values_;
+  std::vector<int> touched_;
+};
 
 struct Weights {
   int nodal;      // freedoms of nodes
   double length;  // a rotation of 1 rad counts as this many metres
   double operator()(int dof, double c) const { return std::abs(c) / (dof < nodal && dof % 6 >= 3 ? length : 1); }
 };
+
+/// The freedom to eliminate: the wanted one where it may, else of those with a comparable weight the least connected.
+Term pivot_of(const LinearForm& form, int wanted, int n, double largest, const Weights& weight,
+              const std::vector<int>& uses) {
+  for (const Term& t : form)
+    if (t.dof == wanted && weight(t.dof, t.coefficient) >= 1e-6 * largest) return t;
+  Term best{-1, 0};
+  for (const Term& t : form) {
+    if (t.dof >= n || weight(t.dof, t.coefficient) < 0.3 * largest) continue;
+    if (best.dof < 0 || uses[static_cast<std::size_t>(t.dof)] < uses[static_cast<std::size_t>(best.dof)]) best = t;
+  }
+  return best;
+}
 
 }  // namespace
 
@@ -63,54 +94,49 @@ Elimination eliminate(const Model& m) {
     for (const Term& t : c.form) ++uses[static_cast<std::size_t>(t.dof)];
 
   Elimination out;
-  std::vector<Expression> rows(size);
+  std::vector<LinearForm> rows(size);
   std::vector<char> eliminated(size, 0);
   std::vector<int> order;
+  Expression work(size + m.constraints.size());
   for (std::size_t k = 0; k < m.constraints.size(); ++k) {
-    Expression e;
     double scale = 0;
     for (const Term& t : m.constraints[k].form) {
-      e[t.dof] += t.coefficient;
+      work.add(t.dof, t.coefficient);
       scale = std::max(scale, weight(t.dof, t.coefficient));
     }
-    e[n + static_cast<int>(k)] = -1;
-    substitute(e, rows, eliminated);
+    work.add(n + static_cast<int>(k), -1);
+    work.substitute(rows, eliminated);
+    LinearForm form = work.drain();
+    std::erase_if(form, [&](const Term& t) {  // what cancelled but for rounding
+      return t.dof < n && weight(t.dof, t.coefficient) <= 1e-13 * scale;
+    });
     double largest = 0;
-    for (auto it = e.begin(); it != e.end() && it->first < n;) {
-      const double w = weight(it->first, it->second);
-      largest = std::max(largest, w);
-      it = w <= 1e-13 * scale ? e.erase(it) : std::next(it);  // what cancelled but for rounding
-    }
+    for (const Term& t : form)
+      if (t.dof < n) largest = std::max(largest, weight(t.dof, t.coefficient));
     if (largest <= 1e-9 * scale) {
       Redundancy r{static_cast<int>(k), {}};
-      for (const auto& [index, c] : e)
-        if (index >= n && index != n + static_cast<int>(k) && std::abs(c) > 1e-12)
-          r.implied_by.push_back({index - n, c});
+      for (const Term& t : form)
+        if (t.dof >= n && t.dof != n + static_cast<int>(k) && std::abs(t.coefficient) > 1e-12)
+          r.implied_by.push_back({t.dof - n, t.coefficient});
       out.redundant.push_back(std::move(r));
       out.pivot.push_back(-1);
       continue;
     }
-    int pivot = -1;
-    if (const auto wanted = e.find(m.constraints[k].eliminates);
-        wanted != e.end() && weight(wanted->first, wanted->second) >= 1e-6 * largest)
-      pivot = wanted->first;
-    const bool chosen = pivot >= 0;
-    for (const auto& [dof, c] : e) {
-      if (dof >= n || chosen) break;
-      if (weight(dof, c) < 0.3 * largest) continue;
-      if (pivot < 0 || uses[static_cast<std::size_t>(dof)] < uses[static_cast<std::size_t>(pivot)]) pivot = dof;
-    }
-    const double c = e[pivot];
-    e.erase(pivot);
-    for (auto& [index, value] : e) value /= -c;
-    rows[static_cast<std::size_t>(pivot)] = std::move(e);
-    eliminated[static_cast<std::size_t>(pivot)] = 1;
-    order.push_back(pivot);
-    out.pivot.push_back(pivot);
+    const Term pivot = pivot_of(form, m.constraints[k].eliminates, n, largest, weight, uses);
+    std::erase_if(form, [&](const Term& t) { return t.dof == pivot.dof; });
+    for (Term& t : form) t.coefficient /= -pivot.coefficient;
+    rows[static_cast<std::size_t>(pivot.dof)] = std::move(form);
+    eliminated[static_cast<std::size_t>(pivot.dof)] = 1;
+    order.push_back(pivot.dof);
+    out.pivot.push_back(pivot.dof);
   }
   // An expression may name freedoms that were eliminated later; from the last to the first all become final.
-  for (auto it = order.rbegin(); it != order.rend(); ++it)
-    substitute(rows[static_cast<std::size_t>(*it)], rows, eliminated);
+  for (auto it = order.rbegin(); it != order.rend(); ++it) {
+    LinearForm& row = rows[static_cast<std::size_t>(*it)];
+    for (const Term& t : row) work.add(t.dof, t.coefficient);
+    work.substitute(rows, eliminated);
+    row = work.drain();
+  }
 
   std::vector<int> q_of_dof(size, -1);
   for (int dof = 0; dof < n; ++dof)
@@ -125,11 +151,11 @@ Elimination eliminate(const Model& m) {
       out.T[dof] = {{q_of_dof[dof], 1.0}};
       continue;
     }
-    for (const auto& [index, c] : rows[dof])
-      if (index < n)
-        out.T[dof].push_back({q_of_dof[static_cast<std::size_t>(index)], c});
+    for (const Term& t : rows[dof])
+      if (t.dof < n)
+        out.T[dof].push_back({q_of_dof[static_cast<std::size_t>(t.dof)], t.coefficient});
       else
-        out.G[dof].push_back({index - n, c});
+        out.G[dof].push_back({t.dof - n, t.coefficient});
   }
   return out;
 }

@@ -6,31 +6,62 @@
 namespace deflect::frame {
 namespace {
 
-/// Reactions of a node whose six displacements are prescribed, to unit values of each: its tangent stiffness.
-Matrix6 stiffness_at(const Model& free_model, int node, const VectorX& spring_tangents) {
-  Model held = free_model;
-  const auto first = static_cast<Eigen::Index>(held.constraints.size());
-  held.fix(node, "tool");
-  Solver solver(held);
-  MatrixX values = MatrixX::Zero(first + 6, 6);
-  values.bottomRows<6>().setIdentity();
-  const MatrixX loads = MatrixX::Zero(solver.model().dofs(), 6);
-  const MatrixX U = solver.linear(spring_tangents, loads, values);
-  Model tangent = solver.model();
-  for (std::size_t i = 0; i < tangent.springs.size(); ++i)
-    tangent.springs[i].law = LinearSpring{spring_tangents(static_cast<Eigen::Index>(i))};
-  Matrix6 K;
-  for (int i = 0; i < 6; ++i)
-    K.col(i) = constraint_forces(tangent, solver.elimination(), U.col(i), loads.col(i)).segment<6>(first);
-  // Reactions are differences of forces as large as the stiffest member's: below their rounding K is zero, which is
-  // what an unloaded contact leaves of a leg.
-  double stiffest = 0;
-  for (const Beam& beam : held.beams) stiffest = std::max(stiffest, beam.rigidity.EA / beam.length);
-  Vector6 per_length = Vector6::Ones();
-  per_length.tail<3>().setConstant(1 / characteristic_length(held));
-  const double size = (per_length.asDiagonal() * K * per_length.asDiagonal()).cwiseAbs().maxCoeff();
-  return size < 1e-13 * stiffest ? Matrix6(Matrix6::Zero()) : K;
-}
+/// A node held at unit displacements of its six freedoms in turn, springs linear at their tangents.
+struct Held {
+  Held(const MechanismModel& mechanism, int node, const VectorX& tangents)
+      : solver(held(mechanism.model, node)), first(static_cast<Eigen::Index>(mechanism.model.constraints.size())) {
+    const Model& m = solver.model();
+    MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(m.constraints.size()), 6);
+    values.middleRows<6>(first).setIdentity();
+    const MatrixX U = solver.linear(tangents, MatrixX::Zero(m.dofs(), 6), values);
+    MatrixX pulls(m.dofs(), 6);
+    for (int i = 0; i < 6; ++i) pulls.col(i) = tangent_forces(m, U.col(i), tangents);
+    forces = constraint_forces(m, solver.elimination(), pulls);
+    elongations.resize(static_cast<Eigen::Index>(m.springs.size()), 6);
+    for (std::size_t s = 0; s < m.springs.size(); ++s)
+      for (int i = 0; i < 6; ++i)
+        elongations(static_cast<Eigen::Index>(s), i) = evaluate(m.springs[s].elongation, U.col(i));
+  }
+
+  static Model held(Model m, int node) {
+    m.fix(node, "tool");
+    return m;
+  }
+
+  /// What the held node needs: its stiffness. Reactions are differences of forces as large as the stiffest member's:
+  /// below their rounding K is zero, which is what an unloaded contact leaves of a leg.
+  Matrix6 reactions() const { return above_rounding(forces.middleRows<6>(first)); }
+
+  /// Its part by way of one attachment to the body of `node`: spring forces less constraint forces, Cᵀλ = f_int.
+  Matrix6 reactions(const MechanismModel::Attachment& a, int node, const VectorX& tangents) const {
+    Matrix6 K = Matrix6::Zero();
+    const auto add = [&](const LinearForm& form, const Eigen::RowVectorXd& pull) {
+      for (const Term& t : form)
+        if (t.dof / 6 == node && t.dof < 6 * static_cast<int>(solver.model().nodes.size()))
+          K.row(t.dof % 6) += t.coefficient * pull;
+    };
+    for (std::size_t k = a.first_constraint; k < a.last_constraint; ++k)
+      add(solver.model().constraints[k].form, -forces.row(static_cast<Eigen::Index>(k)));
+    for (std::size_t s = a.first_spring; s < a.last_spring; ++s) {
+      const auto i = static_cast<Eigen::Index>(s);
+      add(solver.model().springs[s].elongation, tangents(i) * elongations.row(i));
+    }
+    return above_rounding(K);
+  }
+
+  Matrix6 above_rounding(const Matrix6& K) const {
+    double stiffest = 0;
+    for (const Beam& beam : solver.model().beams) stiffest = std::max(stiffest, beam.rigidity.EA / beam.length);
+    Vector6 per_length = Vector6::Ones();
+    per_length.tail<3>().setConstant(1 / characteristic_length(solver.model()));
+    const double size = (per_length.asDiagonal() * K * per_length.asDiagonal()).cwiseAbs().maxCoeff();
+    return size < 1e-13 * stiffest ? Matrix6(Matrix6::Zero()) : K;
+  }
+
+  Solver solver;
+  Eigen::Index first;  // of the six constraints that hold the node
+  MatrixX forces, elongations;
+};
 
 }  // namespace
 
@@ -51,22 +82,32 @@ MsaSolution MsaModel::solve(const Vector6& F_T_W) {
   return out;
 }
 
-Matrix6 MsaModel::stiffness(const Solution& state) {
-  return stiffness_at(built_.model, built_.tool, state.spring_tangents);
+MsaModel::Stiffness MsaModel::stiffness(const Solution& state) const {
+  const Held tool(built_, built_.tool, state.spring_tangents);
+  Stiffness out{tool.reactions(), {}};
+  const bool legs_stand_alone = built_.base == built_.ground && built_.tool == built_.platform;
+  for (std::size_t leg = 0; leg < configuration_.legs.size(); ++leg) {
+    if (legs_stand_alone) {  // nothing between the ground and the tool but the legs, side by side
+      out.legs.push_back(tool.reactions(built_.attachments[leg], built_.tool, state.spring_tangents));
+    } else {
+      const MechanismModel one = build_leg(configuration_, leg, division_);
+      out.legs.push_back(Held(one, one.tool, tangents_of(one.model, state)).reactions());
+    }
+  }
+  return out;
 }
 
-Matrix6 MsaModel::leg_stiffness(std::size_t leg, const Solution& state) const {
-  const MechanismModel one = build_leg(configuration_, leg, division_);
+VectorX MsaModel::tangents_of(const Model& leg, const Solution& state) const {
   // The leg's springs keep their names, so their state is found in the whole mechanism by name.
-  VectorX tangents(static_cast<Eigen::Index>(one.model.springs.size()));
-  for (std::size_t i = 0; i < one.model.springs.size(); ++i) {
+  VectorX tangents(static_cast<Eigen::Index>(leg.springs.size()));
+  for (std::size_t i = 0; i < leg.springs.size(); ++i) {
     const auto& springs = built_.model.springs;
-    const auto found = std::find_if(springs.begin(), springs.end(),
-                                    [&](const Spring& s) { return s.name == one.model.springs[i].name; });
+    const auto found =
+        std::find_if(springs.begin(), springs.end(), [&](const Spring& s) { return s.name == leg.springs[i].name; });
     if (found == springs.end()) throw std::logic_error("a leg has a spring that its mechanism lacks");
     tangents(static_cast<Eigen::Index>(i)) = state.spring_tangents(found - springs.begin());
   }
-  return stiffness_at(one.model, one.tool, tangents);
+  return tangents;
 }
 
 Matrix6X MsaModel::passive_twists(std::size_t leg) const {

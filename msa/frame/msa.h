@@ -33,18 +33,23 @@ class MsaModel {
 
   MsaSolution solve(const Vector6& F_T_W);
 
-  /// Tangent stiffness at T of the structure in a state: reactions to unit displacements of T. As computed, not
-  /// symmetrised. A direction in which nothing holds T has zero stiffness.
-  Matrix6 stiffness(const Solution& state);
+  /// Tangent stiffness at T of the structure in a state, as computed, not symmetrised, and of each leg alone at the
+  /// platform's T: reactions to unit displacements. A direction in which nothing holds T has zero stiffness.
+  struct Stiffness {
+    Matrix6 K;
+    std::vector<Matrix6> legs;
+  };
+  Stiffness stiffness(const Solution& state) const;
 
-  /// Tangent stiffness of one leg alone at T, and the twists of its passive joints there (columns), in the same state.
-  Matrix6 leg_stiffness(std::size_t leg, const Solution& state) const;
+  /// Twists at T of a leg's passive joints (columns).
   Matrix6X passive_twists(std::size_t leg) const;
 
   /// Reaction of the world on the base at the base origin, [f; m].
   Vector6 base_reaction(const Vector6& F_T_W, const Solution& state) const;
 
  private:
+  VectorX tangents_of(const Model& leg, const Solution& state) const;
+
   Configuration configuration_;
   MemberDivision division_;
   MechanismModel built_;

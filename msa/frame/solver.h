@@ -70,6 +70,9 @@ class Solver {
 /// form. Zero for redundant constraints. Units N or Nm by form.
 VectorX constraint_forces(const Model&, const Elimination&, const VectorX& u, const VectorX& load);
 
+/// The same for columns of forces f_int(u) − f that constraints balance.
+MatrixX constraint_forces(const Model&, const Elimination&, const MatrixX& unbalanced);
+
 /// Total ½∫ energies by part: beams ½ dᵀ K d, springs ∫ F dδ; in order of first appearance. J.
 std::vector<std::pair<std::string, double>> energies(const Model&, const VectorX& u);
 

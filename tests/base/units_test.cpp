@@ -23,7 +23,12 @@ constexpr Dimension all[] = {Dimension::none,
                              Dimension::moment,
                              Dimension::stress,
                              Dimension::stiffness,
-                             Dimension::rotational_stiffness};
+                             Dimension::rotational_stiffness,
+                             Dimension::line_load,
+                             Dimension::density,
+                             Dimension::thermal_expansion,
+                             Dimension::temperature,
+                             Dimension::acceleration};
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -52,21 +57,29 @@ TEST(Units, TextsGiveSI) {
 
 TEST(Units, EveryUnitOfADimensionMeasuresTheSame) {
   const std::pair<Dimension, std::vector<const char*>> same[] = {
-      {Dimension::length, {"25.4 mm", "0.0254 m", "2.54 cm", "25400 um", "1 in"}},
+      {Dimension::length, {"25.4 mm", "0.0254 m", "2.54 cm", "25400 um", "1 in", "0.083333333333333333 ft"}},
       {Dimension::angle, {"0.5 rad", "500 mrad", "28.64788975654116 deg"}},
       {Dimension::area, {"645.16 mm^2", "0.00064516 m^2", "1 in^2"}},
       {Dimension::second_moment, {"416231.4256 mm^4", "4.162314256e-7 m^4", "41.62314256 cm^4", "1 in^4"}},
       {Dimension::force, {"4448.2216152605 N", "4.4482216152605 kN", "1000 lbf", "1 kip"}},
       {Dimension::moment,
-       {"112.98482902761670 Nmm", "0.11298482902761670 Nm", "1.1298482902761670e-4 kNm", "1 lbf*in"}},
+       {"112.98482902761670 Nmm", "0.11298482902761670 Nm", "1.1298482902761670e-4 kNm", "1 lbf*in", "1e-3 kip*in"}},
       {Dimension::stress,
        {"6.894757293168361e-6 GPa", "6.894757293168361e-3 MPa", "6894.757293168361 Pa", "6.894757293168361e-3 N/mm^2",
-        "1 psi"}},
+        "1 psi", "1e-3 ksi"}},
       {Dimension::stiffness,
        {"0.17512683524647636 N/mm", "175.12683524647636 N/m", "1.7512683524647636e-4 kN/mm",
-        "1.7512683524647636e-4 N/um", "1 lbf/in"}},
+        "1.7512683524647636e-4 N/um", "1 lbf/in", "1e-3 kip/in"}},
       {Dimension::rotational_stiffness,
-       {"112.98482902761670 Nmm/rad", "0.11298482902761670 Nm/rad", "1.1298482902761670e-4 kNm/rad", "1 lbf*in/rad"}},
+       {"112.98482902761670 Nmm/rad", "0.11298482902761670 Nm/rad", "1.1298482902761670e-4 kNm/rad", "1 lbf*in/rad",
+        "1e-3 kip*in/rad"}},
+      {Dimension::line_load,
+       {"0.17512683524647636 N/mm", "175.12683524647636 N/m", "0.17512683524647636 kN/m", "1 lbf/in", "12 lbf/ft",
+        "1e-3 kip/in", "12e-3 kip/ft"}},
+      {Dimension::density, {"7850 kg/m^3", "7.85e-6 kg/mm^3", "7.85 g/cm^3"}},
+      {Dimension::thermal_expansion, {"12e-6 1/K"}},
+      {Dimension::temperature, {"20 K"}},
+      {Dimension::acceleration, {"0.0254 m/s^2", "25.4 mm/s^2", "1 in/s^2"}},
   };
   for (const auto& [dimension, texts] : same) {
     EXPECT_EQ(texts.size(), units_of(dimension).size()) << describe(dimension) << ": a unit has no test";

@@ -1,0 +1,96 @@
+// A plain frame: what a frame file says, as data without methods. SI units throughout, base axes unless a field says
+// otherwise.
+//
+// A member's axes: x runs from `from` to `to`; y lies in the plane of x and the vector `y_axis`, on its side; z = x ×
+// y. Without y_axis that vector is the base z (local y points up), and the base x for a member within 1e-3 rad of
+// vertical.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "msa/base/spatial.h"
+#include "msa/mechanism/description.h"
+
+namespace deflect::frame {
+
+inline constexpr std::array<const char*, 6> node_freedoms = {"ux", "uy", "uz", "rx", "ry", "rz"};    ///< base axes
+inline constexpr std::array<const char*, 6> member_freedoms = {"tx", "ty", "tz", "rx", "ry", "rz"};  ///< member axes
+inline constexpr std::array<const char*, 6> wrench_names = {"fx", "fy", "fz", "mx", "my", "mz"};
+
+using Freedoms = std::array<bool, 6>;
+using FreedomValues = std::array<std::optional<double>, 6>;
+
+/// E and G of a frame's material are independent: members need no isotropy.
+struct FrameMaterial {
+  Material elastic;
+  std::optional<double> density;    ///< kg/m³, for self-weight
+  std::optional<double> expansion;  ///< 1/K, for temperature
+};
+
+/// bending_factor multiplies EIy and EIz. A released freedom of an end is not passed on to the node.
+struct FrameMember {
+  std::string from, to, section, material;
+  BeamTheory beam = BeamTheory::euler_bernoulli;
+  Vector3 y_axis = Vector3::Zero();  ///< zero: the rule above
+  Freedoms release_from{}, release_to{};
+  double bending_factor = 1;
+};
+
+/// Between the body of `node` and the ground, or the body of the node `to`; it sits at `node`, and an arm that is rigid
+/// leads to `to` where that stands elsewhere. N/m, Nm/rad, base axes.
+struct FrameSpring {
+  std::string node, to;  ///< to: "" for the ground
+  FreedomValues stiffness;
+};
+
+/// `nodes` follow the body of `master` in these freedoms, lever arms included.
+struct RigidLink {
+  std::string master;
+  std::vector<std::string> nodes;
+  Freedoms freedoms{true, true, true, true, true, true};
+};
+
+/// Σ factor · arm · u = 0. `arm` (m) makes a length of a rotation; either all terms are lengths, or all are angles.
+struct ConstraintTerm {
+  std::string node;
+  int freedom = 0;
+  double factor = 1;
+  std::optional<double> arm;
+};
+struct FrameConstraint {
+  std::vector<ConstraintTerm> terms;
+};
+
+/// Constant along the member, per length of the member, in base axes or in the member's.
+struct LineLoad {
+  Vector3 q = Vector3::Zero();  ///< N/m
+  bool member_axes = false;
+};
+
+struct LoadCase {
+  Named<Vector6> nodes;                ///< wrench [f; m] at a node, base axes
+  Named<LineLoad> members;             ///< by member
+  Named<double> temperature;           ///< K above the unstrained state, by member
+  Vector3 gravity = Vector3::Zero();   ///< m/s², acts on the mass of all members
+  Named<FreedomValues> displacements;  ///< of supported freedoms, by node; m, rad
+};
+
+struct FrameDescription {
+  std::string name, about, source;
+  Named<FrameMaterial> materials;
+  Named<Section> sections;
+  Named<Vector3> nodes;  ///< m
+  Named<FrameMember> members;
+  Named<Freedoms> supports;  ///< fixed freedoms by node
+  Named<FrameSpring> springs;
+  Named<RigidLink> rigid_links;
+  Named<FrameConstraint> constraints;
+  Named<LoadCase> loads;
+  std::set<std::string> ours;  ///< paths of values that carry the tag !ours: assumed, not from the source
+};
+
+}  // namespace deflect::frame

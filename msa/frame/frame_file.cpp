@@ -1,0 +1,30 @@
+#include "msa/frame/frame_file.h"
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/frame/frame_fields.h"
+#include "msa/mechanism/field_reader.h"
+#include "msa/mechanism/field_writer.h"
+
+namespace deflect::frame {
+
+FrameDescription parse_frame(std::string_view yaml, const std::string& origin) {
+  const YamlNode tree = parse_yaml(yaml, origin);
+  if (tree.ours) throw InputError(origin + ": !ours marks single values, not a whole file");
+  FrameDescription f;
+  FieldReader reader(origin);
+  reader.read(tree, [&] { describe(reader, f); });
+  f.ours = reader.ours();
+  return f;
+}
+
+FrameDescription read_frame(const std::filesystem::path& path) { return parse_frame(read_text(path), path.string()); }
+
+std::string write_frame(const FrameDescription& f) {
+  FrameDescription copy = f;
+  FieldWriter writer(f.ours);
+  describe(writer, copy);
+  return block_yaml(stripped(writer.tree()));
+}
+
+}  // namespace deflect::frame

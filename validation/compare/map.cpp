@@ -1,0 +1,287 @@
+#include "validation/compare/map.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <thread>
+
+#include "analytic/model.h"
+#include "msa/base/error.h"
+#include "msa/base/stiffness_checks.h"
+#include "msa/frame/msa.h"
+#include "msa/mechanism/configuration.h"
+#include "validation/compare/theories.h"
+
+namespace deflect {
+namespace {
+
+constexpr std::size_t chunk = 8;  // poses that a thread takes at a time
+
+/// A theory's answer to one load.
+struct State {
+  Vector6 displacement;  // SI
+  Matrix6 K;             // SI, tangent
+};
+
+class AnalyticAtPose {
+ public:
+  explicit AnalyticAtPose(const Configuration& c) : model_(c) {}
+
+  State solve(const Vector6& F, const std::string& where) const {
+    const analytic::AnalyticSolution s = model_.solve(F);
+    if (!s.converged)
+      throw NumericalError(fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})", where,
+                                       s.iterations, s.misfit));
+    const Matrix6 K = model_.stiffness(s);
+    std::vector<LegStiffness> legs;
+    for (std::size_t i = 0; i < model_.chains().size(); ++i)
+      legs.push_back({model_.chains()[i].name, model_.leg_stiffness(i, s), model_.chains()[i].J_q});
+    const StiffnessChecks checks = check_stiffness(K, legs);
+    if (!checks.all())
+      throw ModelError(fmt::format("{}: the analytic stiffness fails a check: {}", where, checks.failure));
+    return {s.displacement, K};
+  }
+
+ private:
+  analytic::AnalyticModel model_;
+};
+
+class MsaAtPose {
+ public:
+  explicit MsaAtPose(const Configuration& c) : configuration_(c), model_(c) {}
+
+  State solve(const Vector6& F, const std::string& where) {
+    const frame::MsaSolution s = model_.solve(F);
+    if (!s.state.converged)
+      throw NumericalError(fmt::format("{}: the MSA did not converge in {} steps (residual {:.3g})", where,
+                                       s.state.iterations, s.state.residual));
+    if (tangents_ && *tangents_ == s.state.spring_tangents) return {s.displacement, K_};  // the same tangent structure
+    const frame::MsaModel::Stiffness stiffness = model_.stiffness(s.state);
+    K_ = stiffness.K;
+    std::vector<LegStiffness> legs;
+    for (std::size_t i = 0; i < configuration_.legs.size(); ++i)
+      legs.push_back({configuration_.legs[i].name, stiffness.legs[i], model_.passive_twists(i)});
+    const StiffnessChecks checks = check_stiffness(K_, legs);
+    if (!checks.all()) throw ModelError(fmt::format("{}: the MSA stiffness fails a check: {}", where, checks.failure));
+    tangents_ = s.state.spring_tangents;
+    return {s.displacement, K_};
+  }
+
+ private:
+  const Configuration& configuration_;
+  frame::MsaModel model_;
+  std::optional<VectorX> tangents_;  // of K_
+  Matrix6 K_ = Matrix6::Zero();
+};
+
+/// (C_δδ)⁻¹ as the Schur complement of the rotations: no inverse of a K that may be singular. N/mm.
+Matrix3 translational(const Matrix6& K_mm) {
+  const Matrix3 K_tt = K_mm.bottomRightCorner<3, 3>();
+  const Matrix3 S =
+      K_mm.topLeftCorner<3, 3>() -
+      K_mm.topRightCorner<3, 3>() * K_tt.completeOrthogonalDecomposition().solve(K_mm.bottomLeftCorner<3, 3>());
+  return (S + S.transpose()) / 2;
+}
+
+/// Widens the extremes by one state.
+void add(MapValues& v, const Matrix6& K_SI, double length_mm) {
+  const Matrix6 K = stiffness_in_mm(K_SI);
+  const Vector3 s = Eigen::SelfAdjointEigenSolver<Matrix3>(translational(K), Eigen::EigenvaluesOnly).eigenvalues();
+  v.smallest_N_mm = std::min(v.smallest_N_mm, s(0));
+  v.largest_N_mm = std::max(v.largest_N_mm, s(2));
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(1 / length_mm);
+  const Matrix6 weighed = weight.asDiagonal() * ((K + K.transpose()) / 2) * weight.asDiagonal();
+  const Vector6 e = Eigen::SelfAdjointEigenSolver<Matrix6>(weighed, Eigen::EigenvaluesOnly).eigenvalues();
+  v.isotropy = std::min(v.isotropy, e(5) > 0 ? std::max(e(0), 0.0) / e(5) : 0.0);
+}
+
+MapValues empty_values() {
+  MapValues v;
+  v.smallest_N_mm = std::numeric_limits<double>::infinity();
+  v.isotropy = 1;
+  return v;
+}
+
+MapValues values_of(const std::vector<State>& states, const MapOptions& o) {
+  MapValues v = empty_values();
+  for (const State& s : states) add(v, s.K, o.length_mm);
+  for (int i = 0; i < 3; ++i) {
+    const Matrix6 K = stiffness_in_mm(states[o.load_N_Nmm ? 0 : static_cast<std::size_t>(i)].K);
+    v.K_ii(i) = K(i, i);
+    v.K_ii(i + 3) = K(i + 3, i + 3);
+  }
+  if (o.load_N_Nmm) {
+    v.compliance_mm_N = translational(stiffness_in_mm(states[0].K)).inverse();
+  } else {
+    for (std::size_t j = 0; j < 3; ++j)
+      v.compliance_mm_N.col(static_cast<Eigen::Index>(j)) = twist_in_mm(states[j].displacement).head<3>() / o.force_N;
+  }
+  v.stiffness_N_mm = v.compliance_mm_N.diagonal().cwiseInverse();
+  return v;
+}
+
+void check_finite(const MapValues& v, const std::string& where, const char* theory) {
+  if (v.compliance_mm_N.allFinite() && v.stiffness_N_mm.allFinite() && v.K_ii.allFinite() &&
+      std::isfinite(v.smallest_N_mm) && std::isfinite(v.largest_N_mm) && std::isfinite(v.isotropy))
+    return;
+  throw ModelError(fmt::format("{}: the {} stiffness is singular: a force there meets no resistance", where, theory));
+}
+
+std::vector<Vector6> loads_of(const MapOptions& o) {
+  if (o.load_N_Nmm) return {wrench_from_mm(*o.load_N_Nmm)};
+  return {o.force_N * Vector6::Unit(0), o.force_N * Vector6::Unit(1), o.force_N * Vector6::Unit(2)};
+}
+
+MapPose map_pose(const Mechanism& m, const MapOptions& o, const std::vector<Vector6>& loads, std::size_t index) {
+  MapPose out;
+  out.pose_mm_deg = o.grid.pose_mm_deg(index);
+  Configuration c;
+  try {
+    c = configure(m, pose_from(out.pose_mm_deg));
+  } catch (const ModelError& e) {
+    out.out_of_reach = e.what();
+    return out;
+  }
+  out.guide_min_mm = std::numeric_limits<double>::infinity();
+  out.guide_max_mm = -out.guide_min_mm;
+  for (const PlacedLeg& leg : c.legs) {
+    const double q = 1e3 * leg.actuator;
+    out.guide_min_mm = std::min(out.guide_min_mm, q);
+    out.guide_max_mm = std::max(out.guide_max_mm, q);
+    out.guide_mean_mm += q / static_cast<double>(c.legs.size());
+  }
+  const std::string where =
+      fmt::format("{} at ({})", m.name, fmt::join(out.pose_mm_deg.data(), out.pose_mm_deg.data() + 6, ", "));
+  std::vector<State> analytic, msa;
+  if (o.analytic) {
+    const AnalyticAtPose theory(c);
+    for (const Vector6& F : loads) analytic.push_back(theory.solve(F, where));
+    out.analytic = values_of(analytic, o);
+    check_finite(*out.analytic, where, "analytic");
+  }
+  if (o.msa) {
+    MsaAtPose theory(c);
+    for (const Vector6& F : loads) msa.push_back(theory.solve(F, where));
+    out.msa = values_of(msa, o);
+    check_finite(*out.msa, where, "MSA");
+  }
+  if (o.analytic && o.msa)
+    for (std::size_t i = 0; i < loads.size(); ++i)
+      out.relative_difference = std::max(
+          out.relative_difference,
+          deflect::relative_difference(twist_in_mm(analytic[i].displacement), twist_in_mm(msa[i].displacement)));
+  return out;
+}
+
+void check(const MapOptions& o) {
+  const char* names[] = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) {
+    const double low = o.grid.low_mm(i), high = o.grid.high_mm(i);
+    const int n = o.grid.counts[static_cast<std::size_t>(i)];
+    if (n < 1) throw InputError(fmt::format("the grid has {} values of {}: at least 1 is wanted", n, names[i]));
+    if (!std::isfinite(low) || !std::isfinite(high) || low > high)
+      throw InputError(fmt::format("the range of {} is {} to {} mm: finite numbers are wanted, the smaller first",
+                                   names[i], low, high));
+    if (n > 1 && low == high)
+      throw InputError(
+          fmt::format("the range of {} is one value, {} mm, and the grid wants {} of them: give 1 or a "
+                      "wider range",
+                      names[i], low, n));
+  }
+  if (o.grid.size() > 10'000'000)
+    throw InputError(fmt::format("the grid has {} poses: at most 10 million are wanted", o.grid.size()));
+  if (!o.grid.tilt_deg.allFinite()) throw InputError("the tilt is not finite");
+  if (!std::isfinite(o.force_N) || o.force_N == 0)
+    throw InputError(fmt::format("the force is {} N: a number other than zero is wanted", o.force_N));
+  if (o.load_N_Nmm && (!o.load_N_Nmm->allFinite() || o.load_N_Nmm->isZero(0)))
+    throw InputError("the load must be finite and other than zero: without load a contact has no stiffness");
+  if (!(o.length_mm > 0) || !std::isfinite(o.length_mm))
+    throw InputError(fmt::format("the characteristic length is {} mm: a positive number is wanted", o.length_mm));
+  if (!o.analytic && !o.msa) throw InputError("a map wants at least one theory");
+  if (o.threads < 0) throw InputError(fmt::format("{} threads: 0 (all) or more are wanted", o.threads));
+}
+
+}  // namespace
+
+std::size_t MapGrid::size() const {
+  std::size_t n = 1;
+  for (const int count : counts) n *= static_cast<std::size_t>(count);
+  return n;
+}
+
+std::size_t MapGrid::index(int i, int j, int k) const {
+  return static_cast<std::size_t>(i) +
+         static_cast<std::size_t>(counts[0]) *
+             (static_cast<std::size_t>(j) + static_cast<std::size_t>(counts[1]) * static_cast<std::size_t>(k));
+}
+
+double MapGrid::coordinate(int axis, int i) const {
+  const int n = counts[static_cast<std::size_t>(axis)];
+  return std::lerp(low_mm(axis), high_mm(axis), n == 1 ? 0.5 : static_cast<double>(i) / (n - 1));
+}
+
+Vector6 MapGrid::pose_mm_deg(std::size_t index) const {
+  Vector6 pose;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<std::size_t>(counts[static_cast<std::size_t>(axis)]);
+    pose(axis) = coordinate(axis, static_cast<int>(index % n));
+    index /= n;
+  }
+  pose.tail<3>() = tilt_deg;
+  return pose;
+}
+
+MapGrid cube_grid(const Mechanism& m, const std::array<int, 3>& counts) {
+  const Vector3 centre = 1e3 * home_pose(m).p_WT;
+  const Vector3 half = Vector3::Constant(1e3 * m.workspace.cube_edge / 2);
+  return {centre - half, centre + half, counts, Vector3::Zero()};
+}
+
+double platform_radius_mm(const Mechanism& m) {
+  return 1e3 * std::visit([](const auto& k) { return k.platform_radius; }, m.kinematics);
+}
+
+StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options) {
+  check(options);
+  StiffnessMap map{m.name, options, std::vector<MapPose>(options.grid.size())};
+  const std::vector<Vector6> loads = loads_of(options);
+  const std::size_t chunks = (map.poses.size() + chunk - 1) / chunk;
+
+  // Chunks are taken in order, so that everything before a failed one has been or is being looked at: the error that
+  // is reported does not depend on the threads.
+  std::atomic<std::size_t> next = 0, done = 0, failed = chunks;
+  std::mutex mutex;
+  std::exception_ptr error;
+  const auto work = [&] {
+    for (std::size_t c = next++; c < failed; c = next++) try {
+        const std::size_t end = std::min((c + 1) * chunk, map.poses.size());
+        for (std::size_t i = c * chunk; i < end; ++i) map.poses[i] = map_pose(m, options, loads, i);
+        const std::size_t now = done += end - c * chunk;
+        if (options.progress) options.progress(now);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (c < failed) {
+          failed = c;
+          error = std::current_exception();
+        }
+      }
+  };
+  const unsigned wanted =
+      options.threads ? static_cast<unsigned>(options.threads) : std::thread::hardware_concurrency();
+  {
+    std::vector<std::jthread> others;
+    for (unsigned t = 1; t < std::min<std::size_t>(std::max(wanted, 1u), chunks); ++t) others.emplace_back(work);
+    work();
+  }
+  if (error) std::rethrow_exception(error);
+  return map;
+}
+
+}  // namespace deflect

@@ -1,0 +1,53 @@
+// A stiffness map as text, CSV, JSON and as a grid for ParaView.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "validation/compare/map.h"
+
+namespace deflect {
+
+/// A reason for which poses are out of reach: the kinematics' words without the leg and the numbers.
+struct OutOfReach {
+  std::string reason;
+  std::size_t poses = 0;
+  std::size_t example = 0;  ///< index of the first of them
+};
+std::vector<OutOfReach> out_of_reach(const StiffnessMap&);
+
+/// How two series vary together: −1 … 1. Pearson's r; Spearman's ρ is r of the ranks, ties sharing their mean rank. Both
+/// are 0 where a series is constant.
+struct Correlation {
+  double pearson = 0, spearman = 0;
+};
+Correlation correlation(const std::vector<double>& a, const std::vector<double>& b);
+
+/// Correlation of the stiffness along `axis` with the mean length of the guideways over the poses reached, by the
+/// theory that the figures show.
+Correlation with_guide_length(const StiffnessMap&, int axis);
+
+/// What the figures show: the analytic theory where it was asked for, the MSA otherwise; null at a pose out of reach.
+const MapValues* shown(const MapPose&);
+const char* shown_theory(const StiffnessMap&);
+
+/// "50 N along x, y, z in turn" or the wrench; and what is secant and what is tangent under it.
+std::string map_load_text(const StiffnessMap&);
+std::string map_kind_text(const StiffnessMap&);
+
+/// Counts, ranges with the poses where they occur, correlations, the difference of the theories.
+std::string map_report(const StiffnessMap&);
+
+/// A row for every pose; cells of what a pose out of reach does not have are empty. Throws InputError like
+/// write_text().
+std::string map_csv(const StiffnessMap&);
+
+/// Summary, the grid, and arrays in its order with null at poses out of reach.
+std::string map_json(const StiffnessMap&);
+
+/// Poses reached as points (mm), cells between neighbours that are all reached (hexahedra, quadrilaterals or lines by
+/// the grid's dimension), a lone pose as a vertex; the columns of the CSV as point data. ASCII VTU.
+std::string map_vtu(const StiffnessMap&);
+
+}  // namespace deflect

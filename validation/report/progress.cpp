@@ -1,0 +1,59 @@
+#include "validation/report/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+
+namespace deflect {
+namespace {
+
+constexpr double patience = 1.0, pause = 0.1;  // s before the first line and between two
+constexpr std::size_t width = 24;              // of the bar
+
+constexpr const char* wipe = "\r\x1b[K";
+
+}  // namespace
+
+Progress::Progress(std::size_t total, std::string what, std::ostream* out, Clock clock)
+    : total_(total), what_(std::move(what)), out_(out), clock_(std::move(clock)), start_(clock_()) {}
+
+Progress::~Progress() {
+  if (visible_) *out_ << wipe << std::flush;
+}
+
+void Progress::update(std::size_t done) {
+  if (!out_) return;
+  const std::lock_guard lock(mutex_);
+  if (done <= done_) return;
+  done_ = std::min(done, total_);
+  const double now = clock_(), elapsed = now - start_;
+  if (elapsed < patience || (visible_ && now - drawn_ < pause && done_ < total_)) return;
+  drawn_ = now;
+  visible_ = true;
+  const double share = static_cast<double>(done_) / static_cast<double>(total_);
+  const auto filled = static_cast<std::size_t>(share * static_cast<double>(width));
+  *out_ << wipe
+        << fmt::format("[{}{}] {:3.0f} %  {} of {} {}, {} left", std::string(filled, '#'),
+                       std::string(width - filled, '.'), std::floor(100 * share), done_, total_, what_,
+                       duration_text(elapsed * (1 - share) / share))
+        << std::flush;
+}
+
+double Progress::steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::ostream* terminal_stream() { return ::isatty(STDERR_FILENO) ? &std::cerr : nullptr; }
+
+std::string duration_text(double seconds) {
+  const auto s = static_cast<long long>(std::ceil(std::clamp(seconds, 0.0, 3.6e9)));
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);
+  return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
+}
+
+}  // namespace deflect
