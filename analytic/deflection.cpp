@@ -109,6 +109,10 @@ double belt_stiffness(const BeltLaw& l) {
   return l.width * l.specific_stiffness * (l.tight_length + l.slack_length) / (l.tight_length * l.slack_length);
 }
 
+bool is_linear(const Law& law) {
+  return !std::holds_alternative<HertzPointLaw>(law) && !std::holds_alternative<HertzLineBulkLaw>(law);
+}
+
 double deflection(const Law& law, double force, const AsPrinted& p) {
   if (const auto* l = std::get_if<HertzPointLaw>(&law))
     return point_contact_deflection(l->radius, effective_modulus(l->solid, p), force);

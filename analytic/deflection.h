@@ -45,6 +45,9 @@ double deflection(const Law&, double force, const AsPrinted& = {});
 double compliance(const Law&, double force, const AsPrinted& = {});
 double stored_energy(const Law&, double force, const AsPrinted& = {});
 
+/// Whether the deflection is proportional to the force.
+bool is_linear(const Law&);
+
 /// Laws of one freedom in series; contact and bending of a universal joint's pin as if in parallel where (33) is taken
 /// as printed.
 double deflection(const std::vector<Law>&, double force, const AsPrinted& = {});

@@ -132,6 +132,15 @@ AnalyticSolution AnalyticModel::solve(const Vector6& F) const {
   return s;
 }
 
+bool AnalyticModel::linear() const {
+  const auto linear_chain = [](const Chain& c) {
+    return std::all_of(c.freedoms.begin(), c.freedoms.end(), [](const ElasticFreedom& f) {
+      return std::all_of(f.laws.begin(), f.laws.end(), [](const Law& law) { return is_linear(law); });
+    });
+  };
+  return linear_chain(through_) && std::all_of(chains_.begin(), chains_.end(), linear_chain);
+}
+
 Matrix6 AnalyticModel::leg_stiffness(std::size_t leg, const AnalyticSolution& s) const {
   return chains_[leg].tangent_stiffness(s.leg_wrenches[leg], as_printed_);
 }

@@ -28,6 +28,9 @@ class AnalyticModel {
 
   const std::vector<Chain>& chains() const { return chains_; }
 
+  /// No law's stiffness depends on its load.
+  bool linear() const;
+
   /// Legs' forces and the platform's displacement in equilibrium, contacts at their load: Newton on the legs' forces.
   /// Throws ModelError naming the motion when the legs leave the platform free to move, whatever the
   /// load.

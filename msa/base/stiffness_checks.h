@@ -26,4 +26,17 @@ struct StiffnessChecks {
 /// quantity may differ from zero by `tolerance` of the largest entry (eigenvalue) of what it is made from.
 StiffnessChecks check_stiffness(const Matrix6& K, const std::vector<LegStiffness>& legs, double tolerance = 1e-9);
 
+/// What one load did to a structure at T, SI, base axes.
+struct Response {
+  Vector6 F, d;        ///< wrench on T, displacement of T
+  Vector6 reaction;    ///< of the supports on the structure, as a wrench about T
+  double energy = 0;   ///< strain energy, J
+  bool linear = true;  ///< no spring's stiffness depends on its load
+};
+
+/// Sign (a load moves its point its own way, Fᵀd > 0), equilibrium (reaction = −F), energy (½Fᵀd of a linear structure;
+/// of one that stiffens under load between 0 and ½Fᵀd), each to `tolerance`. Empty when all hold, else which fails and
+/// by how much. Reciprocity is the symmetry of the stiffness.
+std::string response_failure(const Response&, double tolerance = 1e-9);
+
 }  // namespace deflect

@@ -31,6 +31,8 @@ class MsaModel {
   const std::vector<std::string>& notes() const { return solver_.notes(); }
   const MechanismModel& mechanism() const { return built_; }
 
+  bool linear() const { return solver_.linear_springs(); }
+
   MsaSolution solve(const Vector6& F_T_W);
 
   /// Tangent stiffness at T of the structure in a state, as computed, not symmetrised, and of each leg alone at the

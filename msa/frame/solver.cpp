@@ -25,10 +25,6 @@ double potential(const Model& m, const VectorX& u, const VectorX& load) {
   return sum;
 }
 
-bool all_linear(const Model& m) {
-  return std::all_of(m.springs.begin(), m.springs.end(), [](const Spring& s) { return is_linear(s.law); });
-}
-
 /// The vector with zeros behind it where the solver's model has grown.
 VectorX padded(const VectorX& v, std::size_t size) {
   VectorX out = VectorX::Zero(static_cast<Eigen::Index>(size));
@@ -49,6 +45,10 @@ Solver::Solver(Model m) : model_(std::make_unique<Model>(std::move(m))) {
   prepare();
   if (held_idle_spins()) prepare();
   note_redundant();
+}
+
+bool Solver::linear_springs() const {
+  return std::all_of(model_->springs.begin(), model_->springs.end(), [](const Spring& s) { return is_linear(s.law); });
 }
 
 void Solver::prepare() {
@@ -145,7 +145,7 @@ Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, c
   // stiffness at full load, which slows nothing that carries load and keeps an idle spring from blocking the step.
   const VectorX loaded = starting_tangents(force);
   const VectorX floor = 1e-8 * loaded;
-  const bool linear = all_linear(*model_);
+  const bool linear = linear_springs();
   VectorX r = f - elimination_->reduce(first);
   double previous_step = std::numeric_limits<double>::infinity();
   for (s.iterations = 1; s.iterations <= options.max_iterations; ++s.iterations) {

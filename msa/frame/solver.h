@@ -35,6 +35,9 @@ class Solver {
   const Model& model() const { return *model_; }
   const Elimination& elimination() const { return *elimination_; }
 
+  /// No spring's stiffness depends on its load.
+  bool linear_springs() const;
+
   /// What a user should know: idle spins that were held, redundant constraints, poor conditioning.
   const std::vector<std::string>& notes() const { return notes_; }
 

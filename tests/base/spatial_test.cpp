@@ -71,5 +71,27 @@ TEST(StiffnessChecks, DoNotDependOnUnits) {
   EXPECT_EQ(check_stiffness(K, {}).failure, check_stiffness(stiffness_in_mm(K), {}).failure);
 }
 
+TEST(ResponseChecks, FindEachFaultByName) {
+  Response r;
+  r.F << 10, 0, 0, 0, 0.5, 0;
+  r.d << 1e-3, 0, 0, 0, 2e-3, 0;
+  r.reaction = -r.F;
+  r.energy = 0.5 * r.F.dot(r.d);
+  EXPECT_EQ(response_failure(r), "");
+  Response wrong = r;
+  wrong.d = -r.d;
+  EXPECT_NE(response_failure(wrong).find("sign fails"), std::string::npos);
+  wrong = r;
+  wrong.reaction(4) *= 1 + 1e-7;
+  EXPECT_NE(response_failure(wrong).find("equilibrium fails"), std::string::npos);
+  wrong = r;
+  wrong.energy *= 0.9;
+  EXPECT_NE(response_failure(wrong).find("energy fails"), std::string::npos);
+  wrong.linear = false;  // a contact stores less than half the work
+  EXPECT_EQ(response_failure(wrong), "");
+  wrong.energy = r.energy * 1.1;
+  EXPECT_NE(response_failure(wrong).find("energy fails"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace deflect

@@ -26,6 +26,8 @@ struct Command {
 
 Command solve_command();
 Command validate_command();
+Command map_command();
+Command export_command();
 Command devices_command();
 
 }  // namespace deflect::cli

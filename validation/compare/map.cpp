@@ -11,74 +11,15 @@
 #include <mutex>
 #include <thread>
 
-#include "analytic/model.h"
 #include "msa/base/error.h"
-#include "msa/base/stiffness_checks.h"
-#include "msa/frame/msa.h"
 #include "msa/mechanism/configuration.h"
+#include "validation/compare/at_pose.h"
 #include "validation/compare/theories.h"
 
 namespace deflect {
 namespace {
 
 constexpr std::size_t chunk = 8;  // poses that a thread takes at a time
-
-/// A theory's answer to one load.
-struct State {
-  Vector6 displacement;  // SI
-  Matrix6 K;             // SI, tangent
-};
-
-class AnalyticAtPose {
- public:
-  explicit AnalyticAtPose(const Configuration& c) : model_(c) {}
-
-  State solve(const Vector6& F, const std::string& where) const {
-    const analytic::AnalyticSolution s = model_.solve(F);
-    if (!s.converged)
-      throw NumericalError(fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})", where,
-                                       s.iterations, s.misfit));
-    const Matrix6 K = model_.stiffness(s);
-    std::vector<LegStiffness> legs;
-    for (std::size_t i = 0; i < model_.chains().size(); ++i)
-      legs.push_back({model_.chains()[i].name, model_.leg_stiffness(i, s), model_.chains()[i].J_q});
-    const StiffnessChecks checks = check_stiffness(K, legs);
-    if (!checks.all())
-      throw ModelError(fmt::format("{}: the analytic stiffness fails a check: {}", where, checks.failure));
-    return {s.displacement, K};
-  }
-
- private:
-  analytic::AnalyticModel model_;
-};
-
-class MsaAtPose {
- public:
-  explicit MsaAtPose(const Configuration& c) : configuration_(c), model_(c) {}
-
-  State solve(const Vector6& F, const std::string& where) {
-    const frame::MsaSolution s = model_.solve(F);
-    if (!s.state.converged)
-      throw NumericalError(fmt::format("{}: the MSA did not converge in {} steps (residual {:.3g})", where,
-                                       s.state.iterations, s.state.residual));
-    if (tangents_ && *tangents_ == s.state.spring_tangents) return {s.displacement, K_};  // the same tangent structure
-    const frame::MsaModel::Stiffness stiffness = model_.stiffness(s.state);
-    K_ = stiffness.K;
-    std::vector<LegStiffness> legs;
-    for (std::size_t i = 0; i < configuration_.legs.size(); ++i)
-      legs.push_back({configuration_.legs[i].name, stiffness.legs[i], model_.passive_twists(i)});
-    const StiffnessChecks checks = check_stiffness(K_, legs);
-    if (!checks.all()) throw ModelError(fmt::format("{}: the MSA stiffness fails a check: {}", where, checks.failure));
-    tangents_ = s.state.spring_tangents;
-    return {s.displacement, K_};
-  }
-
- private:
-  const Configuration& configuration_;
-  frame::MsaModel model_;
-  std::optional<VectorX> tangents_;  // of K_
-  Matrix6 K_ = Matrix6::Zero();
-};
 
 /// (C_δδ)⁻¹ as the Schur complement of the rotations: no inverse of a K that may be singular. N/mm.
 Matrix3 translational(const Matrix6& K_mm) {
@@ -109,16 +50,16 @@ MapValues empty_values() {
   return v;
 }
 
-MapValues values_of(const std::vector<State>& states, const MapOptions& o) {
+MapValues values_of(const std::vector<Answer>& states, const MapOptions& o) {
   MapValues v = empty_values();
-  for (const State& s : states) add(v, s.K, o.length_mm);
+  for (const Answer& s : states) add(v, s.stiffness, o.length_mm);
   for (int i = 0; i < 3; ++i) {
-    const Matrix6 K = stiffness_in_mm(states[o.load_N_Nmm ? 0 : static_cast<std::size_t>(i)].K);
+    const Matrix6 K = stiffness_in_mm(states[o.load_N_Nmm ? 0 : static_cast<std::size_t>(i)].stiffness);
     v.K_ii(i) = K(i, i);
     v.K_ii(i + 3) = K(i + 3, i + 3);
   }
   if (o.load_N_Nmm) {
-    v.compliance_mm_N = translational(stiffness_in_mm(states[0].K)).inverse();
+    v.compliance_mm_N = translational(stiffness_in_mm(states[0].stiffness)).inverse();
   } else {
     for (std::size_t j = 0; j < 3; ++j)
       v.compliance_mm_N.col(static_cast<Eigen::Index>(j)) = twist_in_mm(states[j].displacement).head<3>() / o.force_N;
@@ -159,16 +100,16 @@ MapPose map_pose(const Mechanism& m, const MapOptions& o, const std::vector<Vect
   }
   const std::string where =
       fmt::format("{} at ({})", m.name, fmt::join(out.pose_mm_deg.data(), out.pose_mm_deg.data() + 6, ", "));
-  std::vector<State> analytic, msa;
+  std::vector<Answer> analytic, msa;
   if (o.analytic) {
-    const AnalyticAtPose theory(c);
-    for (const Vector6& F : loads) analytic.push_back(theory.solve(F, where));
+    const AnalyticAtPose theory(c, where);
+    for (const Vector6& F : loads) analytic.push_back(theory.solve(F));
     out.analytic = values_of(analytic, o);
     check_finite(*out.analytic, where, "analytic");
   }
   if (o.msa) {
-    MsaAtPose theory(c);
-    for (const Vector6& F : loads) msa.push_back(theory.solve(F, where));
+    MsaAtPose theory(c, {}, where);
+    for (const Vector6& F : loads) msa.push_back(theory.solve(F));
     out.msa = values_of(msa, o);
     check_finite(*out.msa, where, "MSA");
   }

@@ -77,8 +77,8 @@ struct StiffnessMap {
 /// The platform's radius in mm, the default of L_c.
 double platform_radius_mm(const Mechanism&);
 
-/// Members are one element each, which is exact at its nodes. At every pose, load and theory the stiffness is checked
-/// (K = Kᵀ, K ⪰ 0, K_c J_q = 0). The result has the same bits for any number of threads. A pose that the kinematics
+/// Members are one element each, which is exact at its nodes. At every pose, under every load and by each theory asked for
+/// the checks of at_pose.h apply. The result has the same bits for any number of threads. A pose that the kinematics
 /// refuse is kept with the reason; every other failure ends the map with the error of the first pose in the grid's
 /// order that has one: ModelError, NumericalError. InputError on options that no map can have.
 StiffnessMap map_stiffness(const Mechanism&, const MapOptions&);

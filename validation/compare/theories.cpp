@@ -10,63 +10,37 @@
 #include "meshes/structure.h"
 #include "msa/base/error.h"
 #include "msa/base/stiffness_checks.h"
-#include "msa/frame/msa.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/six_psu.h"
+#include "validation/compare/at_pose.h"
 #include "validation/compare/solve_result.h"
 
 namespace deflect {
 namespace {
 
-StiffnessChecks checks(const analytic::AnalyticModel& model, const analytic::AnalyticSolution& s) {
+/// Both theories at one pose.
+struct Pair {
+  Pair(const Mechanism& m, const Vector6& pose_mm_deg, const frame::MemberDivision& division)
+      : configuration(configure(m, pose_from(pose_mm_deg))),
+        analytic(configuration, where(m, pose_mm_deg)),
+        msa(configuration, division, where(m, pose_mm_deg)) {}
+
+  static std::string where(const Mechanism& m, const Vector6& pose_mm_deg) {
+    return fmt::format("{} at ({:.6g})", m.name, fmt::join(pose_mm_deg.data(), pose_mm_deg.data() + 6, ", "));
+  }
+
+  Configuration configuration;
+  AnalyticAtPose analytic;
+  MsaAtPose msa;
+};
+
+/// The checks of a theory as printed, which are told but not enforced.
+std::string failed_checks(const analytic::AnalyticModel& model, const analytic::AnalyticSolution& s) {
   std::vector<LegStiffness> legs;
   for (std::size_t i = 0; i < model.chains().size(); ++i)
     legs.push_back({model.chains()[i].name, model.leg_stiffness(i, s), model.chains()[i].J_q});
-  return check_stiffness(model.stiffness(s), legs);
+  return check_stiffness(model.stiffness(s), legs).failure;
 }
-
-StiffnessChecks checks(const frame::MsaModel& model, const frame::MsaModel::Stiffness& stiffness,
-                       const Configuration& c) {
-  std::vector<LegStiffness> legs;
-  for (std::size_t i = 0; i < c.legs.size(); ++i)
-    legs.push_back({c.legs[i].name, stiffness.legs[i], model.passive_twists(i)});
-  return check_stiffness(stiffness.K, legs);
-}
-
-void enforce(const StiffnessChecks& c, const char* theory, const std::string& where) {
-  if (!c.all()) throw ModelError(fmt::format("{}: the {} stiffness fails a check: {}", where, theory, c.failure));
-}
-
-/// Both theories at one pose; errors say where.
-struct Pair {
-  Pair(const Mechanism& m, const Vector6& pose_mm_deg, const frame::MemberDivision& division)
-      : where(fmt::format("{} at ({})", m.name, fmt::join(pose_mm_deg.data(), pose_mm_deg.data() + 6, ", "))),
-        configuration(configure(m, pose_from(pose_mm_deg))),
-        analytic(configuration),
-        msa(configuration, division) {}
-
-  void solve(const Vector6& F) {
-    a = analytic.solve(F);
-    f = msa.solve(F);
-    if (!a.converged)
-      throw NumericalError(fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})", where,
-                                       a.iterations, a.misfit));
-    if (!f.state.converged)
-      throw NumericalError(fmt::format("{}: the MSA did not converge in {} steps (residual {:.3g})", where,
-                                       f.state.iterations, f.state.residual));
-    enforce(checks(analytic, a), "analytic", where);
-    f_stiffness = msa.stiffness(f.state);
-    enforce(checks(msa, f_stiffness, configuration), "MSA", where);
-  }
-
-  std::string where;
-  Configuration configuration;
-  analytic::AnalyticModel analytic;
-  frame::MsaModel msa;
-  analytic::AnalyticSolution a;
-  frame::MsaSolution f;
-  frame::MsaModel::Stiffness f_stiffness;
-};
 
 /// The configuration with line contacts that know the bulk of two equal cylinders: what (30) leaves out.
 Configuration with_bulk(Configuration c) {
@@ -128,20 +102,20 @@ double relative_difference(const Vector6& a, const Vector6& b) {
 
 SolveResult solve(const Mechanism& m, const Vector6& pose, const Vector6& load, const frame::MemberDivision& division) {
   Pair pair(m, pose, division);
-  pair.solve(wrench_from_mm(load));
+  const Answer a = pair.analytic.solve(wrench_from_mm(load)), f = pair.msa.solve(wrench_from_mm(load));
   SolveResult r;
   r.pose_mm_deg = pose;
   r.load_N_Nmm = load;
-  r.analytic = {twist_in_mm(pair.a.displacement), stiffness_in_mm(pair.analytic.stiffness(pair.a))};
-  r.msa = {twist_in_mm(pair.f.displacement), stiffness_in_mm(pair.f_stiffness.K)};
+  r.analytic = {twist_in_mm(a.displacement), stiffness_in_mm(a.stiffness)};
+  r.msa = {twist_in_mm(f.displacement), stiffness_in_mm(f.stiffness)};
   r.relative_difference = relative_difference(r.analytic.displacement_mm_rad, r.msa.displacement_mm_rad);
-  r.symmetric = r.positive = r.passive_joints_free = true;  // or solve() would not have returned
+  r.symmetric = r.positive = r.passive_joints_free = true;  // or there would be no answer
   double total = 0;
-  for (const auto& [part, energy] : pair.f.energies) total += energy;
+  for (const auto& [part, energy] : f.energies) total += energy;
   if (total > 0)
-    for (const auto& [part, energy] : pair.f.energies) r.shares.emplace_back(part, energy / total);
+    for (const auto& [part, energy] : f.energies) r.shares.emplace_back(part, energy / total);
   r.mesh = lines_of(pair.msa.mechanism());
-  r.fields = fields_of(pair.msa.mechanism(), pair.f.state.u);
+  r.fields = fields_of(pair.msa.mechanism(), pair.msa.displacements());
   return r;
 }
 
@@ -155,13 +129,12 @@ Validation validate(const Mechanism& m, const std::vector<ValidationPoint>& poin
     Pair pair(m, point.pose_mm_deg, division);
     for (int axis = 0; axis < 3; ++axis) {
       const Vector6 F = along(axis, load_N);
-      pair.solve(F);
       ValidationRow row;
       row.point = point;
       row.axis = axis;
       row.load_N = load_N;
-      row.analytic = twist_in_mm(pair.a.displacement);
-      row.msa = twist_in_mm(pair.f.displacement);
+      row.analytic = twist_in_mm(pair.analytic.solve(F).displacement);
+      row.msa = twist_in_mm(pair.msa.solve(F).displacement);
       if (!as_printed.empty())
         row.as_printed = twist_in_mm(analytic::AnalyticModel(pair.configuration, as_printed).solve(F).displacement);
       row.relative_difference = relative_difference(row.analytic, row.msa);
@@ -190,7 +163,7 @@ std::vector<ErratumPrice> price_errata(const Mechanism& m, const std::vector<Val
           const double ratio = s.displacement(axis) / corrected.solve(F).displacement(axis);
           price.smallest(axis) = std::min(price.smallest(axis), ratio);
           price.largest(axis) = std::max(price.largest(axis), ratio);
-          if (price.failed_check.empty()) price.failed_check = checks(printed, s).failure;
+          if (price.failed_check.empty()) price.failed_check = failed_checks(printed, s);
         }
       }
     } catch (const ModelError& e) {

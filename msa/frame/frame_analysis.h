@@ -1,0 +1,74 @@
+// A frame under its load cases: displacements, reactions, member forces, energies, and checks on them. One
+// factorisation serves all cases.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "msa/frame/frame_build.h"
+
+namespace deflect::frame {
+
+struct FrameOptions {
+  FrameDivision division;  ///< empty: one element per member, which is exact at its nodes
+};
+
+/// The bending moment with the largest magnitude along a member.
+struct LargestMoment {
+  double value = 0;  ///< Nm, with its sign
+  double at = 0;     ///< m from the member's start
+};
+
+/// [N, Vy, Vz, T, My, Mz], N and Nm, in member axes on the face that looks along the member's x (member_loads.h): at
+/// the start what the member does to the node, at the end what the node does to the member.
+struct MemberForces {
+  Vector6 start, end;
+  LargestMoment My, Mz;
+  double energy = 0;  ///< J
+};
+
+/// Relative, 0 where all is exact. Terms that cancel are measured by 1e-9 of the unsigned sum of what cancels, so that
+/// a case without reactions (free expansion) does not fail on its rounding.
+struct FrameChecks {
+  double residual = 0;     ///< Tᵀ(f − f_int): equilibrium of the free freedoms
+  double equilibrium = 0;  ///< loads + reactions: resultant force and moment of the whole
+  /// 2U = f·u + λ·v − Σ N ε L: the works of loads and of moved supports (displacements v, reactions λ) less that of the
+  /// axial forces on the free expansion. From K d = f + K d0 + Cᵀλ, times d − d0; ½f·d where there is neither.
+  double energy = 0;
+};
+
+struct CaseResult {
+  std::string name;
+  std::vector<Vector6> displacements;  ///< by node of the description: m, rad
+  std::vector<Vector6> reactions;      ///< by support, [f; m] on the frame; 0 where free or where others imply it
+  std::vector<Vector6> springs;        ///< by spring, [f; m] on its `node`
+  std::vector<double> constraints;     ///< by general constraint, λ: the force on a freedom is factor · arm · λ
+  std::vector<MemberForces> members;
+  Named<double> energies;  ///< J by section and spring, largest first
+  double energy = 0;       ///< J
+  FrameChecks checks;
+  VectorX u;                         ///< by freedom of FrameResult::structure
+  std::vector<ElementLoad> loads;    ///< by beam of it
+  std::vector<Vector12> end_forces;  ///< by beam of it, local axes
+};
+
+struct FrameResult {
+  std::string name;
+  FrameModel structure;
+  std::vector<CaseResult> cases;
+  std::vector<std::string> notes;  ///< redundant constraints by name, idle spins that were held
+  /// Betti: f_i·u_j + λ_i·v_j = f_j·u_i + λ_j·v_i between all cases, f with the forces that heat is equivalent to;
+  /// largest difference, relative.
+  double reciprocity = 0;
+};
+
+inline constexpr double check_tolerance = 1e-6;
+
+/// Throws ModelError for a frame that cannot stand and for constraints that contradict each other, InputError for a
+/// name that does not resolve.
+FrameResult analyse(const FrameDescription&, const FrameOptions& = {});
+
+/// The first check above check_tolerance, with its case and value; empty when all hold.
+std::string failed_check(const FrameResult&);
+
+}  // namespace deflect::frame

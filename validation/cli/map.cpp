@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/base/units.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/compare/map.h"
+#include "validation/report/fig11.h"
+#include "validation/report/map_results.h"
+#include "validation/report/progress.h"
+
+namespace deflect::cli {
+namespace {
+
+struct Arguments {
+  std::string device, ranges[3], n, tilt, load, theory = "both", length, json, out;
+  double force_N = 50, threads = 0;
+};
+
+int whole(const std::string& option, double value, double low, double high) {
+  if (!(value >= low && value <= high) || value != std::floor(value))
+    throw InputError(fmt::format("{} {:g}: a whole number from {:g} to {:g} is wanted", option, value, low, high));
+  return static_cast<int>(value);
+}
+
+MapGrid grid_of(const Mechanism& m, const Arguments& a) {
+  std::array<int, 3> counts = {11, 11, 11};
+  if (!a.n.empty()) {
+    const std::vector<double> n = parse_list("--n", a.n, {1, 3}, "nx,ny,nz or one number for all");
+    for (std::size_t i = 0; i < 3; ++i) counts[i] = whole("--n", n[n.size() == 1 ? 0 : i], 1, 1e6);
+  }
+  const char* names[] = {"--x", "--y", "--z"};
+  MapGrid grid;
+  grid.counts = counts;
+  if (a.ranges[0].empty() || a.ranges[1].empty() || a.ranges[2].empty()) grid = cube_grid(m, counts);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string& range = a.ranges[axis];
+    if (range.empty()) continue;
+    const std::vector<double> ends = parse_list(names[axis], range, {1, 2}, "from,to in mm, or one value");
+    if (ends.back() < ends.front())
+      throw InputError(fmt::format("{} {}: the range is reversed; write the smaller value first", names[axis], range));
+    grid.low_mm(axis) = ends.front();
+    grid.high_mm(axis) = ends.back();
+    if (ends.front() == ends.back()) grid.counts[static_cast<std::size_t>(axis)] = 1;
+  }
+  if (!a.tilt.empty()) {
+    const std::vector<double> tilt = parse_list("--tilt", a.tilt, {3}, "roll,pitch,yaw in deg");
+    grid.tilt_deg = Vector3(tilt[0], tilt[1], tilt[2]);
+  }
+  return grid;
+}
+
+double length_mm(const Mechanism& m, const std::string& text) {
+  if (text.empty()) return platform_radius_mm(m);
+  double length = 0;
+  try {
+    length = 1e3 * parse_quantity(text, Dimension::length);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("--length: {}", e.what()));
+  }
+  if (!(length > 0)) throw InputError(fmt::format("--length: '{}' must be greater than zero", text));
+  return length;
+}
+
+MapOptions options_of(const Mechanism& m, const Arguments& a) {
+  MapOptions o;
+  o.grid = grid_of(m, a);
+  o.force_N = a.force_N;
+  if (!std::isfinite(a.force_N) || a.force_N == 0)
+    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.force_N));
+  if (!a.load.empty()) {
+    const std::vector<double> load =
+        parse_list("--load", a.load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm");
+    o.load_N_Nmm = Vector6::Zero();
+    for (std::size_t i = 0; i < load.size(); ++i) (*o.load_N_Nmm)(static_cast<Eigen::Index>(i)) = load[i];
+    if (o.load_N_Nmm->isZero(0))
+      throw InputError(fmt::format("--load {}: without load a contact has no stiffness; give one", a.load));
+  }
+  if (a.theory != "both" && a.theory != "analytic" && a.theory != "msa")
+    throw InputError(fmt::format("--theory '{}': analytic, msa or both is wanted", a.theory));
+  o.analytic = a.theory != "msa";
+  o.msa = a.theory != "analytic";
+  o.length_mm = length_mm(m, a.length);
+  o.threads = whole("--threads", a.threads, 0, 1024);
+  return o;
+}
+
+void run(const Arguments& a) {
+  const Mechanism m = read_mechanism(device_file(a.device));
+  MapOptions o = options_of(m, a);
+  StiffnessMap map;
+  {
+    Progress progress(o.grid.size(), "poses", terminal_stream());
+    o.progress = [&progress](std::size_t done) { progress.update(done); };
+    map = map_stiffness(m, o);
+    map.options.progress = nullptr;
+  }
+  const std::filesystem::path folder = a.out;
+  std::string figures;
+  if (!a.out.empty()) {
+    write_text(folder / "map.csv", map_csv(map));
+    write_text(folder / "map.vtu", map_vtu(map));
+    for (const auto& set : {fig11(map), stiffness_against_length(map)})
+      for (const Figure& figure : set) {
+        render(figure, folder);
+        figures += fmt::format("{}{}", figures.empty() ? "" : ", ", figure.name);
+      }
+  }
+  if (!a.json.empty()) write_text(a.json, map_json(map));
+  fmt::print("{}", map_report(map));
+  if (!a.out.empty())
+    fmt::print("\nTables map.csv, map.vtu and figures {} in {}\n", figures.empty() ? "(none)" : figures,
+               std::filesystem::absolute(folder).string());
+}
+
+}  // namespace
+
+Command map_command() {
+  auto a = std::make_shared<Arguments>();
+  return {
+      "map",
+      "Stiffness of the tool point over the workspace by direction: a grid of poses, both theories, Fig. 11.\n"
+      "With --force (the default) every pose is loaded along x, y and z in turn: the compliance C = u/F is secant, from "
+      "no load to the force, and the 6x6 stiffness K (its diagonal, smallest, largest, isotropy) is tangent at the "
+      "force. With --load both are tangent under that wrench. They differ where contacts carry load.",
+      "deflect map haptic-6psu --n 21,21,21 --x -40,40 --y -40,40 --z 124,224 --out map --json map.json",
+      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+       {"--x", "from,to", "range of the tool point in mm, or one value (default: the cube of the device's workspace)",
+        &a->ranges[0]},
+       {"--y", "from,to", "", &a->ranges[1]},
+       {"--z", "from,to", "", &a->ranges[2]},
+       {"--n", "nx,ny,nz", "poses along x, y, z, or one number for all (default 11)", &a->n},
+       {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default 0,0,0)", &a->tilt},
+       {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},
+       {"--load", "fx,fy,fz,mx,my,mz", "one wrench in N and Nmm instead of --force", &a->load},
+       {"--theory", "NAME", "analytic, msa or both (default)", &a->theory},
+       {"--length", "LENGTH",
+        "characteristic length, with unit, that makes rotations comparable to displacements in the isotropy (default: "
+        "the platform's radius)",
+        &a->length},
+       {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+       {"--json", "FILE", "write summary and arrays", &a->json},
+       {"--out", "DIR", "write fig11 and stiffness-vs-length as SVG, PDF, PNG, and map.csv, map.vtu", &a->out}},
+      [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

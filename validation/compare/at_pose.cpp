@@ -1,0 +1,72 @@
+#include "validation/compare/at_pose.h"
+
+#include <fmt/format.h>
+
+#include "msa/base/error.h"
+#include "msa/base/stiffness_checks.h"
+
+namespace deflect {
+namespace {
+
+void enforce(const std::string& failure, const char* theory, const std::string& where) {
+  if (!failure.empty()) throw ModelError(fmt::format("{}: the {} fails a check: {}", where, theory, failure));
+}
+
+double total(const std::vector<std::pair<std::string, double>>& energies) {
+  double sum = 0;
+  for (const auto& [part, energy] : energies) sum += energy;
+  return sum;
+}
+
+}  // namespace
+
+AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : model_(c), where_(std::move(where)) {}
+
+Answer AnalyticAtPose::solve(const Vector6& F) const {
+  const analytic::AnalyticSolution s = model_.solve(F);
+  if (!s.converged)
+    throw NumericalError(fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})", where_,
+                                     s.iterations, s.misfit));
+  std::vector<LegStiffness> legs;
+  Vector6 carried = Vector6::Zero();
+  for (std::size_t i = 0; i < model_.chains().size(); ++i) {
+    legs.push_back({model_.chains()[i].name, model_.leg_stiffness(i, s), model_.chains()[i].J_q});
+    carried += s.leg_wrenches[i];
+  }
+  const Answer answer{s.displacement, model_.stiffness(s), model_.energies(s)};
+  enforce(check_stiffness(answer.stiffness, legs).failure, "analytic stiffness", where_);
+  enforce(response_failure({F, s.displacement, -carried, total(answer.energies), model_.linear()}), "analytic response",
+          where_);
+  return answer;
+}
+
+MsaAtPose::MsaAtPose(const Configuration& c, const frame::MemberDivision& division, std::string where)
+    : p_WB_(c.base.p_W), p_WT_(c.pose.p_WT), model_(c, division), where_(std::move(where)) {
+  for (std::size_t i = 0; i < c.legs.size(); ++i) {
+    passive_twists_.push_back(model_.passive_twists(i));
+    legs_.push_back(c.legs[i].name);
+  }
+}
+
+Answer MsaAtPose::solve(const Vector6& F) {
+  last_ = model_.solve(F);
+  if (!last_.state.converged)
+    throw NumericalError(fmt::format("{}: the MSA did not converge in {} steps (residual {:.3g})", where_,
+                                     last_.state.iterations, last_.state.residual));
+  if (!has_stiffness_ || tangents_ != last_.state.spring_tangents) {
+    const frame::MsaModel::Stiffness stiffness = model_.stiffness(last_.state);
+    std::vector<LegStiffness> legs;
+    for (std::size_t i = 0; i < legs_.size(); ++i) legs.push_back({legs_[i], stiffness.legs[i], passive_twists_[i]});
+    enforce(check_stiffness(stiffness.K, legs).failure, "MSA stiffness", where_);
+    stiffness_ = stiffness.K;
+    tangents_ = last_.state.spring_tangents;
+    has_stiffness_ = true;
+  }
+  // The reaction acts at the base origin; about T its moment changes by the arm.
+  const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_.base_reaction(F, last_.state);
+  enforce(response_failure({F, last_.displacement, reaction, total(last_.energies), model_.linear()}), "MSA response",
+          where_);
+  return {last_.displacement, stiffness_, last_.energies};
+}
+
+}  // namespace deflect

@@ -1,0 +1,53 @@
+// One theory at one pose, trusted: every answer has passed the checks, or there is none.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytic/model.h"
+#include "msa/frame/msa.h"
+#include "msa/mechanism/configuration.h"
+
+namespace deflect {
+
+/// A theory's answer to one wrench at T; SI, base axes.
+struct Answer {
+  Vector6 displacement;
+  Matrix6 stiffness;                                     ///< tangent, in the state under the load
+  std::vector<std::pair<std::string, double>> energies;  ///< by part, J, largest first
+};
+
+/// Checked: K = Kᵀ, K ⪰ 0, K_c J_q = 0, sign, equilibrium, energy. Throws ModelError naming theory, pose and check,
+/// NumericalError where equilibrium is not found. `where` begins the messages.
+class AnalyticAtPose {
+ public:
+  AnalyticAtPose(const Configuration&, std::string where);
+  Answer solve(const Vector6& F_T_W) const;
+
+ private:
+  analytic::AnalyticModel model_;
+  std::string where_;
+};
+
+class MsaAtPose {
+ public:
+  MsaAtPose(const Configuration&, const frame::MemberDivision&, std::string where);
+  Answer solve(const Vector6& F_T_W);
+
+  const frame::MechanismModel& mechanism() const { return model_.mechanism(); }
+  const VectorX& displacements() const { return last_.state.u; }  ///< of the last solve, by freedom of the structure
+
+ private:
+  std::vector<Matrix6X> passive_twists_;
+  std::vector<std::string> legs_;
+  Vector3 p_WB_, p_WT_;  // base origin, tool point
+  frame::MsaModel model_;
+  std::string where_;
+  frame::MsaSolution last_;
+  bool has_stiffness_ = false;
+  VectorX tangents_;  // of stiffness_, which a linear structure needs once
+  Matrix6 stiffness_ = Matrix6::Zero();
+};
+
+}  // namespace deflect
