@@ -74,7 +74,8 @@ TEST_P(EveryLaw, ComplianceIsTheDerivativeAndEnergyTheWorkStored) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Family, EveryLaw, ::testing::ValuesIn(every_law));
+INSTANTIATE_TEST_SUITE_P(Family, EveryLaw, ::testing::ValuesIn(every_law),
+                         [](const auto& law) { return std::string(law_names[law.param.index()]); });
 
 TEST(Laws, UniversalJointOfTheDeviceIs39kNPerMmInSeriesAnd1850AsPrinted) {
   const Material steel{210e9, 0.3, {}};

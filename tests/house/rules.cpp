@@ -31,7 +31,7 @@ const std::map<std::string, Rooms>& table() {
 /// Where a third-party library may be included: in files whose path matches `where`, and in no more than
 /// `files`.
 struct Confinement {
-  const char* library;
+  const char* what;
   const char* includes;
   const char* where;
   const char* rule;
@@ -129,9 +129,9 @@ std::vector<std::string> include_violations(const std::vector<Source>& sources) 
         if (!std::regex_match(include.name, std::regex(c.includes))) continue;
         users[&c].insert(source.path);
         if (!std::regex_match(source.path, std::regex(c.where)))
-          refuse(std::string(c.library) + " belongs into " + c.rule);
+          refuse(std::string(c.what) + " belongs into " + c.rule);
         else if (users[&c].size() > c.files)
-          refuse(std::string(c.library) + " belongs into " + c.rule + ", and " + *users[&c].begin() +
+          refuse(std::string(c.what) + " belongs into " + c.rule + ", and " + *users[&c].begin() +
                  " includes it already");
       }
     }

@@ -106,6 +106,7 @@ struct Refusal {
   const char* arguments;
   int code;
   const char* says;
+  friend void PrintTo(const Refusal& r, std::ostream* out) { *out << r.arguments; }
 };
 
 class Refused : public ::testing::TestWithParam<Refusal> {};

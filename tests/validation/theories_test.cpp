@@ -89,6 +89,7 @@ struct Site {
   const char* value;
   double tolerance = 1e-9;
   bool stiffens = false;  ///< a law on a freedom that was free
+  friend void PrintTo(const Site& site, std::ostream* out) { *out << site.path << ": " << site.value; }
 };
 
 class EverySite : public ::testing::TestWithParam<Site> {};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <ostream>
 
 #include "analytic/member.h"
 #include "msa/frame/solver.h"
@@ -25,6 +26,7 @@ frame::Model cantilever(double length, int elements, const frame::BeamRigidity& 
 struct Theory {
   BeamTheory beam;
   double expected_mm;
+  friend void PrintTo(const Theory& t, std::ostream* out) { *out << t.expected_mm << " mm"; }
 };
 
 class ShortCantilever : public ::testing::TestWithParam<Theory> {};
@@ -58,7 +60,10 @@ TEST_P(ShortCantilever, OneElementIsExactAndMoreChangeNothing) {
 
 INSTANTIATE_TEST_SUITE_P(BothTheories, ShortCantilever,
                          ::testing::Values(Theory{BeamTheory::euler_bernoulli, 0.319588},
-                                           Theory{BeamTheory::timoshenko, 0.320687}));
+                                           Theory{BeamTheory::timoshenko, 0.320687}),
+                         [](const auto& theory) {
+                           return theory.param.beam == BeamTheory::timoshenko ? "Timoshenko" : "EulerBernoulli";
+                         });
 
 // AFNOR SSLL02/89: simply supported short beam, L 1.44 m, A 31e-4 m², I 2810e-8 m⁴, shear coefficient 2.42, E 2e11 Pa,
 // ν 0.3, 1e5 N/m. Middle: 5qL⁴/384EI + qL²/8GA' = 9.962135e-4 + 2.630462e-4 = 1.2592597e-3 m. The line load is brought

@@ -125,7 +125,8 @@ Command map_command() {
   return {
       "map",
       "Stiffness of the tool point over the workspace by direction: a grid of poses, both theories, Fig. 11.\n"
-      "With --force (the default) every pose is loaded along x, y and z in turn: the compliance C = u/F is secant, from "
+      "With --force (the default) every pose is loaded along x, y and z in turn: the compliance C = u/F is secant, "
+      "from "
       "no load to the force, and the 6x6 stiffness K (its diagonal, smallest, largest, isotropy) is tangent at the "
       "force. With --load both are tangent under that wrench. They differ where contacts carry load.",
       "deflect map haptic-6psu --n 21,21,21 --x -40,40 --y -40,40 --z 124,224 --out map --json map.json",

@@ -35,15 +35,16 @@ MapGrid cube_grid(const Mechanism&, const std::array<int, 3>& counts);
 
 struct MapOptions {
   MapGrid grid;
-  double force_N = 50;                ///< along x, y, z in turn, without `load`
-  std::optional<Vector6> load_N_Nmm;  ///< one wrench on T about T, base axes, instead of the three forces
-  bool analytic = true, msa = true;   ///< theories asked for
-  double length_mm = 0;               ///< L_c > 0 that weighs rotations in `isotropy`
-  int threads = 0;                    ///< 0: as many as the machine has
+  double force_N = 50;                             ///< along x, y, z in turn, without `load`
+  std::optional<Vector6> load_N_Nmm;               ///< one wrench on T about T, base axes, instead of the three forces
+  bool analytic = true, msa = true;                ///< theories asked for
+  double length_mm = 0;                            ///< L_c > 0 that weighs rotations in `isotropy`
+  int threads = 0;                                 ///< 0: as many as the machine has
   std::function<void(std::size_t done)> progress;  ///< poses done so far; called from all threads
 };
 
-/// What one theory says of T at one pose, base axes. Matrices row by row: ij is the response along i to the force along j.
+/// What one theory says of T at one pose, base axes. Matrices row by row: ij is the response along i to the force along
+/// j.
 struct MapValues {
   Matrix3 compliance_mm_N = Matrix3::Zero();  ///< translation of T per force, signed
   Vector3 stiffness_N_mm = Vector3::Zero();   ///< 1/C_ii: along the force, rotations free
@@ -77,10 +78,10 @@ struct StiffnessMap {
 /// The platform's radius in mm, the default of L_c.
 double platform_radius_mm(const Mechanism&);
 
-/// Members are one element each, which is exact at its nodes. At every pose, under every load and by each theory asked for
-/// the checks of at_pose.h apply. The result has the same bits for any number of threads. A pose that the kinematics
-/// refuse is kept with the reason; every other failure ends the map with the error of the first pose in the grid's
-/// order that has one: ModelError, NumericalError. InputError on options that no map can have.
+/// Members are one element each, which is exact at its nodes. At every pose, under every load and by each theory asked
+/// for the checks of at_pose.h apply. The result has the same bits for any number of threads. A pose that the
+/// kinematics refuse is kept with the reason; every other failure ends the map with the error of the first pose in the
+/// grid's order that has one: ModelError, NumericalError. InputError on options that no map can have.
 StiffnessMap map_stiffness(const Mechanism&, const MapOptions&);
 
 }  // namespace deflect

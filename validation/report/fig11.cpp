@@ -152,13 +152,12 @@ std::string guide_text(const StiffnessMap& map, const Slice& s) {
 
 std::vector<std::string> heading(const StiffnessMap& map) {
   const Vector3& tilt = map.options.grid.tilt_deg;
-  return {
-      fmt::format("{}: stiffness along the force at the tool point", clip(map.device, 50)),
-      fmt::format("1/C_ii, {}, {}, base axes", map.options.load_N_Nmm ? "tangent" : "secant", map_load_text(map)),
-      fmt::format("{}; roll, pitch, yaw {:g}°, {:g}°, {:g}°",
-                  map.options.analytic && map.options.msa ? "analytic theory (the MSA agrees)"
-                                                          : fmt::format("{} theory", shown_theory(map)),
-                  tilt(0), tilt(1), tilt(2))};
+  return {fmt::format("{}: stiffness along the force at the tool point", clip(map.device, 50)),
+          fmt::format("1/C_ii, {}, {}, base axes", map.options.load_N_Nmm ? "tangent" : "secant", map_load_text(map)),
+          fmt::format("{}; roll, pitch, yaw {:g}°, {:g}°, {:g}°",
+                      map.options.analytic && map.options.msa ? "analytic theory (the MSA agrees)"
+                                                              : fmt::format("{} theory", shown_theory(map)),
+                      tilt(0), tilt(1), tilt(2))};
 }
 
 void put_heading(Script& script, const StiffnessMap& map, double height) {
@@ -195,8 +194,7 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
 
   Script script;
   for (std::size_t r = 0; r < slices.size(); ++r)
-    for (int axis = 0; axis < 3; ++axis)
-      script.put("$s{}{} << EOD\n{}EOD", r, axis, surface(map, slices[r], axis));
+    for (int axis = 0; axis < 3; ++axis) script.put("$s{}{} << EOD\n{}EOD", r, axis, surface(map, slices[r], axis));
   // Iso-curves as tables, made before there is a plot to disturb.
   const std::vector<double> iso = levels(e);
   if (!iso.empty()) {
@@ -234,21 +232,23 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
         script.put("set label 10 '{} (mm)' at screen {:.5f},{:.5f} center rotate by 90", axis_names[s.up], across(2.5),
                    up(y + h / 2));
         script.put("set label 11 {} at screen {:.5f},{:.5f} left textcolor rgb '#202020'",
-                   gnuplot_quote(fmt::format("{} = {:.4g} mm: {}", axis_names[s.fixed()],
-                                             g.coordinate(s.fixed(), s.at), guide_text(map, s))),
+                   gnuplot_quote(fmt::format("{} = {:.4g} mm: {}", axis_names[s.fixed()], g.coordinate(s.fixed(), s.at),
+                                             guide_text(map, s))),
                    across(left), up(y - 2));
       }
       script.put("set label 12 '{} (mm)' at screen {:.5f},{:.5f} center", axis_names[s.across], across(x + panel / 2),
                  up(y + h + tic_room + 1));
       if (r == 0)
-        script.put("set label 13 'force along {}' at screen {:.5f},{:.5f} right font 'DejaVu Sans:Bold,8' "
-                   "textcolor rgb '{}'",
-                   axis_names[axis], across(x + panel), up(y - 5.5), colours[axis]);
+        script.put(
+            "set label 13 'force along {}' at screen {:.5f},{:.5f} right font 'DejaVu Sans:Bold,8' "
+            "textcolor rgb '{}'",
+            axis_names[axis], across(x + panel), up(y - 5.5), colours[axis]);
       if (r == 0 && axis == 2)
-        script.put("set colorbox vertical user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f}\n"
-                   "set label 14 'stiffness along the force (N/mm)' at screen {:.5f},{:.5f} center rotate by 90",
-                   across(left + 3 * panel + 2 * gap + bar_gap), up(foot - tic_room - 4.5), across(bar),
-                   (foot - tic_room - 4.5 - y) / height, across(width - 2), up((y + foot - tic_room - 4.5) / 2));
+        script.put(
+            "set colorbox vertical user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f}\n"
+            "set label 14 'stiffness along the force (N/mm)' at screen {:.5f},{:.5f} center rotate by 90",
+            across(left + 3 * panel + 2 * gap + bar_gap), up(foot - tic_room - 4.5), across(bar),
+            (foot - tic_room - 4.5 - y) / height, across(width - 2), up((y + foot - tic_room - 4.5) / 2));
       else
         script.put("unset colorbox");
       std::string curves;
@@ -324,10 +324,10 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
     series.push_back(fmt::format("$data using 1:{} with points lc rgb '#A0{}' pt {} ps {:.2f} notitle", axis + 2,
                                  colours[axis] + 1, shapes[axis], size));
   for (int axis = 0; axis < 3; ++axis)
-    series.push_back(fmt::format("$median using 1:{} with linespoints lc rgb '{}' pt {} ps 0.6 lw 1.4 title '{} "
-                                 "(Spearman {:.2f})'",
-                                 axis + 2, colours[axis], shapes[axis], axis_names[axis],
-                                 with_guide_length(map, axis).spearman));
+    series.push_back(
+        fmt::format("$median using 1:{} with linespoints lc rgb '{}' pt {} ps 0.6 lw 1.4 title '{} "
+                    "(Spearman {:.2f})'",
+                    axis + 2, colours[axis], shapes[axis], axis_names[axis], with_guide_length(map, axis).spearman));
   script.put("plot {}", fmt::join(series, ", \\\n  "));
   return {{"stiffness-vs-length", script.text, width, height}};
 }

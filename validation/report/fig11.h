@@ -8,9 +8,9 @@
 
 namespace deflect {
 
-/// Columns: stiffness 1/C_ii along x, y, z, N/mm, positive where the tool point yields along the force. Rows: up to three
-/// heights (the highest, the middle and the lowest of the grid), and a vertical slice through the middle. Colours on one
-/// logarithmic scale, interpolated between poses, with iso-curves; grey hatching where a pose is out of reach.
+/// Columns: stiffness 1/C_ii along x, y, z, N/mm, positive where the tool point yields along the force. Rows: up to
+/// three heights (the highest, the middle and the lowest of the grid), and a vertical slice through the middle. Colours
+/// on one logarithmic scale, interpolated between poses, with iso-curves; grey hatching where a pose is out of reach.
 /// `fig11` is empty where the grid has no plane (fewer than two axes with two values) or no pose is reached.
 std::vector<Figure> fig11(const StiffnessMap&);
 

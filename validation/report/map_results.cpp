@@ -134,10 +134,11 @@ double pearson(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 std::string grid_text(const MapGrid& g) {
-  return fmt::format("{} × {} × {} poses, x {:.5g} … {:.5g}, y {:.5g} … {:.5g}, z {:.5g} … {:.5g} mm, roll pitch yaw "
-                     "({:g}, {:g}, {:g})°",
-                     g.counts[0], g.counts[1], g.counts[2], g.low_mm(0), g.high_mm(0), g.low_mm(1), g.high_mm(1),
-                     g.low_mm(2), g.high_mm(2), g.tilt_deg(0), g.tilt_deg(1), g.tilt_deg(2));
+  return fmt::format(
+      "{} × {} × {} poses, x {:.5g} … {:.5g}, y {:.5g} … {:.5g}, z {:.5g} … {:.5g} mm, roll pitch yaw "
+      "({:g}, {:g}, {:g})°",
+      g.counts[0], g.counts[1], g.counts[2], g.low_mm(0), g.high_mm(0), g.low_mm(1), g.high_mm(1), g.low_mm(2),
+      g.high_mm(2), g.tilt_deg(0), g.tilt_deg(1), g.tilt_deg(2));
 }
 
 /// VTK's cell of the grid's dimension: number, and its corners as steps along the axes that have several values.
@@ -368,7 +369,8 @@ std::string map_vtu(const StiffnessMap& map) {
       array("Float64", fmt::format("{}_{}", theory.name, column.name), "", points,
             [&](const MapPose* p) { return number(column.of(*(p->*theory.values))); });
   if (both(map))
-    array("Float64", "relative_difference", "", points, [&](const MapPose* p) { return number(p->relative_difference); });
+    array("Float64", "relative_difference", "", points,
+          [&](const MapPose* p) { return number(p->relative_difference); });
   text += "</PointData>\n<Points>\n";
   array("Float64", "points_mm", R"( NumberOfComponents="3")", points, [](const MapPose* p) {
     return fmt::format("{} {} {}", p->pose_mm_deg(0), p->pose_mm_deg(1), p->pose_mm_deg(2));

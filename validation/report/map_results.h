@@ -17,8 +17,8 @@ struct OutOfReach {
 };
 std::vector<OutOfReach> out_of_reach(const StiffnessMap&);
 
-/// How two series vary together: −1 … 1. Pearson's r; Spearman's ρ is r of the ranks, ties sharing their mean rank. Both
-/// are 0 where a series is constant.
+/// How two series vary together: −1 … 1. Pearson's r; Spearman's ρ is r of the ranks, ties sharing their mean rank.
+/// Both are 0 where a series is constant.
 struct Correlation {
   double pearson = 0, spearman = 0;
 };
