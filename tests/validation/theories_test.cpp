@@ -229,6 +229,21 @@ TEST(Refusal, APlatformThatNoLegHoldsIsRefusedByBothTheories) {
   EXPECT_THROW(frame::MsaModel(c).solve(Vector6::Unit(0)), ModelError);  // whatever the load
 }
 
+// A ball joint at both ends lets every link spin about its own axis: harmless, and said so.
+TEST(IdleSpin, ChangesNoAnswerAndIsNoted) {
+  const Mechanism m = device("haptic-6psu"), balls = test::with(m, "leg.universal_joint.joint", "ball");
+  const Vector6 F = (Vector6() << 30, -20, 40, 300, 500, -400).finished();
+  for (const Pose& pose : test::random_poses(m, 5)) {
+    const SolveResult held = solve(m, mm_deg_from(pose), F, {}), spinning = solve(balls, mm_deg_from(pose), F, {});
+    EXPECT_LT(spinning.relative_difference, 1e-7);
+    EXPECT_LT(relative_difference(spinning.msa.displacement_mm_rad, held.msa.displacement_mm_rad), 1e-10);
+    EXPECT_LT(relative_difference(spinning.analytic.displacement_mm_rad, held.analytic.displacement_mm_rad), 1e-10);
+    EXPECT_TRUE(held.notes.empty());
+    ASSERT_EQ(spinning.notes.size(), 6u);
+    EXPECT_NE(spinning.notes[0].find("link spins idly about its own axis: harmless, held"), std::string::npos);
+  }
+}
+
 TEST(RelativeDifference, TakesTheWorseOfTranslationAndRotation) {
   Vector6 a = (Vector6() << 1, 0, 0, 0.01, 0, 0).finished(), b = a;
   EXPECT_EQ(relative_difference(a, b), 0);

@@ -36,6 +36,7 @@ class MsaAtPose {
   Answer solve(const Vector6& F_T_W);
 
   const frame::MechanismModel& mechanism() const { return model_.mechanism(); }
+  const std::vector<std::string>& notes() const { return model_.notes(); }
   const VectorX& displacements() const { return last_.state.u; }  ///< of the last solve, by freedom of the structure
 
  private:

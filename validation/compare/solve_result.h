@@ -23,8 +23,9 @@ struct SolveResult {
   double relative_difference = 0;  ///< of the displacements, see relative_difference() in theories.h
   bool symmetric = false, positive = false, passive_joints_free = false;  ///< checks of the stiffness
   std::vector<std::pair<std::string, double>> shares;                     ///< part, its share of the strain energy
-  LineMesh mesh;                                                          ///< the MSA's structure
-  FieldData fields;                                                       ///< on it: displacements, member forces
+  std::vector<std::string> notes;  ///< what the MSA held or found poor: idle spins, redundant constraints, conditioning
+  LineMesh mesh;                   ///< the MSA's structure
+  FieldData fields;                ///< on it: displacements, member forces
 };
 
 }  // namespace deflect

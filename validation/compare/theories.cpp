@@ -114,6 +114,7 @@ SolveResult solve(const Mechanism& m, const Vector6& pose, const Vector6& load, 
   for (const auto& [part, energy] : f.energies) total += energy;
   if (total > 0)
     for (const auto& [part, energy] : f.energies) r.shares.emplace_back(part, energy / total);
+  r.notes = pair.msa.notes();
   r.mesh = lines_of(pair.msa.mechanism());
   r.fields = fields_of(pair.msa.mechanism(), pair.msa.displacements());
   return r;

@@ -101,9 +101,12 @@ std::string terminal(const std::string& suffix, const Figure& figure) {
   const auto in_points = [](double mm) { return std::lround(mm * points_per_mm); };
   const auto in_pixels = [](double mm) { return std::lround(mm * png_dpi / 25.4); };
   const double w = figure.width_mm, h = figure.height_mm;
-  if (suffix == "svg")
-    return fmt::format("svg enhanced size {},{} name '{}' font 'DejaVu Sans,8' background '#ffffff'", in_points(w),
-                       in_points(h), figure.name);
+  if (suffix == "svg") {  // standalone: images inside the file
+    std::string name = figure.name;
+    std::replace_if(name.begin(), name.end(), [](char c) { return c == '-' || c == '.'; }, '_');
+    return fmt::format("svg enhanced standalone size {},{} name '{}' font 'DejaVu Sans,8' background '#ffffff'",
+                       in_points(w), in_points(h), name);
+  }
   if (suffix == "pdf")
     return fmt::format("pdfcairo enhanced size {}cm,{}cm font 'DejaVu Sans,8' fontscale 1 linewidth 1", w / 10, h / 10);
   const double scale = png_dpi / 72;

@@ -92,6 +92,7 @@ std::string solve_json(const SolveResult& result) {
     entry["share"] = json_number(share, "share of " + part);
     json["shares"].push_back(std::move(entry));
   }
+  if (!result.notes.empty()) json["notes"] = result.notes;
   return json_text(json);
 }
 
@@ -106,10 +107,11 @@ std::string solve_report(const SolveResult& result) {
   text += "stiffness by MSA, base axes (N/mm, N, Nmm)\n" + stiffness_table(result.msa.stiffness_mm);
   text += stiffness_difference(result.analytic.stiffness_mm, result.msa.stiffness_mm) + "\n";
   if (!result.shares.empty()) text += shares_table(result) + "\n";
-  return text + "checks\n" +
-         aligned({{"  stiffness symmetric", check(result.symmetric)},
-                  {"  stiffness positive", check(result.positive)},
-                  {"  passive joints free", check(result.passive_joints_free)}});
+  text += "checks\n" + aligned({{"  stiffness symmetric", check(result.symmetric)},
+                                {"  stiffness positive", check(result.positive)},
+                                {"  passive joints free", check(result.passive_joints_free)}});
+  for (const std::string& note : result.notes) text += "note: " + note + "\n";
+  return text;
 }
 
 }  // namespace deflect
