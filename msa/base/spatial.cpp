@@ -14,8 +14,8 @@ Matrix3 rotation_from_rpy(double roll, double pitch, double yaw) {
 
 Vector3 rpy_from_rotation(const Matrix3& R) {
   const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
-  const double pitch = std::atan2(-R(2, 0), cos_pitch);
-  if (cos_pitch < 1e-12) return {0, pitch, std::atan2(-R(0, 1), R(1, 1))};
+  const double pitch = std::atan2(0.0 - R(2, 0), cos_pitch);  // 0.0 − x: no negative zero
+  if (cos_pitch < 1e-12) return {0, pitch, std::atan2(0.0 - R(0, 1), R(1, 1))};
   return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
 }
 

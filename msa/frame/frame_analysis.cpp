@@ -108,35 +108,40 @@ void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& 
   }
 }
 
-/// Resultant of loads, constraints and grounded springs about the first node.
-double equilibrium(const CaseResult& r, const FrameDescription& f, const FrameModel& m, const Work& work) {
-  VectorX external = padded(work.load.forces, m.model.dofs());
+/// Resultant about the first node of loads, constraints and springs; those between nodes have none.
+double equilibrium(const CaseResult& r, const FrameModel& m, const Work& work) {
+  VectorX external = padded(work.load.forces, m.model.dofs()), unsigned_sum = external.cwiseAbs();
+  const auto add = [&](const LinearForm& form, double along) {
+    for (const Term& t : form) {
+      external(t.dof) += t.coefficient * along;
+      unsigned_sum(t.dof) += std::abs(t.coefficient * along);
+    }
+  };
   for (std::size_t k = 0; k < m.model.constraints.size(); ++k)
-    for (const Term& t : m.model.constraints[k].form)
-      external(t.dof) += t.coefficient * work.lambda(static_cast<Eigen::Index>(k));
-  for (std::size_t k = 0; k < f.springs.size(); ++k)
-    if (f.springs[k].second.to.empty()) external.segment<6>(6 * m.nodes.find(f.springs[k].second.node)) += r.springs[k];
-  Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
+    add(m.model.constraints[k].form, work.lambda(static_cast<Eigen::Index>(k)));
+  for (const Spring& spring : m.model.springs)
+    add(spring.elongation, -force(spring.law, evaluate(spring.elongation, r.u)));
+  Vector3 resultant = Vector3::Zero(), moment = Vector3::Zero();
   double forces = cancelling * work.gross.force, moments = 0;
   for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
     const Vector6 wrench = external.segment<6>(static_cast<Eigen::Index>(6 * i));
     const Vector3 arm = m.model.nodes[i].position - m.model.nodes.front().position;
-    force += wrench.head<3>();
+    resultant += wrench.head<3>();
     moment += wrench.tail<3>() + arm.cross(wrench.head<3>());
-    forces += wrench.head<3>().norm();
-    moments += wrench.tail<3>().norm();
+    forces += unsigned_sum.segment<3>(static_cast<Eigen::Index>(6 * i)).sum();
+    moments += unsigned_sum.segment<3>(static_cast<Eigen::Index>(6 * i + 3)).sum();
   }
   moments += forces * characteristic_length(m.model);
-  return std::max(ratio(force.norm(), forces), ratio(moment.norm(), moments));
+  return std::max(ratio(resultant.norm(), forces), ratio(moment.norm(), moments));
 }
 
-void check(CaseResult& r, const FrameDescription& f, const FrameModel& m, const Solver& solver, const Work& work) {
+void check(CaseResult& r, const FrameModel& m, const Solver& solver, const Work& work) {
   VectorX tangents;
   const VectorX load = padded(work.load.forces, m.model.dofs());
   const VectorX pulls = internal_forces(m.model, r.u, tangents);
   const VectorX free = solver.elimination().reduce(load), held = solver.elimination().reduce(pulls);
   r.checks.residual = ratio(largest(free - held), largest(free) + largest(held) + cancelling * work.gross.force);
-  r.checks.equilibrium = equilibrium(r, f, m, work);
+  r.checks.equilibrium = equilibrium(r, m, work);
 
   const VectorX forces = work.load.forces - work.load.thermal;
   const double loads = forces.dot(r.u.head(forces.size())),
@@ -200,7 +205,7 @@ FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
     find_reactions(r, f, m, work[c].lambda);
     find_member_forces(r, m, work[c]);
     find_energies(r, f, m);
-    check(r, f, m, solver, work[c]);
+    check(r, m, solver, work[c]);
     r.loads = work[c].load.elements;
     out.cases.push_back(std::move(r));
   }

@@ -110,14 +110,14 @@ PlacedLeg placed_leg(const Mechanism& m, const Named<Part>& parts, int leg, cons
     } catch (const InputError& e) {
       throw InputError(fmt::format("{}: leg.{}: {}", m.name, name, e.what()));
     } catch (const ModelError& e) {
-      throw ModelError(fmt::format("{}: leg {}: {}", m.name, leg, e.what()));
+      throw ModelError(fmt::format("leg {}: {}", leg, e.what()));
     }
   return out;
 }
 
 }  // namespace
 
-Configuration configure(const Mechanism& m, const Pose& pose) {
+Configuration configure(const Mechanism& m, const Pose& pose) try {
   Configuration c;
   c.pose = pose;
   c.base = placed(m.base, "base", Vector3::Zero(), Matrix3::Identity(), m, 0);
@@ -125,6 +125,10 @@ Configuration configure(const Mechanism& m, const Pose& pose) {
   for (int leg = 1; leg <= 6; ++leg)
     c.legs.push_back(placed_leg(m, m.variations.empty() ? m.leg : leg_parts(m, leg), leg, pose));
   return c;
+} catch (const ModelError& e) {
+  const Vector3 p = 1e3 * pose.p_WT, a = rpy_from_rotation(pose.R_WT) * 180 / pi;
+  throw ModelError(fmt::format("{} at ({:.6g}, {:.6g}, {:.6g}) mm, ({:.6g}, {:.6g}, {:.6g}) deg: {}", m.name, p.x(),
+                               p.y(), p.z(), a.x(), a.y(), a.z(), e.what()));
 }
 
 }  // namespace deflect

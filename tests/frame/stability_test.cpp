@@ -172,6 +172,22 @@ TEST(Stability, ScrewOfAMotion) {
   EXPECT_TRUE(screw_of(Vector3::Zero(), {0, 3, 0}, Vector3::Zero()).translation);
 }
 
+TEST(Stability, ATooSoftSpringIsNamedBesideTheStiffestPart) {
+  Model m;
+  m.add_node("ground", Vector3::Zero());
+  m.add_node("root", Vector3::Zero());
+  m.add_node("tip", {0.1, 0, 0});
+  m.add_beam(1, 2, Matrix3::Identity(), {1e6, 40, 40, 30, none, none}, "rod", "rod");
+  m.fix(0, "ground");
+  std::array<ConnectionFreedom, 6> hinge;
+  hinge[5] = {false, {LinearSpring{1e-12}}};  // Nm/rad: somebody's units
+  m.connect(0, 1, Vector3::Zero(), Matrix3::Identity(), hinge, "hinge", "hinge");
+  const Solver solver(m);
+  ASSERT_EQ(solver.notes().size(), 1u);
+  EXPECT_NE(solver.notes()[0].find("ill-conditioned"), std::string::npos) << solver.notes()[0];
+  EXPECT_NE(solver.notes()[0].find("'hinge rz' is too soft beside 'rod'"), std::string::npos) << solver.notes()[0];
+}
+
 TEST(Stability, NothingIsSupported) {
   Model m;
   m.add_node("a", Vector3::Zero());

@@ -19,7 +19,7 @@ constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73"};  // Okabe�
 constexpr int shapes[] = {7, 5, 13};
 
 // mm on paper
-constexpr double left = 14, panel = 41, gap = 4, bar_gap = 4, bar = 4, bar_text = 13;
+constexpr double left = 14, panel = 41, gap = 4.5, bar_gap = 4, bar = 4, bar_text = 16.5;
 constexpr double width = left + 3 * panel + 2 * gap + bar_gap + bar + bar_text;
 constexpr double line = 4, row_title = 5.5, tic_room = 5.5;
 
@@ -78,38 +78,61 @@ const MapPose& at(const StiffnessMap& map, const Slice& s, int i, int j) {
   return map.poses[map.options.grid.index(index[0], index[1], index[2])];
 }
 
-/// Interpolated bilinearly in the logarithm, with `fine` steps between poses; NaN where a pose that it would take part
-/// in is out of reach. Lines of gnuplot's grid format, x fastest.
+/// Interpolated bilinearly in the logarithm, with some steps between poses; NaN outside the cells whose four corners
+/// are reached. Lines of gnuplot's grid format, x fastest.
 std::string surface(const StiffnessMap& map, const Slice& s, int axis) {
   const MapGrid& g = map.options.grid;
   const int n = g.counts[static_cast<std::size_t>(s.across)], m = g.counts[static_cast<std::size_t>(s.up)];
-  const auto steps = [](int count) { return std::max(1, static_cast<int>(std::ceil(72.0 / (count - 1)))); };
+  const auto steps = [](int count) { return std::max(1, static_cast<int>(std::ceil(60.0 / (count - 1)))); };
   const int fine_x = steps(n), fine_y = steps(m);
-  const auto value = [&](int i, int j) {
+  const auto log_value = [&](int i, int j) {
     const MapValues* v = shown(at(map, s, i, j));
     return v ? std::log(v->stiffness_N_mm(axis)) : none;
   };
-  const auto between = [](double a, double b, double t) { return t == 0 ? a : a + t * (b - a); };
+  const auto in_cell = [&](int i, int j, double u, double v) {  // NaN where the cell is not whole or not there
+    if (i < 0 || j < 0 || i + 1 >= n || j + 1 >= m) return none;
+    return (1 - v) * ((1 - u) * log_value(i, j) + u * log_value(i + 1, j)) +
+           v * ((1 - u) * log_value(i, j + 1) + u * log_value(i + 1, j + 1));
+  };
   std::string text;
   for (int y = 0; y <= (m - 1) * fine_y; ++y) {
-    const int j = y / fine_y, j1 = std::min(j + 1, m - 1);
+    const int j = y / fine_y;
     const double v = static_cast<double>(y % fine_y) / fine_y;
-    const double py = between(g.coordinate(s.up, j), g.coordinate(s.up, j1), v);
     for (int x = 0; x <= (n - 1) * fine_x; ++x) {
-      const int i = x / fine_x, i1 = std::min(i + 1, n - 1);
+      const int i = x / fine_x;
       const double u = static_cast<double>(x % fine_x) / fine_x;
-      const double lower = between(value(i, j), value(i1, j), u);
-      const double log = v == 0 ? lower : between(lower, between(value(i, j1), value(i1, j1), u), v);
-      const double px = between(g.coordinate(s.across, i), g.coordinate(s.across, i1), u);
-      text += fmt::format("{:.6g} {:.6g} {:.6g}\n", px, py, std::exp(log));
+      double value = in_cell(i, j, u, v);  // a point on an edge belongs to the cells on both sides
+      if (std::isnan(value) && u == 0) value = in_cell(i - 1, j, 1, v);
+      if (std::isnan(value) && v == 0) value = in_cell(i, j - 1, u, 1);
+      if (std::isnan(value) && u == 0 && v == 0) value = in_cell(i - 1, j - 1, 1, 1);
+      const auto place = [&](int where, int low, double t) {
+        const double from = g.coordinate(where, low);
+        return t == 0 ? from : from + t * (g.coordinate(where, low + 1) - from);
+      };
+      text += fmt::format("{:.6g} {:.6g} {:.5g}\n", place(s.across, i, u), place(s.up, j, v), std::exp(value));
     }
     text += "\n";
   }
   return text;
 }
 
-/// Levels from a series of preferred numbers so fine that the whole range has some twenty of them.
-std::vector<double> levels(const Extremes& e) {
+/// 1, 2 or 5 times a power of ten, the smallest that is not below x > 0.
+double nice_above(double x) {
+  const double power = std::pow(10, std::floor(std::log10(x))), lead = x / power;
+  return (lead <= 1 ? 1 : lead <= 2 ? 2 : lead <= 5 ? 5 : 10) * power;
+}
+
+/// Tics of an axis: whole steps, none of them so near to an end that its label would touch the next panel's.
+std::string inner_tics(double low, double high) {
+  const double step = nice_above((high - low) / 5), margin = 0.07 * (high - low);
+  std::string list;
+  for (double k = std::ceil((low + margin) / step); k * step <= high - margin; ++k)
+    list += fmt::format("{}{:.10g}", list.empty() ? "" : ", ", k * step + 0.0);
+  return list;
+}
+
+/// Preferred numbers within the range: the coarsest series that has at least `wanted` of them, or the finest.
+std::vector<double> levels(const Extremes& e, std::size_t wanted) {
   static const std::vector<std::vector<double>> series = {
       {1, 2, 5},
       {1, 1.6, 2.5, 4, 6.3},
@@ -121,20 +144,15 @@ std::vector<double> levels(const Extremes& e) {
     for (double power = std::pow(10, std::floor(std::log10(e.low))); power <= e.high; power *= 10)
       for (const double number : numbers)
         if (number * power > e.low && number * power < e.high) list.push_back(number * power);
-    if (list.size() >= 14) break;
+    if (list.size() >= wanted) break;
   }
   return list;
 }
 
-std::string tics(const Extremes& e) {
+std::string tics(const Extremes& e, bool named = true) {
   std::string list;
-  const double range = std::log10(e.high / e.low);
-  for (double power = std::pow(10, std::floor(std::log10(e.low))); power <= e.high; power *= 10)
-    for (const double number : {1.0, 1.5, 2.0, 3.0, 5.0, 7.0}) {
-      const bool coarse = number == 1 || number == 2 || number == 5;
-      if (!(range < 1 || coarse) || number * power < e.low || number * power > e.high) continue;
-      list += fmt::format("{}'{:g}' {:g}", list.empty() ? "" : ", ", number * power, number * power);
-    }
+  for (const double level : levels(e, 4))
+    list += fmt::format("{}'{}' {:g}", list.empty() ? "" : ", ", named ? fmt::format("{:g}", level) : "", level);
   return list;
 }
 
@@ -150,18 +168,22 @@ std::string guide_text(const StiffnessMap& map, const Slice& s) {
   return high > 0 ? fmt::format("mean guideway length {:.0f}–{:.0f} mm", low, high) : "out of reach";
 }
 
-std::vector<std::string> heading(const StiffnessMap& map) {
+std::vector<std::string> heading(const StiffnessMap& map, const std::string& title) {
   const Vector3& tilt = map.options.grid.tilt_deg;
-  return {fmt::format("{}: stiffness along the force at the tool point", clip(map.device, 50)),
-          fmt::format("1/C_ii, {}, {}, base axes", map.options.load_N_Nmm ? "tangent" : "secant", map_load_text(map)),
-          fmt::format("{}; roll, pitch, yaw {:g}°, {:g}°, {:g}°",
-                      map.options.analytic && map.options.msa ? "analytic theory (the MSA agrees)"
-                                                              : fmt::format("{} theory", shown_theory(map)),
-                      tilt(0), tilt(1), tilt(2))};
+  std::string theory = fmt::format("{} theory", shown_theory(map));
+  if (map.options.analytic && map.options.msa) {
+    double largest = 1e-15;
+    for (const MapPose& p : map.poses) largest = std::max(largest, p.relative_difference);
+    theory += fmt::format(", MSA within {:.0e} of it", std::pow(10, std::ceil(std::log10(largest))));
+  }
+  return {fmt::format("{}: {}", clip(map.device, 40), title),
+          fmt::format("1/C_ii at the tool point, base axes, {}; {}",
+                      map.options.load_N_Nmm ? "tangent" : "secant from no load", map_load_text(map)),
+          fmt::format("{}; roll, pitch, yaw {:g}°, {:g}°, {:g}°", theory, tilt(0), tilt(1), tilt(2))};
 }
 
-void put_heading(Script& script, const StiffnessMap& map, double height) {
-  const std::vector<std::string> lines = heading(map);
+void put_heading(Script& script, const StiffnessMap& map, const std::string& title, double height) {
+  const std::vector<std::string> lines = heading(map, title);
   for (std::size_t i = 0; i < lines.size(); ++i)
     script.put("set label {} {} at screen {:.5f},{:.5f} left noenhanced {}", i + 1, gnuplot_quote(lines[i]),
                left / width, 1 - (3.5 + line * static_cast<double>(i)) / height,
@@ -196,7 +218,7 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
   for (std::size_t r = 0; r < slices.size(); ++r)
     for (int axis = 0; axis < 3; ++axis) script.put("$s{}{} << EOD\n{}EOD", r, axis, surface(map, slices[r], axis));
   // Iso-curves as tables, made before there is a plot to disturb.
-  const std::vector<double> iso = levels(e);
+  const std::vector<double> iso = levels(e, 14), index = levels(e, 4);
   if (!iso.empty()) {
     script.put("set contour base\nunset surface\nset cntrparam linear\nset cntrparam levels discrete {:g}",
                fmt::join(iso, ","));
@@ -209,10 +231,11 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
   script.put("{}\nset logscale cb\nset cbrange [{:.6g}:{:.6g}]\nset cbtics ({}) scale 0.5", palette, e.low,
              std::max(e.high, e.low * 1.001), tics(e));
   script.put("set multiplot\nunset key\nunset grid\nset border 15 lc rgb '#404040' lw 0.7");
-  script.put("set style textbox opaque noborder");
-  put_heading(script, map, height);
+  put_heading(script, map, "stiffness over the workspace", height);
   const double light = std::exp(std::log(e.low) + 0.62 * std::log(e.high / e.low));  // dark lines on light colours
   const std::string ink = fmt::format("($3 < {:.6g} ? 0xFFFFFF : 0x000000)", light);
+  std::string is_index = "0";  // the iso-curves that are heavier and carry their number
+  for (const double level : index) is_index += fmt::format("||abs($3/{:g}-1)<1e-3", level);
   double y = top;
   for (std::size_t r = 0; r < slices.size(); ++r) {
     const Slice& s = slices[r];
@@ -226,15 +249,16 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
                  g.low_mm(s.up), g.high_mm(s.up));
       script.put("set object 1 rect from graph 0,0 to graph 1,1 behind fc rgb '#f4f4f4' fs solid noborder");
       script.put("set object 2 rect from graph 0,0 to graph 1,1 behind fc rgb '#b0b0b0' fs pattern 4 noborder");
-      script.put("set xtics auto offset 0,0.4\nset ytics auto offset 0.6,0{}", axis == 0 ? "" : "\nset format y ''");
+      script.put("set xtics ({}) offset 0,0.4\nset ytics ({}) offset 0.6,0\nset format y '{}'",
+                 inner_tics(g.low_mm(s.across), g.high_mm(s.across)), inner_tics(g.low_mm(s.up), g.high_mm(s.up)),
+                 axis == 0 ? "%g" : "");
       if (axis == 0) {
-        script.put("set format y '%g'");
         script.put("set label 10 '{} (mm)' at screen {:.5f},{:.5f} center rotate by 90", axis_names[s.up], across(2.5),
                    up(y + h / 2));
         script.put("set label 11 {} at screen {:.5f},{:.5f} left textcolor rgb '#202020'",
                    gnuplot_quote(fmt::format("{} = {:.4g} mm: {}", axis_names[s.fixed()], g.coordinate(s.fixed(), s.at),
                                              guide_text(map, s))),
-                   across(left), up(y - 2));
+                   across(left), up(y - 2.4));
       }
       script.put("set label 12 '{} (mm)' at screen {:.5f},{:.5f} center", axis_names[s.across], across(x + panel / 2),
                  up(y + h + tic_room + 1));
@@ -252,11 +276,18 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
       else
         script.put("unset colorbox");
       std::string curves;
-      if (!iso.empty())
+      if (!iso.empty()) {
+        const double margin_x = 0.1 * extent(s.across), margin_y = 0.06 * extent(s.up);
+        const std::string inside =
+            fmt::format("$1>{:.6g}&&$1<{:.6g}&&$2>{:.6g}&&$2<{:.6g}", g.low_mm(s.across) + margin_x,
+                        g.high_mm(s.across) - margin_x, g.low_mm(s.up) + margin_y, g.high_mm(s.up) - margin_y);
         curves = fmt::format(
-            ", $c{0}{1} using 1:2:{2} with lines lc rgb variable lw 0.5, $c{0}{1} using 1:2:(sprintf('%g',$3)):{2} "
-            "every ::24::24 with labels font 'DejaVu Sans,5.5' textcolor rgb variable",
-            r, axis, ink);
+            ", $c{0}{1} using 1:2:{2} with lines lc rgb variable lw 0.3"
+            ", $c{0}{1} using 1:({3} ? $2 : NaN):{2} with lines lc rgb variable lw 0.9"
+            ", $c{0}{1} using 1:(({3})&&{4} ? $2 : NaN):(sprintf('%g',$3)):{2} every ::28::28 with labels font "
+            "'DejaVu Sans,6' offset 0,0.35 textcolor rgb variable",
+            r, axis, ink, is_index, inside);
+      }
       script.put("plot $s{}{} using 1:2:3 with image{}", r, axis, curves);
       for (const int tag : {1, 2, 3, 10, 11, 12, 13, 14}) script.put("unset label {}", tag);
     }
@@ -269,66 +300,69 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
 std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
   const Extremes e = extremes(map);
   if (e.high == 0) return {};
-  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-  std::size_t count = 0;
-  for (const MapPose& p : map.poses) {
-    if (!p.reached()) continue;
-    shortest = std::min(shortest, p.guide_mean_mm);
-    longest = std::max(longest, p.guide_mean_mm);
-    ++count;
-  }
-  const std::size_t bins = std::clamp<std::size_t>(count / 20, 1, 16);
-  const double step = std::max(longest - shortest, 1e-9) / static_cast<double>(bins);
-
-  Script script;
-  std::vector<std::string> series;
-  script.text = "$data << EOD\n";
-  std::array<std::vector<std::vector<double>>, 3> binned;
-  std::vector<std::vector<double>> lengths(bins);
-  binned.fill(std::vector<std::vector<double>>(bins));
+  std::vector<const MapPose*> poses;
   for (const MapPose& p : map.poses)
-    if (const MapValues* v = shown(p)) {
-      script.put("{:.6g} {:.6g} {:.6g} {:.6g}", p.guide_mean_mm, v->stiffness_N_mm(0), v->stiffness_N_mm(1),
-                 v->stiffness_N_mm(2));
-      const auto bin = std::min(bins - 1, static_cast<std::size_t>((p.guide_mean_mm - shortest) / step));
-      lengths[bin].push_back(p.guide_mean_mm);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        binned[axis][bin].push_back(v->stiffness_N_mm(static_cast<Eigen::Index>(axis)));
-    }
-  script.text += "EOD\n$median << EOD\n";
-  const auto median = [](std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    if (p.reached()) poses.push_back(&p);
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const MapPose* a, const MapPose* b) { return a->guide_mean_mm < b->guide_mean_mm; });
+  const double shortest = poses.front()->guide_mean_mm, longest = poses.back()->guide_mean_mm;
+  const auto row = [](double length, const Vector3& k) {
+    return fmt::format("{:.5g} {:.5g} {:.5g} {:.5g}\n", length, k(0), k(1), k(2));
   };
-  for (std::size_t b = 0; b < bins; ++b)
-    if (!lengths[b].empty())
-      script.put("{:.6g} {:.6g} {:.6g} {:.6g}", median(lengths[b]), median(binned[0][b]), median(binned[1][b]),
-                 median(binned[2][b]));
-  script.text += "EOD\n";
 
-  constexpr double height = 92;
-  put_heading(script, map, height);
-  script.put("set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}", (left + 2) / width, (width - 4) / width);
-  script.put("set tmargin at screen {:.5f}\nset bmargin at screen {:.5f}", 1 - 25 / height, 11 / height);
-  script.put("set logscale y\nset ytics ({})", tics({e.low / 1.15, e.high * 1.15}));
-  script.put("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]", shortest - 0.03 * (longest - shortest + 1),
-             longest + 0.03 * (longest - shortest + 1), e.low / 1.15, e.high * 1.15);
-  script.put("set xlabel 'mean length of the guideways (mm)' offset 0,0.3");
+  // Of many poses some are drawn, spread evenly by the golden ratio; the median is that of all.
+  constexpr double most = 1500;
+  std::string points, medians;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (std::fmod(0.6180339887498949 * static_cast<double>(i), 1) * static_cast<double>(poses.size()) < most)
+      points += row(poses[i]->guide_mean_mm, shown(*poses[i])->stiffness_N_mm);
+  const std::size_t bins = std::clamp<std::size_t>(poses.size() / 20, 1, 16);
+  for (std::size_t b = 0; b < bins; ++b) {  // equally many poses in each
+    const std::size_t from = b * poses.size() / bins, to = (b + 1) * poses.size() / bins;
+    Vector3 median;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double> values;
+      for (std::size_t i = from; i < to; ++i) values.push_back(shown(*poses[i])->stiffness_N_mm(axis));
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      median(axis) = *middle;
+    }
+    medians += row(poses[(from + to) / 2]->guide_mean_mm, median);
+  }
+
+  constexpr double height = 82, top = 25, bottom = 11, from_left = left + 3,
+                   room = (width - from_left - 5 - 2 * gap) / 3;
+  Script script;
+  script.put("$points << EOD\n{}EOD\n$median << EOD\n{}EOD", points, medians);
+  script.put("set multiplot\nunset key");
+  put_heading(script, map, "stiffness against the length of the guideways", height);
+  script.put("set tmargin at screen {:.5f}\nset bmargin at screen {:.5f}", 1 - top / height, bottom / height);
+  script.put("set logscale y\nset mytics default");
+  const double beside = 0.04 * std::max(longest - shortest, 1.0);
+  script.put("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]", shortest - beside, longest + beside,
+             e.low / 1.15, e.high * 1.15);
+  script.put("set xtics ({}) offset 0,0.2", inner_tics(shortest - beside, longest + beside));
   script.put("set label 10 'stiffness along the force (N/mm)' at screen {:.5f},{:.5f} center rotate by 90", 3 / width,
-             (11 + (height - 36) / 2) / height);
-  script.put("set key at screen {:.5f},{:.5f} left top horizontal maxrows 1 Left reverse samplen 1.5 width 2",
-             (left - 1) / width, 1 - 16.5 / height);
-  const double size = std::clamp(8 / std::sqrt(static_cast<double>(count)), 0.12, 0.5);
-  for (int axis = 0; axis < 3; ++axis)
-    series.push_back(fmt::format("$data using 1:{} with points lc rgb '#A0{}' pt {} ps {:.2f} notitle", axis + 2,
-                                 colours[axis] + 1, shapes[axis], size));
-  for (int axis = 0; axis < 3; ++axis)
-    series.push_back(
-        fmt::format("$median using 1:{} with linespoints lc rgb '{}' pt {} ps 0.6 lw 1.4 title '{} "
-                    "(Spearman {:.2f})'",
-                    axis + 2, colours[axis], shapes[axis], axis_names[axis], with_guide_length(map, axis).spearman));
-  script.put("plot {}", fmt::join(series, ", \\\n  "));
+             (bottom + (height - top - bottom) / 2) / height);
+  script.put("set label 11 'mean length of the guideways (mm)' at screen {:.5f},{:.5f} center",
+             (from_left + width - 5) / 2 / width, 3 / height);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x = from_left + axis * (room + gap);
+    script.put("set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}", x / width, (x + room) / width);
+    script.put(
+        "set label 12 'force along {}' at screen {:.5f},{:.5f} left font 'DejaVu Sans:Bold,8' textcolor rgb '{}'",
+        axis_names[axis], x / width, 1 - (top - 5.5) / height, colours[axis]);
+    script.put("set ytics ({})", tics({e.low / 1.15, e.high * 1.15}, axis == 0));
+    const double rho = with_guide_length(map, axis).spearman;
+    script.put("set label 13 'Spearman’s ρ = {}{:.2f}' at screen {:.5f},{:.5f} left textcolor rgb '#505050'",
+               rho < 0 ? "−" : "", std::abs(rho), x / width, 1 - (top - 2) / height);
+    script.put(
+        "plot $points using 1:{0} with points lc rgb '#90{1}' pt {2} ps 0.22, $median using 1:{0} with lines lc rgb "
+        "'#ffffff' lw 3, $median using 1:{0} with lines lc rgb '#202020' lw 1.4",
+        axis + 2, colours[axis] + 1, shapes[axis]);
+    for (const int tag : {1, 2, 3, 10, 11, 12, 13}) script.put("unset label {}", tag);
+  }
+  script.text += "unset multiplot";
   return {{"stiffness-vs-length", script.text, width, height}};
 }
 
