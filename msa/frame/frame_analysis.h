@@ -27,7 +27,7 @@ struct MemberForces {
   double energy = 0;  ///< J
 };
 
-/// Relative, 0 where all is exact. Terms that cancel are measured by 1e-9 of the unsigned sum of what cancels, so that
+/// Relative, 0 where all is exact. Terms that cancel are measured by 1e-7 of the unsigned sum of what cancels, so that
 /// a case without reactions (free expansion) does not fail on its rounding.
 struct FrameChecks {
   double residual = 0;     ///< Tᵀ(f − f_int): equilibrium of the free freedoms

@@ -183,6 +183,8 @@ void describe_freedom_values(FieldVisitor& v, FreedomValues& values, Dimension t
 }
 
 void describe(FieldVisitor& v, FrameDescription& f) {
+  v.keys({"name", "about", "source", "materials", "sections", "nodes", "members", "supports", "springs", "rigid_links",
+          "constraints", "loads"});
   v.text("name", f.name, Need::required, "name of the frame");
   v.text("about", f.about, Need::optional, "one line about the frame");
   v.text("source", f.source, Need::optional, "where the numbers are from");

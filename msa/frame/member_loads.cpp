@@ -22,7 +22,7 @@ Vector6 section_forces(const Vector12& ends, const ElementLoad& load, double x) 
   s.head<3>() -= x * q;
   s(4) -= x * f.z() + x * x / 2 * q.z();
   s(5) += x * f.y() + x * x / 2 * q.y();
-  return s;
+  return s + Vector6::Zero();  // 0 rather than -0
 }
 
 std::array<double, 2> stationary_moments(const Vector12& ends, const ElementLoad& load, double L) {

@@ -324,6 +324,11 @@ void FieldReader::one_or_list(const char* key, Elements& all, const char* about)
   element(*node, joined(joined(path_, key), "0"), all, all.size() - 1);
 }
 
+void FieldReader::keys(const std::vector<std::string>& all) {
+  for (std::size_t i = 0; i < level_.map->keys.size(); ++i)
+    if (std::find(all.begin(), all.end(), level_.map->keys[i]) == all.end()) refuse_key(i, all);
+}
+
 std::size_t FieldReader::alternative(const std::vector<std::string>& keys, std::size_t) {
   std::vector<std::size_t> there;
   for (std::size_t i = 0; i < keys.size(); ++i)

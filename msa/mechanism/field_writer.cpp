@@ -120,7 +120,12 @@ void FieldWriter::entries(const char* key, Elements& all, Need need, const char*
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string path = joined(joined(path_, key), all.name(i));
     YamlNode entry = filled(path, [&] { all.describe_element(*this, i); });
-    node.add(all.name(i), all.plain() ? *entry.child("") : std::move(entry));
+    if (all.plain()) {
+      YamlNode value = *entry.child("");
+      value.implied = false;
+      entry = std::move(value);
+    }
+    node.add(all.name(i), std::move(entry));
     node.children.back().ours = ours_.contains(path);
   }
   add(key, std::move(node), need == Need::optional && all.size() == 0);

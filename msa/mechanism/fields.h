@@ -79,6 +79,9 @@ class FieldVisitor {
   virtual void list(const char* key, Elements&, const char* about) = 0;
   virtual void one_or_list(const char* key, Elements&, const char* about) = 0;
 
+  /// The keys of this map, told beforehand where fields below refer to others: an unknown one is told first.
+  virtual void keys(const std::vector<std::string>& all) = 0;
+
   /// The index of the key that is there; exactly one must be.
   virtual std::size_t alternative(const std::vector<std::string>& keys, std::size_t current) = 0;
 

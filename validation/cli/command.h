@@ -26,6 +26,7 @@ struct Command {
 
 Command solve_command();
 Command validate_command();
+Command frame_command();
 Command map_command();
 Command export_command();
 Command devices_command();

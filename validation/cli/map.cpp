@@ -126,15 +126,15 @@ Command map_command() {
       "map",
       "Stiffness of the tool point over the workspace by direction: a grid of poses, both theories, Fig. 11.\n"
       "With --force (the default) every pose is loaded along x, y and z in turn: the compliance C = u/F is secant, "
-      "from "
-      "no load to the force, and the 6x6 stiffness K (its diagonal, smallest, largest, isotropy) is tangent at the "
-      "force. With --load both are tangent under that wrench. They differ where contacts carry load.",
+      "from no load to the force, and the 6x6 stiffness K (its diagonal, smallest, largest, isotropy) is tangent at "
+      "the force. With --load both are tangent under that wrench. They differ where contacts carry load. The MSA takes "
+      "one element per member, which is exact at its nodes.",
       "deflect map haptic-6psu --n 21,21,21 --x -40,40 --y -40,40 --z 124,224 --out map --json map.json",
       {{"device", "DEVICE", "built-in device or device file", &a->device, true},
        {"--x", "from,to", "range of the tool point in mm, or one value (default: the cube of the device's workspace)",
         &a->ranges[0]},
-       {"--y", "from,to", "", &a->ranges[1]},
-       {"--z", "from,to", "", &a->ranges[2]},
+       {"--y", "from,to", "likewise", &a->ranges[1]},
+       {"--z", "from,to", "likewise", &a->ranges[2]},
        {"--n", "nx,ny,nz", "poses along x, y, z, or one number for all (default 11)", &a->n},
        {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default 0,0,0)", &a->tilt},
        {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},

@@ -124,7 +124,7 @@ double nice_above(double x) {
 
 /// Tics of an axis: whole steps, none of them so near to an end that its label would touch the next panel's.
 std::string inner_tics(double low, double high) {
-  const double step = nice_above((high - low) / 5), margin = 0.07 * (high - low);
+  const double step = nice_above((high - low) / 7), margin = 0.07 * (high - low);
   std::string list;
   for (double k = std::ceil((low + margin) / step); k * step <= high - margin; ++k)
     list += fmt::format("{}{:.10g}", list.empty() ? "" : ", ", k * step + 0.0);
@@ -168,7 +168,7 @@ std::string guide_text(const StiffnessMap& map, const Slice& s) {
   return high > 0 ? fmt::format("mean guideway length {:.0f}–{:.0f} mm", low, high) : "out of reach";
 }
 
-std::vector<std::string> heading(const StiffnessMap& map, const std::string& title) {
+std::vector<std::string> heading(const StiffnessMap& map, const std::string& title, const char* note) {
   const Vector3& tilt = map.options.grid.tilt_deg;
   std::string theory = fmt::format("{} theory", shown_theory(map));
   if (map.options.analytic && map.options.msa) {
@@ -179,11 +179,11 @@ std::vector<std::string> heading(const StiffnessMap& map, const std::string& tit
   return {fmt::format("{}: {}", clip(map.device, 40), title),
           fmt::format("1/C_ii at the tool point, base axes, {}; {}",
                       map.options.load_N_Nmm ? "tangent" : "secant from no load", map_load_text(map)),
-          fmt::format("{}; roll, pitch, yaw {:g}°, {:g}°, {:g}°", theory, tilt(0), tilt(1), tilt(2))};
+          fmt::format("{}; roll, pitch, yaw {:g}°, {:g}°, {:g}°{}", theory, tilt(0), tilt(1), tilt(2), note)};
 }
 
-void put_heading(Script& script, const StiffnessMap& map, const std::string& title, double height) {
-  const std::vector<std::string> lines = heading(map, title);
+void put_heading(Script& script, const StiffnessMap& map, const std::string& title, const char* note, double height) {
+  const std::vector<std::string> lines = heading(map, title, note);
   for (std::size_t i = 0; i < lines.size(); ++i)
     script.put("set label {} {} at screen {:.5f},{:.5f} left noenhanced {}", i + 1, gnuplot_quote(lines[i]),
                left / width, 1 - (3.5 + line * static_cast<double>(i)) / height,
@@ -203,6 +203,8 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
   const Extremes e = extremes(map);
   if (slices.empty() || e.high == 0) return {};
 
+  const bool all_reached =
+      std::all_of(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); });
   const auto extent = [&](int axis) { return g.high_mm(axis) - g.low_mm(axis); };
   const auto panel_height = [&](const Slice& s) {
     return std::clamp(panel * extent(s.up) / extent(s.across), 0.5 * panel, 1.4 * panel);
@@ -231,7 +233,7 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
   script.put("{}\nset logscale cb\nset cbrange [{:.6g}:{:.6g}]\nset cbtics ({}) scale 0.5", palette, e.low,
              std::max(e.high, e.low * 1.001), tics(e));
   script.put("set multiplot\nunset key\nunset grid\nset border 15 lc rgb '#404040' lw 0.7");
-  put_heading(script, map, "stiffness over the workspace", height);
+  put_heading(script, map, "stiffness over the workspace", all_reached ? "" : "; hatched: out of reach", height);
   const double light = std::exp(std::log(e.low) + 0.62 * std::log(e.high / e.low));  // dark lines on light colours
   const std::string ink = fmt::format("($3 < {:.6g} ? 0xFFFFFF : 0x000000)", light);
   std::string is_index = "0";  // the iso-curves that are heavier and carry their number
@@ -317,7 +319,7 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
     if (std::fmod(0.6180339887498949 * static_cast<double>(i), 1) * static_cast<double>(poses.size()) < most)
       points += row(poses[i]->guide_mean_mm, shown(*poses[i])->stiffness_N_mm);
   const std::size_t bins = std::clamp<std::size_t>(poses.size() / 20, 1, 16);
-  for (std::size_t b = 0; b < bins; ++b) {  // equally many poses in each
+  for (std::size_t b = 0; bins > 1 && b < bins; ++b) {  // equally many poses in each
     const std::size_t from = b * poses.size() / bins, to = (b + 1) * poses.size() / bins;
     Vector3 median;
     for (int axis = 0; axis < 3; ++axis) {
@@ -335,7 +337,7 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
   Script script;
   script.put("$points << EOD\n{}EOD\n$median << EOD\n{}EOD", points, medians);
   script.put("set multiplot\nunset key");
-  put_heading(script, map, "stiffness against the length of the guideways", height);
+  put_heading(script, map, "stiffness against the length of the guideways", bins > 1 ? "; line: median" : "", height);
   script.put("set tmargin at screen {:.5f}\nset bmargin at screen {:.5f}", 1 - top / height, bottom / height);
   script.put("set logscale y\nset mytics default");
   const double beside = 0.04 * std::max(longest - shortest, 1.0);
@@ -356,10 +358,13 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
     const double rho = with_guide_length(map, axis).spearman;
     script.put("set label 13 'Spearman’s ρ = {}{:.2f}' at screen {:.5f},{:.5f} left textcolor rgb '#505050'",
                rho < 0 ? "−" : "", std::abs(rho), x / width, 1 - (top - 2) / height);
-    script.put(
-        "plot $points using 1:{0} with points lc rgb '#90{1}' pt {2} ps 0.22, $median using 1:{0} with lines lc rgb "
-        "'#ffffff' lw 3, $median using 1:{0} with lines lc rgb '#202020' lw 1.4",
-        axis + 2, colours[axis] + 1, shapes[axis]);
+    script.put("plot $points using 1:{} with points lc rgb '#90{}' pt {} ps {:.2f}{}", axis + 2, colours[axis] + 1,
+               shapes[axis], std::clamp(8 / std::sqrt(static_cast<double>(poses.size())), 0.22, 0.6),
+               bins > 1
+                   ? fmt::format(", $median using 1:{0} with lines lc rgb '#ffffff' lw 3, $median using 1:{0} with "
+                                 "lines lc rgb '#202020' lw 1.4",
+                                 axis + 2)
+                   : "");
     for (const int tag : {1, 2, 3, 10, 11, 12, 13}) script.put("unset label {}", tag);
   }
   script.text += "unset multiplot";

@@ -103,7 +103,8 @@ std::string terminal(const std::string& suffix, const Figure& figure) {
   const double w = figure.width_mm, h = figure.height_mm;
   if (suffix == "svg") {  // standalone: images inside the file
     std::string name = figure.name;
-    std::replace_if(name.begin(), name.end(), [](char c) { return c == '-' || c == '.'; }, '_');
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == '-' || c == '.'; }, '_');
     return fmt::format("svg enhanced standalone size {},{} name '{}' font 'DejaVu Sans,8' background '#ffffff'",
                        in_points(w), in_points(h), name);
   }

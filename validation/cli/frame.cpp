@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "meshes/frame_lines.h"
+#include "meshes/gmsh.h"
+#include "meshes/vtu.h"
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/base/units.h"
+#include "msa/frame/frame_file.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/report/frame_results.h"
+
+namespace deflect::cli {
+namespace fs = std::filesystem;
+namespace {
+
+struct Arguments {
+  std::string file, element_size, json, out;
+};
+
+/// A path, or the name of a published case that comes with the program.
+fs::path frame_file(const std::string& name) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(data_folder() / "cases", error))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  if (std::find(names.begin(), names.end(), name) != names.end()) return data_folder() / "cases" / (name + ".yaml");
+  if (name.find('/') != name.npos || name.ends_with(".yaml") || fs::exists(name)) return name;
+  const std::string hint = nearest(name, names);
+  throw InputError(fmt::format("there is no frame '{}'{}: name a file or a built-in case ({})", name,
+                               hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), fmt::join(names, ", ")));
+}
+
+frame::FrameDivision divide_members(const frame::FrameDescription& f, const std::string& element_size) {
+  if (element_size.empty()) return {};
+  double size = 0;
+  try {
+    size = parse_quantity(element_size, Dimension::length);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("--element-size: {}", e.what()));
+  }
+  if (!(size > 0)) throw InputError(fmt::format("--element-size: '{}' must be greater than zero", element_size));
+  const frame::NameIndex nodes(f.nodes);
+  const auto position = [&](const std::string& node) {
+    return f.nodes[static_cast<std::size_t>(nodes.find(node))].second;
+  };
+  std::vector<double> lengths;
+  for (const auto& [name, member] : f.members) lengths.push_back((position(member.to) - position(member.from)).norm());
+  return gmsh::subdivide(lengths, size);
+}
+
+void write_results(const fs::path& folder, const frame::FrameDescription& f, const frame::FrameResult& r) {
+  const FrameTables tables = frame_tables(f, r);
+  write_text(folder / "displacements.csv", tables.displacements);
+  write_text(folder / "reactions.csv", tables.reactions);
+  write_text(folder / "members.csv", tables.members);
+  write_text(folder / "shares.csv", tables.shares);
+  const LineMesh mesh = lines_of(r.structure);
+  for (const frame::CaseResult& c : r.cases) {
+    const FieldData fields = fields_of(r.structure, c);
+    gmsh::write_msh(folder / (c.name + ".msh"), mesh, fields);
+    write_vtu(folder / (c.name + ".vtu"), mesh, fields);
+  }
+}
+
+void run(const Arguments& a) {
+  const frame::FrameDescription f = frame::read_frame(frame_file(a.file));
+  const frame::FrameResult r = frame::analyse(f, {divide_members(f, a.element_size)});
+  if (const std::string failure = frame::failed_check(r); !failure.empty())
+    throw NumericalError(fmt::format("{}: {}", f.name, failure));
+  if (!a.out.empty()) write_results(a.out, f, r);
+  if (!a.json.empty()) write_text(a.json, frame_json(f, r));
+  fmt::print("{}", frame_report(f, r));
+  if (!a.out.empty()) fmt::print("Tables and deflected shapes: {}/*.csv, *.msh, *.vtu\n", a.out);
+}
+
+}  // namespace
+
+Command frame_command() {
+  auto a = std::make_shared<Arguments>();
+  return {"frame",
+          "A frame of nodes and members under its load cases: displacements, reactions, member forces, shares of the "
+          "strain energy, checks",
+          "deflect frame logan-5-30 --json result.json --out result",
+          {{"file", "FILE", "frame file, or the name of a published case in share/deflect/cases", &a->file, true},
+           {"--element-size", "LENGTH", "divide members, with unit (default: one element each, exact at its nodes)",
+            &a->element_size},
+           {"--json", "FILE", "write the result", &a->json},
+           {"--out", "DIR", "write displacements, reactions, members, shares (.csv) and each case as .msh and .vtu",
+            &a->out}},
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli
