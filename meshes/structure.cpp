@@ -27,29 +27,50 @@ frame::MemberDivision divide_members(const Configuration& c, double element_size
   return out;
 }
 
-LineMesh lines_of(const frame::MechanismModel& m) {
+namespace {
+
+LineMesh lines_of(const frame::Model& m, const std::vector<std::pair<int, int>>& arms) {
   LineMesh mesh;
-  for (const frame::Node& node : m.model.nodes) mesh.points.push_back(node.position);
+  for (const frame::Node& node : m.nodes) mesh.points.push_back(node.position);
   const auto group = [&mesh](const std::string& name) {
     const auto found = std::find(mesh.groups.begin(), mesh.groups.end(), name);
     if (found != mesh.groups.end()) return static_cast<int>(found - mesh.groups.begin());
     mesh.groups.push_back(name);
     return static_cast<int>(mesh.groups.size()) - 1;
   };
-  for (const frame::Beam& beam : m.model.beams) mesh.cells.push_back({beam.a, beam.b, group(beam.part)});
-  for (const auto& [a, b] : m.arms) mesh.cells.push_back({a, b, group("rigid")});
+  for (const frame::Beam& beam : m.beams) mesh.cells.push_back({beam.a, beam.b, group(beam.part)});
+  for (const auto& [a, b] : arms) mesh.cells.push_back({a, b, group("rigid")});
   return mesh;
+}
+
+/// Points of the nodes' displacements times `scale`, and of their rotations.
+std::vector<PointField> motion_of(const frame::Model& m, const VectorX& u, double scale) {
+  std::vector<PointField> fields = {{"displacement_mm", {}}, {"rotation_rad", {}}};
+  for (std::size_t i = 0; i < m.nodes.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    fields[0].values.push_back(1e3 * scale * u.segment<3>(at));
+    fields[1].values.push_back(scale * u.segment<3>(at + 3));
+  }
+  return fields;
+}
+
+}  // namespace
+
+LineMesh lines_of(const frame::MechanismModel& m) { return lines_of(m.model, m.arms); }
+
+LineMesh lines_of(const frame::Model& m) { return lines_of(m, m.welds); }
+
+FieldData fields_of_motion(const frame::Model& m, const VectorX& u) {
+  double largest = 0;
+  for (std::size_t i = 0; i < m.nodes.size(); ++i)
+    largest = std::max(largest, u.segment<3>(static_cast<Eigen::Index>(6 * i)).norm());
+  return {motion_of(m, u, largest > 0 ? 0.1 * characteristic_length(m) / largest : 1), {}};
 }
 
 FieldData fields_of(const frame::MechanismModel& m, const VectorX& u) {
   FieldData out;
-  out.points = {{"displacement_mm", {}}, {"rotation_rad", {}}};
+  out.points = motion_of(m.model, u, 1);
   out.cells = {{"axial_force_N", {}}, {"bending_moment_Nmm", {}}, {"torque_Nmm", {}}};
-  for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(6 * i);
-    out.points[0].values.push_back(1e3 * u.segment<3>(at));
-    out.points[1].values.push_back(u.segment<3>(at + 3));
-  }
   for (const frame::Beam& beam : m.model.beams) {
     const frame::Vector12 f = end_forces(beam, end_displacements(beam, u));
     out.cells[0].values.push_back(f(6));  // pull of the far end along x: tension positive

@@ -14,6 +14,13 @@ frame::MemberDivision divide_members(const Configuration&, double element_size);
 /// Beams and the rigid arms of bodies as cells, one group per part ("guideway", "link", …, "rigid").
 LineMesh lines_of(const frame::MechanismModel&);
 
+/// The same of any structure: beams, and the arms between welded nodes.
+LineMesh lines_of(const frame::Model&);
+
+/// A free motion as displacements (mm) and rotations (rad), scaled so that the largest displacement is a tenth of the
+/// structure.
+FieldData fields_of_motion(const frame::Model&, const VectorX& u);
+
 /// Displacements (mm), rotations (rad) of nodes; axial force (N), largest bending moment and torque (Nmm) of
 /// elements.
 FieldData fields_of(const frame::MechanismModel&, const VectorX& u);

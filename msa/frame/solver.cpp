@@ -76,12 +76,17 @@ bool Solver::held_idle_spins() {
     return false;
   }
   std::string list;
-  std::size_t count = 0;
+  std::vector<FreeMotion> refused;
   for (const FreeMotion& motion : motions)
-    if (!motion.idle) list += fmt::format("\n  {}: {}", ++count, describe(*model_, motion));
-  if (count > 0)
-    throw ModelError(fmt::format("the structure cannot stand: {} motion{} that nothing resists{}", count,
-                                 count == 1 ? "" : "s", list));
+    if (!motion.idle) {
+      refused.push_back(motion);
+      list += fmt::format("\n  {}: {}", refused.size(), describe(*model_, motion));
+    }
+  if (!refused.empty()) {
+    const std::string what = fmt::format("the structure cannot stand: {} motion{} that nothing resists{}",
+                                         refused.size(), refused.size() == 1 ? "" : "s", list);
+    throw CannotStand(what, *model_, std::move(refused));
+  }
   for (const FreeMotion& motion : motions) {
     hold(*model_, motion);
     notes_.push_back(fmt::format("{} spins idly about its own axis: harmless, held", motion.bodies.front().name));
@@ -106,10 +111,10 @@ void Solver::factor(const VectorX& tangents) {
   if (elimination_->independent > 0) {
     const std::vector<double> values = assembly_->values(tangents);
     if (cholesky_->factor(values) == 0) {
+      std::vector<FreeMotion> motions = free_motions_of(*model_, *elimination_, assembly_->pattern(), values);
       std::string list;
-      for (const FreeMotion& motion : free_motions_of(*model_, *elimination_, assembly_->pattern(), values))
-        list += "\n  " + describe(*model_, motion);
-      throw ModelError("in this state of its springs the structure cannot stand" + list);
+      for (const FreeMotion& motion : motions) list += "\n  " + describe(*model_, motion);
+      throw CannotStand("in this state of its springs the structure cannot stand" + list, *model_, std::move(motions));
     }
   }
   factored_tangents_ = tangents;

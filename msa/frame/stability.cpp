@@ -137,6 +137,9 @@ Screw screw_of(const Vector3& p, const Vector3& v, const Vector3& w) {
   return s;
 }
 
+CannotStand::CannotStand(const std::string& what, const Model& m, std::vector<FreeMotion> free)
+    : ModelError(what), model(std::make_shared<const Model>(m)), motions(std::move(free)) {}
+
 std::vector<FreeMotion> free_motions_of(const Model& m, const Elimination& e, const SparsePattern& p,
                                         const std::vector<double>& values) {
   const MatrixX U = taken_apart(unstrained(m, soft_motions(m, e, p, values)));

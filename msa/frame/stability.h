@@ -2,9 +2,11 @@
 // harmless.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "msa/base/error.h"
 #include "msa/frame/free_motions.h"
 
 namespace deflect::frame {
@@ -30,6 +32,14 @@ struct FreeMotion {
   std::vector<MovingBody> bodies;
   std::vector<std::string> joints;  ///< free freedoms of joints that move: locking any one of them would hold it
   bool idle = false;                ///< one straight member turning about its own axis: it moves nothing else
+};
+
+/// A structure that cannot stand: what() says which bodies move and what would hold them; the rest is for drawing it.
+struct CannotStand : ModelError {
+  CannotStand(const std::string& what, const Model&, std::vector<FreeMotion>);
+
+  std::shared_ptr<const Model> model;
+  std::vector<FreeMotion> motions;
 };
 
 /// Motions that no element resists, taken apart so that each moves as little as possible. Independent of any load.

@@ -141,6 +141,23 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"UnwritableFolder", "validate haptic-6psu --out /proc/none", 2, "/proc/none"}),
     [](const auto& refusal) { return std::string(refusal.param.name); });
 
+TEST(Program, AMechanismThatCannotStandIsRefusedAndDrawn) {
+  const Folder folder;
+  const std::string loose = (folder / "loose.yaml").string();
+  ASSERT_EQ(deflect("devices haptic-6psu-ideal-joints | sed 's/mount: {joint: fixed/mount: {joint: slider/' > '" +
+                    loose + "'")
+                .code,
+            0);
+  const auto run =
+      deflect("solve '" + loose + "' --pose 0,0,174 --load 1,0,0 --out '" + (folder / "out").string() + "'");
+  EXPECT_EQ(run.code, 3) << run.out;
+  EXPECT_NE(run.out.find("node 'platform' slides along (0, 0, 1). To hold it, lock or spring one of: leg 1 mount tz"),
+            std::string::npos)
+      << run.out;
+  EXPECT_NE(contents(folder / "out" / "motion-1.vtu").find("displacement_mm"), std::string::npos);
+  EXPECT_GT(contents(folder / "out" / "motion-1.msh").size(), 1000u);
+}
+
 TEST(Program, HelpOfEveryCommandSaysWhatItDoesWithAnExample) {
   for (const char* command : {"solve", "validate", "devices"}) {
     const auto run = deflect(std::string(command) + " --help");

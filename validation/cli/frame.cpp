@@ -13,6 +13,7 @@
 #include "msa/frame/frame_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/motions.h"
 #include "validation/report/frame_results.h"
 
 namespace deflect::cli {
@@ -94,7 +95,7 @@ Command frame_command() {
            {"--json", "FILE", "write the result", &a->json},
            {"--out", "DIR", "write displacements, reactions, members, shares (.csv) and each case as .msh and .vtu",
             &a->out}},
-          [a] { run(*a); }};
+          [a] { drawing_motions(a->out, [a] { run(*a); }); }};
 }
 
 }  // namespace deflect::cli

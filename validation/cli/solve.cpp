@@ -8,6 +8,7 @@
 #include "msa/mechanism/six_psu.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/motions.h"
 #include "validation/compare/solve_result.h"
 #include "validation/compare/theories.h"
 #include "validation/report/solve_results.h"
@@ -82,7 +83,7 @@ Command solve_command() {
        {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
        {"--json", "FILE", "write the result", &a->json},
        {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
-      [a] { run(*a); }};
+      [a] { drawing_motions(a->out, [a] { run(*a); }); }};
 }
 
 }  // namespace deflect::cli
