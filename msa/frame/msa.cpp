@@ -6,69 +6,79 @@
 namespace deflect::frame {
 namespace {
 
+Model held(Model m, int node) {
+  m.fix(node, "tool");
+  return m;
+}
+
+/// Reactions are differences of forces as large as the stiffest member's: below their rounding K is zero, which is what
+/// an unloaded contact leaves of a leg.
+Matrix6 above_rounding(const Matrix6& K, const Model& m) {
+  double stiffest = 0;
+  for (const Beam& beam : m.beams) stiffest = std::max(stiffest, beam.rigidity.EA / beam.length);
+  Vector6 per_length = Vector6::Ones();
+  per_length.tail<3>().setConstant(1 / characteristic_length(m));
+  const double size = (per_length.asDiagonal() * K * per_length.asDiagonal()).cwiseAbs().maxCoeff();
+  return size < 1e-13 * stiffest ? Matrix6(Matrix6::Zero()) : K;
+}
+
+}  // namespace
+
 /// A node held at unit displacements of its six freedoms in turn, springs linear at their tangents.
-struct Held {
-  Held(const MechanismModel& mechanism, int node, const VectorX& tangents)
-      : solver(held(mechanism.model, node)), first(static_cast<Eigen::Index>(mechanism.model.constraints.size())) {
+struct MsaModel::Held {
+  Held(const MechanismModel& mechanism, int held_node)
+      : node(held_node),
+        solver(held(mechanism.model, held_node)),
+        first(static_cast<Eigen::Index>(mechanism.model.constraints.size())),
+        supports(solver.model(), solver.elimination()) {}
+
+  /// For these tangents; then the reactions below are known.
+  void displace(const VectorX& spring_tangents) {
     const Model& m = solver.model();
+    tangents = spring_tangents;
     MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(m.constraints.size()), 6);
     values.middleRows<6>(first).setIdentity();
-    const MatrixX U = solver.linear(tangents, MatrixX::Zero(m.dofs(), 6), values);
+    U = solver.linear(tangents, MatrixX::Zero(m.dofs(), 6), values);
     MatrixX pulls(m.dofs(), 6);
     for (int i = 0; i < 6; ++i) pulls.col(i) = tangent_forces(m, U.col(i), tangents);
-    forces = constraint_forces(m, solver.elimination(), pulls);
-    elongations.resize(static_cast<Eigen::Index>(m.springs.size()), 6);
-    for (std::size_t s = 0; s < m.springs.size(); ++s)
-      for (int i = 0; i < 6; ++i)
-        elongations(static_cast<Eigen::Index>(s), i) = evaluate(m.springs[s].elongation, U.col(i));
+    forces = supports.forces(pulls);
   }
 
-  static Model held(Model m, int node) {
-    m.fix(node, "tool");
-    return m;
-  }
+  /// What the held node needs: its stiffness.
+  Matrix6 reactions() const { return above_rounding(forces.middleRows<6>(first), solver.model()); }
 
-  /// What the held node needs: its stiffness. Reactions are differences of forces as large as the stiffest member's:
-  /// below their rounding K is zero, which is what an unloaded contact leaves of a leg.
-  Matrix6 reactions() const { return above_rounding(forces.middleRows<6>(first)); }
-
-  /// Its part by way of one attachment to the body of `node`: spring forces less constraint forces, Cᵀλ = f_int.
-  Matrix6 reactions(const MechanismModel::Attachment& a, int node, const VectorX& tangents) const {
+  /// Its part by way of one attachment to the body of the node: spring forces less constraint forces, Cᵀλ = f_int.
+  Matrix6 reactions(const MechanismModel::Attachment& a) const {
+    const Model& m = solver.model();
     Matrix6 K = Matrix6::Zero();
     const auto add = [&](const LinearForm& form, const Eigen::RowVectorXd& pull) {
       for (const Term& t : form)
-        if (t.dof / 6 == node && t.dof < 6 * static_cast<int>(solver.model().nodes.size()))
-          K.row(t.dof % 6) += t.coefficient * pull;
+        if (t.dof / 6 == node) K.row(t.dof % 6) += t.coefficient * pull;
     };
     for (std::size_t k = a.first_constraint; k < a.last_constraint; ++k)
-      add(solver.model().constraints[k].form, -forces.row(static_cast<Eigen::Index>(k)));
+      add(m.constraints[k].form, -forces.row(static_cast<Eigen::Index>(k)));
     for (std::size_t s = a.first_spring; s < a.last_spring; ++s) {
-      const auto i = static_cast<Eigen::Index>(s);
-      add(solver.model().springs[s].elongation, tangents(i) * elongations.row(i));
+      Eigen::RowVectorXd elongation(6);
+      for (int i = 0; i < 6; ++i) elongation(i) = evaluate(m.springs[s].elongation, U.col(i));
+      add(m.springs[s].elongation, tangents(static_cast<Eigen::Index>(s)) * elongation);
     }
-    return above_rounding(K);
+    return above_rounding(K, m);
   }
 
-  Matrix6 above_rounding(const Matrix6& K) const {
-    double stiffest = 0;
-    for (const Beam& beam : solver.model().beams) stiffest = std::max(stiffest, beam.rigidity.EA / beam.length);
-    Vector6 per_length = Vector6::Ones();
-    per_length.tail<3>().setConstant(1 / characteristic_length(solver.model()));
-    const double size = (per_length.asDiagonal() * K * per_length.asDiagonal()).cwiseAbs().maxCoeff();
-    return size < 1e-13 * stiffest ? Matrix6(Matrix6::Zero()) : K;
-  }
-
+  int node;
   Solver solver;
   Eigen::Index first;  // of the six constraints that hold the node
-  MatrixX forces, elongations;
+  Reactions supports;
+  VectorX tangents;
+  MatrixX U, forces;
 };
-
-}  // namespace
 
 MsaModel::MsaModel(const Configuration& c, const MemberDivision& division)
     : configuration_(c), division_(division), built_(build(configuration_, division_)), solver_(built_.model) {
   built_.model = solver_.model();  // with what the solver added to it
 }
+
+MsaModel::~MsaModel() = default;
 
 MsaSolution MsaModel::solve(const Vector6& F_T_W) {
   VectorX load = VectorX::Zero(built_.model.dofs());
@@ -82,16 +92,19 @@ MsaSolution MsaModel::solve(const Vector6& F_T_W) {
   return out;
 }
 
-MsaModel::Stiffness MsaModel::stiffness(const Solution& state) const {
-  const Held tool(built_, built_.tool, state.spring_tangents);
-  Stiffness out{tool.reactions(), {}};
+MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
+  if (!tool_held_) tool_held_ = std::make_unique<Held>(built_, built_.tool);
+  tool_held_->displace(state.spring_tangents);
+  Stiffness out{tool_held_->reactions(), {}};
   const bool legs_stand_alone = built_.base == built_.ground && built_.tool == built_.platform;
   for (std::size_t leg = 0; leg < configuration_.legs.size(); ++leg) {
     if (legs_stand_alone) {  // nothing between the ground and the tool but the legs, side by side
-      out.legs.push_back(tool.reactions(built_.attachments[leg], built_.tool, state.spring_tangents));
+      out.legs.push_back(tool_held_->reactions(built_.attachments[leg]));
     } else {
       const MechanismModel one = build_leg(configuration_, leg, division_);
-      out.legs.push_back(Held(one, one.tool, tangents_of(one.model, state)).reactions());
+      Held leg_held(one, one.tool);
+      leg_held.displace(tangents_of(one.model, state));
+      out.legs.push_back(leg_held.reactions());
     }
   }
   return out;
@@ -129,10 +142,12 @@ Matrix6X MsaModel::passive_twists(std::size_t leg) const {
   return J;
 }
 
-Vector6 MsaModel::base_reaction(const Vector6& F_T_W, const Solution& state) const {
-  VectorX load = VectorX::Zero(solver_.model().dofs());
-  load.segment<6>(6 * built_.tool) = F_T_W;
-  return constraint_forces(solver_.model(), solver_.elimination(), state.u, load).head<6>();
+Vector6 MsaModel::base_reaction(const Vector6& F_T_W, const Solution& state) {
+  if (!supports_) supports_ = std::make_unique<Reactions>(solver_.model(), solver_.elimination());
+  VectorX ignored;
+  VectorX unbalanced = internal_forces(solver_.model(), state.u, ignored);
+  unbalanced.segment<6>(6 * built_.tool) -= F_T_W;
+  return supports_->forces(unbalanced).topRows<6>();  // the ground's six constraints come first
 }
 
 }  // namespace deflect::frame

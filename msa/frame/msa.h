@@ -2,6 +2,7 @@
 // closed form in `analytic`.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ struct MsaSolution {
 class MsaModel {
  public:
   explicit MsaModel(const Configuration&, const MemberDivision& = {});
+  ~MsaModel();
   MsaModel(const MsaModel&) = delete;
   MsaModel& operator=(const MsaModel&) = delete;
 
@@ -41,21 +43,24 @@ class MsaModel {
     Matrix6 K;
     std::vector<Matrix6> legs;
   };
-  Stiffness stiffness(const Solution& state) const;
+  Stiffness stiffness(const Solution& state);
 
   /// Twists at T of a leg's passive joints (columns).
   Matrix6X passive_twists(std::size_t leg) const;
 
   /// Reaction of the world on the base at the base origin, [f; m].
-  Vector6 base_reaction(const Vector6& F_T_W, const Solution& state) const;
+  Vector6 base_reaction(const Vector6& F_T_W, const Solution& state);
 
  private:
+  struct Held;
   VectorX tangents_of(const Model& leg, const Solution& state) const;
 
   Configuration configuration_;
   MemberDivision division_;
   MechanismModel built_;
   Solver solver_;
+  std::unique_ptr<Held> tool_held_;      // made when a stiffness is first asked for
+  std::unique_ptr<Reactions> supports_;  // made when a reaction is first asked for
 };
 
 }  // namespace deflect::frame

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "msa/frame/assembly.h"
+#include "msa/frame/reactions.h"
 
 namespace deflect::frame {
 
@@ -68,13 +69,6 @@ class Solver {
   bool factored_ = false;
   VectorX factored_tangents_;  // the state that the factor belongs to
 };
-
-/// The forces with which constraints act, λ with f_int(u) − f = Cᵀ λ: what the support pushes along the constraint's
-/// form. Zero for redundant constraints. Units N or Nm by form.
-VectorX constraint_forces(const Model&, const Elimination&, const VectorX& u, const VectorX& load);
-
-/// The same for columns of forces f_int(u) − f that constraints balance.
-MatrixX constraint_forces(const Model&, const Elimination&, const MatrixX& unbalanced);
 
 /// Total ½∫ energies by part: beams ½ dᵀ K d, springs ∫ F dδ; in order of first appearance. J.
 std::vector<std::pair<std::string, double>> energies(const Model&, const VectorX& u);

@@ -211,8 +211,8 @@ std::string map_report(const StiffnessMap& map) {
   if (map.options.msa) text += "MSA: one element per member, which is exact at its nodes\n";
   text += fmt::format("reached: {} of {} poses\n", n, map.poses.size());
   for (const OutOfReach& o : out_of_reach(map))
-    text += fmt::format("out of reach: {} poses: {}\n  first at {}: {}\n", o.poses, o.reason,
-                        position(map.poses[o.example]), map.poses[o.example].out_of_reach);
+    text +=
+        fmt::format("out of reach: {} poses: {}\n  first: {}\n", o.poses, o.reason, map.poses[o.example].out_of_reach);
   if (n == 0) return text;
   std::vector<Theory> told = theories_of(map);
   if (both(map) && largest_difference(map) < 1e-6) told.pop_back();  // the same digits again
