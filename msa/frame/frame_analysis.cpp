@@ -148,10 +148,9 @@ void check(CaseResult& r, const FrameModel& m, const Solver& solver, const Work&
   const VectorX forces = work.load.forces - work.load.thermal;
   const double loads = forces.dot(r.u.head(forces.size())),
                supports = work.lambda.head(work.load.values.size()).dot(work.load.values);
-  const double twice = 2 * (r.energy - work.clamped);
-  r.checks.energy =
-      ratio(std::abs(twice - loads - supports + work.heat),
-            twice + std::abs(loads) + std::abs(supports) + std::abs(work.heat) + cancelling * work.gross.energy);
+  const double difference = 2 * (r.energy - work.clamped) - loads - supports + work.heat;
+  r.checks.energy = ratio(std::abs(difference), 2 * r.energy + std::abs(loads) + std::abs(supports) +
+                                                    std::abs(work.heat) + cancelling * work.gross.energy);
 }
 
 double reciprocity(const std::vector<CaseResult>& cases, const std::vector<Work>& work) {
@@ -171,6 +170,19 @@ double reciprocity(const std::vector<CaseResult>& cases, const std::vector<Work>
       worst = std::max(worst, ratio(std::abs(difference), sum));
     }
   return worst;
+}
+
+/// By column. Where every freedom is held there is nothing to solve.
+MatrixX displacements(Solver& solver, const VectorX& tangents, const MatrixX& loads, const MatrixX& values) {
+  if (solver.elimination().independent > 0) return solver.linear(tangents, loads, values);
+  const auto constraints = static_cast<Eigen::Index>(solver.model().constraints.size());
+  MatrixX U(solver.model().dofs(), loads.cols());
+  for (Eigen::Index c = 0; c < loads.cols(); ++c) {
+    const VectorX b = padded(values.col(c), constraints);
+    check_consistent(solver.model(), solver.elimination(), b);
+    U.col(c) = solver.elimination().expand(VectorX(), b);
+  }
+  return U;
 }
 
 }  // namespace
@@ -195,7 +207,7 @@ FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
   VectorX tangents(static_cast<Eigen::Index>(m.model.springs.size()));
   for (std::size_t s = 0; s < m.model.springs.size(); ++s)
     tangents(static_cast<Eigen::Index>(s)) = tangent(m.model.springs[s].law, 0);
-  const MatrixX U = solver.linear(tangents, loads, values);
+  const MatrixX U = displacements(solver, tangents, loads, values);
 
   for (std::size_t c = 0; c < work.size(); ++c) {
     CaseResult r;

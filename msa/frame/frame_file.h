@@ -1,4 +1,28 @@
-// Frame files: YAML in and out.
+// Frame files: YAML in and out. One of each:
+//
+//   name: portal
+//   materials: {steel: {E: 210 GPa, nu: 0.3, density: 7850 kg/m^3, expansion: 12e-6 1/K}}
+//   sections: {tube: {shape: tube, outer_diameter: 60 mm, inner_diameter: 52 mm}}
+//   nodes: {A: [0 m, 0 m, 0 m], B: [0 m, 0 m, 3 m], C: [4 m, 0 m, 3 m]}
+//   members:
+//     post: {from: A, to: B, section: tube, material: steel}
+//     beam: {from: B, to: C, section: tube, material: steel, beam: timoshenko, y_axis: [0, 1, 0],
+//            release_to: [ry, rz], bending_factor: 0.9}
+//   supports: {A: clamped, C: [ux, uy, uz, rx]}
+//   springs: {bed: {node: C, to: B, uz: 5 N/mm, ry: 2 Nm/rad}}
+//   rigid_links: {plate: {master: B, nodes: [C], freedoms: [ux, uy, rz]}}
+//   constraints: {same: {terms: [{node: B, freedom: ux}, {node: C, freedom: ry, factor: -1, arm: 2 m}]}}
+//   loads:
+//     case 1:
+//       nodes: {B: {fx: 1 kN, my: 20 Nm}}
+//       members: {beam: {qz: -2 N/mm, axes: member}}
+//       temperature: {beam: 30 K}
+//       gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]
+//       displacements: {C: {uz: -1 mm}}
+//
+// A material has nu or G; a section any shape of a device file; a support `clamped`, `pinned` (ux uy uz) or a list; a
+// spring without `to` stands on the ground; a link without `freedoms` has all six. What the fields mean:
+// frame_description.h.
 #pragma once
 
 #include <filesystem>

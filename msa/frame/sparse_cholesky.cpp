@@ -35,6 +35,7 @@ struct SparseCholesky::Impl {
 };
 
 SparseCholesky::SparseCholesky(const SparsePattern& p) : impl_(std::make_unique<Impl>()) {
+  if (p.n == 0) return;  // nothing is free to move; CHOLMOD has no empty factor
   const auto n = static_cast<std::size_t>(p.n);
   impl_->A = cholmod_allocate_sparse(n, n, p.row.size(), true, true, -1, CHOLMOD_REAL, &impl_->common);
   if (!impl_->A) throw std::bad_alloc();
@@ -51,6 +52,7 @@ SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 double SparseCholesky::factor(const std::vector<double>& values) {
   Impl& s = *impl_;
+  if (!s.A) return 1;
   const auto n = static_cast<int>(s.A->nrow);
   s.scale.resize(n);
   for (int j = 0; j < n; ++j) {
@@ -70,6 +72,7 @@ double SparseCholesky::factor(const std::vector<double>& values) {
 
 MatrixX SparseCholesky::solve(const MatrixX& B) const {
   Impl& s = *impl_;
+  if (!s.A) return B;
   const auto rows = static_cast<std::size_t>(B.rows()), columns = static_cast<std::size_t>(B.cols());
   MatrixX scaled = s.scale.asDiagonal() * B;
   cholmod_dense b{rows, columns, rows * columns, rows, scaled.data(), nullptr, CHOLMOD_REAL, CHOLMOD_DOUBLE};

@@ -92,6 +92,20 @@ loads:
   expect_same(m.at, 7.0 / 16);
 }
 
+TEST(FrameAnalysis, NothingIsFreeToMove) {
+  const Solved s = solve(span + R"(supports: {a: clamped, b: clamped, c: clamped}
+loads:
+  line: {members: {left: {qz: -12 N/m}, right: {qy: 7 N/m}}}
+  heat: {temperature: {left: 30 K}}
+  idle: {nodes: {b: {fx: 3 N}}}
+)");
+  expect_same(s.member("left", 0).start(5), -1);
+  expect_same(s.member("left", 0).Mz.value, -1);
+  expect_same(s.result.cases[0].energy, (12 * 12 / Iz + 7 * 7 / Iy) / (1440 * E));
+  expect_same(s.reaction("a", 1)(0), E * A * 3e-4);
+  expect_same(s.reaction("b", 2)(0), -3);
+}
+
 TEST(FrameAnalysis, TemperatureFreeAndHeld) {
   const Solved s = solve(span + R"(supports: {a: clamped}
 loads:

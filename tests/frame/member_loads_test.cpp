@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <ostream>
 
 #include "msa/frame/member_axes.h"
 
@@ -16,6 +17,8 @@ constexpr double none = std::numeric_limits<double>::infinity();
 struct Case {
   const char* name;
   BeamRigidity rigidity;
+
+  friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 };
 
 class MemberLoads : public ::testing::TestWithParam<Case> {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "tests/support/program.h"
 #include "validation/measurement/csv.h"
@@ -133,6 +134,8 @@ struct Refusal {
   const char *old_text, *new_text, *options;
   int code;
   const char* says;
+
+  friend void PrintTo(const Refusal& r, std::ostream* out) { *out << r.new_text << r.options; }
 };
 
 class FrameRefused : public ::testing::TestWithParam<Refusal> {};

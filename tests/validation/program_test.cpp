@@ -159,7 +159,7 @@ TEST(Program, AMechanismThatCannotStandIsRefusedAndDrawn) {
 }
 
 TEST(Program, HelpOfEveryCommandSaysWhatItDoesWithAnExample) {
-  for (const char* command : {"solve", "validate", "devices"}) {
+  for (const char* command : {"solve", "validate", "frame", "map", "export", "devices"}) {
     const auto run = deflect(std::string(command) + " --help");
     EXPECT_EQ(run.code, 0);
     EXPECT_NE(run.out.find("Example:\n  deflect " + std::string(command)), std::string::npos) << run.out;

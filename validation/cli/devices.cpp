@@ -9,6 +9,7 @@
 #include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/six_psu.h"
 #include "validation/cli/command.h"
 #include "validation/compare/theories.h"
 
@@ -58,6 +59,37 @@ std::vector<double> parse_list(const std::string& option, const std::string& tex
     throw InputError(fmt::format("{} '{}': {} number{}; write {}", option, text, values.size(),
                                  values.size() == 1 ? "" : "s", wanted));
   return values;
+}
+
+Vector6 parse_six(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts,
+                  const std::string& wanted) {
+  Vector6 v = Vector6::Zero();
+  Eigen::Index i = 0;
+  for (const double value : parse_list(option, text, counts, wanted)) v(i++) = value;
+  return v;
+}
+
+Vector6 parse_pose(const Mechanism& m, const std::string& pose, const std::string& joints, bool or_home) {
+  if (or_home && pose.empty() && joints.empty()) return mm_deg_from(home_pose(m));
+  if (pose.empty() == joints.empty())
+    throw InputError("give either --pose x,y,z,roll,pitch,yaw (mm, deg) or --joints q1,…,q6 (mm)");
+  if (!pose.empty()) return parse_six("--pose", pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg");
+  const Vector6 q = parse_six("--joints", joints, {6}, "the six sliders in mm") / 1e3;
+  const SixPsu& k = std::get<SixPsu>(m.kinematics);
+  std::array<double, 6> sliders{};
+  std::copy(q.begin(), q.end(), sliders.begin());
+  const ForwardKinematics found = forward_kinematics(k, sliders, centred_pose(k, q.mean()));
+  if (!found.converged)
+    throw ModelError(
+        fmt::format("--joints {}: the sliders fit no assembly of the device near the untilted one "
+                    "(closure error {:.3g} mm after {} steps)",
+                    joints, 1e3 * found.closure_error, found.iterations));
+  return mm_deg_from(found.pose);
+}
+
+Vector6 parse_load(const std::string& load) {
+  if (load.empty()) return Vector6::Zero();
+  return parse_six("--load", load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm");
 }
 
 frame::MemberDivision divide(const Mechanism& m, const std::string& element_size) {

@@ -23,6 +23,17 @@ std::filesystem::path device_file(const std::string& name_or_path);
 std::vector<double> parse_list(const std::string& option, const std::string& text,
                                const std::vector<std::size_t>& counts, const std::string& wanted);
 
+/// Three or six of them, the rest zero. `counts` as above.
+Vector6 parse_six(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts,
+                  const std::string& wanted);
+
+/// The pose (mm, deg) that --pose gives, or --joints by forward kinematics; the home pose, where `or_home`, without
+/// either. Throws InputError for both or none, ModelError when the joints fit no assembly.
+Vector6 parse_pose(const Mechanism&, const std::string& pose, const std::string& joints, bool or_home);
+
+/// The wrench of --load in N and Nmm, zero where it is empty.
+Vector6 parse_load(const std::string& load);
+
 /// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose.
 frame::MemberDivision divide(const Mechanism&, const std::string& element_size);
 

@@ -11,7 +11,6 @@
 #include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/device_file.h"
-#include "msa/mechanism/six_psu.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/compare/at_pose.h"
@@ -33,34 +32,6 @@ const Format& format_of(const std::string& name) {
   for (const Format& f : formats)
     if (f.name == name) return f;
   throw InputError(fmt::format("--to '{}': there are msh (Gmsh) and vtk (ParaView)", name));
-}
-
-Vector6 six(const std::vector<double>& values) {
-  Vector6 v = Vector6::Zero();
-  for (std::size_t i = 0; i < values.size(); ++i) v(static_cast<Eigen::Index>(i)) = values[i];
-  return v;
-}
-
-Vector6 pose_of(const Mechanism& m, const Arguments& a) {
-  if (!a.pose.empty() && !a.joints.empty()) throw InputError("give either --pose or --joints, not both");
-  if (!a.pose.empty())
-    return six(parse_list("--pose", a.pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg"));
-  if (a.joints.empty()) return mm_deg_from(home_pose(m));
-  const std::vector<double> q = parse_list("--joints", a.joints, {6}, "the six sliders in mm");
-  std::array<double, 6> sliders{};
-  double mean = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    sliders[i] = q[i] / 1e3;
-    mean += sliders[i] / 6;
-  }
-  const SixPsu& k = std::get<SixPsu>(m.kinematics);
-  const ForwardKinematics found = forward_kinematics(k, sliders, centred_pose(k, mean));
-  if (!found.converged)
-    throw ModelError(
-        fmt::format("--joints {}: the sliders fit no assembly of the device near the untilted one "
-                    "(closure error {:.3g} mm after {} steps)",
-                    a.joints, 1e3 * found.closure_error, found.iterations));
-  return mm_deg_from(found.pose);
 }
 
 /// 1, 2 or 5 times a power of ten that shows the largest displacement as some 8 % of the structure's size.
@@ -157,10 +128,8 @@ void run(const Arguments& a) {
   const std::filesystem::path path = path_of(m, format, a);
   std::filesystem::path deflected_path = path;
   deflected_path.replace_filename(path.stem().string() + "-deflected" + format.suffix);
-  const Vector6 pose = pose_of(m, a);
-  const Vector6 load =
-      a.load.empty() ? Vector6(Vector6::Zero())
-                     : six(parse_list("--load", a.load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm"));
+  const Vector6 pose = parse_pose(m, a.pose, a.joints, true);
+  const Vector6 load = parse_load(a.load);
   MsaAtPose msa(configure(m, pose_from(pose)), divide(m, a.element_size), m.name);
   const Vector6 d = twist_in_mm(msa.solve(wrench_from_mm(load)).displacement);
   LineMesh mesh = lines_of(msa.mechanism());

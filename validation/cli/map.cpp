@@ -74,10 +74,7 @@ MapOptions options_of(const Mechanism& m, const Arguments& a) {
   if (!std::isfinite(a.force_N) || a.force_N == 0)
     throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.force_N));
   if (!a.load.empty()) {
-    const std::vector<double> load =
-        parse_list("--load", a.load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm");
-    o.load_N_Nmm = Vector6::Zero();
-    for (std::size_t i = 0; i < load.size(); ++i) (*o.load_N_Nmm)(static_cast<Eigen::Index>(i)) = load[i];
+    o.load_N_Nmm = parse_load(a.load);
     if (o.load_N_Nmm->isZero(0))
       throw InputError(fmt::format("--load {}: without load a contact has no stiffness; give one", a.load));
   }

@@ -5,7 +5,6 @@
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "msa/mechanism/device_file.h"
-#include "msa/mechanism/six_psu.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/motions.h"
@@ -20,34 +19,6 @@ struct Arguments {
   std::string device, pose, joints, load, json, out, element_size = "25 mm";
 };
 
-Vector6 six(const std::vector<double>& values) {
-  Vector6 v = Vector6::Zero();
-  for (std::size_t i = 0; i < values.size(); ++i) v(static_cast<Eigen::Index>(i)) = values[i];
-  return v;
-}
-
-Vector6 pose_of(const Mechanism& m, const Arguments& a) {
-  if (a.pose.empty() == a.joints.empty())
-    throw InputError("give either --pose x,y,z,roll,pitch,yaw (mm, deg) or --joints q1,…,q6 (mm)");
-  if (!a.pose.empty())
-    return six(parse_list("--pose", a.pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg"));
-  const std::vector<double> q = parse_list("--joints", a.joints, {6}, "the six sliders in mm");
-  const SixPsu& k = std::get<SixPsu>(m.kinematics);
-  std::array<double, 6> sliders{};
-  double mean = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    sliders[i] = q[i] / 1e3;
-    mean += sliders[i] / 6;
-  }
-  const ForwardKinematics found = forward_kinematics(k, sliders, centred_pose(k, mean));
-  if (!found.converged)
-    throw ModelError(
-        fmt::format("--joints {}: the sliders fit no assembly of the device near the untilted one "
-                    "(closure error {:.3g} mm after {} steps)",
-                    a.joints, 1e3 * found.closure_error, found.iterations));
-  return mm_deg_from(found.pose);
-}
-
 void write_structure(const std::filesystem::path& folder, const SolveResult& r) {
   gmsh::write_msh(folder / "deflected.msh", r.mesh, r.fields);
   write_vtu(folder / "deflected.vtu", r.mesh, r.fields);
@@ -55,10 +26,8 @@ void write_structure(const std::filesystem::path& folder, const SolveResult& r) 
 
 void run(const Arguments& a) {
   const Mechanism m = read_mechanism(device_file(a.device));
-  const Vector6 load =
-      a.load.empty() ? Vector6(Vector6::Zero())
-                     : six(parse_list("--load", a.load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm"));
-  const SolveResult r = solve(m, pose_of(m, a), load, divide(m, a.element_size));
+  const Vector6 load = parse_load(a.load);
+  const SolveResult r = solve(m, parse_pose(m, a.pose, a.joints, false), load, divide(m, a.element_size));
   if (!a.out.empty()) write_structure(a.out, r);
   if (!a.json.empty()) write_text(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));

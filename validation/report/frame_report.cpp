@@ -47,6 +47,7 @@ std::string table(const std::vector<Vector6>& values, double arm, std::size_t mo
   first = std::max(first, second * arm);
   second = std::max(second, first / arm);
   std::vector<double> sizes;
+  sizes.reserve(values.size());
   for (const Vector6& v : values)
     sizes.push_back(std::max(v.head<3>().cwiseAbs().maxCoeff(), v.tail<3>().cwiseAbs().maxCoeff() * arm));
   Rows rows = {header};

@@ -97,7 +97,7 @@ Json json_case(const FrameDescription& f, const CaseResult& c) {
   for (const auto& [part, energy] : c.energies) {
     Json entry;
     entry["part"] = part;
-    entry["share"] = json_number(share(energy, c.energy), what + ", share of " + part);
+    entry["share"] = json_number(share(energy, c.energy), fmt::format("{}, share of {}", what, part));
     json["shares"].push_back(std::move(entry));
   }
   json["checks"]["residual"] = json_number(c.checks.residual, what + ", residual");
