@@ -172,19 +172,6 @@ double reciprocity(const std::vector<CaseResult>& cases, const std::vector<Work>
   return worst;
 }
 
-/// By column. Where every freedom is held there is nothing to solve.
-MatrixX displacements(Solver& solver, const VectorX& tangents, const MatrixX& loads, const MatrixX& values) {
-  if (solver.elimination().independent > 0) return solver.linear(tangents, loads, values);
-  const auto constraints = static_cast<Eigen::Index>(solver.model().constraints.size());
-  MatrixX U(solver.model().dofs(), loads.cols());
-  for (Eigen::Index c = 0; c < loads.cols(); ++c) {
-    const VectorX b = padded(values.col(c), constraints);
-    check_consistent(solver.model(), solver.elimination(), b);
-    U.col(c) = solver.elimination().expand(VectorX(), b);
-  }
-  return U;
-}
-
 }  // namespace
 
 FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
@@ -207,7 +194,7 @@ FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
   VectorX tangents(static_cast<Eigen::Index>(m.model.springs.size()));
   for (std::size_t s = 0; s < m.model.springs.size(); ++s)
     tangents(static_cast<Eigen::Index>(s)) = tangent(m.model.springs[s].law, 0);
-  const MatrixX U = displacements(solver, tangents, loads, values);
+  const MatrixX U = solver.linear(tangents, loads, values);
 
   for (std::size_t c = 0; c < work.size(); ++c) {
     CaseResult r;

@@ -161,7 +161,7 @@ void check_characters(std::string_view text, const std::string& origin) {
   for (std::size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
     if ((c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7f)
-      throw InputError(fmt::format("{}:{}: control character 0x{:02x}: a device file is text", origin, line, c));
+      throw InputError(fmt::format("{}:{}: control character 0x{:02x}: the file must be text", origin, line, c));
     const std::size_t n = utf8_length(text.substr(i));
     if (n == 0)
       throw InputError(fmt::format("{}:{}: byte 0x{:02x} is not UTF-8: save the file as UTF-8", origin, line, c));
