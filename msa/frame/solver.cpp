@@ -89,9 +89,20 @@ bool Solver::held_idle_spins() {
   }
   for (const FreeMotion& motion : motions) {
     hold(*model_, motion);
+    idle_.emplace_back(motion.bodies.front().name, motion.u);
     notes_.push_back(fmt::format("{} spins idly about its own axis: harmless, held", motion.bodies.front().name));
   }
   return true;
+}
+
+/// An idle spin is harmless only as long as nothing drives it: the constraint that holds it must carry nothing.
+void Solver::refuse_driven_spins(const VectorX& load) const {
+  for (const auto& [name, motion] : idle_)  // normalised to 1: what else moves with it is rounding
+    if (std::abs(load.dot(motion)) > 1e-7 * largest(load))
+      throw ModelError(
+          fmt::format("{} can spin about its own axis, and the load turns it: take the moment about that axis "
+                      "away, or hold the spin at one end",
+                      name));
 }
 
 void Solver::note_redundant() {
@@ -136,6 +147,7 @@ Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, c
   const VectorX load = padded(given_load, static_cast<std::size_t>(model_->dofs()));
   const VectorX values = padded(given_values, model_->constraints.size());
   check_consistent(*model_, *elimination_, values);
+  refuse_driven_spins(load);
   Solution s;
   VectorX q = VectorX::Zero(elimination_->independent);
   s.u = elimination_->expand(q, values);
@@ -187,6 +199,7 @@ MatrixX Solver::linear(const VectorX& tangents, const MatrixX& given_loads, cons
   const MatrixX loads = padded_rows(given_loads, static_cast<std::size_t>(model_->dofs()));
   const MatrixX values = padded_rows(given_values, model_->constraints.size());
   for (Eigen::Index c = 0; c < values.cols(); ++c) check_consistent(*model_, *elimination_, values.col(c));
+  for (Eigen::Index c = 0; c < loads.cols(); ++c) refuse_driven_spins(loads.col(c));
   factor(tangents);
   // One step of refinement: the first solution's residual is formed from the elements, not from the assembled matrix.
   MatrixX q = MatrixX::Zero(elimination_->independent, loads.cols());

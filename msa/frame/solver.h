@@ -43,8 +43,8 @@ class Solver {
   const std::vector<std::string>& notes() const { return notes_; }
 
   /// One load by freedom (of the given model, or of model()), constraint values as in the model. Newton with a line
-  /// search on the potential where a spring is nonlinear. Throws ModelError when a state loses the stiffness that keeps
-  /// the structure standing.
+  /// search on the potential where a spring is nonlinear. Throws ModelError when the load drives an idle spin, and when
+  /// a state loses the stiffness that keeps the structure standing.
   Solution solve(const VectorX& load, const NewtonOptions& options = {});
 
   /// As above for other constraint values (prescribed displacements).
@@ -58,6 +58,7 @@ class Solver {
   void prepare();
   bool held_idle_spins();
   void note_redundant();
+  void refuse_driven_spins(const VectorX& load) const;
   void factor(const VectorX& spring_tangents);
   VectorX starting_tangents(double force) const;
 
@@ -66,6 +67,7 @@ class Solver {
   std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<SparseCholesky> cholesky_;
   std::vector<std::string> notes_;
+  std::vector<std::pair<std::string, VectorX>> idle_;  // members that are held, and their motions
   bool factored_ = false;
   VectorX factored_tangents_;  // the state that the factor belongs to
 };

@@ -150,6 +150,23 @@ TEST(Stability, RodsThatSpinIdlyAreHeldAndSaidSo) {
   EXPECT_NEAR(s.u(6 + 2), 100 * L / (3e6 * cosine * cosine), 1e-12 * s.u(8) * 1e3);
 }
 
+TEST(Stability, ALoadThatDrivesAnIdleSpinIsRefused) {
+  const Model m = tripod(false);
+  Solver solver(m);
+  VectorX load = VectorX::Zero(m.dofs());
+  const Vector3 along = m.beams[1].R_WM.col(0), across = m.beams[1].R_WM.col(1);
+  load.segment<3>(6 * m.beams[1].a + 3) = 0.1 * along;
+  try {
+    solver.solve(load);
+    FAIL();
+  } catch (const ModelError& e) {
+    EXPECT_NE(std::string(e.what()).find("rod 2 can spin about its own axis, and the load turns it"),
+              std::string::npos);
+  }
+  load.segment<3>(6 * m.beams[1].a + 3) = 0.1 * across;  // bends the rod, does not spin it
+  EXPECT_TRUE(solver.solve(load).converged);
+}
+
 TEST(Stability, APlatformFreeToTurnIsRefusedWithItsThreeScrews) {
   try {
     Solver solver(tripod(true));

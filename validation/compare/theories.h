@@ -51,9 +51,10 @@ Vector6 mm_deg_from(const Pose&);
 /// The pose above the centre with the sliders at the workspace's nominal length; members are divided there.
 Pose home_pose(const Mechanism&);
 
+struct SolveResult;
+
 /// Both theories at one pose under one wrench (N, Nmm at T, base axes). Throws ModelError naming the check where one of
 /// the checks fails, NumericalError where a theory does not converge.
-struct SolveResult;
 SolveResult solve(const Mechanism&, const Vector6& pose_mm_deg, const Vector6& load_N_Nmm,
                   const frame::MemberDivision&);
 
