@@ -30,6 +30,7 @@ struct Spring {
   LinearForm elongation;
   SpringLaw law;
   std::string name, part;
+  int defined_by = -1;  ///< the constraint that makes the elongation a coordinate of its own (relative.h); −1: none
 };
 
 /// form(u) = value.

@@ -58,9 +58,15 @@ struct MsaModel::Held {
     for (std::size_t k = a.first_constraint; k < a.last_constraint; ++k)
       add(m.constraints[k].form, -forces.row(static_cast<Eigen::Index>(k)));
     for (std::size_t s = a.first_spring; s < a.last_spring; ++s) {
+      const Spring& spring = m.springs[s];
+      if (spring.defined_by >= 0) {  // its pull reaches the bodies through the constraint that defines its elongation
+        const auto k = static_cast<std::size_t>(spring.defined_by);
+        add(m.constraints[k].form, -forces.row(spring.defined_by));
+        continue;
+      }
       Eigen::RowVectorXd elongation(6);
-      for (int i = 0; i < 6; ++i) elongation(i) = evaluate(m.springs[s].elongation, U.col(i));
-      add(m.springs[s].elongation, tangents(static_cast<Eigen::Index>(s)) * elongation);
+      for (int i = 0; i < 6; ++i) elongation(i) = evaluate(spring.elongation, U.col(i));
+      add(spring.elongation, tangents(static_cast<Eigen::Index>(s)) * elongation);
     }
     return above_rounding(K, m);
   }

@@ -41,6 +41,7 @@ void make_relative(Model& m, Spring& spring) {
   form.push_back({elongation, -1});
   m.constraints.push_back({std::move(form), 0, spring.name, eliminates});
   spring.elongation = {{elongation, 1}};
+  spring.defined_by = static_cast<int>(m.constraints.size()) - 1;
 }
 
 }  // namespace

@@ -229,6 +229,22 @@ TEST(Refusal, APlatformThatNoLegHoldsIsRefusedByBothTheories) {
   EXPECT_THROW(frame::MsaModel(c).solve(Vector6::Unit(0)), ModelError);  // whatever the load
 }
 
+// The check K_c J_q = 0 is worth nothing if K_c misses what a leg does: side by side, the legs must make up the whole,
+// also where the spring at the platform is so stiff that it has coordinates of its own.
+TEST(Checks, LegsSideBySideSumToTheStiffness) {
+  const Mechanism ideal = device("haptic-6psu-ideal-joints");
+  for (const char* mount : {"3e3 N/mm", "1e9 N/mm", "1e14 N/mm"}) {
+    Mechanism m = ideal;
+    for (const char* site : {"leg.mount.tz", "leg.universal_joint.tz"})
+      m = test::with(m, site, fmt::format("{{law: linear, stiffness: {}}}", mount));
+    frame::MsaModel f(configure(m, test::random_poses(m, 1).front()));
+    const frame::MsaModel::Stiffness s = f.stiffness(f.solve(Vector6::Unit(0) * 50).state);
+    Matrix6 sum = Matrix6::Zero();
+    for (const Matrix6& leg : s.legs) sum += leg;
+    EXPECT_LE((sum - s.K).norm(), 1e-9 * s.K.norm()) << mount;
+  }
+}
+
 // A ball joint at both ends lets every link spin about its own axis: harmless, and said so.
 TEST(IdleSpin, ChangesNoAnswerAndIsNoted) {
   const Mechanism m = device("haptic-6psu"), balls = test::with(m, "leg.universal_joint.joint", "ball");
