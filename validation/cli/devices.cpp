@@ -92,15 +92,19 @@ Vector6 parse_load(const std::string& load) {
   return parse_six("--load", load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm");
 }
 
-frame::MemberDivision divide(const Mechanism& m, const std::string& element_size) {
-  double size = 0;
+double parse_length(const std::string& option, const std::string& text) {
+  double length = 0;
   try {
-    size = parse_quantity(element_size, Dimension::length);
+    length = parse_quantity(text, Dimension::length);
   } catch (const InputError& e) {
-    throw InputError(fmt::format("--element-size: {}", e.what()));
+    throw InputError(fmt::format("{}: {}", option, e.what()));
   }
-  if (!(size > 0)) throw InputError(fmt::format("--element-size: '{}' must be greater than zero", element_size));
-  return divide_members(configure(m, home_pose(m)), size);
+  if (!(length > 0)) throw InputError(fmt::format("{}: '{}' must be greater than zero", option, text));
+  return length;
+}
+
+frame::MemberDivision divide(const Mechanism& m, const std::string& element_size) {
+  return divide_members(configure(m, home_pose(m)), parse_length("--element-size", element_size));
 }
 
 Command devices_command() {

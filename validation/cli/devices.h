@@ -34,6 +34,9 @@ Vector6 parse_pose(const Mechanism&, const std::string& pose, const std::string&
 /// The wrench of --load in N and Nmm, zero where it is empty.
 Vector6 parse_load(const std::string& load);
 
+/// A positive length with unit ("25 mm"), in m; InputError naming the option.
+double parse_length(const std::string& option, const std::string& text);
+
 /// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose.
 frame::MemberDivision divide(const Mechanism&, const std::string& element_size);
 

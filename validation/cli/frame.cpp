@@ -40,13 +40,7 @@ fs::path frame_file(const std::string& name) {
 
 frame::FrameDivision divide_members(const frame::FrameDescription& f, const std::string& element_size) {
   if (element_size.empty()) return {};
-  double size = 0;
-  try {
-    size = parse_quantity(element_size, Dimension::length);
-  } catch (const InputError& e) {
-    throw InputError(fmt::format("--element-size: {}", e.what()));
-  }
-  if (!(size > 0)) throw InputError(fmt::format("--element-size: '{}' must be greater than zero", element_size));
+  const double size = parse_length("--element-size", element_size);
   const frame::NameIndex nodes(f.nodes);
   const auto position = [&](const std::string& node) {
     return f.nodes[static_cast<std::size_t>(nodes.find(node))].second;

@@ -57,14 +57,7 @@ MapGrid grid_of(const Mechanism& m, const Arguments& a) {
 
 double length_mm(const Mechanism& m, const std::string& text) {
   if (text.empty()) return platform_radius_mm(m);
-  double length = 0;
-  try {
-    length = 1e3 * parse_quantity(text, Dimension::length);
-  } catch (const InputError& e) {
-    throw InputError(fmt::format("--length: {}", e.what()));
-  }
-  if (!(length > 0)) throw InputError(fmt::format("--length: '{}' must be greater than zero", text));
-  return length;
+  return 1e3 * parse_length("--length", text);
 }
 
 MapOptions options_of(const Mechanism& m, const Arguments& a) {

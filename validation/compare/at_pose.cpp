@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include "msa/base/error.h"
-#include "msa/base/stiffness_checks.h"
 
 namespace deflect {
 namespace {
 
 void enforce(const std::string& failure, const char* theory, const std::string& where) {
-  if (!failure.empty()) throw ModelError(fmt::format("{}: the {} fails a check: {}", where, theory, failure));
+  if (!failure.empty()) throw NumericalError(fmt::format("{}: the {} fails a check: {}", where, theory, failure));
 }
 
 double total(const std::vector<std::pair<std::string, double>>& energies) {
@@ -33,8 +32,9 @@ Answer AnalyticAtPose::solve(const Vector6& F) const {
     legs.push_back({model_.chains()[i].name, model_.leg_stiffness(i, s), model_.chains()[i].J_q});
     carried += s.leg_wrenches[i];
   }
-  const Answer answer{s.displacement, model_.stiffness(s), model_.energies(s)};
-  enforce(check_stiffness(answer.stiffness, legs).failure, "analytic stiffness", where_);
+  const Answer answer{s.displacement, model_.stiffness(s), model_.energies(s),
+                      check_stiffness(model_.stiffness(s), legs)};
+  enforce(answer.checks.failure, "analytic stiffness", where_);
   enforce(response_failure({F, s.displacement, -carried, total(answer.energies), model_.linear()}), "analytic response",
           where_);
   return answer;
@@ -57,7 +57,8 @@ Answer MsaAtPose::solve(const Vector6& F) {
     const frame::MsaModel::Stiffness stiffness = model_.stiffness(last_.state);
     std::vector<LegStiffness> legs;
     for (std::size_t i = 0; i < legs_.size(); ++i) legs.push_back({legs_[i], stiffness.legs[i], passive_twists_[i]});
-    enforce(check_stiffness(stiffness.K, legs).failure, "MSA stiffness", where_);
+    checks_ = check_stiffness(stiffness.K, legs);
+    enforce(checks_.failure, "MSA stiffness", where_);
     stiffness_ = stiffness.K;
     tangents_ = last_.state.spring_tangents;
     has_stiffness_ = true;
@@ -66,7 +67,7 @@ Answer MsaAtPose::solve(const Vector6& F) {
   const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_.base_reaction(F, last_.state);
   enforce(response_failure({F, last_.displacement, reaction, total(last_.energies), model_.linear()}), "MSA response",
           where_);
-  return {last_.displacement, stiffness_, last_.energies};
+  return {last_.displacement, stiffness_, last_.energies, checks_};
 }
 
 }  // namespace deflect

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analytic/model.h"
+#include "msa/base/stiffness_checks.h"
 #include "msa/frame/msa.h"
 #include "msa/mechanism/configuration.h"
 
@@ -16,10 +17,11 @@ struct Answer {
   Vector6 displacement;
   Matrix6 stiffness;                                     ///< tangent, in the state under the load
   std::vector<std::pair<std::string, double>> energies;  ///< by part, J, largest first
+  StiffnessChecks checks;                                ///< of the stiffness; all hold
 };
 
-/// Checked: K = Kᵀ, K ⪰ 0, K_c J_q = 0, sign, equilibrium, energy. Throws ModelError naming theory, pose and check,
-/// NumericalError where equilibrium is not found. `where` begins the messages.
+/// Checked: K = Kᵀ, K ⪰ 0, K_c J_q = 0, sign, equilibrium, energy. Throws NumericalError naming theory, pose and check,
+/// or where equilibrium is not found. `where` begins the messages.
 class AnalyticAtPose {
  public:
   AnalyticAtPose(const Configuration&, std::string where);
@@ -49,6 +51,7 @@ class MsaAtPose {
   bool has_stiffness_ = false;
   VectorX tangents_;  // of stiffness_, which a linear structure needs once
   Matrix6 stiffness_ = Matrix6::Zero();
+  StiffnessChecks checks_;
 };
 
 }  // namespace deflect

@@ -34,6 +34,15 @@ struct Pair {
   MsaAtPose msa;
 };
 
+/// Equilibrium, or NumericalError where there is none to be found.
+analytic::AnalyticSolution solved(const analytic::AnalyticModel& printed, const Vector6& F) {
+  analytic::AnalyticSolution s = printed.solve(F);
+  if (!s.converged)
+    throw NumericalError(fmt::format("the analytic theory did not converge in {} steps (misfit {:.3g})",
+                                     s.iterations, s.misfit));
+  return s;
+}
+
 /// The checks of a theory as printed, which are told but not enforced.
 std::string failed_checks(const analytic::AnalyticModel& model, const analytic::AnalyticSolution& s) {
   std::vector<LegStiffness> legs;
@@ -109,7 +118,9 @@ SolveResult solve(const Mechanism& m, const Vector6& pose, const Vector6& load, 
   r.analytic = {twist_in_mm(a.displacement), stiffness_in_mm(a.stiffness)};
   r.msa = {twist_in_mm(f.displacement), stiffness_in_mm(f.stiffness)};
   r.relative_difference = relative_difference(r.analytic.displacement_mm_rad, r.msa.displacement_mm_rad);
-  r.symmetric = r.positive = r.passive_joints_free = true;  // or there would be no answer
+  r.symmetric = a.checks.symmetric && f.checks.symmetric;
+  r.positive = a.checks.positive && f.checks.positive;
+  r.passive_joints_free = a.checks.passive_joints_free && f.checks.passive_joints_free;
   double total = 0;
   for (const auto& [part, energy] : f.energies) total += energy;
   if (total > 0)
@@ -137,7 +148,7 @@ Validation validate(const Mechanism& m, const std::vector<ValidationPoint>& poin
       row.analytic = twist_in_mm(pair.analytic.solve(F).displacement);
       row.msa = twist_in_mm(pair.msa.solve(F).displacement);
       if (!as_printed.empty())
-        row.as_printed = twist_in_mm(analytic::AnalyticModel(pair.configuration, as_printed).solve(F).displacement);
+        row.as_printed = twist_in_mm(solved(analytic::AnalyticModel(pair.configuration, as_printed), F).displacement);
       row.relative_difference = relative_difference(row.analytic, row.msa);
       v.max_relative_difference = std::max(v.max_relative_difference, row.relative_difference);
       squares += row.relative_difference * row.relative_difference;
@@ -160,14 +171,16 @@ std::vector<ErratumPrice> price_errata(const Mechanism& m, const std::vector<Val
         const analytic::AnalyticModel printed(c, {erratum.erratum});
         for (int axis = 0; axis < 3; ++axis) {
           const Vector6 F = along(axis, load_N);
-          const analytic::AnalyticSolution s = printed.solve(F);
-          const double ratio = s.displacement(axis) / corrected.solve(F).displacement(axis);
+          const analytic::AnalyticSolution s = solved(printed, F);
+          const double ratio = s.displacement(axis) / solved(corrected, F).displacement(axis);
           price.smallest(axis) = std::min(price.smallest(axis), ratio);
           price.largest(axis) = std::max(price.largest(axis), ratio);
           if (price.failed_check.empty()) price.failed_check = failed_checks(printed, s);
         }
       }
     } catch (const ModelError& e) {
+      price.refused = e.what();
+    } catch (const NumericalError& e) {
       price.refused = e.what();
     }
     prices.push_back(std::move(price));

@@ -53,8 +53,8 @@ Pose home_pose(const Mechanism&);
 
 struct SolveResult;
 
-/// Both theories at one pose under one wrench (N, Nmm at T, base axes). Throws ModelError naming the check where one of
-/// the checks fails, NumericalError where a theory does not converge.
+/// Both theories at one pose under one wrench (N, Nmm at T, base axes). Throws NumericalError naming the check where
+/// one of the checks fails, or where a theory does not converge.
 SolveResult solve(const Mechanism&, const Vector6& pose_mm_deg, const Vector6& load_N_Nmm,
                   const frame::MemberDivision&);
 
