@@ -38,8 +38,8 @@ struct Pair {
 analytic::AnalyticSolution solved(const analytic::AnalyticModel& printed, const Vector6& F) {
   analytic::AnalyticSolution s = printed.solve(F);
   if (!s.converged)
-    throw NumericalError(fmt::format("the analytic theory did not converge in {} steps (misfit {:.3g})",
-                                     s.iterations, s.misfit));
+    throw NumericalError(
+        fmt::format("the analytic theory did not converge in {} steps (misfit {:.3g})", s.iterations, s.misfit));
   return s;
 }
 
