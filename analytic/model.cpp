@@ -78,7 +78,8 @@ AnalyticModel::AnalyticModel(const Configuration& c, const AsPrinted& as_printed
         if (const auto* m = std::get_if<PlacedMember>(&part)) reference = m->p_W_end;
     chains_.push_back(chain_of(leg, reference, as_printed));
   }
-  through_ = chain_of({"base and tool", {c.base, c.tool}, 0}, c.pose.p_WT, {});
+  PlacedLeg through{"base and tool", {c.base, c.tool}};
+  through_ = chain_of(through, c.pose.p_WT, {});
 }
 
 AnalyticSolution AnalyticModel::solve(const Vector6& F) const {

@@ -43,6 +43,13 @@ Matrix6 stiffness_in_mm(const Matrix6& K_SI) {
   return K;
 }
 
+Matrix6 stiffness_from_mm(const Matrix6& K_mm) {
+  Matrix6 K = K_mm;
+  K.topLeftCorner<3, 3>() *= 1e3;
+  K.bottomRightCorner<3, 3>() *= 1e-3;
+  return K;
+}
+
 Vector6 twist_in_mm(const Vector6& d_SI) {
   Vector6 d = d_SI;
   d.head<3>() *= 1e3;

@@ -63,6 +63,7 @@ Matrix3 axes_along_x(const Vector3& x, const Vector3& reference);
 
 /// A 6×6 stiffness from SI to the units of results: N/mm, N (N/rad), Nmm (Nmm/rad).
 Matrix6 stiffness_in_mm(const Matrix6& K_SI);
+Matrix6 stiffness_from_mm(const Matrix6& K_mm);
 
 /// [m, rad] → [mm, rad] and its inverse; [N, Nm] → [N, Nmm] and its inverse.
 Vector6 twist_in_mm(const Vector6& d_SI);

@@ -82,6 +82,7 @@ const std::vector<Row>& table() {
       {Dimension::thermal_expansion, "a thermal expansion", {{"1/K", 1}}},
       {Dimension::temperature, "a temperature difference", {{"K", 1}}},
       {Dimension::acceleration, "an acceleration", {{"m/s^2", 1}, {"mm/s^2", 1, 1e3}, {"in/s^2", inch}}},
+      {Dimension::mass, "a mass", {{"kg", 1}, {"g", 1, 1e3}, {"lb", 0.45359237}}},
   };
   return rows;
 }

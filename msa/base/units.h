@@ -24,6 +24,7 @@ enum class Dimension {
   thermal_expansion,     ///< 1/K
   temperature,           ///< K, a difference
   acceleration,          ///< m/s²
+  mass,                  ///< kg
 };
 
 /// Units accepted for a dimension, the preferred one first: {"mm", "m", "um", "in"}.

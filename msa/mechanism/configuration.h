@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -14,16 +15,19 @@
 namespace deflect {
 
 /// A joint at p_W with axes R_WJ (columns are the joint's x, y, z in W). Freedoms are those of the joint table;
-/// laws[i] in series on freedom i, materials resolved; a law makes the freedom elastic whatever freedoms[i] says.
+/// laws[i] in series on freedom i, materials resolved; a law makes the freedom elastic whatever freedoms[i] says. The
+/// axes turn with what stands before the joint; in finite motions the freedoms move in the order tx ty tz rx ry rz.
 struct PlacedJoint {
   std::string part;
   Vector3 p_W = Vector3::Zero();
   Matrix3 R_WJ = Matrix3::Identity();
   std::array<Freedom, 6> freedoms{};
   std::array<std::vector<Law>, 6> laws;
+  std::array<double, 6> preload{};   ///< N, Nm: force in the laws while the joint transmits none
+  std::optional<Matrix6> stiffness;  ///< symmetric, positive definite; then all six freedoms are elastic
 
-  bool elastic(std::size_t i) const { return !laws[i].empty(); }
-  bool free(std::size_t i) const { return freedoms[i] == Freedom::free && laws[i].empty(); }
+  bool elastic(std::size_t i) const { return stiffness || !laws[i].empty(); }
+  bool free(std::size_t i) const { return freedoms[i] == Freedom::free && !elastic(i); }
 };
 
 /// A straight member from p_W_start to p_W_end with axes R_WM, x along it.
@@ -38,21 +42,54 @@ struct PlacedMember {
   double length() const { return (p_W_end - p_W_start).norm(); }
 };
 
-using PlacedPart = std::variant<PlacedJoint, PlacedMember>;
+struct PlacedLeg;
+
+/// Branches side by side between two rigid bodies, which hold the points p_W_start and p_W_end.
+struct PlacedParallel {
+  std::string part;
+  Vector3 p_W_start = Vector3::Zero(), p_W_end = Vector3::Zero();
+  std::vector<PlacedLeg> branches;
+};
+
+using PlacedPart = std::variant<PlacedJoint, PlacedMember, PlacedParallel>;
 
 struct PlacedLeg {
-  std::string name;               ///< "leg 1"
+  std::string name;               ///< "leg 1"; of a branch "leg 1 parallelogram 2"
   std::vector<PlacedPart> parts;  ///< base to platform; neighbours are rigidly attached to one another
-  double actuator = 0;            ///< joint coordinate, m
+  /// Small twist [δ; θ] at T, base axes, by which the leg's end, unstrained, stands beside its seat on the platform.
+  Vector6 misfit = Vector6::Zero();
+};
+
+/// A commanded coordinate: m or rad.
+struct Actuator {
+  std::string name;
+  double value = 0;
+  bool rotation = false;
 };
 
 struct Configuration {
   Pose pose;
   PlacedJoint base, tool;
-  std::vector<PlacedLeg> legs;
+  std::vector<PlacedLeg> legs;       ///< side by side between the base and the platform; a serial arm is one
+  std::vector<Actuator> actuators;   ///< leg by leg
+  Vector3 weight = Vector3::Zero();  ///< N at T, acts with and without load
+  /// m: the mechanism's extent from T; where ranks are decided, moments weigh against forces by it.
+  double size = 0;
 };
 
-/// Throws ModelError naming leg and limit when the pose is out of reach, InputError on names that do not resolve.
+int leg_count(const Mechanism&);
+
+/// Throws ModelError naming leg and limit when the pose is out of reach, or when it is singular, naming the direction
+/// that is lost; InputError on names that do not resolve.
 Configuration configure(const Mechanism&, const Pose&);
+
+/// The same from commanded joint coordinates, one per actuator (m, rad), by closing the loops from home.
+Configuration configure_joints(const Mechanism&, const VectorX& coordinates);
+
+/// Where the kinematics start and the workspace lies.
+Pose home_pose(const Mechanism&);
+
+/// What configure_joints expects, with the values at home.
+std::vector<Actuator> actuators_of(const Mechanism&);
 
 }  // namespace deflect

@@ -1,15 +1,24 @@
 // The description of a mechanism: what a device file says, as data without methods. SI units throughout.
 //
-// A leg is a chain of parts from the base to the platform, in the order in which force passes through them. Parts
-// are placed at named points and turned into named axes that the kinematics provide at every pose; for the family
-// "6-psu" those are the points A (base joint), B (guideway's tip), C (platform joint) and the axes
+// A leg is a chain of parts from the base to the platform, in the order in which force passes through them. Where the
+// parts stand is said in one of two ways.
+//
+// Family "6-psu": parts are placed at named points and turned into named axes that the kinematics provide at every
+// pose: the points A (base joint), B (guideway's tip), C (platform joint) and the axes
 //   base      of W;
 //   guide     z along the guideway, x radially outwards at A;
 //   link      z from B to C, x in the plane of z and the radial direction at A;
 //   platform  of T.
+//
+// Family "chains", for any other mechanism: a frame walks along the chain. It starts at the leg's mount on the base; a
+// joint stands where the frame is and moves it by its coordinates; a member takes it along its own length; an offset
+// moves it rigidly; branches in parallel leave from it and meet again in one frame. Where the walk ends, turned back by
+// the mount on the platform, is the frame of the platform. A serial arm is a mechanism of one leg, whose platform is
+// the tool.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -33,26 +42,76 @@ const T* find(const Named<T>& list, const std::string& name) {
   return nullptr;
 }
 
-/// A joint between what stands before it in the chain and what follows. laws[i] are in series on freedom i
-/// (tx ty tz rx ry rz of `axes`); an empty list leaves the freedom as the type's row in the joint table says.
+/// A frame seen from another: shift in the axes of the other, turn as roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
+struct Placement {
+  Vector3 shift = Vector3::Zero();  ///< m
+  Vector3 turn = Vector3::Zero();   ///< rad
+};
+
+/// Rows of Denavit–Hartenberg tables (m, rad). Standard: joint about z, then Rz(θ) Tz(d) Tx(a) Rx(α). Modified (J. J.
+/// Craig, Introduction to Robotics, (3.6)): Rx(α) Tx(a) Rz(θ) Tz(d), then the joint about z.
+struct DhRow {
+  double theta = 0, d = 0, a = 0, alpha = 0;
+};
+
+/// A joint between what stands before it in the chain and what follows. Its freedoms are tx ty tz rx ry rz of its axes
+/// and move in this order: translation first, then Rx Ry Rz, each about axes that the ones before have turned.
+/// laws[i] are in series on freedom i; an empty list leaves the freedom as the type's row in the joint table says.
 struct Joint {
   std::string type = "fixed";
-  std::string at, axes;
+  std::string freedoms;  ///< six letters of the joint table, for the type "custom"
+
+  std::string at;    ///< families with named places
+  std::string axes;  ///< there a named set of axes; in a chain "before" or "after": the motion that laws do not follow
+
+  Vector3 axis = Vector3::UnitZ();  ///< chains: z of the joint in the axes of the chain
+  std::optional<DhRow> dh, modified_dh;
+  Vector3 bar = Vector3::Zero();  ///< of a parallelogram, from its hinges on this side to those on the other at φ = 0
+  std::array<double, 6> home{};   ///< coordinates (m, rad) from which the kinematics start
+  std::array<std::optional<double>, 6> min, max;  ///< limits of the coordinates
+
   std::array<std::vector<Law>, 6> laws;
+  std::optional<Matrix6> stiffness;  ///< of all six freedoms together, [δ; θ] in the joint's axes, SI; excludes laws
+  /// Force (N) or moment (Nm) that the joint itself keeps in the laws of freedom i (a clamped ball, a pretensioned
+  /// cable): the laws work about it.
+  std::array<double, 6> preload{};
 };
 
 enum class BeamTheory { euler_bernoulli, timoshenko };
 inline constexpr const char* beam_theory_names[] = {"euler-bernoulli", "timoshenko"};
 
-/// A straight flexible member. Its local x runs from `from` to `to`; local y lies in the plane of x and the radial
-/// direction at A. bending_factor multiplies EIy and EIz (1 = sound).
+/// A straight flexible member, local x along it. Named places: runs from `from` to `to`, local y in the plane of x and
+/// the radial direction at A. Chains: runs along `along` (axes of the chain, m), or from where part `from` stands to
+/// where the chain is, which lengthens it with the joints between; local y in the plane of x and the chain's y (its z,
+/// where x is along y). bending_factor multiplies EIy and EIz (1 = sound).
 struct Member {
   std::string section, material, from, to;
+  std::optional<Vector3> along;
   BeamTheory beam = BeamTheory::euler_bernoulli;
   double bending_factor = 1;
 };
 
-using Part = std::variant<Joint, Member>;
+/// A rigid piece of a chain.
+struct Offset : Placement {};
+
+struct Part;
+
+/// Where a leg stands: its first frame in the frame of the base and its last one in the frame of the platform, and the
+/// parts of this leg where they are others than those of every leg.
+struct Mount {
+  Placement base, platform;
+  std::vector<std::pair<std::string, Part>> leg;
+};
+
+/// Branches side by side: a parallelogram, an inner loop, a parallel stage on an arm.
+struct Parallel {
+  std::vector<Mount> mounts;
+  std::vector<std::pair<std::string, Part>> leg;
+};
+
+struct Part : std::variant<Joint, Member, Offset, Parallel> {
+  using variant::variant;
+};
 
 /// Six vertical guideways, ball joint at B, universal joint at C. Legs 2k+1, 2k+2 stand at 120°·k ± base_angle/2 on
 /// the base circle and at 120°·k ± (60° − platform_angle/2) on the platform circle.
@@ -62,8 +121,15 @@ struct SixPsu {
   double slider_min = 0, slider_max = 0;      ///< limits of the free length L1 = |AB|
 };
 
-using Kinematics = std::variant<SixPsu>;
-inline constexpr const char* family_names[] = {"6-psu"};
+/// Parts placed by walking along each leg; see above.
+struct Chains {
+  std::optional<Placement> home;  ///< pose of T from which the kinematics start; absent: from the joints' home
+  /// Actuated coordinates of the chain = controller · coordinates given by the user; empty: they are the same.
+  MatrixX controller;
+};
+
+using Kinematics = std::variant<SixPsu, Chains>;
+inline constexpr const char* family_names[] = {"6-psu", "chains"};
 static_assert(std::size(family_names) == std::variant_size_v<Kinematics>);
 
 /// One leg that differs: `path` inside the leg ("guideway.bending_factor"), `value` as it would stand in the file.
@@ -72,8 +138,14 @@ struct Variation {
   std::string path, value;
 };
 
-/// Where the device is validated: a cube about the pose at which every slider of the untilted device has the
-/// nominal length.
+/// One leg that is assembled beside its drawing: its seats on the base and on the platform, in the axes of W and T.
+struct Misfit {
+  int leg = 0;  ///< 1-based
+  Placement base, platform;
+};
+
+/// Where the device is validated: a cube about its home pose; the 6-psu's is the pose at which every slider of the
+/// untilted device has the nominal length.
 struct Workspace {
   double nominal_slider = 0, cube_edge = 0;
 };
@@ -100,10 +172,13 @@ struct Mechanism {
   Kinematics kinematics;
   Named<Material> materials;
   Named<Section> sections;
-  Named<Part> leg;  ///< every leg, base to platform
+  std::vector<Mount> mounts;  ///< chains: one leg each; none is one leg from the base's frame to the tool's
+  Named<Part> leg;            ///< every leg, base to platform
   std::vector<Variation> variations;
-  Joint base;  ///< between the world and the machine, at the base origin, axes "base"
-  Joint tool;  ///< between the platform and the tool point T, axes "platform"
+  Joint base;          ///< between the world and the machine, at the base origin, axes "base"
+  Joint tool;          ///< between the platform and the tool point T, axes "platform"
+  double payload = 0;  ///< kg at T; its weight acts along −z of W
+  std::vector<Misfit> misfits;
   Workspace workspace;
   LoadCell load_cell;
   Sensor sensor;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/field_reader.h"
 #include "msa/mechanism/field_writer.h"
@@ -12,15 +13,13 @@
 namespace deflect {
 namespace {
 
-constexpr int leg_count = 6;
-
 /// "leg[4].guideway.E" as 4 and "guideway.E".
-std::pair<int, std::string> leg_and_rest(const std::string& path, const std::string& where) {
-  for (int leg = 1; leg <= leg_count; ++leg)
+std::pair<int, std::string> leg_and_rest(const std::string& path, const std::string& where, int legs) {
+  for (int leg = 1; leg <= legs; ++leg)
     if (const std::string head = fmt::format("leg[{}].", leg); path.starts_with(head))
       return {leg, path.substr(head.size())};
   throw InputError(
-      fmt::format("{}{}: one leg is written leg[1] to leg[{}], then a dot and the field", where, path, leg_count));
+      fmt::format("{}{}: one leg is written leg[1] to leg[{}], then a dot and the field", where, path, legs));
 }
 
 YamlNode variation_node(int leg, const std::string& path, YamlNode value) {
@@ -47,8 +46,8 @@ void put(YamlNode& variations, YamlNode added) {
 }
 
 MarkedLeg marked_leg(const Mechanism& m, int leg) {
-  if (leg < 1 || leg > leg_count)
-    throw InputError(fmt::format("{}: there is no leg {}, legs are 1 to {}", m.name, leg, leg_count));
+  if (leg < 1 || leg > leg_count(m))
+    throw InputError(fmt::format("{}: there is no leg {}, legs are 1 to {}", m.name, leg, leg_count(m)));
   const bool varies =
       std::any_of(m.variations.begin(), m.variations.end(), [&](const auto& v) { return v.leg == leg; });
   if (!varies) return {m.leg, m.ours};
@@ -57,7 +56,7 @@ MarkedLeg marked_leg(const Mechanism& m, int leg) {
 
 void edit_one_leg(YamlNode& tree, const Mechanism& m, const Edit& edit, const YamlNode& value,
                   const std::string& where) {
-  const auto [number, path] = leg_and_rest(edit.path, where);
+  const auto [number, path] = leg_and_rest(edit.path, where, leg_count(m));
   const MarkedLeg leg = marked_leg(m, number);
   YamlNode parts = tree_of(leg.parts, leg.ours, m);
   const std::string inside = fmt::format("{}leg[{}].", where, number);

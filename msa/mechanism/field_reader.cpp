@@ -48,6 +48,8 @@ const char* example_of(Dimension d) {
       return "20 K";
     case Dimension::acceleration:
       return "9.81 m/s^2";
+    case Dimension::mass:
+      return "2 kg";
   }
   return "";
 }
@@ -202,6 +204,34 @@ void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const ch
     const std::string item_path = joined(path, std::to_string(i));
     note(item, item_path);
     value(i) = number(item, item_path, {d, {}, std::nullopt}, sample);
+  }
+}
+
+void FieldReader::matrix(const char* key, MatrixX& value, Eigen::Index size, Need need, const char* about) {
+  std::vector<std::string> zeros(static_cast<std::size_t>(size), "0");
+  const std::string sample = example(key, fmt::format("[[{}], ...]", fmt::join(zeros, ", ")));
+  value.resize(0, 0);
+  const YamlNode* node = find(key, need == Need::required, sample, about);
+  if (!node) return;
+  const std::string path = joined(path_, key);
+  const auto refuse = [&](const YamlNode& at, const std::string& where) {
+    fail(at, where,
+         fmt::format("{0} rows of {0} numbers are wanted: write for example '{1}'",
+                     size > 0 ? std::to_string(size) : "as many", sample));
+  };
+  const auto rows = static_cast<Eigen::Index>(node->children.size());
+  if (node->kind != Kind::list || rows == 0 || (size > 0 && rows != size)) refuse(*node, path);
+  value.resize(rows, rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const YamlNode& row = node->children[static_cast<std::size_t>(i)];
+    const std::string row_path = joined(path, std::to_string(i));
+    if (row.kind != Kind::list || static_cast<Eigen::Index>(row.children.size()) != rows) refuse(row, row_path);
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      const YamlNode& item = row.children[static_cast<std::size_t>(j)];
+      const std::string item_path = joined(row_path, std::to_string(j));
+      note(item, item_path);
+      value(i, j) = number(item, item_path, {Dimension::none, {}, std::nullopt}, sample);
+    }
   }
 }
 

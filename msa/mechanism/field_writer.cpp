@@ -67,6 +67,19 @@ void FieldWriter::vector3(const char* key, Vector3& value, Dimension d, const ch
   add(key, std::move(list), value.isZero(0) && !tagged);
 }
 
+void FieldWriter::matrix(const char* key, MatrixX& value, Eigen::Index, Need, const char*) {
+  YamlNode rows;
+  rows.kind = Kind::list;
+  for (Eigen::Index i = 0; i < value.rows(); ++i) {
+    YamlNode row;
+    row.kind = Kind::list;
+    for (Eigen::Index j = 0; j < value.cols(); ++j) row.children.push_back(number(value(i, j), Dimension::none));
+    rows.children.push_back(std::move(row));
+  }
+  mark(rows, joined(path_, key));
+  add(key, std::move(rows), value.size() == 0);
+}
+
 void FieldWriter::text(const char* key, std::string& value, Need need, const char*) {
   add(key, scalar(value, true), need == Need::optional && value.empty());
 }

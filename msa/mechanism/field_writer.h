@@ -24,6 +24,7 @@ class FieldWriter final : public FieldVisitor {
   void quantity_if_given(const char*, std::optional<double>&, const Quantity&, const char*) override;
   void integer(const char*, int&, int low, int high, const char*) override;
   void vector3(const char*, Vector3&, Dimension, const char*) override;
+  void matrix(const char*, MatrixX&, Eigen::Index size, Need, const char*) override;
   void text(const char*, std::string&, Need, const char*) override;
   void texts(const char*, std::vector<std::string>&, Need, const char*) override;
   void word(const char*, std::string&, const Words&, const char*) override;

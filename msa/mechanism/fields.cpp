@@ -1,172 +1,10 @@
-#include "msa/mechanism/fields.h"
-
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <span>
-#include <type_traits>
-
-#include "msa/mechanism/joint_table.h"
+#include "msa/mechanism/configuration.h"
+#include "msa/mechanism/field_lists.h"
 
 namespace deflect {
 namespace {
-
-Quantity required(Dimension d, Range range = positive) { return {d, range, std::nullopt}; }
-Quantity optional(double otherwise, Dimension d, Range range) { return {d, range, otherwise}; }
-Quantity length() { return required(Dimension::length); }
-Quantity area() { return required(Dimension::area); }
-
-template <class T>
-std::vector<std::string> names(const Named<T>* list) {
-  std::vector<std::string> out;
-  if (list)
-    for (const auto& [name, value] : *list) out.push_back(name);
-  return out;
-}
-
-std::size_t index_of(std::span<const char* const> all, const std::string& name) {
-  return static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin());
-}
-
-template <class V, std::size_t... I>
-void become(V& variant, std::size_t index, std::index_sequence<I...>) {
-  ((index == I ? static_cast<void>(variant.template emplace<I>()) : void()), ...);
-}
-
-// Sections
-
-void fields(FieldVisitor& v, RoundSection& s) { v.quantity("diameter", s.diameter, length(), "outer diameter"); }
-
-void fields(FieldVisitor& v, TubeSection& s) {
-  v.quantity("outer_diameter", s.outer_diameter, length(), "outer diameter");
-  v.quantity("inner_diameter", s.inner_diameter, length(), "inner diameter");
-  v.require(s.inner_diameter < s.outer_diameter, "inner_diameter", "must be below outer_diameter");
-}
-
-void fields(FieldVisitor& v, RectangleSection& s) {
-  v.quantity("width_y", s.width_y, length(), "side along local y");
-  v.quantity("height_z", s.height_z, length(), "side along local z");
-}
-
-void fields(FieldVisitor& v, GivenSection& s) {
-  v.quantity("A", s.A, area(), "cross-section");
-  v.quantity("Iy", s.Iy, required(Dimension::second_moment), "second moment of area about local y");
-  v.quantity("Iz", s.Iz, required(Dimension::second_moment), "second moment of area about local z");
-  v.quantity("J", s.J, required(Dimension::second_moment), "torsion constant");
-  v.quantity_if_given("As_y", s.As_y, area(), "shear area along local y");
-  v.quantity_if_given("As_z", s.As_z, area(), "shear area along local z");
-}
-
-// Laws
-
-void material_of(FieldVisitor& v, std::string& material) {
-  v.word("material", material, {"material", names(v.surroundings.materials), std::nullopt}, "name of a material");
-}
-
-void fields(FieldVisitor& v, LinearLaw& l) {
-  v.quantity("stiffness", l.stiffness,
-             required(v.surroundings.rotation ? Dimension::rotational_stiffness : Dimension::stiffness),
-             "constant stiffness");
-}
-void fields(FieldVisitor& v, HertzPointLaw& l) {
-  material_of(v, l.material);
-  v.quantity("radius", l.radius, length(), "effective radius");
-}
-void fields(FieldVisitor& v, HertzLineLaw& l) {
-  material_of(v, l.material);
-  v.quantity("radius", l.radius, length(), "effective radius");
-  v.quantity("length", l.length, length(), "length of the line");
-}
-void fields(FieldVisitor& v, HertzLineBulkLaw& l) {
-  material_of(v, l.material);
-  v.quantity("radius_1", l.radius_1, length(), "radius of one cylinder");
-  v.quantity("radius_2", l.radius_2, length(), "radius of the other cylinder");
-  v.quantity("length", l.length, length(), "length of the line");
-}
-void fields(FieldVisitor& v, PinBendingLaw& l) {
-  material_of(v, l.material);
-  v.quantity("diameter", l.diameter, length(), "diameter of the pin");
-  v.quantity("length", l.length, length(), "length of the pin");
-}
-void fields(FieldVisitor& v, MotorShaftLaw& l) {
-  material_of(v, l.material);
-  v.quantity("diameter", l.diameter, length(), "diameter of the shaft");
-  v.quantity("length", l.length, length(), "length of the shaft");
-  v.quantity("pulley_radius", l.pulley_radius, length(), "radius of the pulley");
-}
-void fields(FieldVisitor& v, CableLaw& l) {
-  material_of(v, l.material);
-  v.quantity("area", l.area, area(), "cross-section of the cable");
-  v.quantity_if_given("length", l.length, length(), "free length, the actuator's extension where absent");
-  v.require(l.length || v.surroundings.on_actuator, "length", "is needed here: this cable has no actuator");
-}
-void fields(FieldVisitor& v, CablePairLaw& l) {
-  material_of(v, l.material);
-  v.quantity("area_1", l.area_1, area(), "cross-section of cable 1");
-  v.quantity("length_1", l.length_1, length(), "free length of cable 1");
-  v.quantity("area_2", l.area_2, area(), "cross-section of cable 2");
-  v.quantity("length_2", l.length_2, length(), "free length of cable 2");
-}
-void fields(FieldVisitor& v, BeltLaw& l) {
-  // Force per unit strain and unit width times the width: a stiffness by its unit.
-  v.quantity("specific_stiffness", l.specific_stiffness, required(Dimension::stiffness),
-             "stiffness of a belt of unit width and length");
-  v.quantity("width", l.width, length(), "width of the belt");
-  v.quantity("tight_length", l.tight_length, length(), "free length of the tight side");
-  v.quantity("slack_length", l.slack_length, length(), "free length of the slack side");
-}
-
-// Parts of a leg
-
-void describe_laws(FieldVisitor& v, Joint& joint) {
-  for (std::size_t i = 0; i < 6; ++i) {
-    v.surroundings.rotation = i >= 3;
-    ListElements<Law> laws(joint.laws[i]);
-    v.one_or_list(freedom_names[i], laws, "laws in series on this freedom");
-  }
-}
-
-void fields(FieldVisitor& v, Joint& joint) {
-  v.word("joint", joint.type, {"joint type", joint_type_names(), std::nullopt}, "joint type");
-  v.word("at", joint.at, {"point", v.surroundings.points, std::nullopt}, "point where the joint is");
-  v.word("axes", joint.axes, {"set of axes", v.surroundings.axes, std::nullopt}, "axes of the joint");
-  describe_laws(v, joint);
-}
-
-void fields(FieldVisitor& v, Member& member) {
-  v.word("member", member.section, {"section", names(v.surroundings.sections), std::nullopt}, "name of a section");
-  material_of(v, member.material);
-  v.word("from", member.from, {"point", v.surroundings.points, std::nullopt}, "point where the member begins");
-  v.word("to", member.to, {"point", v.surroundings.points, std::nullopt}, "point where the member ends");
-  v.require(member.from != member.to, "to", "must be another point than 'from'");
-
-  std::string beam = beam_theory_names[static_cast<std::size_t>(member.beam)];
-  v.word("beam", beam,
-         {"beam theory", {std::begin(beam_theory_names), std::end(beam_theory_names)}, beam_theory_names[0]},
-         "beam theory");
-  member.beam = static_cast<BeamTheory>(index_of(beam_theory_names, beam));
-  const Section* section = v.surroundings.sections ? find(*v.surroundings.sections, member.section) : nullptr;
-  const auto* given = section ? std::get_if<GivenSection>(&section->shape) : nullptr;
-  v.require(member.beam != BeamTheory::timoshenko || !given || (given->As_y && given->As_z), "beam",
-            fmt::format("timoshenko needs As_y and As_z in section '{}'", member.section));
-
-  v.quantity("bending_factor", member.bending_factor, optional(1, Dimension::ratio, positive),
-             "multiplies the bending stiffness");
-}
-
-/// base and tool: joints whose place is fixed and that hold, except where a law lets them yield.
-void describe_fixture(FieldVisitor& v, const char* key, Joint& joint, const char* at, const char* axes,
-                      const char* about) {
-  joint.at = at;
-  joint.axes = axes;
-  v.surroundings.on_actuator = false;
-  const auto body = [&] {
-    v.word("joint", joint.type, {"joint type of base or tool", {"fixed"}, "fixed"}, "joint type");
-    describe_laws(v, joint);
-  };
-  v.object(key, Need::optional, false, body, about);
-  v.surroundings.on_actuator = true;
-}
 
 // Families
 
@@ -182,6 +20,15 @@ void fields(FieldVisitor& v, SixPsu& k) {
   v.quantity("slider_max", k.slider_max, length(), "largest free length of the guideway");
   v.require(k.slider_min < k.slider_max, "slider_max", "must be above slider_min");
 }
+
+void fields(FieldVisitor& v, Chains& k) {
+  describe_if_given(v, "home", k.home, "pose of the tool point from which the kinematics start",
+                    [&v](Placement& p) { describe(v, p); });
+  v.matrix("controller", k.controller, 0, Need::optional,
+           "joint coordinates of the chain over those that users give, row by row");
+}
+
+void place_names(const Chains&, Surroundings& s) { s.chains = true; }
 
 void place_names(const SixPsu&, Surroundings& s) {
   s.points = {"A", "B", "C"};
@@ -215,17 +62,6 @@ void describe_tolerances(FieldVisitor& v, Tolerances& t) {
   v.quantity("actuator_repeatability", t.actuator_repeatability, absolute, "standard deviation of a slider's position");
 }
 
-/// `key: name` says which alternative of the variant holds; its fields follow.
-template <class V>
-void tagged(FieldVisitor& v, V& variant, const char* key, const char* what, std::span<const char* const> all,
-            const char* about) {
-  std::string name = all[variant.index()];
-  v.word(key, name, {what, {all.begin(), all.end()}, std::nullopt, true}, about);
-  const std::size_t index = index_of(all, name);
-  if (index != variant.index()) become(variant, index, std::make_index_sequence<std::variant_size_v<V>>());
-  std::visit([&](auto& alternative) { fields(v, alternative); }, variant);
-}
-
 }  // namespace
 
 void describe(FieldVisitor& v, Material& m) {
@@ -240,32 +76,16 @@ void describe(FieldVisitor& v, Material& m) {
             fmt::format("gives Poisson's ratio {}: it must lie between -1 and 0.5", m.poisson()));
 }
 
-void describe(FieldVisitor& v, Section& s) {
-  tagged(v, s.shape, "shape", "shape", shape_names, "shape of the cross-section");
-}
-
-void describe(FieldVisitor& v, Law& law) {
-  tagged(v, law, "law", "law", law_names, "force against relative displacement");
-  v.require(
-      !v.surroundings.rotation || std::holds_alternative<LinearLaw>(law), "law",
-      fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes 'linear'", law_names[law.index()]));
-}
-
-void describe(FieldVisitor& v, Part& part) {
-  const std::size_t index = v.alternative({"joint", "member"}, part.index());
-  if (index != part.index()) become(part, index, std::make_index_sequence<2>());
-  std::visit([&](auto& p) { fields(v, p); }, part);
-}
-
 void describe(FieldVisitor& v, Variation& variation) {
-  v.integer("leg", variation.leg, 1, 6, "number of the leg");
+  v.integer("leg", variation.leg, 1, v.surroundings.legs, "number of the leg");
   v.text("path", variation.path, Need::required, "field inside the leg, as in 'guideway.bending_factor'");
   v.any("value", variation.value, "what stands there in this leg");
 }
 
-void describe_leg(FieldVisitor& v, Named<Part>& leg) {
-  NamedElements<Part> parts(leg);
-  v.entries("leg", parts, Need::required, "parts of every leg from the base to the platform");
+void describe(FieldVisitor& v, Misfit& misfit) {
+  v.integer("leg", misfit.leg, 1, v.surroundings.legs, "number of the leg");
+  describe_placement(v, "base", misfit.base, "seat on the base beside its drawing");
+  describe_placement(v, "platform", misfit.platform, "seat on the platform beside its drawing");
 }
 
 Surroundings surroundings_of(const Mechanism& m) {
@@ -273,6 +93,7 @@ Surroundings surroundings_of(const Mechanism& m) {
   s.materials = &m.materials;
   s.sections = &m.sections;
   std::visit([&](const auto& k) { place_names(k, s); }, m.kinematics);
+  s.legs = leg_count(m);
   return s;
 }
 
@@ -280,7 +101,9 @@ void describe(FieldVisitor& v, Mechanism& m) {
   v.text("name", m.name, Need::required, "name of the device");
   v.text("about", m.about, Need::optional, "one line about the device");
   v.text("source", m.source, Need::optional, "where the numbers are from");
-  const auto family = [&] { tagged(v, m.kinematics, "family", "family", family_names, "family of mechanisms"); };
+  const auto family = [&] {
+    tagged(v, m.kinematics, "family", "family", family_names, "family of mechanisms", [&v](auto& k) { fields(v, k); });
+  };
   v.object("kinematics", Need::required, false, family, "family and dimensions");
 
   NamedElements<Material> materials(m.materials);
@@ -289,15 +112,28 @@ void describe(FieldVisitor& v, Mechanism& m) {
   v.entries("sections", sections, Need::optional, "cross-sections by name");
 
   v.surroundings = surroundings_of(m);
+  if (v.surroundings.chains) {
+    ListElements<Mount> mounts(m.mounts);
+    v.list("mounts", mounts, "where the legs stand on the base and on the platform");
+    v.surroundings.legs = leg_count(m);
+  }
   describe_leg(v, m.leg);
+  const bool own_parts = std::all_of(m.mounts.begin(), m.mounts.end(), [](const Mount& p) { return !p.leg.empty(); });
+  v.require(!m.leg.empty() || (own_parts && !m.mounts.empty()), "leg",
+            "is missing: the parts of every leg, or of each in its mount");
   ListElements<Variation> variations(m.variations);
   v.list("variations", variations, "legs that differ");
   describe_fixture(v, "base", m.base, "origin", "base", "between the world and the machine");
   describe_fixture(v, "tool", m.tool, "T", "platform", "between the platform and the tool point");
 
+  v.quantity("payload", m.payload, optional(0, Dimension::mass, not_negative), "mass at the tool point");
+  ListElements<Misfit> misfits(m.misfits);
+  v.list("misfits", misfits, "legs that are assembled beside their drawing");
+
   Workspace& w = m.workspace;
   const auto cube = [&] {
-    v.quantity("nominal_slider", w.nominal_slider, length(), "free length of every guideway at the centre");
+    if (!v.surroundings.chains)
+      v.quantity("nominal_slider", w.nominal_slider, length(), "free length of every guideway at the centre");
     v.quantity("cube_edge", w.cube_edge, length(), "edge of the cube of validation");
   };
   v.object("workspace", Need::optional, w.nominal_slider == 0 && w.cube_edge == 0, cube, "where it is validated");

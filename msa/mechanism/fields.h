@@ -54,7 +54,9 @@ class Elements {
 struct Surroundings {
   const Named<Material>* materials = nullptr;
   const Named<Section>* sections = nullptr;
-  std::vector<std::string> points, axes;
+  bool chains = false;                    ///< parts are placed by walking, not at named places
+  std::vector<std::string> points, axes;  ///< the named places
+  int legs = 0;
   bool rotation = false;    ///< the laws described act on a rotation
   bool on_actuator = true;  ///< they stand in a leg, whose actuator has an extension
 };
@@ -68,6 +70,8 @@ class FieldVisitor {
   virtual void quantity_if_given(const char* key, std::optional<double>&, const Quantity&, const char* about) = 0;
   virtual void integer(const char* key, int&, int low, int high, const char* about) = 0;
   virtual void vector3(const char* key, Vector3&, Dimension, const char* about) = 0;  ///< zero where absent
+  /// Plain numbers, as many rows as columns; `size` of them, or any number where it is 0. Empty where absent.
+  virtual void matrix(const char* key, MatrixX&, Eigen::Index size, Need, const char* about) = 0;
   virtual void text(const char* key, std::string&, Need, const char* about) = 0;
   virtual void texts(const char* key, std::vector<std::string>&, Need, const char* about) = 0;  ///< one or a list
   virtual void word(const char* key, std::string&, const Words&, const char* about) = 0;
@@ -97,6 +101,8 @@ void describe(FieldVisitor&, Section&);
 void describe(FieldVisitor&, Part&);
 void describe(FieldVisitor&, Law&);
 void describe(FieldVisitor&, Variation&);
+void describe(FieldVisitor&, Mount&);
+void describe(FieldVisitor&, Misfit&);
 
 /// Only the field `leg` of a mechanism whose other parts are in `surroundings`.
 void describe_leg(FieldVisitor&, Named<Part>&);

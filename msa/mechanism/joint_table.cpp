@@ -14,10 +14,10 @@ std::vector<std::string> joint_type_names() {
   return names;
 }
 
-std::array<Freedom, 6> freedoms_of(const JointType& type) {
+std::array<Freedom, 6> freedoms_of(std::string_view letters) {
   std::array<Freedom, 6> f{};
   for (std::size_t i = 0; i < 6; ++i)
-    f[i] = type.letters[i] == 'f' ? Freedom::free : type.letters[i] == 'a' ? Freedom::actuated : Freedom::rigid;
+    f[i] = letters[i] == 'f' ? Freedom::free : letters[i] == 'a' ? Freedom::actuated : Freedom::rigid;
   return f;
 }
 

@@ -29,11 +29,14 @@ inline constexpr JointType joint_table[] = {
     {"cylindrical", "rrfrrf", "slides along z and turns about it"},
     {"universal", "rrrffr", "turns about x and y, holds the spin about z"},
     {"ball", "rrrfff", "turns about all axes"},
+    {"parallelogram", "frrrrr", "passive circular translation of a bar's end, x along its path"},
+    {"custom", "rrrrrr", "as its field `freedoms` says: six letters"},
 };
 
 /// The row of a type, or nullptr.
 const JointType* find_joint_type(std::string_view name);
 std::vector<std::string> joint_type_names();
-std::array<Freedom, 6> freedoms_of(const JointType&);
+/// Of six letters.
+std::array<Freedom, 6> freedoms_of(std::string_view letters);
 
 }  // namespace deflect

@@ -56,7 +56,7 @@ MapGrid grid_of(const Mechanism& m, const Arguments& a) {
 }
 
 double length_mm(const Mechanism& m, const std::string& text) {
-  if (text.empty()) return platform_radius_mm(m);
+  if (text.empty()) return weighing_length_mm(m);
   return 1e3 * parse_length("--length", text);
 }
 

@@ -92,11 +92,11 @@ MapPose map_pose(const Mechanism& m, const MapOptions& o, const std::vector<Vect
   }
   out.guide_min_mm = std::numeric_limits<double>::infinity();
   out.guide_max_mm = -out.guide_min_mm;
-  for (const PlacedLeg& leg : c.legs) {
-    const double q = 1e3 * leg.actuator;
+  for (const Actuator& actuator : c.actuators) {
+    const double q = 1e3 * actuator.value;
     out.guide_min_mm = std::min(out.guide_min_mm, q);
     out.guide_max_mm = std::max(out.guide_max_mm, q);
-    out.guide_mean_mm += q / static_cast<double>(c.legs.size());
+    out.guide_mean_mm += q / static_cast<double>(c.actuators.size());
   }
   const std::string where =
       fmt::format("{} at ({})", m.name, fmt::join(out.pose_mm_deg.data(), out.pose_mm_deg.data() + 6, ", "));
@@ -185,8 +185,9 @@ MapGrid cube_grid(const Mechanism& m, const std::array<int, 3>& counts) {
   return {centre - half, centre + half, counts, Vector3::Zero()};
 }
 
-double platform_radius_mm(const Mechanism& m) {
-  return 1e3 * std::visit([](const auto& k) { return k.platform_radius; }, m.kinematics);
+double weighing_length_mm(const Mechanism& m) {
+  const auto* k = std::get_if<SixPsu>(&m.kinematics);
+  return 1e3 * (k ? k->platform_radius : configure(m, home_pose(m)).size);
 }
 
 StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options) {

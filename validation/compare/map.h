@@ -75,8 +75,8 @@ struct StiffnessMap {
   std::vector<MapPose> poses;  ///< in the grid's order
 };
 
-/// The platform's radius in mm, the default of L_c.
-double platform_radius_mm(const Mechanism&);
+/// The default of L_c: the platform radius of the 6-psu, the extent at home of any other mechanism.
+double weighing_length_mm(const Mechanism&);
 
 /// Members are one element each, which is exact at its nodes. At every pose, under every load and by each theory asked
 /// for the checks of at_pose.h apply. The result has the same bits for any number of threads. A pose that the

@@ -11,7 +11,6 @@
 #include "msa/base/error.h"
 #include "msa/base/stiffness_checks.h"
 #include "msa/mechanism/configuration.h"
-#include "msa/mechanism/six_psu.h"
 #include "validation/compare/at_pose.h"
 #include "validation/compare/solve_result.h"
 
@@ -76,15 +75,6 @@ Vector6 mm_deg_from(const Pose& pose) {
   Vector6 v;
   v << 1e3 * pose.p_WT, rpy_from_rotation(pose.R_WT) * 180 / pi;
   return v;
-}
-
-Pose home_pose(const Mechanism& m) {
-  if (!(m.workspace.nominal_slider > 0))
-    throw InputError(
-        fmt::format("{}: the device has no workspace; add for example 'workspace: {{nominal_slider: 80 mm, "
-                    "cube_edge: 50 mm}}' to its file",
-                    m.name));
-  return centred_pose(std::get<SixPsu>(m.kinematics), m.workspace.nominal_slider);
 }
 
 std::vector<ValidationPoint> cube_points(const Mechanism& m) {

@@ -48,9 +48,6 @@ std::vector<ValidationPoint> cube_points(const Mechanism&);
 Pose pose_from(const Vector6& mm_deg);
 Vector6 mm_deg_from(const Pose&);
 
-/// The pose above the centre with the sliders at the workspace's nominal length; members are divided there.
-Pose home_pose(const Mechanism&);
-
 struct SolveResult;
 
 /// Both theories at one pose under one wrench (N, Nmm at T, base axes). Throws NumericalError naming the check where

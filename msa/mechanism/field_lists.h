@@ -1,0 +1,77 @@
+// What the field lists of fields.cpp and part_fields.cpp have in common.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "msa/mechanism/fields.h"
+
+namespace deflect {
+
+inline Quantity required(Dimension d, Range range = positive) { return {d, range, std::nullopt}; }
+inline Quantity optional(double otherwise, Dimension d, Range range) { return {d, range, otherwise}; }
+inline Quantity length() { return required(Dimension::length); }
+inline Quantity area() { return required(Dimension::area); }
+
+template <class T>
+std::vector<std::string> names(const Named<T>* list) {
+  std::vector<std::string> out;
+  if (list)
+    for (const auto& [name, value] : *list) out.push_back(name);
+  return out;
+}
+
+inline std::size_t index_of(std::span<const char* const> all, const std::string& name) {
+  return static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin());
+}
+
+/// The alternative of that index, made anew where the variant holds another.
+template <class... Ts>
+void become(std::variant<Ts...>& variant, std::size_t index) {
+  if (index == variant.index()) return;
+  const auto make = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    ((index == I ? static_cast<void>(variant.template emplace<I>()) : void()), ...);
+  };
+  make(std::index_sequence_for<Ts...>());
+}
+
+inline void describe(FieldVisitor& v, Placement& p) {
+  v.vector3("shift", p.shift, Dimension::length, "origin in the axes of the frame before");
+  v.vector3("turn", p.turn, Dimension::angle, "roll, pitch, yaw");
+}
+
+inline void describe_placement(FieldVisitor& v, const char* key, Placement& p, const char* about) {
+  v.object(
+      key, Need::optional, false, [&] { describe(v, p); }, about);
+}
+
+/// An object that may be absent altogether.
+template <class T>
+void describe_if_given(FieldVisitor& v, const char* key, std::optional<T>& value, const char* about,
+                       const auto& fields_of) {
+  T given = value.value_or(T());
+  const bool absent = !value;
+  value.reset();
+  const auto body = [&] {
+    fields_of(given);
+    value = given;
+  };
+  v.object(key, Need::optional, absent, body, about);
+}
+
+/// `key: name` says which alternative of the variant holds; its fields follow.
+template <class V>
+void tagged(FieldVisitor& v, V& variant, const char* key, const char* what, std::span<const char* const> all,
+            const char* about, const auto& fields_of) {
+  std::string name = all[variant.index()];
+  v.word(key, name, {what, {all.begin(), all.end()}, std::nullopt, true}, about);
+  become(variant, index_of(all, name));
+  std::visit(fields_of, variant);
+}
+
+/// base and tool: joints whose place is fixed and that hold, except where a law lets them yield.
+void describe_fixture(FieldVisitor&, const char* key, Joint&, const char* at, const char* axes, const char* about);
+
+}  // namespace deflect

@@ -1,0 +1,311 @@
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+
+#include "msa/mechanism/field_lists.h"
+#include "msa/mechanism/joint_table.h"
+
+namespace deflect {
+namespace {
+
+// Sections
+
+void fields(FieldVisitor& v, RoundSection& s) { v.quantity("diameter", s.diameter, length(), "outer diameter"); }
+
+void fields(FieldVisitor& v, TubeSection& s) {
+  v.quantity("outer_diameter", s.outer_diameter, length(), "outer diameter");
+  v.quantity("inner_diameter", s.inner_diameter, length(), "inner diameter");
+  v.require(s.inner_diameter < s.outer_diameter, "inner_diameter", "must be below outer_diameter");
+}
+
+void fields(FieldVisitor& v, RectangleSection& s) {
+  v.quantity("width_y", s.width_y, length(), "side along local y");
+  v.quantity("height_z", s.height_z, length(), "side along local z");
+}
+
+void fields(FieldVisitor& v, GivenSection& s) {
+  v.quantity("A", s.A, area(), "cross-section");
+  v.quantity("Iy", s.Iy, required(Dimension::second_moment), "second moment of area about local y");
+  v.quantity("Iz", s.Iz, required(Dimension::second_moment), "second moment of area about local z");
+  v.quantity("J", s.J, required(Dimension::second_moment), "torsion constant");
+  v.quantity_if_given("As_y", s.As_y, area(), "shear area along local y");
+  v.quantity_if_given("As_z", s.As_z, area(), "shear area along local z");
+}
+
+// Laws
+
+void material_of(FieldVisitor& v, std::string& material) {
+  v.word("material", material, {"material", names(v.surroundings.materials), std::nullopt}, "name of a material");
+}
+
+void fields(FieldVisitor& v, LinearLaw& l) {
+  v.quantity("stiffness", l.stiffness,
+             required(v.surroundings.rotation ? Dimension::rotational_stiffness : Dimension::stiffness),
+             "constant stiffness");
+}
+void fields(FieldVisitor& v, HertzPointLaw& l) {
+  material_of(v, l.material);
+  v.quantity("radius", l.radius, length(), "effective radius");
+}
+void fields(FieldVisitor& v, HertzLineLaw& l) {
+  material_of(v, l.material);
+  v.quantity("radius", l.radius, length(), "effective radius");
+  v.quantity("length", l.length, length(), "length of the line");
+}
+void fields(FieldVisitor& v, HertzLineBulkLaw& l) {
+  material_of(v, l.material);
+  v.quantity("radius_1", l.radius_1, length(), "radius of one cylinder");
+  v.quantity("radius_2", l.radius_2, length(), "radius of the other cylinder");
+  v.quantity("length", l.length, length(), "length of the line");
+}
+void fields(FieldVisitor& v, PinBendingLaw& l) {
+  material_of(v, l.material);
+  v.quantity("diameter", l.diameter, length(), "diameter of the pin");
+  v.quantity("length", l.length, length(), "length of the pin");
+}
+void fields(FieldVisitor& v, MotorShaftLaw& l) {
+  material_of(v, l.material);
+  v.quantity("diameter", l.diameter, length(), "diameter of the shaft");
+  v.quantity("length", l.length, length(), "length of the shaft");
+  v.quantity("pulley_radius", l.pulley_radius, length(), "radius of the pulley");
+}
+void fields(FieldVisitor& v, CableLaw& l) {
+  material_of(v, l.material);
+  v.quantity("area", l.area, area(), "cross-section of the cable");
+  v.quantity_if_given("length", l.length, length(), "free length, the actuator's extension where absent");
+  v.require(l.length || v.surroundings.on_actuator, "length", "is needed here: this cable has no actuator");
+}
+void fields(FieldVisitor& v, CablePairLaw& l) {
+  material_of(v, l.material);
+  v.quantity("area_1", l.area_1, area(), "cross-section of cable 1");
+  v.quantity("length_1", l.length_1, length(), "free length of cable 1");
+  v.quantity("area_2", l.area_2, area(), "cross-section of cable 2");
+  v.quantity("length_2", l.length_2, length(), "free length of cable 2");
+}
+void fields(FieldVisitor& v, BeltLaw& l) {
+  // Force per unit strain and unit width times the width: a stiffness by its unit.
+  v.quantity("specific_stiffness", l.specific_stiffness, required(Dimension::stiffness),
+             "stiffness of a belt of unit width and length");
+  v.quantity("width", l.width, length(), "width of the belt");
+  v.quantity("tight_length", l.tight_length, length(), "free length of the tight side");
+  v.quantity("slack_length", l.slack_length, length(), "free length of the slack side");
+}
+
+// Parts of a leg
+
+void fields(FieldVisitor& v, DhRow& row) {
+  const Quantity angle = optional(0, Dimension::angle, {}), distance = optional(0, Dimension::length, {});
+  v.quantity("theta", row.theta, angle, "turn about z at coordinate zero");
+  v.quantity("d", row.d, distance, "offset along z");
+  v.quantity("a", row.a, distance, "distance along x");
+  v.quantity("alpha", row.alpha, angle, "twist about x");
+}
+
+Dimension coordinate(std::size_t freedom) { return freedom < 3 ? Dimension::length : Dimension::angle; }
+
+void describe_laws(FieldVisitor& v, Joint& joint) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    v.surroundings.rotation = i >= 3;
+    ListElements<Law> laws(joint.laws[i]);
+    v.one_or_list(freedom_names[i], laws, "laws in series on this freedom");
+  }
+  const auto preloads = [&] {
+    for (std::size_t i = 0; i < 6; ++i)
+      v.quantity(freedom_names[i], joint.preload[i], optional(0, i < 3 ? Dimension::force : Dimension::moment, {}),
+                 "force that the joint keeps in its laws");
+  };
+  v.object("preload", Need::optional, false, preloads, "forces that the joint itself keeps in its laws");
+  for (std::size_t i = 0; i < 6; ++i)
+    v.require(joint.preload[i] == 0 || !joint.laws[i].empty(), "preload",
+              fmt::format("acts in the laws of a freedom: {} has none", freedom_names[i]));
+}
+
+/// A stiffness of all freedoms together.
+void describe_stiffness(FieldVisitor& v, Joint& joint) {
+  MatrixX rows;
+  std::string units = "N-mm";
+  if (joint.stiffness) rows = stiffness_in_mm(*joint.stiffness);
+  const bool absent = !joint.stiffness;
+  joint.stiffness.reset();
+  const auto body = [&] {
+    v.word("units", units, {"set of units", {"N-mm", "N-m"}, "N-mm"}, "N/mm, N, Nmm or N/m, N, Nm");
+    v.matrix("rows", rows, 6, Need::required, "stiffness [f; m] over [translation; rotation] in the joint's axes");
+    if (rows.size() == 0) return;
+    Matrix6 K = rows;
+    if (units == "N-mm") K = stiffness_from_mm(K);
+    const bool symmetric = (K - K.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * K.cwiseAbs().maxCoeff();
+    v.require(symmetric, "rows", "a stiffness is symmetric; this one is not");
+    v.require(!symmetric || Eigen::LLT<Matrix6>(K).info() == Eigen::Success, "rows",
+              "a stiffness is positive definite; this one is not: leave a free freedom to the joint type");
+    joint.stiffness = (K + K.transpose()) / 2;
+  };
+  v.object("stiffness", Need::optional, absent, body, "stiffness of all six freedoms together");
+  const bool laws = std::any_of(joint.laws.begin(), joint.laws.end(), [](const auto& l) { return !l.empty(); });
+  v.require(!joint.stiffness || !laws, "stiffness", "a joint has a stiffness of all freedoms or laws, not both");
+}
+
+void describe_coordinates(FieldVisitor& v, Joint& joint) {
+  const auto home = [&] {
+    for (std::size_t i = 0; i < 6; ++i)
+      v.quantity(freedom_names[i], joint.home[i], optional(0, coordinate(i), {}), "coordinate");
+  };
+  v.object("home", Need::optional, false, home, "coordinates from which the kinematics start");
+  const auto limits = [&](const char* key, std::array<std::optional<double>, 6>& values, const char* about) {
+    const auto body = [&] {
+      for (std::size_t i = 0; i < 6; ++i)
+        v.quantity_if_given(freedom_names[i], values[i], {coordinate(i), {}, std::nullopt}, about);
+    };
+    v.object(key, Need::optional, false, body, about);
+  };
+  limits("min", joint.min, "smallest coordinate");
+  limits("max", joint.max, "largest coordinate");
+}
+
+bool are_freedoms(const std::string& letters) {
+  return letters.size() == 6 && letters.find_first_not_of("rfa") == letters.npos;
+}
+
+/// Where a joint of a chain stands, and how it moves the chain.
+void describe_in_chain(FieldVisitor& v, Joint& joint) {
+  v.word("axes", joint.axes, {"place of the axes", {"before", "after"}, "before"},
+         "laws act along the chain's axes before or after the joint's motion");
+  Vector3 axis = joint.axis == Vector3::UnitZ() ? Vector3(Vector3::Zero()) : joint.axis;
+  v.vector3("axis", axis, Dimension::none, "direction of the joint's z, in the axes of the chain");
+  joint.axis = axis.isZero(0) ? Vector3(Vector3::UnitZ()) : axis;
+  const auto row = [&v](DhRow& r) { fields(v, r); };
+  describe_if_given(v, "dh", joint.dh, "row of a Denavit-Hartenberg table: the joint, then the row", row);
+  describe_if_given(v, "modified_dh", joint.modified_dh, "row of a modified (Craig) table: the row, then the joint",
+                    row);
+  v.require(!joint.dh || !joint.modified_dh, "modified_dh",
+            "a joint has one row: of the standard or of the modified table");
+  if (joint.type == "custom") {
+    v.text("freedoms", joint.freedoms, Need::required,
+           "six letters for tx ty tz rx ry rz: r rigid, f free, a actuated");
+    v.require(are_freedoms(joint.freedoms), "freedoms",
+              fmt::format("'{}' are not six letters r, f or a: write for example 'freedoms: rrfrrf'", joint.freedoms));
+  }
+  if (joint.type == "parallelogram") {
+    v.vector3("bar", joint.bar, Dimension::length, "bars of the parallelogram at coordinate zero; they turn about z");
+    v.require(joint.bar.head<2>().norm() > 0, "bar",
+              "needs a length across z: write for example 'bar: [100 mm, 0 mm, 0 mm]'");
+  }
+  describe_coordinates(v, joint);
+}
+
+std::vector<std::string> joint_types(bool chains) {
+  std::vector<std::string> all = joint_type_names();
+  if (!chains) std::erase_if(all, [](const std::string& t) { return t == "custom" || t == "parallelogram"; });
+  return all;
+}
+
+void fields(FieldVisitor& v, Joint& joint) {
+  v.word("joint", joint.type, {"joint type", joint_types(v.surroundings.chains), std::nullopt}, "joint type");
+  if (v.surroundings.chains) {
+    describe_in_chain(v, joint);
+  } else {
+    v.word("at", joint.at, {"point", v.surroundings.points, std::nullopt}, "point where the joint is");
+    v.word("axes", joint.axes, {"set of axes", v.surroundings.axes, std::nullopt}, "axes of the joint");
+  }
+  describe_laws(v, joint);
+  describe_stiffness(v, joint);
+}
+
+void describe_ends(FieldVisitor& v, Member& member) {
+  if (v.surroundings.chains) {
+    const std::size_t index = v.alternative({"along", "from"}, member.along ? 0 : 1);
+    member.along.reset();
+    if (index == 1)
+      return v.text("from", member.from, Need::required, "earlier part of the leg where the member begins");
+    member.along = Vector3::Zero();
+    v.vector3("along", *member.along, Dimension::length, "from the start to the end, in the axes of the chain");
+    return v.require(member.along->norm() > 0, "along", "the member has no length");
+  }
+  v.word("from", member.from, {"point", v.surroundings.points, std::nullopt}, "point where the member begins");
+  v.word("to", member.to, {"point", v.surroundings.points, std::nullopt}, "point where the member ends");
+  v.require(member.from != member.to, "to", "must be another point than 'from'");
+}
+
+void fields(FieldVisitor& v, Member& member) {
+  v.word("member", member.section, {"section", names(v.surroundings.sections), std::nullopt}, "name of a section");
+  material_of(v, member.material);
+  describe_ends(v, member);
+
+  std::string beam = beam_theory_names[static_cast<std::size_t>(member.beam)];
+  v.word("beam", beam,
+         {"beam theory", {std::begin(beam_theory_names), std::end(beam_theory_names)}, beam_theory_names[0]},
+         "beam theory");
+  member.beam = static_cast<BeamTheory>(index_of(beam_theory_names, beam));
+  const Section* section = v.surroundings.sections ? find(*v.surroundings.sections, member.section) : nullptr;
+  const auto* given = section ? std::get_if<GivenSection>(&section->shape) : nullptr;
+  v.require(member.beam != BeamTheory::timoshenko || !given || (given->As_y && given->As_z), "beam",
+            fmt::format("timoshenko needs As_y and As_z in section '{}'", member.section));
+
+  v.quantity("bending_factor", member.bending_factor, optional(1, Dimension::ratio, positive),
+             "multiplies the bending stiffness");
+}
+
+void fields(FieldVisitor& v, Offset& o) {
+  v.vector3("offset", o.shift, Dimension::length, "to the next frame of the chain");
+  v.vector3("turn", o.turn, Dimension::angle, "roll, pitch, yaw to the next frame");
+}
+
+void fields(FieldVisitor& v, Parallel& p) {
+  ListElements<Mount> mounts(p.mounts);
+  v.list("mounts", mounts, "where the branches begin and end");
+  NamedElements<Part> parts(p.leg);
+  v.entries("leg", parts, Need::optional, "parts of every branch");
+  const bool all = std::all_of(p.mounts.begin(), p.mounts.end(), [](const Mount& m) { return !m.leg.empty(); });
+  v.require(!p.mounts.empty(), "mounts", "needs at least one branch");
+  v.require(all || !p.leg.empty(), "leg", "is missing: the parts of every branch, or of each in its mount");
+}
+
+}  // namespace
+
+void describe(FieldVisitor& v, Section& s) {
+  tagged(v, s.shape, "shape", "shape", shape_names, "shape of the cross-section",
+         [&v](auto& shape) { fields(v, shape); });
+}
+
+void describe(FieldVisitor& v, Law& law) {
+  tagged(v, law, "law", "law", law_names, "force against relative displacement", [&v](auto& l) { fields(v, l); });
+  v.require(
+      !v.surroundings.rotation || std::holds_alternative<LinearLaw>(law), "law",
+      fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes 'linear'", law_names[law.index()]));
+}
+
+void describe(FieldVisitor& v, Part& part) {
+  const std::vector<std::string> kinds = v.surroundings.chains
+                                             ? std::vector<std::string>{"joint", "member", "offset", "mounts"}
+                                             : std::vector<std::string>{"joint", "member"};
+  become(part, v.alternative(kinds, part.index()));
+  std::visit([&](auto& p) { fields(v, p); }, part);
+}
+
+void describe(FieldVisitor& v, Mount& mount) {
+  describe_placement(v, "base", mount.base, "first frame of the leg, in the frame of the base");
+  describe_placement(v, "platform", mount.platform, "last frame of the leg, in the frame of the platform");
+  NamedElements<Part> parts(mount.leg);
+  v.entries("leg", parts, Need::optional, "parts of this leg, where they are not those of every leg");
+}
+
+void describe_fixture(FieldVisitor& v, const char* key, Joint& joint, const char* at, const char* axes,
+                      const char* about) {
+  joint.at = at;
+  joint.axes = axes;
+  v.surroundings.on_actuator = false;
+  const auto body = [&] {
+    v.word("joint", joint.type, {"joint type of base or tool", {"fixed"}, "fixed"}, "joint type");
+    describe_laws(v, joint);
+    describe_stiffness(v, joint);
+  };
+  v.object(key, Need::optional, false, body, about);
+  v.surroundings.on_actuator = true;
+}
+
+void describe_leg(FieldVisitor& v, Named<Part>& leg) {
+  NamedElements<Part> parts(leg);
+  v.entries("leg", parts, v.surroundings.chains ? Need::optional : Need::required,
+            "parts of every leg from the base to the platform");
+}
+
+}  // namespace deflect
