@@ -10,17 +10,17 @@ namespace deflect {
 frame::MemberDivision divide_members(const Configuration& c, double element_size) {
   std::vector<std::string> parts;
   std::vector<double> lengths;
-  for (const PlacedLeg& leg : c.legs)
-    for (const PlacedPart& part : leg.parts)
-      if (const auto* m = std::get_if<PlacedMember>(&part)) {
-        const auto at = std::find(parts.begin(), parts.end(), m->part) - parts.begin();
-        if (static_cast<std::size_t>(at) == parts.size()) {
-          parts.push_back(m->part);
-          lengths.push_back(0);
-        }
-        double& longest = lengths[static_cast<std::size_t>(at)];
-        longest = std::max(longest, m->length());
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (requires { part.length(); }) {
+      const auto at = std::find(parts.begin(), parts.end(), part.part) - parts.begin();
+      if (static_cast<std::size_t>(at) == parts.size()) {
+        parts.push_back(part.part);
+        lengths.push_back(0);
       }
+      double& longest = lengths[static_cast<std::size_t>(at)];
+      longest = std::max(longest, part.length());
+    }
+  });
   const std::vector<std::vector<double>> fractions = gmsh::subdivide(lengths, element_size);
   frame::MemberDivision out;
   for (std::size_t i = 0; i < parts.size(); ++i) out[parts[i]] = fractions[i];

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "msa/base/error.h"
@@ -21,7 +23,7 @@ std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
   std::array<ConnectionFreedom, 6> out;
   for (std::size_t i = 0; i < 6; ++i) {
     out[i].rigid = !j.elastic(i) && !j.free(i);
-    for (const Law& law : j.laws[i]) out[i].laws.push_back(spring_of(law));
+    for (const Law& law : j.laws[i]) out[i].laws.push_back(preloaded(spring_of(law), j.preload[i]));
   }
   return out;
 }
@@ -36,6 +38,25 @@ BeamRigidity rigidity(const PlacedMember& m) {
   return r;
 }
 
+/// A stiffness of all six freedoms together is Σ λ v vᵀ over its eigenvectors: a spring λ for each, along the relative
+/// motion vᵀ[δ; θ]. Rotations are weighed by the stiffness' own length, so that eigenvectors are well defined.
+void connect_elastic(Model& model, int a, int b, const PlacedJoint& j, const std::string& name) {
+  const Matrix6& K = *j.stiffness;
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(std::sqrt(K.bottomRightCorner<3, 3>().trace() / K.topLeftCorner<3, 3>().trace()));
+  const Matrix6 weighed = weight.cwiseInverse().asDiagonal() * K * weight.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(weighed);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const Vector6 v = weight.cwiseProduct(eigen.eigenvectors().col(i));
+    LinearForm form;
+    for (const auto& [node, sign] : {std::pair{b, 1.0}, std::pair{a, -1.0}})
+      for (const LinearForm& half : {translation_of(model, node, j.p_W, j.R_WJ * v.head<3>(), sign),
+                                     rotation_of(node, j.R_WJ * v.tail<3>(), sign)})
+        form.insert(form.end(), half.begin(), half.end());
+    model.springs.push_back({form, LinearSpring{eigen.eigenvalues()(i)}, fmt::format("{} [{}]", name, i + 1), j.part});
+  }
+}
+
 /// Nodes must all exist before connections bring scalars: what is to be connected waits here.
 struct Pending {
   int a, b;
@@ -43,6 +64,7 @@ struct Pending {
   const PlacedJoint* joint;  // nullptr: rigid
   std::string name;
   bool ends_leg = false;
+  Vector6 beside = Vector6::Zero();  // rigid: how far b stands beside a, at p
 };
 
 class Builder {
@@ -55,7 +77,38 @@ class Builder {
     pending_.push_back({a, b, j.p_W, &j, name});
   }
 
-  /// The chain from the body of node `from` to the body of node `to`.
+  /// A leg of the mechanism, from the body of node `from` to the platform at p_WT, the body of node `to`.
+  void mounted_leg(const PlacedLeg& leg, int from, int to, const Vector3& p_WT) {
+    const bool beside = !leg.misfit.isZero(0);
+    const int end = beside ? body(leg.name + " end", p_WT) : to;
+    chain(leg, from, end);
+    if (beside) pending_.push_back({end, to, p_WT, nullptr, leg.name + " seat", false, leg.misfit});
+    pending_.back().ends_leg = true;
+  }
+
+  void finish(MechanismModel& out) {
+    const auto position = [this](int node) { return model.nodes[static_cast<std::size_t>(node)].position; };
+    for (const Pending& p : pending_) {
+      if ((position(p.a) - position(p.b)).norm() > 1e-9) out.arms.emplace_back(p.a, p.b);
+      const std::size_t constraints = model.constraints.size(), springs = model.springs.size();
+      if (p.joint && p.joint->stiffness)
+        connect_elastic(model, p.a, p.b, *p.joint, p.name);
+      else
+        model.connect(p.a, p.b, p.p, p.joint ? p.joint->R_WJ : Matrix3::Identity(),
+                      p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,
+                      p.joint ? p.joint->part : "");
+      if (!p.beside.isZero(0))
+        for (Eigen::Index i = 0; i < 6; ++i)
+          model.constraints[constraints + static_cast<std::size_t>(i)].value = p.beside(i);
+      if (p.ends_leg) out.attachments.push_back({constraints, model.constraints.size(), springs, model.springs.size()});
+    }
+    out.model = std::move(model);
+  }
+
+  Model model;
+
+ private:
+  /// A chain from the body of node `from` to the body of node `to`.
   void chain(const PlacedLeg& leg, int from, int to) {
     int at = from;
     const PlacedJoint* waiting = nullptr;  // a joint whose far side is the next member's node
@@ -72,6 +125,11 @@ class Builder {
         if (rigid(*j)) continue;
         if (waiting) attach(body(fmt::format("{} {} / {}", leg.name, waiting->part, j->part), j->p_W), j->p_W);
         waiting = j;
+      } else if (const auto* group = std::get_if<PlacedParallel>(&part)) {
+        attach(body(fmt::format("{} {} start", leg.name, group->part), group->p_W_start), group->p_W_start);
+        const int end = body(fmt::format("{} {} end", leg.name, group->part), group->p_W_end);
+        for (const PlacedLeg& branch : group->branches) chain(branch, at, end);
+        at = end;
       } else {
         const auto& m = std::get<PlacedMember>(part);
         attach(body(fmt::format("{} {} start", leg.name, m.part), m.p_W_start), m.p_W_start);
@@ -79,25 +137,8 @@ class Builder {
       }
     }
     attach(to, model.nodes[static_cast<std::size_t>(to)].position);
-    pending_.back().ends_leg = true;
   }
 
-  void finish(MechanismModel& out) {
-    const auto position = [this](int node) { return model.nodes[static_cast<std::size_t>(node)].position; };
-    for (const Pending& p : pending_) {
-      if ((position(p.a) - position(p.b)).norm() > 1e-9) out.arms.emplace_back(p.a, p.b);
-      const std::size_t constraints = model.constraints.size(), springs = model.springs.size();
-      model.connect(p.a, p.b, p.p, p.joint ? p.joint->R_WJ : Matrix3::Identity(),
-                    p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,
-                    p.joint ? p.joint->part : "");
-      if (p.ends_leg) out.attachments.push_back({constraints, model.constraints.size(), springs, model.springs.size()});
-    }
-    out.model = std::move(model);
-  }
-
-  Model model;
-
- private:
   int member(const PlacedLeg& leg, const PlacedMember& m, int start) {
     const auto found = division_.find(m.part);
     const std::vector<double> at = found == division_.end() ? std::vector<double>{0, 1} : found->second;
@@ -128,7 +169,7 @@ MechanismModel build(const Configuration& c, const MemberDivision& division) {
   out.tool = rigid(c.tool) ? out.platform : b.body("tool", c.tool.p_W);
   if (out.base != out.ground) b.joint(out.ground, out.base, c.base, "base");
   if (out.tool != out.platform) b.joint(out.platform, out.tool, c.tool, "tool");
-  for (const PlacedLeg& leg : c.legs) b.chain(leg, out.base, out.platform);
+  for (const PlacedLeg& leg : c.legs) b.mounted_leg(leg, out.base, out.platform, c.pose.p_WT);
   b.model.fix(out.ground, "ground");
   b.finish(out);
   return out;
@@ -139,7 +180,7 @@ MechanismModel build_leg(const Configuration& c, std::size_t leg, const MemberDi
   MechanismModel out;
   out.ground = out.base = b.body("ground", c.base.p_W);
   out.platform = out.tool = b.body("platform", c.pose.p_WT);
-  b.chain(c.legs[leg], out.ground, out.platform);
+  b.mounted_leg(c.legs[leg], out.ground, out.platform, c.pose.p_WT);
   b.model.fix(out.ground, "ground");
   b.finish(out);
   return out;

@@ -14,6 +14,7 @@ struct LinearSpring {
   double tangent(double) const { return k; }
   double energy(double d) const { return k * d * d / 2; }
   double at_force(double) const { return k; }
+  double elongation(double f) const { return f / k; }
 };
 
 /// F = k sign(δ) |δ|ⁿ, n > 1; the tangent vanishes at δ = 0. Hertz point contact has n = 3/2.
@@ -22,7 +23,8 @@ struct PowerSpring {
   double force(double d) const { return std::copysign(k * std::pow(std::abs(d), n), d); }
   double tangent(double d) const { return n * k * std::pow(std::abs(d), n - 1); }
   double energy(double d) const { return k * std::pow(std::abs(d), n + 1) / (n + 1); }
-  double at_force(double f) const { return tangent(std::pow(std::abs(f) / k, 1 / n)); }
+  double at_force(double f) const { return tangent(elongation(f)); }
+  double elongation(double f) const { return std::copysign(std::pow(std::abs(f) / k, 1 / n), f); }
 };
 
 /// Two cylinders in line contact with the bulk of both: δ = p κ Σ (2 ln(4 R_i/a) − 1) at the half width a of p = F/l,
@@ -58,22 +60,36 @@ struct BulkLineSpring {
     return length * (p * std::abs(d) - p * (std::abs(d) + p * kappa) / 2);
   }
   double at_force(double f) const { return f == 0 ? 0 : length / slope(std::abs(f) / length); }
+  double elongation(double f) const { return f == 0 ? 0 : std::copysign(approach(std::abs(f) / length), f); }
 };
 
-/// at_force(f) is the tangent stiffness once the force |f| is reached: where Newton starts.
-using SpringLaw = std::variant<LinearSpring, PowerSpring, BulkLineSpring>;
+/// at_force(f) is the tangent stiffness once the force |f| is reached, elongation(f) the δ at which it is.
+/// A preloaded spring works about the force P that it carries at rest: F = law(δ₀ + δ) − P with law(δ₀) = P, energy
+/// against the state at rest.
+struct SpringLaw : std::variant<LinearSpring, PowerSpring, BulkLineSpring> {
+  using variant::variant;
+  double preload = 0, at_rest = 0;  ///< P, δ₀
+};
+
+inline SpringLaw preloaded(SpringLaw law, double P) {
+  law.preload = P;
+  law.at_rest = std::visit([P](const auto& l) { return l.elongation(P); }, law);
+  return law;
+}
 
 inline double force(const SpringLaw& law, double d) {
-  return std::visit([d](const auto& l) { return l.force(d); }, law);
+  return std::visit([&](const auto& l) { return l.force(law.at_rest + d) - law.preload; }, law);
 }
 inline double tangent(const SpringLaw& law, double d) {
-  return std::visit([d](const auto& l) { return l.tangent(d); }, law);
+  return std::visit([&](const auto& l) { return l.tangent(law.at_rest + d); }, law);
 }
 inline double energy(const SpringLaw& law, double d) {
-  return std::visit([d](const auto& l) { return l.energy(d); }, law);
+  return std::visit([&](const auto& l) { return l.energy(law.at_rest + d) - l.energy(law.at_rest) - law.preload * d; },
+                    law);
 }
+/// Where Newton starts: the tangent once a force of this size has been added to the preload.
 inline double tangent_at_force(const SpringLaw& law, double f) {
-  return std::visit([f](const auto& l) { return l.at_force(f); }, law);
+  return std::visit([&](const auto& l) { return l.at_force(std::abs(f) + std::abs(law.preload)); }, law);
 }
 inline bool is_linear(const SpringLaw& law) { return std::holds_alternative<LinearSpring>(law); }
 

@@ -1,8 +1,154 @@
+// The legs of the family "chains": parts where the walk has taken them.
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "msa/base/error.h"
+#include "msa/mechanism/chain_kinematics.h"
 #include "msa/mechanism/family.h"
+#include "msa/mechanism/place.h"
+
 namespace deflect {
-PlacedMechanism place(const Chains&, const Mechanism&, const Pose&) { throw ModelError("to come"); }
-PlacedMechanism place_joints(const Chains&, const Mechanism&, const VectorX&) { throw ModelError("to come"); }
-Pose home_pose(const Chains&, const Mechanism&) { return {}; }
-std::vector<Actuator> actuators_of(const Chains&, const Mechanism&) { return {}; }
+namespace {
+
+bool has_laws(const PlacedJoint& j, std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i < to; ++i)
+    if (j.elastic(i)) return true;
+  return false;
+}
+
+PlacedJoint half(const PlacedJoint& j, bool translations) {
+  PlacedJoint h = j;
+  const std::size_t from = translations ? 3 : 0;  // of the freedoms that it does not have
+  for (std::size_t i = from; i < from + 3; ++i) {
+    h.freedoms[i] = Freedom::rigid;
+    h.laws[i].clear();
+    h.preload[i] = 0;
+  }
+  return h;
+}
+
+/// A joint in the state in which it stands. Its freedoms move one after the other, so that those which are turned about
+/// axes of their own stand in a joint of their own behind the translations.
+void place_joint(const Step& step, const Joint& joint, double actuator, const Mechanism& m,
+                 std::vector<PlacedPart>& out) {
+  const bool after = joint.axes == "after";
+  const Vector3 end = joint.dh ? step.joint.p : step.after.p;
+  const Matrix3 laws = after ? step.moved : step.joint.R;
+  PlacedJoint j = placed(joint, *step.name, {after ? end : step.joint.p, laws, actuator}, m);
+  const int turns = rotations(j.freedoms);
+  const bool slides = movable(j.freedoms[0]) || movable(j.freedoms[1]) || movable(j.freedoms[2]);
+  const Matrix3 turning = turns == 2 ? step.turning : laws;
+  if (j.stiffness || turns == 0 || (!slides && turns != 2)) {
+    out.push_back(std::move(j));
+    return;
+  }
+  if (slides || has_laws(j, 0, 3)) out.push_back(half(j, true));
+  PlacedJoint rotation = half(j, false);
+  rotation.R_WJ = turning;
+  if (slides) rotation.p_W = end;
+  out.push_back(std::move(rotation));
+}
+
+class Placer {
+ public:
+  Placer(const Mechanism& m, const std::vector<JointState>& states) : m_(m), states_(states) {}
+
+  PlacedLeg leg(const std::string& name, const std::vector<Step>& steps) const {
+    PlacedLeg out;
+    out.name = name;
+    const double actuator = extension(steps);
+    for (const Step& step : steps) try {
+        std::visit([&](const auto& part) { place(part, step, name, actuator, out.parts); }, *step.part);
+      } catch (const InputError& e) {
+        throw InputError(fmt::format("{}: {}: {}: {}", m_.name, name, *step.name, e.what()));
+      }
+    return out;
+  }
+
+ private:
+  /// Of the last actuated slide among the parts, m; a cable's free length where it has none of its own.
+  double extension(const std::vector<Step>& steps) const {
+    double found = 0;
+    for (const Step& step : steps)
+      if (const auto* joint = std::get_if<Joint>(step.part)) {
+        const std::array<Freedom, 6> f = freedoms_of(*joint);
+        for (std::size_t i = 0; i < 3; ++i)
+          if (f[i] == Freedom::actuated) found = states_[step.state].q[i];
+      }
+    return found;
+  }
+
+  void place(const Joint& joint, const Step& step, const std::string&, double actuator,
+             std::vector<PlacedPart>& out) const {
+    for (const auto& laws : joint.laws)
+      for (const Law& law : laws)
+        if (const auto* cable = std::get_if<CableLaw>(&law); cable && !cable->length && !(actuator > 0))
+          throw InputError(
+              fmt::format("the cable has no length: no slide before it is driven and extended ({:.6g} mm); "
+                          "give it a length",
+                          1e3 * actuator));
+    place_joint(step, joint, actuator, m_, out);
+  }
+
+  void place(const Member& member, const Step& step, const std::string&, double, std::vector<PlacedPart>& out) const {
+    out.emplace_back(
+        placed(member, *step.name, step.start, step.after.p, step.before.R.col(1), step.before.R.col(2), m_));
+  }
+
+  void place(const Offset&, const Step&, const std::string&, double, std::vector<PlacedPart>&) const {}
+
+  void place(const Parallel&, const Step& step, const std::string& name, double, std::vector<PlacedPart>& out) const {
+    PlacedParallel group;
+    group.part = *step.name;
+    group.p_W_start = step.before.p;
+    group.p_W_end = step.after.p;
+    for (std::size_t b = 0; b < step.branches.size(); ++b)
+      group.branches.push_back(leg(fmt::format("{} {} {}", name, *step.name, b + 1), step.branches[b]));
+    out.emplace_back(std::move(group));
+  }
+
+  const Mechanism& m_;
+  const std::vector<JointState>& states_;
+};
+
+PlacedMechanism placed_assembly(const Mechanism& m, const Assembly& a) {
+  PlacedMechanism out;
+  out.pose = a.pose;
+  for (std::size_t i = 0; i < a.legs.size(); ++i) {
+    const Trace trace = walk(one(a.legs[i]), a.states[i]);
+    const Trace::Leg& leg = trace.legs[0];
+    out.legs.push_back(
+        Placer(m, a.states[i]).leg(a.legs.size() == 1 ? "arm" : fmt::format("leg {}", i + 1), leg.steps));
+    const Frame platform = Frame{a.pose.p_WT, a.pose.R_WT} * frame_of(a.legs[i].mount.platform);
+    out.seats.push_back({leg.start.p, platform.p});
+  }
+  const ActuatedCoordinates q = actuated(a);
+  const MatrixX& controller = std::get<Chains>(m.kinematics).controller;
+  const VectorX given = controller.size() > 0 ? VectorX(controller.partialPivLu().solve(q.values)) : q.values;
+  for (std::size_t i = 0; i < q.names.size(); ++i)
+    out.actuators.push_back({q.names[i], given(static_cast<Eigen::Index>(i)), q.rotation[i]});
+  return out;
+}
+
+}  // namespace
+
+PlacedMechanism place(const Chains&, const Mechanism& m, const Pose& pose) {
+  Assembly a = home_assembly(m);
+  move_to(a, pose);
+  return placed_assembly(m, a);
+}
+
+PlacedMechanism place_joints(const Chains& k, const Mechanism& m, const VectorX& coordinates) {
+  Assembly a = home_assembly(m);
+  move_to_coordinates(a, k.controller.size() > 0 ? VectorX(k.controller * coordinates) : coordinates);
+  return placed_assembly(m, a);
+}
+
+Pose home_pose(const Chains&, const Mechanism& m) { return home_assembly(m).pose; }
+
+std::vector<Actuator> actuators_of(const Chains&, const Mechanism& m) {
+  return placed_assembly(m, home_assembly(m)).actuators;
+}
+
 }  // namespace deflect

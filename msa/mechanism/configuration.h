@@ -77,6 +77,19 @@ struct Configuration {
   double size = 0;
 };
 
+/// Calls f(part) for every PlacedJoint and PlacedMember of the legs, those of branches too, base to platform.
+template <class Legs, class F>
+void for_each_part(Legs& legs, const F& f) {
+  for (auto& leg : legs)
+    for (auto& part : leg.parts)
+      if (auto* group = std::get_if<PlacedParallel>(&part))
+        for_each_part(group->branches, f);
+      else if (auto* joint = std::get_if<PlacedJoint>(&part))
+        f(*joint);
+      else
+        f(std::get<PlacedMember>(part));
+}
+
 int leg_count(const Mechanism&);
 
 /// Throws ModelError naming leg and limit when the pose is out of reach, or when it is singular, naming the direction

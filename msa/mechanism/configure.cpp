@@ -11,20 +11,15 @@ namespace {
 
 constexpr double standard_gravity = 9.80665;  // m/s², CGPM 1901
 
-/// Distance of the farthest point of a chain from p.
+/// Distance of the farthest joint or member's end from p.
 double extent(const std::vector<PlacedLeg>& legs, const Vector3& p) {
   double size = 0;
-  const auto reach = [&](const Vector3& q) { size = std::max(size, (q - p).norm()); };
-  for (const PlacedLeg& leg : legs)
-    for (const PlacedPart& part : leg.parts)
-      if (const auto* member = std::get_if<PlacedMember>(&part)) {
-        reach(member->p_W_start);
-        reach(member->p_W_end);
-      } else if (const auto* joint = std::get_if<PlacedJoint>(&part)) {
-        reach(joint->p_W);
-      } else {
-        size = std::max(size, extent(std::get<PlacedParallel>(part).branches, p));
-      }
+  for_each_part(legs, [&](const auto& part) {
+    if constexpr (requires { part.p_W; })
+      size = std::max(size, (part.p_W - p).norm());
+    else
+      size = std::max({size, (part.p_W_start - p).norm(), (part.p_W_end - p).norm()});
+  });
   return size;
 }
 

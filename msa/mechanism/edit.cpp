@@ -45,9 +45,15 @@ void put(YamlNode& variations, YamlNode added) {
   variations.implied = false;
 }
 
+/// A leg whose parts stand in its mount, not in the leg that the others share.
+bool has_own_parts(const Mechanism& m, int leg) {
+  return !m.mounts.empty() && !m.mounts[static_cast<std::size_t>(leg - 1)].leg.empty();
+}
+
 MarkedLeg marked_leg(const Mechanism& m, int leg) {
   if (leg < 1 || leg > leg_count(m))
     throw InputError(fmt::format("{}: there is no leg {}, legs are 1 to {}", m.name, leg, leg_count(m)));
+  if (has_own_parts(m, leg)) return {m.mounts[static_cast<std::size_t>(leg - 1)].leg, {}};
   const bool varies =
       std::any_of(m.variations.begin(), m.variations.end(), [&](const auto& v) { return v.leg == leg; });
   if (!varies) return {m.leg, m.ours};
@@ -93,6 +99,9 @@ std::map<int, MarkedLeg> varied_legs(const Mechanism& m, const YamlNode* variati
   std::map<int, MarkedLeg> legs;
   for (std::size_t i = 0; i < m.variations.size(); ++i) {
     const Variation& v = m.variations[i];
+    if (has_own_parts(m, v.leg))
+      throw InputError(
+          fmt::format("{}: leg {} has parts of its own: change them in mounts.{}.leg", origin, v.leg, v.leg - 1));
     MarkedLeg& leg = legs.try_emplace(v.leg, MarkedLeg{m.leg, m.ours}).first->second;
     leg = varied(leg, v, *variations->children[i].child("value"), m, origin);
   }
@@ -106,11 +115,15 @@ Mechanism edited(const Mechanism& m, const Edit& edit) {
   YamlNode value = parse_yaml(edit.value, origin);
   set_line(value, 0);
   YamlNode tree = tree_of(m);
-  if (edit.path.starts_with("leg["))
+  std::string path = edit.path;
+  if (path.starts_with("leg[")) {
+    const auto [leg, rest] = leg_and_rest(path, origin + ": ", leg_count(m));
+    if (has_own_parts(m, leg)) path = fmt::format("mounts.{}.leg.{}", leg - 1, rest);
+  }
+  if (path.starts_with("leg["))
     edit_one_leg(tree, m, edit, value, origin + ": ");
   else
-    for (const Place& place : places(tree, edit.path, origin + ": "))
-      change(tree, place, edit.action, value, origin + ": ");
+    for (const Place& place : places(tree, path, origin + ": ")) change(tree, place, edit.action, value, origin + ": ");
   return mechanism_of(stripped(tree), origin);
 }
 

@@ -134,7 +134,7 @@ TEST(Configuration, PartsComeInTheOrderOfTheFileWithAxesAlongTheLink) {
     EXPECT_LE((universal.R_WJ.col(2) - (link.p_W_end - link.p_W_start).normalized()).norm(), 1e-15);
     EXPECT_TRUE(universal.free(3) && universal.free(4) && !universal.free(5));
     EXPECT_NEAR(universal.R_WJ.determinant(), 1, 1e-15);
-    EXPECT_NEAR(leg.actuator, 0.080, 1e-16);
+    EXPECT_NEAR(c.actuators[static_cast<std::size_t>(&leg - c.legs.data())].value, 0.080, 1e-16);
   }
 }
 

@@ -17,8 +17,8 @@ int main(int argc, char** argv) {
     const deflect::Configuration configuration = deflect::configure(device, pose);
 
     std::printf("%s: %zu legs\n", device.name.c_str(), configuration.legs.size());
-    for (const deflect::PlacedLeg& leg : configuration.legs)
-      std::printf("%s: %.3f mm\n", leg.name.c_str(), 1e3 * leg.actuator);
+    for (const deflect::Actuator& actuator : configuration.actuators)
+      std::printf("%s: %.3f mm\n", actuator.name.c_str(), 1e3 * actuator.value);
     return configuration.legs.size() == 6 ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -8,7 +8,7 @@ namespace deflect::test {
 inline MapOptions cube(const Mechanism& m, int nx, int ny, int nz) {
   MapOptions o;
   o.grid = cube_grid(m, {nx, ny, nz});
-  o.length_mm = platform_radius_mm(m);
+  o.length_mm = weighing_length_mm(m);
   return o;
 }
 

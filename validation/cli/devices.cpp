@@ -8,8 +8,8 @@
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "msa/base/units.h"
+#include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
-#include "msa/mechanism/six_psu.h"
 #include "validation/cli/command.h"
 #include "validation/compare/theories.h"
 
@@ -69,22 +69,45 @@ Vector6 parse_six(const std::string& option, const std::string& text, const std:
   return v;
 }
 
-Vector6 parse_pose(const Mechanism& m, const std::string& pose, const std::string& joints, bool or_home) {
-  if (or_home && pose.empty() && joints.empty()) return mm_deg_from(home_pose(m));
+namespace {
+
+/// Joint coordinates in SI: a bare number in mm or rad, or with its unit, as in "30 deg".
+VectorX parse_joints(const Mechanism& m, const std::string& text) {
+  const std::vector<Actuator> actuators = actuators_of(m);
+  std::vector<std::string> names, items;
+  for (const Actuator& a : actuators) names.push_back(fmt::format("{} ({})", a.name, a.rotation ? "rad" : "mm"));
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    items.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  if (items.size() != actuators.size())
+    throw InputError(fmt::format("--joints '{}': {} coordinate{}; write {}: {}", text, items.size(),
+                                 items.size() == 1 ? "" : "s", actuators.size(), fmt::join(names, ", ")));
+  VectorX q(static_cast<Eigen::Index>(items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i) try {
+      const bool unit = items[i].find_first_of("dmr") != std::string::npos;
+      const double value = unit ? parse_quantity(items[i], actuators[i].rotation ? Dimension::angle : Dimension::length)
+                                : parse_number(items[i]) / (actuators[i].rotation ? 1 : 1e3);
+      q(static_cast<Eigen::Index>(i)) = value;
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("--joints '{}': {}: {}", text, names[i], e.what()));
+    }
+  return q;
+}
+
+}  // namespace
+
+Stand parse_stand(const Mechanism& m, const std::string& pose, const std::string& joints, bool or_home) {
+  if (or_home && pose.empty() && joints.empty()) return stand(m, mm_deg_from(home_pose(m)));
   if (pose.empty() == joints.empty())
-    throw InputError("give either --pose x,y,z,roll,pitch,yaw (mm, deg) or --joints q1,…,q6 (mm)");
-  if (!pose.empty()) return parse_six("--pose", pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg");
-  const Vector6 q = parse_six("--joints", joints, {6}, "the six sliders in mm") / 1e3;
-  const SixPsu& k = std::get<SixPsu>(m.kinematics);
-  std::array<double, 6> sliders{};
-  std::copy(q.begin(), q.end(), sliders.begin());
-  const ForwardKinematics found = forward_kinematics(k, sliders, centred_pose(k, q.mean()));
-  if (!found.converged)
-    throw ModelError(
-        fmt::format("--joints {}: the sliders fit no assembly of the device near the untilted one "
-                    "(closure error {:.3g} mm after {} steps)",
-                    joints, 1e3 * found.closure_error, found.iterations));
-  return mm_deg_from(found.pose);
+    throw InputError(
+        "give either --pose x,y,z,roll,pitch,yaw (mm, deg) or --joints q1,...,qn (slides in mm, turns in rad)");
+  if (!pose.empty())
+    return stand(m, parse_six("--pose", pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg"));
+  Configuration c = configure_joints(m, parse_joints(m, joints));
+  const Vector6 reached = mm_deg_from(c.pose);
+  return {reached, std::move(c)};
 }
 
 Vector6 parse_load(const std::string& load) {

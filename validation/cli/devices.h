@@ -7,6 +7,7 @@
 
 #include "msa/frame/build.h"
 #include "msa/mechanism/description.h"
+#include "validation/compare/theories.h"
 
 namespace deflect::cli {
 
@@ -27,9 +28,9 @@ std::vector<double> parse_list(const std::string& option, const std::string& tex
 Vector6 parse_six(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts,
                   const std::string& wanted);
 
-/// The pose (mm, deg) that --pose gives, or --joints by forward kinematics; the home pose, where `or_home`, without
-/// either. Throws InputError for both or none, ModelError when the joints fit no assembly.
-Vector6 parse_pose(const Mechanism&, const std::string& pose, const std::string& joints, bool or_home);
+/// Where --pose (mm, deg) puts the mechanism, or --joints by forward kinematics; the home pose, where `or_home`,
+/// without either. Throws InputError for both or none, ModelError when the mechanism cannot stand there.
+Stand parse_stand(const Mechanism&, const std::string& pose, const std::string& joints, bool or_home);
 
 /// The wrench of --load in N and Nmm, zero where it is empty.
 Vector6 parse_load(const std::string& load);

@@ -128,9 +128,9 @@ void run(const Arguments& a) {
   const std::filesystem::path path = path_of(m, format, a);
   std::filesystem::path deflected_path = path;
   deflected_path.replace_filename(path.stem().string() + "-deflected" + format.suffix);
-  const Vector6 pose = parse_pose(m, a.pose, a.joints, true);
+  const Stand at = parse_stand(m, a.pose, a.joints, true);
   const Vector6 load = parse_load(a.load);
-  MsaAtPose msa(configure(m, pose_from(pose)), divide(m, a.element_size), m.name);
+  MsaAtPose msa(at.configuration, divide(m, a.element_size), m.name);
   const Vector6 d = twist_in_mm(msa.solve(wrench_from_mm(load)).displacement);
   LineMesh mesh = lines_of(msa.mechanism());
   FieldData fields = fields_of(msa.mechanism(), msa.displacements());
@@ -146,7 +146,7 @@ void run(const Arguments& a) {
     write_vtu(path, mesh, fields);
     write_vtu(deflected_path, moved, fields);
   }
-  fmt::print("{} at ({:.6g}) mm, deg under ({:g}) N, Nmm, by MSA\n", m.name, fmt::join(pose, ", "),
+  fmt::print("{} at ({:.6g}) mm, deg under ({:g}) N, Nmm, by MSA\n", m.name, fmt::join(at.pose_mm_deg, ", "),
              fmt::join(load, ", "));
   fmt::print("tool point moves by ({:.6g}) mm, ({:.6g}) rad\n", fmt::join(d.head<3>(), ", "),
              fmt::join(d.tail<3>(), ", "));
@@ -168,7 +168,8 @@ Command export_command() {
       {{"device", "DEVICE", "built-in device or device file", &a->device, true},
        {"--to", "FORMAT", "msh or vtk", &a->to, true},
        {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in mm and deg (default: the home pose)", &a->pose},
-       {"--joints", "q1,...,q6", "slider positions in mm, instead of --pose", &a->joints},
+       {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
+        &a->joints},
        {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
        {"--scale", "FACTOR", "of the displacements in the deflected shape; auto makes them visible (default)",
         &a->scale},

@@ -27,7 +27,7 @@ void write_structure(const std::filesystem::path& folder, const SolveResult& r) 
 void run(const Arguments& a) {
   const Mechanism m = read_mechanism(device_file(a.device));
   const Vector6 load = parse_load(a.load);
-  const SolveResult r = solve(m, parse_pose(m, a.pose, a.joints, false), load, divide(m, a.element_size));
+  const SolveResult r = solve(m, parse_stand(m, a.pose, a.joints, false), load, divide(m, a.element_size));
   if (!a.out.empty()) write_structure(a.out, r);
   if (!a.json.empty()) write_text(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));
@@ -47,7 +47,8 @@ Command solve_command() {
       "deflect solve haptic-6psu --pose 25,25,198.9,0,0,0 --load 50,0,0,0,0,0 --json result.json --out result",
       {{"device", "DEVICE", "built-in device or device file", &a->device, true},
        {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in the base frame, mm and deg", &a->pose},
-       {"--joints", "q1,...,q6", "slider positions in mm, instead of --pose", &a->joints},
+       {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
+        &a->joints},
        {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
        {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
        {"--json", "FILE", "write the result", &a->json},

@@ -19,16 +19,13 @@ namespace {
 
 /// Both theories at one pose.
 struct Pair {
-  Pair(const Mechanism& m, const Vector6& pose_mm_deg, const frame::MemberDivision& division)
-      : configuration(configure(m, pose_from(pose_mm_deg))),
-        analytic(configuration, where(m, pose_mm_deg)),
-        msa(configuration, division, where(m, pose_mm_deg)) {}
+  Pair(const Mechanism& m, const Stand& at, const frame::MemberDivision& division)
+      : analytic(at.configuration, where(m, at)), msa(at.configuration, division, where(m, at)) {}
 
-  static std::string where(const Mechanism& m, const Vector6& pose_mm_deg) {
-    return fmt::format("{} at ({:.6g})", m.name, fmt::join(pose_mm_deg.data(), pose_mm_deg.data() + 6, ", "));
+  static std::string where(const Mechanism& m, const Stand& at) {
+    return fmt::format("{} at ({:.6g})", m.name, fmt::join(at.pose_mm_deg, ", "));
   }
 
-  Configuration configuration;
   AnalyticAtPose analytic;
   MsaAtPose msa;
 };
@@ -52,13 +49,13 @@ std::string failed_checks(const analytic::AnalyticModel& model, const analytic::
 
 /// The configuration with line contacts that know the bulk of two equal cylinders: what (30) leaves out.
 Configuration with_bulk(Configuration c) {
-  for (PlacedLeg& leg : c.legs)
-    for (PlacedPart& part : leg.parts)
-      if (auto* joint = std::get_if<PlacedJoint>(&part))
-        for (std::vector<Law>& laws : joint->laws)
-          for (Law& law : laws)
-            if (const auto* l = std::get_if<HertzLineLaw>(&law))
-              law = HertzLineBulkLaw{l->material, 2 * l->radius, 2 * l->radius, l->length, l->solid};
+  for_each_part(c.legs, [](auto& part) {
+    if constexpr (requires { part.laws; })
+      for (std::vector<Law>& laws : part.laws)
+        for (Law& law : laws)
+          if (const auto* l = std::get_if<HertzLineLaw>(&law))
+            law = HertzLineBulkLaw{l->material, 2 * l->radius, 2 * l->radius, l->length, l->solid};
+  });
   return c;
 }
 
@@ -99,11 +96,15 @@ double relative_difference(const Vector6& a, const Vector6& b) {
                   relative((a - b).tail<3>().norm(), std::max(rotation, translation / 1000.0)));
 }
 
-SolveResult solve(const Mechanism& m, const Vector6& pose, const Vector6& load, const frame::MemberDivision& division) {
-  Pair pair(m, pose, division);
+Stand stand(const Mechanism& m, const Vector6& pose_mm_deg) {
+  return {pose_mm_deg, configure(m, pose_from(pose_mm_deg))};
+}
+
+SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, const frame::MemberDivision& division) {
+  Pair pair(m, at, division);
   const Answer a = pair.analytic.solve(wrench_from_mm(load)), f = pair.msa.solve(wrench_from_mm(load));
   SolveResult r;
-  r.pose_mm_deg = pose;
+  r.pose_mm_deg = at.pose_mm_deg;
   r.load_N_Nmm = load;
   r.analytic = {twist_in_mm(a.displacement), stiffness_in_mm(a.stiffness)};
   r.msa = {twist_in_mm(f.displacement), stiffness_in_mm(f.stiffness)};
@@ -128,7 +129,8 @@ Validation validate(const Mechanism& m, const std::vector<ValidationPoint>& poin
   v.as_printed = as_printed;
   double squares = 0;
   for (const ValidationPoint& point : points) {
-    Pair pair(m, point.pose_mm_deg, division);
+    const Stand at = stand(m, point.pose_mm_deg);
+    Pair pair(m, at, division);
     for (int axis = 0; axis < 3; ++axis) {
       const Vector6 F = along(axis, load_N);
       ValidationRow row;
@@ -138,7 +140,7 @@ Validation validate(const Mechanism& m, const std::vector<ValidationPoint>& poin
       row.analytic = twist_in_mm(pair.analytic.solve(F).displacement);
       row.msa = twist_in_mm(pair.msa.solve(F).displacement);
       if (!as_printed.empty())
-        row.as_printed = twist_in_mm(solved(analytic::AnalyticModel(pair.configuration, as_printed), F).displacement);
+        row.as_printed = twist_in_mm(solved(analytic::AnalyticModel(at.configuration, as_printed), F).displacement);
       row.relative_difference = relative_difference(row.analytic, row.msa);
       v.max_relative_difference = std::max(v.max_relative_difference, row.relative_difference);
       squares += row.relative_difference * row.relative_difference;

@@ -8,7 +8,7 @@
 
 #include "analytic/erratum.h"
 #include "msa/frame/build.h"
-#include "msa/mechanism/description.h"
+#include "msa/mechanism/configuration.h"
 
 namespace deflect {
 
@@ -48,12 +48,18 @@ std::vector<ValidationPoint> cube_points(const Mechanism&);
 Pose pose_from(const Vector6& mm_deg);
 Vector6 mm_deg_from(const Pose&);
 
+/// A mechanism where it stands, and the pose as the user has it: x y z roll pitch yaw in mm and deg.
+struct Stand {
+  Vector6 pose_mm_deg;
+  Configuration configuration;
+};
+Stand stand(const Mechanism&, const Vector6& pose_mm_deg);
+
 struct SolveResult;
 
 /// Both theories at one pose under one wrench (N, Nmm at T, base axes). Throws NumericalError naming the check where
 /// one of the checks fails, or where a theory does not converge.
-SolveResult solve(const Mechanism&, const Vector6& pose_mm_deg, const Vector6& load_N_Nmm,
-                  const frame::MemberDivision&);
+SolveResult solve(const Mechanism&, const Stand&, const Vector6& load_N_Nmm, const frame::MemberDivision&);
 
 /// `load_N` along x, y and z at every point by both theories, checks at every point and load as in solve(). The theory
 /// as printed is added where errata are asked for; its checks are not enforced.

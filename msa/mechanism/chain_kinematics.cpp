@@ -1,0 +1,190 @@
+#include "msa/mechanism/chain_kinematics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "msa/base/error.h"
+#include "msa/base/motion_text.h"
+#include "msa/base/units.h"
+#include "msa/mechanism/configuration.h"
+
+namespace deflect {
+namespace {
+
+constexpr double path_step = 0.25;  // of the mechanism's length, or rad
+
+std::string leg_name(const Assembly& a, std::size_t leg) {
+  return a.legs.size() == 1 ? "" : fmt::format("leg {}: ", leg + 1);
+}
+
+Frame frame_of(const Pose& pose) { return {pose.p_WT, pose.R_WT}; }
+
+Closed close_leg(Assembly& a, std::size_t leg, const Pose& pose) {
+  return close_loops(one(a.legs[leg]), a.states[leg], frame_of(pose), a.length);
+}
+
+/// All legs together: passive coordinates follow the actuated ones. The platform is where the legs have it.
+Closed close_all(Assembly& a) {
+  std::vector<JointState> all;
+  for (const auto& states : a.states) all.insert(all.end(), states.begin(), states.end());
+  const Closed closed = close_loops(a.legs, all, std::nullopt, a.length);
+  auto from = all.begin();
+  for (auto& states : a.states) {
+    std::copy(from, from + static_cast<std::ptrdiff_t>(states.size()), states.begin());
+    from += static_cast<std::ptrdiff_t>(states.size());
+  }
+  a.pose = {closed.trace.legs[0].end.p, closed.trace.legs[0].end.R};
+  return closed;
+}
+
+std::string left_open(const Closed& c) {
+  return fmt::format("{:.4g} mm and {:.4g} deg are left open", 1e3 * c.shift, c.turn * 180 / pi);
+}
+
+/// The joints of a leg in the order of their states, with their names.
+void joints_of(const Named<Part>& parts, const std::string& within,
+               std::vector<std::pair<std::string, const Joint*>>& out) {
+  for (const auto& [name, part] : parts)
+    if (const auto* joint = std::get_if<Joint>(&part)) {
+      out.emplace_back(within + name, joint);
+    } else if (const auto* group = std::get_if<Parallel>(&part)) {
+      for (std::size_t b = 0; b < group->mounts.size(); ++b) {
+        const Mount& mount = group->mounts[b];
+        joints_of(mount.leg.empty() ? group->leg : mount.leg, fmt::format("{}{} {} ", within, name, b + 1), out);
+      }
+    }
+}
+
+void check_limits(const Assembly& a) {
+  for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {
+    std::vector<std::pair<std::string, const Joint*>> joints;
+    joints_of(a.legs[leg].parts, "", joints);
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      const auto& [name, joint] = joints[k];
+      for (std::size_t i = 0; i < 6; ++i) {
+        const double q = a.states[leg][k].q[i];
+        const bool low = joint->min[i] && q < *joint->min[i], high = joint->max[i] && q > *joint->max[i];
+        if (!low && !high) continue;
+        const Dimension d = i < 3 ? Dimension::length : Dimension::angle;
+        const double scale = i < 3 ? 1e3 : 180 / pi;
+        throw ModelError(fmt::format("{}{} {} would stand at {:.6g} {}, {} its limit of {}", leg_name(a, leg), name,
+                                     freedom_names[i], scale * q, i < 3 ? "mm" : "deg", low ? "below" : "above",
+                                     format_quantity(low ? *joint->min[i] : *joint->max[i], d)));
+      }
+    }
+  }
+}
+
+/// Refuses a pose in which a leg's end can move in fewer directions than it can at home.
+void refuse_singular(const Assembly& a, const Assembly& home) {
+  for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {
+    const auto at = [&](const Assembly& s) {
+      return reach(walk(one(s.legs[leg]), s.states[leg]), 0, s.pose.p_WT, s.length);
+    };
+    const Reach here = at(a), there = at(home);
+    if (here.can.cols() >= there.can.cols()) continue;
+    // Of what cannot be done here, that which can be done best at home.
+    const MatrixX overlap = there.can.transpose() * here.cannot;
+    const Eigen::JacobiSVD<MatrixX> svd(overlap, Eigen::ComputeThinV);
+    Vector6 lost = here.cannot * svd.matrixV().col(0);
+    lost.tail<3>() /= a.length;  // from weighed coordinates
+    throw ModelError(
+        fmt::format("{}singular pose: it cannot move in {}", leg_name(a, leg), motion_text(lost, a.length)));
+  }
+}
+
+void check(const Assembly& a, const Assembly& home) {
+  check_limits(a);
+  refuse_singular(a, home);
+}
+
+}  // namespace
+
+Assembly home_assembly(const Mechanism& m) {
+  const Chains& k = std::get<Chains>(m.kinematics);
+  Assembly a;
+  a.legs = legs_of(m);
+  for (const LegParts& leg : a.legs) a.states.push_back(home_states(one(leg)));
+  std::vector<JointState> all;
+  for (const auto& states : a.states) all.insert(all.end(), states.begin(), states.end());
+  const Trace guess = walk(a.legs, all);
+  double length = 0;
+  const Vector3 centre = guess.legs[0].end.p;
+  for (const Trace::Leg& leg : guess.legs) {
+    length = std::max({length, (leg.start.p - centre).norm(), (leg.end.p - centre).norm()});
+    for (const Step& step : leg.steps) length = std::max(length, (step.after.p - centre).norm());
+  }
+  a.length = length > 0 ? length : 1;
+
+  if (k.home) {
+    const Frame home = deflect::frame_of(*k.home);
+    a.pose = {home.p, home.R};
+    for (std::size_t leg = 0; leg < a.legs.size(); ++leg)
+      if (const Closed c = close_leg(a, leg, a.pose); !c.closed)
+        throw ModelError(fmt::format("{}does not reach kinematics.home from the joints' home coordinates: {}",
+                                     leg_name(a, leg), left_open(c)));
+  } else if (const Closed c = close_all(a); !c.closed) {
+    throw ModelError(
+        fmt::format("the loops do not close from the joints' home coordinates: {}; give kinematics.home, a "
+                    "pose at which they do, and coordinates near it",
+                    left_open(c)));
+  }
+  return a;
+}
+
+void move_to(Assembly& a, const Pose& pose) {
+  const Assembly home = a;
+  const Eigen::AngleAxisd turn(home.pose.R_WT.transpose() * pose.R_WT);
+  const Vector3 shift = pose.p_WT - home.pose.p_WT;
+  const int steps = 1 + static_cast<int>(std::max(shift.norm() / a.length, std::abs(turn.angle())) / path_step);
+  for (int i = 1; i <= steps; ++i) {
+    const double s = static_cast<double>(i) / steps;
+    a.pose = i == steps ? pose
+                        : Pose{home.pose.p_WT + s * shift,
+                               home.pose.R_WT * Eigen::AngleAxisd(s * turn.angle(), turn.axis()).toRotationMatrix()};
+    for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {
+      const Closed c = close_leg(a, leg, a.pose);
+      if (i == steps && !c.closed)
+        throw ModelError(fmt::format("{}does not take this pose: {} at the nearest", leg_name(a, leg), left_open(c)));
+    }
+  }
+  check(a, home);
+}
+
+void move_to_coordinates(Assembly& a, const VectorX& wanted) {
+  const Assembly home = a;
+  const VectorX from = actuated(home).values;
+  const double largest = wanted.size() > 0 ? (wanted - from).cwiseAbs().maxCoeff() : 0;
+  const int steps = a.legs.size() == 1 ? 1 : 1 + static_cast<int>(largest / (path_step * std::min(1.0, a.length)));
+  for (int i = 1; i <= steps; ++i) {
+    const VectorX q = i == steps ? wanted : VectorX(from + static_cast<double>(i) / steps * (wanted - from));
+    Eigen::Index n = 0;
+    for (std::size_t leg = 0; leg < a.legs.size(); ++leg)
+      for (const Coordinate& c : walk(one(a.legs[leg]), a.states[leg]).coordinates)
+        if (c.actuated) a.states[leg][c.joint].q[c.freedom] = q(n++);
+    const Closed c = close_all(a);
+    if (i == steps && !c.closed) throw ModelError(fmt::format("the loops do not close: {}", left_open(c)));
+  }
+  check(a, home);
+}
+
+ActuatedCoordinates actuated(const Assembly& a) {
+  ActuatedCoordinates out;
+  std::vector<double> values;
+  for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {
+    std::vector<std::pair<std::string, const Joint*>> joints;
+    joints_of(a.legs[leg].parts, a.legs.size() == 1 ? "" : fmt::format("leg {} ", leg + 1), joints);
+    for (const Coordinate& c : walk(one(a.legs[leg]), a.states[leg]).coordinates) {
+      if (!c.actuated) continue;
+      values.push_back(a.states[leg][c.joint].q[c.freedom]);
+      out.names.push_back(joints[c.joint].first);
+      out.rotation.push_back(c.freedom >= 3);
+    }
+  }
+  out.values = Eigen::Map<VectorX>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return out;
+}
+
+}  // namespace deflect

@@ -1,0 +1,34 @@
+// Kinematics of the family "chains": joint states for a pose of the platform or for actuated coordinates, reached from
+// home along a straight path in small steps, so that the assembly (elbow up or down) stays the one of home.
+#pragma once
+
+#include "msa/mechanism/closure.h"
+
+namespace deflect {
+
+struct Assembly {
+  std::vector<LegParts> legs;
+  std::vector<std::vector<JointState>> states;  ///< by leg
+  Pose pose;                                    ///< of the platform
+  double length = 1;                            ///< extent of the mechanism at home, m
+};
+
+/// Throws ModelError when the loops do not close at home.
+Assembly home_assembly(const Mechanism&);
+
+/// Throws ModelError naming the leg: the pose is not reached (and how near it comes), a coordinate leaves its limits,
+/// or the pose is singular: the leg's end can no longer move in a direction, which is named.
+void move_to(Assembly&, const Pose&);
+
+/// The same for actuated coordinates in the order of the walk.
+void move_to_coordinates(Assembly&, const VectorX& actuated);
+
+/// Values of the actuated coordinates in the order of the walk, and what they are called.
+struct ActuatedCoordinates {
+  VectorX values;
+  std::vector<std::string> names;
+  std::vector<bool> rotation;
+};
+ActuatedCoordinates actuated(const Assembly&);
+
+}  // namespace deflect
