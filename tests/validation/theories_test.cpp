@@ -167,7 +167,7 @@ TEST(Checks, HoldAtEveryPoseForBothTheories) {
     const Mechanism m = device(name);
     std::mt19937 random(2);
     for (const Pose& pose : test::random_poses(m, 25)) {
-      const SolveResult r = solve(m, mm_deg_from(pose), Vector6::Unit(0) * 10, {});  // throws where a check fails
+      const SolveResult r = solve(m, stand(m, mm_deg_from(pose)), Vector6::Unit(0) * 10, {});  // throws where a check fails
       EXPECT_TRUE(r.symmetric && r.positive && r.passive_joints_free);
     }
   }
@@ -179,7 +179,7 @@ TEST(Solve, SharesAreTheSameByBothTheoriesAndSumToOne) {
   const Vector6 F = Vector6::Unit(0) * 50;
   const analytic::AnalyticModel a(c);
   const auto analytic = a.energies(a.solve(F));
-  const SolveResult r = solve(m, mm_deg_from(test::home(m)), F, {});
+  const SolveResult r = solve(m, stand(m, mm_deg_from(test::home(m))), F, {});
   ASSERT_EQ(r.shares.size(), analytic.size());
   double sum = 0, total = 0;
   for (const auto& [part, energy] : analytic) total += energy;
@@ -195,14 +195,14 @@ TEST(Solve, SharesAreTheSameByBothTheoriesAndSumToOne) {
 TEST(Solve, DisplacementFollowsFromTheStiffnessOfTheLinearDevice) {
   const Mechanism m = device("haptic-6psu-ideal-joints");
   const Vector6 F = (Vector6() << 10, 20, -30, 500, -200, 300).finished();  // N, Nmm
-  const SolveResult r = solve(m, mm_deg_from(test::random_poses(m, 1).front()), F, {});
+  const SolveResult r = solve(m, stand(m, mm_deg_from(test::random_poses(m, 1).front())), F, {});
   for (const TheorySolution* s : {&r.analytic, &r.msa})
     EXPECT_LE((s->stiffness_mm * s->displacement_mm_rad - F).norm(), 1e-9 * F.norm());
 }
 
 TEST(Solve, WithoutLoadContactsHaveNoStiffnessByBothTheories) {
   const Mechanism m = device("haptic-6psu");
-  const SolveResult r = solve(m, mm_deg_from(test::home(m)), Vector6::Zero(), {});
+  const SolveResult r = solve(m, stand(m, mm_deg_from(test::home(m))), Vector6::Zero(), {});
   EXPECT_TRUE(r.analytic.stiffness_mm.isZero(1e-9));
   EXPECT_TRUE(r.msa.stiffness_mm.isZero(1e-6));
   EXPECT_TRUE(r.analytic.displacement_mm_rad.isZero(0) && r.msa.displacement_mm_rad.isZero(0));
@@ -250,7 +250,8 @@ TEST(IdleSpin, ChangesNoAnswerAndIsNoted) {
   const Mechanism m = device("haptic-6psu"), balls = test::with(m, "leg.universal_joint.joint", "ball");
   const Vector6 F = (Vector6() << 30, -20, 40, 300, 500, -400).finished();
   for (const Pose& pose : test::random_poses(m, 5)) {
-    const SolveResult held = solve(m, mm_deg_from(pose), F, {}), spinning = solve(balls, mm_deg_from(pose), F, {});
+    const SolveResult held = solve(m, stand(m, mm_deg_from(pose)), F, {}),
+                      spinning = solve(balls, stand(balls, mm_deg_from(pose)), F, {});
     EXPECT_LT(spinning.relative_difference, 1e-7);
     EXPECT_LT(relative_difference(spinning.msa.displacement_mm_rad, held.msa.displacement_mm_rad), 1e-10);
     EXPECT_LT(relative_difference(spinning.analytic.displacement_mm_rad, held.analytic.displacement_mm_rad), 1e-10);
