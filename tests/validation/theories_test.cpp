@@ -167,7 +167,8 @@ TEST(Checks, HoldAtEveryPoseForBothTheories) {
     const Mechanism m = device(name);
     std::mt19937 random(2);
     for (const Pose& pose : test::random_poses(m, 25)) {
-      const SolveResult r = solve(m, stand(m, mm_deg_from(pose)), Vector6::Unit(0) * 10, {});  // throws where a check fails
+      const SolveResult r =
+          solve(m, stand(m, mm_deg_from(pose)), Vector6::Unit(0) * 10, {});  // throws where a check fails
       EXPECT_TRUE(r.symmetric && r.positive && r.passive_joints_free);
     }
   }
