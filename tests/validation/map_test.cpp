@@ -12,6 +12,7 @@
 #include "validation/compare/solve_result.h"
 #include "validation/compare/theories.h"
 #include "validation/report/fig11.h"
+#include "validation/report/map_correlation.h"
 #include "validation/report/map_results.h"
 
 namespace deflect {
@@ -69,7 +70,7 @@ TEST(Map, CentreOfTheIdealDeviceIsTheClosedForm) {
     EXPECT_NEAR(v->smallest_N_mm, 50 / 0.084092, 0.01) << "x and y couple with rotations only";
     EXPECT_NEAR(v->largest_N_mm, 50 / 0.026865, 0.1);
   }
-  for (const double q : {p.guide_min_mm, p.guide_mean_mm, p.guide_max_mm}) EXPECT_NEAR(q, 80, 1e-9);
+  for (const double q : {p.slide_min_mm, p.slide_mean_mm, p.slide_max_mm}) EXPECT_NEAR(q, 80, 1e-9);
 }
 
 TEST(Map, DirectionsLieBetweenTheExtremes) {
@@ -115,7 +116,7 @@ TEST(Map, TurnsWithTheDeviceByAThirdOfATurn) {
     for (const Vector3& p : {Vector3(20, 5, 150), Vector3(-13, 22, 195)}) {
       const MapPose a = map_stiffness(m, one_pose(m, p)).poses.front();
       const MapPose b = map_stiffness(m, one_pose(m, R * p)).poses.front();
-      EXPECT_NEAR(b.guide_mean_mm, a.guide_mean_mm, 1e-9);
+      EXPECT_NEAR(b.slide_mean_mm, a.slide_mean_mm, 1e-9);
       for (const auto& [u, v] : {std::pair{*a.analytic, *b.analytic}, std::pair{*a.msa, *b.msa}}) {
         EXPECT_NEAR(v.stiffness_N_mm(2) / u.stiffness_N_mm(2), 1, 1e-9);
         if (std::string(name) == "haptic-6psu") continue;  // there the forces along x and y load other legs
@@ -133,7 +134,7 @@ TEST(Map, StiffWhereTheGuidewaysAreShortInEveryDirection) {
     const Mechanism m = device(name);
     const StiffnessMap map = map_stiffness(m, cube(m, 5, 5, 5));
     for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_LT(with_guide_length(map, axis).spearman, -0.8) << name << axis;
+      EXPECT_LT(with_slides(map, axis).spearman, -0.8) << name << axis;
       for (int j = 0; j < 5; ++j)
         for (int i = 0; i < 5; ++i)
           for (int k = 1; k < 5; ++k)  // the guideways lengthen with the height

@@ -132,7 +132,7 @@ Command map_command() {
        {"--theory", "NAME", "analytic, msa or both (default)", &a->theory},
        {"--length", "LENGTH",
         "characteristic length, with unit, that makes rotations comparable to displacements in the isotropy (default: "
-        "the platform's radius)",
+        "the platform's radius, or the machine's extent)",
         &a->length},
        {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
        {"--json", "FILE", "write summary and arrays", &a->json},

@@ -90,13 +90,14 @@ MapPose map_pose(const Mechanism& m, const MapOptions& o, const std::vector<Vect
     out.out_of_reach = e.what();
     return out;
   }
-  out.guide_min_mm = std::numeric_limits<double>::infinity();
-  out.guide_max_mm = -out.guide_min_mm;
-  for (const Actuator& actuator : c.actuators) {
-    const double q = 1e3 * actuator.value;
-    out.guide_min_mm = std::min(out.guide_min_mm, q);
-    out.guide_max_mm = std::max(out.guide_max_mm, q);
-    out.guide_mean_mm += q / static_cast<double>(c.actuators.size());
+  std::vector<double> slides;
+  for (const Actuator& actuator : c.actuators)
+    if (!actuator.rotation) slides.push_back(1e3 * actuator.value);
+  if (!slides.empty()) {
+    const auto [least, most] = std::minmax_element(slides.begin(), slides.end());
+    out.slide_min_mm = *least;
+    out.slide_max_mm = *most;
+    for (const double q : slides) out.slide_mean_mm += q / static_cast<double>(slides.size());
   }
   const std::string where =
       fmt::format("{} at ({})", m.name, fmt::join(out.pose_mm_deg.data(), out.pose_mm_deg.data() + 6, ", "));
@@ -190,9 +191,16 @@ double weighing_length_mm(const Mechanism& m) {
   return 1e3 * (k ? k->platform_radius : configure(m, home_pose(m)).size);
 }
 
+SlideWords slide_words(const Mechanism& m) {
+  if (std::holds_alternative<SixPsu>(m.kinematics)) return {"guide", "guideway length"};
+  const std::vector<Actuator> all = actuators_of(m);
+  const bool slides = std::any_of(all.begin(), all.end(), [](const Actuator& a) { return !a.rotation; });
+  return slides ? SlideWords{"slide", "slide position"} : SlideWords();
+}
+
 StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options) {
   check(options);
-  StiffnessMap map{m.name, options, std::vector<MapPose>(options.grid.size())};
+  StiffnessMap map{m.name, slide_words(m), options, std::vector<MapPose>(options.grid.size())};
   const std::vector<Vector6> loads = loads_of(options);
   const std::size_t chunks = (map.poses.size() + chunk - 1) / chunk;
 

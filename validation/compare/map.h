@@ -62,15 +62,22 @@ struct MapValues {
 struct MapPose {
   Vector6 pose_mm_deg = Vector6::Zero();
   std::string out_of_reach;  ///< why the kinematics refuse the pose, in their words; empty when it is reached
-  double guide_min_mm = 0, guide_mean_mm = 0, guide_max_mm = 0;  ///< joint coordinates: lengths of the guideways
+  double slide_min_mm = 0, slide_mean_mm = 0, slide_max_mm = 0;  ///< coordinates of the driven slides
   std::optional<MapValues> analytic, msa;
   double relative_difference = 0;  ///< of the displacements by both theories, largest over the loads
 
   bool reached() const { return out_of_reach.empty(); }
 };
 
+/// What a device calls the coordinates of its driven slides.
+struct SlideWords {
+  std::string key;    ///< of columns: "guide", "slide"; empty where nothing slides
+  std::string words;  ///< "guideway length"
+};
+
 struct StiffnessMap {
   std::string device;
+  SlideWords slides;
   MapOptions options;
   std::vector<MapPose> poses;  ///< in the grid's order
 };

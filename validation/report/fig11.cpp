@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "validation/report/by_point.h"
+#include "validation/report/map_correlation.h"
 #include "validation/report/map_results.h"
 #include "validation/report/text.h"
 
@@ -156,16 +157,17 @@ std::string tics(const Extremes& e, bool named = true) {
   return list;
 }
 
-/// The mean lengths of the guideways that occur in a slice.
-std::string guide_text(const StiffnessMap& map, const Slice& s) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
+/// The mean positions of the slides that occur in a slice.
+std::string slide_text(const StiffnessMap& map, const Slice& s) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int j = 0; j < map.options.grid.counts[static_cast<std::size_t>(s.up)]; ++j)
     for (int i = 0; i < map.options.grid.counts[static_cast<std::size_t>(s.across)]; ++i)
       if (const MapPose& p = at(map, s, i, j); p.reached()) {
-        low = std::min(low, p.guide_mean_mm);
-        high = std::max(high, p.guide_mean_mm);
+        low = std::min(low, p.slide_mean_mm);
+        high = std::max(high, p.slide_mean_mm);
       }
-  return high > 0 ? fmt::format("mean guideway length {:.0f}–{:.0f} mm", low, high) : "out of reach";
+  if (low > high) return ": out of reach";
+  return map.slides.key.empty() ? "" : fmt::format(": mean {} {:.0f}–{:.0f} mm", map.slides.words, low, high);
 }
 
 std::vector<std::string> heading(const StiffnessMap& map, const std::string& title, const char* note) {
@@ -258,8 +260,8 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
         script.put("set label 10 '{} (mm)' at screen {:.5f},{:.5f} center rotate by 90", axis_names[s.up], across(2.5),
                    up(y + h / 2));
         script.put("set label 11 {} at screen {:.5f},{:.5f} left textcolor rgb '#202020'",
-                   gnuplot_quote(fmt::format("{} = {:.4g} mm: {}", axis_names[s.fixed()], g.coordinate(s.fixed(), s.at),
-                                             guide_text(map, s))),
+                   gnuplot_quote(fmt::format("{} = {:.4g} mm{}", axis_names[s.fixed()], g.coordinate(s.fixed(), s.at),
+                                             slide_text(map, s))),
                    across(left), up(y - 2.4));
       }
       script.put("set label 12 '{} (mm)' at screen {:.5f},{:.5f} center", axis_names[s.across], across(x + panel / 2),
@@ -301,13 +303,13 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
 
 std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
   const Extremes e = extremes(map);
-  if (e.high == 0) return {};
+  if (e.high == 0 || map.slides.key.empty()) return {};
   std::vector<const MapPose*> poses;
   for (const MapPose& p : map.poses)
     if (p.reached()) poses.push_back(&p);
   std::stable_sort(poses.begin(), poses.end(),
-                   [](const MapPose* a, const MapPose* b) { return a->guide_mean_mm < b->guide_mean_mm; });
-  const double shortest = poses.front()->guide_mean_mm, longest = poses.back()->guide_mean_mm;
+                   [](const MapPose* a, const MapPose* b) { return a->slide_mean_mm < b->slide_mean_mm; });
+  const double shortest = poses.front()->slide_mean_mm, longest = poses.back()->slide_mean_mm;
   const auto row = [](double length, const Vector3& k) {
     return fmt::format("{:.5g} {:.5g} {:.5g} {:.5g}\n", length, k(0), k(1), k(2));
   };
@@ -317,7 +319,7 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
   std::string points, medians;
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (std::fmod(0.6180339887498949 * static_cast<double>(i), 1) * static_cast<double>(poses.size()) < most)
-      points += row(poses[i]->guide_mean_mm, shown(*poses[i])->stiffness_N_mm);
+      points += row(poses[i]->slide_mean_mm, shown(*poses[i])->stiffness_N_mm);
   const std::size_t bins = std::clamp<std::size_t>(poses.size() / 20, 1, 16);
   for (std::size_t b = 0; bins > 1 && b < bins; ++b) {  // equally many poses in each
     const std::size_t from = b * poses.size() / bins, to = (b + 1) * poses.size() / bins;
@@ -329,7 +331,7 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
       std::nth_element(values.begin(), middle, values.end());
       median(axis) = *middle;
     }
-    medians += row(poses[(from + to) / 2]->guide_mean_mm, median);
+    medians += row(poses[(from + to) / 2]->slide_mean_mm, median);
   }
 
   constexpr double height = 82, top = 25, bottom = 11, from_left = left + 3,
@@ -337,7 +339,7 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
   Script script;
   script.put("$points << EOD\n{}EOD\n$median << EOD\n{}EOD", points, medians);
   script.put("set multiplot\nunset key");
-  put_heading(script, map, "stiffness against the length of the guideways", bins > 1 ? "; line: median" : "", height);
+  put_heading(script, map, "stiffness against the mean " + map.slides.words, bins > 1 ? "; line: median" : "", height);
   script.put("set tmargin at screen {:.5f}\nset bmargin at screen {:.5f}", 1 - top / height, bottom / height);
   script.put("set logscale y\nset mytics default");
   const double beside = 0.04 * std::max(longest - shortest, 1.0);
@@ -346,7 +348,7 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
   script.put("set xtics ({}) offset 0,0.2", inner_tics(shortest - beside, longest + beside));
   script.put("set label 10 'stiffness along the force (N/mm)' at screen {:.5f},{:.5f} center rotate by 90", 3 / width,
              (bottom + (height - top - bottom) / 2) / height);
-  script.put("set label 11 'mean length of the guideways (mm)' at screen {:.5f},{:.5f} center",
+  script.put("set label 11 'mean {} (mm)' at screen {:.5f},{:.5f} center", map.slides.words,
              (from_left + width - 5) / 2 / width, 3 / height);
   for (int axis = 0; axis < 3; ++axis) {
     const double x = from_left + axis * (room + gap);
@@ -355,7 +357,7 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
         "set label 12 'force along {}' at screen {:.5f},{:.5f} left font 'DejaVu Sans:Bold,8' textcolor rgb '{}'",
         axis_names[axis], x / width, 1 - (top - 5.5) / height, colours[axis]);
     script.put("set ytics ({})", tics({e.low / 1.15, e.high * 1.15}, axis == 0));
-    const double rho = with_guide_length(map, axis).spearman;
+    const double rho = with_slides(map, axis).spearman;
     script.put("set label 13 'Spearman’s ρ = {}{:.2f}' at screen {:.5f},{:.5f} left textcolor rgb '#505050'",
                rho < 0 ? "−" : "", std::abs(rho), x / width, 1 - (top - 2) / height);
     script.put("plot $points using 1:{} with points lc rgb '#90{}' pt {} ps {:.2f}{}", axis + 2, colours[axis] + 1,

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <regex>
 
 #include "validation/report/by_point.h"
 #include "validation/report/json_text.h"
+#include "validation/report/map_correlation.h"
 #include "validation/report/text.h"
 
 namespace deflect {
@@ -64,8 +64,17 @@ std::vector<Theory> theories_of(const StiffnessMap& map) {
 bool both(const StiffnessMap& map) { return map.options.analytic && map.options.msa; }
 
 /// What belongs to a pose and to no theory.
-constexpr const char* guide_names[] = {"guide_min_mm", "guide_mean_mm", "guide_max_mm"};
-constexpr double MapPose::*guides[] = {&MapPose::guide_min_mm, &MapPose::guide_mean_mm, &MapPose::guide_max_mm};
+struct SlideColumn {
+  std::string name;
+  double MapPose::*of;
+};
+
+std::vector<SlideColumn> slide_columns(const StiffnessMap& map) {
+  if (map.slides.key.empty()) return {};
+  return {{map.slides.key + "_min_mm", &MapPose::slide_min_mm},
+          {map.slides.key + "_mean_mm", &MapPose::slide_mean_mm},
+          {map.slides.key + "_max_mm", &MapPose::slide_max_mm}};
+}
 
 struct Range {
   double smallest = 0, largest = 0;
@@ -104,33 +113,6 @@ std::string reason_of(const std::string& message) {
 
 std::string position(const MapPose& p) {
   return fmt::format("({:.5g}, {:.5g}, {:.5g})", p.pose_mm_deg(0), p.pose_mm_deg(1), p.pose_mm_deg(2));
-}
-
-std::vector<double> ranks(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-  std::vector<double> rank(values.size());
-  for (std::size_t from = 0; from < order.size();) {
-    std::size_t to = from;
-    while (to < order.size() && values[order[to]] == values[order[from]]) ++to;
-    for (std::size_t i = from; i < to; ++i) rank[order[i]] = static_cast<double>(from + to - 1) / 2;
-    from = to;
-  }
-  return rank;
-}
-
-double pearson(const std::vector<double>& a, const std::vector<double>& b) {
-  const auto n = static_cast<double>(a.size());
-  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / n;
-  const double mean_b = std::accumulate(b.begin(), b.end(), 0.0) / n;
-  double ab = 0, aa = 0, bb = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ab += (a[i] - mean_a) * (b[i] - mean_b);
-    aa += (a[i] - mean_a) * (a[i] - mean_a);
-    bb += (b[i] - mean_b) * (b[i] - mean_b);
-  }
-  return aa > 0 && bb > 0 ? std::clamp(ab / std::sqrt(aa * bb), -1.0, 1.0) : 0;
 }
 
 std::string grid_text(const MapGrid& g) {
@@ -176,20 +158,6 @@ std::vector<OutOfReach> out_of_reach(const StiffnessMap& map) {
   return list;
 }
 
-Correlation correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  return {pearson(a, b), pearson(ranks(a), ranks(b))};
-}
-
-Correlation with_guide_length(const StiffnessMap& map, int axis) {
-  std::vector<double> length, stiffness;
-  for (const MapPose& p : map.poses)
-    if (const MapValues* v = shown(p)) {
-      length.push_back(p.guide_mean_mm);
-      stiffness.push_back(v->stiffness_N_mm(axis));
-    }
-  return correlation(length, stiffness);
-}
-
 const MapValues* shown(const MapPose& p) { return p.analytic ? &*p.analytic : p.msa ? &*p.msa : nullptr; }
 const char* shown_theory(const StiffnessMap& map) { return map.options.analytic ? "analytic" : "MSA"; }
 
@@ -231,10 +199,11 @@ std::string map_report(const StiffnessMap& map) {
       "over largest eigenvalue of K (1 isotropic, 0 singular) with rotations times the characteristic length {:.6g} "
       "mm\n",
       map.options.length_mm);
-  if (n > 1) {
-    std::vector<std::vector<std::string>> rows = {{"correlation with the mean guideway length", "Spearman", "Pearson"}};
+  if (n > 1 && !map.slides.key.empty()) {
+    std::vector<std::vector<std::string>> rows = {
+        {"correlation with the mean " + map.slides.words, "Spearman", "Pearson"}};
     for (int axis = 0; axis < 3; ++axis) {
-      const Correlation c = with_guide_length(map, axis);
+      const Correlation c = with_slides(map, axis);
       rows.push_back({fmt::format("stiffness along {}", axis_names[axis]), fmt::format("{:.3f}", c.spearman),
                       fmt::format("{:.3f}", c.pearson)});
     }
@@ -248,7 +217,8 @@ std::string map_report(const StiffnessMap& map) {
 std::string map_csv(const StiffnessMap& map) {
   std::string text = "x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,";
   text += map.options.load_N_Nmm ? "fx_N,fy_N,fz_N,mx_Nmm,my_Nmm,mz_Nmm," : "force_N,";
-  text += fmt::format("compliance_kind,length_mm,reached,note_out_of_reach,{}", fmt::join(guide_names, ","));
+  text += "compliance_kind,length_mm,reached,note_out_of_reach";
+  for (const SlideColumn& slide : slide_columns(map)) text += "," + slide.name;
   const std::vector<Theory> theories = theories_of(map);
   for (const Theory& theory : theories)
     for (const Column& column : columns()) text += fmt::format(",{}_{}", theory.name, column.name);
@@ -260,7 +230,7 @@ std::string map_csv(const StiffnessMap& map) {
     std::string note = p.out_of_reach;  // in quotes; the kinematics' words contain commas
     for (std::size_t at = note.find('"'); at != note.npos; at = note.find('"', at + 2)) note.insert(at, 1, '"');
     if (!note.empty()) text += '"' + note + '"';
-    for (const auto guide : guides) text += p.reached() ? fmt::format(",{}", p.*guide) : ",";
+    for (const SlideColumn& slide : slide_columns(map)) text += p.reached() ? fmt::format(",{}", p.*slide.of) : ",";
     for (const Theory& theory : theories)
       for (const Column& column : columns())
         text += p.reached() ? fmt::format(",{}", column.of(*(p.*theory.values))) : ",";
@@ -297,8 +267,8 @@ std::string map_json(const StiffnessMap& map) {
     for (const MapPose& p : map.poses) list.push_back(p.reached() ? json_number(of(p), name) : Json());
     return list;
   };
-  for (std::size_t g = 0; g < std::size(guides); ++g)
-    arrays[guide_names[g]] = array(guide_names[g], [&](const MapPose& p) { return p.*guides[g]; });
+  for (const SlideColumn& slide : slide_columns(map))
+    arrays[slide.name] = array(slide.name, [&](const MapPose& p) { return p.*slide.of; });
   for (const Theory& theory : theories_of(map))
     for (std::size_t c = 0; c < columns().size(); ++c) {
       const Column& column = columns()[c];
@@ -312,10 +282,11 @@ std::string map_json(const StiffnessMap& map) {
       range["largest"] = r.largest;
       range["largest_at"] = json_numbers(r.largest_at->pose_mm_deg, "pose");
     }
-  if (reached(map) > 1)
+  if (reached(map) > 1 && !map.slides.key.empty())
     for (int axis = 0; axis < 3; ++axis) {
-      const Correlation c = with_guide_length(map, axis);
-      result["correlation_with_guide_mean"][axis_names[axis]] = {{"spearman", c.spearman}, {"pearson", c.pearson}};
+      const Correlation c = with_slides(map, axis);
+      result[fmt::format("correlation_with_{}_mean", map.slides.key)][axis_names[axis]] = {{"spearman", c.spearman},
+                                                                                           {"pearson", c.pearson}};
     }
   if (both(map)) result["max_relative_difference"] = json_number(largest_difference(map), "max_relative_difference");
   result["arrays"] = std::move(arrays);
@@ -365,8 +336,8 @@ std::string map_vtu(const StiffnessMap& map) {
     array("Float64", "force_N", R"( NumberOfTuples="1")", std::vector{map.options.force_N}, number);
   text += fmt::format("</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n", points.size(),
                       cells.size());
-  for (std::size_t i = 0; i < std::size(guides); ++i)
-    array("Float64", guide_names[i], "", points, [&](const MapPose* p) { return number(p->*guides[i]); });
+  for (const SlideColumn& slide : slide_columns(map))
+    array("Float64", slide.name, "", points, [&](const MapPose* p) { return number(p->*slide.of); });
   for (const Theory& theory : theories_of(map))
     for (const Column& column : columns())
       array("Float64", fmt::format("{}_{}", theory.name, column.name), "", points,

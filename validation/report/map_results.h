@@ -17,17 +17,6 @@ struct OutOfReach {
 };
 std::vector<OutOfReach> out_of_reach(const StiffnessMap&);
 
-/// How two series vary together: −1 … 1. Pearson's r; Spearman's ρ is r of the ranks, ties sharing their mean rank.
-/// Both are 0 where a series is constant.
-struct Correlation {
-  double pearson = 0, spearman = 0;
-};
-Correlation correlation(const std::vector<double>& a, const std::vector<double>& b);
-
-/// Correlation of the stiffness along `axis` with the mean length of the guideways over the poses reached, by the
-/// theory that the figures show.
-Correlation with_guide_length(const StiffnessMap&, int axis);
-
 /// What the figures show: the analytic theory where it was asked for, the MSA otherwise; null at a pose out of reach.
 const MapValues* shown(const MapPose&);
 const char* shown_theory(const StiffnessMap&);
