@@ -145,8 +145,16 @@ std::vector<double> levels(const Extremes& e, std::size_t wanted) {
     for (double power = std::pow(10, std::floor(std::log10(e.low))); power <= e.high; power *= 10)
       for (const double number : numbers)
         if (number * power > e.low && number * power < e.high) list.push_back(number * power);
-    if (list.size() >= wanted) break;
+    if (list.size() >= wanted) return list;
   }
+  // Too narrow for preferred numbers: round values at even distance, the coarsest that are enough.
+  for (double power = std::pow(10, std::floor(std::log10(e.high - e.low))); e.high > e.low && list.size() < wanted;
+       power /= 10)
+    for (const double step : {5 * power, 2 * power, power}) {
+      list.clear();
+      for (double n = std::floor(e.low / step) + 1; n * step < e.high; ++n) list.push_back(n * step);
+      if (list.size() >= wanted) break;
+    }
   return list;
 }
 
