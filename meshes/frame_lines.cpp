@@ -30,8 +30,7 @@ FieldData fields_of(const frame::FrameModel& m, const frame::CaseResult& r) {
   out.cells = {{"axial_force_N", {}}, {"torque_Nmm", {}}, {"moment_y_Nmm", {}}, {"moment_z_Nmm", {}}};
   const auto larger = [](double a, double b) { return std::abs(b) > std::abs(a) ? b : a; };
   for (std::size_t e = 0; e < m.model.beams.size(); ++e) {
-    const Vector6 start = section_forces(r.end_forces[e], r.loads[e], 0),
-                  end = section_forces(r.end_forces[e], r.loads[e], m.model.beams[e].length);
+    const Vector6 start = -r.end_forces[e].head<6>(), end = r.end_forces[e].tail<6>();
     out.cells[0].values.push_back((start(0) + end(0)) / 2);
     for (std::size_t i = 1; i < 4; ++i) {
       const auto moment = static_cast<Eigen::Index>(i + 2);

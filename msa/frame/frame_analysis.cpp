@@ -1,4 +1,4 @@
-#include "msa/frame/frame_analysis.h"
+#include "msa/frame/frame_case.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,6 @@ namespace deflect::frame {
 namespace {
 
 constexpr double cancelling = 1e-7;  // see FrameChecks
-
-double ratio(double part, double whole) { return part == 0 ? 0 : part / whole; }
 
 double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
 
@@ -42,10 +40,6 @@ struct Work {
   double heat = 0, clamped = 0;  // Σ N ε L; what line loads store in clamped elements
 };
 
-void largest_moment(LargestMoment& largest_so_far, double value, double x) {
-  if (std::abs(value) > std::abs(largest_so_far.value) * (1 + 1e-12)) largest_so_far = {value, x};
-}
-
 void find_member_forces(CaseResult& r, const FrameModel& m, Work& work) {
   for (std::size_t member = 0; member + 1 < m.first_element.size(); ++member) {
     MemberForces out;
@@ -66,31 +60,13 @@ void find_member_forces(CaseResult& r, const FrameModel& m, Work& work) {
         const Vector6 s = section_forces(f, load, x);
         if (x == 0 && e == m.first_element[member]) out.start = s;
         if (x == beam.length) out.end = s;
-        largest_moment(out.My, s(4), from_start + x);
-        largest_moment(out.Mz, s(5), from_start + x);
+        keep_larger(out.My, s(4), from_start + x);
+        keep_larger(out.Mz, s(5), from_start + x);
       }
       from_start += beam.length;
     }
     r.members.push_back(out);
   }
-}
-
-void find_energies(CaseResult& r, const FrameDescription& f, const FrameModel& m) {
-  NameIndex sections(f.sections);
-  std::vector<double> by_section(f.sections.size(), 0), by_spring(f.springs.size(), 0);
-  for (std::size_t i = 0; i < f.members.size(); ++i)
-    by_section[static_cast<std::size_t>(sections.find(f.members[i].second.section))] += r.members[i].energy;
-  for (std::size_t i = 0; i < f.springs.size(); ++i)
-    for (const int s : m.spring[i])
-      if (s >= 0) {
-        const Spring& spring = m.model.springs[static_cast<std::size_t>(s)];
-        by_spring[i] += energy(spring.law, evaluate(spring.elongation, r.u));
-      }
-  for (std::size_t i = 0; i < by_section.size(); ++i) r.energies.emplace_back(f.sections[i].first, by_section[i]);
-  for (std::size_t i = 0; i < by_spring.size(); ++i) r.energies.emplace_back(f.springs[i].first, by_spring[i]);
-  for (const auto& [group, part] : r.energies) r.energy += part;
-  std::stable_sort(r.energies.begin(), r.energies.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
 }
 
 void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& m, const VectorX& lambda) {
@@ -172,12 +148,14 @@ double reciprocity(const std::vector<CaseResult>& cases, const std::vector<Work>
   return worst;
 }
 
-}  // namespace
+VectorX elongations(const Model& m, const VectorX& u) {
+  VectorX out(static_cast<Eigen::Index>(m.springs.size()));
+  for (std::size_t i = 0; i < m.springs.size(); ++i)
+    out(static_cast<Eigen::Index>(i)) = evaluate(m.springs[i].elongation, u);
+  return out;
+}
 
-FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
-  FrameResult out;
-  out.name = f.name;
-  out.structure = build_frame(f, options.division);
+void analyse_linear(const FrameDescription& f, FrameResult& out) {
   FrameModel& m = out.structure;
   std::vector<Work> work;
   for (const auto& [name, load] : f.loads) work.push_back({load_of(f, m, load), {}, {}, 0, 0});
@@ -205,17 +183,51 @@ FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
     work[c].lambda = constraint_forces(m.model, solver.elimination(), r.u, padded(work[c].load.forces, m.model.dofs()));
     find_reactions(r, f, m, work[c].lambda);
     find_member_forces(r, m, work[c]);
-    find_energies(r, f, m);
+    find_energies(r, f, m, elongations(m.model, r.u));
     check(r, m, solver, work[c]);
     r.loads = work[c].load.elements;
     out.cases.push_back(std::move(r));
   }
   out.reciprocity = reciprocity(out.cases, work);
+}
+
+}  // namespace
+
+void keep_larger(LargestMoment& largest_so_far, double value, double x) {
+  if (std::abs(value) > std::abs(largest_so_far.value) * (1 + 1e-12)) largest_so_far = {value, x};
+}
+
+void find_energies(CaseResult& r, const FrameDescription& f, const FrameModel& m, const VectorX& elongations) {
+  NameIndex sections(f.sections);
+  std::vector<double> by_section(f.sections.size(), 0), by_spring(f.springs.size(), 0);
+  for (std::size_t i = 0; i < f.members.size(); ++i)
+    by_section[static_cast<std::size_t>(sections.find(f.members[i].second.section))] += r.members[i].energy;
+  for (std::size_t i = 0; i < f.springs.size(); ++i)
+    for (const int s : m.spring[i])
+      if (s >= 0) by_spring[i] += energy(m.model.springs[static_cast<std::size_t>(s)].law, elongations(s));
+  for (std::size_t i = 0; i < by_section.size(); ++i) r.energies.emplace_back(f.sections[i].first, by_section[i]);
+  for (std::size_t i = 0; i < by_spring.size(); ++i) r.energies.emplace_back(f.springs[i].first, by_spring[i]);
+  for (const auto& [group, part] : r.energies) r.energy += part;
+  std::stable_sort(r.energies.begin(), r.energies.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+}
+
+FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
+  FrameResult out;
+  out.name = f.name;
+  out.geometry = f.geometry;
+  out.structure = build_frame(f, options.division);
+  if (f.geometry == Geometry::linear)
+    analyse_linear(f, out);
+  else
+    analyse_geometric(f, out);
   return out;
 }
 
 std::string failed_check(const FrameResult& result) {
   const auto fails = [](double value) { return !(value <= check_tolerance); };
+  for (const CaseResult& c : result.cases)
+    if (!c.path.converged || !c.path.stable) return fmt::format("load case '{}': {}", c.name, c.path.message);
   for (const CaseResult& c : result.cases)
     for (const auto& [what, value] : {std::pair{"residual", c.checks.residual},
                                       {"equilibrium of loads and reactions", c.checks.equilibrium},

@@ -87,12 +87,18 @@ void add_member(FrameModel& out, const std::string& name, const FrameMember& mem
              fractions.size() > 2 ? fmt::format("{} [{}]", name, fractions.size() - 1) : name, member.section);
 }
 
+std::vector<double> equal_parts(int elements) {
+  std::vector<double> fractions;
+  for (int i = 0; i <= elements; ++i) fractions.push_back(static_cast<double>(i) / elements);
+  return fractions;
+}
+
 void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision& division) {
   Rigidities rigidity(f);
   for (std::size_t i = 0; i < f.members.size(); ++i) {
     const auto& [name, member] = f.members[i];
     out.first_element.push_back(static_cast<int>(out.model.beams.size()));
-    add_member(out, name, member, rigidity(member), division.empty() ? std::vector<double>{0, 1} : division[i]);
+    add_member(out, name, member, rigidity(member), division.empty() ? equal_parts(member.elements) : division[i]);
     const FrameMaterial& material = rigidity.material(member);
     out.mass_per_length.push_back(material.density.value_or(0) * rigidity.section(member).A);
     out.expansion.push_back(material.expansion.value_or(0));
@@ -104,10 +110,11 @@ void add_supports(FrameModel& out, const FrameDescription& f) {
   for (const auto& [name, freedoms] : f.supports) {
     const auto node = static_cast<int>(at(out.nodes, "node", name));
     out.support_constraint.push_back(nowhere);
+    Connection& record = out.model.grounded(node);
     for (int i = 0; i < 6; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (!freedoms[k]) continue;
-      out.support_constraint.back()[k] = static_cast<int>(out.model.constraints.size());
+      record.constraint[k] = out.support_constraint.back()[k] = static_cast<int>(out.model.constraints.size());
       Constraint c;
       c.form = {{6 * node + i, 1}};
       c.name = fmt::format("support {} {}", name, node_freedoms[k]);
@@ -147,14 +154,16 @@ void add_springs(FrameModel& out, const FrameDescription& f) {
     std::array<ConnectionFreedom, 6> laws = rigid_where({});
     out.spring.push_back(nowhere);
     auto next = static_cast<int>(m.springs.size());
+    Connection* record = spring.to.empty() ? &m.grounded(node) : nullptr;
     for (std::size_t i = 0; i < 6; ++i) {
       if (!spring.stiffness[i]) continue;
       const LinearSpring law{*spring.stiffness[i]};
       laws[i].laws = {law};
       out.spring.back()[i] = next++;
-      if (spring.to.empty())
-        m.springs.push_back(
-            {{{6 * node + static_cast<int>(i), 1}}, law, fmt::format("{} {}", name, node_freedoms[i]), name});
+      if (!record) continue;
+      record->spring[i] = out.spring.back()[i];
+      m.springs.push_back(
+          {{{6 * node + static_cast<int>(i), 1}}, law, fmt::format("{} {}", name, node_freedoms[i]), name});
     }
     if (!spring.to.empty())
       m.connect(static_cast<int>(at(out.nodes, "node", spring.to)), node, p, Matrix3::Identity(), laws, name, name);

@@ -12,8 +12,8 @@
 
 namespace deflect::frame {
 
-/// By member, in the description's order: the fractions of the length at which nodes stand, from 0 to 1. Empty: one
-/// element each.
+/// By member, in the description's order: the fractions of the length at which nodes stand, from 0 to 1. Empty: as many
+/// elements as the description says.
 using FrameDivision = std::vector<std::vector<double>>;
 
 /// Node i of the model is node i of the description; inner nodes of members and ends with releases follow. Energy

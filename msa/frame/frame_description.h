@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "msa/base/geometry.h"
 #include "msa/base/spatial.h"
 #include "msa/mechanism/description.h"
 
@@ -38,6 +39,7 @@ struct FrameMember {
   Vector3 y_axis = Vector3::Zero();  ///< zero: the rule above
   Freedoms release_from{}, release_to{};
   double bending_factor = 1;
+  int elements = 1;  ///< equal ones, one behind the other
 };
 
 /// Between the body of `node` and the ground, or the body of the node `to`; it sits at `node`, and an arm that is rigid
@@ -81,6 +83,8 @@ struct LoadCase {
 
 struct FrameDescription {
   std::string name, about, source;
+  Geometry geometry = Geometry::linear;
+  int load_steps = 1;  ///< at least, where the geometry is finite
   Named<FrameMaterial> materials;
   Named<Section> sections;
   Named<Vector3> nodes;  ///< m

@@ -54,6 +54,23 @@ void describe_material(FieldVisitor& v, FrameMaterial& m) {
   v.quantity_if_given("expansion", m.expansion, required(Dimension::thermal_expansion, {}), "strain per kelvin");
 }
 
+/// A whole number from 1 to 10000, 1 where absent.
+void describe_count(FieldVisitor& v, const char* key, int& count, const char* about) {
+  double number = count;
+  v.quantity(key, number, {Dimension::none, Range{1, 10000}, 1}, about);
+  v.require(number == std::floor(number), key, fmt::format("{} is not a whole number", number));
+  count = static_cast<int>(number);
+}
+
+void describe_geometry(FieldVisitor& v, FrameDescription& f) {
+  const std::vector<std::string> names{std::begin(geometry_names), std::end(geometry_names)};
+  std::string geometry = names[static_cast<std::size_t>(f.geometry)];
+  v.word("geometry", geometry, {"geometry", names, names[0]}, "the shape in which equilibrium is written");
+  f.geometry = static_cast<Geometry>(std::find(names.begin(), names.end(), geometry) - names.begin());
+  describe_count(v, "load_steps", f.load_steps, "in how many steps the load comes, at least");
+  v.require(f.load_steps == 1 || f.geometry == Geometry::finite, "load_steps", "goes with 'geometry: finite'");
+}
+
 void describe_theory(FieldVisitor& v, FrameMember& m, const Section* section, const FrameMaterial* material) {
   const std::vector<std::string> theories{std::begin(beam_theory_names), std::end(beam_theory_names)};
   std::string beam = theories[static_cast<std::size_t>(m.beam)];
@@ -90,6 +107,7 @@ void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
   describe_freedoms(v, "release_to", m.release_to, member_freedoms, Need::optional, false,
                     "freedoms that are not passed on at 'to', member axes");
   v.quantity("bending_factor", m.bending_factor, {Dimension::ratio, positive, 1}, "multiplies the bending stiffness");
+  describe_count(v, "elements", m.elements, "elements of equal length");
   if (a < 0 || b < 0) return;
 
   const Vector3 along =
@@ -183,11 +201,12 @@ void describe_freedom_values(FieldVisitor& v, FreedomValues& values, Dimension t
 }
 
 void describe(FieldVisitor& v, FrameDescription& f) {
-  v.keys({"name", "about", "source", "materials", "sections", "nodes", "members", "supports", "springs", "rigid_links",
-          "constraints", "loads"});
+  v.keys({"name", "about", "source", "geometry", "load_steps", "materials", "sections", "nodes", "members", "supports",
+          "springs", "rigid_links", "constraints", "loads"});
   v.text("name", f.name, Need::required, "name of the frame");
   v.text("about", f.about, Need::optional, "one line about the frame");
   v.text("source", f.source, Need::optional, "where the numbers are from");
+  describe_geometry(v, f);
   FrameNames names{f, {}, {}, {}, {}, {}, 0};
 
   FrameEntries<FrameMaterial> materials(f.materials, [](auto& w, auto&, auto& m) { describe_material(w, m); });

@@ -1,13 +1,15 @@
 // Frame files: YAML in and out. One of each:
 //
 //   name: portal
+//   geometry: finite
+//   load_steps: 10
 //   materials: {steel: {E: 210 GPa, nu: 0.3, density: 7850 kg/m^3, expansion: 12e-6 1/K}}
 //   sections: {tube: {shape: tube, outer_diameter: 60 mm, inner_diameter: 52 mm}}
 //   nodes: {A: [0 m, 0 m, 0 m], B: [0 m, 0 m, 3 m], C: [4 m, 0 m, 3 m]}
 //   members:
 //     post: {from: A, to: B, section: tube, material: steel}
 //     beam: {from: B, to: C, section: tube, material: steel, beam: timoshenko, y_axis: [0, 1, 0],
-//            release_to: [ry, rz], bending_factor: 0.9}
+//            release_to: [ry, rz], bending_factor: 0.9, elements: 8}
 //   supports: {A: clamped, C: [ux, uy, uz, rx]}
 //   springs: {bed: {node: C, to: B, uz: 5 N/mm, ry: 2 Nm/rad}}
 //   rigid_links: {plate: {master: B, nodes: [C], freedoms: [ux, uy, rz]}}

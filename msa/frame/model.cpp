@@ -58,9 +58,18 @@ void Model::add_beam(int a, int b, const Matrix3& R_WM, const BeamRigidity& rigi
   beams.push_back({a, b, R_WM, length, rigidity, std::move(name), std::move(part)});
 }
 
+Connection& Model::grounded(int node) {
+  connections.push_back(
+      {-1, node, nodes[static_cast<std::size_t>(node)].position, {Matrix3::Identity(), Matrix3::Identity()}});
+  return connections.back();
+}
+
 void Model::fix(int node, const std::string& name) {
-  for (int i = 0; i < 6; ++i)
+  Connection& record = grounded(node);
+  for (int i = 0; i < 6; ++i) {
+    record.constraint[static_cast<std::size_t>(i)] = static_cast<int>(constraints.size());
     constraints.push_back({{{6 * node + i, 1}}, 0, fmt::format("{} {}", name, dof_names[static_cast<std::size_t>(i)])});
+  }
 }
 
 void Model::join(int a, int b, const std::string& name) {
@@ -72,18 +81,22 @@ void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std:
   static constexpr std::array<const char*, 6> names = {"tx", "ty", "tz", "rx", "ry", "rz"};
   if (std::all_of(freedoms.begin(), freedoms.end(), [](const ConnectionFreedom& f) { return f.rigid; }))
     welds.emplace_back(a, b);
+  Connection record{a, b, p, {R, R}};
   for (std::size_t half = 0; half < 6; half += 3) {
     // Three rigid freedoms say the same in any axes; base axes give the sparsest equations.
     const bool all_rigid = freedoms[half].rigid && freedoms[half + 1].rigid && freedoms[half + 2].rigid;
+    if (all_rigid) record.axes[half / 3] = Matrix3::Identity();
     for (std::size_t i = half; i < half + 3; ++i) {
       const auto column = static_cast<Eigen::Index>(i - half);
-      const Vector3 axis = all_rigid ? Vector3(Vector3::Unit(column)) : Vector3(R.col(column));
+      const Vector3 axis = record.axes[half / 3].col(column);
       LinearForm form = relative(*this, a, b, p, axis, half == 3);
       const std::string label = fmt::format("{} {}", name, names[i]);
-      if (freedoms[i].rigid)
+      if (freedoms[i].rigid) {
+        record.constraint[i] = static_cast<int>(constraints.size());
         constraints.push_back({std::move(form), 0, label});
-      else if (freedoms[i].laws.empty())
+      } else if (freedoms[i].laws.empty()) {
         releases.push_back({std::move(form), label});
+      }
       const auto& laws = freedoms[i].laws;
       for (std::size_t k = 0; k + 1 < laws.size(); ++k) {  // δ = s₁ + s₂ + …; each but the last has its own freedom
         const int s = dofs();
@@ -91,9 +104,12 @@ void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std:
         springs.push_back({{{s, 1}}, laws[k], fmt::format("{} [{}]", label, k + 1), part});
         form.push_back({s, -1});
       }
-      if (!laws.empty()) springs.push_back({std::move(form), laws.back(), label, part});
+      if (laws.empty()) continue;
+      record.spring[i] = static_cast<int>(springs.size());
+      springs.push_back({std::move(form), laws.back(), label, part});
     }
   }
+  connections.push_back(record);
 }
 
 }  // namespace deflect::frame

@@ -53,6 +53,16 @@ struct ConnectionFreedom {
   std::vector<SpringLaw> laws;
 };
 
+/// What the constraints and springs of a connection are at finite displacement: the components tx … rz of the motion of
+/// the body of node b against that of node a (joint_motion.h). Constraints and springs that no connection names keep
+/// their linear forms, of displacements and of the sums of small rotations about the base axes (spins).
+struct Connection {
+  int a = -1, b = 0;  ///< nodes; a = −1: the ground
+  Vector3 p;
+  std::array<Matrix3, 2> axes;  ///< of tx ty tz and of rx ry rz (columns), attached to body a
+  std::array<int, 6> constraint = {-1, -1, -1, -1, -1, -1}, spring = constraint;  ///< by component; −1: none
+};
+
 struct Model {
   std::vector<Node> nodes;           ///< node i owns the freedoms 6i … 6i+5: [ux uy uz θx θy θz]
   std::vector<std::string> scalars;  ///< further freedoms, numbered after those of the nodes
@@ -61,6 +71,7 @@ struct Model {
   std::vector<Constraint> constraints;
   std::vector<Release> releases;           ///< for words about motions; they take no part in equilibrium
   std::vector<std::pair<int, int>> welds;  ///< nodes of one rigid body
+  std::vector<Connection> connections;     ///< what they became stands in the lists above
 
   int dofs() const { return static_cast<int>(6 * nodes.size() + scalars.size()); }
   /// "node 'leg 1 B' uz".
@@ -69,7 +80,11 @@ struct Model {
   int add_node(std::string name, const Vector3& position);
   void add_beam(int a, int b, const Matrix3& R_WM, const BeamRigidity&, std::string name, std::string part);
   /// u_node = 0, six constraints "name ux" …; their values may be changed to prescribe displacements.
+  /// At finite displacement the rotations are the angles of Rx Ry Rz from the base axes.
   void fix(int node, const std::string& name);
+  /// The record of a connection between the ground and a node at its place, in base axes; the caller names what it
+  /// made.
+  Connection& grounded(int node);
   /// Node b moves as one body with node a.
   void join(int a, int b, const std::string& name);
   /// A joint at p with axes R (columns x y z) between the body of node a and the body of node b: the relative twist

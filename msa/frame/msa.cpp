@@ -86,19 +86,45 @@ MsaModel::MsaModel(const Configuration& c, const MemberDivision& division)
 
 MsaModel::~MsaModel() = default;
 
-MsaSolution MsaModel::solve(const Vector6& F_T_W) {
+MsaSolution MsaModel::solve(const Vector6& F_T_W, Geometry geometry) {
   VectorX load = VectorX::Zero(built_.model.dofs());
   load.segment<6>(6 * built_.tool) = F_T_W;
   MsaSolution out;
-  out.state = solver_.solve(load);
+  if (geometry == Geometry::linear || F_T_W.isZero(0)) {
+    out.state = solver_.solve(load);
+    out.energies = frame::energies(solver_.model(), out.state.u);
+  } else {
+    out.state = solve_geometric(load, geometry);
+    out.energies = frame::energies(geometric_->model(), *out.state.geometric);
+  }
   out.displacement = out.state.u.segment<6>(6 * built_.tool);
-  out.energies = frame::energies(solver_.model(), out.state.u);
   std::stable_sort(out.energies.begin(), out.energies.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   return out;
 }
 
+Solution MsaModel::solve_geometric(const VectorX& load, Geometry geometry) {
+  if (!geometric_) geometric_ = std::make_unique<GeometricSolver>(build(configuration_, division_).model);
+  GeometricOptions options;
+  options.geometry = geometry;
+  auto state = std::make_shared<const GeometricState>(
+      geometric_->solve({load.head(geometric_->model().dofs()), {}, {}}, options));
+  Solution out;
+  out.u = VectorX::Zero(built_.model.dofs());  // the coordinates of very stiff parts, which come last, are not used
+  out.u.head(state->u.size()) = state->u;
+  out.spring_tangents = state->spring_tangents;
+  out.converged = state->converged && state->stable;
+  out.iterations = state->iterations;
+  out.residual = state->residual;
+  out.geometric = std::move(state);
+  return out;
+}
+
 MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
+  if (state.geometric) {
+    if (!geometric_) throw std::logic_error("a state of another mechanism");
+    return {above_rounding(geometric_->stiffness(*state.geometric, built_.tool), geometric_->model()), {}};
+  }
   if (!tool_held_) tool_held_ = std::make_unique<Held>(built_, built_.tool);
   tool_held_->displace(state.spring_tangents);
   Stiffness out{tool_held_->reactions(), {}};
@@ -149,6 +175,7 @@ Matrix6X MsaModel::passive_twists(std::size_t leg) const {
 }
 
 Vector6 MsaModel::base_reaction(const Vector6& F_T_W, const Solution& state) {
+  if (state.geometric) return state.geometric->constraint_forces.head<6>();  // the ground's six come first
   if (!supports_) supports_ = std::make_unique<Reactions>(solver_.model(), solver_.elimination());
   VectorX ignored;
   VectorX unbalanced = internal_forces(solver_.model(), state.u, ignored);

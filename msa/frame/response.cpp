@@ -1,24 +1,39 @@
 #include <algorithm>
 
-#include "msa/frame/solver.h"
+#include "msa/frame/geometric_solver.h"
 
 namespace deflect::frame {
+namespace {
 
-std::vector<std::pair<std::string, double>> energies(const Model& m, const VectorX& u) {
-  std::vector<std::pair<std::string, double>> sums;
-  const auto add = [&sums](const std::string& part, double energy) {
-    const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == part; });
-    if (found == sums.end())
-      sums.emplace_back(part, energy);
+struct Sums {
+  std::vector<std::pair<std::string, double>> by_part;
+  void add(const std::string& part, double energy) {
+    const auto found = std::find_if(by_part.begin(), by_part.end(), [&](const auto& s) { return s.first == part; });
+    if (found == by_part.end())
+      by_part.emplace_back(part, energy);
     else
       found->second += energy;
-  };
+  }
+};
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> energies(const Model& m, const VectorX& u) {
+  Sums sums;
   for (const Beam& beam : m.beams) {
     const Vector12 d = end_displacements(beam, u);
-    add(beam.part, 0.5 * d.dot(pull(beam, d)));
+    sums.add(beam.part, 0.5 * d.dot(pull(beam, d)));
   }
-  for (const Spring& spring : m.springs) add(spring.part, energy(spring.law, evaluate(spring.elongation, u)));
-  return sums;
+  for (const Spring& spring : m.springs) sums.add(spring.part, energy(spring.law, evaluate(spring.elongation, u)));
+  return sums.by_part;
+}
+
+std::vector<std::pair<std::string, double>> energies(const Model& m, const GeometricState& state) {
+  Sums sums;
+  for (std::size_t e = 0; e < m.beams.size(); ++e) sums.add(m.beams[e].part, state.beams[e].energy);
+  for (std::size_t i = 0; i < m.springs.size(); ++i)
+    sums.add(m.springs[i].part, energy(m.springs[i].law, state.elongations(static_cast<Eigen::Index>(i))));
+  return sums.by_part;
 }
 
 }  // namespace deflect::frame

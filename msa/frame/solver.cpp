@@ -105,6 +105,11 @@ void Solver::refuse_driven_spins(const VectorX& load) const {
                       name));
 }
 
+void Solver::check(const VectorX& load, const VectorX& values) const {
+  check_consistent(*model_, *elimination_, padded(values, model_->constraints.size()));
+  refuse_driven_spins(padded(load, static_cast<std::size_t>(model_->dofs())));
+}
+
 void Solver::note_redundant() {
   for (const Redundancy& r : elimination_->redundant) {
     std::string names;
@@ -146,8 +151,7 @@ Solution Solver::solve(const VectorX& load, const NewtonOptions& options) {
 Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, const NewtonOptions& options) {
   const VectorX load = padded(given_load, static_cast<std::size_t>(model_->dofs()));
   const VectorX values = padded(given_values, model_->constraints.size());
-  check_consistent(*model_, *elimination_, values);
-  refuse_driven_spins(load);
+  check(load, values);
   Solution s;
   VectorX q = VectorX::Zero(elimination_->independent);
   s.u = elimination_->expand(q, values);

@@ -16,12 +16,16 @@ struct NewtonOptions {
   double tolerance = 1e-12;  ///< of the last step and of the residual, relative; rounding may stop a little above
 };
 
+struct GeometricState;  // geometric_solver.h
+
 struct Solution {
   VectorX u;                ///< by freedom of Solver::model(), the given ones first: m, rad, and the scalars' unit
   VectorX spring_tangents;  ///< N/m or Nm/rad at u
   bool converged = false;
   int iterations = 0;
   double residual = 0;  ///< |Tᵀ(f − f_int)| relative to |Tᵀf| + |Tᵀ f_int|, largest entry
+  std::shared_ptr<const GeometricState>
+      geometric;  ///< where the geometry was not linear: all that is known of the state
 };
 
 /// Keeps elimination, ordering and symbolic analysis of one structure for all its load cases and spring states.
@@ -35,6 +39,8 @@ class Solver {
   /// The structure that is solved: the given one, with the constraints and coordinates that were added behind its own.
   const Model& model() const { return *model_; }
   const Elimination& elimination() const { return *elimination_; }
+  /// How many of the model's constraints, the last ones, hold idle spins.
+  std::size_t held_spins() const { return idle_.size(); }
 
   /// No spring's stiffness depends on its load.
   bool linear_springs() const;
@@ -46,6 +52,9 @@ class Solver {
   /// search on the potential where a spring is nonlinear. Throws ModelError when the load drives an idle spin, and when
   /// a state loses the stiffness that keeps the structure standing.
   Solution solve(const VectorX& load, const NewtonOptions& options = {});
+
+  /// What solve refuses before it begins: values that contradict each other, a load that drives an idle spin.
+  void check(const VectorX& load, const VectorX& values) const;
 
   /// As above for other constraint values (prescribed displacements).
   Solution solve(const VectorX& load, const VectorX& values, const NewtonOptions& options = {});

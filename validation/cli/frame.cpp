@@ -81,10 +81,13 @@ Command frame_command() {
   auto a = std::make_shared<Arguments>();
   return {"frame",
           "A frame of nodes and members under its load cases: displacements, reactions, member forces, shares of the "
-          "strain energy, checks",
+          "strain energy, checks. The file says in which shape equilibrium is written: 'geometry: linear', "
+          "'second-order' (P-delta, stress stiffening, buckling) or 'finite' (rotations of any size, 'load_steps: n'); "
+          "'elements: n' divides a member",
           "deflect frame logan-5-30 --json result.json --out result",
           {{"file", "FILE", "frame file, or the name of a published case in share/deflect/cases", &a->file, true},
-           {"--element-size", "LENGTH", "divide members, with unit (default: one element each, exact at its nodes)",
+           {"--element-size", "LENGTH",
+            "divide members, with unit (default: as the file says, or one element, exact at its nodes if linear)",
             &a->element_size},
            {"--json", "FILE", "write the result", &a->json},
            {"--out", "DIR", "write displacements, reactions, members, shares (.csv) and each case as .msh and .vtu",

@@ -63,13 +63,16 @@ std::vector<Vector6> moments_in_mm(std::vector<Vector6> values) {
   return values;
 }
 
-std::string members(const frame::FrameDescription& f, const frame::CaseResult& c, double size, std::size_t most) {
+std::string members(const frame::FrameDescription& f, const frame::CaseResult& c, bool finite, double size,
+                    std::size_t most) {
   std::vector<Vector6> ends;
   for (const frame::MemberForces& m : c.members) {
     ends.push_back(m.start);
     ends.push_back(m.end);
   }
-  return title("member forces in member axes, N and Nmm", ends.size(), most) +
+  const std::string axes =
+      finite ? "member forces in the axes of the section there, N and Nmm" : "member forces in member axes, N and Nmm";
+  return title(axes, ends.size(), most) +
          table(moments_in_mm(ends), 1 / size, most, {"", "N", "Vy", "Vz", "T", "My", "Mz"},
                [&](std::size_t i) { return f.members[i / 2].first + (i % 2 ? " end" : " start"); });
 }
@@ -97,18 +100,28 @@ std::string shares(const frame::CaseResult& c) {
   return fmt::format("strain energy {:.6g} Nmm\n", 1e3 * c.energy) + aligned(rows);
 }
 
+std::string path(const frame::PathSummary& p) {
+  std::string text = fmt::format("{} step{}, {} iterations\n", p.steps, p.steps == 1 ? "" : "s", p.iterations);
+  if (!p.message.empty()) text += fmt::format("at {:.4g} of the load; {}\n", p.load_factor, p.message);
+  return text;
+}
+
 }  // namespace
 
 std::string frame_report(const frame::FrameDescription& f, const frame::FrameResult& result, std::size_t most) {
   std::string text = fmt::format("{}: {} nodes, {} members, {} load case{}\n", result.name, f.nodes.size(),
                                  f.members.size(), result.cases.size(), result.cases.size() == 1 ? "" : "s");
+  const bool linear = result.geometry == Geometry::linear;
+  if (!linear) text += fmt::format("geometry: {}\n", geometry_names[static_cast<std::size_t>(result.geometry)]);
   for (const std::string& note : result.notes) text += "note: " + note + "\n";
   const double size = 1e3 * frame::characteristic_length(result.structure.model);
   for (const frame::CaseResult& c : result.cases) {
     std::vector<Vector6> u;
     for (const Vector6& d : c.displacements) u.push_back(twist_in_mm(d));
+    text += fmt::format("\nload case '{}'\n", c.name);
+    if (!linear) text += path(c.path);
     text +=
-        fmt::format("\nload case '{}'\n", c.name) + title("displacements, mm and rad", u.size(), most) +
+        title("displacements, mm and rad", u.size(), most) +
         table(u, size, most, {"", "ux", "uy", "uz", "rx", "ry", "rz"}, [&](std::size_t i) { return f.nodes[i].first; });
     if (!f.supports.empty())
       text += title("reactions, N and Nmm", f.supports.size(), most) +
@@ -118,12 +131,13 @@ std::string frame_report(const frame::FrameDescription& f, const frame::FrameRes
       text += title("spring forces on their nodes, N and Nmm", f.springs.size(), most) +
               table(moments_in_mm(c.springs), 1 / size, most, {"", "fx", "fy", "fz", "mx", "my", "mz"},
                     [&](std::size_t i) { return f.springs[i].first; });
-    if (!f.members.empty()) text += members(f, c, size, most) + inner_moments(f, c, most);
+    if (!f.members.empty())
+      text += members(f, c, result.geometry == Geometry::finite, size, most) + inner_moments(f, c, most);
     text += shares(c);
-    text += fmt::format("checks: residual {:.1e}, equilibrium {:.1e}, energy {:.1e}\n", c.checks.residual,
-                        c.checks.equilibrium, c.checks.energy);
+    text += fmt::format("checks: residual {:.1e}, equilibrium {:.1e}", c.checks.residual, c.checks.equilibrium);
+    text += linear ? fmt::format(", energy {:.1e}\n", c.checks.energy) : "\n";
   }
-  if (result.cases.size() > 1) text += fmt::format("\nreciprocity of the cases {:.1e}\n", result.reciprocity);
+  if (linear && result.cases.size() > 1) text += fmt::format("\nreciprocity of the cases {:.1e}\n", result.reciprocity);
   return text;
 }
 

@@ -66,7 +66,18 @@ Json json_constraint(const std::string& name, const frame::FrameConstraint& c, d
 
 double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
-Json json_case(const FrameDescription& f, const CaseResult& c) {
+Json json_path(const frame::PathSummary& p, const std::string& what) {
+  Json json;
+  json["converged"] = p.converged;
+  json["stable"] = p.stable;
+  json["load_factor"] = json_number(p.load_factor, what + ", load factor");
+  json["steps"] = p.steps;
+  json["iterations"] = p.iterations;
+  json["message"] = p.message;
+  return json;
+}
+
+Json json_case(const FrameDescription& f, const CaseResult& c, bool linear) {
   const std::string what = "case " + c.name;
   const auto row = [&](const char* kind, const std::string& name, const Vector6& values, const Names& names,
                        const frame::Freedoms& held) {
@@ -76,6 +87,7 @@ Json json_case(const FrameDescription& f, const CaseResult& c) {
     return json;
   };
   Json json;
+  if (!linear) json["path"] = json_path(c.path, what);
   for (const char* list : {"displacements", "reactions", "springs", "constraints", "members"})
     json[list] = Json::array();
   for (std::size_t i = 0; i < f.nodes.size(); ++i)
@@ -102,7 +114,7 @@ Json json_case(const FrameDescription& f, const CaseResult& c) {
   }
   json["checks"]["residual"] = json_number(c.checks.residual, what + ", residual");
   json["checks"]["equilibrium"] = json_number(c.checks.equilibrium, what + ", equilibrium");
-  json["checks"]["energy"] = json_number(c.checks.energy, what + ", energy check");
+  if (linear) json["checks"]["energy"] = json_number(c.checks.energy, what + ", energy check");
   return json;
 }
 
@@ -136,9 +148,11 @@ std::string members_header() {
 std::string frame_json(const FrameDescription& f, const FrameResult& result) {
   Json json;
   json["frame"] = result.name;
+  json["geometry"] = geometry_names[static_cast<std::size_t>(result.geometry)];
   json["cases"] = Json::object();
-  for (const CaseResult& c : result.cases) json["cases"][c.name] = json_case(f, c);
-  json["reciprocity"] = json_number(result.reciprocity, "reciprocity");
+  const bool linear = result.geometry == Geometry::linear;
+  for (const CaseResult& c : result.cases) json["cases"][c.name] = json_case(f, c, linear);
+  if (linear) json["reciprocity"] = json_number(result.reciprocity, "reciprocity");
   json["notes"] = result.notes;
   return json_text(json);
 }

@@ -1,0 +1,283 @@
+#include "msa/frame/geometric_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "msa/base/error.h"
+
+namespace deflect::frame {
+namespace {
+
+double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
+
+VectorX padded(const VectorX& v, Eigen::Index size) {
+  VectorX out = VectorX::Zero(size);
+  out.head(v.size()) = v;
+  return out;
+}
+
+VectorX stiffness_at(const Model& m, double force) {
+  VectorX k(static_cast<Eigen::Index>(m.springs.size()));
+  for (std::size_t i = 0; i < m.springs.size(); ++i)
+    k(static_cast<Eigen::Index>(i)) = tangent_at_force(m.springs[i].law, force);
+  return k;
+}
+
+/// Lengths, and rotations times the size of the structure.
+double size_of(const VectorX& u, std::size_t nodes, double length) {
+  double size = 0;
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    size = std::max(size, std::abs(u(i)) * (i < static_cast<Eigen::Index>(6 * nodes) && i % 6 >= 3 ? length : 1));
+  return size;
+}
+
+double largest_spin(const VectorX& u, std::size_t nodes) {
+  double spin = 0;
+  for (std::size_t i = 0; i < nodes; ++i)
+    spin = std::max(spin, u.segment<3>(static_cast<Eigen::Index>(6 * i + 3)).norm());
+  return spin;
+}
+
+}  // namespace
+
+/// A load on its way.
+struct GeometricSolver::Work {
+  explicit Work(const Model& m)
+      : shape(m),
+        lambda(VectorX::Zero(static_cast<Eigen::Index>(m.constraints.size()))),
+        length(characteristic_length(m)) {}
+
+  VectorX loads, values;  // in full
+  std::vector<double> strains;
+  Circumstances with;
+  double force = 0;  // the largest that springs may see
+  VectorX least_tangents;
+  Shape shape;
+  VectorX lambda;
+  double length;
+  std::string why;  // the last step failed
+
+  /// Heat comes with the load.
+  void strain(double factor) {
+    for (std::size_t e = 0; e < strains.size(); ++e) with.strains[e] = factor * strains[e];
+  }
+  Linearisation linearise(const Model& m, Geometry geometry) const {
+    return geometry == Geometry::finite ? linearise_finite(m, shape, with)
+                                        : linearise_second_order(m, shape, lambda, with);
+  }
+};
+
+GeometricSolver::GeometricSolver(Model given) : linear_(given), model_(std::move(given)), notes_(linear_.notes()) {
+  std::vector<char> redundant(model_.constraints.size(), 0);
+  for (const Redundancy& r : linear_.elimination().redundant)
+    if (const auto k = static_cast<std::size_t>(r.constraint); k < redundant.size()) redundant[k] = 1;
+  const std::vector<Constraint>& solved = linear_.model().constraints;
+  model_.constraints.insert(model_.constraints.end(), solved.end() - static_cast<std::ptrdiff_t>(linear_.held_spins()),
+                            solved.end());
+  redundant.resize(model_.constraints.size(), 0);
+  for (std::size_t k = 0; k < redundant.size(); ++k)
+    if (!redundant[k]) active_.push_back(k);
+}
+
+/// The nodes with the constraints as they are in a shape, redundant ones left out.
+Model GeometricSolver::constrained(const std::vector<LinearForm>& forms) const {
+  Model m;
+  m.nodes = model_.nodes;
+  m.scalars = model_.scalars;
+  for (const std::size_t k : active_) m.constraints.push_back({forms[k], 0, model_.constraints[k].name});
+  return m;
+}
+
+/// The size of the forces that prescribed values bring, were nothing else to move.
+double GeometricSolver::driving_force(const Linearisation& rest, const VectorX& values) const {
+  const Elimination e = eliminate(constrained(rest.forms));
+  VectorX active(static_cast<Eigen::Index>(active_.size())), ignored;
+  for (std::size_t k = 0; k < active_.size(); ++k)
+    active(static_cast<Eigen::Index>(k)) = values(static_cast<Eigen::Index>(active_[k]));
+  return largest(internal_forces(model_, e.expand(VectorX::Zero(e.independent), active), ignored));
+}
+
+/// The forces of constraints under a part of the load, in work.lambda; returns what their values lack.
+VectorX GeometricSolver::update_forces(Work& work, const Linearisation& at, const Elimination& e,
+                                       const Model& constraints, double factor) const {
+  const VectorX forces = Reactions(constraints, e).forces(at.forces - factor * work.loads);
+  VectorX gaps(static_cast<Eigen::Index>(active_.size()));
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const auto c = static_cast<Eigen::Index>(active_[k]), i = static_cast<Eigen::Index>(k);
+    work.lambda(c) = forces(i);
+    gaps(i) = factor * work.values(c) - at.values(c);
+  }
+  return gaps;
+}
+
+/// Newton at a part of the load; false leaves the reason in work.why.
+bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions& options, GeometricState& state) const {
+  const VectorX loads = factor * work.loads;
+  work.strain(factor);
+  double previous = std::numeric_limits<double>::infinity();
+  for (int i = 1; i <= options.max_iterations; ++i) {
+    ++state.iterations;
+    // At rest a spring has the stiffness that it will have under the load, later no less than a small part of it.
+    const bool at_rest = i == 1 && state.load_factor == 0;
+    work.with.least_tangents = at_rest ? stiffness_at(model_, factor * work.force) : work.least_tangents;
+    const Linearisation at = work.linearise(model_, options.geometry);
+    const Model constraints = constrained(at.forms);
+    const Elimination e = eliminate(constraints);
+    const VectorX gaps = update_forces(work, at, e, constraints, factor);
+    const Tangent tangent(e, tangent_stiffness(at, work.lambda, loads));
+    if (!tangent.regular()) {
+      work.why = "the tangent stiffness is singular";
+      return false;
+    }
+    const VectorX step = tangent.solve(loads - at.forces, gaps);
+    if (!step.allFinite() ||
+        (options.geometry == Geometry::finite && largest_spin(step, model_.nodes.size()) > pi / 2)) {
+      work.why = "a node would turn by more than a right angle at once";
+      return false;
+    }
+    work.shape.move(step);
+    const double change = size_of(step, model_.nodes.size(), work.length);
+    const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
+    const bool stalled = change < 1e-6 * size && change > 0.5 * previous;  // rounding is all that is left
+    if (change <= options.tolerance * size || stalled) {
+      // Across a buckling or limit load Newton finds equilibria that nothing would stay in.
+      const bool stable = options.geometry == Geometry::second_order || tangent.stable();
+      if (!stable) work.why = "the equilibrium is unstable there, a buckling or limit load was passed";
+      return stable;
+    }
+    previous = change;
+  }
+  work.why = fmt::format("Newton did not converge in {} iterations", options.max_iterations);
+  return false;
+}
+
+/// What is known of the shape that was reached.
+void GeometricSolver::conclude(Work& work, GeometricState& state) const {
+  const VectorX loads = state.load_factor * work.loads;
+  work.strain(state.load_factor);
+  work.with.least_tangents = work.least_tangents;
+  Linearisation at = work.linearise(model_, state.geometry);
+  const Model constraints = constrained(at.forms);
+  const Elimination e = eliminate(constraints);
+  const VectorX gaps = update_forces(work, at, e, constraints, state.load_factor);
+  state.K = tangent_stiffness(at, work.lambda, loads);
+  const Tangent tangent(e, state.K);
+  state.stable = tangent.stable();
+  if (const double size = size_of(work.shape.path, model_.nodes.size(), work.length); size > 0 && tangent.regular())
+    state.residual = size_of(tangent.solve(loads - at.forces, gaps), model_.nodes.size(), work.length) / size;
+  if ((at.spring_tangents.array() <= work.least_tangents.array()).any()) {  // springs at rest: without the floor
+    work.with.least_tangents.setZero();
+    at = work.linearise(model_, state.geometry);
+    state.K = tangent_stiffness(at, work.lambda, loads);
+  }
+  state.u = state.geometry == Geometry::finite ? work.shape.displacements() : work.shape.path;
+  state.constraint_forces = work.lambda;
+  state.elongations = at.elongations;
+  state.spring_forces = at.spring_forces;
+  state.spring_tangents = at.spring_tangents;
+  state.beams = std::move(at.beams);
+  state.forms = std::move(at.forms);
+  state.spring_forms = std::move(at.spring_forms);
+  for (const auto& [part, energy] : energies(model_, state)) state.energy += energy;
+  // A constraint that others implied in the undeformed shape may say more in this one.
+  for (std::size_t k = 0, a = 0; state.converged && k < model_.constraints.size(); ++k) {
+    if (a < active_.size() && active_[a] == k) {
+      ++a;
+      continue;
+    }
+    const auto c = static_cast<Eigen::Index>(k);
+    if (std::abs(at.values(c) - state.load_factor * work.values(c)) > 1e-7 * work.length) {
+      state.converged = false;
+      state.message = fmt::format(
+          "constraint '{}', which others implied in the undeformed shape, does not hold in the "
+          "displaced one",
+          model_.constraints[k].name);
+    }
+  }
+}
+
+GeometricState GeometricSolver::solve(const GeometricLoad& load, const GeometricOptions& options) {
+  const auto constraints = static_cast<Eigen::Index>(model_.constraints.size());
+  const auto held = static_cast<Eigen::Index>(linear_.held_spins());
+  Work work(model_);
+  work.loads = padded(load.forces, model_.dofs());
+  work.values = load.values.size() ? padded(load.values, constraints) : constraint_values(model_);
+  work.strains = load.strains;
+  work.strains.resize(model_.beams.size(), 0);
+  work.with.strains = work.strains;
+  work.with.first_hold = static_cast<std::size_t>(constraints - held);
+  linear_.check(work.loads, work.values.head(constraints - held));
+  work.with.least_tangents = VectorX::Zero(static_cast<Eigen::Index>(model_.springs.size()));
+  GeometricState state;
+  state.geometry = options.geometry;
+
+  // The forces that springs will see set where their stiffness begins and how little of it a step takes (solver.cpp).
+  const Linearisation rest = work.linearise(model_, options.geometry);
+  double force = std::max(largest(work.loads), largest(rest.forces));
+  if (force == 0 && largest(work.values) > 0) force = driving_force(rest, work.values);
+  work.force = force;
+  work.least_tangents = 1e-8 * stiffness_at(model_, force);
+
+  const bool driven = force > 0 || largest(work.values) > 0;
+  const double largest_step = options.geometry == Geometry::finite ? 1.0 / std::max(1, options.load_steps) : 1;
+  double step = largest_step;
+  int halved = 0;
+  state.converged = true;
+  while (driven && state.load_factor < 1) {
+    const Shape before = work.shape;
+    const VectorX lambda = work.lambda;
+    const double factor = state.load_factor + step > 1 - 1e-9 ? 1 : state.load_factor + step;
+    if (iterate(work, factor, options, state)) {
+      state.load_factor = factor;
+      ++state.steps;
+      step = std::min(2 * step, largest_step);
+      halved = std::max(0, halved - 1);
+      continue;
+    }
+    work.shape = before;
+    work.lambda = lambda;
+    step /= 2;
+    if (options.geometry != Geometry::finite || ++halved > options.halvings) {
+      state.converged = false;
+      state.message =
+          fmt::format("no equilibrium was found beyond {:.4g} of the load: {}", state.load_factor, work.why);
+      break;
+    }
+  }
+  if (!driven) state.load_factor = 1;
+  conclude(work, state);
+  if (state.message.empty() && !state.stable)
+    state.message = options.geometry == Geometry::finite
+                        ? "the equilibrium is unstable"
+                        : "the load is beyond the first buckling load: K_E + K_G is not positive definite";
+  return state;
+}
+
+Matrix6 GeometricSolver::stiffness(const GeometricState& state, int node) const {
+  Model m = constrained(state.forms);
+  const auto first = static_cast<Eigen::Index>(m.constraints.size());
+  m.fix(node, "held");
+  const Elimination e = eliminate(m);
+  const Tangent tangent(e, state.K);
+  if (!tangent.regular())
+    throw ModelError(fmt::format("with node '{}' held, the rest of the structure has no stiffness in this state",
+                                 model_.nodes[static_cast<std::size_t>(node)].name));
+  MatrixX values = MatrixX::Zero(first + 6, 6);
+  values.bottomRows<6>().setIdentity();
+  const MatrixX moved = tangent.solve(MatrixX::Zero(m.dofs(), 6), values);
+  return Reactions(m, e).forces(state.K * moved).bottomRows<6>();
+}
+
+MatrixX GeometricSolver::response(const GeometricState& state, const MatrixX& loads) const {
+  const Model m = constrained(state.forms);
+  const Tangent tangent(eliminate(m), state.K);
+  if (!tangent.regular()) throw ModelError("in this state the structure has no stiffness against some motion");
+  MatrixX all = MatrixX::Zero(m.dofs(), loads.cols());
+  all.topRows(loads.rows()) = loads;
+  return tangent.solve(all, MatrixX::Zero(static_cast<Eigen::Index>(active_.size()), loads.cols()));
+}
+
+}  // namespace deflect::frame
