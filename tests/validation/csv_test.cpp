@@ -52,6 +52,8 @@ TEST(Csv, SameTableHoweverItWasSaved) {
       "a,b\n1.5,2\n-3,4e2\n\n  \n\r\n",        // blank lines at the end
       "a;b\n1,5;2\n-3;4e2\n",                  // semicolons, decimal commas
       "a;b\n1.5;2\n-3;4e2\n",                  // semicolons, decimal points
+      "a\tb\n1.5\t2\n-3\t4e2\n",               // tabs
+      "a\tb\n1,5\t2\n-3\t 4e2\n",              // tabs, decimal commas
       "\"a\",\"b\"\n\"1.5\",2\n-3,\"4e2\"\n",  // quoted
       " a , b\n 1.5 ,\t2\n -3, +4e2 \n",       // spaces
   };
@@ -96,8 +98,12 @@ TEST(Csv, RefusesBadFilesWithLineAndReason) {
       {"a,,c\n1,2,3\n", "data.csv:1:", "column 2 has no name"},
       {"a,b,\n1,2,3\n", "data.csv:1:", "separator at the end"},
       {"a,b;c\n1,2\n", "data.csv:1:", "both commas and semicolons"},
+      {"# bench 3\na,b\n1,2\n", "data.csv:1:", "no comment lines"},
       {"a,b\n1,2\n1,2,3\n", "data.csv:3:", "3 cells where the header has 2"},
+      {"a,b\n1,2,\n", "data.csv:2:", "separator at the end"},
       {"a,b\n1\n", "data.csv:2:", "1 cells"},
+      {"a,b\n# pause\n1,2\n", "data.csv:2:", "no comment lines"},
+      {"a\tb\n1\t\t2\n", "data.csv:2:", "3 cells"},
       {"a,b\n1,2\n\n3,4\n", "data.csv:3:", "blank line"},
       {"a,b\n1,\"2\n3,4\n", "data.csv:2:", "never ends"},
       {"a,b\n1,\"2\"x\n", "data.csv:2:", "closing quote"},
@@ -191,7 +197,8 @@ TEST_F(Points, RefusalsNameFileLineAndRemedy) {
   } cases[] = {
       {"x_mm,y_mm\n1,2\n", ":1:", "column 'z_mm' is missing"},
       {"x_mm,y_mm,z_mm,rol_deg\n1,2,3,4\n", ":1:", "unknown column 'rol_deg', did you mean 'roll_deg'?"},
-      {"x_mm,y_mm,z\n1,2,3\n", ":1:", "unknown column 'z'"},
+      {"x_mm,y_mm,z\n1,2,3\n", ":1:", "unknown column 'z': the unit is missing, did you mean 'z_mm'?"},
+      {"x_mm,y_mm,z_cm\n1,2,3\n", ":1:", "unknown column 'z_cm', did you mean 'z_mm', with its numbers in mm?"},
       {"x_mm,y_mm,z_mm\n1,2,3\n1,,3\n", ":3: column 'y_mm':", "empty"},
       {"x_mm,y_mm,z_mm\n1,2,nan\n", ":2: column 'z_mm':", "'nan' is not a finite number"},
       {"pose,x_mm,y_mm,z_mm\na,1,2,3\na,1,2,4\n", ":3: column 'pose':", "'a' is already the label of line 2"},

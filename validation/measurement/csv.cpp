@@ -6,9 +6,11 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "validation/measurement/column_names.h"
 
 namespace deflect {
 namespace {
@@ -98,15 +100,21 @@ class CsvParser {
   }
 
   void find_separator() {
-    bool quoted = false, comma = false, semicolon = false;
+    bool quoted = false, comma = false, semicolon = false, tab = false;
     for (std::size_t i = at_; i < bytes().size() && (quoted || bytes()[i] != '\n'); ++i) {
       const char c = bytes()[i];
       if (c == '"') quoted = !quoted;
       comma = comma || (!quoted && c == ',');
       semicolon = semicolon || (!quoted && c == ';');
+      tab = tab || (!quoted && c == '\t');
     }
     if (comma && semicolon) refuse(1, "the header has both commas and semicolons: separate columns by one of them");
-    separator_ = semicolon ? ';' : ',';
+    separator_ = semicolon ? ';' : tab && !comma ? '\t' : ',';
+  }
+
+  /// Space around a cell; a tab is none where it separates.
+  bool padding(std::size_t i) const {
+    return i < bytes().size() && (bytes()[i] == ' ' || (bytes()[i] == '\t' && separator_ != '\t'));
   }
 
   /// The next record's cells into `cells_`; false at the end of the file. Afterwards start_ is the record's
@@ -133,7 +141,7 @@ class CsvParser {
 
   /// Leaves at_ on the separator, on the line end or behind the last byte.
   CsvTable::Cell next_cell() {
-    while (at_ < bytes().size() && (bytes()[at_] == ' ' || bytes()[at_] == '\t')) ++at_;
+    while (padding(at_)) ++at_;
     if (at_ < bytes().size() && bytes()[at_] == '"') return quoted_cell();
     const std::size_t begin = at_;
     for (; !ends_cell(at_); ++at_) {
@@ -159,7 +167,7 @@ class CsvParser {
       if (c == '\n') ++line_;
       table_.bytes_[to++] = c;
     }
-    while (at_ < bytes().size() && (bytes()[at_] == ' ' || bytes()[at_] == '\t')) ++at_;
+    while (padding(at_)) ++at_;
     if (!ends_cell(at_)) refuse(line_, "text follows the closing quote of a cell");
     return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(to - begin)};
   }
@@ -171,17 +179,19 @@ class CsvParser {
     next_record();
     table_.header_line_ = start_;
     if (blank()) refuse(start_, "the first line is blank, the names of the columns are wanted there");
+    std::unordered_map<std::string, std::size_t> seen;
     for (const CsvTable::Cell cell : cells_) {
-      std::string name(view(cell));
+      const std::string name(view(cell));
+      const std::size_t number = table_.header_.size() + 1;
+      if (name.starts_with('#')) refuse(start_, "the header begins with '#': remove it, there are no comment lines");
       if (name.empty())
-        refuse(start_,
-               fmt::format("column {} has no name{}", table_.header_.size() + 1,
-                           table_.header_.size() + 1 == cells_.size() ? ": is there a separator at the end?" : ""));
-      const auto same = std::find(table_.header_.begin(), table_.header_.end(), name);
-      if (same != table_.header_.end())
-        refuse(start_, fmt::format("column '{}' stands twice, as column {} and column {}: remove or rename one", name,
-                                   same - table_.header_.begin() + 1, table_.header_.size() + 1));
-      table_.header_.push_back(std::move(name));
+        refuse(start_, fmt::format("column {} has no name{}", number,
+                                   number == cells_.size() ? ": is there a separator at the end?" : ""));
+      const auto [same, is_new] = seen.emplace(name, number);
+      if (!is_new)
+        refuse(start_, fmt::format("column '{}' stands twice, as column {} and column {}: remove or rename one",
+                                   excerpt(name), same->second, number));
+      table_.header_.push_back(name);
     }
   }
 
@@ -194,8 +204,9 @@ class CsvParser {
       return false;
     }
     if (cells_.size() != table_.header_.size())
-      refuse(start_, fmt::format("{} cells where the header has {} columns", cells_.size(), table_.header_.size()));
-    if (separator_ == ';' && !table_.decimal_comma_) {
+      refuse(start_, fmt::format("{} cells where the header has {} columns{}", cells_.size(), table_.header_.size(),
+                                 remedy_of_count()));
+    if (separator_ != ',' && !table_.decimal_comma_) {
       double ignored = 0;
       table_.decimal_comma_ = std::any_of(
           cells_.begin(), cells_.end(), [&](CsvTable::Cell cell) { return decimal_comma_number(view(cell), ignored); });
@@ -203,6 +214,14 @@ class CsvParser {
     table_.lines_.push_back(static_cast<std::uint32_t>(start_));
     table_.cells_.insert(table_.cells_.end(), cells_.begin(), cells_.end());
     return true;
+  }
+
+  const char* remedy_of_count() const {
+    if (view(cells_.front()).starts_with('#')) return ": remove the line, there are no comment lines";
+    if (cells_.size() < table_.header_.size()) return ": is the line cut short? A cell without a value stays empty";
+    if (cells_.size() == table_.header_.size() + 1 && cells_.back().size == 0)
+      return ": is there a separator at the end?";
+    return ": quote a cell that holds a separator; decimal commas need semicolons between cells";
   }
 
   CsvTable table_;
@@ -229,17 +248,17 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
     if (!decimal_comma_ || cell.find('.') == cell.npos) return value;
     // "1.234" beside "1,5" may be a thousand or a decimal point: a wrong guess is a factor of 1000.
     refuse(row, column,
-           fmt::format("'{}' has a decimal point in a file with decimal commas; write them all alike", cell));
+           fmt::format("'{}' has a decimal point in a file with decimal commas; write them all alike", excerpt(cell)));
   }
   if (decimal_comma_ && decimal_comma_number(cell, value)) return value;
   if (cell.empty()) refuse(row, column, "the cell is empty; a finite number is wanted");
   refuse(row, column,
-         fmt::format("'{}' is not a finite number; write one such as {}", cell,
+         fmt::format("'{}' is not a finite number; write one such as {}", excerpt(cell),
                      decimal_comma_ ? "-12,5 or 1,25e-3" : "-12.5 or 1.25e-3"));
 }
 
 void CsvTable::refuse(std::size_t row, std::size_t column, std::string_view message) const {
-  throw InputError(fmt::format("{}:{}: column '{}': {}", file_, line(row), header_[column], message));
+  throw InputError(fmt::format("{}:{}: column '{}': {}", file_, line(row), excerpt(header_[column]), message));
 }
 
 void CsvTable::refuse_header(std::string_view message) const {

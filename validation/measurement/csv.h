@@ -1,9 +1,9 @@
 // A strict reader of CSV tables with a header row.
 //
 // UTF-8 with or without byte order mark; lines end with LF or CRLF; cells are separated by commas, or by
-// semicolons where the header is, and then numbers may have decimal commas (one sort per file). Cells may be
+// semicolons or tabs where the header is, and then numbers may have decimal commas (one sort per file). Cells may be
 // quoted, "" inside quotes is a quote, spaces around a cell do not count. Blank lines may stand at the end
-// only.
+// only; there are no comment lines.
 //
 // Every refusal is one InputError that begins with "file:line:" and says what to do.
 #pragma once

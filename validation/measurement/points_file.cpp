@@ -6,24 +6,18 @@
 #include <map>
 #include <optional>
 
-#include "msa/base/units.h"
+#include "validation/measurement/column_names.h"
 #include "validation/measurement/csv.h"
 
 namespace deflect {
 namespace {
 
-const std::vector<std::string> pose_columns = {"x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg"};
-
 void check_columns(const CsvTable& table) {
   std::vector<std::string> known = {"pose"};
   known.insert(known.end(), pose_columns.begin(), pose_columns.end());
-  for (const std::string& name : table.header()) {
-    if (name.starts_with("note") || std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = nearest(name, known);
-    table.refuse_header(fmt::format("unknown column '{}'{} (columns: {}, and note…)", name,
-                                    near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
-                                    fmt::join(known, ", ")));
-  }
+  for (const std::string& name : table.header())
+    if (!is_note(name) && std::find(known.begin(), known.end(), name) == known.end())
+      table.refuse_header(unknown_column(name, known));
   for (std::size_t i = 0; i < 3; ++i)
     if (!table.column(pose_columns[i]))
       table.refuse_header(fmt::format("column '{}' is missing: x_mm, y_mm and z_mm are needed", pose_columns[i]));

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+
+#include "msa/base/files.h"
+#include "validation/measurement/measurement_columns.h"
+#include "validation/measurement/measurements.h"
+
+namespace deflect {
+namespace {
+
+/// The shortest number whose double, divided by `per_SI`, is `value`.
+std::string number_text(double value, double per_SI = 1) {
+  if (per_SI == 1) return fmt::format("{}", value);
+  const double scaled = value * per_SI;
+  for (const int digits : {15, 16}) {
+    const std::string text = fmt::format("{:.{}g}", scaled, digits);
+    double rounded = 0;
+    std::from_chars(text.data(), text.data() + text.size(), rounded);
+    if (rounded / per_SI == value) return fmt::format("{}", rounded);
+  }
+  for (const double neighbour : {std::nextafter(scaled, 0), std::nextafter(scaled, 2 * scaled)})
+    if (neighbour / per_SI == value) return fmt::format("{}", neighbour);
+  return fmt::format("{}", scaled);
+}
+
+std::string number_text(const std::optional<double>& value, double per_SI = 1) {
+  return value ? number_text(*value, per_SI) : "";
+}
+
+std::string quoted_where_needed(const std::string& text) {
+  const bool padded = !text.empty() && (std::string_view(" \t").find(text.front()) != std::string_view::npos ||
+                                        std::string_view(" \t").find(text.back()) != std::string_view::npos);
+  if (!padded && text.find_first_of(",;\"\r\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+struct Column {
+  std::string name;
+  std::function<std::string(const Reading&)> cell;
+};
+
+/// Those that say something: the reader's defaults stand for the others.
+std::vector<Column> columns_of(const Measurements& m) {
+  const auto any = [&](const auto& has) { return std::any_of(m.readings.begin(), m.readings.end(), has); };
+  std::vector<Column> columns = {
+      {"pose", [&m](const Reading& r) { return quoted_where_needed(m.poses[r.pose].label); }}};
+  if (any([](const Reading& r) { return r.sequence.has_value(); }))
+    columns.push_back({"sequence", [](const Reading& r) { return number_text(r.sequence); }});
+  for (std::size_t i = 0; i < (m.by_joints() ? m.joint_rotates.size() : 6); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (m.by_joints()) {
+      const double per_SI = m.joint_rotates[i] ? 1 : 1e3;
+      columns.push_back({joint_column(i, m.joint_rotates[i]), [&m, at, per_SI](const Reading& r) {
+                           return number_text(m.poses[r.pose].joints(at), per_SI);
+                         }});
+    } else {
+      columns.push_back(
+          {pose_columns[i], [&m, at](const Reading& r) { return number_text(m.poses[r.pose].pose_mm_deg(at)); }});
+    }
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (i < 3 || any([at](const Reading& r) { return r.load(at) != 0; }))
+      columns.push_back(
+          {load_columns[i], [at](const Reading& r) { return number_text(r.load(at), at < 3 ? 1 : 1e3); }});
+  }
+  if (m.temperature_recorded || any([](const Reading& r) { return r.temperature_C != 20; }))
+    columns.push_back({"temperature_C", [](const Reading& r) { return number_text(r.temperature_C); }});
+  for (std::size_t i = 0; i < 6; ++i)
+    if (i < 3 || any([i](const Reading& r) { return r.displacement[i].has_value(); }))
+      columns.push_back(
+          {displacement_columns[i], [i](const Reading& r) { return number_text(r.displacement[i], i < 3 ? 1e3 : 1); }});
+  if (any([](const Reading& r) { return r.sigma_u.has_value(); }))
+    columns.push_back({"sigma_u_mm", [](const Reading& r) { return number_text(r.sigma_u, 1e3); }});
+  if (any([](const Reading& r) { return r.sigma_th.has_value(); }))
+    columns.push_back({"sigma_th_rad", [](const Reading& r) { return number_text(r.sigma_th); }});
+  for (std::size_t i = 0; i < m.note_columns.size(); ++i)
+    columns.push_back(
+        {quoted_where_needed(m.note_columns[i]), [i](const Reading& r) { return quoted_where_needed(r.notes[i]); }});
+  return columns;
+}
+
+}  // namespace
+
+std::string measurements_text(const Measurements& m) {
+  const std::vector<Column> columns = columns_of(m);
+  std::string text;
+  for (const Column& column : columns) text += (text.empty() ? "" : ",") + column.name;
+  text += '\n';
+  for (const Reading& reading : m.readings)
+    for (const Column& column : columns) {
+      text += column.cell(reading);
+      text += &column == &columns.back() ? '\n' : ',';
+    }
+  return text;
+}
+
+void write_measurements(const std::filesystem::path& path, const Measurements& m) {
+  write_text(path, measurements_text(m));
+}
+
+}  // namespace deflect

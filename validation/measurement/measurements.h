@@ -1,0 +1,74 @@
+// Measurements of a device: static readings of the TCP's displacement under known loads, and their file.
+//
+// Inside everything is SI; only the six numbers of a commanded pose stay as they were given. Loads act on the TCP,
+// F_T_W = [f; m]; displacements are those of the TCP relative to the unloaded machine, d_T_W = [δ; θ]; both in base
+// axes.
+//
+// The file (CSV, see csv.h) has one row per reading and these columns in any order:
+//   pose                                        label; readings with one label share one approach of one pose
+//   x_mm y_mm z_mm roll_deg pitch_deg yaw_deg   commanded pose, R = Rz(yaw) Ry(pitch) Rx(roll); all six
+//   q1_rad … qn_rad (qi_mm where i slides)      or commanded joint coordinates, all n, instead of the six
+//   fx_N fy_N fz_N mx_Nmm my_Nmm mz_Nmm         load; a moment without a column is zero
+//   ux_mm uy_mm uz_mm thx_rad thy_rad thz_rad   displacement, at least one column; an empty cell was not measured
+//   sigma_u_mm sigma_th_rad                     standard deviation of one reading, > 0; columns and cells may be
+//   missing sequence                                    order of the readings: numbers, no two alike; all rows or none
+//   temperature_C                               20 where the column or the cell is missing
+//   note…                                       remarks, kept as text
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "msa/base/spatial.h"
+
+namespace deflect {
+
+struct Reading {
+  std::size_t pose = 0;                               ///< index into Measurements::poses
+  Vector6 load = Vector6::Zero();                     ///< F_T_W: N, Nm
+  std::array<std::optional<double>, 6> displacement;  ///< d_T_W: m, rad; empty where not measured
+  std::optional<double> sigma_u, sigma_th;            ///< m, rad; empty where not given
+  std::optional<double> sequence;                     ///< in all readings or in none
+  double temperature_C = 20;
+  std::vector<std::string> notes;  ///< one per Measurements::note_columns
+  std::size_t line = 0;            ///< of the file
+};
+
+/// The readings of one approach of one commanded pose.
+struct PoseGroup {
+  std::string label;                      ///< not empty, of this group alone
+  Vector6 pose_mm_deg = Vector6::Zero();  ///< as given; pose_from() makes a Pose of it
+  VectorX joints;                         ///< or commanded joint coordinates: m, rad
+  std::vector<std::size_t> readings;      ///< indices, ascending
+};
+
+struct Measurements {
+  std::string origin;               ///< file, for messages
+  std::vector<bool> joint_rotates;  ///< per joint coordinate: rad, else m; empty where poses are commanded
+  std::vector<std::string> note_columns;
+  bool temperature_recorded = false;  ///< false: the readings' 20 °C are an assumption
+  std::vector<PoseGroup> poses;       ///< in the order of their first readings
+  std::vector<Reading> readings;      ///< in the file's order
+
+  bool by_joints() const { return !joint_rotates.empty(); }
+};
+
+/// Throws InputError "file:line: column 'name': what, remedy" for whatever the table above does not allow, for one
+/// label at two commanded poses and for a sequence number that stands twice.
+Measurements read_measurements(const std::filesystem::path&);
+Measurements parse_measurements(std::string text, const std::string& origin);
+
+/// The file that reads back as the same measurements, lines aside: every number is the shortest that does, which for
+/// a value in m or Nm that is no multiple of any double in mm or Nmm may be one unit in the last place off. Columns
+/// that would say nothing are left out. Written whole or not at all.
+void write_measurements(const std::filesystem::path&, const Measurements&);
+std::string measurements_text(const Measurements&);
+
+/// The readings in the order they were taken. Throws InputError where the file has no sequence; `purpose` ("friction")
+/// says in the message what needs it.
+std::vector<std::size_t> in_sequence(const Measurements&, const std::string& purpose);
+
+}  // namespace deflect
