@@ -30,5 +30,6 @@ Command frame_command();
 Command map_command();
 Command export_command();
 Command devices_command();
+Command check_command();
 
 }  // namespace deflect::cli

@@ -45,7 +45,8 @@ int main(int argc, char** argv) {
 
   const std::vector<Command> commands = {deflect::cli::solve_command(),  deflect::cli::validate_command(),
                                          deflect::cli::frame_command(),  deflect::cli::map_command(),
-                                         deflect::cli::export_command(), deflect::cli::devices_command()};
+                                         deflect::cli::export_command(), deflect::cli::devices_command(),
+                                         deflect::cli::check_command()};
   std::vector<CLI::App*> parsers;
   for (const Command& command : commands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);

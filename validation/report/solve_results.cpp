@@ -99,8 +99,8 @@ std::string solve_json(const SolveResult& result) {
 std::string solve_report(const SolveResult& result) {
   const Vector6 &p = result.pose_mm_deg, &F = result.load_N_Nmm;
   const auto check = [](bool held) { return held ? "yes" : "NO"; };
-  std::string text =
-      fmt::format("pose   x {:.9g}, y {:.9g}, z {:.9g} mm; roll {:.9g}, pitch {:.9g}, yaw {:.9g} deg\n", p[0], p[1], p[2], p[3], p[4], p[5]);
+  std::string text = fmt::format("pose   x {:.9g}, y {:.9g}, z {:.9g} mm; roll {:.9g}, pitch {:.9g}, yaw {:.9g} deg\n",
+                                 p[0], p[1], p[2], p[3], p[4], p[5]);
   text += fmt::format("load   fx {}, fy {}, fz {} N; mx {}, my {}, mz {} Nmm\n\n", F[0], F[1], F[2], F[3], F[4], F[5]);
   text += displacement_table(result);
   text += fmt::format("relative difference {:.1e}\n\n", result.relative_difference);

@@ -1,0 +1,28 @@
+// The checks of a stiffness from elsewhere as a report for a person, JSON and tables.
+#pragma once
+
+#include <string>
+
+#include "validation/compare/check_matrix.h"
+
+namespace deflect {
+
+/// The names that the report speaks of.
+struct CheckedFiles {
+  std::string matrix;
+  std::string reference;  ///< a file, or a device at a pose; empty without
+};
+
+/// Verdict in a sentence with its remedy, table of checks, structure, and what one matrix cannot tell.
+std::string check_report(const MatrixCheck&, const CheckedFiles&);
+
+/// {"file", "reference", "passes", "checks": [{"check", "quantity", "measured", "at_least", "at_most", "passes"}, …],
+/// "diagnosis": [{"id", "sentence", "remedy", "certain"}, …], "max_asymmetry", "eigenvalues_N_per_mm", …}; a check
+/// that could not be judged has no "measured", one without a bound has none.
+std::string check_json(const MatrixCheck&, const CheckedFiles&);
+
+/// Tables: the checks; the structure as quantity, unit, three values.
+std::string checks_csv(const MatrixCheck&);
+std::string structure_csv(const MatrixCheck&);
+
+}  // namespace deflect
