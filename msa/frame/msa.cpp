@@ -87,20 +87,39 @@ MsaModel::MsaModel(const Configuration& c, const MemberDivision& division)
 MsaModel::~MsaModel() = default;
 
 MsaSolution MsaModel::solve(const Vector6& F_T_W, Geometry geometry) {
-  VectorX load = VectorX::Zero(built_.model.dofs());
-  load.segment<6>(6 * built_.tool) = F_T_W;
   MsaSolution out;
-  if (geometry == Geometry::linear || F_T_W.isZero(0)) {
+  out.load = F_T_W;
+  out.load.head<3>() += configuration_.weight;
+  VectorX load = VectorX::Zero(built_.model.dofs());
+  load.segment<6>(6 * built_.tool) = out.load;
+  const Solution& rest = assembled();
+  const bool strained = !rest.u.isZero(0);
+  VectorX u0 = rest.u;
+  std::vector<std::pair<std::string, double>> energies0;
+  if (geometry == Geometry::linear || (out.load.isZero(0) && !strained)) {
     out.state = solver_.solve(load);
-    out.energies = frame::energies(solver_.model(), out.state.u);
+    // Where everything is linear, what the load adds has an energy of its own.
+    out.energies = frame::energies(solver_.model(), linear() ? VectorX(out.state.u - u0) : out.state.u);
+    if (strained && !linear()) energies0 = frame::energies(solver_.model(), u0);
   } else {
     out.state = solve_geometric(load, geometry);
     out.energies = frame::energies(geometric_->model(), *out.state.geometric);
+    if (strained) {
+      const Solution at_rest = solve_geometric(VectorX::Zero(load.size()), geometry);
+      u0 = at_rest.u;
+      energies0 = frame::energies(geometric_->model(), *at_rest.geometric);
+    }
   }
-  out.displacement = out.state.u.segment<6>(6 * built_.tool);
+  for (std::size_t i = 0; i < energies0.size(); ++i) out.energies[i].second -= energies0[i].second;
+  out.displacement = (out.state.u - u0).segment<6>(6 * built_.tool);
   std::stable_sort(out.energies.begin(), out.energies.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   return out;
+}
+
+const Solution& MsaModel::assembled() {
+  if (!assembled_) assembled_ = std::make_unique<Solution>(solver_.solve(VectorX::Zero(built_.model.dofs())));
+  return *assembled_;
 }
 
 Solution MsaModel::solve_geometric(const VectorX& load, Geometry geometry) {
@@ -174,12 +193,12 @@ Matrix6X MsaModel::passive_twists(std::size_t leg) const {
   return J;
 }
 
-Vector6 MsaModel::base_reaction(const Vector6& F_T_W, const Solution& state) {
+Vector6 MsaModel::base_reaction(const Vector6& load_T_W, const Solution& state) {
   if (state.geometric) return state.geometric->constraint_forces.head<6>();  // the ground's six come first
   if (!supports_) supports_ = std::make_unique<Reactions>(solver_.model(), solver_.elimination());
   VectorX ignored;
   VectorX unbalanced = internal_forces(solver_.model(), state.u, ignored);
-  unbalanced.segment<6>(6 * built_.tool) -= F_T_W;
+  unbalanced.segment<6>(6 * built_.tool) -= load_T_W;
   return supports_->forces(unbalanced).topRows<6>();  // the ground's six constraints come first
 }
 

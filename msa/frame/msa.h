@@ -14,11 +14,13 @@
 
 namespace deflect::frame {
 
-/// Response of the tool point T to one wrench [f; m] at T, base axes, SI; dead: its direction stays.
+/// Response of the tool point T to one wrench [f; m] at T, base axes, SI; dead: its direction stays. The payload's
+/// weight acts with it. Displacement and energies are those against the assembled mechanism without load and weight.
 struct MsaSolution {
   Vector6 displacement;  ///< [δ; θ] of T, θ a rotation vector
+  Vector6 load;          ///< the wrench and the weight
   Solution state;        ///< of MsaModel::model(): not converged is said here, and why in state.geometric
-  /// Strain energy by part, J, largest first. ½Fᵀd where everything is linear.
+  /// Strain energy by part, J, largest first. ½ loadᵀd where everything is linear.
   std::vector<std::pair<std::string, double>> energies;
 };
 
@@ -41,6 +43,9 @@ class MsaModel {
   /// overestimates the buckling load of a cantilever by 0.8 %, two by 0.05 %. Without load both are linear.
   MsaSolution solve(const Vector6& F_T_W, Geometry = Geometry::linear);
 
+  /// The mechanism as assembled, without load and weight: strained where legs stand beside their seats (misfits).
+  const Solution& assembled();
+
   /// Tangent stiffness at T of the structure in a state, as computed, not symmetrised, and of each leg alone at the
   /// platform's T: reactions to unit displacements. A direction in which nothing holds T has zero stiffness. Of a state
   /// that is not linear the tool's stiffness has its geometric part, per spin (geometric_solver.h), symmetric where no
@@ -54,8 +59,8 @@ class MsaModel {
   /// Twists at T of a leg's passive joints (columns).
   Matrix6X passive_twists(std::size_t leg) const;
 
-  /// Reaction of the world on the base at the base origin, [f; m].
-  Vector6 base_reaction(const Vector6& F_T_W, const Solution& state);
+  /// Reaction of the world on the base at the base origin, [f; m], to the whole load on T.
+  Vector6 base_reaction(const Vector6& load_T_W, const Solution& state);
 
  private:
   struct Held;
@@ -66,6 +71,7 @@ class MsaModel {
   MemberDivision division_;
   MechanismModel built_;
   Solver solver_;
+  std::unique_ptr<Solution> assembled_;         // made when first asked for
   std::unique_ptr<GeometricSolver> geometric_;  // made when a geometry that is not linear is first asked for
   std::unique_ptr<Held> tool_held_;             // made when a stiffness is first asked for
   std::unique_ptr<Reactions> supports_;         // made when a reaction is first asked for
