@@ -9,6 +9,7 @@
 #include "msa/base/motion_text.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/configuration.h"
+#include "msa/mechanism/place.h"
 
 namespace deflect {
 namespace {
@@ -95,11 +96,6 @@ void refuse_singular(const Assembly& a, const Assembly& home) {
   }
 }
 
-void check(const Assembly& a, const Assembly& home) {
-  check_limits(a);
-  refuse_singular(a, home);
-}
-
 }  // namespace
 
 Assembly home_assembly(const Mechanism& m) {
@@ -117,6 +113,9 @@ Assembly home_assembly(const Mechanism& m) {
     for (const Step& step : leg.steps) length = std::max(length, (step.after.p - centre).norm());
   }
   a.length = length > 0 ? length : 1;
+  if (const auto n = actuated(a).values.size(); k.controller.size() > 0 && k.controller.rows() != n)
+    throw InputError(fmt::format("{}: kinematics.controller has {} rows: the mechanism has {} actuated coordinates",
+                                 m.name, k.controller.rows(), n));
 
   if (k.home) {
     const Frame home = deflect::frame_of(*k.home);
@@ -150,14 +149,18 @@ void move_to(Assembly& a, const Pose& pose) {
         throw ModelError(fmt::format("{}does not take this pose: {} at the nearest", leg_name(a, leg), left_open(c)));
     }
   }
-  check(a, home);
+  check_limits(a);
+  refuse_singular(a, home);
 }
 
 void move_to_coordinates(Assembly& a, const VectorX& wanted) {
-  const Assembly home = a;
-  const VectorX from = actuated(home).values;
-  const double largest = wanted.size() > 0 ? (wanted - from).cwiseAbs().maxCoeff() : 0;
-  const int steps = a.legs.size() == 1 ? 1 : 1 + static_cast<int>(largest / (path_step * std::min(1.0, a.length)));
+  const ActuatedCoordinates home = actuated(a);
+  const VectorX from = home.values;
+  double largest = 0;
+  for (Eigen::Index i = 0; i < from.size(); ++i)
+    largest =
+        std::max(largest, std::abs(wanted(i) - from(i)) / (home.rotation[static_cast<std::size_t>(i)] ? 1 : a.length));
+  const int steps = 1 + static_cast<int>(largest / path_step);
   for (int i = 1; i <= steps; ++i) {
     const VectorX q = i == steps ? wanted : VectorX(from + static_cast<double>(i) / steps * (wanted - from));
     Eigen::Index n = 0;
@@ -167,7 +170,7 @@ void move_to_coordinates(Assembly& a, const VectorX& wanted) {
     const Closed c = close_all(a);
     if (i == steps && !c.closed) throw ModelError(fmt::format("the loops do not close: {}", left_open(c)));
   }
-  check(a, home);
+  check_limits(a);
 }
 
 ActuatedCoordinates actuated(const Assembly& a) {
@@ -178,8 +181,11 @@ ActuatedCoordinates actuated(const Assembly& a) {
     joints_of(a.legs[leg].parts, a.legs.size() == 1 ? "" : fmt::format("leg {} ", leg + 1), joints);
     for (const Coordinate& c : walk(one(a.legs[leg]), a.states[leg]).coordinates) {
       if (!c.actuated) continue;
+      const auto& [name, joint] = joints[c.joint];
+      const std::array<Freedom, 6> freedoms = freedoms_of(*joint);
+      const bool several = std::count(freedoms.begin(), freedoms.end(), Freedom::actuated) > 1;
       values.push_back(a.states[leg][c.joint].q[c.freedom]);
-      out.names.push_back(joints[c.joint].first);
+      out.names.push_back(several ? fmt::format("{} {}", name, freedom_names[c.freedom]) : name);
       out.rotation.push_back(c.freedom >= 3);
     }
   }

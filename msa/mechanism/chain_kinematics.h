@@ -13,14 +13,15 @@ struct Assembly {
   double length = 1;                            ///< extent of the mechanism at home, m
 };
 
-/// Throws ModelError when the loops do not close at home.
+/// Throws ModelError when the loops do not close at home, InputError when the controller has another number of rows
+/// than there are actuated coordinates.
 Assembly home_assembly(const Mechanism&);
 
 /// Throws ModelError naming the leg: the pose is not reached (and how near it comes), a coordinate leaves its limits,
 /// or the pose is singular: the leg's end can no longer move in a direction, which is named.
 void move_to(Assembly&, const Pose&);
 
-/// The same for actuated coordinates in the order of the walk.
+/// The same for actuated coordinates in the order of the walk; a singular pose is taken as it is.
 void move_to_coordinates(Assembly&, const VectorX& actuated);
 
 /// Values of the actuated coordinates in the order of the walk, and what they are called.

@@ -11,43 +11,47 @@
 namespace deflect {
 namespace {
 
-bool has_laws(const PlacedJoint& j, std::size_t from, std::size_t to) {
-  for (std::size_t i = from; i < to; ++i)
-    if (j.elastic(i)) return true;
-  return false;
+/// A joint of which only some freedoms are left; the others are rigid.
+PlacedJoint only(PlacedJoint j, const std::array<bool, 6>& left, const Frame& at) {
+  j.p_W = at.p;
+  j.R_WJ = at.R;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (!left[i]) {
+      j.freedoms[i] = Freedom::rigid;
+      j.laws[i].clear();
+      j.preload[i] = 0;
+    }
+  return j;
 }
 
-PlacedJoint half(const PlacedJoint& j, bool translations) {
-  PlacedJoint h = j;
-  const std::size_t from = translations ? 3 : 0;  // of the freedoms that it does not have
-  for (std::size_t i = from; i < from + 3; ++i) {
-    h.freedoms[i] = Freedom::rigid;
-    h.laws[i].clear();
-    h.preload[i] = 0;
-  }
-  return h;
-}
-
-/// A joint in the state in which it stands. Its freedoms move one after the other, so that those which are turned about
-/// axes of their own stand in a joint of their own behind the translations.
+/// A joint in the state in which it stands. Its freedoms move one after the other, each about axes that the ones before
+/// have turned: where these are not the axes of one frame, it is several joints in series.
 void place_joint(const Step& step, const Joint& joint, double actuator, const Mechanism& m,
                  std::vector<PlacedPart>& out) {
-  const bool after = joint.axes == "after";
-  const Vector3 end = joint.dh ? step.joint.p : step.after.p;
-  const Matrix3 laws = after ? step.moved : step.joint.R;
-  PlacedJoint j = placed(joint, *step.name, {after ? end : step.joint.p, laws, actuator}, m);
-  const int turns = rotations(j.freedoms);
-  const bool slides = movable(j.freedoms[0]) || movable(j.freedoms[1]) || movable(j.freedoms[2]);
-  const Matrix3 turning = turns == 2 ? step.turning : laws;
-  if (j.stiffness || turns == 0 || (!slides && turns != 2)) {
-    out.push_back(std::move(j));
+  const Frame& at = joint.axes == "after" ? step.moved : step.joint;
+  PlacedJoint whole = placed(joint, *step.name, {at.p, at.R, actuator}, m);
+  std::array<bool, 6> slides{}, turns{}, last_turn{}, yields{};
+  const bool ball = is_ball(whole.freedoms);
+  int slide_count = 0, turn_count = 0;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (!movable(whole.freedoms[i]))
+      yields[i] = whole.elastic(i);
+    else if (i < 3)
+      slides[i] = ++slide_count > 0;
+    else
+      (++turn_count == 3 && !ball ? last_turn : turns)[i] = true;
+  const bool one_frame = turn_count == 0 || (slide_count == 0 && (turn_count == 1 || ball));
+  if (one_frame || whole.stiffness) {
+    out.push_back(std::move(whole));
     return;
   }
-  if (slides || has_laws(j, 0, 3)) out.push_back(half(j, true));
-  PlacedJoint rotation = half(j, false);
-  rotation.R_WJ = turning;
-  if (slides) rotation.p_W = end;
-  out.push_back(std::move(rotation));
+  const auto add = [&](const std::array<bool, 6>& left, const Frame& frame) {
+    if (std::find(left.begin(), left.end(), true) != left.end()) out.push_back(only(whole, left, frame));
+  };
+  add(slides, step.joint);
+  add(turns, {step.moved.p, ball ? at.R : step.turning});
+  add(last_turn, step.moved);
+  add(yields, at);
 }
 
 class Placer {
@@ -125,7 +129,8 @@ PlacedMechanism placed_assembly(const Mechanism& m, const Assembly& a) {
   }
   const ActuatedCoordinates q = actuated(a);
   const MatrixX& controller = std::get<Chains>(m.kinematics).controller;
-  const VectorX given = controller.size() > 0 ? VectorX(controller.partialPivLu().solve(q.values)) : q.values;
+  VectorX given = q.values;
+  if (controller.size() > 0) given = controller.partialPivLu().solve(q.values);
   for (std::size_t i = 0; i < q.names.size(); ++i)
     out.actuators.push_back({q.names[i], given(static_cast<Eigen::Index>(i)), q.rotation[i]});
   return out;

@@ -9,6 +9,8 @@ namespace deflect {
 namespace {
 
 constexpr double largest_step = 0.3;
+// Of the mechanism's length, or rad. Newton goes on to rounding; what is left is the rounding of numbers in files.
+constexpr double closed_tolerance = 1e-8;
 constexpr double rank_tolerance = 1e-7;  // of singular values; a singular pose is reached to the root of rounding only
 
 /// Two ways to one frame: the equation of six that they agree, b − a seen at a's origin.
@@ -84,7 +86,7 @@ Closed close_loops(std::span<const LegParts> legs, std::vector<JointState>& stat
     out.shift = open.shift;
     out.turn = open.turn;
     const double error = open.shift / length + open.turn;
-    out.closed = error < 1e-10;
+    out.closed = error < closed_tolerance;
     if (all.empty() || (out.closed && error >= 0.5 * best)) return out;  // rounding: Newton gains no more
     best = std::min(best, error);
 

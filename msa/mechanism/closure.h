@@ -14,7 +14,7 @@ namespace deflect {
 struct Closed {
   Trace trace;
   double shift = 0, turn = 0;  ///< what is left open: m, rad
-  bool closed = false;         ///< to rounding
+  bool closed = false;         ///< to 1e-8 of the length, the rounding of numbers in files
 };
 
 /// Moves `states` until all loops close. `length` (m) weighs turns against shifts. No step turns a joint by more than

@@ -96,7 +96,8 @@ int leg_count(const Mechanism&);
 /// that is lost; InputError on names that do not resolve.
 Configuration configure(const Mechanism&, const Pose&);
 
-/// The same from commanded joint coordinates, one per actuator (m, rad), by closing the loops from home.
+/// The same from commanded joint coordinates, one per actuator (m, rad), by closing the loops from home; a singular
+/// pose is no error there.
 Configuration configure_joints(const Mechanism&, const VectorX& coordinates);
 
 /// Where the kinematics start and the workspace lies.

@@ -192,7 +192,8 @@ void FieldReader::integer(const char* key, int& value, int low, int high, const 
 }
 
 void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const char* about) {
-  const std::string unit = example_of(d), sample = example(key, fmt::format("[{0}, {0}, {0}]", unit));
+  const std::string unit = example_of(d);
+  const std::string sample = example(key, d == Dimension::none ? "[0, 0, 1]" : fmt::format("[{0}, {0}, {0}]", unit));
   value.setZero();
   const YamlNode* node = find(key, false, sample, about);
   if (!node) return;
@@ -205,6 +206,8 @@ void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const ch
     note(item, item_path);
     value(i) = number(item, item_path, {d, {}, std::nullopt}, sample);
   }
+  if (d == Dimension::none && value.isZero(0))
+    fail(*node, path, fmt::format("is no direction: write for example '{}'", sample));
 }
 
 void FieldReader::matrix(const char* key, MatrixX& value, Eigen::Index size, Need need, const char* about) {

@@ -36,7 +36,7 @@ bool all_implied(const YamlNode& node) {
 
 void FieldWriter::add(const std::string& key, YamlNode node, bool implied) {
   node.ours = ours_.contains(joined(path_, key));
-  node.implied = implied && !node.ours;
+  node.implied = implied && !node.ours && key != telling_;
   map_.add(key, std::move(node));
 }
 
@@ -112,10 +112,11 @@ void FieldWriter::any(const char* key, std::string& yaml, const char*) {
 YamlNode FieldWriter::filled(const std::string& path, const std::function<void()>& fields) {
   YamlNode fresh;
   fresh.kind = Kind::map;
-  const std::string outer_path = std::exchange(path_, path);
+  const std::string outer_path = std::exchange(path_, path), outer_telling = std::exchange(telling_, "");
   YamlNode outer = std::exchange(map_, std::move(fresh));
   fields();
   path_ = outer_path;
+  telling_ = outer_telling;
   return std::exchange(map_, std::move(outer));
 }
 
@@ -161,6 +162,11 @@ void FieldWriter::one_or_list(const char* key, Elements& all, const char*) {
   YamlNode node = sequence(key, all);
   node.collapses = true;
   add(key, std::move(node), all.size() == 0);
+}
+
+std::size_t FieldWriter::alternative(const std::vector<std::string>& keys, std::size_t current) {
+  telling_ = keys[current];
+  return current;
 }
 
 YamlNode tree_of(const Mechanism& m) {

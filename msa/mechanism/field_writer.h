@@ -34,7 +34,7 @@ class FieldWriter final : public FieldVisitor {
   void list(const char*, Elements&, const char*) override;
   void one_or_list(const char*, Elements&, const char*) override;
   void keys(const std::vector<std::string>&) override {}
-  std::size_t alternative(const std::vector<std::string>&, std::size_t current) override { return current; }
+  std::size_t alternative(const std::vector<std::string>& keys, std::size_t current) override;
   void require(bool, const char*, const std::string&) override {}
 
  private:
@@ -45,6 +45,7 @@ class FieldWriter final : public FieldVisitor {
 
   const std::set<std::string>& ours_;
   std::string path_;
+  std::string telling_;  // key of the map that tells its alternative: written in any case
   YamlNode map_;
 };
 

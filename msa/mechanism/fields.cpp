@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <Eigen/LU>
+
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/field_lists.h"
 
@@ -26,6 +28,8 @@ void fields(FieldVisitor& v, Chains& k) {
                     [&v](Placement& p) { describe(v, p); });
   v.matrix("controller", k.controller, 0, Need::optional,
            "joint coordinates of the chain over those that users give, row by row");
+  v.require(k.controller.size() == 0 || Eigen::FullPivLU<MatrixX>(k.controller).isInvertible(), "controller",
+            "is singular: different coordinates of the user would be the same of the chain");
 }
 
 void place_names(const Chains&, Surroundings& s) { s.chains = true; }

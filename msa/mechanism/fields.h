@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "msa/base/units.h"
@@ -54,8 +55,9 @@ class Elements {
 struct Surroundings {
   const Named<Material>* materials = nullptr;
   const Named<Section>* sections = nullptr;
-  bool chains = false;                    ///< parts are placed by walking, not at named places
-  std::vector<std::string> points, axes;  ///< the named places
+  bool chains = false;                     ///< parts are placed by walking, not at named places
+  std::vector<std::string> points, axes;   ///< the named places
+  std::vector<std::string> earlier_parts;  ///< of the chain, before the part described
   int legs = 0;
   bool rotation = false;    ///< the laws described act on a rotation
   bool on_actuator = true;  ///< they stand in a leg, whose actuator has an extension
@@ -69,7 +71,8 @@ class FieldVisitor {
   virtual void quantity(const char* key, double&, const Quantity&, const char* about) = 0;
   virtual void quantity_if_given(const char* key, std::optional<double>&, const Quantity&, const char* about) = 0;
   virtual void integer(const char* key, int&, int low, int high, const char* about) = 0;
-  virtual void vector3(const char* key, Vector3&, Dimension, const char* about) = 0;  ///< zero where absent
+  /// Zero where absent; without a dimension it is a direction, which is not zero where it is given.
+  virtual void vector3(const char* key, Vector3&, Dimension, const char* about) = 0;
   /// Plain numbers, as many rows as columns; `size` of them, or any number where it is 0. Empty where absent.
   virtual void matrix(const char* key, MatrixX&, Eigen::Index size, Need, const char* about) = 0;
   virtual void text(const char* key, std::string&, Need, const char* about) = 0;
@@ -101,6 +104,8 @@ void describe(FieldVisitor&, Section&);
 void describe(FieldVisitor&, Part&);
 void describe(FieldVisitor&, Law&);
 void describe(FieldVisitor&, Variation&);
+/// The part of that index of a chain.
+void describe(FieldVisitor&, Named<Part>& chain, std::size_t);
 void describe(FieldVisitor&, Mount&);
 void describe(FieldVisitor&, Misfit&);
 
@@ -115,7 +120,12 @@ class NamedElements final : public Elements {
   std::size_t size() const override { return list_.size(); }
   std::string name(std::size_t i) const override { return list_[i].first; }
   void add(const std::string& name) override { list_.emplace_back(name, T()); }
-  void describe_element(FieldVisitor& v, std::size_t i) override { describe(v, list_[i].second); }
+  void describe_element(FieldVisitor& v, std::size_t i) override {
+    if constexpr (std::is_same_v<T, Part>)
+      describe(v, list_, i);
+    else
+      describe(v, list_[i].second);
+  }
 
  private:
   Named<T>& list_;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
 
@@ -144,6 +145,10 @@ void describe_stiffness(FieldVisitor& v, Joint& joint) {
   v.require(!joint.stiffness || !laws, "stiffness", "a joint has a stiffness of all freedoms or laws, not both");
 }
 
+bool are_freedoms(const std::string& letters) {
+  return letters.size() == 6 && letters.find_first_not_of("rfa") == letters.npos;
+}
+
 void describe_coordinates(FieldVisitor& v, Joint& joint) {
   const auto home = [&] {
     for (std::size_t i = 0; i < 6; ++i)
@@ -159,10 +164,26 @@ void describe_coordinates(FieldVisitor& v, Joint& joint) {
   };
   limits("min", joint.min, "smallest coordinate");
   limits("max", joint.max, "largest coordinate");
-}
 
-bool are_freedoms(const std::string& letters) {
-  return letters.size() == 6 && letters.find_first_not_of("rfa") == letters.npos;
+  std::string letters = find_joint_type(joint.type)->letters;
+  if (joint.type == "custom") letters = are_freedoms(joint.freedoms) ? joint.freedoms : "aaaaaa";  // refused before
+  std::vector<std::string> moving;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (letters[i] != 'r') moving.emplace_back(freedom_names[i]);
+  const std::string moves = moving.empty() ? "does not move" : fmt::format("moves in {}", fmt::join(moving, ", "));
+  for (std::size_t i = 0; i < 6; ++i) {
+    const char* name = freedom_names[i];
+    for (const auto& [key, given] : {std::pair{"home", joint.home[i] != 0},
+                                     {"min", joint.min[i].has_value()},
+                                     {"max", joint.max[i].has_value()}}) {
+      v.require(!given || letters[i] != 'r', key,
+                fmt::format("{} is no coordinate of this joint, which {}", name, moves));
+      v.require(!given || key == std::string("home") || i < 3 || !letters.ends_with("fff"), key,
+                fmt::format("{} has no limits: the turn of a ball joint is no angle about one axis", name));
+    }
+    v.require(!joint.min[i] || !joint.max[i] || *joint.min[i] < *joint.max[i], "max",
+              fmt::format("{} must be above that of min", name));
+  }
 }
 
 /// Where a joint of a chain stands, and how it moves the chain.
@@ -213,12 +234,14 @@ void fields(FieldVisitor& v, Joint& joint) {
 void describe_ends(FieldVisitor& v, Member& member) {
   if (v.surroundings.chains) {
     const std::size_t index = v.alternative({"along", "from"}, member.along ? 0 : 1);
+    Vector3 along = member.along.value_or(Vector3::Zero());
     member.along.reset();
     if (index == 1)
-      return v.text("from", member.from, Need::required, "earlier part of the leg where the member begins");
-    member.along = Vector3::Zero();
-    v.vector3("along", *member.along, Dimension::length, "from the start to the end, in the axes of the chain");
-    return v.require(member.along->norm() > 0, "along", "the member has no length");
+      return v.word("from", member.from, {"earlier part of the leg", v.surroundings.earlier_parts, std::nullopt},
+                    "earlier part of the leg where the member begins");
+    v.vector3("along", along, Dimension::length, "from the start to the end, in the axes of the chain");
+    member.along = along;
+    return v.require(along.norm() > 0, "along", "the member has no length");
   }
   v.word("from", member.from, {"point", v.surroundings.points, std::nullopt}, "point where the member begins");
   v.word("to", member.to, {"point", v.surroundings.points, std::nullopt}, "point where the member ends");
@@ -279,6 +302,13 @@ void describe(FieldVisitor& v, Part& part) {
                                              : std::vector<std::string>{"joint", "member"};
   become(part, v.alternative(kinds, part.index()));
   std::visit([&](auto& p) { fields(v, p); }, part);
+}
+
+void describe(FieldVisitor& v, Named<Part>& chain, std::size_t i) {
+  const std::vector<std::string> outer = v.surroundings.earlier_parts;
+  for (std::size_t k = 0; k < i; ++k) v.surroundings.earlier_parts.push_back(chain[k].first);
+  describe(v, chain[i].second);
+  v.surroundings.earlier_parts = outer;
 }
 
 void describe(FieldVisitor& v, Mount& mount) {

@@ -57,7 +57,7 @@ class Walker {
       step.before = at_;
       std::visit([&](const auto& p) { pass(p, step); }, part);
       step.after = at_;
-      passed_[name] = step.before.p;
+      passed_[name] = std::holds_alternative<Joint>(part) ? step.joint.p : step.before.p;
       steps.push_back(std::move(step));
     }
     return steps;
@@ -65,7 +65,7 @@ class Walker {
 
   void add(const Step& step, std::size_t freedom, const std::array<Freedom, 6>& freedoms, const Vector3& v,
            const Vector3& w) {
-    Coordinate c{step.state, freedom, freedoms[freedom] == Freedom::actuated, rotations(freedoms) == 3, {}};
+    Coordinate c{step.state, freedom, freedoms[freedom] == Freedom::actuated, is_ball(freedoms), {}};
     c.twist << v, w;
     path_.push_back(trace.coordinates.size());
     trace.coordinates.push_back(c);
@@ -92,7 +92,7 @@ class Walker {
         if (movable(freedoms[i])) add(step, i, freedoms, axes.col(static_cast<Eigen::Index>(i)), Vector3::Zero());
     }
     const Vector3 p = step.joint.p + axes * shift;
-    const bool ball = rotations(freedoms) == 3;
+    const bool ball = is_ball(freedoms);
     Matrix3 turning = Matrix3::Identity();
     step.turning = axes;
     bool first = true;
@@ -107,8 +107,9 @@ class Walker {
         first = false;
       }
     }
-    step.moved = axes * (ball ? s.ball : turning);
-    at_ = Frame{p, step.moved * A.transpose()};
+    if (ball) turning = s.ball;
+    step.moved = {p, step.joint.R * turning};
+    at_ = {p, axes * turning * A.transpose()};
     if (j.dh) at_ = at_ * standard(*j.dh);
   }
 
@@ -177,7 +178,9 @@ Frame frame_of(const Placement& p) { return {p.shift, rotation_from_rpy(p.turn.x
 
 bool movable(Freedom f) { return f != Freedom::rigid; }
 
-int rotations(const std::array<Freedom, 6>& f) { return movable(f[3]) + movable(f[4]) + movable(f[5]); }
+bool is_ball(const std::array<Freedom, 6>& f) {
+  return f[3] == Freedom::free && f[4] == Freedom::free && f[5] == Freedom::free;
+}
 
 std::vector<LegParts> legs_of(const Mechanism& m) {
   std::vector<LegParts> legs;

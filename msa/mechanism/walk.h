@@ -23,8 +23,8 @@ struct Frame {
 
 Frame frame_of(const Placement&);
 
-/// Where one joint stands: coordinates tx ty tz (m) rx ry rz (rad). A joint that turns about all three axes is told by
-/// `ball` instead of rx ry rz, which has no singular place.
+/// Where one joint stands: coordinates tx ty tz (m) rx ry rz (rad). A joint that turns freely about all three axes is
+/// told by `ball` instead of rx ry rz, which has no singular place.
 struct JointState {
   std::array<double, 6> q{};
   Matrix3 ball = Matrix3::Identity();
@@ -43,9 +43,8 @@ struct Step {
   const std::string* name = nullptr;
   const Part* part = nullptr;
   Frame before, after;
-  Frame joint;            ///< of a joint: its place and axes before it moves
-  Matrix3 moved;          ///< of a joint: its axes after its motion
-  Matrix3 turning;        ///< of a joint about two axes: those that it turns about
+  Frame joint, moved;     ///< of a joint: its place and axes before and after its motion
+  Matrix3 turning;        ///< of a joint: axes that hold the first two which it turns about
   std::size_t state = 0;  ///< of a joint
   Vector3 start;          ///< of a member
   std::vector<std::vector<Step>> branches;
@@ -93,7 +92,7 @@ void move(JointState&, const Coordinate&, double step);
 /// Which freedoms the kinematics move: free or actuated.
 bool movable(Freedom);
 
-/// Number of movable rotations of a joint.
-int rotations(const std::array<Freedom, 6>&);
+/// Turns about all three axes, none of them actuated.
+bool is_ball(const std::array<Freedom, 6>&);
 
 }  // namespace deflect

@@ -65,8 +65,8 @@ Answer MsaAtPose::solve(const Vector6& F) {
   }
   // The reaction acts at the base origin; about T its moment changes by the arm.
   const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_.base_reaction(last_.load, last_.state);
-  enforce(response_failure({last_.load, last_.displacement, reaction, total(last_.energies), model_.linear()}), "MSA response",
-          where_);
+  enforce(response_failure({last_.load, last_.displacement, reaction, total(last_.energies), model_.linear()}),
+          "MSA response", where_);
   return {last_.displacement, stiffness_, last_.energies, checks_};
 }
 
