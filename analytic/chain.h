@@ -1,12 +1,14 @@
-// One leg in closed form: compliances in series (2), (45), moved to one point, passive joints released.
+// A mechanism in closed form: compliances in series (2), (45), chains in parallel (1), (46), passive joints released;
+// each may hold the other. Everything is referred to one point T, in base axes; what carries a wrench carries it as a
+// whole, so that forces are what a chain is asked with. Equation numbers are those of Ahmad, Andersson, Sellgren.
 #pragma once
 
+#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "analytic/deflection.h"
-#include "msa/base/spatial.h"
+#include "analytic/flexibility.h"
 #include "msa/mechanism/configuration.h"
 
 namespace deflect::analytic {
@@ -15,42 +17,89 @@ namespace deflect::analytic {
 /// twistᵀF.
 struct ElasticFreedom {
   Vector6 twist;
-  std::vector<Law> laws;
+  Spring spring;
   std::string part;
 };
 
-/// A flexible member's compliance at T, base axes.
-struct FlexibleMember {
+/// Compliance at T of a linear part: a flexible member (21), a joint of given 6×6 stiffness, J K⁻¹Jᵀ.
+struct FlexiblePart {
   Matrix6 C;
   std::string part;
 };
 
-/// A chain from the base to T. For a wrench F = N λ at T that its passive joints can carry (N spans the wrenches with
-/// J_qᵀF = 0), T moves by C F + Σ twist_j δ_j(twist_jᵀF) + J_q θ, θ arbitrary.
+/// Displacement under a wrench and its derivative there.
+struct Response {
+  Vector6 d = Vector6::Zero();
+  Flexibility tangent;
+  bool converged = true;  ///< of the groups within
+};
+
+struct Group;
+
+/// Parts in series from a near end to a far one. A wrench F = N λ at T that the passive joints can carry (N spans the
+/// wrenches with J_qᵀF = 0) moves the far end against the near one, at T, by
+///   d = misfit + C F + Σ twist_j δ_j(twist_jᵀF) + Σ d_g(F) + J_q θ, θ arbitrary,
+/// d_g of the groups among the parts.
 struct Chain {
   std::string name;
-  std::vector<FlexibleMember> members;
+  double length = 1;  ///< m: moments weigh against forces by it
+  Vector6 misfit = Vector6::Zero();
+  std::vector<FlexiblePart> members;
   std::vector<ElasticFreedom> freedoms;
-  Matrix6 C = Matrix6::Zero();  ///< sum of the members'
-  Matrix6X J_q;                 ///< twists at T of the passive joints, whether released or not
-  Matrix6X N;                   ///< wrenches carried; all of them where passive joints are not released
+  std::vector<Group> groups;
+  Matrix6 C = Matrix6::Zero();    ///< sum of the members'
+  Matrix6X J_q = Matrix6X(6, 0);  ///< twists at T of the passive joints, whether released or not
+  Matrix6X N = Matrix6X(6, 0);    ///< wrenches carried; all of them where passive joints are not released
 
-  /// Motion of T under F at T, but for J_q θ.
-  Vector6 deflection(const Vector6& F, const AsPrinted&) const;
-  /// Its derivative; a force below `least` counts as `least`, so that unloaded contacts stay finite.
-  Matrix6 tangent_compliance(const Vector6& F, double least, const AsPrinted&) const;
-  /// K_c = N (Nᵀ C N)⁻¹ Nᵀ, which is C⁻¹ − C⁻¹J_q(J_qᵀC⁻¹J_q)⁻¹J_qᵀC⁻¹ where C⁻¹ exists. Contacts without load do not
-  /// resist.
-  Matrix6 tangent_stiffness(const Vector6& F, const AsPrinted&) const;
+  /// Motion under F but for J_q θ; the tangent's compliance takes a force below `least` (N, Nm) for `least`, so that
+  /// unloaded contacts stay finite; with least = 0 they let go.
+  Response respond(const Vector6& F, double least, const AsPrinted&) const;
+  Vector6 deflection(const Vector6& F, const AsPrinted& p) const { return respond(F, 0, p).d; }
+  /// Tangent stiffness K_c. Contacts without load do not resist. Throws ModelError where it is infinite.
+  Matrix6 stiffness(const Vector6& F, const AsPrinted&) const;
+  /// No law's stiffness depends on its load.
+  bool linear() const;
+  bool fits() const;  ///< neither the chain nor a branch of it has a misfit
+  /// Adds the strain energy of each part, J.
+  void add_energies(const Vector6& F, const AsPrinted&, std::map<std::string, double>&) const;
+};
+
+/// Chains side by side between two rigid bodies. Equilibrium under F: Σ F_i = F, with F_i = N_i λ_i and
+/// N_iᵀ(t − d_i(F_i)) = 0. Chains that are rigid against what they carry are constraints on t; where several of them
+/// leave their forces open, the smallest are taken.
+struct Group {
+  std::string name;
+  double length = 1;
+  std::vector<Chain> branches;
+  Matrix6X J = Matrix6X(6, 0);  ///< twists at T that no branch resists
+  Matrix6X R = Matrix6X(6, 0);  ///< the other twists: with J a basis, orthonormal with rotations weighed by length
+
+  struct State {
+    Vector6 t = Vector6::Zero();    ///< displacement of the far body against the near one, none of it along J
+    std::vector<Vector6> wrenches;  ///< on each branch
+    bool converged = false;
+    int iterations = 0;
+    double misfit = 0;  ///< how far branches' ends and the body disagree, relative to t
+  };
+
+  /// Newton on the branches' forces. F is one that the branches together carry, JᵀF = 0. Throws ModelError where rigid
+  /// branches cannot be assembled.
+  State solve(const Vector6& F, const AsPrinted&) const;
+  /// Tangent in a state; `least` as for a chain.
+  Flexibility flexibility(const std::vector<Vector6>& wrenches, double least, const AsPrinted&) const;
+  /// Σ K_c. Throws ModelError naming the branch that is rigid.
+  Matrix6 stiffness(const std::vector<Vector6>& wrenches, const AsPrinted&) const;
+  bool linear() const;  ///< of every branch
+  bool fits() const;
 };
 
 /// The chain of a leg, referred to the point p_W (T, unless (46) is taken as printed).
-Chain chain_of(const PlacedLeg&, const Vector3& p_W, const AsPrinted& = {});
+Chain chain_of(const PlacedLeg&, const Vector3& p_W, double length, const AsPrinted& = {});
+Group group_of(const std::string& name, std::vector<Chain>, double length);
+/// The legs of a mechanism.
+Group legs_of(const Configuration&, const AsPrinted& = {});
 
 /// Twist at p_W of a unit motion in freedom i (tx … rz) of a joint.
 Vector6 freedom_twist(const PlacedJoint&, std::size_t i, const Vector3& p_W);
-
-/// An orthonormal basis (rotations weighed by a length of the problem) of the wrenches F with JᵀF = 0.
-Matrix6X carried_wrenches(const Matrix6X& J, double length);
 
 }  // namespace deflect::analytic

@@ -1,5 +1,6 @@
 #include "analytic/deflection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -45,6 +46,16 @@ std::optional<double> printed_universal_joint(const std::vector<Law>& laws, cons
   if (!contact || !pin) return {};
   return stiffness(*contact, p) + stiffness(*pin, p);
 }
+
+/// Integral over [0, f] by the three points of Gauss: exact to rounding where the integrand hardly changes.
+template <class Integrand>
+double integral(double f, Integrand integrand) {
+  const double offset = std::sqrt(0.6);
+  return f * (5 * integrand(f * (1 - offset) / 2) + 8 * integrand(f / 2) + 5 * integrand(f * (1 + offset) / 2)) / 18;
+}
+
+/// Differences between the states f + P and P lose their digits below this ratio; compliance hardly changes there.
+bool small(double force, double preload) { return std::abs(force) < 1e-2 * std::abs(preload); }
 
 bool part_of_universal_joint(const Law& law) {
   return std::holds_alternative<HertzLineLaw>(law) || std::holds_alternative<PinBendingLaw>(law);
@@ -157,6 +168,24 @@ double stored_energy(const std::vector<Law>& laws, double force, const AsPrinted
   return in_series(
       laws, p, [&](const Law& l) { return stored_energy(l, force, p); },
       [&](double k) { return force * force / (2 * k); });
+}
+
+double deflection(const Spring& s, double force, const AsPrinted& p) {
+  if (s.preload == 0) return deflection(s.laws, force, p);
+  if (small(force, s.preload)) return integral(force, [&](double f) { return compliance(s.laws, f + s.preload, p); });
+  return deflection(s.laws, force + s.preload, p) - deflection(s.laws, s.preload, p);
+}
+
+double compliance(const Spring& s, double force, double least, const AsPrinted& p) {
+  return compliance(s.laws, std::max(std::abs(force + s.preload), least), p);
+}
+
+double stored_energy(const Spring& s, double force, const AsPrinted& p) {
+  if (s.preload == 0) return stored_energy(s.laws, force, p);
+  if (small(force, s.preload))
+    return integral(force, [&](double f) { return f * compliance(s.laws, f + s.preload, p); });
+  return stored_energy(s.laws, force + s.preload, p) - stored_energy(s.laws, s.preload, p) -
+         s.preload * deflection(s, force, p);
 }
 
 }  // namespace deflect::analytic

@@ -54,4 +54,16 @@ double deflection(const std::vector<Law>&, double force, const AsPrinted& = {});
 double compliance(const std::vector<Law>&, double force, const AsPrinted& = {});
 double stored_energy(const std::vector<Law>&, double force, const AsPrinted& = {});
 
+/// What yields in one freedom: laws in series that carry the force P (N, Nm) while none is transmitted, and work about
+/// it. With δ, c, U of the laws, a transmitted force f deflects it by δ(f + P) − δ(P), with the compliance c(f + P),
+/// and stores U(f + P) − U(P) − P (δ(f + P) − δ(P)), the work of f from the preloaded state.
+struct Spring {
+  std::vector<Law> laws;
+  double preload = 0;
+};
+double deflection(const Spring&, double force, const AsPrinted& = {});
+/// At a force in the laws of at least `least` in size, where contacts without load are to stay finite.
+double compliance(const Spring&, double force, double least = 0, const AsPrinted& = {});
+double stored_energy(const Spring&, double force, const AsPrinted& = {});
+
 }  // namespace deflect::analytic

@@ -1,6 +1,9 @@
 // The first theory: the methodology of Ahmad, Andersson and Sellgren in closed form, errata corrected (or, by name, as
-// printed). Chains in parallel (1), (46) between the compliance of the base and of the tool. It sees the configuration
+// printed). Legs in parallel (1), (46) between the compliance of the base and of the tool. It sees the configuration
 // and nothing of the frame solver.
+//
+// Three states: as drawn, parts unstrained; assembled, without load and weight, strained by the misfits only; loaded,
+// with misfits, weight and load. Displacements under load are counted from the assembled state.
 #pragma once
 
 #include <string>
@@ -13,9 +16,10 @@ namespace deflect::analytic {
 
 /// Equilibrium under one wrench [f; m] at T; base axes, SI.
 struct AnalyticSolution {
-  Vector6 displacement = Vector6::Zero();  ///< [δ; θ] of T
-  Vector6 load = Vector6::Zero();
-  std::vector<Vector6> leg_wrenches;  ///< what the platform exerts on each leg, at T
+  Vector6 displacement = Vector6::Zero();  ///< [δ; θ] of T from the assembled state, by load and weight
+  Vector6 load = Vector6::Zero();          ///< without the weight
+  /// What the platform exerts on each leg, at T; they add up to load and weight.
+  std::vector<Vector6> leg_wrenches;
   bool converged = false;
   int iterations = 0;
   double misfit = 0;  ///< how far the legs' ends and the platform disagree, relative to the displacement
@@ -26,27 +30,39 @@ class AnalyticModel {
  public:
   explicit AnalyticModel(const Configuration&, const AsPrinted& = {});
 
-  const std::vector<Chain>& chains() const { return chains_; }
+  const std::vector<Chain>& chains() const { return legs_.branches; }
 
   /// No law's stiffness depends on its load.
-  bool linear() const;
+  bool linear() const { return through_.linear() && legs_.linear(); }
 
-  /// Legs' forces and the platform's displacement in equilibrium, contacts at their load: Newton on the legs' forces.
-  /// Throws ModelError naming the motion when the legs leave the platform free to move, whatever the
-  /// load.
+  /// Legs' forces and the displacement of T in equilibrium, contacts at their load: Newton on the legs' forces. Throws
+  /// ModelError naming the motion when something is free to move, whatever the load; or when rigid legs cannot be
+  /// assembled.
   AnalyticSolution solve(const Vector6& F_T_W) const;
 
-  /// Tangent stiffness at T in the solution's state.
+  /// The assembled state: displacement of T from the drawing, the legs' wrenches by misfit.
+  AnalyticSolution assembled() const;
+
+  /// Tangent stiffness at T in the solution's state, and of one leg alone. Throws ModelError naming the leg and where
+  /// nothing yields when it is infinite, as in a singular pose of a serial arm. Contacts without load let go.
   Matrix6 stiffness(const AnalyticSolution&) const;
   Matrix6 leg_stiffness(std::size_t leg, const AnalyticSolution&) const;
 
-  /// Strain energy by part, J, largest first.
+  /// Tangent compliance at T, also where the stiffness is infinite. Throws ModelError naming the motion where contacts
+  /// without load let something go.
+  Matrix6 compliance(const AnalyticSolution&) const;
+
+  /// Strain energy by part in the solution's state, J, largest first; of preloaded springs see Spring.
   std::vector<std::pair<std::string, double>> energies(const AnalyticSolution&) const;
 
  private:
+  AnalyticSolution equilibrium(const Vector6& F) const;
+  Flexibility flexibility(const AnalyticSolution&) const;
+
   AsPrinted as_printed_;
-  std::vector<Chain> chains_;
-  Chain through_;  ///< base and tool joints, which carry the whole load
+  Group legs_;
+  Chain through_;   ///< base and tool joints, which carry the whole load
+  Vector6 weight_;  ///< at T
 };
 
 }  // namespace deflect::analytic

@@ -62,4 +62,10 @@ Vector6 wrench_from_mm(const Vector6& F_mm) {
   return F;
 }
 
+Vector6 wrench_in_mm(const Vector6& F_SI) {
+  Vector6 F = F_SI;
+  F.tail<3>() *= 1e3;
+  return F;
+}
+
 }  // namespace deflect

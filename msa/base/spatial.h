@@ -68,5 +68,6 @@ Matrix6 stiffness_from_mm(const Matrix6& K_mm);
 /// [m, rad] → [mm, rad] and its inverse; [N, Nm] → [N, Nmm] and its inverse.
 Vector6 twist_in_mm(const Vector6& d_SI);
 Vector6 wrench_from_mm(const Vector6& F_mm);
+Vector6 wrench_in_mm(const Vector6& F_SI);
 
 }  // namespace deflect

@@ -202,7 +202,26 @@ TEST(SolveJson, ReadsBackToTheLastBit) {
             nlohmann::json({{"symmetric", true}, {"positive", true}, {"passive_joints_free", false}}));
   EXPECT_EQ(json.at("shares"),
             nlohmann::json::parse(R"([{"part": "link", "share": 0.0712}, {"part": "guideway", "share": 0.9288}])"));
-  EXPECT_EQ(json.size(), 7u);
+  EXPECT_EQ(json.at("joints"), nlohmann::json::array());
+  EXPECT_EQ(json.at("redundant_constraints"), 0);
+  EXPECT_EQ(json.size(), 9u);
+}
+
+TEST(SolveJson, HoldsJointsOverConstraintAndTheForcesOfAssembly) {
+  SolveResult r = solution();
+  r.joints = {{"leg 1 slide", 80.5, false}, {"spindle", 0.25, true}};
+  r.redundant_constraints = 3;
+  r.assembly = Assembly{Vector6::Constant(1), Vector6::Constant(2), {{"leg 1", Vector6::Constant(3)}}};
+  const auto json = nlohmann::json::parse(solve_json(r));
+  EXPECT_EQ(json.at("joints"), nlohmann::json::parse(R"([{"name": "leg 1 slide", "value_mm": 80.5},
+                                                         {"name": "spindle", "value_rad": 0.25}])"));
+  EXPECT_EQ(json.at("redundant_constraints"), 3);
+  EXPECT_EQ(vector(json.at("assembly").at("analytic_offset")), Vector6::Constant(1));
+  EXPECT_EQ(vector(json.at("assembly").at("msa_offset")), Vector6::Constant(2));
+  EXPECT_EQ(vector(json.at("assembly").at("leg_wrenches_N_Nmm").at("leg 1")), Vector6::Constant(3));
+  const std::string text = solve_report(r);
+  for (const char* words : {"leg 1 slide 80.5 mm", "spindle 0.25 rad", "3 more constraints", "on leg 1 at T"})
+    EXPECT_NE(text.find(words), std::string::npos) << words;
 }
 
 TEST(SolveJson, NumbersThatAreNoneAreNeverWritten) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "msa/base/error.h"
 
 namespace deflect {
@@ -19,7 +21,11 @@ double total(const std::vector<std::pair<std::string, double>>& energies) {
 
 }  // namespace
 
-AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : model_(c), where_(std::move(where)) {}
+AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : model_(c), where_(std::move(where)) {
+  weight_ << c.weight, Vector3::Zero();
+  const bool fits = std::all_of(c.legs.begin(), c.legs.end(), [](const PlacedLeg& l) { return l.misfit.isZero(0); });
+  if (!fits) energy_at_rest_ = total(model_.energies(model_.assembled()));
+}
 
 Answer AnalyticAtPose::solve(const Vector6& F) const {
   const analytic::AnalyticSolution s = model_.solve(F);
@@ -35,8 +41,9 @@ Answer AnalyticAtPose::solve(const Vector6& F) const {
   const Answer answer{s.displacement, model_.stiffness(s), model_.energies(s),
                       check_stiffness(model_.stiffness(s), legs)};
   enforce(answer.checks.failure, "analytic stiffness", where_);
-  enforce(response_failure({F, s.displacement, -carried, total(answer.energies), model_.linear()}), "analytic response",
-          where_);
+  enforce(response_failure(
+              {F + weight_, s.displacement, -carried, total(answer.energies) - energy_at_rest_, model_.linear()}),
+          "analytic response", where_);
   return answer;
 }
 

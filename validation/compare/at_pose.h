@@ -26,16 +26,22 @@ class AnalyticAtPose {
  public:
   AnalyticAtPose(const Configuration&, std::string where);
   Answer solve(const Vector6& F_T_W) const;
+  const analytic::AnalyticModel& model() const { return model_; }
 
  private:
   analytic::AnalyticModel model_;
   std::string where_;
+  Vector6 weight_;             // at T, acts with every load
+  double energy_at_rest_ = 0;  // of the assembled mechanism, whose legs may be strained
 };
 
 class MsaAtPose {
  public:
   MsaAtPose(const Configuration&, const frame::MemberDivision&, std::string where);
   Answer solve(const Vector6& F_T_W);
+
+  /// T beside its place in the drawing, as assembled without load and weight.
+  Vector6 offset() { return model_.assembled().u.segment<6>(6 * mechanism().tool); }
 
   const frame::MechanismModel& mechanism() const { return model_.mechanism(); }
   const std::vector<std::string>& notes() const { return model_.notes(); }

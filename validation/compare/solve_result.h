@@ -1,6 +1,7 @@
 // One pose, one load, both theories: what `deflect solve` reports.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,18 @@ struct TheorySolution {
   Matrix6 stiffness_mm = Matrix6::Zero();         ///< wrench (N, Nmm) per displacement: N/mm, N, Nmm
 };
 
+/// The mechanism assembled with its misfits, without load and weight.
+struct Assembly {
+  Vector6 analytic_mm_rad, msa_mm_rad;                              ///< T beside its place in the drawing
+  std::vector<std::pair<std::string, Vector6>> leg_wrenches_N_Nmm;  ///< by the closed form: platform on leg, at T
+};
+
+struct JointValue {
+  std::string name;
+  double value = 0;
+  bool rotation = false;  ///< rad, otherwise mm
+};
+
 struct SolveResult {
   Vector6 pose_mm_deg = Vector6::Zero();  ///< x y z (mm), roll pitch yaw (deg)
   Vector6 load_N_Nmm = Vector6::Zero();   ///< on T about T in base axes: fx fy fz (N), mx my mz (Nmm)
@@ -23,6 +36,9 @@ struct SolveResult {
   double relative_difference = 0;  ///< of the displacements, see relative_difference() in theories.h
   bool symmetric = false, positive = false, passive_joints_free = false;  ///< checks of the stiffness
   std::vector<std::pair<std::string, double>> shares;                     ///< part, its share of the strain energy
+  std::vector<JointValue> joints;                                         ///< commanded coordinates
+  int redundant_constraints = 0;     ///< degree of over-constraint with actuators held
+  std::optional<Assembly> assembly;  ///< where legs stand beside their seats
   std::vector<std::string> notes;  ///< what the MSA held or found poor: idle spins, redundant constraints, conditioning
   LineMesh mesh;                   ///< the MSA's structure
   FieldData fields;                ///< on it: displacements, member forces

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analytic/constraint.h"
 #include "analytic/model.h"
 #include "meshes/structure.h"
 #include "msa/base/error.h"
@@ -57,6 +58,16 @@ Configuration with_bulk(Configuration c) {
             law = HertzLineBulkLaw{l->material, 2 * l->radius, 2 * l->radius, l->length, l->solid};
   });
   return c;
+}
+
+std::optional<Assembly> assembly_of(const Configuration& c, Pair& pair) {
+  const auto fits = [](const PlacedLeg& leg) { return leg.misfit.isZero(0); };
+  if (std::all_of(c.legs.begin(), c.legs.end(), fits)) return std::nullopt;
+  const analytic::AnalyticSolution s = pair.analytic.model().assembled();
+  Assembly out{twist_in_mm(s.displacement), twist_in_mm(pair.msa.offset()), {}};
+  for (std::size_t i = 0; i < c.legs.size(); ++i)
+    out.leg_wrenches_N_Nmm.emplace_back(c.legs[i].name, wrench_in_mm(s.leg_wrenches[i]));
+  return out;
 }
 
 Vector6 along(int axis, double force) { return force * Vector6::Unit(axis); }
@@ -117,6 +128,10 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
   if (total > 0)
     for (const auto& [part, energy] : f.energies) r.shares.emplace_back(part, energy / total);
   r.notes = pair.msa.notes();
+  for (const Actuator& joint : at.configuration.actuators)
+    r.joints.push_back({joint.name, joint.rotation ? joint.value : 1e3 * joint.value, joint.rotation});
+  r.redundant_constraints = analytic::redundant_constraints(at.configuration);
+  r.assembly = assembly_of(at.configuration, pair);
   r.mesh = lines_of(pair.msa.mechanism());
   r.fields = fields_of(pair.msa.mechanism(), pair.msa.displacements());
   return r;

@@ -31,7 +31,7 @@ std::string stiffness_table(const Matrix6& K) {
   for (int i = 0; i < 6; ++i) {
     rows.push_back({std::string("  ") + wrench_names[i]});
     for (int j = 0; j < 6; ++j)
-      rows.back().push_back(std::abs(K(i, j)) < 1e-12 * scale(K, i, j) ? "0" : fmt::format("{:.6g}", K(i, j)));
+      rows.back().push_back(std::abs(K(i, j)) < 1e-10 * scale(K, i, j) ? "0" : fmt::format("{:.6g}", K(i, j)));
   }
   return aligned(rows);
 }
@@ -73,6 +73,32 @@ std::string shares_table(const SolveResult& result) {
   return "share of each part in the elastic energy\n" + aligned(rows);
 }
 
+std::string joints_line(const SolveResult& result) {
+  std::string line = "joints ";
+  for (const JointValue& joint : result.joints)
+    line += fmt::format("{}{} {:.6g} {}", &joint == result.joints.data() ? "" : ", ", joint.name, joint.value,
+                        joint.rotation ? "rad" : "mm");
+  return line + "\n";
+}
+
+std::string assembly_table(const Assembly& assembly) {
+  std::vector<std::vector<std::string>> rows = {{"assembled, without load"}};
+  rows.front().insert(rows.front().end(), std::begin(wrench_names), std::end(wrench_names));
+  double largest = 0;
+  for (const auto& [leg, wrench] : assembly.leg_wrenches_N_Nmm)
+    largest = std::max(largest, wrench.cwiseAbs().maxCoeff());
+  for (const auto& [leg, wrench] : assembly.leg_wrenches_N_Nmm) {
+    rows.push_back({"  on " + leg + " at T (N, Nmm)"});
+    for (const double value : wrench)
+      rows.back().push_back(std::abs(value) < 1e-9 * largest ? "0" : fmt::format("{:.4g}", value));
+  }
+  const auto offset = [](const Vector6& d) {
+    return fmt::format("({:.6f}, {:.6f}, {:.6f}) mm, ({:.3g}, {:.3g}, {:.3g}) rad", d(0), d(1), d(2), d(3), d(4), d(5));
+  };
+  return aligned(rows) + "tool point beside its place: analytic " + offset(assembly.analytic_mm_rad) + "\n" +
+         "                                  MSA " + offset(assembly.msa_mm_rad) + "\n";
+}
+
 }  // namespace
 
 std::string solve_json(const SolveResult& result) {
@@ -92,6 +118,17 @@ std::string solve_json(const SolveResult& result) {
     entry["share"] = json_number(share, "share of " + part);
     json["shares"].push_back(std::move(entry));
   }
+  json["joints"] = Json::array();
+  for (const JointValue& joint : result.joints)
+    json["joints"].push_back({{"name", joint.name}, {joint.rotation ? "value_rad" : "value_mm", joint.value}});
+  json["redundant_constraints"] = result.redundant_constraints;
+  if (result.assembly) {
+    Json& assembly = json["assembly"];
+    assembly["analytic_offset"] = json_numbers(result.assembly->analytic_mm_rad, "assembly.analytic_offset");
+    assembly["msa_offset"] = json_numbers(result.assembly->msa_mm_rad, "assembly.msa_offset");
+    for (const auto& [leg, wrench] : result.assembly->leg_wrenches_N_Nmm)
+      assembly["leg_wrenches_N_Nmm"][leg] = json_numbers(wrench, "assembly wrench of " + leg);
+  }
   if (!result.notes.empty()) json["notes"] = result.notes;
   return json_text(json);
 }
@@ -102,14 +139,20 @@ std::string solve_report(const SolveResult& result) {
   std::string text = fmt::format("pose   x {:.9g}, y {:.9g}, z {:.9g} mm; roll {:.9g}, pitch {:.9g}, yaw {:.9g} deg\n",
                                  p[0], p[1], p[2], p[3], p[4], p[5]);
   text += fmt::format("load   fx {}, fy {}, fz {} N; mx {}, my {}, mz {} Nmm\n\n", F[0], F[1], F[2], F[3], F[4], F[5]);
+  if (!result.joints.empty()) text.insert(text.size() - 1, joints_line(result));
   text += displacement_table(result);
   text += fmt::format("relative difference {:.1e}\n\n", result.relative_difference);
   text += "stiffness by MSA, base axes (N/mm, N, Nmm)\n" + stiffness_table(result.msa.stiffness_mm);
   text += stiffness_difference(result.analytic.stiffness_mm, result.msa.stiffness_mm) + "\n";
   if (!result.shares.empty()) text += shares_table(result) + "\n";
+  if (result.assembly) text += assembly_table(*result.assembly) + "\n";
   text += "checks\n" + aligned({{"  stiffness symmetric", check(result.symmetric)},
                                 {"  stiffness positive", check(result.positive)},
                                 {"  passive joints free", check(result.passive_joints_free)}});
+  if (result.redundant_constraints > 0)
+    text +=
+        fmt::format("note: over-constrained: {} more constraint{} than hold it; parts yield, so that it is solved\n",
+                    result.redundant_constraints, result.redundant_constraints == 1 ? "" : "s");
   for (const std::string& note : result.notes) text += "note: " + note + "\n";
   return text;
 }
