@@ -299,5 +299,18 @@ TEST(Errata, AreEachFeltAndNoneTouchesTheCorrectedTheory) {
   }
 }
 
+TEST(CubePoints, WithoutAWorkspaceThereAreNone) {
+  const Mechanism m = parse_mechanism(
+      "{name: post, kinematics: {family: chains}, materials: {steel: {E: 210 GPa, nu: 0.3}}, sections: {rod: {shape: "
+      "round, diameter: 8 mm}}, leg: {post: {member: rod, material: steel, along: [0 mm, 0 mm, 100 mm]}}}",
+      "post");
+  try {
+    cube_points(m);
+    FAIL() << "nine equal points are no validation";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("workspace: {cube_edge: 50 mm}"), std::string::npos) << e.what();
+  }
+}
+
 }  // namespace
 }  // namespace deflect

@@ -87,6 +87,11 @@ Vector6 mm_deg_from(const Pose& pose) {
 
 std::vector<ValidationPoint> cube_points(const Mechanism& m) {
   const Vector6 centre = mm_deg_from(home_pose(m));
+  if (!(m.workspace.cube_edge > 0))
+    throw InputError(
+        fmt::format("{}: the device has no workspace; add for example 'workspace: {{cube_edge: 50 mm}}' to "
+                    "its file, or name points by --points",
+                    m.name));
   const double half = 1e3 * m.workspace.cube_edge / 2;
   std::vector<ValidationPoint> points{{"0", centre}};
   for (const double z : {+1.0, -1.0})
