@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "analytic/deformed.h"
+#include "analytic/rotation_vector.h"
 #include "msa/base/error.h"
 #include "msa/base/motion_text.h"
 
@@ -20,33 +22,51 @@ void refuse_motion(const Matrix6X& J, double length) {
 }  // namespace
 
 AnalyticModel::AnalyticModel(const Configuration& c, const AsPrinted& as_printed)
-    : as_printed_(as_printed),
+    : configuration_(c),
+      as_printed_(as_printed),
       legs_(legs_of(c, as_printed)),
       through_(chain_of({"base and tool", {c.base, c.tool}}, c.pose.p_WT, c.size)) {
   weight_ << c.weight, Vector3::Zero();
 }
 
 /// Displacements from the drawing.
-AnalyticSolution AnalyticModel::equilibrium(const Vector6& F) const {
+AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, Geometry geometry) const {
   refuse_motion(through_.J_q, through_.length);
   // Where an erratum takes away the moments' arms, the smallest displacement answers loads that drive no free motion.
   const bool driven =
       (legs_.J.transpose() * F).norm() > 1e-9 * (F.head<3>().norm() + F.tail<3>().norm() / legs_.length);
   if (driven || !as_printed_.count(Erratum::tcp_transfer)) refuse_motion(legs_.J, legs_.length);
-  const Group::State state = legs_.solve(F, as_printed_);
-  return {state.t + through_.deflection(F, {}), F, state.wrenches, state.converged, state.iterations, state.misfit};
+  if (geometry == Geometry::linear || (F.isZero(0) && legs_.fits())) {
+    const Group::State state = legs_.solve(F, as_printed_);
+    return {state.t + through_.deflection(F, {}),
+            F,
+            state.wrenches,
+            state.converged,
+            state.iterations,
+            state.misfit,
+            "",
+            {}};
+  }
+  const auto d = std::make_shared<const Deformed>(deform(configuration_, geometry, F));
+  Vector6 displacement;
+  displacement << d->translation, d->rotation_vector;
+  return {displacement, F, d->leg_wrenches, d->converged, d->iterations, d->residual, d->message, d};
 }
 
-AnalyticSolution AnalyticModel::assembled() const { return equilibrium(Vector6::Zero()); }
+AnalyticSolution AnalyticModel::assembled(Geometry geometry) const {
+  return equilibrium(Vector6::Zero(), as_printed_.empty() ? geometry : Geometry::linear);
+}
 
-AnalyticSolution AnalyticModel::solve(const Vector6& F) const {
-  AnalyticSolution s = equilibrium(F + weight_);
+AnalyticSolution AnalyticModel::solve(const Vector6& F, Geometry geometry) const {
+  if (!as_printed_.empty()) geometry = Geometry::linear;
+  AnalyticSolution s = equilibrium(F + weight_, geometry);
   s.load = F;
-  if (!legs_.fits()) {
-    const AnalyticSolution reference = assembled();
-    s.displacement -= reference.displacement;
-    s.converged = s.converged && reference.converged;
-  }
+  if (legs_.fits()) return s;
+  const AnalyticSolution reference = assembled(geometry);
+  s.converged = s.converged && reference.converged;
+  s.displacement -= reference.displacement;
+  if (geometry == Geometry::finite)
+    s.displacement.tail<3>() = rotation_vector(combined(s.deformed->turning, reference.deformed->turning.transpose()));
   return s;
 }
 
@@ -63,16 +83,19 @@ Flexibility AnalyticModel::flexibility(const AnalyticSolution& s) const {
 }
 
 Matrix6 AnalyticModel::leg_stiffness(std::size_t leg, const AnalyticSolution& s) const {
+  if (s.deformed) return analytic::leg_stiffness(*s.deformed, leg);
   return legs_.branches[leg].stiffness(s.leg_wrenches[leg], as_printed_);
 }
 
 Matrix6 AnalyticModel::stiffness(const AnalyticSolution& s) const {
+  if (s.deformed) return analytic::stiffness(*s.deformed);
   // Between a rigid base and a rigid tool the legs' stiffnesses add up without a digit lost.
   if (through_.members.empty() && through_.freedoms.empty()) return legs_.stiffness(s.leg_wrenches, as_printed_);
   return analytic::stiffness(flexibility(s), legs_.length, legs_.name);
 }
 
 Matrix6 AnalyticModel::compliance(const AnalyticSolution& s) const {
+  if (s.deformed) return analytic::compliance(*s.deformed);
   const Flexibility whole = flexibility(s);
   refuse_motion(whole.J, legs_.length);
   return whole.C;
@@ -80,9 +103,10 @@ Matrix6 AnalyticModel::compliance(const AnalyticSolution& s) const {
 
 std::vector<std::pair<std::string, double>> AnalyticModel::energies(const AnalyticSolution& s) const {
   std::map<std::string, double> sums;
-  for (std::size_t i = 0; i < s.leg_wrenches.size(); ++i)
+  if (s.deformed) s.deformed->whole.add_energies(s.deformed->circumstances, sums);
+  for (std::size_t i = 0; !s.deformed && i < s.leg_wrenches.size(); ++i)
     legs_.branches[i].add_energies(s.leg_wrenches[i], as_printed_, sums);
-  through_.add_energies(s.load + weight_, {}, sums);
+  if (!s.deformed) through_.add_energies(s.load + weight_, {}, sums);
   std::vector<std::pair<std::string, double>> sorted(sums.begin(), sums.end());
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return sorted;

@@ -6,23 +6,30 @@
 // with misfits, weight and load. Displacements under load are counted from the assembled state.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "analytic/chain.h"
+#include "msa/base/geometry.h"
 
 namespace deflect::analytic {
 
+struct Deformed;
+
 /// Equilibrium under one wrench [f; m] at T; base axes, SI.
 struct AnalyticSolution {
-  Vector6 displacement = Vector6::Zero();  ///< [δ; θ] of T from the assembled state, by load and weight
-  Vector6 load = Vector6::Zero();          ///< without the weight
+  /// [δ; θ] of T from the assembled state, by load and weight; θ a rotation vector.
+  Vector6 displacement = Vector6::Zero();
+  Vector6 load = Vector6::Zero();  ///< without the weight
   /// What the platform exerts on each leg, at T; they add up to load and weight.
   std::vector<Vector6> leg_wrenches;
   bool converged = false;
   int iterations = 0;
-  double misfit = 0;  ///< how far the legs' ends and the platform disagree, relative to the displacement
+  double misfit = 0;    ///< how far the legs' ends and the platform disagree, relative to the displacement
+  std::string message;  ///< why a geometry that is not linear has no equilibrium to offer
+  std::shared_ptr<const Deformed> deformed;  ///< the state in such a geometry (deformed.h)
 };
 
 /// A mechanism at one pose.
@@ -37,11 +44,12 @@ class AnalyticModel {
 
   /// Legs' forces and the displacement of T in equilibrium, contacts at their load: Newton on the legs' forces. Throws
   /// ModelError naming the motion when something is free to move, whatever the load; or when rigid legs cannot be
-  /// assembled.
-  AnalyticSolution solve(const Vector6& F_T_W) const;
+  /// assembled. Geometries that are not linear: see deformed.h; without forces they are linear, as printed equations
+  /// are always.
+  AnalyticSolution solve(const Vector6& F_T_W, Geometry = Geometry::linear) const;
 
   /// The assembled state: displacement of T from the drawing, the legs' wrenches by misfit.
-  AnalyticSolution assembled() const;
+  AnalyticSolution assembled(Geometry = Geometry::linear) const;
 
   /// Tangent stiffness at T in the solution's state, and of one leg alone. Throws ModelError naming the leg and where
   /// nothing yields when it is infinite, as in a singular pose of a serial arm. Contacts without load let go.
@@ -56,9 +64,10 @@ class AnalyticModel {
   std::vector<std::pair<std::string, double>> energies(const AnalyticSolution&) const;
 
  private:
-  AnalyticSolution equilibrium(const Vector6& F) const;
+  AnalyticSolution equilibrium(const Vector6& F, Geometry) const;
   Flexibility flexibility(const AnalyticSolution&) const;
 
+  Configuration configuration_;
   AsPrinted as_printed_;
   Group legs_;
   Chain through_;   ///< base and tool joints, which carry the whole load

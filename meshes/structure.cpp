@@ -67,12 +67,20 @@ FieldData fields_of_motion(const frame::Model& m, const VectorX& u) {
   return {motion_of(m, u, largest > 0 ? 0.1 * characteristic_length(m) / largest : 1), {}};
 }
 
-FieldData fields_of(const frame::MechanismModel& m, const VectorX& u) {
+FieldData fields_of(const frame::MechanismModel& m, const VectorX& u, const frame::GeometricState* deformed) {
   FieldData out;
   out.points = motion_of(m.model, u, 1);
   out.cells = {{"axial_force_N", {}}, {"bending_moment_Nmm", {}}, {"torque_Nmm", {}}};
-  for (const frame::Beam& beam : m.model.beams) {
-    const frame::Vector12 f = end_forces(beam, end_displacements(beam, u));
+  for (std::size_t e = 0; e < m.model.beams.size(); ++e) {
+    const frame::Beam& beam = m.model.beams[e];
+    frame::Vector12 f;
+    if (deformed) {  // in the axes of the sections at the ends
+      const frame::BeamState& state = deformed->beams[e];
+      f << rotate_twist(state.A.transpose()) * state.forces.head<6>(),
+          rotate_twist(state.B.transpose()) * state.forces.tail<6>();
+    } else {
+      f = end_forces(beam, end_displacements(beam, u));
+    }
     out.cells[0].values.push_back(f(6));  // pull of the far end along x: tension positive
     out.cells[1].values.push_back(1e3 * std::max(std::hypot(f(4), f(5)), std::hypot(f(10), f(11))));
     out.cells[2].values.push_back(1e3 * f(9));

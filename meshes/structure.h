@@ -23,6 +23,6 @@ FieldData fields_of_motion(const frame::Model&, const VectorX& u);
 
 /// Displacements (mm), rotations (rad) of nodes; axial force (N), largest bending moment and torque (Nmm) of
 /// elements.
-FieldData fields_of(const frame::MechanismModel&, const VectorX& u);
+FieldData fields_of(const frame::MechanismModel&, const VectorX& u, const frame::GeometricState* deformed = nullptr);
 
 }  // namespace deflect

@@ -142,7 +142,9 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     const double change = size_of(step, model_.nodes.size(), work.length);
     const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
     const bool stalled = change < 1e-6 * size && change > 0.5 * previous;  // rounding is all that is left
-    if (change <= options.tolerance * size || stalled) {
+    // Second order takes the forces of constraints from the shape before: that too has to have settled.
+    const bool settled = options.geometry == Geometry::finite || previous <= options.tolerance * size;
+    if ((change <= options.tolerance * size && settled) || stalled) {
       // Across a buckling or limit load Newton finds equilibria that nothing would stay in.
       const bool stable = options.geometry == Geometry::second_order || tangent.stable();
       if (!stable) work.why = "the equilibrium is unstable there, a buckling or limit load was passed";

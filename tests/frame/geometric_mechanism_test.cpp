@@ -94,6 +94,18 @@ TEST_P(EveryDevice, EnergiesAndReactionsBelongToTheState) {
   }
 }
 
+// K u = F in second order. In a serial arm whose joints alone yield, constraints carry all of the force, and no member
+// shows in the first step that they turn.
+TEST(SecondOrder, WaitsForTheForcesOfConstraints) {
+  const Mechanism m = test::device("fanuc-r2000ic");
+  MsaModel model(configure(m, home_pose(m)));
+  const Vector6 F = 50 * Vector6::Unit(0);
+  const MsaSolution s = model.solve(F, Geometry::second_order);
+  ASSERT_TRUE(s.state.converged);
+  EXPECT_LT((model.stiffness(s.state).K * s.displacement - F).norm(), 1e-11 * F.norm());
+  EXPECT_LT(s.state.residual, 1e-11);
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, EveryDevice, ::testing::Values("haptic-6psu-ideal-joints", "haptic-6psu"),
                          [](const auto& name) {
                            return name.param[std::string(name.param).size() - 1] == 's' ? "IdealJoints" : "Contacts";

@@ -59,6 +59,41 @@ TEST(Program, SolveWritesTheContractsJsonAndTheDeflectedStructure) {
   EXPECT_NE(contents(folder / "out" / "deflected.vtu").find("displacement_mm"), std::string::npos);
 }
 
+TEST(Program, SolveFindsEquilibriumInTheDeformedShape) {
+  const Folder folder;
+  const std::string call = "solve haptic-6psu --pose 25,25,198.9 --load 50,0,0 --json '" + (folder / "s.json").string();
+  ASSERT_EQ(deflect(call + "'").code, 0);
+  const json linear = json::parse(contents(folder / "s.json"));
+  EXPECT_FALSE(linear.contains("geometry"));
+  for (const std::string geometry : {"second-order", "finite"}) {
+    const auto run = deflect(call + "' --geometry " + geometry);
+    ASSERT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(run.out.find("in the deformed shape (" + geometry + "); from the linear one the displacement differs by"),
+              std::string::npos);
+    EXPECT_EQ(run.out.find("passive joints free"), std::string::npos);
+    const json s = json::parse(contents(folder / "s.json"));
+    EXPECT_EQ(s["geometry"], geometry);
+    EXPECT_FALSE(s["checks"].contains("passive_joints_free"));
+    // The tool is pushed sideways by 0.7 mm of 100 mm: geometry changes the displacement by some such share, and the
+    // theories differ by the square of it.
+    for (const char* theory : {"analytic", "msa"}) {
+      EXPECT_GT(s[theory]["from_linear"].get<double>(), 1e-4);
+      EXPECT_LT(s[theory]["from_linear"].get<double>(), 2e-2);
+      EXPECT_NE(s[theory]["displacement"][0], linear[theory]["displacement"][0]);
+    }
+    EXPECT_LT(s["relative_difference"].get<double>(), 1e-4);
+  }
+}
+
+TEST(Program, SolveRefusesALoadBeyondBucklingAndAnUnknownGeometry) {
+  const auto buckled = deflect("solve haptic-6psu --pose 0,0,198.9 --load 0,0,-50000 --geometry finite");
+  EXPECT_EQ(buckled.code, 4);
+  EXPECT_NE(buckled.out.find("beyond the first buckling load"), std::string::npos) << buckled.out;
+  const auto unknown = deflect("solve haptic-6psu --pose 0,0,198.9 --load 0,0,5 --geometry deformed");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.out.find("linear, second-order, finite"), std::string::npos) << unknown.out;
+}
+
 TEST(Program, SameCallSameBytes) {
   const Folder folder;
   for (const char* name : {"a", "b"})

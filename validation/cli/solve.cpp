@@ -16,7 +16,7 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string device, pose, joints, load, json, out, element_size = "25 mm";
+  std::string device, pose, joints, load, json, out, element_size = "25 mm", geometry = "linear";
 };
 
 void write_structure(const std::filesystem::path& folder, const SolveResult& r) {
@@ -24,10 +24,17 @@ void write_structure(const std::filesystem::path& folder, const SolveResult& r) 
   write_vtu(folder / "deflected.vtu", r.mesh, r.fields);
 }
 
+Geometry parse_geometry(const std::string& text) {
+  for (std::size_t i = 0; i < std::size(geometry_names); ++i)
+    if (text == geometry_names[i]) return static_cast<Geometry>(i);
+  throw InputError(fmt::format("--geometry: '{}' is none of {}", text, fmt::join(geometry_names, ", ")));
+}
+
 void run(const Arguments& a) {
   const Mechanism m = read_mechanism(device_file(a.device));
   const Vector6 load = parse_load(a.load);
-  const SolveResult r = solve(m, parse_stand(m, a.pose, a.joints, false), load, divide(m, a.element_size));
+  const Geometry geometry = parse_geometry(a.geometry);
+  const SolveResult r = solve(m, parse_stand(m, a.pose, a.joints, false), load, divide(m, a.element_size), geometry);
   if (!a.out.empty()) write_structure(a.out, r);
   if (!a.json.empty()) write_text(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));
@@ -50,7 +57,13 @@ Command solve_command() {
        {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
         &a->joints},
        {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
-       {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
+       {"--geometry", "linear|second-order|finite",
+        "shape in which equilibrium is written (default linear). In the deformed shape, second order or finite, with "
+        "rotations of any size, K is the tangent there; a load past buckling is refused",
+        &a->geometry},
+       {"--element-size", "LENGTH",
+        "size of the MSA's elements, with unit (default '25 mm'; in the deformed shape at least 8 in a member)",
+        &a->element_size},
        {"--json", "FILE", "write the result", &a->json},
        {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
       [a] { drawing_motions(a->out, [a] { run(*a); }); }};

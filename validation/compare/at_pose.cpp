@@ -19,6 +19,21 @@ double total(const std::vector<std::pair<std::string, double>>& energies) {
   return sum;
 }
 
+/// In the deformed shape. Shapes are known to 1e-12, forces to that times the ratio of the stiffest to the softest
+/// part.
+Answer deformed_answer(Answer answer, const Vector6& F, const Vector3& reaction, const char* theory,
+                       const std::string& where) {
+  Matrix6 K = answer.stiffness;
+  K.bottomRightCorner<3, 3>() += skew(F.tail<3>()) / 2;
+  answer.checks = check_stiffness(K, {});
+  enforce(answer.checks.failure, fmt::format("{} stiffness", theory).c_str(), where);
+  Vector6 balance = -F;
+  balance.head<3>() = reaction;
+  enforce(response_failure({F, answer.displacement, balance, 0, false}, 1e-7),
+          fmt::format("{} response", theory).c_str(), where);
+  return answer;
+}
+
 }  // namespace
 
 AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : model_(c), where_(std::move(where)) {
@@ -27,17 +42,21 @@ AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : mode
   if (!fits) energy_at_rest_ = total(model_.energies(model_.assembled()));
 }
 
-Answer AnalyticAtPose::solve(const Vector6& F) const {
-  const analytic::AnalyticSolution s = model_.solve(F);
+Answer AnalyticAtPose::solve(const Vector6& F, Geometry geometry) const {
+  const analytic::AnalyticSolution s = model_.solve(F, geometry);
+  if (!s.converged && !s.message.empty())
+    throw NumericalError(fmt::format("{}: the analytic theory: {}", where_, s.message));
   if (!s.converged)
     throw NumericalError(fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})", where_,
                                      s.iterations, s.misfit));
-  std::vector<LegStiffness> legs;
   Vector6 carried = Vector6::Zero();
-  for (std::size_t i = 0; i < model_.chains().size(); ++i) {
+  for (const Vector6& wrench : s.leg_wrenches) carried += wrench;
+  if (s.deformed)
+    return deformed_answer({s.displacement, model_.stiffness(s), model_.energies(s), {}}, F + weight_,
+                           -carried.head<3>(), "analytic", where_);
+  std::vector<LegStiffness> legs;
+  for (std::size_t i = 0; i < model_.chains().size(); ++i)
     legs.push_back({model_.chains()[i].name, model_.leg_stiffness(i, s), model_.chains()[i].J_q});
-    carried += s.leg_wrenches[i];
-  }
   const Answer answer{s.displacement, model_.stiffness(s), model_.energies(s),
                       check_stiffness(model_.stiffness(s), legs)};
   enforce(answer.checks.failure, "analytic stiffness", where_);
@@ -55,11 +74,16 @@ MsaAtPose::MsaAtPose(const Configuration& c, const frame::MemberDivision& divisi
   }
 }
 
-Answer MsaAtPose::solve(const Vector6& F) {
-  last_ = model_.solve(F);
+Answer MsaAtPose::solve(const Vector6& F, Geometry geometry) {
+  last_ = model_.solve(F, geometry);
+  if (!last_.state.converged && last_.state.geometric)
+    throw NumericalError(fmt::format("{}: the MSA: {}", where_, last_.state.geometric->message));
   if (!last_.state.converged)
     throw NumericalError(fmt::format("{}: the MSA did not converge in {} steps (residual {:.3g})", where_,
                                      last_.state.iterations, last_.state.residual));
+  if (last_.state.geometric)
+    return deformed_answer({last_.displacement, model_.stiffness(last_.state).K, last_.energies, {}}, last_.load,
+                           model_.base_reaction(last_.load, last_.state).head<3>(), "MSA", where_);
   if (!has_stiffness_ || tangents_ != last_.state.spring_tangents) {
     const frame::MsaModel::Stiffness stiffness = model_.stiffness(last_.state);
     std::vector<LegStiffness> legs;

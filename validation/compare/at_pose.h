@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analytic/model.h"
+#include "msa/base/geometry.h"
 #include "msa/base/stiffness_checks.h"
 #include "msa/frame/msa.h"
 #include "msa/mechanism/configuration.h"
@@ -21,11 +22,13 @@ struct Answer {
 };
 
 /// Checked: K = Kᵀ, K ⪰ 0, K_c J_q = 0, sign, equilibrium, energy. Throws NumericalError naming theory, pose and check,
-/// or where equilibrium is not found. `where` begins the messages.
+/// or where equilibrium is not found. `where` begins the messages. In the deformed shape (Geometry) legs carry forces
+/// that resist their passive joints, and the stored energy is not ½Fᵀd: there K = Kᵀ of what is left without −½[m]× of
+/// the applied moment m, K ⪰ 0, sign and the balance of forces are checked.
 class AnalyticAtPose {
  public:
   AnalyticAtPose(const Configuration&, std::string where);
-  Answer solve(const Vector6& F_T_W) const;
+  Answer solve(const Vector6& F_T_W, Geometry = Geometry::linear) const;
   const analytic::AnalyticModel& model() const { return model_; }
 
  private:
@@ -38,13 +41,16 @@ class AnalyticAtPose {
 class MsaAtPose {
  public:
   MsaAtPose(const Configuration&, const frame::MemberDivision&, std::string where);
-  Answer solve(const Vector6& F_T_W);
+  Answer solve(const Vector6& F_T_W, Geometry = Geometry::linear);
 
   /// T beside its place in the drawing, as assembled without load and weight.
   Vector6 offset() { return model_.assembled().u.segment<6>(6 * mechanism().tool); }
 
   const frame::MechanismModel& mechanism() const { return model_.mechanism(); }
   const std::vector<std::string>& notes() const { return model_.notes(); }
+  const frame::GeometricState* deformed() const {
+    return last_.state.geometric.get();
+  }                                                               ///< its state, where not linear
   const VectorX& displacements() const { return last_.state.u; }  ///< of the last solve, by freedom of the structure
 
  private:

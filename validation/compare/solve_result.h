@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "meshes/line_mesh.h"
+#include "msa/base/geometry.h"
 #include "msa/base/spatial.h"
 
 namespace deflect {
@@ -32,13 +33,18 @@ struct JointValue {
 struct SolveResult {
   Vector6 pose_mm_deg = Vector6::Zero();  ///< x y z (mm), roll pitch yaw (deg)
   Vector6 load_N_Nmm = Vector6::Zero();   ///< on T about T in base axes: fx fy fz (N), mx my mz (Nmm)
+  Geometry geometry = Geometry::linear;
   TheorySolution analytic, msa;
+  /// By how much the displacement in the deformed shape differs from the linear one, relative_difference() in
+  /// theories.h.
+  double analytic_from_linear = 0, msa_from_linear = 0;
   double relative_difference = 0;  ///< of the displacements, see relative_difference() in theories.h
-  bool symmetric = false, positive = false, passive_joints_free = false;  ///< checks of the stiffness
-  std::vector<std::pair<std::string, double>> shares;                     ///< part, its share of the strain energy
-  std::vector<JointValue> joints;                                         ///< commanded coordinates
-  int redundant_constraints = 0;     ///< degree of over-constraint with actuators held
-  std::optional<Assembly> assembly;  ///< where legs stand beside their seats
+  /// Checks of the stiffness; the last one of linear geometry only.
+  bool symmetric = false, positive = false, passive_joints_free = false;
+  std::vector<std::pair<std::string, double>> shares;  ///< part, its share of the strain energy
+  std::vector<JointValue> joints;                      ///< commanded coordinates
+  int redundant_constraints = 0;                       ///< degree of over-constraint with actuators held
+  std::optional<Assembly> assembly;                    ///< where legs stand beside their seats
   std::vector<std::string> notes;  ///< what the MSA held or found poor: idle spins, redundant constraints, conditioning
   LineMesh mesh;                   ///< the MSA's structure
   FieldData fields;                ///< on it: displacements, member forces

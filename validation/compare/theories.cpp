@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "analytic/constraint.h"
 #include "analytic/model.h"
@@ -70,6 +71,23 @@ std::optional<Assembly> assembly_of(const Configuration& c, Pair& pair) {
   return out;
 }
 
+double from_linear(const Answer& deformed, const Answer& linear) {
+  return relative_difference(twist_in_mm(deformed.displacement), twist_in_mm(linear.displacement));
+}
+
+/// No member in fewer than eight elements.
+frame::MemberDivision refined(const Configuration& c, frame::MemberDivision division) {
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (requires { part.section; }) {
+      std::vector<double>& at = division[part.part];
+      if (at.size() >= 9) return;
+      at.clear();
+      for (int i = 0; i <= 8; ++i) at.push_back(i / 8.0);
+    }
+  });
+  return division;
+}
+
 Vector6 along(int axis, double force) { return force * Vector6::Unit(axis); }
 
 }  // namespace
@@ -116,10 +134,23 @@ Stand stand(const Mechanism& m, const Vector6& pose_mm_deg) {
   return {pose_mm_deg, configure(m, pose_from(pose_mm_deg))};
 }
 
-SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, const frame::MemberDivision& division) {
-  Pair pair(m, at, division);
-  const Answer a = pair.analytic.solve(wrench_from_mm(load)), f = pair.msa.solve(wrench_from_mm(load));
+SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, const frame::MemberDivision& division,
+                  Geometry geometry) {
+  const bool linear = geometry == Geometry::linear;
+  Pair pair(m, at, linear ? division : refined(at.configuration, division));
+  const Vector6 F = wrench_from_mm(load);
   SolveResult r;
+  r.geometry = geometry;
+  std::optional<Answer> linear_a, linear_f;
+  if (!linear) {
+    linear_a = pair.analytic.solve(F);
+    linear_f = pair.msa.solve(F);
+  }
+  const Answer a = pair.analytic.solve(F, geometry), f = pair.msa.solve(F, geometry);
+  if (!linear) {
+    r.analytic_from_linear = from_linear(a, *linear_a);
+    r.msa_from_linear = from_linear(f, *linear_f);
+  }
   r.pose_mm_deg = at.pose_mm_deg;
   r.load_N_Nmm = load;
   r.analytic = {twist_in_mm(a.displacement), stiffness_in_mm(a.stiffness)};
@@ -138,7 +169,7 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
   r.redundant_constraints = analytic::redundant_constraints(at.configuration);
   r.assembly = assembly_of(at.configuration, pair);
   r.mesh = lines_of(pair.msa.mechanism());
-  r.fields = fields_of(pair.msa.mechanism(), pair.msa.displacements());
+  r.fields = fields_of(pair.msa.mechanism(), pair.msa.displacements(), pair.msa.deformed());
   return r;
 }
 

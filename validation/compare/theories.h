@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analytic/erratum.h"
+#include "msa/base/geometry.h"
 #include "msa/frame/build.h"
 #include "msa/mechanism/configuration.h"
 
@@ -58,8 +59,10 @@ Stand stand(const Mechanism&, const Vector6& pose_mm_deg);
 struct SolveResult;
 
 /// Both theories at one pose under one wrench (N, Nmm at T, base axes). Throws NumericalError naming the check where
-/// one of the checks fails, or where a theory does not converge.
-SolveResult solve(const Mechanism&, const Stand&, const Vector6& load_N_Nmm, const frame::MemberDivision&);
+/// one of the checks fails, or where a theory does not converge. In the deformed shape the MSA has at least eight
+/// elements in each member.
+SolveResult solve(const Mechanism&, const Stand&, const Vector6& load_N_Nmm, const frame::MemberDivision&,
+                  Geometry = Geometry::linear);
 
 /// `load_N` along x, y and z at every point by both theories, checks at every point and load as in solve(). The theory
 /// as printed is added where errata are asked for; its checks are not enforced.

@@ -65,6 +65,15 @@ std::string displacement_table(const SolveResult& result) {
   return aligned(rows);
 }
 
+const char* geometry_name(const SolveResult& result) { return geometry_names[static_cast<int>(result.geometry)]; }
+
+std::string geometry_line(const SolveResult& result) {
+  return fmt::format(
+      "equilibrium in the deformed shape ({}); from the linear one the displacement differs by {:.3g} % (analytic), "
+      "{:.3g} % (MSA)\n",
+      geometry_name(result), 100 * result.analytic_from_linear, 100 * result.msa_from_linear);
+}
+
 std::string shares_table(const SolveResult& result) {
   auto shares = result.shares;
   std::stable_sort(shares.begin(), shares.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -110,7 +119,13 @@ std::string solve_json(const SolveResult& result) {
   json["relative_difference"] = json_number(result.relative_difference, "relative_difference");
   json["checks"]["symmetric"] = result.symmetric;
   json["checks"]["positive"] = result.positive;
-  json["checks"]["passive_joints_free"] = result.passive_joints_free;
+  if (result.geometry == Geometry::linear) {
+    json["checks"]["passive_joints_free"] = result.passive_joints_free;
+  } else {
+    json["geometry"] = geometry_name(result);
+    json["analytic"]["from_linear"] = json_number(result.analytic_from_linear, "analytic.from_linear");
+    json["msa"]["from_linear"] = json_number(result.msa_from_linear, "msa.from_linear");
+  }
   json["shares"] = Json::array();
   for (const auto& [part, share] : result.shares) {
     Json entry;
@@ -141,14 +156,18 @@ std::string solve_report(const SolveResult& result) {
   text += fmt::format("load   fx {}, fy {}, fz {} N; mx {}, my {}, mz {} Nmm\n\n", F[0], F[1], F[2], F[3], F[4], F[5]);
   if (!result.joints.empty()) text.insert(text.size() - 1, joints_line(result));
   text += displacement_table(result);
-  text += fmt::format("relative difference {:.1e}\n\n", result.relative_difference);
+  text += fmt::format("relative difference {:.1e}\n", result.relative_difference);
+  if (result.geometry != Geometry::linear) text += geometry_line(result);
+  text += "\n";
   text += "stiffness by MSA, base axes (N/mm, N, Nmm)\n" + stiffness_table(result.msa.stiffness_mm);
   text += stiffness_difference(result.analytic.stiffness_mm, result.msa.stiffness_mm) + "\n";
   if (!result.shares.empty()) text += shares_table(result) + "\n";
   if (result.assembly) text += assembly_table(*result.assembly) + "\n";
-  text += "checks\n" + aligned({{"  stiffness symmetric", check(result.symmetric)},
-                                {"  stiffness positive", check(result.positive)},
-                                {"  passive joints free", check(result.passive_joints_free)}});
+  std::vector<std::vector<std::string>> checks = {{"  stiffness symmetric", check(result.symmetric)},
+                                                  {"  stiffness positive", check(result.positive)}};
+  if (result.geometry == Geometry::linear)
+    checks.push_back({"  passive joints free", check(result.passive_joints_free)});
+  text += "checks\n" + aligned(checks);
   if (result.redundant_constraints > 0)
     text +=
         fmt::format("note: over-constrained: {} more constraint{} than hold it; parts yield, so that it is solved\n",

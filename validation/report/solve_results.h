@@ -8,8 +8,9 @@
 namespace deflect {
 
 /// {"pose", "load", "analytic": {"displacement", "stiffness"}, "msa": {the same}, "relative_difference",
-/// "checks", "shares": [{"part", "share"}, …] as in the result}; mm, rad, N, Nmm, deg. Throws NumericalError
-/// naming a number that is not finite.
+/// "checks", "shares": [{"part", "share"}, …] as in the result}; mm, rad, N, Nmm, deg. In the deformed shape also
+/// "geometry" and of each theory "from_linear", and no check of passive joints. Throws NumericalError naming a number
+/// that is not finite.
 std::string solve_json(const SolveResult&);
 
 /// Pose, load, displacement by both theories, the MSA's stiffness and how far the analytic one is from it,

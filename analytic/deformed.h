@@ -1,0 +1,43 @@
+// A mechanism in equilibrium with the geometry of the displaced state: second order, or finite (msa/base/geometry.h),
+// by chains of virtual joints (virtual_chain.h).
+//
+// Loads are dead: force and moment constant in base axes, the moment conjugate to the spin of the tool. Newton's
+// method; the misfits are put in place first, then the load; steps are halved where it fails, and where it ends in an
+// equilibrium that is not stable (some part of the mechanism could move by itself): then a buckling or limit load was
+// passed. In second order the forces of the state and the displacements under them are iterated until they agree.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytic/virtual_chain.h"
+
+namespace deflect::analytic {
+
+struct Deformed {
+  VirtualChain whole;  ///< base joint, legs, tool joint; F is the outer wrench
+  Circumstances circumstances;
+  Vector3 translation = Vector3::Zero();      ///< of T from the drawing
+  Matrix3 turning = Matrix3::Zero();          ///< of T, rotation less identity; finite
+  Vector3 rotation_vector = Vector3::Zero();  ///< second order: small
+  std::vector<Vector6> leg_wrenches;          ///< about the platform's T, base axes
+  bool converged = false;
+  double load_factor = 0;  ///< of the load that the state carries
+  int iterations = 0;
+  double residual = 0;  ///< what the last step changed, relative
+  std::string message;  ///< why it has not converged
+};
+
+/// The state under the wrench F at T, weight included. Not converged: the last stable state that was found.
+Deformed deform(const Configuration&, Geometry, const Vector6& F_T_W);
+
+/// Tangent of a state, [f; m] at T by [δ; spin], base axes: K = J⁻ᵀ(K − H)J⁻¹ − ½[m]× with K and H of the whole chain,
+/// symmetric where no outer moment m acts. Second order: K_E + K_G at the forces of the state. Throws ModelError where
+/// it is infinite.
+Matrix6 stiffness(const Deformed&);
+Matrix6 compliance(const Deformed&);
+/// The share of one leg, base axes: K_c.
+Matrix6 leg_stiffness(const Deformed&, std::size_t leg);
+
+}  // namespace deflect::analytic

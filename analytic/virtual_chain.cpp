@@ -1,0 +1,312 @@
+#include "analytic/virtual_chain.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "analytic/beam_column.h"
+#include "analytic/flexibility.h"
+#include "analytic/rotation_vector.h"
+
+namespace deflect::analytic {
+namespace {
+
+RigidMotion shift(const Vector3& u) { return {Matrix3::Zero(), u}; }
+RigidMotion turn(const Matrix3& D, const Vector3& about) { return {D, -D * about}; }
+
+RigidMotion motion_of(const VirtualJoint& v) {
+  const Matrix3& A = v.joint.R_WJ;
+  Matrix3 D = Matrix3::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i)
+    D = combined(D, turning(v.x[static_cast<std::size_t>(3 + i)] * Vector3::Unit(i)));
+  return shift(A * Vector3(v.x[0], v.x[1], v.x[2])) * turn(A * D * A.transpose(), v.joint.p_W);
+}
+
+RigidMotion motion_of(const VirtualStep& step) {
+  if (const auto* joint = std::get_if<VirtualJoint>(&step)) return motion_of(*joint);
+  if (const auto* member = std::get_if<VirtualMember>(&step)) return member->tip.motion();
+  return std::get<VirtualGroup>(step).tip.motion();
+}
+
+/// A freedom as it moves the end: spin ω, and velocity v once the end is known; until then the point on its axis.
+struct Column {
+  Vector3 omega, v;
+  int tip = -1;  // rotations of one tip belong together
+};
+
+void add_columns(const VirtualJoint& v, const RigidMotion& before, std::vector<Column>& columns) {
+  Matrix3 axes = before.R() * v.joint.R_WJ;
+  const Vector3 point = before(v.joint.p_W + v.joint.R_WJ * Vector3(v.x[0], v.x[1], v.x[2]));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Vector3 axis = axes.col(static_cast<Eigen::Index>(i % 3));
+    if (next < v.freedoms.size() && v.freedoms[next] == i) {
+      columns.push_back(i < 3 ? Column{Vector3::Zero(), axis} : Column{axis, point});
+      ++next;
+    }
+    if (i >= 3) axes = Eigen::AngleAxisd(v.x[i], axis) * axes;
+  }
+}
+
+void add_columns(const Tip& tip, const RigidMotion& before, std::vector<Column>& columns) {
+  const Matrix3 axes = before.R() * tip.A;
+  const Vector3 point = before(tip.motion()(tip.p));
+  const int number = static_cast<int>(columns.size());
+  for (Eigen::Index i = 0; i < 3; ++i) columns.push_back({Vector3::Zero(), axes.col(i)});
+  for (Eigen::Index i = 0; i < 3; ++i) columns.push_back({axes.col(i), point, number});
+}
+
+/// Adds the joint's laws under the forces s at its freedoms.
+void add_laws(const VirtualJoint& v, const Circumstances& c, Eigen::Ref<VectorX> s, Eigen::Ref<MatrixX> K,
+              std::vector<bool>& kept) {
+  const VectorX static_force = s;
+  s.setZero();
+  for (std::size_t k = 0; k < v.freedoms.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    const std::size_t i = v.freedoms[k];
+    kept.push_back(!v.joint.elastic(i));
+    if (kept.back()) continue;
+    if (v.joint.stiffness) {
+      for (std::size_t j = 0; j < 6; ++j) {
+        K(at, static_cast<Eigen::Index>(j)) = (*v.joint.stiffness)(at, static_cast<Eigen::Index>(j));
+        s(at) += K(at, static_cast<Eigen::Index>(j)) * v.x[j];
+      }
+      continue;
+    }
+    const Spring spring{v.joint.laws[i], v.joint.preload[i]};
+    K(at, at) = 1 / compliance(spring, static_force(at), c.least);
+    s(at) = static_force(at) + K(at, at) * (v.x[i] - deflection(spring, static_force(at)));
+  }
+}
+
+/// Takes out of Z the motions of passive joints that do not move the end and let all between turn about one line, or
+/// slide along one. `step`: of each column of Z that belongs to a joint; −1 of members and groups.
+void hold_idle(Linearised& l, const std::vector<int>& step, double length) {
+  std::vector<Eigen::Index> passive, others;
+  for (std::size_t i = 0; i < l.kept.size(); ++i)
+    (l.kept[i] && step[i] >= 0 ? passive : others).push_back(static_cast<Eigen::Index>(i));
+  if (passive.empty()) return;
+  const MatrixX Z = l.Z(Eigen::all, passive) * l.scale(passive).asDiagonal();
+  MatrixX twists = l.J * Z;
+  twists.bottomRows<3>() *= length;
+  MatrixX idle(Z.cols(), 0);
+  const MatrixX still = complement(twists.transpose());
+  for (Eigen::Index k = 0; k < still.cols(); ++k) {
+    // Twists of what stands behind each step.
+    MatrixX between = MatrixX::Zero(6, step[static_cast<std::size_t>(passive.back())] + 1);
+    for (Eigen::Index i = 0; i < twists.cols(); ++i) {
+      const int from = step[static_cast<std::size_t>(passive[static_cast<std::size_t>(i)])];
+      between.rightCols(between.cols() - from).colwise() += still(i, k) * twists.col(i);
+    }
+    const VectorX sizes = between.jacobiSvd().singularValues();
+    if (sizes.size() > 1 && sizes(1) > 1e-9 * sizes(0)) continue;
+    idle.conservativeResize(Eigen::NoChange, idle.cols() + 1);
+    idle.rightCols<1>() = still.col(k);
+  }
+  if (idle.cols() == 0) return;
+  const MatrixX moving = Z * complement(idle), rest = l.Z(Eigen::all, others);
+  std::vector<bool> kept;
+  for (const Eigen::Index i : others) kept.push_back(l.kept[static_cast<std::size_t>(i)]);
+  kept.resize(static_cast<std::size_t>(rest.cols() + moving.cols()), true);
+  VectorX scale = VectorX::Ones(rest.cols() + moving.cols());
+  scale.head(rest.cols()) = l.scale(others);
+  l.kept = kept;
+  l.scale = scale;
+  l.Z.resize(l.Z.rows(), rest.cols() + moving.cols());
+  l.Z << rest, moving;
+}
+
+}  // namespace
+
+RigidMotion Tip::motion() const { return shift(A * x.head<3>()) * turn(A * D * A.transpose(), p); }
+
+void Tip::move(const Vector6& increment, Geometry geometry) {
+  x.head<3>() += increment.head<3>();
+  if (geometry == Geometry::finite) {
+    D = combined(turning(increment.tail<3>()), D);
+    x.tail<3>() = rotation_vector(D);
+  } else {
+    x.tail<3>() += increment.tail<3>();
+  }
+}
+
+VirtualChain virtual_chain_of(const PlacedLeg& leg, const Vector3& p_E, const Vector3& p_WT, double length) {
+  VirtualChain chain;
+  chain.name = leg.name;
+  chain.length = length;
+  chain.p_E = p_E;
+  chain.misfit = shift_twist(p_E - p_WT) * leg.misfit;
+  for (const PlacedPart& part : leg.parts)
+    if (const auto* joint = std::get_if<PlacedJoint>(&part)) {
+      VirtualJoint v{*joint, {}, {}};
+      for (std::size_t i = 0; i < 6; ++i)
+        if (joint->free(i) || joint->elastic(i)) v.freedoms.push_back(i);
+      if (!v.freedoms.empty()) chain.steps.push_back(std::move(v));
+    } else if (const auto* member = std::get_if<PlacedMember>(&part)) {
+      chain.steps.push_back(VirtualMember{*member, {member->p_W_end, member->R_WM}});
+    } else {
+      const auto& parallel = std::get<PlacedParallel>(part);
+      VirtualGroup group{parallel.part, {parallel.p_W_end}, {}};
+      for (const PlacedLeg& branch : parallel.branches)
+        group.branches.push_back(virtual_chain_of(branch, parallel.p_W_end, p_WT, length));
+      chain.steps.push_back(std::move(group));
+    }
+  return chain;
+}
+
+Linearised VirtualChain::linearise(const Circumstances& c) {
+  Linearised out;
+  const bool finite = c.geometry == Geometry::finite;
+  std::vector<Column> columns;
+  std::vector<Eigen::Index> first;
+  std::vector<double> x;
+  for (const VirtualStep& step : steps) {
+    first.push_back(static_cast<Eigen::Index>(columns.size()));
+    if (const auto* joint = std::get_if<VirtualJoint>(&step)) {
+      VirtualJoint there = *joint;
+      if (!finite) there.x = {};
+      add_columns(there, out.end, columns);
+      for (const std::size_t i : joint->freedoms) x.push_back(joint->x[i]);
+    } else {
+      Tip tip = std::holds_alternative<VirtualMember>(step) ? std::get<VirtualMember>(step).tip
+                                                            : std::get<VirtualGroup>(step).tip;
+      const Vector6 moved = tip.x;
+      if (!finite) tip = {tip.p, tip.A};
+      add_columns(tip, out.end, columns);
+      x.insert(x.end(), moved.data(), moved.data() + 6);
+    }
+    if (finite) out.end = out.end * motion_of(step);
+  }
+  if (finite) out.end = out.end * shift(c.misfit * misfit.head<3>()) * turn(turning(c.misfit * misfit.tail<3>()), p_E);
+  const auto n = static_cast<Eigen::Index>(columns.size());
+  const Vector3 end = out.end(p_E), f = F.head<3>(), m = F.tail<3>();
+  out.J.resize(6, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Column& column = columns[static_cast<std::size_t>(i)];
+    if (!column.omega.isZero(0)) column.v = column.omega.cross(end - column.v);
+    out.J.col(i) << column.v, column.omega;
+  }
+  out.H = MatrixX::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = i; j < n; ++j) {
+      const Column &a = columns[static_cast<std::size_t>(i)], &b = columns[static_cast<std::size_t>(j)];
+      out.H(i, j) = a.tip >= 0 && a.tip == b.tip ? 0.5 * f.dot(a.omega.cross(b.v) + b.omega.cross(a.v))
+                    : i < j                      ? f.dot(a.omega.cross(b.v)) + 0.5 * m.dot(a.omega.cross(b.omega))
+                                                 : f.dot(a.omega.cross(b.v));
+      out.H(j, i) = out.H(i, j);
+    }
+  if (!finite)
+    for (std::size_t k = 0; k < steps.size(); ++k)
+      if (std::holds_alternative<VirtualMember>(steps[k])) out.H.row(first[k]).setZero(), out.H.col(first[k]).setZero();
+  out.x = Eigen::Map<const VectorX>(x.data(), n);
+  // Forces that statics puts on the freedoms; then what the laws make of them.
+  const VectorX along = out.J.transpose() * F;
+  out.turned = VectorX::Zero(n);
+  if (!finite) {  // the misfit is the motion of a last tip, which H sees too
+    const Vector6 beside = c.misfit * misfit;
+    const Vector3 moment = beside.head<3>().cross(f) + 0.5 * beside.tail<3>().cross(m);
+    out.turned = out.H * out.x + out.J.bottomRows<3>().transpose() * moment;
+  }
+  out.s = along + out.turned;
+  out.K = MatrixX::Zero(n, n);
+  MatrixX Z = MatrixX::Identity(n, n);
+  out.offset = VectorX::Zero(n);
+  std::vector<Eigen::Index> allowed;  // columns of Z that remain
+  std::vector<int> joint_of;          // by column: the step of a joint
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const Eigen::Index at = first[k], size = (k + 1 < steps.size() ? first[k + 1] : n) - at;
+    if (auto* joint = std::get_if<VirtualJoint>(&steps[k])) {
+      add_laws(*joint, c, out.s.segment(at, size), out.K.block(at, at, size, size), out.kept);
+      for (Eigen::Index i = 0; i < size; ++i) allowed.push_back(at + i);
+    } else if (auto* member = std::get_if<VirtualMember>(&steps[k])) {
+      const TipLaw law = tip_law(member->member, member->tip.x, along(at), c.geometry);
+      out.s.segment<6>(at) = law.s;
+      out.K.block<6, 6>(at, at) = law.K;
+      out.stable = out.stable && law.stable;
+      out.kept.insert(out.kept.end(), 6, false);
+      for (Eigen::Index i = 0; i < 6; ++i) allowed.push_back(at + i);
+    } else {
+      const Restraint held = std::get<VirtualGroup>(steps[k]).restrain(c);
+      out.s.segment<6>(at) = held.F0;
+      out.K.block<6, 6>(at, at) = held.K;
+      out.stable = out.stable && held.stable;
+      const Matrix6X free = held.B.cols() == 0 ? Matrix6X(Matrix6::Identity()) : free_twists(held.B, length);
+      if (held.B.cols() > 0)
+        out.offset.segment<6>(at) = MatrixX(held.B.transpose()).completeOrthogonalDecomposition().solve(held.b);
+      Z.block(at, at, 6, free.cols()) = free;
+      out.kept.insert(out.kept.end(), static_cast<std::size_t>(free.cols()), true);
+      for (Eigen::Index i = 0; i < free.cols(); ++i) allowed.push_back(at + i);
+    }
+    joint_of.resize(allowed.size(), std::holds_alternative<VirtualJoint>(steps[k]) ? static_cast<int>(k) : -1);
+  }
+  out.s -= out.turned;
+  out.Z = Z(Eigen::all, allowed);
+  out.scale = VectorX::Ones(out.Z.cols());
+  for (Eigen::Index i = 0; i < out.Z.cols(); ++i) {
+    // A freedom turns when it turns the end.
+    const Vector6 twist = out.J * out.Z.col(i);
+    if (twist.tail<3>().norm() * length > 1e-9 * twist.head<3>().norm()) out.scale(i) = 1 / length;
+  }
+  hold_idle(out, joint_of, length);
+  return out;
+}
+
+Matrix3 VirtualChain::axes_before(std::size_t step, Geometry geometry) const {
+  RigidMotion motion;
+  if (geometry == Geometry::finite)
+    for (std::size_t i = 0; i < step; ++i) motion = motion * motion_of(steps[i]);
+  return motion.R();
+}
+
+void VirtualChain::add_energies(const Circumstances& c, std::map<std::string, double>& sums) const {
+  VirtualChain copy = *this;
+  const Linearised l = copy.linearise(c);
+  const VectorX s = l.J.transpose() * F + l.turned;
+  Eigen::Index next = 0;
+  for (const VirtualStep& step : steps)
+    if (const auto* v = std::get_if<VirtualJoint>(&step)) {
+      const PlacedJoint& j = v->joint;
+      const Vector6 x = Eigen::Map<const Vector6>(v->x.data());
+      if (j.stiffness) sums[j.part] += 0.5 * x.dot(*j.stiffness * x);
+      for (const std::size_t i : v->freedoms) {
+        if (!j.laws[i].empty() && !j.stiffness) sums[j.part] += stored_energy({j.laws[i], j.preload[i]}, s(next));
+        ++next;
+      }
+    } else if (const auto* member = std::get_if<VirtualMember>(&step)) {
+      sums[member->member.part] += tip_law(member->member, member->tip.x, s(next), c.geometry).energy;
+      next += 6;
+    } else {
+      for (const VirtualChain& branch : std::get<VirtualGroup>(step).branches) branch.add_energies(c, sums);
+      next += 6;
+    }
+}
+
+Progress VirtualChain::advance(const Linearised& at, const VectorX& delta, const Circumstances& c) {
+  const VectorX s = at.J.transpose() * F + at.H * delta + at.turned;
+  Progress progress;
+  const auto count = [&](std::size_t freedom, double x, double step) {
+    const double scale = freedom < 3 ? 1 : length;
+    progress.add({scale * std::abs(x), scale * std::abs(step)});
+  };
+  Eigen::Index next = 0;
+  for (VirtualStep& step : steps)
+    if (auto* joint = std::get_if<VirtualJoint>(&step)) {
+      for (const std::size_t i : joint->freedoms) {
+        joint->x[i] += delta(next);
+        count(i, joint->x[i], delta(next++));
+      }
+    } else {
+      const Vector6 increment = delta.segment<6>(next);
+      Tip& tip = std::holds_alternative<VirtualMember>(step) ? std::get<VirtualMember>(step).tip
+                                                             : std::get<VirtualGroup>(step).tip;
+      tip.move(increment, c.geometry);
+      for (std::size_t i = 0; i < 6; ++i)
+        count(i, tip.x(static_cast<Eigen::Index>(i)), increment(static_cast<Eigen::Index>(i)));
+      if (auto* group = std::get_if<VirtualGroup>(&step)) progress.add(group->follow(increment, s.segment<6>(next), c));
+      next += 6;
+    }
+  return progress;
+}
+
+}  // namespace deflect::analytic

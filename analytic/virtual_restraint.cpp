@@ -1,0 +1,167 @@
+// What a chain of virtual joints does to a body that holds its end, and branches side by side.
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <cmath>
+
+#include "analytic/flexibility.h"
+#include "analytic/rotation_vector.h"
+#include "analytic/virtual_chain.h"
+
+namespace deflect::analytic {
+namespace {
+
+/// Rotations by length, or moments by its inverse.
+Vector6 weights(double rotation) {
+  Vector6 w = Vector6::Ones();
+  w.tail<3>().setConstant(rotation);
+  return w;
+}
+
+int negatives(const MatrixX& symmetric, double zero) {
+  if (symmetric.rows() == 0) return 0;
+  const VectorX eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixX>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+  return static_cast<int>((eigenvalues.array() < -zero * eigenvalues.cwiseAbs().maxCoeff()).count());
+}
+
+/// Symmetric, with ones on the diagonal but for signs.
+MatrixX equilibrated(const MatrixX& A) {
+  const VectorX s = A.diagonal().cwiseAbs().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  return s.asDiagonal() * A * s.asDiagonal();
+}
+
+/// Of a system that may be singular, but not contradictory.
+MatrixX smallest_solution(const MatrixX& A, const MatrixX& right) {
+  if (A.size() == 0) return MatrixX::Zero(A.cols(), right.cols());
+  Eigen::CompleteOrthogonalDecomposition<MatrixX> cod;
+  cod.setThreshold(1e-14);
+  cod.compute(A);
+  return cod.solve(right);
+}
+
+MatrixX pick(const MatrixX& A, const std::vector<Eigen::Index>& rows, const std::vector<Eigen::Index>& cols) {
+  return A(rows, cols);
+}
+
+}  // namespace
+
+// With A = K − H, δ = offset + Z z and z split into E, which is eliminated, and Q, which stays,
+//   z_E = A_EE⁻¹ (J_EᵀF − r_E − A_EQ z_Q)
+//   [ C        Ĵ  ] [F ]   [ t + c + e ]    C = J_E A_EE⁻¹ J_Eᵀ,  Ĵ = J_Q − J_E A_EE⁻¹ A_EQ,  e = J_E A_EE⁻¹ r_E,
+//   [ Ĵᵀ  −Â ] [z_Q] = [ r̂ ]              Â = A_QQ − A_QE A_EE⁻¹ A_EQ,  r̂ = r_Q − A_QE A_EE⁻¹ r_E,
+// F = W (P f + B μ) with moments weighed, P and B a basis: Bᵀ J = 0. Idle freedoms make the matrix singular and stay
+// where they are (smallest solution). The chain is stable while its end is held if A is positive definite on Jδ = 0,
+// which by Sylvester's law means: as many positive eigenvalues of the matrix and negative ones of A_EE as f has
+// entries.
+Restraint VirtualChain::restrain(const Tip& end, const Circumstances& circumstances) {
+  held_ = linearise(circumstances);
+  const Linearised& l = held_;
+  const bool finite = circumstances.geometry == Geometry::finite;
+  Vector6& c = lack_;
+  if (finite)
+    c << end.x.head<3>() - l.end.displacement(p_E), rotation_vector(combined(end.D, l.end.D.transpose()));
+  else
+    c = end.x - circumstances.misfit * misfit - l.J * l.x;
+  c -= l.J * l.offset;
+
+  const MatrixX difference = l.K - l.H;
+  const MatrixX J = l.J * l.Z, A = l.Z.transpose() * difference * l.Z;
+  const VectorX r = l.Z.transpose() * (l.s + difference * l.offset);
+  std::vector<Eigen::Index> E, Q;
+  for (std::size_t i = 0; i < l.kept.size(); ++i) (l.kept[i] ? Q : E).push_back(static_cast<Eigen::Index>(i));
+  const std::vector<Eigen::Index> six = {0, 1, 2, 3, 4, 5};
+  const MatrixX J_E = pick(J, six, E), J_Q = pick(J, six, Q), A_EE = pick(A, E, E), A_EQ = pick(A, E, Q);
+  const VectorX r_E = r(E), r_Q = r(Q), scale = l.scale(Q);
+  const Eigen::PartialPivLU<MatrixX> lu = [&] {
+    return E.empty() ? Eigen::PartialPivLU<MatrixX>() : Eigen::PartialPivLU<MatrixX>(A_EE);
+  }();
+  const auto solve = [&](const MatrixX& right) -> MatrixX { return E.empty() ? right : MatrixX(lu.solve(right)); };
+  const MatrixX yields = solve(J_E.transpose()), A_EE_EQ = solve(A_EQ), A_EE_r = solve(r_E);
+  const Vector6 e = J_E * A_EE_r;
+
+  const Vector6 W = weights(length);
+  const MatrixX J_weighed = W.asDiagonal() * J * l.scale.asDiagonal();
+  const MatrixX B = complement(J_weighed), P = complement(B);
+  const Eigen::Index rank = P.cols(), passive = J_Q.cols();
+  const MatrixX C = P.transpose() * W.asDiagonal() * (J_E * yields) * W.asDiagonal() * P;
+  const MatrixX J_hat = P.transpose() * W.asDiagonal() * (J_Q - J_E * A_EE_EQ) * scale.asDiagonal();
+  const MatrixX A_hat = scale.asDiagonal() * (pick(A, Q, Q) - A_EQ.transpose() * A_EE_EQ) * scale.asDiagonal();
+  // In units in which the compliance is 1, so that ranks can be told.
+  const double stiffest = A_hat.size() > 0 ? A_hat.cwiseAbs().maxCoeff() : 0;
+  double unit = C.size() > 0 ? C.cwiseAbs().maxCoeff() : 0;
+  if (!(unit > 0)) unit = stiffest > 0 ? 1 / stiffest : 1;
+  MatrixX M = MatrixX::Zero(rank + passive, rank + passive);
+  M << C / unit, J_hat, J_hat.transpose(), -unit * A_hat;
+  MatrixX right = MatrixX::Zero(rank + passive, 7);
+  right.topLeftCorner(rank, 6) = P.transpose() * W.asDiagonal() * Matrix6::Identity() / unit;
+  right.topRightCorner(rank, 1) = P.transpose() * W.cwiseProduct(e) / unit;
+  right.bottomRightCorner(passive, 1) = scale.cwiseProduct(r_Q - A_EQ.transpose() * A_EE_r);
+  const MatrixX solution = smallest_solution(M, right);
+  const MatrixX forces = W.asDiagonal() * P * solution.topRows(rank);  // F by [t + c; 1]
+  response_.resize(J.cols(), 7);
+  const MatrixX z_Q = unit * (scale.asDiagonal() * solution.bottomRows(passive));
+  MatrixX z_E = yields * forces - A_EE_EQ * z_Q;
+  z_E.col(6) -= A_EE_r;
+  response_(E, Eigen::all) = z_E;
+  response_(Q, Eigen::all) = z_Q;
+
+  Restraint& held = restraint_;
+  held.K = forces.leftCols<6>();
+  held.K = (held.K + held.K.transpose()).eval() / 2;
+  held.F0 = held.K * c + forces.col(6);
+  held.m = finite ? Vector3(F.tail<3>()) : Vector3::Zero();
+  held.F0.tail<3>() -= 0.5 * held.m.cross(c.tail<3>());
+  held.B = W.asDiagonal() * B;
+  held.b = -held.B.transpose() * c;
+  held.stable = l.stable && negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
+  return held;
+}
+
+Progress VirtualChain::follow(const Vector6& t, const VectorX& mu, const Circumstances& circumstances) {
+  F = restraint_.F0 + restraint_.K * t + restraint_.B * mu;
+  F.tail<3>() -= 0.5 * restraint_.m.cross(t.tail<3>());
+  Eigen::Matrix<double, 7, 1> driving;
+  driving << t + lack_, 1;
+  return advance(held_, held_.offset + held_.Z * (response_ * driving), circumstances);
+}
+
+Restraint VirtualGroup::restrain(const Circumstances& c) {
+  Restraint all;
+  for (VirtualChain& branch : branches) {
+    const Restraint one = branch.restrain(tip, c);
+    all.K += one.K;
+    all.F0 += one.F0;
+    all.m += one.m;
+    const Eigen::Index before = all.B.cols(), more = one.B.cols();
+    all.B.conservativeResize(6, before + more);
+    all.B.rightCols(more) = one.B;
+    all.b.conservativeResize(before + more);
+    all.b.tail(more) = one.b;
+    all.stable = all.stable && one.stable;
+  }
+  return all;
+}
+
+Progress VirtualGroup::follow(const Vector6& t, const Vector6& F, const Circumstances& c) {
+  // What rigid branches carry is what the others leave of F.
+  Vector6 rest = F;
+  MatrixX B(6, 0);
+  for (const VirtualChain& branch : branches) {
+    const Restraint& held = branch.restraint();
+    rest -= held.F0 + held.K * t;
+    B.conservativeResize(6, B.cols() + held.B.cols());
+    B.rightCols(held.B.cols()) = held.B;
+  }
+  const Vector6 moments = weights(1 / branches.front().length);
+  const VectorX mu = smallest_solution(moments.asDiagonal() * B, moments.asDiagonal() * rest);
+  Eigen::Index next = 0;
+  Progress progress;
+  for (VirtualChain& branch : branches) {
+    const Eigen::Index own = branch.restraint().B.cols();
+    progress.add(branch.follow(t, mu.segment(next, own), c));
+    next += own;
+  }
+  return progress;
+}
+
+}  // namespace deflect::analytic

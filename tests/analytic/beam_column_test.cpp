@@ -1,0 +1,107 @@
+// The member of the closed form in its deformed shape, against stability functions and published beam-columns.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic/beam_column.h"
+#include "analytic/rotation_vector.h"
+#include "tests/support/mechanisms.h"
+
+namespace deflect::analytic {
+namespace {
+
+constexpr double L = 0.8, EI = 120;
+
+/// [v; θ] of [Q; M] at the tip of a cantilever under the axial force N, from EI v'' = M + Q (L − x) + N (v − v(L)):
+/// with k² = |N|/EI and t = tan, s = 1/cos in compression, tanh and 1/cosh in tension.
+Eigen::Matrix2d cantilever(double N) {
+  const double k = std::sqrt(std::abs(N) / EI);
+  const double t = N > 0 ? std::tanh(k * L) : std::tan(k * L), s = N > 0 ? 1 / std::cosh(k * L) : 1 / std::cos(k * L);
+  Eigen::Matrix2d C;
+  C << (L - t / k) / N, (1 - s) / N, (1 - s) / N, t / (k * EI);
+  return C;
+}
+
+// Both sides lose ε EI/(N L²) by cancellation, here 1e-14 at worst, and by the conditioning of the matrix.
+TEST(BeamColumn, HasTheTipComplianceOfTheStabilityFunctions) {
+  for (const double z : {-2.4, -1.0, -0.05, 0.05, 1.0, 30.0, 70.0, 400.0}) {
+    const double N = z * EI / (L * L);
+    const Eigen::Matrix2d C = tip_bending(L, EI, 0, N).K.inverse(), exact = cantilever(N);
+    for (int i = 0; i < 4; ++i) EXPECT_NEAR(C(i), exact(i), 1e-11 * std::abs(exact(i))) << z;
+  }
+}
+
+// AISC Design Guide 25 (2011), prismatic benchmark, case 1, in inch and kip: W14x176, L = 196, under 0.6 P_cr and a
+// side load of 10 the tip moves by 0.981072, the closed form to the digits printed.
+TEST(BeamColumn, MovesAsTheBenchmarkOfDesignGuide25) {
+  EXPECT_NEAR(10 * tip_bending(196, 29500 * 2150.0, 0, -2444.21462).K.inverse()(0, 0), 0.981072, 5e-7);
+}
+
+TEST(BeamColumn, IsTheLinearBeamWithoutForce) {
+  const Eigen::Matrix2d C = tip_bending(L, EI, 0, 0).K.inverse();
+  EXPECT_NEAR(C(0, 0), L * L * L / (3 * EI), 1e-15);
+  EXPECT_NEAR(C(0, 1), L * L / (2 * EI), 1e-15);
+  EXPECT_NEAR(C(1, 1), L / EI, 1e-15);
+  const double shear = 4000;
+  EXPECT_NEAR(tip_bending(L, EI, shear, 0).K.inverse()(0, 0), L * L * L / (3 * EI) + L / shear, 1e-15);
+}
+
+// F. Engesser: 1/P = 1/P_E + 1/GA_s, P_E = π²EI/4L² of a cantilever; there the stiffness is singular.
+TEST(BeamColumn, WithShearBucklesAtEngessersLoad) {
+  const double shear = 900, euler = pi * pi * EI / (4 * L * L), P = 1 / (1 / euler + 1 / shear);
+  const Eigen::Matrix2d K = tip_bending(L, EI, shear, -P).K;
+  EXPECT_NEAR(K.determinant(), 0, 1e-13 * K(0, 0) * K(1, 1));
+  EXPECT_GT(tip_bending(L, EI, shear, -0.999 * P).K.determinant(), 0);
+  EXPECT_LT(tip_bending(L, EI, shear, -1.001 * P).K.determinant(), 0);
+  // Between clamped ends 4π² EI/L² in bending.
+  const double clamped = 4 * pi * pi * EI / (L * L);
+  EXPECT_TRUE(tip_bending(L, EI, 0, -0.999 * clamped).stable);
+  EXPECT_FALSE(tip_bending(L, EI, 0, -1.001 * clamped).stable);
+}
+
+// Central differences of step h = 0.01 EI/L²: h² of the third derivative, whose scale is EI/L² or more, and ε/h².
+TEST(BeamColumn, KnowsItsDerivativesByTheForce) {
+  for (const double z : {-2.0, 0.0, 3.0, 59.0, 61.0}) {
+    const double unit = EI / (L * L), N = z * unit, h = 1e-2 * unit;
+    const auto K = [&](double force) { return tip_bending(L, EI, 2e4, force, 1e5).K; };
+    const TipBending at = tip_bending(L, EI, 2e4, N, 1e5);
+    const Eigen::Matrix2d d = (K(N + h) - K(N - h)) / (2 * h), dd = (K(N + h) - 2 * at.K + K(N - h)) / (h * h);
+    EXPECT_LT((at.dK - d).norm(), 1e-4 * d.norm()) << z;
+    EXPECT_LT((at.ddK - dd).norm(), 1e-3 * dd.norm()) << z;
+  }
+}
+
+// s + K d is the derivative of the energy where the axial force is that of statics: law of a bent, twisted, pulled rod.
+TEST(TipLaw, IsTheDerivativeOfItsEnergy) {
+  PlacedMember m = test::rod("rod", Vector3::Zero(), {0.5, 0, 0}, 0.01);
+  m.section.Iz *= 1.7;
+  m.beam = BeamTheory::timoshenko;
+  Vector6 x;
+  x << 0, 0.02, -0.015, 0.03, 0.05, -0.04;
+  const auto settled = [&](Vector6 at, double N) {  // stretch and energy at the axial force N
+    double u = 0;
+    for (int i = 0; i < 60; ++i) {
+      at(0) = u;
+      u -= (tip_law(m, at, N, Geometry::finite).s(0) - N) / tip_law(m, at, N, Geometry::finite).K(0, 0);
+    }
+    at(0) = u;
+    return at;
+  };
+  const double N = 500;
+  const Vector6 at = settled(x, N);
+  const TipLaw law = tip_law(m, at, N, Geometry::finite);
+  EXPECT_NEAR(law.s(0), N, 1e-9 * N);
+  EXPECT_LT((law.K - law.K.transpose()).norm(), 1e-12 * law.K.norm());
+  // Along a path of rotation vectors dU = sᵀ[δ; ψ]; ψ = J dφ.
+  Vector6 step;
+  step << 0, 1, -0.7, 0.4, 0.8, 0.6;
+  const double h = 1e-5;
+  const Vector6 plus = settled(at + h * step, N), minus = settled(at - h * step, N);
+  const double slope = (tip_law(m, plus, N, Geometry::finite).energy - tip_law(m, minus, N, Geometry::finite).energy);
+  Vector6 moved = plus - minus;
+  moved.tail<3>() = RotationChange(at.tail<3>()).J * moved.tail<3>();
+  EXPECT_NEAR(slope, law.s.dot(moved), 1e-6 * std::abs(slope));  // h² of the third derivative, 1e-10/1e-5 rounding
+}
+
+}  // namespace
+}  // namespace deflect::analytic

@@ -1,0 +1,258 @@
+// The closed form in the deformed shape, against mechanisms that are solved by hand and against itself.
+#include "analytic/deformed.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic/model.h"
+#include "analytic/rotation_vector.h"
+#include "tests/support/chains.h"
+#include "tests/support/mechanisms.h"
+
+namespace deflect::analytic {
+namespace {
+
+constexpr Geometry both[] = {Geometry::second_order, Geometry::finite};
+
+Vector6 force(double fx, double fy, double fz = 0) {
+  Vector6 F = Vector6::Zero();
+  F.head<3>() << fx, fy, fz;
+  return F;
+}
+
+/// An arm of length L along x on a spring k that turns about z.
+constexpr double k = 300, L = 0.5;
+AnalyticModel pendulum() {
+  return AnalyticModel(
+      test::configuration({L, 0, 0}, {{"leg 1", {test::spring("hinge", Vector3::Zero(), {{5, k}})}}}, L));
+}
+
+// A pull N along the arm adds its moment N L θ to k θ; a push takes it away.
+TEST(Deformed, InvertedPendulumYieldsByTheSpringLessTheMomentOfThePush) {
+  for (const Geometry geometry : both)
+    for (const double N : {200.0, -200.0, -500.0}) {
+      const AnalyticModel model = pendulum();
+      const AnalyticSolution s = model.solve(force(N, 0), geometry);
+      ASSERT_TRUE(s.converged) << s.message;
+      const Matrix6 C = model.compliance(s);
+      EXPECT_NEAR(C(5, 5), 1 / (k + N * L), 1e-14 / k);
+      EXPECT_NEAR(C(1, 1), L * L / (k + N * L), 1e-14 / k);
+    }
+}
+
+// Q L/(k + N L) in second order; at finite angles k θ = L (Q cos θ − N sin θ), the tip at L (cos θ − 1, sin θ).
+TEST(Deformed, PendulumFindsItsAngle) {
+  const double N = -250, Q = 90;
+  const AnalyticModel model = pendulum();
+  EXPECT_NEAR(model.solve(force(N, Q), Geometry::second_order).displacement(5), Q * L / (k + N * L), 1e-14);
+  const AnalyticSolution s = model.solve(force(N, Q), Geometry::finite);
+  const double angle = s.displacement(5);
+  EXPECT_GT(angle, 0.2);
+  EXPECT_NEAR(k * angle, L * (Q * std::cos(angle) - N * std::sin(angle)), 1e-12 * k);
+  EXPECT_NEAR(s.displacement(0), L * (std::cos(angle) - 1), 1e-14);
+  EXPECT_NEAR(s.displacement(1), L * std::sin(angle), 1e-14);
+  EXPECT_NEAR(model.energies(s).front().second, k * angle * angle / 2, 1e-12 * k);
+}
+
+TEST(Deformed, PendulumFallsAtItsCriticalLoad) {
+  for (const Geometry geometry : both) {
+    EXPECT_TRUE(pendulum().solve(force(-0.99 * k / L, 0), geometry).converged);
+    const AnalyticSolution s = pendulum().solve(force(-1.25 * k / L, 0), geometry);
+    EXPECT_FALSE(s.converged);
+    EXPECT_NE(s.message.find("buckling"), std::string::npos) << s.message;
+    EXPECT_NEAR(s.deformed->load_factor, 0.8, 1e-3);  // steps are halved down to 1e-4
+  }
+}
+
+// Springs k1, k2 and arms L1, L2 in a row, turning by θ1 and θ2 more: a push P gains P (L1 θ1² + L2 (θ1 + θ2)²)/2, so
+// K = diag(k1, k2) − P [[L1 + L2, L2], [L2, L2]], and the tip moves by (L1 + L2) θ1 + L2 θ2.
+TEST(Deformed, TwoSpringsInARowLoseThePotentialOfThePush) {
+  const double k1 = 400, k2 = 250, L1 = 0.3, L2 = 0.4, P = 150;
+  const AnalyticModel model(test::configuration(
+      {L1 + L2, 0, 0},
+      {{"leg 1", {test::spring("lower", Vector3::Zero(), {{5, k1}}), test::spring("upper", {L1, 0, 0}, {{5, k2}})}}},
+      L1 + L2));
+  Eigen::Matrix2d K;
+  K << k1 - P * (L1 + L2), -P * L2, -P * L2, k2 - P * L2;
+  const Eigen::Vector2d J(L1 + L2, L2), turn(1, 1);
+  for (const Geometry geometry : both) {
+    const Matrix6 C = model.compliance(model.solve(force(-P, 0), geometry));
+    EXPECT_NEAR(C(1, 1), J.dot(K.inverse() * J), 1e-15);
+    EXPECT_NEAR(C(5, 5), turn.dot(K.inverse() * turn), 1e-15);
+    EXPECT_NEAR(C(1, 5), J.dot(K.inverse() * turn), 1e-15);
+  }
+}
+
+// A platform on six struts with the pulls f, directions n and lengths l between the feet and b = T + r; g = [n; r × n],
+// J = [I, −[r]×]. The energy ½ k (l − l0)² of a strut has the second derivative
+//   k g gᵀ + f/l (JᵀJ − g gᵀ) + f [0 0; 0 ½(n rᵀ + r nᵀ) − n·r I]
+// by [δ; φ], the last term from b's second-order motion ½ φ × (φ × r); spins take −½[m]× off.
+TEST(Deformed, HexapodHasTheTangentOfItsStruts) {
+  std::mt19937 random(5);
+  const auto struts = test::hexapod(random);
+  const double stiffness = 2e6;
+  const Vector3 p_WT(0.01, 0.02, 0.42);
+  std::vector<PlacedLeg> legs;
+  for (const auto& [a, b] : struts)
+    legs.push_back(test::strut("leg " + std::to_string(legs.size() + 1), a, b, stiffness));
+  const AnalyticModel model(test::configuration(p_WT, legs, 0.5));
+  Vector6 F;
+  F << 800, -500, -2000, 30, -20, 40;
+  const AnalyticSolution s = model.solve(F, Geometry::finite);
+  ASSERT_TRUE(s.converged) << s.message;
+  const Matrix3 R = Matrix3::Identity() + turning(s.displacement.tail<3>());
+  Matrix6 K = Matrix6::Zero();
+  Vector6 carried = Vector6::Zero();
+  for (const auto& [a, b] : struts) {
+    const Vector3 r = R * (b - p_WT), line = p_WT + s.displacement.head<3>() + r - a, n = line.normalized();
+    const double l = line.norm(), f = stiffness * (l - (b - a).norm());
+    Vector6 g;
+    g << n, r.cross(n);
+    const Eigen::Matrix<double, 3, 6> J = shift_twist(r).topRows<3>();
+    K += stiffness * g * g.transpose() + f / l * (J.transpose() * J - g * g.transpose());
+    K.bottomRightCorner<3, 3>() += f * ((n * r.transpose() + r * n.transpose()) / 2 - n.dot(r) * Matrix3::Identity());
+    carried += f * g;
+  }
+  EXPECT_LT((carried - F).norm(), 1e-9 * F.norm());  // f from l − l0: 1e-16 of l, of a strain of 1e-3 and less
+  K.bottomRightCorner<3, 3>() -= skew(F.tail<3>()) / 2;
+  EXPECT_LT(test::stiffness_difference(model.stiffness(s), K, 0.2), 1e-12);
+}
+
+// A cantilever without stretch under a dead force across it: EI κ' = −F cos θ, κ = 0 at the end, by Runge and Kutta's
+// rule backwards from the end, its angle by bisection.
+Eigen::Vector3d elastica(double load) {  // x, y, θ of the end for EI = L = 1
+  const auto from_end = [&](double angle) {
+    Eigen::Vector4d s(0, 0, angle, 0);  // position against the end, θ, κ
+    const int n = 400;
+    const auto f = [&](const Eigen::Vector4d& at) {
+      return Eigen::Vector4d(std::cos(at(2)), std::sin(at(2)), at(3), -load * std::cos(at(2)));
+    };
+    const double h = -1.0 / n;
+    for (int i = 0; i < n; ++i) {
+      const Eigen::Vector4d k1 = f(s), k2 = f(s + h / 2 * k1), k3 = f(s + h / 2 * k2), k4 = f(s + h * k3);
+      s += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+    return s;
+  };
+  double low = 0, high = load;
+  for (int i = 0; i < 60; ++i) (from_end((low + high) / 2)(2) < 0 ? low : high) = (low + high) / 2;
+  const Eigen::Vector4d start = from_end(low);
+  return {-start(0), -start(1), low};
+}
+
+// What the member leaves out is of third order in the load: of its displacement, a quarter at half the load. The side
+// load's own terms of that order are left, so the rate is met to a tenth from F L²/EI = 0.4 down.
+TEST(Deformed, CantileverMeetsTheElasticaInTheThirdOrder) {
+  PlacedMember m = test::rod("rod", Vector3::Zero(), {1, 0, 0}, 0.01);
+  m.E = 1 / m.section.Iz;
+  m.section.A = 1e9 / m.E;
+  const AnalyticModel model(test::configuration({1, 0, 0}, {{"leg 1", {m}}}, 1));
+  double before = 0;
+  for (const double load : {0.4, 0.2, 0.1, 0.05}) {
+    const AnalyticSolution s = model.solve(force(0, load), Geometry::finite);
+    ASSERT_TRUE(s.converged) << s.message;
+    const Eigen::Vector3d exact = elastica(load);
+    const Eigen::Vector3d error(s.displacement(0) + 1 - exact(0), s.displacement(1) - exact(1),
+                                s.displacement(5) - exact(2));
+    const double relative = error.norm() / exact(1);
+    if (before > 0) {
+      EXPECT_NEAR(before / relative, 4, 0.4) << load;
+    }
+    before = relative;
+  }
+}
+
+// Beyond π²/4 EI/L² the straight column is no answer.
+TEST(Deformed, ColumnBucklesAtEulersLoad) {
+  const PlacedMember m = test::rod("column", Vector3::Zero(), {1, 0, 0}, 0.01);
+  const double critical = pi * pi / 4 * m.E * m.section.Iz;
+  const AnalyticModel model(test::configuration({1, 0, 0}, {{"leg 1", {m}}}, 1));
+  for (const Geometry geometry : both) {
+    EXPECT_TRUE(model.solve(force(-0.99 * critical, 0), geometry).converged);
+    const AnalyticSolution s = model.solve(force(-1.1 * critical, 0), geometry);
+    EXPECT_FALSE(s.converged);
+    EXPECT_NE(s.message.find("buckling"), std::string::npos) << s.message;
+    EXPECT_NEAR(s.deformed->load_factor, 1 / 1.1, 2e-3);  // strain makes N/EA of it, 6e-4
+  }
+}
+
+class RandomDeformed : public ::testing::TestWithParam<unsigned> {};
+
+Vector6 wrench(unsigned seed, double size, bool moment) {
+  std::mt19937 random(seed);
+  Vector6 F = size / 50 * test::random_wrench(random);
+  if (!moment) F.tail<3>().setZero();
+  return F;
+}
+
+// K times the motion between two loads is their difference: Richardson's rule on central differences of 2 % and 1 % of
+// the load leaves the fifth derivative, 1e-8 · (share of the geometry, below 1e-2); each displacement is known to
+// 1e-12, their difference to 1e-10.
+TEST_P(RandomDeformed, StiffnessIsTheDerivativeOfTheLoad) {
+  const Configuration c = test::random_mechanism(GetParam());
+  const AnalyticModel model(c);
+  const Vector6 F = wrench(GetParam(), 200, true);
+  const AnalyticSolution s = model.solve(F, Geometry::finite);
+  ASSERT_TRUE(s.converged) << s.message;
+  const Matrix6 C = model.compliance(s);
+  for (int i = 0; i < 6; ++i) {
+    const auto central = [&](double h) {
+      const AnalyticSolution plus = model.solve(F + h * Vector6::Unit(i), Geometry::finite),
+                             minus = model.solve(F - h * Vector6::Unit(i), Geometry::finite);
+      Vector6 d = plus.displacement - minus.displacement;
+      d.tail<3>() =
+          rotation_vector(combined(turning(plus.displacement.tail<3>()), turning(-minus.displacement.tail<3>())));
+      return Vector6(d / (2 * h));
+    };
+    const double h = i < 3 ? 4 : 0.08;
+    const Vector6 slope = (4 * central(h / 2) - central(h)) / 3;
+    EXPECT_LT((slope - C.col(i)).norm(), 1e-7 * C.col(i).norm()) << i;
+  }
+}
+
+TEST_P(RandomDeformed, StiffnessIsSymmetricWithoutAMoment) {
+  const Configuration c = test::random_mechanism(GetParam());
+  const AnalyticModel model(c);
+  for (const Geometry geometry : both) {
+    const Matrix6 K = model.stiffness(model.solve(wrench(GetParam(), 200, false), geometry));
+    EXPECT_LT(test::stiffness_difference(K, K.transpose(), c.size), 1e-12);
+  }
+}
+
+// Relative to the linear answer, what the deformed shape changes is of first order in the load.
+TEST_P(RandomDeformed, MeetsTheLinearAnswerAtSmallLoads) {
+  const Configuration c = test::random_mechanism(GetParam());
+  const AnalyticModel model(c);
+  for (const Geometry geometry : both) {
+    double before = 0;
+    for (const double size : {40.0, 20.0, 10.0}) {
+      const Vector6 F = wrench(GetParam(), size, true), linear = model.solve(F).displacement;
+      const double relative = (model.solve(F, geometry).displacement - linear).norm() / linear.norm();
+      if (before > 0) {
+        EXPECT_NEAR(before / relative, 2, 0.1);
+      }
+      before = relative;
+    }
+  }
+}
+
+// Between a rigid base and a rigid tool, what the platform exerts on the legs adds up to the load in the deformed shape
+// too.
+TEST_P(RandomDeformed, IsInEquilibrium) {
+  Configuration c = test::random_mechanism(GetParam());
+  c.base = test::joint("base", Vector3::Zero(), "rrrrrr");
+  c.tool = test::joint("tool", c.pose.p_WT, "rrrrrr");
+  const AnalyticModel model(c);
+  const Vector6 F = wrench(GetParam(), 200, true);
+  for (const Geometry geometry : both) {
+    Vector6 sum = -F;
+    for (const Vector6& one : model.solve(F, geometry).leg_wrenches) sum += one;
+    EXPECT_LT(sum.norm(), 1e-9 * F.norm());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomDeformed, ::testing::Range(1u, 9u));
+
+}  // namespace
+}  // namespace deflect::analytic

@@ -1,0 +1,136 @@
+// Both theories in the deformed shape, on every built-in device.
+//
+// Second order: both write equilibrium in the undeformed shape, but the closed form takes the forces of members from
+// statics there and the MSA from its displacements, and stretched levers count in it between groups of parts and not in
+// members; finite: the law of a member leaves out the third order. Either way the displacements differ by an order of
+// the load more than the deformed shape changes them. What the MSA's elements add falls with their number.
+#include <gtest/gtest.h>
+
+#include "analytic/model.h"
+#include "msa/frame/msa.h"
+#include "tests/support/chains.h"
+
+namespace deflect {
+namespace {
+
+frame::MemberDivision divided(const Configuration& c, int elements) {
+  frame::MemberDivision division;
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (requires { part.section; }) {
+      division[part.part].clear();
+      for (int i = 0; i <= elements; ++i) division[part.part].push_back(static_cast<double>(i) / elements);
+    }
+  });
+  return division;
+}
+
+/// |a − b| / |b|, rotations weighed by a length.
+double difference(const Vector6& a, const Vector6& b, double length) {
+  Vector6 w = Vector6::Ones();
+  w.tail<3>().setConstant(length);
+  return w.cwiseProduct(a - b).norm() / w.cwiseProduct(b).norm();
+}
+
+class DeformedDevice : public ::testing::TestWithParam<std::string> {
+ protected:
+  DeformedDevice() : mechanism(test::device(GetParam())), c(configure(mechanism, home_pose(mechanism))) {}
+
+  static std::vector<Vector6> loads() {
+    std::vector<Vector6> all;
+    for (int i = 0; i < 3; ++i) all.push_back(50 * Vector6::Unit(i));
+    Vector6 mixed;
+    mixed << 30, -25, 31, 0.5, -1, 0.75;
+    all.push_back(mixed);
+    return all;
+  }
+
+  Mechanism mechanism;
+  Configuration c;
+};
+
+/// The condition of a beam of n elements grows as n⁴: 2⁻⁵² · 16⁴, four times over for the sums of legs and theories.
+constexpr double rounding = 4 * 2.2e-16 * 65536;
+
+/// By the MSA with 8 and 16 elements in each member, whose errors fall by 4, and what these leave taken off.
+Vector6 refined(const Configuration& c, const Vector6& F, Geometry geometry) {
+  const auto by = [&](int elements) {
+    const frame::MsaSolution s = frame::MsaModel(c, divided(c, elements)).solve(F, geometry);
+    EXPECT_TRUE(s.state.converged);
+    return s.displacement;
+  };
+  return (4 * by(16) - by(8)) / 3;
+}
+
+/// What the theories say of each other and of the linear answer under F, F/2 and F/4.
+struct Comparison {
+  std::vector<double> of_theories, from_linear;
+
+  Comparison(const Configuration& c, const Vector6& F, Geometry geometry) {
+    const analytic::AnalyticModel a(c);
+    for (const double share : {1.0, 0.5, 0.25}) {
+      const analytic::AnalyticSolution s = a.solve(share * F, geometry);
+      EXPECT_TRUE(s.converged) << s.message;
+      of_theories.push_back(difference(s.displacement, refined(c, share * F, geometry), c.size));
+      from_linear.push_back(difference(s.displacement, a.solve(share * F).displacement, c.size));
+    }
+  }
+};
+
+// What is left is of the second order, relative: a quarter at half the load, times 1 + O(load), for which an eighth is
+// left. Of what the deformed shape changes the theories say the same to 0.2 %.
+TEST_P(DeformedDevice, FiniteDiffersByTheThirdOrderOfTheLoad) {
+  for (const Vector6& F : loads()) {
+    const Comparison x(c, F, Geometry::finite);
+    for (std::size_t i = 1; i < 3; ++i) EXPECT_LE(x.of_theories[i], x.of_theories[i - 1] / 3.5 + rounding) << F;
+    EXPECT_LE(x.of_theories[0], 2e-3 * x.from_linear[0] + rounding);
+  }
+}
+
+// The hybrid's second order differs in the first order of the load by the stretch of its members, which is as large as
+// all its displacements: half at half the load, 1 % of the change. The others as above, contacts, whose stiffness goes
+// with the cube root of the load, with a fifth for the next term.
+TEST_P(DeformedDevice, SecondOrderDiffersByOneOrderMoreThanItChanges) {
+  for (const Vector6& F : loads()) {
+    const Comparison x(c, F, Geometry::second_order);
+    const bool stretch = GetParam() == "hybrid", contacts = GetParam() == "haptic-6psu";
+    for (std::size_t i = 1; i < 3; ++i)
+      EXPECT_LE(x.of_theories[i], x.of_theories[i - 1] / (stretch ? 1.8 : contacts ? 3.2 : 3.5) + rounding) << F;
+    EXPECT_LE(x.of_theories[0], (stretch ? 1e-2 : 2e-3) * x.from_linear[0] + rounding);
+  }
+}
+
+// Elements of half the length, a quarter of the error, with an eighth left for the next term; where fourth powers
+// prevail, less.
+TEST_P(DeformedDevice, TheMsaSettlesAsItsElementsAreRefined) {
+  for (const Geometry geometry : {Geometry::second_order, Geometry::finite})
+    for (const Vector6& F : loads()) {
+      std::vector<Vector6> d;
+      for (const int elements : {4, 8, 16})
+        d.push_back(frame::MsaModel(c, divided(c, elements)).solve(F, geometry).displacement);
+      EXPECT_LE((d[1] - d[2]).norm(), (d[0] - d[1]).norm() / 3.5 + rounding * d[2].norm());
+    }
+}
+
+// Stiffness by both theories, the stresses of the load in it, to a share of what these change, and its own rounding.
+TEST_P(DeformedDevice, StiffnessAgreesAsTheDisplacementDoes) {
+  const analytic::AnalyticModel a(c);
+  frame::MsaModel f(c, divided(c, 16));
+  for (const Geometry geometry : {Geometry::second_order, Geometry::finite})
+    for (const Vector6& F : loads()) {
+      const Matrix6 of_a = a.stiffness(a.solve(F, geometry)), linear = a.stiffness(a.solve(F));
+      EXPECT_LE(test::stiffness_difference(of_a, f.stiffness(f.solve(F, geometry).state).K, c.size),
+                (GetParam() == "hybrid" ? 5e-2 : 2e-3) * test::stiffness_difference(of_a, linear, c.size) + 2e-10);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, DeformedDevice,
+                         ::testing::Values("haptic-6psu", "haptic-6psu-ideal-joints", "stewart-6ups", "delta",
+                                           "fanuc-r2000ic", "hybrid", "tripteron"),
+                         [](const auto& p) {
+                           std::string name = p.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace deflect
