@@ -1,6 +1,7 @@
 #include "analytic/chain.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +9,11 @@
 
 namespace deflect::analytic {
 namespace {
+
+Step step_of(const SteppedLaw& law, double force, const Circumstances& c) {
+  const auto n = static_cast<std::size_t>(law.number);
+  return law.number >= 0 && n < c.steps.size() ? c.steps[n] : law.at_force(force);
+}
 
 void append(Matrix6X& columns, const Matrix6X& more) {
   columns.conservativeResize(6, columns.cols() + more.cols());
@@ -32,6 +38,7 @@ void add_member(Chain& chain, const PlacedMember& m, const Vector3& p_W, bool fi
     C_tip = tip_compliance(m);
   }
   add_compliance(chain, moved_to(p_W, m, R, C_tip), m.part);
+  chain.expansion.head<3>() += m.expansion * (m.p_W_end - m.p_W_start);
 }
 
 void add_joint(Chain& chain, const PlacedJoint& j, const Vector3& p_W, const AsPrinted& p) {
@@ -44,13 +51,20 @@ void add_joint(Chain& chain, const PlacedJoint& j, const Vector3& p_W, const AsP
   for (std::size_t i = 0; i < 6; ++i) {
     if (j.free(i)) append(chain.J_q, freedom_twist(j, i, p_W));
     if (!j.elastic(i)) continue;
-    const Spring spring{j.laws[i], j.preload[i]};
+    ElasticFreedom freedom{freedom_twist(j, i, p_W), {{}, j.preload[i]}, j.part, {}};
+    for (const Law& law : j.laws[i])
+      if (is_stepped(law))
+        freedom.stepped.push_back({law, j.preload[i], i >= 3});
+      else
+        freedom.spring.laws.push_back(law);
     if (!p.count(Erratum::scalar_direction)) {
-      chain.freedoms.push_back({freedom_twist(j, i, p_W), spring, j.part});
+      chain.freedoms.push_back(freedom);
       continue;
     }
-    for (Eigen::Index k = 0; k < 6; ++k)  // mm/N read as rad/Nmm in the rotations
-      chain.freedoms.push_back({Vector6::Unit(k) * (k < 3 ? 1 : 1e3), spring, j.part});
+    for (Eigen::Index k = 0; k < 6; ++k) {  // mm/N read as rad/Nmm in the rotations
+      freedom.twist = Vector6::Unit(k) * (k < 3 ? 1 : 1e3);
+      chain.freedoms.push_back(freedom);
+    }
   }
 }
 
@@ -92,22 +106,30 @@ Chain chain_of(const PlacedLeg& leg, const Vector3& p_W, double length, const As
   return chain;
 }
 
-Response Chain::respond(const Vector6& F, double least, const AsPrinted& p) const {
+Response Chain::respond(const Vector6& F, double least, const Circumstances& c) const {
   Response r;
-  r.d = misfit + C * F;
-  r.tangent = {C, p.count(Erratum::passive_joints) ? Matrix6X(6, 0) : J_q, N};
+  r.d = misfit + c.warmer * expansion + C * F;
+  r.tangent = {C, c.printed.count(Erratum::passive_joints) ? Matrix6X(6, 0) : J_q, N};
   const Eigen::Index passive = r.tangent.J.cols();
   for (const ElasticFreedom& f : freedoms) {
-    const double force = f.twist.dot(F), c = analytic::compliance(f.spring, force, least, p);
-    r.d += f.twist * analytic::deflection(f.spring, force, p);
-    if (std::isfinite(c))
-      r.tangent.C += f.twist * c * f.twist.transpose();
-    else
+    const double force = f.twist.dot(F);
+    double yields = analytic::compliance(f.spring, force, least, c.printed);
+    bool lets_go = !std::isfinite(yields);
+    r.d += f.twist * analytic::deflection(f.spring, force, c.printed);
+    for (const SteppedLaw& law : f.stepped) {
+      const Step step = step_of(law, force, c);
+      r.d += f.twist * (step.offset + step.compliance * force);
+      yields += step.compliance;
+      lets_go = lets_go || (step.released && least == 0);
+    }
+    if (lets_go)
       append(r.tangent.J, f.twist);
+    else
+      r.tangent.C += f.twist * yields * f.twist.transpose();
   }
   for (const Group& g : groups) {
-    const Group::State state = g.solve(F, p);
-    const Flexibility tangent = g.flexibility(state.wrenches, least, p);
+    const Group::State state = g.solve(F, c);
+    const Flexibility tangent = g.flexibility(state.wrenches, least, c);
     r.d += state.t;
     r.converged = r.converged && state.converged;
     r.tangent.C += tangent.C;
@@ -117,13 +139,48 @@ Response Chain::respond(const Vector6& F, double least, const AsPrinted& p) cons
   return r;
 }
 
-Matrix6 Chain::stiffness(const Vector6& F, const AsPrinted& p) const {
-  return analytic::stiffness(respond(F, 0, p).tangent, length, name);
+bool Chain::has_open(const Circumstances& c) const {
+  for (const ElasticFreedom& f : freedoms)
+    for (const SteppedLaw& law : f.stepped)
+      if (step_of(law, 0, c).open) return true;
+  return false;
+}
+
+Response Chain::respond_open(const Vector6& F, double least, const Circumstances& c) const {
+  Response r = respond(F, least, c);
+  const Eigen::Index before = r.tangent.J.cols();
+  for (const ElasticFreedom& f : freedoms)
+    for (const SteppedLaw& law : f.stepped)
+      if (step_of(law, 0, c).open) append(r.tangent.J, f.twist);
+  if (r.tangent.J.cols() > before) r.tangent.N = carried_wrenches(r.tangent.J, length);
+  return r;
+}
+
+void Chain::add_open_motions(const Vector6& t, const Vector6& F, const Circumstances& c, VectorX& motions) const {
+  if (!has_open(c)) return;
+  Matrix6X J = J_q;
+  std::vector<const SteppedLaw*> open;
+  for (const ElasticFreedom& f : freedoms)
+    for (const SteppedLaw& law : f.stepped)
+      if (step_of(law, 0, c).open) {
+        append(J, f.twist);
+        open.push_back(&law);
+      }
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(length);
+  Eigen::CompleteOrthogonalDecomposition<MatrixX> solver(weight.asDiagonal() * J);
+  const VectorX free = solver.solve(weight.cwiseProduct(t - respond(F, 0, c).d));
+  for (std::size_t i = 0; i < open.size(); ++i)
+    motions(open[i]->number) = step_of(*open[i], 0, c).offset + free(J_q.cols() + static_cast<Eigen::Index>(i));
+}
+
+Matrix6 Chain::stiffness(const Vector6& F, const Circumstances& c) const {
+  return analytic::stiffness(respond(F, 0, c).tangent, length, name);
 }
 
 bool Chain::linear() const {
   const auto linear_spring = [](const ElasticFreedom& f) {
-    return std::all_of(f.spring.laws.begin(), f.spring.laws.end(), is_linear);
+    return f.stepped.empty() && std::all_of(f.spring.laws.begin(), f.spring.laws.end(), is_linear);
   };
   return std::all_of(freedoms.begin(), freedoms.end(), linear_spring) &&
          std::all_of(groups.begin(), groups.end(), [](const Group& g) { return g.linear(); });
@@ -133,13 +190,45 @@ bool Chain::fits() const {
   return misfit.isZero(0) && std::all_of(groups.begin(), groups.end(), [](const Group& g) { return g.fits(); });
 }
 
-void Chain::add_energies(const Vector6& F, const AsPrinted& p, std::map<std::string, double>& sums) const {
+void Chain::add_energies(const Vector6& F, const Circumstances& c, std::map<std::string, double>& sums) const {
   for (const FlexiblePart& m : members) sums[m.part] += 0.5 * F.dot(m.C * F);
-  for (const ElasticFreedom& f : freedoms) sums[f.part] += stored_energy(f.spring, f.twist.dot(F), p);
-  for (const Group& g : groups) {
-    const Group::State state = g.solve(F, p);
-    for (std::size_t i = 0; i < g.branches.size(); ++i) g.branches[i].add_energies(state.wrenches[i], p, sums);
+  for (const ElasticFreedom& f : freedoms) {
+    const double force = f.twist.dot(F);
+    sums[f.part] += analytic::stored_energy(f.spring, force, c.printed);
+    for (const SteppedLaw& law : f.stepped) sums[f.part] += law.stored_energy(force, step_of(law, force, c));
   }
+  for (const Group& g : groups) {
+    const Group::State state = g.solve(F, c);
+    for (std::size_t i = 0; i < g.branches.size(); ++i) g.branches[i].add_energies(state.wrenches[i], c, sums);
+  }
+}
+
+void Chain::number_steps(std::vector<SteppedLaw>& all) {
+  for (ElasticFreedom& f : freedoms)
+    for (SteppedLaw& law : f.stepped) {
+      law.number = static_cast<int>(all.size());
+      all.push_back(law);
+    }
+  for (Group& g : groups)
+    for (Chain& branch : g.branches) branch.number_steps(all);
+}
+
+void Chain::add_step_forces(const Vector6& F, const Circumstances& c, VectorX& forces) const {
+  for (const ElasticFreedom& f : freedoms)
+    for (const SteppedLaw& law : f.stepped) forces(law.number) = f.twist.dot(F);
+  for (const Group& g : groups) {
+    const bool any = std::any_of(g.branches.begin(), g.branches.end(), [](const Chain& b) { return b.has_steps(); });
+    if (!any) continue;
+    const Group::State state = g.solve(F, c);
+    for (std::size_t i = 0; i < g.branches.size(); ++i) g.branches[i].add_step_forces(state.wrenches[i], c, forces);
+  }
+}
+
+bool Chain::has_steps() const {
+  return std::any_of(freedoms.begin(), freedoms.end(), [](const ElasticFreedom& f) { return !f.stepped.empty(); }) ||
+         std::any_of(groups.begin(), groups.end(), [](const Group& g) {
+           return std::any_of(g.branches.begin(), g.branches.end(), [](const Chain& b) { return b.has_steps(); });
+         });
 }
 
 }  // namespace deflect::analytic

@@ -3,22 +3,34 @@
 // whole, so that forces are what a chain is asked with. Equation numbers are those of Ahmad, Andersson, Sellgren.
 #pragma once
 
+#include <Eigen/LU>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analytic/deflection.h"
 #include "analytic/flexibility.h"
+#include "analytic/steps.h"
 #include "msa/mechanism/configuration.h"
 
 namespace deflect::analytic {
 
 /// A freedom that yields by its laws: unit relative motion moves T by `twist`; under a wrench F at T it carries
-/// twistᵀF.
+/// twistᵀF. Laws that jump stand in series with those of the spring.
 struct ElasticFreedom {
   Vector6 twist;
   Spring spring;
   std::string part;
+  std::vector<SteppedLaw> stepped;
+};
+
+/// What a mechanism is asked under, beside its load.
+struct Circumstances {
+  Circumstances(AsPrinted p = {}) : printed(std::move(p)) {}
+  AsPrinted printed;
+  double warmer = 0;        ///< K
+  std::vector<Step> steps;  ///< by SteppedLaw::number; none: each as its force alone says
 };
 
 /// Compliance at T of a linear part: a flexible member (21), a joint of given 6×6 stiffness, J K⁻¹Jᵀ.
@@ -39,7 +51,8 @@ struct Group;
 /// Parts in series from a near end to a far one. A wrench F = N λ at T that the passive joints can carry (N spans the
 /// wrenches with J_qᵀF = 0) moves the far end against the near one, at T, by
 ///   d = misfit + C F + Σ twist_j δ_j(twist_jᵀF) + Σ d_g(F) + J_q θ, θ arbitrary,
-/// d_g of the groups among the parts.
+/// d_g of the groups among the parts. A member that is warmer lengthens by α ΔT L whatever it carries, which moves T
+/// along the member: d grows by expansion · ΔT.
 struct Chain {
   std::string name;
   double length = 1;  ///< m: moments weigh against forces by it
@@ -47,21 +60,33 @@ struct Chain {
   std::vector<FlexiblePart> members;
   std::vector<ElasticFreedom> freedoms;
   std::vector<Group> groups;
-  Matrix6 C = Matrix6::Zero();    ///< sum of the members'
-  Matrix6X J_q = Matrix6X(6, 0);  ///< twists at T of the passive joints, whether released or not
-  Matrix6X N = Matrix6X(6, 0);    ///< wrenches carried; all of them where passive joints are not released
+  Vector6 expansion = Vector6::Zero();  ///< of the members, per kelvin
+  Matrix6 C = Matrix6::Zero();          ///< sum of the members'
+  Matrix6X J_q = Matrix6X(6, 0);        ///< twists at T of the passive joints, whether released or not
+  Matrix6X N = Matrix6X(6, 0);          ///< wrenches carried; all of them where passive joints are not released
 
   /// Motion under F but for J_q θ; the tangent's compliance takes a force below `least` (N, Nm) for `least`, so that
-  /// unloaded contacts stay finite; with least = 0 they let go.
-  Response respond(const Vector6& F, double least, const AsPrinted&) const;
-  Vector6 deflection(const Vector6& F, const AsPrinted& p) const { return respond(F, 0, p).d; }
+  /// unloaded contacts stay finite; with least = 0 they let go, and so do released steps.
+  Response respond(const Vector6& F, double least, const Circumstances&) const;
+  Vector6 deflection(const Vector6& F, const Circumstances& c) const { return respond(F, 0, c).d; }
   /// Tangent stiffness K_c. Contacts without load do not resist. Throws ModelError where it is infinite.
-  Matrix6 stiffness(const Vector6& F, const AsPrinted&) const;
+  Matrix6 stiffness(const Vector6& F, const Circumstances&) const;
   /// No law's stiffness depends on its load.
   bool linear() const;
   bool fits() const;  ///< neither the chain nor a branch of it has a misfit
   /// Adds the strain energy of each part, J.
-  void add_energies(const Vector6& F, const AsPrinted&, std::map<std::string, double>&) const;
+  void add_energies(const Vector6& F, const Circumstances&, std::map<std::string, double>&) const;
+  /// The chain where open steps of its own freedoms are released: it carries what does no work on them. Of `d` the part
+  /// on what is released is arbitrary.
+  Response respond_open(const Vector6& F, double least, const Circumstances&) const;
+  /// Motions of the open steps of its own freedoms where its far end is moved by t.
+  void add_open_motions(const Vector6& t, const Vector6& F, const Circumstances&, VectorX&) const;
+  bool has_open(const Circumstances&) const;
+  /// Adds its laws that jump, and those of its groups, to the list and numbers them by it.
+  void number_steps(std::vector<SteppedLaw>&);
+  bool has_steps() const;
+  /// Their forces under F.
+  void add_step_forces(const Vector6& F, const Circumstances&, VectorX&) const;
 };
 
 /// Chains side by side between two rigid bodies. Equilibrium under F: Σ F_i = F, with F_i = N_i λ_i and
@@ -73,6 +98,8 @@ struct Group {
   std::vector<Chain> branches;
   Matrix6X J = Matrix6X(6, 0);  ///< twists at T that no branch resists
   Matrix6X R = Matrix6X(6, 0);  ///< the other twists: with J a basis, orthonormal with rotations weighed by length
+  /// Of Rᵀ[N_1 N_2 …], where the branches' forces follow from statics alone.
+  std::optional<Eigen::PartialPivLU<MatrixX>> determinate;
 
   struct State {
     Vector6 t = Vector6::Zero();    ///< displacement of the far body against the near one, none of it along J
@@ -80,17 +107,23 @@ struct Group {
     bool converged = false;
     int iterations = 0;
     double misfit = 0;  ///< how far branches' ends and the body disagree, relative to t
+    bool open = false;  ///< open steps were released, not imposed
   };
 
   /// Newton on the branches' forces. F is one that the branches together carry, JᵀF = 0. Throws ModelError where rigid
   /// branches cannot be assembled.
-  State solve(const Vector6& F, const AsPrinted&) const;
+  State solve(const Vector6& F, const Circumstances&) const;
+  std::optional<State> solve_by_statics(const Vector6& F, const Circumstances&) const;
   /// Tangent in a state; `least` as for a chain.
-  Flexibility flexibility(const std::vector<Vector6>& wrenches, double least, const AsPrinted&) const;
+  Flexibility flexibility(const std::vector<Vector6>& wrenches, double least, const Circumstances&) const;
   /// Σ K_c. Throws ModelError naming the branch that is rigid.
-  Matrix6 stiffness(const std::vector<Vector6>& wrenches, const AsPrinted&) const;
+  Matrix6 stiffness(const std::vector<Vector6>& wrenches, const Circumstances&) const;
   bool linear() const;  ///< of every branch
   bool fits() const;
+
+ private:
+  State solve(const Vector6& F, const Circumstances&, bool open) const;
+  void settle(State&, double least, const Circumstances&) const;
 };
 
 /// The chain of a leg, referred to the point p_W (T, unless (46) is taken as printed).

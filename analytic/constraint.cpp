@@ -14,8 +14,21 @@ int redundant(const Group& g) {
   return count;
 }
 
+/// What stands beside the legs yields where it is elastic, and constrains nothing there.
+Configuration with_yielding_beside(Configuration c) {
+  for (PlacedLeg& leg : c.legs)
+    for (PlacedPart& part : leg.parts)
+      if (auto* joint = std::get_if<PlacedJoint>(&part); joint && leg.beside) {
+        for (std::size_t i = 0; i < 6; ++i)
+          if (joint->elastic(i)) joint->freedoms[i] = Freedom::free;
+        joint->laws = {};
+        joint->stiffness.reset();
+      }
+  return c;
+}
+
 }  // namespace
 
-int redundant_constraints(const Configuration& c) { return redundant(legs_of(c)); }
+int redundant_constraints(const Configuration& c) { return redundant(legs_of(with_yielding_beside(c))); }
 
 }  // namespace deflect::analytic

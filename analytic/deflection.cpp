@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "msa/base/spatial.h"
 
@@ -17,7 +18,9 @@ double stiffness(const PinBendingLaw& l, const AsPrinted&) {
   return pin_bending_stiffness(l.solid, l.diameter, l.length);
 }
 double stiffness(const MotorShaftLaw& l, const AsPrinted&) { return motor_shaft_stiffness(l); }
-double stiffness(const CableLaw& l, const AsPrinted&) { return cable_stiffness(l.solid, l.area, *l.length); }
+double stiffness(const CableLaw& l, const AsPrinted&) {
+  return l.EA ? *l.EA / *l.length : cable_stiffness(l.solid, l.area, *l.length);
+}
 double stiffness(const CablePairLaw& l, const AsPrinted&) {
   return cable_stiffness(l.solid, l.area_1, l.length_1) + cable_stiffness(l.solid, l.area_2, l.length_2);
 }
@@ -121,23 +124,59 @@ double belt_stiffness(const BeltLaw& l) {
 }
 
 bool is_linear(const Law& law) {
-  return !std::holds_alternative<HertzPointLaw>(law) && !std::holds_alternative<HertzLineBulkLaw>(law);
+  const auto* power = std::get_if<PowerLaw>(&law);
+  return power ? power->exponent == 1
+               : !std::holds_alternative<HertzPointLaw>(law) && !std::holds_alternative<HertzLineBulkLaw>(law) &&
+                     !std::holds_alternative<HardeningLaw>(law) && !is_stepped(law);
+}
+
+bool is_stepped(const Law& law) {
+  return std::holds_alternative<OneSidedLaw>(law) || std::holds_alternative<ClearanceLaw>(law) ||
+         std::holds_alternative<FrictionLaw>(law);
+}
+
+double power_deflection(const PowerLaw& l, double force) {
+  return std::copysign(l.deflection * std::pow(std::abs(force) / l.force, l.exponent), force);
+}
+
+double power_compliance(const PowerLaw& l, double force) {
+  return l.exponent * l.deflection / l.force * std::pow(std::abs(force) / l.force, l.exponent - 1);
+}
+
+double hardening_deflection(const HardeningLaw& l, double force) {
+  const double q = force / (l.stiffness * l.reference);
+  return l.reference * 2 / std::sqrt(3) * std::sinh(std::asinh(1.5 * std::sqrt(3) * q) / 3);
+}
+
+double hardening_compliance(const HardeningLaw& l, double force) {
+  const double x = hardening_deflection(l, force) / l.reference;
+  return 1 / (l.stiffness * (1 + 3 * x * x));
 }
 
 double deflection(const Law& law, double force, const AsPrinted& p) {
   if (const auto* l = std::get_if<HertzPointLaw>(&law))
     return point_contact_deflection(l->radius, effective_modulus(l->solid, p), force);
   if (const auto* l = std::get_if<HertzLineBulkLaw>(&law)) return bulk_line_deflection(*l, force);
+  if (const auto* l = std::get_if<PowerLaw>(&law)) return power_deflection(*l, force);
+  if (const auto* l = std::get_if<HardeningLaw>(&law)) return hardening_deflection(*l, force);
   return force * compliance(law, force, p);
 }
 
 double compliance(const Law& law, double force, const AsPrinted& p) {
   return std::visit(
-      [&](const auto& l) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(l)>, HertzPointLaw>)
+      [&](const auto& l) -> double {
+        using L = std::decay_t<decltype(l)>;
+        if constexpr (std::is_same_v<L, HertzPointLaw>)
           return point_contact_compliance(l.radius, effective_modulus(l.solid, p), force);
-        else if constexpr (std::is_same_v<std::decay_t<decltype(l)>, HertzLineBulkLaw>)
+        else if constexpr (std::is_same_v<L, HertzLineBulkLaw>)
           return bulk_line_compliance(l, force);
+        else if constexpr (std::is_same_v<L, PowerLaw>)
+          return power_compliance(l, force);
+        else if constexpr (std::is_same_v<L, HardeningLaw>)
+          return hardening_compliance(l, force);
+        else if constexpr (std::is_same_v<L, OneSidedLaw> || std::is_same_v<L, ClearanceLaw> ||
+                           std::is_same_v<L, FrictionLaw>)
+          throw std::logic_error("a law that jumps has no deflection of its own: steps.h");
         else
           return 1 / stiffness(l, p);
       },
@@ -150,8 +189,14 @@ double stored_energy(const Law& law, double force, const AsPrinted& p) {
     const BulkLine b = bulk_line(*l, force);
     return std::abs(force) * b.p_kappa * (b.logarithm - 1.5);
   }
-  // δ ∝ f^{2/3} stores 2/5 of f δ, δ ∝ f one half.
-  return (std::holds_alternative<HertzPointLaw>(law) ? 0.4 : 0.5) * force * deflection(law, force, p);
+  if (const auto* l = std::get_if<HardeningLaw>(&law)) {
+    const double d = hardening_deflection(*l, force), x = d / l->reference;
+    return l->stiffness * d * d * (2 + x * x) / 4;
+  }
+  // δ ∝ fⁿ stores n/(1 + n) of f δ: two fifths of it for n = 2/3, one half for n = 1.
+  const auto* power = std::get_if<PowerLaw>(&law);
+  const double n = power ? power->exponent : std::holds_alternative<HertzPointLaw>(law) ? 2.0 / 3 : 1;
+  return n / (1 + n) * force * deflection(law, force, p);
 }
 
 double deflection(const std::vector<Law>& laws, double force, const AsPrinted& p) {

@@ -39,14 +39,25 @@ double motor_shaft_stiffness(const MotorShaftLaw&);
 double cable_stiffness(const Material&, double area, double length);
 double belt_stiffness(const BeltLaw&);
 
-/// Deflection of one law under a force (N; Nm for a linear law on a rotation), its derivative (infinite for an unloaded
-/// point contact) and the stored energy f δ − ∫δ df.
+/// δ ∝ |f|ⁿ, its derivative infinite at f = 0 for n < 1.
+double power_deflection(const PowerLaw&, double force);
+double power_compliance(const PowerLaw&, double force);
+
+/// The real root of x + x³ = q, x = δ/reference, q = f/(stiffness · reference): x = 2/√3 sinh(asinh(3√3/2 q)/3).
+double hardening_deflection(const HardeningLaw&, double force);
+double hardening_compliance(const HardeningLaw&, double force);
+
+/// Deflection of one law under a force (N; Nm on a rotation), its derivative (infinite for an unloaded point contact)
+/// and the stored energy f δ − ∫δ df. Laws that jump (steps.h) have none here.
 double deflection(const Law&, double force, const AsPrinted& = {});
 double compliance(const Law&, double force, const AsPrinted& = {});
 double stored_energy(const Law&, double force, const AsPrinted& = {});
 
 /// Whether the deflection is proportional to the force.
 bool is_linear(const Law&);
+
+/// Whether force alone does not say the deflection, or its derivative jumps: one-sided, clearance, friction (steps.h).
+bool is_stepped(const Law&);
 
 /// Laws of one freedom in series; contact and bending of a universal joint's pin as if in parallel where (33) is taken
 /// as printed.

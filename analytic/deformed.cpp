@@ -62,12 +62,12 @@ struct Tangent {
 
 /// Newton's method in finite motions needs the stiffness by spins of a dead moment; second order solves by K_E + K_G.
 Vector3 turning_moment(const Deformed& d) {
-  return d.circumstances.geometry == Geometry::finite ? Vector3(d.whole.F.tail<3>()) : Vector3::Zero();
+  return d.outlook.geometry == Geometry::finite ? Vector3(d.whole.F.tail<3>()) : Vector3::Zero();
 }
 
 /// Newton's method under the wrench F and a share of the misfits.
 bool equilibrium(Deformed& d, const Vector6& F, double misfit) {
-  Circumstances& c = d.circumstances;
+  Outlook& c = d.outlook;
   VirtualChain& whole = d.whole;
   whole.F = F;
   c.misfit = misfit;
@@ -97,8 +97,8 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit) {
 
 /// Reads off the state what is asked of it; false where it is not stable.
 bool conclude(Deformed& d) {
-  const Linearised l = d.whole.linearise(d.circumstances);
-  const Geometry geometry = d.circumstances.geometry;
+  const Linearised l = d.whole.linearise(d.outlook);
+  const Geometry geometry = d.outlook.geometry;
   d.translation = translation(d.whole, l, geometry);
   d.turning = l.end.D;
   d.rotation_vector = geometry == Geometry::finite ? rotation_vector(l.end.D) : Vector3(l.J.bottomRows<3>() * l.x);
@@ -142,7 +142,7 @@ Deformed deform(const Configuration& c, Geometry geometry, const Vector6& F) {
   Deformed d;
   const PlacedParallel legs{"legs", Vector3::Zero(), c.pose.p_WT, c.legs};
   d.whole = virtual_chain_of({"the mechanism", {c.base, legs, c.tool}}, c.pose.p_WT, c.pose.p_WT, c.size);
-  d.circumstances.geometry = geometry;
+  d.outlook.geometry = geometry;
   d.leg_wrenches.assign(c.legs.size(), Vector6::Zero());
   approach(d, F, true);
   if (d.converged && !F.isZero(0)) approach(d, F, false);
@@ -151,7 +151,7 @@ Deformed deform(const Configuration& c, Geometry geometry, const Vector6& F) {
 
 Matrix6 stiffness(const Deformed& d) {
   VirtualChain whole = d.whole;
-  const Tangent tangent(whole.linearise(d.circumstances), d.whole.F.tail<3>());
+  const Tangent tangent(whole.linearise(d.outlook), d.whole.F.tail<3>());
   if (tangent.J.cols() == 6) {  // as when base and tool are rigid: no digits are lost by inverting twice
     const Eigen::FullPivLU<Matrix6> lu(tangent.J.transpose());
     if (lu.isInvertible()) {
@@ -166,14 +166,14 @@ Matrix6 stiffness(const Deformed& d) {
 
 Matrix6 compliance(const Deformed& d) {
   VirtualChain whole = d.whole;
-  const Tangent tangent(whole.linearise(d.circumstances), d.whole.F.tail<3>());
+  const Tangent tangent(whole.linearise(d.outlook), d.whole.F.tail<3>());
   return tangent.J * tangent.solve(tangent.J.transpose());
 }
 
 Matrix6 leg_stiffness(const Deformed& d, std::size_t leg) {
   VirtualChain whole = d.whole;
-  whole.linearise(d.circumstances);
-  const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), d.circumstances.geometry));
+  whole.linearise(d.outlook);
+  const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), d.outlook.geometry));
   return axes * legs_of(whole).branches[leg].restraint().K * axes.transpose();
 }
 

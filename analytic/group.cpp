@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <limits>
 
 #include "analytic/chain.h"
 #include "msa/base/error.h"
@@ -17,11 +18,12 @@ Vector6 weighed(const Vector6& F, double length) {
   return w;
 }
 
-/// One branch linearised about its force F, in the principal axes of its compliance (singular values: as printed it
-/// need not be symmetric): it carries N λ when Mᵀt = g λ + e; M = N but for signs where it is. A g that is lost in the
-/// rounding of the largest is 0: there the branch is rigid.
+/// One branch linearised about its force, in the principal axes of its compliance (singular values: as printed it need
+/// not be symmetric): it carries N λ more when Mᵀt = g λ + e, t what the far body moves more and `d` by how much the
+/// branch is ahead of it; M = N but for signs where C is symmetric. A g that is lost in the rounding of the largest is
+/// 0: there the branch is rigid.
 struct Linearised {
-  Linearised(const Flexibility& f, const Vector6& d, const Vector6& F, double length) : N(f.N), M(f.N) {
+  Linearised(const Flexibility& f, const Vector6& d) : N(f.N), M(f.N) {
     if (N.cols() == 0) return;
     const Eigen::JacobiSVD<MatrixX> principal(f.N.transpose() * f.C * f.N, Eigen::ComputeFullU | Eigen::ComputeFullV);
     N *= principal.matrixV();
@@ -29,9 +31,7 @@ struct Linearised {
     g = principal.singularValues();
     for (Eigen::Index i = 0; i < g.size(); ++i)
       if (!(g(i) > 1e-14 * g(0))) g(i) = 0;
-    Matrix6X coordinates = N;  // of F: N is orthonormal in weighed moments
-    coordinates.bottomRows<3>() /= length * length;
-    e = M.transpose() * d - g.cwiseProduct(coordinates.transpose() * F);
+    e = M.transpose() * d;
   }
 
   Matrix6X N, M;
@@ -89,8 +89,9 @@ class Parallel {
     lu_.compute(S);
   }
 
-  /// Displacement and the branches' wrenches under F.
-  void solve(const Vector6& F, Vector6& t, std::vector<Vector6>& wrenches, const std::string& name) const {
+  /// Displacement and the branches' wrenches under F. `size`: of forces, against which contradictions count.
+  void solve(const Vector6& F, Vector6& t, std::vector<Vector6>& wrenches, double& size,
+             const std::string& name) const {
     const Eigen::Index r = R_.cols(), k = lu_.cols() - r;
     VectorX right(r + k);
     right.head(r) = R_.transpose() * F;
@@ -98,7 +99,7 @@ class Parallel {
       for (Eigen::Index j = 0; j < b.g.size(); ++j)
         if (eliminated(b, j)) right.head(r) += R_.transpose() * b.N.col(j) * (b.e(j) / b.g(j));
     for (Eigen::Index i = 0; i < k; ++i) right(r + i) = kept_[static_cast<std::size_t>(i)].e;
-    double size = F.norm();
+    size = std::max(size, F.norm());
     for (const Linearised& b : branches_) size = std::max(size, b.e.norm() / c_);
     if (k > 0 && (Y_.transpose() * right.tail(k)).norm() > 1e-9 * size)
       throw ModelError(
@@ -158,6 +159,13 @@ Group group_of(const std::string& name, std::vector<Chain> branches, double leng
   g.length = length;
   g.branches = std::move(branches);
   split(g.branches, length, g.J, g.R);
+  MatrixX D(g.R.cols(), 0);
+  for (const Chain& branch : g.branches) {
+    D.conservativeResize(Eigen::NoChange, D.cols() + branch.N.cols());
+    D.rightCols(branch.N.cols()) = g.R.transpose() * branch.N;
+  }
+  if (D.cols() == D.rows() && D.cols() > 0)
+    if (const Eigen::PartialPivLU<MatrixX> lu(D); lu.rcond() > 1e-6) g.determinate = lu;
   return g;
 }
 
@@ -165,6 +173,10 @@ Group legs_of(const Configuration& c, const AsPrinted& as_printed) {
   std::vector<Chain> chains;
   for (const PlacedLeg& leg : c.legs) {
     Vector3 reference = c.pose.p_WT;
+    if (leg.beside) {  // which no equation of the paper is about
+      chains.push_back(chain_of(leg, reference, c.size));
+      continue;
+    }
     if (as_printed.count(Erratum::tcp_transfer))  // the platform joint: where the last member ends
       for (const PlacedPart& part : leg.parts)
         if (const auto* m = std::get_if<PlacedMember>(&part)) reference = m->p_W_end;
@@ -173,58 +185,125 @@ Group legs_of(const Configuration& c, const AsPrinted& as_printed) {
   return group_of("the mechanism", std::move(chains), c.size);
 }
 
-Group::State Group::solve(const Vector6& F, const AsPrinted& p) const {
+/// Rᵀ Σ N_i λ_i = RᵀF, then N_iᵀ t = N_iᵀ d_i; nothing where a branch has let go.
+std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const Circumstances& c) const {
+  const VectorX lambda = determinate->solve(R.transpose() * F);
+  State s;
+  s.iterations = 1;
+  s.converged = true;
+  VectorX e(lambda.size());
+  Eigen::Index at = 0;
+  for (const Chain& branch : branches) {
+    const Eigen::Index own = branch.N.cols();
+    s.wrenches.push_back(branch.N * lambda.segment(at, own));
+    const Response r = branch.respond(s.wrenches.back(), 0, c);
+    if (r.tangent.N.cols() < own) return std::nullopt;
+    s.converged = s.converged && r.converged;
+    e.segment(at, own) = branch.N.transpose() * r.d;
+    at += own;
+  }
+  s.t = R * determinate->transpose().solve(e);
+  return s;
+}
+
+Group::State Group::solve(const Vector6& F, const Circumstances& c) const {
+  const bool open = branches.size() > 1 && std::any_of(branches.begin(), branches.end(),
+                                                       [&](const Chain& chain) { return chain.has_open(c); });
+  return solve(F, c, open);
+}
+
+Group::State Group::solve(const Vector6& F, const Circumstances& c, bool open) const {
   // A chain alone is asked directly: stiffness is needed to share forces only.
   if (branches.size() == 1) {
-    const Response r = branches[0].respond(F, 0, p);
+    const Response r = branches[0].respond(F, 0, c);
     return {r.d, {F}, r.converged, 1, 0};
   }
-  State s;
-  s.wrenches.assign(branches.size(), Vector6::Zero());
-  s.converged = R.cols() == 0;  // carries nothing
+  if (determinate && !open)
+    if (std::optional<State> s = solve_by_statics(F, c)) return *s;
+  const auto response = [&](std::size_t i, const Vector6& wrench, double least) {
+    return open ? branches[i].respond_open(wrench, least, c) : branches[i].respond(wrench, least, c);
+  };
   const double load = weighed(F, length).norm();
+  Matrix6X resisted = R;
+  if (open) {
+    std::vector<Flexibility> tangents;
+    for (std::size_t i = 0; i < branches.size(); ++i) tangents.push_back(response(i, Vector6::Zero(), 1).tangent);
+    Matrix6X free;
+    split(tangents, length, free, resisted);
+    // What is open cannot stay so where the load moves it: then its offset is what the caller says.
+    const double driven = free.cols() > J.cols() ? (free.transpose() * F).norm() : 0;
+    if (driven > 1e-9 * load) return solve(F, c, false);
+  }
+  State s;
+  s.open = open;
+  s.wrenches.assign(branches.size(), Vector6::Zero());
+  s.converged = resisted.cols() == 0;  // carries nothing
   // Contacts have no stiffness at rest: the first step takes them as under the whole load (where there is none, 1 N),
   // the others at a force far below the largest for rest.
   double least = load > 0 ? load : 1;
+  double change = std::numeric_limits<double>::infinity(), size_of_forces = 0;
+  double held = 0;  // what free deflections would bring, were the far body to stay
   while (!s.converged && s.iterations < 100) {
     ++s.iterations;
     std::vector<Linearised> linearised;
+    Vector6 missing = F, moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
-      const Response r = branches[i].respond(s.wrenches[i], least, p);
-      linearised.emplace_back(r.tangent, r.d, s.wrenches[i], length);
+      const Response r = response(i, s.wrenches[i], least);
+      linearised.emplace_back(r.tangent, r.d - s.t);
+      missing -= s.wrenches[i];
+      const Linearised& b = linearised.back();
+      for (Eigen::Index j = 0; j < b.g.size(); ++j)
+        if (b.g(j) > 1e-6 * b.g(0)) held = std::max(held, std::abs(b.e(j)) / b.g(j));
     }
-    std::vector<Vector6> next(branches.size());
-    Parallel(std::move(linearised), R).solve(F, s.t, next, name);
-    double change = 0, largest = 0;
+    std::vector<Vector6> more(branches.size());
+    Parallel(std::move(linearised), resisted).solve(missing, moved, more, size_of_forces, name);
+    const double before = change;
+    double largest = 0;
+    change = 0;
+    s.t += moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
-      change = std::max(change, weighed(next[i] - s.wrenches[i], length).norm());
-      largest = std::max(largest, weighed(next[i], length).norm());
+      s.wrenches[i] += more[i];
+      change = std::max(change, weighed(more[i], length).norm());
+      largest = std::max(largest, weighed(s.wrenches[i], length).norm());
     }
-    s.wrenches = std::move(next);
-    least = 1e-9 * std::max(load, largest);
-    if (least == 0) least = 1e-9;
-    s.converged = change <= 1e-13 * largest || (s.iterations > 3 && change <= 1e-11 * largest);
+    least = 1e-13 * std::max(load, largest);
+    if (least == 0) least = 1e-13;
+    // Forces are known to the rounding of those that free deflections would bring, of a stiff part to that of its
+    // deflection: where changes stop falling, that is left.
+    const bool stalled = s.iterations > 5 && change <= 1e-8 * largest && change > 0.5 * before;
+    s.converged = change <= 1e-13 * largest || (s.iterations > 3 && change <= 1e-11 * largest) || stalled ||
+                  change <= 1e-15 * held;
+    // Of a contact that is hardly loaded, forces that settle may leave the deflection open.
+    if (s.converged) settle(s, least, c);
   }
+  if (resisted.cols() == 0) settle(s, least, c);
+  return s;
+}
+
+/// Whether the branches' ends are where the far body is.
+void Group::settle(State& s, double least, const Circumstances& c) const {
   double size = 0;
+  s.misfit = 0;
   for (std::size_t i = 0; i < branches.size(); ++i) {
     if (branches[i].N.cols() == 0) continue;
-    const Response r = branches[i].respond(s.wrenches[i], least, p);
+    const Response r =
+        s.open ? branches[i].respond_open(s.wrenches[i], least, c) : branches[i].respond(s.wrenches[i], least, c);
     s.converged = s.converged && r.converged;
-    const VectorX d = branches[i].N.transpose() * r.d, moved = branches[i].N.transpose() * s.t;
+    if (r.tangent.N.cols() == 0) continue;
+    const VectorX d = r.tangent.N.transpose() * r.d, moved = r.tangent.N.transpose() * s.t;
     s.misfit = std::max(s.misfit, (moved - d).cwiseAbs().maxCoeff());
     size = std::max({size, moved.cwiseAbs().maxCoeff(), d.cwiseAbs().maxCoeff()});
   }
   if (size > 0) s.misfit /= size;
   s.converged = s.converged && s.misfit < 1e-9;
-  return s;
 }
 
-Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double least, const AsPrinted& p) const {
-  if (branches.size() == 1) return branches[0].respond(wrenches[0], least, p).tangent;
+Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double least, const Circumstances& c) const {
+  if (branches.size() == 1) return branches[0].respond(wrenches[0], least, c).tangent;
   std::vector<Flexibility> tangents;
   bool released = false;
   for (std::size_t i = 0; i < branches.size(); ++i) {
-    tangents.push_back(branches[i].respond(wrenches[i], least, p).tangent);
+    tangents.push_back(branches[i].respond(wrenches[i], least, c).tangent);
     released = released || tangents[i].N.cols() < branches[i].N.cols();
   }
   Flexibility f;
@@ -234,14 +313,14 @@ Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double leas
   if (others.cols() == 0) return f;
   f.N = carried_wrenches(f.J, length);
   std::vector<Linearised> linearised;
-  for (const Flexibility& t : tangents) linearised.emplace_back(t, Vector6::Zero(), Vector6::Zero(), length);
+  for (const Flexibility& t : tangents) linearised.emplace_back(t, Vector6::Zero());
   f.C = Parallel(std::move(linearised), others).compliance();
   return f;
 }
 
-Matrix6 Group::stiffness(const std::vector<Vector6>& wrenches, const AsPrinted& p) const {
+Matrix6 Group::stiffness(const std::vector<Vector6>& wrenches, const Circumstances& c) const {
   Matrix6 K = Matrix6::Zero();
-  for (std::size_t i = 0; i < branches.size(); ++i) K += branches[i].stiffness(wrenches[i], p);
+  for (std::size_t i = 0; i < branches.size(); ++i) K += branches[i].stiffness(wrenches[i], c);
   return K;
 }
 

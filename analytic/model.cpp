@@ -1,6 +1,9 @@
 #include "analytic/model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 
 #include "analytic/deformed.h"
 #include "analytic/rotation_vector.h"
@@ -19,47 +22,149 @@ void refuse_motion(const Matrix6X& J, double length) {
                    motion_text(J(largest, 0) < 0 ? Vector6(-J.col(0)) : Vector6(J.col(0)), length));
 }
 
+/// The same for what no erratum is about: base and tool.
+Circumstances drawn(Circumstances c) {
+  c.printed.clear();
+  return c;
+}
+
+/// Gaps and friction taken out: the first are closed, the others let go.
+Configuration without_steps(Configuration c) {
+  const auto strip = [](PlacedJoint& joint) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const bool slips = std::any_of(joint.laws[i].begin(), joint.laws[i].end(),
+                                     [](const Law& law) { return std::holds_alternative<FrictionLaw>(law); });
+      std::erase_if(joint.laws[i], [](const Law& law) {
+        return std::holds_alternative<FrictionLaw>(law) || std::holds_alternative<ClearanceLaw>(law);
+      });
+      if (slips) joint.freedoms[i] = Freedom::free;
+    }
+  };
+  for_each_part(c.legs, [&](auto& part) {
+    if constexpr (requires { part.laws; }) strip(part);
+  });
+  strip(c.base);
+  strip(c.tool);
+  return c;
+}
+
 }  // namespace
 
-AnalyticModel::AnalyticModel(const Configuration& c, const AsPrinted& as_printed)
-    : configuration_(c),
-      as_printed_(as_printed),
-      legs_(legs_of(c, as_printed)),
-      through_(chain_of({"base and tool", {c.base, c.tool}}, c.pose.p_WT, c.size)) {
+AnalyticModel::AnalyticModel(const Configuration& given, const AsPrinted& as_printed)
+    : configuration_(given), as_printed_(as_printed) {
+  Configuration& c = configuration_;
+  frictions_ = number_slips(c);
+  legs_ = legs_of(c, as_printed);
+  through_ = chain_of({"base and tool", {c.base, c.tool}}, c.pose.p_WT, c.size);
   weight_ << c.weight, Vector3::Zero();
+  for (Chain& leg : legs_.branches) leg.number_steps(stepped_);
+  through_.number_steps(stepped_);
+  double stiffest = 0, beside = 0;
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (requires { part.section; }) {
+      stiffest = std::max(stiffest, part.E * part.section.A / part.length());
+      heat_force_ = std::max(heat_force_, std::abs(part.E * part.section.A * part.expansion));
+    }
+  });
+  for (const PlacedLeg& leg : c.legs)
+    beside = std::max({beside, leg.misfit.head<3>().norm(), leg.misfit.tail<3>().norm() * c.size});
+  misfit_force_ = stiffest * beside;
 }
 
 /// Displacements from the drawing.
-AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, Geometry geometry) const {
+AnalyticSolution AnalyticModel::equilibrium_under(const Vector6& F, const Circumstances& under) const {
+  const Group::State state = legs_.solve(F, under);
+  AnalyticSolution s;
+  s.displacement = state.t + through_.deflection(F, drawn(under));
+  s.load = F;
+  s.leg_wrenches = state.wrenches;
+  s.converged = state.converged;
+  s.iterations = state.iterations;
+  s.misfit = state.misfit;
+  s.open = state.open;
+  s.under = under;
+  return s;
+}
+
+AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& conditions) const {
   refuse_motion(through_.J_q, through_.length);
   // Where an erratum takes away the moments' arms, the smallest displacement answers loads that drive no free motion.
   const bool driven =
       (legs_.J.transpose() * F).norm() > 1e-9 * (F.head<3>().norm() + F.tail<3>().norm() / legs_.length);
   if (driven || !as_printed_.count(Erratum::tcp_transfer)) refuse_motion(legs_.J, legs_.length);
-  if (geometry == Geometry::linear || (F.isZero(0) && legs_.fits())) {
-    const Group::State state = legs_.solve(F, as_printed_);
-    return {state.t + through_.deflection(F, {}),
-            F,
-            state.wrenches,
-            state.converged,
-            state.iterations,
-            state.misfit,
-            "",
-            {}};
-  }
-  const auto d = std::make_shared<const Deformed>(deform(configuration_, geometry, F));
-  Vector6 displacement;
-  displacement << d->translation, d->rotation_vector;
-  return {displacement, F, d->leg_wrenches, d->converged, d->iterations, d->residual, d->message, d};
+  Circumstances under = as_printed_;
+  under.warmer = conditions.warmer;
+  if (conditions.geometry != Geometry::linear && !(F.isZero(0) && legs_.fits()))
+    return deformed_equilibrium(F, conditions.geometry);
+  if (stepped_.empty()) return equilibrium_under(F, under);
+  const double length = legs_.length;
+  const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
+  // Where heat or misfits are all that drives it, forces that should vanish are the rounding of those that they held.
+  const double held = 1e-3 * (heat_force_ * std::abs(conditions.warmer) + misfit_force_);
+  const BalancedSteps found = balance(stepped_, conditions.slips, [&](const std::vector<Step>& steps) {
+    under.steps = steps;
+    const AnalyticSolution s = equilibrium_under(F, under);
+    const auto n = static_cast<Eigen::Index>(stepped_.size());
+    SteppedForces out{VectorX::Zero(n), VectorX::Constant(n, std::numeric_limits<double>::quiet_NaN()),
+                      std::max(size(F), held), length, s.converged};
+    const Vector6 t = s.displacement - through_.deflection(F, drawn(under));
+    for (std::size_t i = 0; i < s.leg_wrenches.size(); ++i) {
+      legs_.branches[i].add_step_forces(s.leg_wrenches[i], under, out.forces);
+      out.largest = std::max(out.largest, size(s.leg_wrenches[i]));
+      if (s.open) legs_.branches[i].add_open_motions(t, s.leg_wrenches[i], under, out.motions);
+    }
+    through_.add_step_forces(F, under, out.forces);
+    return out;
+  });
+  under.steps = found.steps;
+  AnalyticSolution s = equilibrium_under(F, under);
+  s.slips = found.slips;
+  s.converged = s.converged && found.converged;
+  s.message = found.reason;
+  return s;
+}
+
+AnalyticSolution AnalyticModel::deformed_equilibrium(const Vector6& F, Geometry geometry) const {
+  AnalyticSolution s;
+  s.deformed = std::make_shared<const Deformed>(deform(configuration_, geometry, F));
+  const Deformed& d = *s.deformed;
+  s.displacement << d.translation, d.rotation_vector;
+  s.load = F;
+  s.leg_wrenches = d.leg_wrenches;
+  s.converged = d.converged;
+  s.iterations = d.iterations;
+  s.misfit = d.residual;
+  s.message = d.message;
+  return s;
 }
 
 AnalyticSolution AnalyticModel::assembled(Geometry geometry) const {
-  return equilibrium(Vector6::Zero(), as_printed_.empty() ? geometry : Geometry::linear);
+  return equilibrium(Vector6::Zero(), as_printed_.empty() && stepped_.empty() ? geometry : Geometry::linear);
 }
 
-AnalyticSolution AnalyticModel::solve(const Vector6& F, Geometry geometry) const {
-  if (!as_printed_.empty()) geometry = Geometry::linear;
-  AnalyticSolution s = equilibrium(F + weight_, geometry);
+/// The deformed shape's share is that of the mechanism without gaps, friction and heat.
+AnalyticSolution AnalyticModel::solve_in_part(const Vector6& F, const Conditions& conditions) const {
+  Conditions linear = conditions;
+  linear.geometry = Geometry::linear;
+  AnalyticSolution s = solve(F, linear);
+  const AnalyticModel smooth(without_steps(configuration_));
+  const AnalyticSolution deformed = smooth.solve(F, conditions.geometry), straight = smooth.solve(F);
+  s.displacement += deformed.displacement - straight.displacement;
+  s.converged = s.converged && deformed.converged && straight.converged;
+  if (s.message.empty()) s.message = deformed.message;
+  return s;
+}
+
+AnalyticSolution AnalyticModel::solve(const Vector6& F, const Conditions& conditions) const {
+  if (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_)
+    throw InputError(
+        fmt::format("{} slips are given, the mechanism has {} frictions", conditions.slips.size(), frictions_));
+  const Geometry geometry = as_printed_.empty() ? conditions.geometry : Geometry::linear;
+  if (geometry != Geometry::linear && (!stepped_.empty() || (conditions.warmer != 0 && heat_force_ > 0)))
+    return solve_in_part(F, conditions);
+  Conditions in = conditions;
+  in.geometry = geometry;
+  AnalyticSolution s = equilibrium(F + weight_, in);
   s.load = F;
   if (legs_.fits()) return s;
   const AnalyticSolution reference = assembled(geometry);
@@ -71,8 +176,8 @@ AnalyticSolution AnalyticModel::solve(const Vector6& F, Geometry geometry) const
 }
 
 Flexibility AnalyticModel::flexibility(const AnalyticSolution& s) const {
-  Flexibility whole = legs_.flexibility(s.leg_wrenches, 0, as_printed_);
-  const Flexibility through = through_.respond(s.load + weight_, 0, {}).tangent;
+  Flexibility whole = legs_.flexibility(s.leg_wrenches, 0, s.under);
+  const Flexibility through = through_.respond(s.load + weight_, 0, drawn(s.under)).tangent;
   whole.C += through.C;
   if (through.J.cols() > 0) {
     whole.J.conservativeResize(6, whole.J.cols() + through.J.cols());
@@ -84,13 +189,13 @@ Flexibility AnalyticModel::flexibility(const AnalyticSolution& s) const {
 
 Matrix6 AnalyticModel::leg_stiffness(std::size_t leg, const AnalyticSolution& s) const {
   if (s.deformed) return analytic::leg_stiffness(*s.deformed, leg);
-  return legs_.branches[leg].stiffness(s.leg_wrenches[leg], as_printed_);
+  return legs_.branches[leg].stiffness(s.leg_wrenches[leg], s.under);
 }
 
 Matrix6 AnalyticModel::stiffness(const AnalyticSolution& s) const {
   if (s.deformed) return analytic::stiffness(*s.deformed);
   // Between a rigid base and a rigid tool the legs' stiffnesses add up without a digit lost.
-  if (through_.members.empty() && through_.freedoms.empty()) return legs_.stiffness(s.leg_wrenches, as_printed_);
+  if (through_.members.empty() && through_.freedoms.empty()) return legs_.stiffness(s.leg_wrenches, s.under);
   return analytic::stiffness(flexibility(s), legs_.length, legs_.name);
 }
 
@@ -103,10 +208,10 @@ Matrix6 AnalyticModel::compliance(const AnalyticSolution& s) const {
 
 std::vector<std::pair<std::string, double>> AnalyticModel::energies(const AnalyticSolution& s) const {
   std::map<std::string, double> sums;
-  if (s.deformed) s.deformed->whole.add_energies(s.deformed->circumstances, sums);
+  if (s.deformed) s.deformed->whole.add_energies(s.deformed->outlook, sums);
   for (std::size_t i = 0; !s.deformed && i < s.leg_wrenches.size(); ++i)
-    legs_.branches[i].add_energies(s.leg_wrenches[i], as_printed_, sums);
-  if (!s.deformed) through_.add_energies(s.load + weight_, {}, sums);
+    legs_.branches[i].add_energies(s.leg_wrenches[i], s.under, sums);
+  if (!s.deformed) through_.add_energies(s.load + weight_, drawn(s.under), sums);
   std::vector<std::pair<std::string, double>> sorted(sums.begin(), sums.end());
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return sorted;

@@ -2,8 +2,8 @@
 // printed). Legs in parallel (1), (46) between the compliance of the base and of the tool. It sees the configuration
 // and nothing of the frame solver.
 //
-// Three states: as drawn, parts unstrained; assembled, without load and weight, strained by the misfits only; loaded,
-// with misfits, weight and load. Displacements under load are counted from the assembled state.
+// Three states: as drawn, parts unstrained; assembled at 20 °C, without load and weight, strained by the misfits only;
+// loaded, with misfits, heat, weight and load. Displacements under load are counted from the assembled state.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analytic/chain.h"
-#include "msa/base/geometry.h"
+#include "msa/mechanism/conditions.h"
 
 namespace deflect::analytic {
 
@@ -27,9 +27,12 @@ struct AnalyticSolution {
   std::vector<Vector6> leg_wrenches;
   bool converged = false;
   int iterations = 0;
-  double misfit = 0;    ///< how far the legs' ends and the platform disagree, relative to the displacement
-  std::string message;  ///< why a geometry that is not linear has no equilibrium to offer
-  std::shared_ptr<const Deformed> deformed;  ///< the state in such a geometry (deformed.h)
+  double misfit = 0;          ///< how far the legs' ends and the platform disagree, relative to the displacement
+  std::vector<double> slips;  ///< of the frictions after the load, as in Conditions
+  bool open = false;          ///< open steps were released, not imposed
+  Circumstances under;        ///< warmth, and the phases of laws that jump (steps.h)
+  std::string message;        ///< where not converged: why, when a law that jumps or the geometry is to blame
+  std::shared_ptr<const Deformed> deformed;  ///< the state in a geometry that is not linear (deformed.h)
 };
 
 /// A mechanism at one pose.
@@ -42,11 +45,15 @@ class AnalyticModel {
   /// No law's stiffness depends on its load.
   bool linear() const { return through_.linear() && legs_.linear(); }
 
+  /// Some law jumps: a gap, friction.
+  bool jumps() const { return !stepped_.empty(); }
+
   /// Legs' forces and the displacement of T in equilibrium, contacts at their load: Newton on the legs' forces. Throws
   /// ModelError naming the motion when something is free to move, whatever the load; or when rigid legs cannot be
   /// assembled. Geometries that are not linear: see deformed.h; without forces they are linear, as printed equations
-  /// are always.
-  AnalyticSolution solve(const Vector6& F_T_W, Geometry = Geometry::linear) const;
+  /// are always. There what laws that jump and heat do is added as they do it in linear geometry, and the stiffness is
+  /// the linear one where there are such.
+  AnalyticSolution solve(const Vector6& F_T_W, const Conditions& = {}) const;
 
   /// The assembled state: displacement of T from the drawing, the legs' wrenches by misfit.
   AnalyticSolution assembled(Geometry = Geometry::linear) const;
@@ -64,14 +71,20 @@ class AnalyticModel {
   std::vector<std::pair<std::string, double>> energies(const AnalyticSolution&) const;
 
  private:
-  AnalyticSolution equilibrium(const Vector6& F, Geometry) const;
+  AnalyticSolution equilibrium(const Vector6& F, const Conditions&) const;
+  AnalyticSolution equilibrium_under(const Vector6& F, const Circumstances&) const;
+  AnalyticSolution deformed_equilibrium(const Vector6& F, Geometry) const;
+  AnalyticSolution solve_in_part(const Vector6& F, const Conditions&) const;
   Flexibility flexibility(const AnalyticSolution&) const;
 
   Configuration configuration_;
   AsPrinted as_printed_;
   Group legs_;
-  Chain through_;   ///< base and tool joints, which carry the whole load
-  Vector6 weight_;  ///< at T
+  Chain through_;                             ///< base and tool joints, which carry the whole load
+  Vector6 weight_;                            ///< at T
+  double heat_force_ = 0, misfit_force_ = 0;  ///< that the stiffest member would bear: per kelvin, by the misfits
+  std::vector<SteppedLaw> stepped_;
+  int frictions_ = 0;
 };
 
 }  // namespace deflect::analytic

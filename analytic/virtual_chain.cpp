@@ -58,7 +58,7 @@ void add_columns(const Tip& tip, const RigidMotion& before, std::vector<Column>&
 }
 
 /// Adds the joint's laws under the forces s at its freedoms.
-void add_laws(const VirtualJoint& v, const Circumstances& c, Eigen::Ref<VectorX> s, Eigen::Ref<MatrixX> K,
+void add_laws(const VirtualJoint& v, const Outlook& c, Eigen::Ref<VectorX> s, Eigen::Ref<MatrixX> K,
               std::vector<bool>& kept) {
   const VectorX static_force = s;
   s.setZero();
@@ -155,7 +155,7 @@ VirtualChain virtual_chain_of(const PlacedLeg& leg, const Vector3& p_E, const Ve
   return chain;
 }
 
-Linearised VirtualChain::linearise(const Circumstances& c) {
+Linearised VirtualChain::linearise(const Outlook& c) {
   Linearised out;
   const bool finite = c.geometry == Geometry::finite;
   std::vector<Column> columns;
@@ -259,7 +259,7 @@ Matrix3 VirtualChain::axes_before(std::size_t step, Geometry geometry) const {
   return motion.R();
 }
 
-void VirtualChain::add_energies(const Circumstances& c, std::map<std::string, double>& sums) const {
+void VirtualChain::add_energies(const Outlook& c, std::map<std::string, double>& sums) const {
   VirtualChain copy = *this;
   const Linearised l = copy.linearise(c);
   const VectorX s = l.J.transpose() * F + l.turned;
@@ -282,7 +282,7 @@ void VirtualChain::add_energies(const Circumstances& c, std::map<std::string, do
     }
 }
 
-Progress VirtualChain::advance(const Linearised& at, const VectorX& delta, const Circumstances& c) {
+Progress VirtualChain::advance(const Linearised& at, const VectorX& delta, const Outlook& c) {
   const VectorX s = at.J.transpose() * F + at.H * delta + at.turned;
   Progress progress;
   const auto count = [&](std::size_t freedom, double x, double step) {

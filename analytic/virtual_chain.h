@@ -65,7 +65,7 @@ struct Tip {
 };
 
 /// How the state is to be looked at.
-struct Circumstances {
+struct Outlook {
   Geometry geometry = Geometry::finite;
   double least = 0;   ///< N, Nm: forces below count as this in the compliance of contacts
   double misfit = 1;  ///< share of the misfits that is in place
@@ -107,9 +107,9 @@ struct VirtualGroup {
   Tip tip;
   std::vector<VirtualChain> branches;
 
-  Restraint restrain(const Circumstances&);
+  Restraint restrain(const Outlook&);
   /// The body moves further by t under the wrench F.
-  Progress follow(const Vector6& t, const Vector6& F, const Circumstances&);
+  Progress follow(const Vector6& t, const Vector6& F, const Outlook&);
 };
 
 using VirtualStep = std::variant<VirtualJoint, VirtualMember, VirtualGroup>;
@@ -137,18 +137,18 @@ struct VirtualChain {
   Vector6 F = Vector6::Zero();       ///< on the end about the end, in the axes of the start
 
   /// About the state under F.
-  Linearised linearise(const Circumstances&);
+  Linearised linearise(const Outlook&);
   /// The freedoms move by δ; groups by the wrenches JᵀF + H δ that then pass through them.
-  Progress advance(const Linearised&, const VectorX& delta, const Circumstances&);
+  Progress advance(const Linearised&, const VectorX& delta, const Outlook&);
 
   /// For an end that is held by another body, at `end`; then that body moves further by t under a wrench that B μ
   /// completes, and freedoms and F follow.
-  Restraint restrain(const Tip& end, const Circumstances&);
-  Progress follow(const Vector6& t, const VectorX& mu, const Circumstances&);
+  Restraint restrain(const Tip& end, const Outlook&);
+  Progress follow(const Vector6& t, const VectorX& mu, const Outlook&);
 
   const Restraint& restraint() const { return restraint_; }  ///< as last asked for
   /// Adds the strain energy of each part in an equilibrium, J.
-  void add_energies(const Circumstances&, std::map<std::string, double>&) const;
+  void add_energies(const Outlook&, std::map<std::string, double>&) const;
   /// Axes of the start as the steps before `step` have turned them.
   Matrix3 axes_before(std::size_t step, Geometry) const;
 

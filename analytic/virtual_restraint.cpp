@@ -53,15 +53,15 @@ MatrixX pick(const MatrixX& A, const std::vector<Eigen::Index>& rows, const std:
 // where they are (smallest solution). The chain is stable while its end is held if A is positive definite on Jδ = 0,
 // which by Sylvester's law means: as many positive eigenvalues of the matrix and negative ones of A_EE as f has
 // entries.
-Restraint VirtualChain::restrain(const Tip& end, const Circumstances& circumstances) {
-  held_ = linearise(circumstances);
+Restraint VirtualChain::restrain(const Tip& end, const Outlook& outlook) {
+  held_ = linearise(outlook);
   const Linearised& l = held_;
-  const bool finite = circumstances.geometry == Geometry::finite;
+  const bool finite = outlook.geometry == Geometry::finite;
   Vector6& c = lack_;
   if (finite)
     c << end.x.head<3>() - l.end.displacement(p_E), rotation_vector(combined(end.D, l.end.D.transpose()));
   else
-    c = end.x - circumstances.misfit * misfit - l.J * l.x;
+    c = end.x - outlook.misfit * misfit - l.J * l.x;
   c -= l.J * l.offset;
 
   const MatrixX difference = l.K - l.H;
@@ -117,15 +117,15 @@ Restraint VirtualChain::restrain(const Tip& end, const Circumstances& circumstan
   return held;
 }
 
-Progress VirtualChain::follow(const Vector6& t, const VectorX& mu, const Circumstances& circumstances) {
+Progress VirtualChain::follow(const Vector6& t, const VectorX& mu, const Outlook& outlook) {
   F = restraint_.F0 + restraint_.K * t + restraint_.B * mu;
   F.tail<3>() -= 0.5 * restraint_.m.cross(t.tail<3>());
   Eigen::Matrix<double, 7, 1> driving;
   driving << t + lack_, 1;
-  return advance(held_, held_.offset + held_.Z * (response_ * driving), circumstances);
+  return advance(held_, held_.offset + held_.Z * (response_ * driving), outlook);
 }
 
-Restraint VirtualGroup::restrain(const Circumstances& c) {
+Restraint VirtualGroup::restrain(const Outlook& c) {
   Restraint all;
   for (VirtualChain& branch : branches) {
     const Restraint one = branch.restrain(tip, c);
@@ -142,7 +142,7 @@ Restraint VirtualGroup::restrain(const Circumstances& c) {
   return all;
 }
 
-Progress VirtualGroup::follow(const Vector6& t, const Vector6& F, const Circumstances& c) {
+Progress VirtualGroup::follow(const Vector6& t, const Vector6& F, const Outlook& c) {
   // What rigid branches carry is what the others leave of F.
   Vector6 rest = F;
   MatrixX B(6, 0);

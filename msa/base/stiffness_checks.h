@@ -32,10 +32,13 @@ struct Response {
   Vector6 reaction;    ///< of the supports on the structure, as a wrench about T
   double energy = 0;   ///< strain energy, J
   bool linear = true;  ///< no spring's stiffness depends on its load
+  /// The load is all that moved it from where it was assembled: neither heat nor what earlier loads left.
+  bool from_rest = true;
 };
 
 /// Sign (a load moves its point its own way, Fᵀd > 0), equilibrium (reaction = −F), energy (½Fᵀd of a linear structure;
-/// of one that stiffens under load between 0 and ½Fᵀd), each to `tolerance`. Empty when all hold, else which fails and
+/// of one that stiffens under load, has play or friction between 0 and ½Fᵀd), each to `tolerance`; of one that was not
+/// at rest equilibrium alone. Empty when all hold, else which fails and
 /// by how much. Reciprocity is the symmetry of the stiffness.
 std::string response_failure(const Response&, double tolerance = 1e-9);
 

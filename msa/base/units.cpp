@@ -83,6 +83,12 @@ const std::vector<Row>& table() {
       {Dimension::temperature, "a temperature difference", {{"K", 1}}},
       {Dimension::acceleration, "an acceleration", {{"m/s^2", 1}, {"mm/s^2", 1, 1e3}, {"in/s^2", inch}}},
       {Dimension::mass, "a mass", {{"kg", 1}, {"g", 1, 1e3}, {"lb", 0.45359237}}},
+      {Dimension::compliance,
+       "a compliance (length per force)",
+       {{"mm/N", 1, 1e3}, {"m/N", 1}, {"um/N", 1, 1e6}, {"in/lbf", inch / lbf}}},
+      {Dimension::rotational_compliance,
+       "a rotational compliance (angle per moment)",
+       {{"rad/Nm", 1}, {"rad/Nmm", 1e3}, {"mrad/Nm", 1, 1e3}, {"rad/(lbf*in)", 1 / (lbf * inch)}}},
   };
   return rows;
 }

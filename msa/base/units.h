@@ -8,23 +8,25 @@
 namespace deflect {
 
 enum class Dimension {
-  none,                  ///< a plain number
-  ratio,                 ///< a plain number or "1 %"
-  length,                ///< m
-  angle,                 ///< rad
-  area,                  ///< m²
-  second_moment,         ///< m⁴
-  force,                 ///< N
-  moment,                ///< Nm
-  stress,                ///< Pa
-  stiffness,             ///< N/m
-  rotational_stiffness,  ///< Nm/rad
-  line_load,             ///< N/m
-  density,               ///< kg/m³
-  thermal_expansion,     ///< 1/K
-  temperature,           ///< K, a difference
-  acceleration,          ///< m/s²
-  mass,                  ///< kg
+  none,                   ///< a plain number
+  ratio,                  ///< a plain number or "1 %"
+  length,                 ///< m
+  angle,                  ///< rad
+  area,                   ///< m²
+  second_moment,          ///< m⁴
+  force,                  ///< N
+  moment,                 ///< Nm
+  stress,                 ///< Pa
+  stiffness,              ///< N/m
+  rotational_stiffness,   ///< Nm/rad
+  line_load,              ///< N/m
+  density,                ///< kg/m³
+  thermal_expansion,      ///< 1/K
+  temperature,            ///< K, a difference
+  acceleration,           ///< m/s²
+  mass,                   ///< kg
+  compliance,             ///< m/N
+  rotational_compliance,  ///< rad/(Nm)
 };
 
 /// Units accepted for a dimension, the preferred one first: {"mm", "m", "um", "in"}.

@@ -120,6 +120,12 @@ std::vector<double> Assembly::values(const VectorX& spring_tangents) const {
   return values;
 }
 
+VectorX padded(const VectorX& v, Eigen::Index size) {
+  VectorX out = VectorX::Zero(size);
+  out.head(v.size()) = v;
+  return out;
+}
+
 double evaluate(const LinearForm& form, const VectorX& u) {
   double sum = 0;
   for (const Term& t : form) sum += t.coefficient * u(t.dof);
@@ -135,6 +141,14 @@ VectorX internal_forces(const Model& m, const VectorX& u, VectorX& spring_tangen
     for (const Term& t : spring.elongation) f(t.dof) += t.coefficient * pull;
     spring_tangents(static_cast<Eigen::Index>(s)) = tangent(spring.law, elongation);
   }
+  return f;
+}
+
+VectorX forces_with(const Model& m, const VectorX& u, const VectorX& spring_forces) {
+  VectorX f = beam_forces(m, u);
+  for (std::size_t s = 0; s < m.springs.size(); ++s)
+    for (const Term& t : m.springs[s].elongation)
+      f(t.dof) += t.coefficient * spring_forces(static_cast<Eigen::Index>(s));
   return f;
 }
 

@@ -25,6 +25,7 @@ struct Beam {
   /// First of six scalars that hold the motion of end b relative to the body of end a, [δ; θ] in base axes at b; −1
   /// where the nodes' own displacements say it well enough. See `relative.h`.
   int relative = -1;
+  double expansion = 0;  ///< 1/K, for those who warm it
 };
 
 /// Stiffness in local axes on [u_a; θ_a; u_b; θ_b]. Timoshenko: Φ = 12EI/(GAs L²); Φ = 0 is Euler–Bernoulli

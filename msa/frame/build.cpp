@@ -23,7 +23,10 @@ std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
   std::array<ConnectionFreedom, 6> out;
   for (std::size_t i = 0; i < 6; ++i) {
     out[i].rigid = !j.elastic(i) && !j.free(i);
-    for (const Law& law : j.laws[i]) out[i].laws.push_back(preloaded(spring_of(law), j.preload[i]));
+    for (const Law& law : j.laws[i]) {
+      out[i].laws.push_back(preloaded(spring_of(law), j.preload[i]));
+      out[i].laws.back().rotation = i >= 3;
+    }
   }
   return out;
 }
@@ -149,6 +152,7 @@ class Builder {
       const Vector3 p = last ? m.p_W_end : m.p_W_start + at[i] * (m.p_W_end - m.p_W_start);
       const int next = body(last ? name + " end" : fmt::format("{} {:.4g}", name, at[i]), p);
       model.add_beam(previous, next, m.R_WM, rigidity(m), fmt::format("{} [{}]", name, i), m.part);
+      model.beams.back().expansion = m.expansion;
       previous = next;
     }
     return previous;

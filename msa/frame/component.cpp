@@ -74,7 +74,7 @@ SpringLaw ropes(const std::vector<std::pair<double, double>>& EA_length) {
   return LinearSpring{stiffness_at(m, 0)};
 }
 
-SpringLaw spring(const CableLaw& law) { return ropes({{law.solid.E * law.area, *law.length}}); }
+SpringLaw spring(const CableLaw& law) { return ropes({{law.EA.value_or(law.solid.E * law.area), *law.length}}); }
 
 SpringLaw spring(const CablePairLaw& law) {
   return ropes({{law.solid.E * law.area_1, law.length_1}, {law.solid.E * law.area_2, law.length_2}});
@@ -84,6 +84,16 @@ SpringLaw spring(const BeltLaw& law) {
   const double EA = law.specific_stiffness * law.width;
   return ropes({{EA, law.tight_length}, {EA, law.slack_length}});
 }
+
+SpringLaw spring(const PowerLaw& law) { return PowerSpring{law.force, 1 / law.exponent, law.deflection}; }
+
+SpringLaw spring(const HardeningLaw& law) { return HardeningSpring{law.stiffness, law.reference}; }
+
+SpringLaw spring(const OneSidedLaw& law) { return OneSidedSpring{law.pull.value_or(0), law.push.value_or(0)}; }
+
+SpringLaw spring(const ClearanceLaw& law) { return GapSpring{law.gap}; }
+
+SpringLaw spring(const FrictionLaw& law) { return FrictionSpring{law.stiffness, law.force, law.number}; }
 
 }  // namespace
 

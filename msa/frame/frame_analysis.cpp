@@ -14,12 +14,6 @@ constexpr double cancelling = 1e-7;  // see FrameChecks
 
 double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
 
-VectorX padded(const VectorX& v, Eigen::Index size) {
-  VectorX out = VectorX::Zero(size);
-  out.head(v.size()) = v;
-  return out;
-}
-
 /// Unsigned sums of a beam's stiffness times its displacements, local axes: the size of what may cancel.
 struct Gross {
   double force = 0, energy = 0;

@@ -7,17 +7,12 @@
 #include <limits>
 
 #include "msa/base/error.h"
+#include "msa/frame/relative.h"
 
 namespace deflect::frame {
 namespace {
 
 double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
-
-VectorX padded(const VectorX& v, Eigen::Index size) {
-  VectorX out = VectorX::Zero(size);
-  out.head(v.size()) = v;
-  return out;
-}
 
 VectorX stiffness_at(const Model& m, double force) {
   VectorX k(static_cast<Eigen::Index>(m.springs.size()));
@@ -46,10 +41,14 @@ double largest_spin(const VectorX& u, std::size_t nodes) {
 /// A load on its way.
 struct GeometricSolver::Work {
   explicit Work(const Model& m)
-      : shape(m),
+      : structure(m),
+        jump(std::any_of(m.springs.begin(), m.springs.end(), [](const Spring& s) { return jumps(s.law); })),
+        shape(m),
         lambda(VectorX::Zero(static_cast<Eigen::Index>(m.constraints.size()))),
         length(characteristic_length(m)) {}
 
+  Model structure;  // with what its springs that jump know of their state
+  bool jump = false;
   VectorX loads, values;  // in full
   std::vector<double> strains;
   Circumstances with;
@@ -64,18 +63,47 @@ struct GeometricSolver::Work {
   void strain(double factor) {
     for (std::size_t e = 0; e < strains.size(); ++e) with.strains[e] = factor * strains[e];
   }
-  Linearisation linearise(const Model& m, Geometry geometry) const {
-    return geometry == Geometry::finite ? linearise_finite(m, shape, with)
-                                        : linearise_second_order(m, shape, lambda, with);
+  Linearisation linearise(Geometry geometry) const {
+    return geometry == Geometry::finite ? linearise_finite(structure, shape, with)
+                                        : linearise_second_order(structure, shape, lambda, with);
   }
 };
 
-GeometricSolver::GeometricSolver(Model given) : linear_(given), model_(std::move(given)), notes_(linear_.notes()) {
+/// Springs that jump begin where the linear theory has them under this part of the load, and the shape with them.
+void GeometricSolver::begin_jumps(Work& work, double factor) const {
+  const Model& m = linear_->model();
+  VectorX loads = padded(factor * work.loads.head(model_.dofs()), m.dofs());
+  for (std::size_t e = 0; e < m.beams.size(); ++e) {
+    const Beam& beam = m.beams[e];
+    const Vector3 push = beam.rigidity.EA * factor * work.strains[e] * beam.R_WM.col(0);
+    if (beam.relative < 0) loads.segment<3>(6 * beam.a) -= push;
+    loads.segment<3>(beam.relative < 0 ? 6 * beam.b : beam.relative) += push;
+  }
+  const Solution s =
+      linear_->solve(loads, VectorX(factor * padded(work.values, static_cast<Eigen::Index>(m.constraints.size()))));
+  if (!s.u.allFinite()) return;
+  for (std::size_t i = 0; i < work.structure.springs.size(); ++i) work.structure.springs[i].law = m.springs[i].law;
+  work.shape = Shape(model_);
+  work.shape.move(s.u.head(model_.dofs()));
+}
+
+/// The nodes in a state, where nothing but what is held or rigid moves them: closed gaps are constraints.
+Model GeometricSolver::held(const GeometricState& state) const {
+  Model m = constrained(state.forms);
+  for (std::size_t i = 0; i < state.jumping.size(); ++i)
+    if (std::isinf(true_tangent(state.jumping[i], state.elongations(static_cast<Eigen::Index>(i)))))
+      m.constraints.push_back({state.spring_forms[i], 0, model_.springs[i].name});
+  return m;
+}
+
+GeometricSolver::GeometricSolver(Model given)
+    : linear_(std::make_unique<Solver>(given)), model_(std::move(given)), notes_(linear_->notes()) {
+  give_contacts_stiffness(model_);
   std::vector<char> redundant(model_.constraints.size(), 0);
-  for (const Redundancy& r : linear_.elimination().redundant)
+  for (const Redundancy& r : linear_->elimination().redundant)
     if (const auto k = static_cast<std::size_t>(r.constraint); k < redundant.size()) redundant[k] = 1;
-  const std::vector<Constraint>& solved = linear_.model().constraints;
-  model_.constraints.insert(model_.constraints.end(), solved.end() - static_cast<std::ptrdiff_t>(linear_.held_spins()),
+  const std::vector<Constraint>& solved = linear_->model().constraints;
+  model_.constraints.insert(model_.constraints.end(), solved.end() - static_cast<std::ptrdiff_t>(linear_->held_spins()),
                             solved.end());
   redundant.resize(model_.constraints.size(), 0);
   for (std::size_t k = 0; k < redundant.size(); ++k)
@@ -117,13 +145,14 @@ VectorX GeometricSolver::update_forces(Work& work, const Linearisation& at, cons
 bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions& options, GeometricState& state) const {
   const VectorX loads = factor * work.loads;
   work.strain(factor);
+  if (work.jump && state.load_factor == 0) begin_jumps(work, factor);
   double previous = std::numeric_limits<double>::infinity();
   for (int i = 1; i <= options.max_iterations; ++i) {
     ++state.iterations;
     // At rest a spring has the stiffness that it will have under the load, later no less than a small part of it.
-    const bool at_rest = i == 1 && state.load_factor == 0;
+    const bool at_rest = i == 1 && state.load_factor == 0 && !work.jump;
     work.with.least_tangents = at_rest ? stiffness_at(model_, factor * work.force) : work.least_tangents;
-    const Linearisation at = work.linearise(model_, options.geometry);
+    const Linearisation at = work.linearise(options.geometry);
     const Model constraints = constrained(at.forms);
     const Elimination e = eliminate(constraints);
     const VectorX gaps = update_forces(work, at, e, constraints, factor);
@@ -139,6 +168,12 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
       return false;
     }
     work.shape.move(step);
+    if (work.jump) {  // λ of stepped_spring.h
+      work.with.least_tangents.setZero();
+      const Linearisation moved = work.linearise(options.geometry);
+      for (std::size_t s = 0; s < work.structure.springs.size(); ++s)
+        know_force(work.structure.springs[s].law, moved.spring_forces(static_cast<Eigen::Index>(s)));
+    }
     const double change = size_of(step, model_.nodes.size(), work.length);
     const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
     const bool stalled = change < 1e-6 * size && change > 0.5 * previous;  // rounding is all that is left
@@ -161,7 +196,7 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
   const VectorX loads = state.load_factor * work.loads;
   work.strain(state.load_factor);
   work.with.least_tangents = work.least_tangents;
-  Linearisation at = work.linearise(model_, state.geometry);
+  Linearisation at = work.linearise(state.geometry);
   const Model constraints = constrained(at.forms);
   const Elimination e = eliminate(constraints);
   const VectorX gaps = update_forces(work, at, e, constraints, state.load_factor);
@@ -172,7 +207,7 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
     state.residual = size_of(tangent.solve(loads - at.forces, gaps), model_.nodes.size(), work.length) / size;
   if ((at.spring_tangents.array() <= work.least_tangents.array()).any()) {  // springs at rest: without the floor
     work.with.least_tangents.setZero();
-    at = work.linearise(model_, state.geometry);
+    at = work.linearise(state.geometry);
     state.K = tangent_stiffness(at, work.lambda, loads);
   }
   state.u = state.geometry == Geometry::finite ? work.shape.displacements() : work.shape.path;
@@ -180,6 +215,15 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
   state.elongations = at.elongations;
   state.spring_forces = at.spring_forces;
   state.spring_tangents = at.spring_tangents;
+  for (std::size_t i = 0; work.jump && i < work.structure.springs.size(); ++i) {
+    const SpringLaw& law = work.structure.springs[i].law;
+    state.jumping.push_back(law);
+    if (const auto* friction = std::get_if<FrictionSpring>(&law); friction && friction->number >= 0) {
+      const auto n = static_cast<std::size_t>(friction->number);
+      state.slips.resize(std::max(state.slips.size(), n + 1));
+      state.slips[n] = friction->slip(at.elongations(static_cast<Eigen::Index>(i)));
+    }
+  }
   state.beams = std::move(at.beams);
   state.forms = std::move(at.forms);
   state.spring_forms = std::move(at.spring_forms);
@@ -203,7 +247,7 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
 
 GeometricState GeometricSolver::solve(const GeometricLoad& load, const GeometricOptions& options) {
   const auto constraints = static_cast<Eigen::Index>(model_.constraints.size());
-  const auto held = static_cast<Eigen::Index>(linear_.held_spins());
+  const auto held = static_cast<Eigen::Index>(linear_->held_spins());
   Work work(model_);
   work.loads = padded(load.forces, model_.dofs());
   work.values = load.values.size() ? padded(load.values, constraints) : constraint_values(model_);
@@ -211,17 +255,24 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
   work.strains.resize(model_.beams.size(), 0);
   work.with.strains = work.strains;
   work.with.first_hold = static_cast<std::size_t>(constraints - held);
-  linear_.check(work.loads, work.values.head(constraints - held));
+  linear_->check(work.loads, work.values.head(constraints - held));
   work.with.least_tangents = VectorX::Zero(static_cast<Eigen::Index>(model_.springs.size()));
   GeometricState state;
   state.geometry = options.geometry;
 
   // The forces that springs will see set where their stiffness begins and how little of it a step takes (solver.cpp).
-  const Linearisation rest = work.linearise(model_, options.geometry);
+  linear_->begin_slips(options.slips);
+  for (std::size_t i = 0; work.jump && i < model_.springs.size(); ++i) {
+    work.structure.springs[i].law = linear_->model().springs[i].law;
+    know_force(work.structure.springs[i].law, 0);
+  }
+  const Linearisation rest = work.linearise(options.geometry);
   double force = std::max(largest(work.loads), largest(rest.forces));
   if (force == 0 && largest(work.values) > 0) force = driving_force(rest, work.values);
   work.force = force;
   work.least_tangents = 1e-8 * stiffness_at(model_, force);
+  for (std::size_t i = 0; i < model_.springs.size(); ++i)
+    if (jumps(model_.springs[i].law)) work.least_tangents(static_cast<Eigen::Index>(i)) *= 1e-4;
 
   const bool driven = force > 0 || largest(work.values) > 0;
   const double largest_step = options.geometry == Geometry::finite ? 1.0 / std::max(1, options.load_steps) : 1;
@@ -259,7 +310,7 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
 }
 
 Matrix6 GeometricSolver::stiffness(const GeometricState& state, int node) const {
-  Model m = constrained(state.forms);
+  Model m = held(state);
   const auto first = static_cast<Eigen::Index>(m.constraints.size());
   m.fix(node, "held");
   const Elimination e = eliminate(m);
@@ -274,12 +325,12 @@ Matrix6 GeometricSolver::stiffness(const GeometricState& state, int node) const 
 }
 
 MatrixX GeometricSolver::response(const GeometricState& state, const MatrixX& loads) const {
-  const Model m = constrained(state.forms);
+  const Model m = held(state);
   const Tangent tangent(eliminate(m), state.K);
   if (!tangent.regular()) throw ModelError("in this state the structure has no stiffness against some motion");
   MatrixX all = MatrixX::Zero(m.dofs(), loads.cols());
   all.topRows(loads.rows()) = loads;
-  return tangent.solve(all, MatrixX::Zero(static_cast<Eigen::Index>(active_.size()), loads.cols()));
+  return tangent.solve(all, MatrixX::Zero(static_cast<Eigen::Index>(m.constraints.size()), loads.cols()));
 }
 
 }  // namespace deflect::frame

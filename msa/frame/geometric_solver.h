@@ -37,6 +37,9 @@ struct GeometricOptions {
   int max_iterations = 30;   ///< in a step
   double tolerance = 1e-12;  ///< of the last change of shape, relative
   int halvings = 12;         ///< of a step, before it is given up
+  /// Of the frictions before the load, by their numbers; empty: zero. However many steps the load takes, a friction
+  /// goes from there to where it ends at once.
+  std::vector<double> slips;
 };
 
 struct GeometricLoad {
@@ -58,11 +61,15 @@ struct GeometricState {
   VectorX u;                  ///< by freedom of GeometricSolver::model(): m, rotation vector, the scalars' unit
   VectorX constraint_forces;  ///< λ: what constraint k does to the freedoms is λ_k forms_k
   VectorX elongations, spring_forces, spring_tangents;
+  std::vector<SpringLaw> jumping;  ///< by spring, with what they know of the state (stepped_spring.h); none: no jumps
+  std::vector<double> slips;       ///< of the frictions after the load
   std::vector<BeamState> beams;
   /// Of constraints and springs in this shape: a spring does −spring_forces_i spring_forms_i to the freedoms.
   std::vector<LinearForm> forms, spring_forms;
   Eigen::SparseMatrix<double> K;  ///< tangent by freedom, constraints apart
   double energy = 0;              ///< J, beams and springs
+
+  const SpringLaw& law(const Model& m, std::size_t i) const { return jumping.empty() ? m.springs[i].law : jumping[i]; }
 };
 
 /// Energies by part, in order of first appearance, J.
@@ -96,7 +103,10 @@ class GeometricSolver {
   bool iterate(Work&, double factor, const GeometricOptions&, GeometricState&) const;
   void conclude(Work&, GeometricState&) const;
 
-  Solver linear_;
+  void begin_jumps(Work&, double factor) const;
+  Model held(const GeometricState&) const;
+
+  std::unique_ptr<Solver> linear_;
   Model model_;
   std::vector<std::size_t> active_;  // constraints that are not redundant
   std::vector<std::string> notes_;

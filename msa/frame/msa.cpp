@@ -1,14 +1,33 @@
 #include "msa/frame/msa.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
+
+#include "msa/base/error.h"
+#include "msa/frame/member_loads.h"
 
 namespace deflect::frame {
 namespace {
 
-Model held(Model m, int node) {
+/// With the node held, and springs that are rigid in a state.
+Model held(Model m, int node, const VectorX& tangents) {
   m.fix(node, "tool");
+  for (std::size_t i = 0; i < m.springs.size(); ++i)
+    if (std::isinf(tangents(static_cast<Eigen::Index>(i))))
+      m.constraints.push_back({m.springs[i].elongation, 0, m.springs[i].name});
   return m;
+}
+
+VectorX where_finite(const VectorX& tangents) {
+  return tangents.unaryExpr([](double k) { return std::isinf(k) ? 0.0 : k; });
+}
+
+/// The configuration itself, with its frictions numbered.
+const Configuration& numbered(Configuration& c, int& frictions) {
+  frictions = number_slips(c);
+  return c;
 }
 
 /// Reactions are differences of forces as large as the stiffest member's: below their rounding K is zero, which is what
@@ -26,16 +45,17 @@ Matrix6 above_rounding(const Matrix6& K, const Model& m) {
 
 /// A node held at unit displacements of its six freedoms in turn, springs linear at their tangents.
 struct MsaModel::Held {
-  Held(const MechanismModel& mechanism, int held_node)
+  Held(const MechanismModel& mechanism, int held_node, const VectorX& spring_tangents)
       : node(held_node),
-        solver(held(mechanism.model, held_node)),
+        rigid(spring_tangents.array().isInf()),
+        solver(held(mechanism.model, held_node, spring_tangents)),
         first(static_cast<Eigen::Index>(mechanism.model.constraints.size())),
         supports(solver.model(), solver.elimination()) {}
 
-  /// For these tangents; then the reactions below are known.
+  /// For these tangents, with the same springs rigid; then the reactions below are known.
   void displace(const VectorX& spring_tangents) {
     const Model& m = solver.model();
-    tangents = spring_tangents;
+    tangents = where_finite(spring_tangents);
     MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(m.constraints.size()), 6);
     values.middleRows<6>(first).setIdentity();
     U = solver.linear(tangents, MatrixX::Zero(m.dofs(), 6), values);
@@ -72,6 +92,7 @@ struct MsaModel::Held {
   }
 
   int node;
+  Eigen::Array<bool, Eigen::Dynamic, 1> rigid;  // springs
   Solver solver;
   Eigen::Index first;  // of the six constraints that hold the node
   Reactions supports;
@@ -80,58 +101,105 @@ struct MsaModel::Held {
 };
 
 MsaModel::MsaModel(const Configuration& c, const MemberDivision& division)
-    : configuration_(c), division_(division), built_(build(configuration_, division_)), solver_(built_.model) {
+    : configuration_(c),
+      division_(division),
+      built_(build(numbered(configuration_, frictions_), division_)),
+      solver_(built_.model) {
   built_.model = solver_.model();  // with what the solver added to it
 }
 
 MsaModel::~MsaModel() = default;
 
-MsaSolution MsaModel::solve(const Vector6& F_T_W, Geometry geometry) {
+MsaSolution MsaModel::solve(const Vector6& F_T_W, const Conditions& conditions) {
+  if (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_)
+    throw InputError(
+        fmt::format("{} slips are given, the mechanism has {} frictions", conditions.slips.size(), frictions_));
   MsaSolution out;
   out.load = F_T_W;
   out.load.head<3>() += configuration_.weight;
   VectorX load = VectorX::Zero(built_.model.dofs());
   load.segment<6>(6 * built_.tool) = out.load;
   const Solution& rest = assembled();
-  const bool strained = !rest.u.isZero(0);
+  const bool strained = !rest.u.isZero(0), warm = conditions.warmer != 0;
   VectorX u0 = rest.u;
   std::vector<std::pair<std::string, double>> energies0;
-  if (geometry == Geometry::linear || (out.load.isZero(0) && !strained)) {
-    out.state = solver_.solve(load);
+  if (conditions.geometry == Geometry::linear || (out.load.isZero(0) && !strained && !warm)) {
+    if (strained && (warm || !linear())) energies0 = rest_energies_;
+    out.state = solve_linear(load, conditions);
     // Where everything is linear, what the load adds has an energy of its own.
-    out.energies = frame::energies(solver_.model(), linear() ? VectorX(out.state.u - u0) : out.state.u);
-    if (strained && !linear()) energies0 = frame::energies(solver_.model(), u0);
+    const bool added = linear() && !warm;
+    out.energies =
+        frame::energies(solver_.model(), added ? VectorX(out.state.u - u0) : out.state.u, strains(conditions.warmer));
   } else {
-    out.state = solve_geometric(load, geometry);
-    out.energies = frame::energies(geometric_->model(), *out.state.geometric);
     if (strained) {
-      const Solution at_rest = solve_geometric(VectorX::Zero(load.size()), geometry);
+      const Solution at_rest = solve_geometric(VectorX::Zero(load.size()), conditions.geometry);
       u0 = at_rest.u;
       energies0 = frame::energies(geometric_->model(), *at_rest.geometric);
     }
+    out.state = solve_geometric(load, conditions);
+    out.energies = frame::energies(geometric_->model(), *out.state.geometric);
   }
   for (std::size_t i = 0; i < energies0.size(); ++i) out.energies[i].second -= energies0[i].second;
   out.displacement = (out.state.u - u0).segment<6>(6 * built_.tool);
+  out.slips = out.state.slips;
   std::stable_sort(out.energies.begin(), out.energies.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   return out;
 }
 
 const Solution& MsaModel::assembled() {
-  if (!assembled_) assembled_ = std::make_unique<Solution>(solver_.solve(VectorX::Zero(built_.model.dofs())));
+  if (!assembled_) {
+    assembled_ = std::make_unique<Solution>(solve_linear(VectorX::Zero(built_.model.dofs()), Conditions()));
+    rest_energies_ = frame::energies(solver_.model(), assembled_->u);
+  }
   return *assembled_;
 }
 
-Solution MsaModel::solve_geometric(const VectorX& load, Geometry geometry) {
+std::vector<double> MsaModel::strains(double warmer) const {
+  if (warmer == 0) return {};
+  std::vector<double> out;
+  for (const Beam& beam : built_.model.beams) out.push_back(warmer * beam.expansion);
+  return out;
+}
+
+Solution MsaModel::solve_linear(const VectorX& load, const Conditions& conditions) {
+  const Model& m = solver_.model();
+  VectorX heat = VectorX::Zero(m.dofs());
+  for (const Beam& beam : m.beams) {
+    const Vector12 f =
+        equivalent_forces(beam.rigidity, beam.length, {Vector3::Zero(), conditions.warmer * beam.expansion});
+    const Vector3 at_a = beam.R_WM * f.head<3>(), at_b = beam.R_WM * f.segment<3>(6);
+    if (beam.relative < 0) {
+      heat.segment<3>(6 * beam.a) += at_a;
+      heat.segment<3>(6 * beam.b) += at_b;
+    } else {
+      heat.segment<3>(beam.relative) += at_b;
+    }
+  }
+  solver_.begin_slips(conditions.slips);
+  VectorX all = heat;
+  all.head(load.size()) += load;
+  Solution out = solver_.solve(all);
+  out.heat = heat;
+  return out;
+}
+
+Solution MsaModel::solve_geometric(const VectorX& load, const Conditions& conditions) {
   if (!geometric_) geometric_ = std::make_unique<GeometricSolver>(build(configuration_, division_).model);
   GeometricOptions options;
-  options.geometry = geometry;
+  options.geometry = conditions.geometry;
+  options.slips = conditions.slips;
+  std::vector<double> strains;
+  for (const Beam& beam : geometric_->model().beams) strains.push_back(conditions.warmer * beam.expansion);
   auto state = std::make_shared<const GeometricState>(
-      geometric_->solve({load.head(geometric_->model().dofs()), {}, {}}, options));
+      geometric_->solve({load.head(geometric_->model().dofs()), {}, std::move(strains)}, options));
   Solution out;
   out.u = VectorX::Zero(built_.model.dofs());  // the coordinates of very stiff parts, which come last, are not used
   out.u.head(state->u.size()) = state->u;
   out.spring_tangents = state->spring_tangents;
+  out.spring_forces = state->spring_forces;
+  out.slips = state->slips;
+  out.message = state->message;
   out.converged = state->converged && state->stable;
   out.iterations = state->iterations;
   out.residual = state->residual;
@@ -144,7 +212,8 @@ MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
     if (!geometric_) throw std::logic_error("a state of another mechanism");
     return {above_rounding(geometric_->stiffness(*state.geometric, built_.tool), geometric_->model()), {}};
   }
-  if (!tool_held_) tool_held_ = std::make_unique<Held>(built_, built_.tool);
+  if (!tool_held_ || (tool_held_->rigid != state.spring_tangents.array().isInf()).any())
+    tool_held_ = std::make_unique<Held>(built_, built_.tool, state.spring_tangents);
   tool_held_->displace(state.spring_tangents);
   Stiffness out{tool_held_->reactions(), {}};
   const bool legs_stand_alone = built_.base == built_.ground && built_.tool == built_.platform;
@@ -153,8 +222,9 @@ MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
       out.legs.push_back(tool_held_->reactions(built_.attachments[leg]));
     } else {
       const MechanismModel one = build_leg(configuration_, leg, division_);
-      Held leg_held(one, one.tool);
-      leg_held.displace(tangents_of(one.model, state));
+      const VectorX tangents = tangents_of(one.model, state);
+      Held leg_held(one, one.tool, tangents);
+      leg_held.displace(tangents);
       out.legs.push_back(leg_held.reactions());
     }
   }
@@ -196,8 +266,7 @@ Matrix6X MsaModel::passive_twists(std::size_t leg) const {
 Vector6 MsaModel::base_reaction(const Vector6& load_T_W, const Solution& state) {
   if (state.geometric) return state.geometric->constraint_forces.head<6>();  // the ground's six come first
   if (!supports_) supports_ = std::make_unique<Reactions>(solver_.model(), solver_.elimination());
-  VectorX ignored;
-  VectorX unbalanced = internal_forces(solver_.model(), state.u, ignored);
+  VectorX unbalanced = forces_with(solver_.model(), state.u, state.spring_forces) - state.heat;
   unbalanced.segment<6>(6 * built_.tool) -= load_T_W;
   return supports_->forces(unbalanced).topRows<6>();  // the ground's six constraints come first
 }

@@ -7,21 +7,23 @@
 #include <utility>
 #include <vector>
 
-#include "msa/base/geometry.h"
 #include "msa/frame/build.h"
 #include "msa/frame/geometric_solver.h"
 #include "msa/frame/solver.h"
+#include "msa/mechanism/conditions.h"
 
 namespace deflect::frame {
 
 /// Response of the tool point T to one wrench [f; m] at T, base axes, SI; dead: its direction stays. The payload's
-/// weight acts with it. Displacement and energies are those against the assembled mechanism without load and weight.
+/// weight acts with it. Displacement and energies are those against the mechanism assembled at 20 °C without load and
+/// weight.
 struct MsaSolution {
   Vector6 displacement;  ///< [δ; θ] of T, θ a rotation vector
   Vector6 load;          ///< the wrench and the weight
   Solution state;        ///< of MsaModel::model(): not converged is said here, and why in state.geometric
-  /// Strain energy by part, J, largest first. ½ loadᵀd where everything is linear.
+  /// Strain energy by part, J, largest first. ½ loadᵀd where everything is linear and as warm as it was assembled.
   std::vector<std::pair<std::string, double>> energies;
+  std::vector<double> slips;  ///< of the frictions after the load, as in Conditions
 };
 
 /// A mechanism at one pose, factorised once for all its load cases.
@@ -41,7 +43,7 @@ class MsaModel {
 
   /// Second order and finite: members that bend far or are pressed hard want a division (MemberDivision); one element
   /// overestimates the buckling load of a cantilever by 0.8 %, two by 0.05 %. Without load both are linear.
-  MsaSolution solve(const Vector6& F_T_W, Geometry = Geometry::linear);
+  MsaSolution solve(const Vector6& F_T_W, const Conditions& = {});
 
   /// The mechanism as assembled, without load and weight: strained where legs stand beside their seats (misfits).
   const Solution& assembled();
@@ -65,13 +67,17 @@ class MsaModel {
  private:
   struct Held;
   VectorX tangents_of(const Model& leg, const Solution& state) const;
-  Solution solve_geometric(const VectorX& load, Geometry);
+  Solution solve_linear(const VectorX& load, const Conditions&);
+  Solution solve_geometric(const VectorX& load, const Conditions&);
+  std::vector<double> strains(double warmer) const;
 
+  int frictions_ = 0;
   Configuration configuration_;
   MemberDivision division_;
   MechanismModel built_;
   Solver solver_;
-  std::unique_ptr<Solution> assembled_;         // made when first asked for
+  std::unique_ptr<Solution> assembled_;  // made when first asked for
+  std::vector<std::pair<std::string, double>> rest_energies_;
   std::unique_ptr<GeometricSolver> geometric_;  // made when a geometry that is not linear is first asked for
   std::unique_ptr<Held> tool_held_;             // made when a stiffness is first asked for
   std::unique_ptr<Reactions> supports_;         // made when a reaction is first asked for

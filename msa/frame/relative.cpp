@@ -44,7 +44,31 @@ void make_relative(Model& m, Spring& spring) {
   spring.defined_by = static_cast<int>(m.constraints.size()) - 1;
 }
 
+/// Of the translations that the structure resists, N/m.
+double stiffest(const Model& m) {
+  const double length = characteristic_length(m);
+  double most = 0;
+  for (const Beam& b : m.beams) most = std::max(most, b.rigidity.EA / b.length);
+  for (const Spring& s : m.springs) {
+    const double per_length = s.law.rotation ? 1 / (length * length) : 1;
+    if (const auto* linear = std::get_if<LinearSpring>(&s.law)) most = std::max(most, linear->k * per_length);
+    if (const auto* friction = std::get_if<FrictionSpring>(&s.law)) most = std::max(most, friction->k * per_length);
+  }
+  return most > 0 ? most : 1e8;
+}
+
 }  // namespace
+
+void give_contacts_stiffness(Model& m) {
+  if (std::none_of(m.springs.begin(), m.springs.end(), [](const Spring& s) { return jumps(s.law); })) return;
+  const double length = characteristic_length(m), contact = 10 * stiffest(m);
+  for (Spring& s : m.springs) {
+    const double stiffness = s.law.rotation ? contact * length * length : contact;
+    if (auto* gap = std::get_if<GapSpring>(&s.law)) gap->contact = stiffness;
+    if (auto* one = std::get_if<OneSidedSpring>(&s.law)) one->contact = stiffness;
+    know_force(s.law, 0);
+  }
+}
 
 std::vector<std::string> use_relative_motion(Model& m, double ratio) {
   std::vector<std::string> names;
@@ -57,9 +81,10 @@ std::vector<std::string> use_relative_motion(Model& m, double ratio) {
   const double length = characteristic_length(m);
   for (Spring& spring : m.springs) {
     const auto* linear = std::get_if<LinearSpring>(&spring.law);
-    if (linear && spring.elongation.size() > 1 && linear->k * length * length > limit * 1e4) {
+    const bool stiff = linear && linear->k * length * length > limit * 1e4;
+    if (spring.elongation.size() > 1 && (stiff || jumps(spring.law))) {
       make_relative(m, spring);
-      names.push_back(spring.name);
+      if (stiff) names.push_back(spring.name);
     }
   }
   return names;

@@ -8,9 +8,13 @@
 
 namespace deflect::frame {
 
-/// Gives relative coordinates to beams whose bending stiffness EI/L exceeds `ratio` times the softest beam's, and to
-/// linear springs whose stiffness times the squared length of the structure exceeds 1e4 times that limit (a
-/// translational spring; a rotational one counts alike). Returns the names of those parts.
+/// Gives gaps and rigid sides of springs (stepped_spring.h) their contact stiffness: ten times the stiffest part, so
+/// that each step of λ leaves at most a tenth of what it lacks.
+void give_contacts_stiffness(Model&);
+
+/// Gives relative coordinates to springs that jump, to beams whose bending stiffness EI/L exceeds `ratio` times the
+/// softest beam's, and to linear springs whose stiffness times the squared length of the structure exceeds 1e4 times
+/// that limit (a translational spring; a rotational one counts alike). Returns the names of those parts.
 std::vector<std::string> use_relative_motion(Model&, double ratio = 1e5);
 
 }  // namespace deflect::frame

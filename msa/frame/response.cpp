@@ -18,13 +18,17 @@ struct Sums {
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> energies(const Model& m, const VectorX& u) {
+std::vector<std::pair<std::string, double>> energies(const Model& m, const VectorX& u,
+                                                     const std::vector<double>& strains) {
   Sums sums;
-  for (const Beam& beam : m.beams) {
-    const Vector12 d = end_displacements(beam, u);
+  for (std::size_t e = 0; e < m.beams.size(); ++e) {
+    const Beam& beam = m.beams[e];
+    Vector12 d = end_displacements(beam, u);
+    if (!strains.empty()) d.segment<3>(6) -= strains[e] * beam.length * beam.R_WM.col(0);
     sums.add(beam.part, 0.5 * d.dot(pull(beam, d)));
   }
-  for (const Spring& spring : m.springs) sums.add(spring.part, energy(spring.law, evaluate(spring.elongation, u)));
+  for (const Spring& spring : m.springs)
+    sums.add(spring.part, stored_energy(spring.law, evaluate(spring.elongation, u)));
   return sums.by_part;
 }
 
@@ -32,7 +36,7 @@ std::vector<std::pair<std::string, double>> energies(const Model& m, const Geome
   Sums sums;
   for (std::size_t e = 0; e < m.beams.size(); ++e) sums.add(m.beams[e].part, state.beams[e].energy);
   for (std::size_t i = 0; i < m.springs.size(); ++i)
-    sums.add(m.springs[i].part, energy(m.springs[i].law, state.elongations(static_cast<Eigen::Index>(i))));
+    sums.add(m.springs[i].part, stored_energy(state.law(m, i), state.elongations(static_cast<Eigen::Index>(i))));
   return sums.by_part;
 }
 

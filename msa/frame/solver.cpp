@@ -18,20 +18,6 @@ constexpr double suspicious = 1e-12;
 
 double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
 
-/// Potential energy −fᵀu + stored; what equilibrium makes stationary.
-double potential(const Model& m, const VectorX& u, const VectorX& load) {
-  double sum = -load.dot(u);
-  for (const auto& [part, energy] : energies(m, u)) sum += energy;
-  return sum;
-}
-
-/// The vector with zeros behind it where the solver's model has grown.
-VectorX padded(const VectorX& v, std::size_t size) {
-  VectorX out = VectorX::Zero(static_cast<Eigen::Index>(size));
-  out.head(v.size()) = v;
-  return out;
-}
-
 MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
   MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(rows), m.cols());
   out.topRows(m.rows()) = m;
@@ -41,6 +27,7 @@ MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
 }  // namespace
 
 Solver::Solver(Model m) : model_(std::make_unique<Model>(std::move(m))) {
+  give_contacts_stiffness(*model_);
   use_relative_motion(*model_);
   prepare();
   if (held_idle_spins()) prepare();
@@ -106,8 +93,8 @@ void Solver::refuse_driven_spins(const VectorX& load) const {
 }
 
 void Solver::check(const VectorX& load, const VectorX& values) const {
-  check_consistent(*model_, *elimination_, padded(values, model_->constraints.size()));
-  refuse_driven_spins(padded(load, static_cast<std::size_t>(model_->dofs())));
+  check_consistent(*model_, *elimination_, padded(values, static_cast<Eigen::Index>(model_->constraints.size())));
+  refuse_driven_spins(padded(load, model_->dofs()));
 }
 
 void Solver::note_redundant() {
@@ -142,61 +129,6 @@ VectorX Solver::starting_tangents(double force) const {
   for (std::size_t s = 0; s < model_->springs.size(); ++s)
     k(static_cast<Eigen::Index>(s)) = tangent_at_force(model_->springs[s].law, force);
   return k;
-}
-
-Solution Solver::solve(const VectorX& load, const NewtonOptions& options) {
-  return solve(load, constraint_values(*model_), options);
-}
-
-Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, const NewtonOptions& options) {
-  const VectorX load = padded(given_load, static_cast<std::size_t>(model_->dofs()));
-  const VectorX values = padded(given_values, model_->constraints.size());
-  check(load, values);
-  Solution s;
-  VectorX q = VectorX::Zero(elimination_->independent);
-  s.u = elimination_->expand(q, values);
-  const VectorX f = elimination_->reduce(load);
-  const VectorX first = internal_forces(*model_, s.u, s.spring_tangents);
-  const double force = std::max(largest(load), largest(first));
-  if (force == 0) {  // nothing drives it: every spring is at rest
-    s.converged = true;
-    return s;
-  }
-  // A spring at rest may have no stiffness (Hertz). The matrix of a step never takes less than a small part of the
-  // stiffness at full load, which slows nothing that carries load and keeps an idle spring from blocking the step.
-  const VectorX loaded = starting_tangents(force);
-  const VectorX floor = 1e-8 * loaded;
-  const bool linear = linear_springs();
-  VectorX r = f - elimination_->reduce(first);
-  double previous_step = std::numeric_limits<double>::infinity();
-  for (s.iterations = 1; s.iterations <= options.max_iterations; ++s.iterations) {
-    factor(s.iterations == 1 ? loaded : VectorX(s.spring_tangents.cwiseMax(floor)));
-    const VectorX step = cholesky_->solve(r);
-    // Backtrack until the potential falls; where what is to be gained drowns in its rounding, the full step is right.
-    double length = 1;
-    if (!linear) {
-      const double before = potential(*model_, s.u, load), slope = -r.dot(step);
-      const double rounding = 1e-13 * (std::abs(load.dot(s.u)) + std::abs(before));
-      while (length > 1e-6 && std::abs(slope) > rounding) {
-        const double after = potential(*model_, elimination_->expand(q + length * step, values), load);
-        if (after <= before + 1e-4 * length * slope + rounding) break;
-        length /= 2;
-      }
-    }
-    q += length * step;
-    s.u = elimination_->expand(q, values);
-    const VectorX pulls = elimination_->reduce(internal_forces(*model_, s.u, s.spring_tangents));
-    r = f - pulls;
-    const double scale = largest(f) + largest(pulls);
-    s.residual = scale > 0 ? largest(r) / scale : 0;
-    const bool small_step = largest(step) <= options.tolerance * largest(q);
-    const bool stalled = s.residual < 1e-9 && largest(step) > 0.5 * previous_step;  // rounding is all that is left
-    previous_step = largest(step);
-    s.converged = small_step || stalled || s.residual == 0 || (linear && s.iterations == 3);
-    if (s.converged) break;
-  }
-  s.converged = s.converged && std::isfinite(s.residual) && s.residual < 1e-7;
-  return s;
 }
 
 MatrixX Solver::linear(const VectorX& tangents, const MatrixX& given_loads, const MatrixX& given_values) {

@@ -19,8 +19,12 @@ struct NewtonOptions {
 struct GeometricState;  // geometric_solver.h
 
 struct Solution {
-  VectorX u;                ///< by freedom of Solver::model(), the given ones first: m, rad, and the scalars' unit
-  VectorX spring_tangents;  ///< N/m or Nm/rad at u
+  VectorX u;                  ///< by freedom of Solver::model(), the given ones first: m, rad, and the scalars' unit
+  VectorX spring_tangents;    ///< N/m or Nm/rad at u; infinite where a law is rigid
+  VectorX spring_forces;      ///< N or Nm, beside preloads
+  VectorX heat;               ///< among the loads, what members that are warmer push (MsaModel); by freedom
+  std::vector<double> slips;  ///< of frictions after the load, by their numbers
+  std::string message;        ///< where it did not converge, why, if that is known
   bool converged = false;
   int iterations = 0;
   double residual = 0;  ///< |Tᵀ(f − f_int)| relative to |Tᵀf| + |Tᵀ f_int|, largest entry
@@ -48,9 +52,13 @@ class Solver {
   /// What a user should know: idle spins that were held, redundant constraints, poor conditioning.
   const std::vector<std::string>& notes() const { return notes_; }
 
+  /// Slips of the frictions before the loads that follow, by their numbers; empty: zero.
+  void begin_slips(const std::vector<double>&);
+
   /// One load by freedom (of the given model, or of model()), constraint values as in the model. Newton with a line
-  /// search on the potential where a spring is nonlinear. Throws ModelError when the load drives an idle spin, and when
-  /// a state loses the stiffness that keeps the structure standing.
+  /// search on the potential where a spring is nonlinear; springs that jump (stepped_spring.h) keep their laws to
+  /// rounding. Throws ModelError when the load drives an idle spin, and when a state loses the stiffness that keeps the
+  /// structure standing.
   Solution solve(const VectorX& load, const NewtonOptions& options = {});
 
   /// What solve refuses before it begins: values that contradict each other, a load that drives an idle spin.
@@ -68,6 +76,12 @@ class Solver {
   bool held_idle_spins();
   void note_redundant();
   void refuse_driven_spins(const VectorX& load) const;
+  struct Work;
+  void begin_by_forces(Work&);
+  double line_search(const Work&, const VectorX& step) const;
+  bool newton(Work&, const NewtonOptions&, Solution&);
+  bool update_known_forces(const Work&);
+  void conclude(const Work&, Solution&) const;
   void factor(const VectorX& spring_tangents);
   VectorX starting_tangents(double force) const;
 
@@ -81,7 +95,9 @@ class Solver {
   VectorX factored_tangents_;  // the state that the factor belongs to
 };
 
-/// Total ½∫ energies by part: beams ½ dᵀ K d, springs ∫ F dδ; in order of first appearance. J.
-std::vector<std::pair<std::string, double>> energies(const Model&, const VectorX& u);
+/// Stored energies by part: beams ½ (d − d0)ᵀ K (d − d0), d0 the free strains' (by beam; none: 0), springs ∫ F dδ,
+/// frictions and what else jumps by their laws; in order of first appearance. J.
+std::vector<std::pair<std::string, double>> energies(const Model&, const VectorX& u,
+                                                     const std::vector<double>& strains = {});
 
 }  // namespace deflect::frame

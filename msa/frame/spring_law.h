@@ -5,6 +5,8 @@
 #include <cmath>
 #include <variant>
 
+#include "msa/frame/stepped_spring.h"
+
 namespace deflect::frame {
 
 /// F = k δ.
@@ -17,14 +19,35 @@ struct LinearSpring {
   double elongation(double f) const { return f / k; }
 };
 
-/// F = k sign(δ) |δ|ⁿ, n > 1; the tangent vanishes at δ = 0. Hertz point contact has n = 3/2.
+/// F = k sign(δ) (|δ|/unit)ⁿ, n ≥ 1; the tangent vanishes at δ = 0 where n > 1. Hertz point contact has n = 3/2.
 struct PowerSpring {
-  double k = 0, n = 1.5;
-  double force(double d) const { return std::copysign(k * std::pow(std::abs(d), n), d); }
-  double tangent(double d) const { return n * k * std::pow(std::abs(d), n - 1); }
-  double energy(double d) const { return k * std::pow(std::abs(d), n + 1) / (n + 1); }
+  double k = 0, n = 1.5, unit = 1;
+  double force(double d) const { return std::copysign(k * std::pow(std::abs(d) / unit, n), d); }
+  double tangent(double d) const { return n * k / unit * std::pow(std::abs(d) / unit, n - 1); }
+  double energy(double d) const { return k * unit * std::pow(std::abs(d) / unit, n + 1) / (n + 1); }
   double at_force(double f) const { return tangent(elongation(f)); }
-  double elongation(double f) const { return std::copysign(std::pow(std::abs(f) / k, 1 / n), f); }
+  double elongation(double f) const { return std::copysign(unit * std::pow(std::abs(f) / k, 1 / n), f); }
+};
+
+/// F = k δ (1 + (δ/reference)²).
+struct HardeningSpring {
+  double k = 0, reference = 0;
+  double square(double d) const { return d * d / (reference * reference); }
+  double force(double d) const { return k * d * (1 + square(d)); }
+  double tangent(double d) const { return k * (1 + 3 * square(d)); }
+  double energy(double d) const { return k * d * d / 2 * (1 + square(d) / 2); }
+  double at_force(double f) const { return tangent(elongation(f)); }
+  double elongation(double f) const {
+    // Both starts lie beyond the root of a function that is convex there: Newton comes down on it.
+    const double size = std::abs(f);
+    double d = std::min(size / k, std::cbrt(size / k * reference * reference));
+    for (int i = 0; i < 100 && d > 0; ++i) {
+      const double step = (force(d) - size) / tangent(d);
+      d -= step;
+      if (std::abs(step) <= 1e-16 * d) break;
+    }
+    return std::copysign(d, f);
+  }
 };
 
 /// Two cylinders in line contact with the bulk of both: δ = p κ Σ (2 ln(4 R_i/a) − 1) at the half width a of p = F/l,
@@ -66,9 +89,11 @@ struct BulkLineSpring {
 /// at_force(f) is the tangent stiffness once the force |f| is reached, elongation(f) the δ at which it is.
 /// A preloaded spring works about the force P that it carries at rest: F = law(δ₀ + δ) − P with law(δ₀) = P, energy
 /// against the state at rest.
-struct SpringLaw : std::variant<LinearSpring, PowerSpring, BulkLineSpring> {
+struct SpringLaw : std::variant<LinearSpring, PowerSpring, BulkLineSpring, HardeningSpring, GapSpring, OneSidedSpring,
+                                FrictionSpring> {
   using variant::variant;
   double preload = 0, at_rest = 0;  ///< P, δ₀
+  bool rotation = false;            ///< moments against angles
 };
 
 inline SpringLaw preloaded(SpringLaw law, double P) {
@@ -91,6 +116,55 @@ inline double energy(const SpringLaw& law, double d) {
 inline double tangent_at_force(const SpringLaw& law, double f) {
   return std::visit([&](const auto& l) { return l.at_force(std::abs(f) + std::abs(law.preload)); }, law);
 }
-inline bool is_linear(const SpringLaw& law) { return std::holds_alternative<LinearSpring>(law); }
+/// δ once the force f has been added to the preload.
+inline double elongation(const SpringLaw& law, double f) {
+  return std::visit([&](const auto& l) { return l.elongation(f + law.preload) - law.at_rest; }, law);
+}
+/// No stiffness that depends on the load.
+inline bool is_linear(const SpringLaw& law) {
+  const auto* power = std::get_if<PowerSpring>(&law);
+  return std::holds_alternative<LinearSpring>(law) || (power && power->n == 1);
+}
+/// Of stepped_spring.h.
+inline bool jumps(const SpringLaw& law) {
+  return std::holds_alternative<GapSpring>(law) || std::holds_alternative<OneSidedSpring>(law) ||
+         std::holds_alternative<FrictionSpring>(law);
+}
+/// Tells a spring that jumps the force that it carries beside its preload (λ of stepped_spring.h).
+inline void know_force(SpringLaw& law, double f) {
+  if (auto* gap = std::get_if<GapSpring>(&law)) gap->known = f + law.preload;
+  if (auto* one = std::get_if<OneSidedSpring>(&law)) one->known = f + law.preload;
+}
+/// What it lacks of it: the difference to the force at an elongation.
+inline double unknown_force(const SpringLaw& law, double d) {
+  if (const auto* gap = std::get_if<GapSpring>(&law)) return gap->force(law.at_rest + d) - gap->known;
+  if (const auto* one = std::get_if<OneSidedSpring>(&law)) {
+    const double f = one->force(law.at_rest + d);
+    return one->soft(f) && one->soft(one->known) ? 0 : f - one->known;
+  }
+  return 0;
+}
+/// What is stored at an elongation, against the state at rest.
+inline double stored_energy(const SpringLaw& law, double d) {
+  return std::visit(
+      [&](const auto& l) {
+        if constexpr (requires { l.stored(d); })
+          return l.stored(l.force(law.at_rest + d)) - l.stored(law.preload) - law.preload * d;
+        else
+          return energy(law, d);
+      },
+      law);
+}
+/// The tangent of the law itself, infinite where it is rigid.
+inline double true_tangent(const SpringLaw& law, double d) {
+  return std::visit(
+      [&](const auto& l) {
+        if constexpr (requires { l.true_tangent(d); })
+          return l.true_tangent(law.at_rest + d);
+        else
+          return l.tangent(law.at_rest + d);
+      },
+      law);
+}
 
 }  // namespace deflect::frame

@@ -37,6 +37,7 @@ struct PlacedMember {
   Matrix3 R_WM;
   SectionProperties section;  ///< Iy, Iz already times the bending factor
   double E = 0, G = 0;        ///< Pa
+  double expansion = 0;       ///< 1/K
   BeamTheory beam = BeamTheory::euler_bernoulli;
 
   double length() const { return (p_W_end - p_W_start).norm(); }
@@ -58,6 +59,7 @@ struct PlacedLeg {
   std::vector<PlacedPart> parts;  ///< base to platform; neighbours are rigidly attached to one another
   /// Small twist [δ; θ] at T, base axes, by which the leg's end, unstrained, stands beside its seat on the platform.
   Vector6 misfit = Vector6::Zero();
+  bool beside = false;  ///< it leads no platform: a joint beside the mechanism's legs
 };
 
 /// A commanded coordinate: m or rad.
@@ -70,7 +72,8 @@ struct Actuator {
 struct Configuration {
   Pose pose;
   PlacedJoint base, tool;
-  std::vector<PlacedLeg> legs;       ///< side by side between the base and the platform; a serial arm is one
+  /// Side by side between the base and the platform; a serial arm is one. Those beside come last.
+  std::vector<PlacedLeg> legs;
   std::vector<Actuator> actuators;   ///< leg by leg
   Vector3 weight = Vector3::Zero();  ///< N at T, acts with and without load
   /// m: the mechanism's extent from T; where ranks are decided, moments weigh against forces by it.
@@ -90,6 +93,24 @@ void for_each_part(Legs& legs, const F& f) {
         f(std::get<PlacedMember>(part));
 }
 
+/// Calls f(law) for every law of a joint: of the legs, as for_each_part, then of base and tool; tx … rz, in order.
+template <class Placed, class F>
+void for_each_law(Placed& c, const F& f) {
+  const auto of = [&](auto& joint) {
+    for (auto& laws : joint.laws)
+      for (auto& law : laws) f(law);
+  };
+  for_each_part(c.legs, [&](auto& part) {
+    if constexpr (requires { part.laws; }) of(part);
+  });
+  of(c.base);
+  of(c.tool);
+}
+
+/// Numbers the frictions in the order of for_each_law; returns how many there are.
+int number_slips(Configuration&);
+
+/// Of the mechanism, those beside not counted.
 int leg_count(const Mechanism&);
 
 /// Throws ModelError naming leg and limit when the pose is out of reach, or when it is singular, naming the direction

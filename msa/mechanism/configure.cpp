@@ -51,6 +51,14 @@ Configuration completed(PlacedMechanism placed, const Mechanism& m) {
 
 }  // namespace
 
+int number_slips(Configuration& c) {
+  int count = 0;
+  for_each_law(c, [&](Law& law) {
+    if (auto* friction = std::get_if<FrictionLaw>(&law)) friction->number = count++;
+  });
+  return count;
+}
+
 int leg_count(const Mechanism& m) {
   if (std::holds_alternative<SixPsu>(m.kinematics)) return 6;
   return std::max(1, static_cast<int>(m.mounts.size()));

@@ -25,6 +25,7 @@
 #include <variant>
 #include <vector>
 
+#include "msa/base/geometry.h"
 #include "msa/base/spatial.h"
 #include "msa/mechanism/law.h"
 #include "msa/mechanism/section.h"
@@ -113,12 +114,20 @@ struct Part : std::variant<Joint, Member, Offset, Parallel> {
   using variant::variant;
 };
 
+/// How one leg of a machine differs from its drawing: its joints A (axes of W) and C (axes of T), its link's length; m.
+struct LegDeviation {
+  int leg = 0;  ///< 1-based
+  Vector3 base_joint = Vector3::Zero(), platform_joint = Vector3::Zero();
+  double link_length = 0;
+};
+
 /// Six vertical guideways, ball joint at B, universal joint at C. Legs 2k+1, 2k+2 stand at 120°·k ± base_angle/2 on
 /// the base circle and at 120°·k ± (60° − platform_angle/2) on the platform circle.
 struct SixPsu {
   double base_radius = 0, platform_radius = 0, link_length = 0;
   double base_angle = 0, platform_angle = 0;  ///< rad: angle between the two joints of a pair
   double slider_min = 0, slider_max = 0;      ///< limits of the free length L1 = |AB|
+  std::vector<LegDeviation> deviations;       ///< of a machine that was measured, or drawn by lot
 };
 
 /// Parts placed by walking along each leg; see above.
@@ -175,15 +184,22 @@ struct Mechanism {
   std::vector<Mount> mounts;  ///< chains: one leg each; none is one leg from the base's frame to the tool's
   Named<Part> leg;            ///< every leg, base to platform
   std::vector<Variation> variations;
+  /// 6-psu: joints that stand side by side with every leg between the base and the platform (friction of a link's
+  /// joints, a bellows), each at a point and in axes of that leg.
+  Named<Joint> beside;
   Joint base;          ///< between the world and the machine, at the base origin, axes "base"
   Joint tool;          ///< between the platform and the tool point T, axes "platform"
   double payload = 0;  ///< kg at T; its weight acts along −z of W
   std::vector<Misfit> misfits;
+  Geometry geometry = Geometry::linear;  ///< of the shape in which equilibrium is to be found
   Workspace workspace;
   LoadCell load_cell;
   Sensor sensor;
   Tolerances tolerances;
   std::set<std::string> ours;  ///< paths of values that the source does not state and we assumed (YAML tag !ours)
+  /// The parts of each leg, variations applied, where resolved() worked them out once for many poses; no part of a
+  /// file.
+  std::vector<Named<Part>> legs;
 };
 
 }  // namespace deflect

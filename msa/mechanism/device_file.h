@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "msa/mechanism/description.h"
 
@@ -28,6 +29,7 @@ struct Edit {
     set,       ///< the field takes the value
     append,    ///< the value joins a list (laws in series)
     multiply,  ///< the number is multiplied by the plain number `value`
+    add,       ///< the value is added to the number
   };
   std::string path, value;
   Action action = Action::set;
@@ -37,7 +39,14 @@ struct Edit {
 /// ("ours") and is edited is no longer marked so. Throws InputError naming path, value and the nearest valid name.
 Mechanism edited(const Mechanism&, const Edit&);
 
+/// Several edits, one after the other, checked when all are done; none reaches into a value that another has set.
+Mechanism edited_in_turn(const Mechanism&, const std::vector<Edit>&);
+
 /// The parts of one leg, variations applied. leg is 1-based.
 Named<Part> leg_parts(const Mechanism&, int leg);
+
+/// The same mechanism with its variations worked out, so that configure() need not do so at every pose. It is for
+/// models: it cannot be edited or written.
+Mechanism resolved(const Mechanism&);
 
 }  // namespace deflect

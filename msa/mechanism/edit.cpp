@@ -73,7 +73,38 @@ void edit_one_leg(YamlNode& tree, const Mechanism& m, const Edit& edit, const Ya
 }
 
 const char* sign(Edit::Action action) {
-  return action == Edit::Action::set ? "=" : action == Edit::Action::append ? "+=" : "*=";
+  switch (action) {
+    case Edit::Action::set:
+      return "=";
+    case Edit::Action::append:
+      return "+=";
+    case Edit::Action::multiply:
+      return "*=";
+    case Edit::Action::add:
+      return "+";
+  }
+  return "";
+}
+
+std::string origin_of(const Edit& edit) {
+  return fmt::format("edit '{} {} {}'", edit.path, sign(edit.action), edit.value);
+}
+
+/// "mounts.3.leg.guideway" for a leg that has parts of its own.
+std::string path_in_file(const Mechanism& m, const Edit& edit) {
+  if (!edit.path.starts_with("leg[")) return edit.path;
+  const auto [leg, rest] = leg_and_rest(edit.path, origin_of(edit) + ": ", leg_count(m));
+  return has_own_parts(m, leg) ? fmt::format("mounts.{}.leg.{}", leg - 1, rest) : edit.path;
+}
+
+/// The edit in the tree of `m`.
+void apply(YamlNode& tree, const Mechanism& m, const Edit& edit) {
+  const std::string where = origin_of(edit) + ": ";
+  YamlNode value = parse_yaml(edit.value, origin_of(edit));
+  set_line(value, 0);
+  const std::string path = path_in_file(m, edit);
+  if (path.starts_with("leg[")) return edit_one_leg(tree, m, edit, value, where);
+  for (const Place& place : places(tree, path, where)) change(tree, place, edit.action, value, where);
 }
 
 }  // namespace
@@ -108,23 +139,39 @@ std::map<int, MarkedLeg> varied_legs(const Mechanism& m, const YamlNode* variati
   return legs;
 }
 
-Named<Part> leg_parts(const Mechanism& m, int leg) { return marked_leg(m, leg).parts; }
+Named<Part> leg_parts(const Mechanism& m, int leg) {
+  if (m.legs.empty()) return marked_leg(m, leg).parts;
+  return m.legs.at(static_cast<std::size_t>(leg - 1));
+}
+
+Mechanism resolved(const Mechanism& m) {
+  Mechanism out = m;
+  for (int leg = 1; leg <= leg_count(m); ++leg) out.legs.push_back(leg_parts(m, leg));
+  return out;
+}
 
 Mechanism edited(const Mechanism& m, const Edit& edit) {
-  const std::string origin = fmt::format("edit '{} {} {}'", edit.path, sign(edit.action), edit.value);
-  YamlNode value = parse_yaml(edit.value, origin);
-  set_line(value, 0);
   YamlNode tree = tree_of(m);
-  std::string path = edit.path;
-  if (path.starts_with("leg[")) {
-    const auto [leg, rest] = leg_and_rest(path, origin + ": ", leg_count(m));
-    if (has_own_parts(m, leg)) path = fmt::format("mounts.{}.leg.{}", leg - 1, rest);
+  apply(tree, m, edit);
+  return mechanism_of(stripped(tree), origin_of(edit));
+}
+
+Mechanism edited_in_turn(const Mechanism& m, const std::vector<Edit>& edits) {
+  YamlNode tree = tree_of(m);
+  Mechanism before = m;
+  bool pending = false;  // edits in the tree that `before` does not know
+  std::string origins;
+  for (const Edit& edit : edits) {
+    // One leg is seen through the variations, which only a description knows how to apply.
+    if (pending && path_in_file(before, edit).starts_with("leg[")) {
+      before = mechanism_of(stripped(tree), origins);
+      tree = tree_of(before);
+    }
+    apply(tree, before, edit);
+    pending = true;
+    origins = origin_of(edit);
   }
-  if (path.starts_with("leg["))
-    edit_one_leg(tree, m, edit, value, origin + ": ");
-  else
-    for (const Place& place : places(tree, path, origin + ": ")) change(tree, place, edit.action, value, origin + ": ");
-  return mechanism_of(stripped(tree), origin);
+  return edits.empty() ? m : mechanism_of(stripped(tree), origins);
 }
 
 }  // namespace deflect

@@ -71,6 +71,10 @@ void tagged(FieldVisitor& v, V& variant, const char* key, const char* what, std:
   std::visit(fields_of, variant);
 }
 
+inline void material_of(FieldVisitor& v, std::string& material) {
+  v.word("material", material, {"material", names(v.surroundings.materials), std::nullopt}, "name of a material");
+}
+
 /// base and tool: joints whose place is fixed and that hold, except where a law lets them yield.
 void describe_fixture(FieldVisitor&, const char* key, Joint&, const char* at, const char* axes, const char* about);
 

@@ -48,6 +48,10 @@ const char* example_of(Dimension d) {
       return "20 K";
     case Dimension::acceleration:
       return "9.81 m/s^2";
+    case Dimension::compliance:
+      return "0.001 mm/N";
+    case Dimension::rotational_compliance:
+      return "0.01 rad/Nm";
     case Dimension::mass:
       return "2 kg";
   }

@@ -1,6 +1,7 @@
 #include "msa/mechanism/field_writer.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace deflect {
@@ -170,6 +171,7 @@ std::size_t FieldWriter::alternative(const std::vector<std::string>& keys, std::
 }
 
 YamlNode tree_of(const Mechanism& m) {
+  if (!m.legs.empty()) throw std::logic_error("a resolved mechanism is for models, not for files");
   Mechanism copy = m;
   FieldWriter writer(m.ours);
   describe(writer, copy);

@@ -21,6 +21,8 @@ void fields(FieldVisitor& v, SixPsu& k) {
   v.quantity("slider_min", k.slider_min, length(), "smallest free length of the guideway");
   v.quantity("slider_max", k.slider_max, length(), "largest free length of the guideway");
   v.require(k.slider_min < k.slider_max, "slider_max", "must be above slider_min");
+  ListElements<LegDeviation> deviations(k.deviations);
+  v.list("deviations", deviations, "legs whose joints or links are not as drawn");
 }
 
 void fields(FieldVisitor& v, Chains& k) {
@@ -73,11 +75,19 @@ void describe(FieldVisitor& v, Material& m) {
   v.quantity("E", m.E, required(Dimension::stress), "Young's modulus");
   v.quantity_if_given("nu", m.nu, required(Dimension::none, poisson), "Poisson's ratio");
   v.quantity_if_given("G", m.G, required(Dimension::stress), "shear modulus");
+  v.quantity("expansion", m.expansion, optional(0, Dimension::thermal_expansion, {}), "strain per kelvin");
   v.require(m.nu.has_value() != m.G.has_value(), m.nu ? "G" : "nu",
             m.nu ? "nu and G are both given: E = 2G(1 + nu), remove one" : "is missing: give nu or G, as in 'nu: 0.3'");
   if (m.nu || !m.G) return;
   v.require(poisson.holds(m.poisson()), "G",
             fmt::format("gives Poisson's ratio {}: it must lie between -1 and 0.5", m.poisson()));
+}
+
+void describe(FieldVisitor& v, LegDeviation& d) {
+  v.integer("leg", d.leg, 1, 6, "number of the leg");
+  v.vector3("base_joint", d.base_joint, Dimension::length, "base joint beside its drawing, base axes");
+  v.vector3("platform_joint", d.platform_joint, Dimension::length, "platform joint beside its drawing, platform axes");
+  v.quantity("link_length", d.link_length, optional(0, Dimension::length, {}), "link longer than its drawing");
 }
 
 void describe(FieldVisitor& v, Variation& variation) {
@@ -127,12 +137,21 @@ void describe(FieldVisitor& v, Mechanism& m) {
             "is missing: the parts of every leg, or of each in its mount");
   ListElements<Variation> variations(m.variations);
   v.list("variations", variations, "legs that differ");
+  if (!v.surroundings.chains) {
+    NamedElements<Joint> beside(m.beside);
+    v.entries("beside", beside, Need::optional, "joints side by side with every leg, between base and platform");
+  }
   describe_fixture(v, "base", m.base, "origin", "base", "between the world and the machine");
   describe_fixture(v, "tool", m.tool, "T", "platform", "between the platform and the tool point");
 
   v.quantity("payload", m.payload, optional(0, Dimension::mass, not_negative), "mass at the tool point");
   ListElements<Misfit> misfits(m.misfits);
   v.list("misfits", misfits, "legs that are assembled beside their drawing");
+
+  std::string geometry = geometry_names[static_cast<std::size_t>(m.geometry)];
+  v.word("geometry", geometry, {"geometry", {std::begin(geometry_names), std::end(geometry_names)}, geometry_names[0]},
+         "shape in which equilibrium is found");
+  m.geometry = static_cast<Geometry>(index_of(geometry_names, geometry));
 
   Workspace& w = m.workspace;
   const auto cube = [&] {

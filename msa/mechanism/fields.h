@@ -61,6 +61,7 @@ struct Surroundings {
   int legs = 0;
   bool rotation = false;    ///< the laws described act on a rotation
   bool on_actuator = true;  ///< they stand in a leg, whose actuator has an extension
+  bool beside = false;      ///< the joint stands beside a leg
 };
 
 /// Keys are those of the file; `about` is one phrase for messages and documentation.
@@ -103,11 +104,14 @@ void describe(FieldVisitor&, Material&);
 void describe(FieldVisitor&, Section&);
 void describe(FieldVisitor&, Part&);
 void describe(FieldVisitor&, Law&);
+/// A joint beside the legs.
+void describe(FieldVisitor&, Joint&);
 void describe(FieldVisitor&, Variation&);
 /// The part of that index of a chain.
 void describe(FieldVisitor&, Named<Part>& chain, std::size_t);
 void describe(FieldVisitor&, Mount&);
 void describe(FieldVisitor&, Misfit&);
+void describe(FieldVisitor&, LegDeviation&);
 
 /// Only the field `leg` of a mechanism whose other parts are in `surroundings`.
 void describe_leg(FieldVisitor&, Named<Part>&);

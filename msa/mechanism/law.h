@@ -11,9 +11,11 @@
 namespace deflect {
 
 /// Isotropic linear-elastic solid. E in Pa. Exactly one of ν and G (Pa) is given, the other follows: E = 2G(1 + ν).
+/// expansion: free strain per kelvin above 20 °C, 1/K.
 struct Material {
   double E = 0;
   std::optional<double> nu, G;
+  double expansion = 0;
 
   double poisson() const { return nu ? *nu : E / (2 * *G) - 1; }
   double shear_modulus() const { return G ? *G : E / (2 * (1 + *nu)); }
@@ -62,12 +64,14 @@ struct MotorShaftLaw {
   Material solid;
 };
 
-/// A drive cable (7): cross-section `area` (m²); free length in m, or the actuator's extension where absent.
+/// A drive cable (7): cross-section `area` (m²) of a material, or its EA (N) itself; free length in m, or the
+/// actuator's extension where absent.
 struct CableLaw {
   std::string material;
   double area = 0;
   std::optional<double> length;
   Material solid;
+  std::optional<double> EA = std::nullopt;
 };
 
 /// Two cables of a rotational transmission, side by side (8).
@@ -83,12 +87,45 @@ struct BeltLaw {
   double specific_stiffness = 0, width = 0, tight_length = 0, slack_length = 0;
 };
 
+// The laws below act on translations and on rotations: m and N, or rad and Nm. f is the force that the joint transmits
+// along its axis, positive where it pulls the far side along +axis; δ is the motion of the far side along +axis.
+
+/// δ = deflection · sign(f) |f/force|^exponent, 0 < exponent ≤ 1: Hertz contact has 2/3.
+struct PowerLaw {
+  double deflection = 0, force = 0, exponent = 1;
+};
+
+/// δ = pull · f where f > 0, push · f where f < 0; a compliance of zero, or one that is not given, is rigid. A contact
+/// or a cable without preload has one.
+struct OneSidedLaw {
+  std::optional<double> pull, push;
+};
+
+/// f = stiffness · δ (1 + (δ/reference)²).
+struct HardeningLaw {
+  double stiffness = 0, reference = 0;
+};
+
+/// Free travel ±gap: δ = +gap under f > 0, −gap under f < 0, between them f = 0. What carries nothing (below 1e-9 of
+/// the largest force) stays in the middle.
+struct ClearanceLaw {
+  double gap = 0;
+};
+
+/// Elastic–Coulomb friction (a Jenkins element): f = stiffness · (δ − slip), |f| ≤ force; where more would be needed,
+/// the slip moves until |f| = force. The slip is history: conditions.h.
+struct FrictionLaw {
+  double force = 0, stiffness = 0;
+  int number = -1;  ///< among the frictions of a configuration, see number_slips()
+};
+
 using Law = std::variant<LinearLaw, HertzPointLaw, HertzLineLaw, PinBendingLaw, MotorShaftLaw, CableLaw, CablePairLaw,
-                         BeltLaw, HertzLineBulkLaw>;
+                         BeltLaw, HertzLineBulkLaw, PowerLaw, OneSidedLaw, HardeningLaw, ClearanceLaw, FrictionLaw>;
 
 /// The name of each alternative in device files, in the order of the variant.
-inline constexpr const char* law_names[] = {"linear", "hertz_point", "hertz_line", "pin_bending",    "motor_shaft",
-                                            "cable",  "cable_pair",  "belt",       "hertz_line_bulk"};
+inline constexpr const char* law_names[] = {"linear",    "hertz_point", "hertz_line", "pin_bending",     "motor_shaft",
+                                            "cable",     "cable_pair",  "belt",       "hertz_line_bulk", "power",
+                                            "one_sided", "hardening",   "clearance",  "friction"};
 static_assert(std::size(law_names) == std::variant_size_v<Law>);
 
 }  // namespace deflect

@@ -33,65 +33,6 @@ void fields(FieldVisitor& v, GivenSection& s) {
   v.quantity_if_given("As_z", s.As_z, area(), "shear area along local z");
 }
 
-// Laws
-
-void material_of(FieldVisitor& v, std::string& material) {
-  v.word("material", material, {"material", names(v.surroundings.materials), std::nullopt}, "name of a material");
-}
-
-void fields(FieldVisitor& v, LinearLaw& l) {
-  v.quantity("stiffness", l.stiffness,
-             required(v.surroundings.rotation ? Dimension::rotational_stiffness : Dimension::stiffness),
-             "constant stiffness");
-}
-void fields(FieldVisitor& v, HertzPointLaw& l) {
-  material_of(v, l.material);
-  v.quantity("radius", l.radius, length(), "effective radius");
-}
-void fields(FieldVisitor& v, HertzLineLaw& l) {
-  material_of(v, l.material);
-  v.quantity("radius", l.radius, length(), "effective radius");
-  v.quantity("length", l.length, length(), "length of the line");
-}
-void fields(FieldVisitor& v, HertzLineBulkLaw& l) {
-  material_of(v, l.material);
-  v.quantity("radius_1", l.radius_1, length(), "radius of one cylinder");
-  v.quantity("radius_2", l.radius_2, length(), "radius of the other cylinder");
-  v.quantity("length", l.length, length(), "length of the line");
-}
-void fields(FieldVisitor& v, PinBendingLaw& l) {
-  material_of(v, l.material);
-  v.quantity("diameter", l.diameter, length(), "diameter of the pin");
-  v.quantity("length", l.length, length(), "length of the pin");
-}
-void fields(FieldVisitor& v, MotorShaftLaw& l) {
-  material_of(v, l.material);
-  v.quantity("diameter", l.diameter, length(), "diameter of the shaft");
-  v.quantity("length", l.length, length(), "length of the shaft");
-  v.quantity("pulley_radius", l.pulley_radius, length(), "radius of the pulley");
-}
-void fields(FieldVisitor& v, CableLaw& l) {
-  material_of(v, l.material);
-  v.quantity("area", l.area, area(), "cross-section of the cable");
-  v.quantity_if_given("length", l.length, length(), "free length, the actuator's extension where absent");
-  v.require(l.length || v.surroundings.on_actuator, "length", "is needed here: this cable has no actuator");
-}
-void fields(FieldVisitor& v, CablePairLaw& l) {
-  material_of(v, l.material);
-  v.quantity("area_1", l.area_1, area(), "cross-section of cable 1");
-  v.quantity("length_1", l.length_1, length(), "free length of cable 1");
-  v.quantity("area_2", l.area_2, area(), "cross-section of cable 2");
-  v.quantity("length_2", l.length_2, length(), "free length of cable 2");
-}
-void fields(FieldVisitor& v, BeltLaw& l) {
-  // Force per unit strain and unit width times the width: a stiffness by its unit.
-  v.quantity("specific_stiffness", l.specific_stiffness, required(Dimension::stiffness),
-             "stiffness of a belt of unit width and length");
-  v.quantity("width", l.width, length(), "width of the belt");
-  v.quantity("tight_length", l.tight_length, length(), "free length of the tight side");
-  v.quantity("slack_length", l.slack_length, length(), "free length of the slack side");
-}
-
 // Parts of a leg
 
 void fields(FieldVisitor& v, DhRow& row) {
@@ -119,6 +60,11 @@ void describe_laws(FieldVisitor& v, Joint& joint) {
   for (std::size_t i = 0; i < 6; ++i)
     v.require(joint.preload[i] == 0 || !joint.laws[i].empty(), "preload",
               fmt::format("acts in the laws of a freedom: {} has none", freedom_names[i]));
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto slips = [](const Law& law) { return std::holds_alternative<FrictionLaw>(law); };
+    v.require(joint.preload[i] == 0 || std::none_of(joint.laws[i].begin(), joint.laws[i].end(), slips), "preload",
+              fmt::format("{} has friction, which keeps no force by itself", freedom_names[i]));
+  }
 }
 
 /// A stiffness of all freedoms together.
@@ -186,6 +132,32 @@ void describe_coordinates(FieldVisitor& v, Joint& joint) {
   }
 }
 
+/// Of a joint beside a leg: no actuator moves it.
+bool stands_beside(const std::string& type) {
+  const std::string letters = find_joint_type(type)->letters;
+  return type != "parallelogram" && letters.find('a') == letters.npos;
+}
+
+std::vector<std::string> joint_types(const Surroundings& s) {
+  std::vector<std::string> all = joint_type_names();
+  if (s.beside)
+    std::erase_if(all, [](const std::string& t) { return !stands_beside(t); });
+  else if (!s.chains)
+    std::erase_if(all, [](const std::string& t) { return t == "custom" || t == "parallelogram"; });
+  return all;
+}
+
+void describe_freedoms(FieldVisitor& v, Joint& joint) {
+  if (joint.type != "custom") return;
+  const bool actuated = !v.surroundings.beside;
+  v.text("freedoms", joint.freedoms, Need::required,
+         actuated ? "six letters for tx ty tz rx ry rz: r rigid, f free, a actuated"
+                  : "six letters for tx ty tz rx ry rz: r rigid, f free");
+  v.require(are_freedoms(joint.freedoms) && (actuated || joint.freedoms.find('a') == joint.freedoms.npos), "freedoms",
+            fmt::format("'{}' are not six letters {}: write for example 'freedoms: {}'", joint.freedoms,
+                        actuated ? "r, f or a" : "r or f", actuated ? "rrfrrf" : "ffrfff"));
+}
+
 /// Where a joint of a chain stands, and how it moves the chain.
 void describe_in_chain(FieldVisitor& v, Joint& joint) {
   v.word("axes", joint.axes, {"place of the axes", {"before", "after"}, "before"},
@@ -199,12 +171,7 @@ void describe_in_chain(FieldVisitor& v, Joint& joint) {
                     row);
   v.require(!joint.dh || !joint.modified_dh, "modified_dh",
             "a joint has one row: of the standard or of the modified table");
-  if (joint.type == "custom") {
-    v.text("freedoms", joint.freedoms, Need::required,
-           "six letters for tx ty tz rx ry rz: r rigid, f free, a actuated");
-    v.require(are_freedoms(joint.freedoms), "freedoms",
-              fmt::format("'{}' are not six letters r, f or a: write for example 'freedoms: rrfrrf'", joint.freedoms));
-  }
+  describe_freedoms(v, joint);
   if (joint.type == "parallelogram") {
     v.vector3("bar", joint.bar, Dimension::length, "bars of the parallelogram at coordinate zero; they turn about z");
     v.require(joint.bar.head<2>().norm() > 0, "bar",
@@ -213,17 +180,12 @@ void describe_in_chain(FieldVisitor& v, Joint& joint) {
   describe_coordinates(v, joint);
 }
 
-std::vector<std::string> joint_types(bool chains) {
-  std::vector<std::string> all = joint_type_names();
-  if (!chains) std::erase_if(all, [](const std::string& t) { return t == "custom" || t == "parallelogram"; });
-  return all;
-}
-
 void fields(FieldVisitor& v, Joint& joint) {
-  v.word("joint", joint.type, {"joint type", joint_types(v.surroundings.chains), std::nullopt}, "joint type");
+  v.word("joint", joint.type, {"joint type", joint_types(v.surroundings), std::nullopt}, "joint type");
   if (v.surroundings.chains) {
     describe_in_chain(v, joint);
   } else {
+    if (v.surroundings.beside) describe_freedoms(v, joint);
     v.word("at", joint.at, {"point", v.surroundings.points, std::nullopt}, "point where the joint is");
     v.word("axes", joint.axes, {"set of axes", v.surroundings.axes, std::nullopt}, "axes of the joint");
   }
@@ -289,11 +251,10 @@ void describe(FieldVisitor& v, Section& s) {
          [&v](auto& shape) { fields(v, shape); });
 }
 
-void describe(FieldVisitor& v, Law& law) {
-  tagged(v, law, "law", "law", law_names, "force against relative displacement", [&v](auto& l) { fields(v, l); });
-  v.require(
-      !v.surroundings.rotation || std::holds_alternative<LinearLaw>(law), "law",
-      fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes 'linear'", law_names[law.index()]));
+void describe(FieldVisitor& v, Joint& joint) {
+  v.surroundings.beside = true;
+  fields(v, joint);
+  v.surroundings.beside = false;
 }
 
 void describe(FieldVisitor& v, Part& part) {

@@ -23,9 +23,12 @@ Vector3 across(const Vector3& axis, const Vector3& reference, const Vector3& oth
 Law resolved(Law law, const Mechanism& m, double actuator) {
   std::visit(
       [&](auto& l) {
-        if constexpr (requires { l.solid; }) l.solid = look_up(m.materials, l.material, "material");
-        if constexpr (std::is_same_v<std::decay_t<decltype(l)>, CableLaw>)
+        if constexpr (std::is_same_v<std::decay_t<decltype(l)>, CableLaw>) {
+          if (!l.EA) l.solid = look_up(m.materials, l.material, "material");
           if (!l.length) l.length = actuator;
+        } else if constexpr (requires { l.solid; }) {
+          l.solid = look_up(m.materials, l.material, "material");
+        }
       },
       law);
   return law;
@@ -67,6 +70,7 @@ PlacedMember placed(const Member& member, const std::string& part, const Vector3
   out.section.Iz *= member.bending_factor;
   out.E = material.E;
   out.G = material.shear_modulus();
+  out.expansion = material.expansion;
   out.beam = member.beam;
   return out;
 }

@@ -10,7 +10,7 @@ namespace deflect {
 /// The points of one leg in the base frame (m): A base joint, B tip of the guideway, C platform joint.
 struct SixPsuLeg {
   Vector3 p_WA, p_WB, p_WC;
-  Vector3 radial;     ///< horizontal unit vector from the base axis to A
+  Vector3 radial;     ///< horizontal unit vector from the base axis to A, as drawn
   double slider = 0;  ///< L1 = |AB|
 };
 
@@ -18,8 +18,8 @@ struct SixPsuLeg {
 /// Throws ModelError naming the leg when its link does not reach or its slider leaves its range.
 SixPsuLeg leg_at(const SixPsu&, int leg, const Pose&);
 
-/// The pose without tilt above the base centre at which every slider stands at `slider`. Throws ModelError when the
-/// links cannot reach from the base circle to the platform circle.
+/// The pose without tilt above the base centre at which every slider of the drawing stands at `slider`. Throws
+/// ModelError when the links cannot reach from the base circle to the platform circle.
 Pose centred_pose(const SixPsu&, double slider);
 
 struct ForwardKinematics {

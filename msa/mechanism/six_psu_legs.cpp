@@ -62,17 +62,30 @@ PlacedLeg placed_leg(const SixPsu& k, const Mechanism& m, const Named<Part>& par
   return out;
 }
 
+PlacedLeg placed_beside(const SixPsu& k, const Mechanism& m, const std::string& name, const Joint& joint, int leg,
+                        const Pose& pose) try {
+  PlacedLeg out;
+  out.name = fmt::format("leg {} {}", leg, name);
+  out.parts.push_back(placed_part(joint, name, frames(k, leg, pose), m));
+  out.beside = true;
+  return out;
+} catch (const InputError& e) {
+  throw InputError(fmt::format("{}: beside.{}: {}", m.name, name, e.what()));
+}
+
 }  // namespace
 
 PlacedMechanism place(const SixPsu& k, const Mechanism& m, const Pose& pose) {
   PlacedMechanism out;
   out.pose = pose;
   for (int leg = 1; leg <= legs; ++leg) {
-    out.legs.push_back(placed_leg(k, m, m.variations.empty() ? m.leg : leg_parts(m, leg), leg, pose));
+    out.legs.push_back(placed_leg(k, m, m.variations.empty() && m.legs.empty() ? m.leg : leg_parts(m, leg), leg, pose));
     const SixPsuLeg g = leg_at(k, leg, pose);
     out.seats.push_back({g.p_WA, g.p_WC});
     out.actuators.push_back({fmt::format("leg {} slider", leg), g.slider, false});
   }
+  for (const auto& [name, joint] : m.beside)
+    for (int leg = 1; leg <= legs; ++leg) out.legs.push_back(placed_beside(k, m, name, joint, leg, pose));
   return out;
 }
 

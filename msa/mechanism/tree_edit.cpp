@@ -141,6 +141,19 @@ void multiply(YamlNode& node, const YamlNode& value, const std::string& here) {
   node.ours = false;
 }
 
+void add(YamlNode& node, const YamlNode& value, const std::string& here) {
+  if (!node.number) throw InputError(here + "is not a number that is there to be added to");
+  if (value.kind != Kind::scalar) throw InputError(here + "a single value is wanted as summand");
+  try {
+    node.number = *node.number + parse_quantity(value.text, node.dimension);
+  } catch (const InputError& e) {
+    throw InputError(here + e.what());
+  }
+  if (!std::isfinite(*node.number)) throw InputError(here + "the sum is not finite");
+  node.text = format_quantity(*node.number, node.dimension);
+  node.ours = false;
+}
+
 }  // namespace
 
 std::vector<Place> places(const YamlNode& root, const std::string& path, const std::string& where) {
@@ -178,6 +191,9 @@ void change(YamlNode& root, const Place& place, Edit::Action action, const YamlN
       break;
     case Edit::Action::multiply:
       multiply(node, value, here);
+      break;
+    case Edit::Action::add:
+      add(node, value, here);
       break;
   }
 }

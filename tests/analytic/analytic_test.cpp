@@ -57,6 +57,8 @@ const Law every_law[] = {
     CablePairLaw{"", 1e-6, 0.08, 2e-6, 0.3, {150e9, 0.3, {}}},
     BeltLaw{2e6, 0.01, 0.1, 0.3},
     HertzLineBulkLaw{"", 0.003, 0.004, 0.01, {210e9, 0.3, {}}},
+    PowerLaw{2.5e-6, 1, 2.0 / 3},
+    HardeningLaw{5e5, 1e-4},
 };
 
 class EveryLaw : public ::testing::TestWithParam<Law> {};
@@ -82,6 +84,31 @@ TEST(Laws, UniversalJointOfTheDeviceIs39kNPerMmInSeriesAnd1850AsPrinted) {
   const std::vector<Law> joint = {HertzLineLaw{"", 0.0015, 0.01, steel}, PinBendingLaw{"", 0.003, 0.01, steel}};
   EXPECT_NEAR(1e-6 / compliance(joint, 1), 39.2, 0.05);
   EXPECT_NEAR(1e-6 / compliance(joint, 1, {Erratum::ujoint_parallel}), 1852, 1);
+}
+
+TEST(Laws, PowerOfTwoThirdsIsHertz) {
+  const Law hertz = HertzPointLaw{"", 0.004, {210e9, 0.3, {}}};
+  const Law power = PowerLaw{deflection(hertz, 5), 5, 2.0 / 3};
+  for (const double f : {-40.0, 1e-3, 2.0, 300.0}) {
+    EXPECT_NEAR(deflection(power, f) / deflection(hertz, f), 1, 1e-14);
+    EXPECT_NEAR(compliance(power, f) / compliance(hertz, f), 1, 1e-14);
+    EXPECT_NEAR(stored_energy(power, f) / stored_energy(hertz, f), 1, 1e-14);
+  }
+  EXPECT_TRUE(is_linear(PowerLaw{1e-6, 1, 1}));
+  EXPECT_NEAR(deflection(Law(PowerLaw{1e-6, 2, 1}), 10), 5e-6, 1e-20);
+}
+
+TEST(Laws, HardeningKeepsItsCubicAtAnySize) {
+  const HardeningLaw law{5e5, 1e-4};
+  for (const double f : {1e-9, 1e-3, 1.0, 50.0, 1e4, 1e9}) {
+    const double d = hardening_deflection(law, f), x = d / law.reference;
+    EXPECT_NEAR(law.stiffness * d * (1 + x * x) / f, 1, 1e-14) << f;
+  }
+}
+
+TEST(Laws, CableHasTheEAOfItsMaterialOrItsOwn) {
+  const Law by_material = CableLaw{"", 1e-6, 0.08, {150e9, 0.3, {}}}, own = CableLaw{"", 0, 0.08, {}, 150e3};
+  EXPECT_DOUBLE_EQ(compliance(own, 1), compliance(by_material, 1));
 }
 
 TEST(Laws, ContactAsPrintedIsHalfAsStiff) {

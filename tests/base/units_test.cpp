@@ -28,7 +28,10 @@ constexpr Dimension all[] = {Dimension::none,
                              Dimension::density,
                              Dimension::thermal_expansion,
                              Dimension::temperature,
-                             Dimension::acceleration};
+                             Dimension::acceleration,
+                             Dimension::mass,
+                             Dimension::compliance,
+                             Dimension::rotational_compliance};
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 

@@ -91,7 +91,27 @@ TEST_P(EverySpring, StartingTangentIsTheOneAtThatForce) {
 INSTANTIATE_TEST_SUITE_P(Family, EverySpring,
                          ::testing::Values(SpringLaw{LinearSpring{3e5}}, SpringLaw{PowerSpring{1e9, 1.5}},
                                            SpringLaw{PowerSpring{1e8, 1.1}},
-                                           SpringLaw{BulkLineSpring{1.4e-12, 0.03, 0.04, 2.0}}));
+                                           SpringLaw{BulkLineSpring{1.4e-12, 0.03, 0.04, 2.0}},
+                                           SpringLaw{PowerSpring{20, 5, 1e-4}}, SpringLaw{HardeningSpring{5e5, 1e-3}},
+                                           SpringLaw{GapSpring{5e-5, 1e9}}, SpringLaw{OneSidedSpring{1e-6, 0, 1e9}},
+                                           SpringLaw{FrictionSpring{1e5, 50}}));
+
+TEST(HardeningSpring, ElongationIsTheInverseOfTheForce) {
+  const HardeningSpring spring{5e5, 1e-4};
+  for (const double f : {-1e9, -3.0, 1e-12, 1.0, 50.0, 1e4})
+    EXPECT_NEAR(spring.force(spring.elongation(f)) / f, 1, 1e-14) << f;
+}
+
+// The force that a gap knows is kept where it closes: then its contact stiffness deflects nothing.
+TEST(GapSpring, ClosesAtItsGapUnderTheForceItKnows) {
+  SpringLaw law = GapSpring{5e-5, 1e6};
+  know_force(law, 40);
+  EXPECT_DOUBLE_EQ(force(law, 5e-5), 40);
+  EXPECT_NEAR(unknown_force(law, 5e-5), 0, 1e-13);
+  know_force(law, -40);
+  EXPECT_DOUBLE_EQ(force(law, -5e-5), -40);
+  EXPECT_EQ(stored_energy(law, -5e-5), 0);
+}
 
 /// Two nodes at one point, the first fixed; a connection between them.
 Model two_bodies(const std::array<ConnectionFreedom, 6>& freedoms, const Matrix3& R = Matrix3::Identity()) {

@@ -229,6 +229,43 @@ TEST(Edit, RefusalsOfAppendAndMultiply) {
   expect_refusal({"materials.steel.nu", "2", Action::multiply}, {"strictly between -1 and 0.5"});
 }
 
+TEST(Edit, AddsInTheUnitOfTheField) {
+  EXPECT_EQ(with(haptic(), "payload", "500 g", Action::add).payload, 0.5);
+  const Mechanism twice = with(with(haptic(), "payload", "0.5 kg", Action::add), "payload", "0.25 kg", Action::add);
+  EXPECT_EQ(twice.payload, 0.75);
+  EXPECT_EQ(with(haptic(), "rig.sensor.drift.1", "-3 mm", Action::add).sensor.drift.y(), -0.003);
+  EXPECT_EQ(factor(with(haptic(), "leg[2].guideway.bending_factor", "0.5", Action::add), 2), 1.5);
+  expect_refusal({"payload", "1 N", Action::add}, {"'1 N' is a force"});
+  expect_refusal({"payload", "-1 kg", Action::add}, {"must be at least 0 kg"});
+  expect_refusal({"payload", "[1 kg]", Action::add}, {"a single value is wanted"});
+  expect_refusal({"materials.steel.G", "1 GPa", Action::add}, {"is not a number that is there"});
+  expect_refusal({"name", "1", Action::add}, {"is not a number"});
+}
+
+TEST(Edit, SeveralAtOnceAreAsOneAfterTheOther) {
+  const std::vector<Edit> edits = {{"materials.steel.E", "0.9", Action::multiply},
+                                   {"leg.ball_joint.tz", "{law: linear, stiffness: 7 N/mm}", Action::append},
+                                   {"leg[4].ball_joint.tz", "{law: linear, stiffness: 5 N/mm}", Action::append},
+                                   {"leg[4].guideway.bending_factor", "0.5"},
+                                   {"materials.steel.E", "0.9", Action::multiply}};
+  Mechanism one_by_one = haptic();
+  for (const Edit& edit : edits) one_by_one = edited(one_by_one, edit);
+  EXPECT_EQ(edited_in_turn(haptic(), edits), one_by_one);
+  EXPECT_EQ(ball_tz(leg_parts(one_by_one, 4)).size(), 3u);
+  EXPECT_EQ(edited_in_turn(haptic(), {}), haptic());
+  EXPECT_THROW(edited_in_turn(haptic(), {edits[0], {"materials.iron.E", "1 GPa"}}), InputError);
+}
+
+TEST(Edit, ResolvedLegsAreThoseOfTheVariationsAndForModelsOnly) {
+  const Mechanism m = with(haptic(), "leg[4].guideway.bending_factor", "0.5"), quick = resolved(m);
+  for (int leg = 1; leg <= 6; ++leg) EXPECT_EQ(factor(quick, leg), leg == 4 ? 0.5 : 1);
+  const Pose pose = test::home(m);
+  EXPECT_EQ(std::get<PlacedMember>(configure(quick, pose).legs[3].parts[1]).section.Iy,
+            std::get<PlacedMember>(configure(m, pose).legs[3].parts[1]).section.Iy);
+  EXPECT_THROW(write_mechanism(quick), std::logic_error);
+  EXPECT_THROW(edited(quick, {"payload", "1 kg"}), std::logic_error);
+}
+
 TEST(Edit, RefusalsForOneLeg) {
   expect_refusal({"leg[7].guideway.bending_factor", "1"}, {"leg[1] to leg[6]"});
   expect_refusal({"leg[0].guideway.bending_factor", "1"}, {"leg[1] to leg[6]"});

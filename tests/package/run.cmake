@@ -37,3 +37,8 @@ run(${prefix}/${BINDIR}/deflect devices)
 if(NOT output MATCHES "haptic-6psu")
   message(FATAL_ERROR "The installed program does not know its devices:\n${output}")
 endif()
+
+run(${prefix}/${BINDIR}/deflect effects)
+if(NOT output MATCHES "guide_root_compliance")
+  message(FATAL_ERROR "The installed program does not know its effects:\n${output}")
+endif()

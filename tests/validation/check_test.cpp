@@ -42,9 +42,9 @@ MatrixCheckOptions options(const Matrix6& K, int digits, const Matrix6* R = null
   return o;
 }
 
-std::set<std::string> ids(const std::vector<Diagnosis>& list) {
+std::set<std::string> ids(const std::vector<MatrixDiagnosis>& list) {
   std::set<std::string> set;
-  for (const Diagnosis& d : list) set.insert(d.id);
+  for (const MatrixDiagnosis& d : list) set.insert(d.id);
   return set;
 }
 

@@ -5,6 +5,8 @@
 
 #include "msa/base/files.h"
 #include "msa/mechanism/device_file.h"
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
 #include "validation/compare/solve_result.h"
 #include "validation/compare/theories.h"
 
@@ -28,6 +30,16 @@ TEST(Readme, ItsFirstDeviceHasAtMostTwentyLinesAndIsSolvedByBothTheories) {
   const SolveResult r = solve(m, {mm_deg_from(c.pose), c}, load, {});
   EXPECT_LT(r.relative_difference, 1e-9);
   EXPECT_LT(r.msa.displacement_mm_rad(2), 0);
+}
+
+TEST(Readme, ItsEffectIsOneThatEveryDeviceCanHave) {
+  const Effect e =
+      parse_effect(yaml_after(read_text(DEFLECT_SOURCE_DIR "/README.md"), "### An effect of your own"), "README.md");
+  for (const char* name : {"haptic-6psu", "delta", "fanuc-r2000ic"}) {
+    const Mechanism m = with_effect(test::device(name), e, test::values({300, 2e5}));
+    EXPECT_EQ(std::get<LinearLaw>(m.tool.laws[2].at(0)).stiffness, 3e5);
+    EXPECT_EQ(std::get<LinearLaw>(m.tool.laws[4].at(0)).stiffness, 200);
+  }
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ struct Option {
   std::string flags;  ///< "--load", or "device" for a positional argument
   std::string value;  ///< what to write for the value in the help: "fx,fy,fz,mx,my,mz"; empty for a flag
   std::string help;
-  std::variant<std::string*, bool*, double*> target;
+  std::variant<std::string*, bool*, double*, std::vector<std::string>*> target;
   bool required = false;
 };
 
@@ -31,5 +31,11 @@ Command map_command();
 Command export_command();
 Command devices_command();
 Command check_command();
+Command compare_command();
+Command diagnose_command();
+Command history_command();
+Command simulate_command();
+Command effects_command();
+Command add_command();
 
 }  // namespace deflect::cli

@@ -146,4 +146,10 @@ Command devices_command() {
           }};
 }
 
+int whole(const std::string& option, double value, double low, double high) {
+  if (!(value >= low && value <= high) || value != std::floor(value))
+    throw InputError(fmt::format("{} {:g}: a whole number from {:g} to {:g} is wanted", option, value, low, high));
+  return static_cast<int>(value);
+}
+
 }  // namespace deflect::cli

@@ -41,4 +41,7 @@ double parse_length(const std::string& option, const std::string& text);
 /// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose.
 frame::MemberDivision divide(const Mechanism&, const std::string& element_size);
 
+/// The whole number that an option gave. Throws InputError where it is none between low and high.
+int whole(const std::string& option, double value, double low, double high);
+
 }  // namespace deflect::cli

@@ -22,12 +22,6 @@ struct Arguments {
   double force_N = 50, threads = 0;
 };
 
-int whole(const std::string& option, double value, double low, double high) {
-  if (!(value >= low && value <= high) || value != std::floor(value))
-    throw InputError(fmt::format("{} {:g}: a whole number from {:g} to {:g} is wanted", option, value, low, high));
-  return static_cast<int>(value);
-}
-
 MapGrid grid_of(const Mechanism& m, const Arguments& a) {
   std::array<int, 3> counts = {11, 11, 11};
   if (!a.n.empty()) {

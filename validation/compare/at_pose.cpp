@@ -34,6 +34,12 @@ Answer deformed_answer(Answer answer, const Vector6& F, const Vector3& reaction,
   return answer;
 }
 
+std::string because(const std::string& reason) { return reason.empty() ? "" : ": " + reason; }
+
+bool from_rest(const Conditions& c) {
+  return c.warmer == 0 && std::all_of(c.slips.begin(), c.slips.end(), [](double slip) { return slip == 0; });
+}
+
 }  // namespace
 
 AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : model_(c), where_(std::move(where)) {
@@ -42,26 +48,31 @@ AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : mode
   if (!fits) energy_at_rest_ = total(model_.energies(model_.assembled()));
 }
 
-Answer AnalyticAtPose::solve(const Vector6& F, Geometry geometry) const {
-  const analytic::AnalyticSolution s = model_.solve(F, geometry);
-  if (!s.converged && !s.message.empty())
-    throw NumericalError(fmt::format("{}: the analytic theory: {}", where_, s.message));
+Answer AnalyticAtPose::solve(const Vector6& F, const Conditions& conditions) const {
+  const analytic::AnalyticSolution s = model_.solve(F, conditions);
   if (!s.converged)
-    throw NumericalError(fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})", where_,
-                                     s.iterations, s.misfit));
+    throw NumericalError(s.message.empty()
+                             ? fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})",
+                                           where_, s.iterations, s.misfit)
+                             : fmt::format("{}: the analytic theory: {}", where_, s.message));
   Vector6 carried = Vector6::Zero();
   for (const Vector6& wrench : s.leg_wrenches) carried += wrench;
-  if (s.deformed)
-    return deformed_answer({s.displacement, model_.stiffness(s), model_.energies(s), {}}, F + weight_,
-                           -carried.head<3>(), "analytic", where_);
+  if (s.deformed) {
+    Answer answer;
+    answer.displacement = s.displacement;
+    answer.stiffness = model_.stiffness(s);
+    answer.energies = model_.energies(s);
+    answer.slips = s.slips;
+    return deformed_answer(std::move(answer), F + weight_, -carried.head<3>(), "analytic", where_);
+  }
   std::vector<LegStiffness> legs;
   for (std::size_t i = 0; i < model_.chains().size(); ++i)
     legs.push_back({model_.chains()[i].name, model_.leg_stiffness(i, s), model_.chains()[i].J_q});
   const Answer answer{s.displacement, model_.stiffness(s), model_.energies(s),
-                      check_stiffness(model_.stiffness(s), legs)};
+                      check_stiffness(model_.stiffness(s), legs), s.slips};
   enforce(answer.checks.failure, "analytic stiffness", where_);
-  enforce(response_failure(
-              {F + weight_, s.displacement, -carried, total(answer.energies) - energy_at_rest_, model_.linear()}),
+  enforce(response_failure({F + weight_, s.displacement, -carried, total(answer.energies) - energy_at_rest_,
+                            model_.linear(), from_rest(conditions)}),
           "analytic response", where_);
   return answer;
 }
@@ -74,16 +85,22 @@ MsaAtPose::MsaAtPose(const Configuration& c, const frame::MemberDivision& divisi
   }
 }
 
-Answer MsaAtPose::solve(const Vector6& F, Geometry geometry) {
-  last_ = model_.solve(F, geometry);
+Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
+  last_ = model_.solve(F, conditions);
   if (!last_.state.converged && last_.state.geometric)
     throw NumericalError(fmt::format("{}: the MSA: {}", where_, last_.state.geometric->message));
   if (!last_.state.converged)
-    throw NumericalError(fmt::format("{}: the MSA did not converge in {} steps (residual {:.3g})", where_,
-                                     last_.state.iterations, last_.state.residual));
-  if (last_.state.geometric)
-    return deformed_answer({last_.displacement, model_.stiffness(last_.state).K, last_.energies, {}}, last_.load,
-                           model_.base_reaction(last_.load, last_.state).head<3>(), "MSA", where_);
+    throw NumericalError(fmt::format("{}: the MSA did not converge in {} steps (residual {:.3g}){}", where_,
+                                     last_.state.iterations, last_.state.residual, because(last_.state.message)));
+  if (last_.state.geometric) {
+    Answer answer;
+    answer.displacement = last_.displacement;
+    answer.stiffness = model_.stiffness(last_.state).K;
+    answer.energies = last_.energies;
+    answer.slips = last_.slips;
+    const Vector3 reaction = model_.base_reaction(last_.load, last_.state).head<3>();
+    return deformed_answer(std::move(answer), last_.load, reaction, "MSA", where_);
+  }
   if (!has_stiffness_ || tangents_ != last_.state.spring_tangents) {
     const frame::MsaModel::Stiffness stiffness = model_.stiffness(last_.state);
     std::vector<LegStiffness> legs;
@@ -96,9 +113,10 @@ Answer MsaAtPose::solve(const Vector6& F, Geometry geometry) {
   }
   // The reaction acts at the base origin; about T its moment changes by the arm.
   const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_.base_reaction(last_.load, last_.state);
-  enforce(response_failure({last_.load, last_.displacement, reaction, total(last_.energies), model_.linear()}),
+  enforce(response_failure({last_.load, last_.displacement, reaction, total(last_.energies), model_.linear(),
+                            from_rest(conditions)}),
           "MSA response", where_);
-  return {last_.displacement, stiffness_, last_.energies, checks_};
+  return {last_.displacement, stiffness_, last_.energies, checks_, last_.slips};
 }
 
 }  // namespace deflect

@@ -19,6 +19,7 @@ struct Answer {
   Matrix6 stiffness;                                     ///< tangent, in the state under the load
   std::vector<std::pair<std::string, double>> energies;  ///< by part, J, largest first
   StiffnessChecks checks;                                ///< of the stiffness; all hold
+  std::vector<double> slips;                             ///< of the frictions after the load, as in Conditions
 };
 
 /// Checked: K = Kᵀ, K ⪰ 0, K_c J_q = 0, sign, equilibrium, energy. Throws NumericalError naming theory, pose and check,
@@ -28,7 +29,7 @@ struct Answer {
 class AnalyticAtPose {
  public:
   AnalyticAtPose(const Configuration&, std::string where);
-  Answer solve(const Vector6& F_T_W, Geometry = Geometry::linear) const;
+  Answer solve(const Vector6& F_T_W, const Conditions& = {}) const;
   const analytic::AnalyticModel& model() const { return model_; }
 
  private:
@@ -41,7 +42,7 @@ class AnalyticAtPose {
 class MsaAtPose {
  public:
   MsaAtPose(const Configuration&, const frame::MemberDivision&, std::string where);
-  Answer solve(const Vector6& F_T_W, Geometry = Geometry::linear);
+  Answer solve(const Vector6& F_T_W, const Conditions& = {});
 
   /// T beside its place in the drawing, as assembled without load and weight.
   Vector6 offset() { return model_.assembled().u.segment<6>(6 * mechanism().tool); }

@@ -29,13 +29,13 @@ std::string words(const Vector6& twist, double unit_m, double length) {
   return motion_text(d, length * unit_m);
 }
 
-Diagnosis asymmetric(const Matrix6& K, const JudgedMatrix& m) {
+MatrixDiagnosis asymmetric(const Matrix6& K, const JudgedMatrix& m) {
   const auto i = static_cast<std::size_t>(m.row), j = static_cast<std::size_t>(m.column);
-  Diagnosis d{"asymmetric",
-              fmt::format("it is not symmetric in {} of 15 pairs, most at {} {} ({:.6g}) against {} {} ({:.6g})",
-                          m.asymmetric_pairs, wrenches[i], displacements[j], K(m.row, m.column), wrenches[j],
-                          displacements[i], K(m.column, m.row)),
-              "find where it is made: a conservative structure has K = Kᵀ; no single usual mistake leaves this"};
+  MatrixDiagnosis d{"asymmetric",
+                    fmt::format("it is not symmetric in {} of 15 pairs, most at {} {} ({:.6g}) against {} {} ({:.6g})",
+                                m.asymmetric_pairs, wrenches[i], displacements[j], K(m.row, m.column), wrenches[j],
+                                displacements[i], K(m.column, m.row)),
+                    "find where it is made: a conservative structure has K = Kᵀ; no single usual mistake leaves this"};
   if (*m.symmetric.measured < numerical_asymmetry)
     d.remedy = fmt::format("if this is the precision of the program that made it: --tolerance {:.0e}",
                            10 * *m.symmetric.measured);
@@ -43,8 +43,8 @@ Diagnosis asymmetric(const Matrix6& K, const JudgedMatrix& m) {
 }
 
 /// Checks that failed and that no usual mistake explains, in their own words.
-std::vector<Diagnosis> unexplained(const MatrixCheckOptions& o, const JudgedMatrix& m) {
-  std::vector<Diagnosis> list;
+std::vector<MatrixDiagnosis> unexplained(const MatrixCheckOptions& o, const JudgedMatrix& m) {
+  std::vector<MatrixDiagnosis> list;
   const double length = weighing_length(o.K.values);
   if (!m.symmetric.passes()) list.push_back(asymmetric(o.K.values, m));
   if (!m.positive.passes())
@@ -62,8 +62,8 @@ std::vector<Diagnosis> unexplained(const MatrixCheckOptions& o, const JudgedMatr
 }
 
 /// What is true of K whatever else is: directions that nothing holds, passive joints that are held.
-std::vector<Diagnosis> motions(const MatrixCheckOptions& o, const JudgedMatrix& m) {
-  std::vector<Diagnosis> list;
+std::vector<MatrixDiagnosis> motions(const MatrixCheckOptions& o, const JudgedMatrix& m) {
+  std::vector<MatrixDiagnosis> list;
   const double length = weighing_length(o.K.values);
   if (!m.free.empty()) {
     std::vector<std::string> free;
@@ -92,9 +92,10 @@ std::optional<Eigen::Vector2d> ratio(const Matrix6& K, const Matrix6& R) {
   return Eigen::Vector2d(ratios(0), ratios(5));
 }
 
-Diagnosis differs(const Explanation& e, const std::optional<Eigen::Vector2d>& range) {
-  Diagnosis d{"differs", fmt::format("it differs from the reference by {:.3g} of its largest entry", e.difference),
-              "compare lengths, sections, moduli and joints of the two models"};
+MatrixDiagnosis differs(const Explanation& e, const std::optional<Eigen::Vector2d>& range) {
+  MatrixDiagnosis d{"differs",
+                    fmt::format("it differs from the reference by {:.3g} of its largest entry", e.difference),
+                    "compare lengths, sections, moduli and joints of the two models"};
   if (range)
     d.sentence += fmt::format("; along no motion is it softer than {:.4g} or stiffer than {:.4g} times the reference",
                               (*range)(0), (*range)(1));
@@ -134,7 +135,7 @@ MatrixCheck check_matrix(const MatrixCheckOptions& o) {
   if (m.symmetric.passes() && m.positive.passes())
     out.structure = in_mm(elastic_structure((K.values + K.values.transpose()) / 2), o.unit_m);
 
-  std::optional<Diagnosis> difference;
+  std::optional<MatrixDiagnosis> difference;
   if (o.reference) {
     const PrintedMatrix R = with_tolerance(*o.reference, o.tolerance);
     const JudgedMatrix reference = judge(R, nullptr, o.unit_m, o.plausible);
@@ -154,7 +155,7 @@ MatrixCheck check_matrix(const MatrixCheckOptions& o) {
     if (out.explanations.empty()) out.findings = unexplained(o, m);
   }
   if (difference) out.findings.push_back(*difference);
-  for (Diagnosis& d : motions(o, m)) out.findings.push_back(std::move(d));
+  for (MatrixDiagnosis& d : motions(o, m)) out.findings.push_back(std::move(d));
   return out;
 }
 

@@ -23,10 +23,10 @@ struct MatrixCheckOptions {
 
 struct MatrixCheck {
   std::vector<Check> checks;
-  std::vector<Diagnosis> explanations;  ///< usual mistakes: one of them was made; several where K cannot tell
-  bool guessed = false;                 ///< explanations rest on nothing but what size a device may have
-  std::vector<Diagnosis> findings;      ///< what is wrong whatever the cause; each is true
-  double max_asymmetry = 0;             ///< largest |K − Kᵀ| as part of the largest entry, rotations weighed
+  std::vector<MatrixDiagnosis> explanations;  ///< usual mistakes: one of them was made; several where K cannot tell
+  bool guessed = false;                       ///< explanations rest on nothing but what size a device may have
+  std::vector<MatrixDiagnosis> findings;      ///< what is wrong whatever the cause; each is true
+  double max_asymmetry = 0;                   ///< largest |K − Kᵀ| as part of the largest entry, rotations weighed
   double weighing_length_mm = 0;
   Vector6 eigenvalues_N_mm = Vector6::Zero();  ///< of the symmetric part, rotations weighed, rising
   std::optional<ElasticStructure> structure;   ///< N, mm, rad; of a matrix that is symmetric and positive

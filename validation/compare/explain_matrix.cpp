@@ -27,7 +27,9 @@ std::vector<Way> ways(bool last_resort) {
   return list;
 }
 
-Diagnosis diagnosis(const Mistake& m, const Undone& undone) { return {m.id, m.sentence + undone.found, m.remedy}; }
+MatrixDiagnosis diagnosis(const Mistake& m, const Undone& undone) {
+  return {m.id, m.sentence + undone.found, m.remedy};
+}
 
 /// How far the digits of K can move f(K): each entry by itself, the worst of all added up, to first order.
 Matrix6 moved_by_rounding(const PrintedMatrix& K, const Matrix6& at, const std::function<Matrix6(const Matrix6&)>& f) {
@@ -92,19 +94,19 @@ class Comparison {
   double unit_m_, length_, scale_ = 1, difference_ = 0;
 };
 
-Diagnosis described(const Comparison& comparison, const std::vector<Way>& sequence) {
+MatrixDiagnosis described(const Comparison& comparison, const std::vector<Way>& sequence) {
   std::vector<Undone> undone;
   comparison.remaining(sequence, &undone);
-  Diagnosis d = diagnosis(*sequence.front().mistake, undone.front());
+  MatrixDiagnosis d = diagnosis(*sequence.front().mistake, undone.front());
   for (std::size_t i = 1; i < sequence.size(); ++i) {
-    const Diagnosis next = diagnosis(*sequence[i].mistake, undone[i]);
+    const MatrixDiagnosis next = diagnosis(*sequence[i].mistake, undone[i]);
     d = {d.id + "+" + next.id, d.sentence + "; and then " + next.sentence, d.remedy + "; then " + next.remedy};
   }
   return d;
 }
 
-bool has(const std::vector<Diagnosis>& list, const char* id) {
-  return std::any_of(list.begin(), list.end(), [id](const Diagnosis& d) { return d.id == id; });
+bool has(const std::vector<MatrixDiagnosis>& list, const char* id) {
+  return std::any_of(list.begin(), list.end(), [id](const MatrixDiagnosis& d) { return d.id == id; });
 }
 
 /// Distance of a device from one of 0.2 m and 1e6 N/m, in powers of e.
@@ -115,10 +117,10 @@ double implausibility(const JudgedMatrix& m) {
 
 }  // namespace
 
-std::vector<Diagnosis> explain(const PrintedMatrix& K, double unit_m, const PlausibleSize& plausible) {
+std::vector<MatrixDiagnosis> explain(const PrintedMatrix& K, double unit_m, const PlausibleSize& plausible) {
   const JudgedMatrix given = judge(K, nullptr, unit_m, plausible);
   const bool only_size = given.symmetric.passes() && given.positive.passes();
-  std::vector<std::pair<double, Diagnosis>> found;
+  std::vector<std::pair<double, MatrixDiagnosis>> found;
   for (const Mistake& m : mistakes()) {
     for (const Undo& undo : m.undo) {
       const MistakeContext context{nullptr, unit_m};
@@ -137,7 +139,7 @@ std::vector<Diagnosis> explain(const PrintedMatrix& K, double unit_m, const Plau
     }
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Diagnosis> list;
+  std::vector<MatrixDiagnosis> list;
   for (auto& [distance, d] : found) list.push_back(std::move(d));
   return list;
 }

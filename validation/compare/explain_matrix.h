@@ -9,7 +9,7 @@
 
 namespace deflect {
 
-struct Diagnosis {
+struct MatrixDiagnosis {
   std::string id;        ///< "metres"; "negated+metres" where two were made
   std::string sentence;  ///< "it" is the matrix
   std::string remedy;
@@ -17,12 +17,12 @@ struct Diagnosis {
 
 /// Mistakes of which one, undone, leaves a matrix that is sound by itself: more than one where K cannot tell them
 /// apart, in the order of the table, or where size alone decides the most plausible first. Empty where none does.
-std::vector<Diagnosis> explain(const PrintedMatrix& K, double unit_m, const PlausibleSize&);
+std::vector<MatrixDiagnosis> explain(const PrintedMatrix& K, double unit_m, const PlausibleSize&);
 
 struct Explanation {
-  std::vector<Diagnosis> diagnosis;      ///< each explains the whole difference, to the digits printed
-  std::optional<Diagnosis> nearest;      ///< where none does: what leaves least
-  double difference = 0, remaining = 0;  ///< |K − R| and what `nearest` leaves, of the largest entry of R, weighed
+  std::vector<MatrixDiagnosis> diagnosis;  ///< each explains the whole difference, to the digits printed
+  std::optional<MatrixDiagnosis> nearest;  ///< where none does: what leaves least
+  double difference = 0, remaining = 0;    ///< |K − R| and what `nearest` leaves, of the largest entry of R, weighed
 };
 
 /// Mistakes, or pairs of them where no single one does, that make K of the reference R.

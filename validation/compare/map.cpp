@@ -4,16 +4,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
-#include <thread>
 
 #include "msa/base/error.h"
 #include "msa/mechanism/configuration.h"
 #include "validation/compare/at_pose.h"
+#include "validation/compare/parallel.h"
 #include "validation/compare/theories.h"
 
 namespace deflect {
@@ -202,35 +199,9 @@ StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options) {
   check(options);
   StiffnessMap map{m.name, slide_words(m), options, std::vector<MapPose>(options.grid.size())};
   const std::vector<Vector6> loads = loads_of(options);
-  const std::size_t chunks = (map.poses.size() + chunk - 1) / chunk;
-
-  // Chunks are taken in order, so that everything before a failed one has been or is being looked at: the error that
-  // is reported does not depend on the threads.
-  std::atomic<std::size_t> next = 0, done = 0, failed = chunks;
-  std::mutex mutex;
-  std::exception_ptr error;
-  const auto work = [&] {
-    for (std::size_t c = next++; c < failed; c = next++) try {
-        const std::size_t end = std::min((c + 1) * chunk, map.poses.size());
-        for (std::size_t i = c * chunk; i < end; ++i) map.poses[i] = map_pose(m, options, loads, i);
-        const std::size_t now = done += end - c * chunk;
-        if (options.progress) options.progress(now);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (c < failed) {
-          failed = c;
-          error = std::current_exception();
-        }
-      }
-  };
-  const unsigned wanted =
-      options.threads ? static_cast<unsigned>(options.threads) : std::thread::hardware_concurrency();
-  {
-    std::vector<std::jthread> others;
-    for (unsigned t = 1; t < std::min<std::size_t>(std::max(wanted, 1u), chunks); ++t) others.emplace_back(work);
-    work();
-  }
-  if (error) std::rethrow_exception(error);
+  for_each_case(
+      map.poses.size(), chunk, options.threads, [&](std::size_t i) { map.poses[i] = map_pose(m, options, loads, i); },
+      options.progress);
   return map;
 }
 

@@ -98,7 +98,7 @@ std::string joint_column(std::size_t joint, bool rotates) {
   return fmt::format("q{}_{}", joint + 1, rotates ? "rad" : "mm");
 }
 
-MeasurementColumns measurement_columns(const CsvTable& table) {
+MeasurementColumns measurement_columns(const CsvTable& table, bool plan) {
   MeasurementColumns columns;
   command_columns(table, columns);
   const auto label = table.column("pose");
@@ -111,8 +111,8 @@ MeasurementColumns measurement_columns(const CsvTable& table) {
     columns.load[i] = table.column(load_columns[i]);
     columns.displacement[i] = table.column(displacement_columns[i]);
   }
-  if (std::none_of(columns.displacement.begin(), columns.displacement.end(),
-                   [](const auto& c) { return c.has_value(); }))
+  if (!plan && std::none_of(columns.displacement.begin(), columns.displacement.end(),
+                            [](const auto& c) { return c.has_value(); }))
     table.refuse_header(fmt::format("no displacement is measured: at least one of the columns {} is wanted",
                                     fmt::join(displacement_columns, ", ")));
   columns.sigma_u = table.column("sigma_u_mm");

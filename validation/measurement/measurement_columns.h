@@ -19,8 +19,8 @@ struct MeasurementColumns {
   std::vector<std::size_t> notes;
 };
 
-/// Throws InputError for unknown columns, missing ones and poses commanded in two ways.
-MeasurementColumns measurement_columns(const CsvTable&);
+/// Throws InputError for unknown columns, missing ones and poses commanded in two ways. A plan wants no displacement.
+MeasurementColumns measurement_columns(const CsvTable&, bool plan = false);
 
 /// "q3_rad", "q3_mm": the column of the joint coordinate, counted from 0 here and from 1 there.
 std::string joint_column(std::size_t joint, bool rotates);

@@ -19,7 +19,8 @@ constexpr double absolute_zero_C = -273.15;
 
 class Reader {
  public:
-  Reader(const CsvTable& table, const std::string& origin) : table_(table), columns_(measurement_columns(table)) {
+  Reader(const CsvTable& table, const std::string& origin, bool plan)
+      : table_(table), columns_(measurement_columns(table, plan)) {
     m_.origin = origin;
     m_.joint_rotates = columns_.joint_rotates;
     m_.temperature_recorded = columns_.temperature.has_value();
@@ -136,11 +137,28 @@ class Reader {
 
 Measurements parse_measurements(std::string text, const std::string& origin) {
   const CsvTable table = parse_csv(std::move(text), origin);
-  return Reader(table, origin).read();
+  return Reader(table, origin, false).read();
 }
 
 Measurements read_measurements(const std::filesystem::path& path) {
   return parse_measurements(read_text(path), path.string());
+}
+
+Measurements read_plan(const std::filesystem::path& path) {
+  const CsvTable table = parse_csv(read_text(path), path.string());
+  Measurements m = Reader(table, path.string(), true).read();
+  for (Reading& r : m.readings) r.displacement = {};
+  return m;
+}
+
+Measurements one_pose(const Measurements& m, std::size_t pose) {
+  Measurements out{m.origin, m.joint_rotates, m.note_columns, m.temperature_recorded, {m.poses.at(pose)}, {}};
+  for (std::size_t& i : out.poses.front().readings) {
+    out.readings.push_back(m.readings[i]);
+    out.readings.back().pose = 0;
+    i = out.readings.size() - 1;
+  }
+  return out;
 }
 
 std::vector<std::size_t> in_sequence(const Measurements& m, const std::string& purpose) {

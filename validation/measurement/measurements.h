@@ -61,11 +61,17 @@ struct Measurements {
 Measurements read_measurements(const std::filesystem::path&);
 Measurements parse_measurements(std::string text, const std::string& origin);
 
+/// Poses and loads to be measured: the same file, displacements not wanted and not looked at.
+Measurements read_plan(const std::filesystem::path&);
+
 /// The file that reads back as the same measurements, lines aside: every number is the shortest that does, which for
 /// a value in m or Nm that is no multiple of any double in mm or Nmm may be one unit in the last place off. Columns
 /// that would say nothing are left out. Written whole or not at all.
 void write_measurements(const std::filesystem::path&, const Measurements&);
 std::string measurements_text(const Measurements&);
+
+/// The readings of one of the poses alone, in the file's order.
+Measurements one_pose(const Measurements&, std::size_t pose);
 
 /// The readings in the order they were taken. Throws InputError where the file has no sequence; `purpose` ("friction")
 /// says in the message what needs it.

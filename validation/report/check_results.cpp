@@ -71,18 +71,18 @@ std::string verdict(const MatrixCheck& m, const CheckedFiles& f) {
                        f.reference.empty() ? "" : ", and it equals " + f.reference);
   }
   std::vector<std::string> sentences;
-  for (const Diagnosis& d : m.explanations) sentences.push_back(d.sentence);
+  for (const MatrixDiagnosis& d : m.explanations) sentences.push_back(d.sentence);
   std::string text = sentences.empty() ? "" : fmt::format("{}", fmt::join(sentences, "; or "));
   if (sentences.size() > 1) text = "either " + text;
   if (m.guessed && !text.empty()) text = "by its size it is no machine's; most likely " + text;
-  for (const Diagnosis& d : m.findings) text += (text.empty() ? "" : "; ") + d.sentence;
+  for (const MatrixDiagnosis& d : m.findings) text += (text.empty() ? "" : "; ") + d.sentence;
   return fmt::format("{} fails: {}.", f.matrix, text);
 }
 
 std::string remedies(const MatrixCheck& m) {
   std::vector<std::string> list;
   for (const auto* part : {&m.explanations, &m.findings})
-    for (const Diagnosis& d : *part)
+    for (const MatrixDiagnosis& d : *part)
       if (std::find(list.begin(), list.end(), d.remedy) == list.end()) list.push_back(d.remedy);
   return fmt::format("{}", fmt::join(list, m.explanations.size() > 1 ? "; or " : "; "));
 }
@@ -106,7 +106,7 @@ Json json_check(const Check& c) {
   return json;
 }
 
-Json json_diagnosis(const Diagnosis& d, bool certain) {
+Json json_diagnosis(const MatrixDiagnosis& d, bool certain) {
   return {{"id", d.id}, {"sentence", d.sentence}, {"remedy", d.remedy}, {"certain", certain}};
 }
 
@@ -132,9 +132,9 @@ std::string check_json(const MatrixCheck& m, const CheckedFiles& f) {
   json["checks"] = Json::array();
   for (const Check& c : m.checks) json["checks"].push_back(json_check(c));
   json["diagnosis"] = Json::array();
-  for (const Diagnosis& d : m.explanations)
+  for (const MatrixDiagnosis& d : m.explanations)
     json["diagnosis"].push_back(json_diagnosis(d, m.explanations.size() == 1 && !m.guessed));
-  for (const Diagnosis& d : m.findings) json["diagnosis"].push_back(json_diagnosis(d, true));
+  for (const MatrixDiagnosis& d : m.findings) json["diagnosis"].push_back(json_diagnosis(d, true));
   json["max_asymmetry"] = json_number(m.max_asymmetry, "max_asymmetry");
   json["weighing_length_mm"] = json_number(m.weighing_length_mm, "weighing_length_mm");
   json["eigenvalues_N_per_mm"] = json_numbers(m.eigenvalues_N_mm, "eigenvalues_N_per_mm");

@@ -1,0 +1,74 @@
+// Springs that jump. A gap or a rigid side has no force that a displacement would say: there the spring has a contact
+// stiffness K and the force λ that it is known to carry, so that it obeys its law at λ + K · (what it lacks of it):
+//   w = δ + λ/K,   f(w),   and δ keeps its law exactly once λ = f.
+// The solver sets λ = f until that holds (augmented Lagrangian): the contact stiffness is no error of the result.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace deflect::frame {
+
+/// Free travel ±gap.
+struct GapSpring {
+  double gap = 0;
+  double contact = 0;  ///< K
+  double known = 0;    ///< λ
+  bool idle = false;   ///< carries nothing and is held in the middle
+
+  double beyond(double d) const {
+    const double w = d + known / contact;
+    return idle ? w : w - std::clamp(w, -gap, gap);
+  }
+  double force(double d) const { return contact * beyond(d); }
+  double tangent(double d) const { return idle || beyond(d) != 0 ? contact : 0; }
+  double energy(double d) const { return contact * beyond(d) * beyond(d) / 2; }
+  double at_force(double) const { return contact; }
+  double elongation(double f) const { return idle || f == 0 ? 0 : std::copysign(gap, f); }
+  double stored(double) const { return 0; }
+  double slip(double) const { return 0; }
+  /// Of the law without its contact stiffness; infinite where it is rigid.
+  double true_tangent(double d) const { return !idle && beyond(d) != 0 ? HUGE_VAL : 0; }
+};
+
+/// Compliances under forces of either sign, m/N or rad/Nm; zero is rigid. A side that is softer than the contact
+/// stiffness needs none.
+struct OneSidedSpring {
+  double pull = 0, push = 0;
+  double contact = 0, known = 0;
+
+  double compliance(double sign) const { return sign < 0 ? push : pull; }
+  bool soft(double sign) const { return compliance(sign) * contact >= 1; }
+  double beyond(double d) const { return soft(known) ? d : d + known / contact; }
+  double force(double d) const { return at_force(beyond(d)) * beyond(d); }
+  double tangent(double d) const { return at_force(beyond(d)); }
+  double energy(double d) const { return force(d) * beyond(d) / 2; }
+  double at_force(double f) const { return 1 / (compliance(f) + (soft(f) ? 0 : 1 / contact)); }
+  double elongation(double f) const { return compliance(f) * f; }
+  double stored(double f) const { return compliance(f) * f * f / 2; }
+  double slip(double) const { return 0; }
+  double true_tangent(double d) const { return 1 / compliance(force(d)); }
+};
+
+/// Elastic–Coulomb friction, by return mapping from the slip before the load. Its energy is the potential of the step,
+/// which has what sliding costs; stored is the elastic part.
+struct FrictionSpring {
+  double k = 0, most = 0;  ///< N/m and N, Nm/rad and Nm
+  int number = -1;         ///< of the friction, see number_slips()
+  double before = 0;       ///< slip
+
+  double force(double d) const { return std::clamp(k * (d - before), -most, most); }
+  bool slides(double d) const { return k * std::abs(d - before) > most; }
+  double tangent(double d) const { return slides(d) ? 0 : k; }
+  double energy(double d) const {
+    const double e = std::abs(d - before);
+    return k * e > most ? most * (e - most / k / 2) : k * e * e / 2;
+  }
+  double at_force(double) const { return k; }
+  double elongation(double f) const { return before + f / k; }
+  double stored(double f) const { return f * f / (2 * k); }
+  double slip(double d) const { return slides(d) ? d - std::copysign(most / k, d - before) : before; }
+  double true_tangent(double d) const { return tangent(d); }
+};
+
+}  // namespace deflect::frame

@@ -1,0 +1,144 @@
+// `deflect add` as a user meets it: a new device, whole or not at all.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+#include "tests/support/program.h"
+#include "tests/support/same_mechanism.h"
+
+namespace deflect {
+namespace {
+
+using nlohmann::json;
+using test::contents;
+
+class AddProgram : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) { return "'" + (folder / name).string() + "'"; }
+  std::string file(const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+    return path(name);
+  }
+  test::Run add(const std::string& arguments) {
+    return test::deflect("add " + arguments + " -o " + path("new.yaml") + " --json " + path("added.json"));
+  }
+  /// The new device under the name of the old one.
+  Mechanism added(const Mechanism& before) {
+    Mechanism m = read_mechanism(folder / "new.yaml");
+    EXPECT_EQ(m.name, "new");
+    m.name = before.name;
+    m.about = before.about;
+    return m;
+  }
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const test::Run run = add(arguments);
+    EXPECT_EQ(run.code, 2) << run.out;
+    EXPECT_NE(run.out.find(message), std::string::npos) << run.out;
+    EXPECT_FALSE(std::filesystem::exists(folder / "new.yaml"));
+  }
+
+  test::Folder folder;
+  const Mechanism old = test::device("haptic-6psu");
+  const std::string diagnosis = R"({
+  "verdict": "effect", "missing": ["guide_root_compliance", "leg_defect"],
+  "candidates": [
+    {"effect": "guide_root_compliance", "site": "all legs", "probability": 0.9,
+     "parameters": [{"name": "stiffness_Nmm_per_rad", "value": 5.0e6, "low95": 4.9e6, "high95": 5.1e6}]},
+    {"effect": "leg_defect", "site": "leg 4", "probability": 0.06, "parameters": [{"name": "factor", "value": 0.7}]},
+    {"effect": "leg_defect", "site": "leg 2", "probability": 0.03, "parameters": [{"name": "factor", "value": 0.9}]},
+    {"effect": "modulus", "site": "machine", "probability": 0.01, "parameters": [{"name": "factor", "value": 0.8}]}
+  ]})";
+};
+
+TEST_F(AddProgram, WritesTheDeviceWithTheEffectAndSaysSoInIt) {
+  const test::Run run = add("haptic-6psu guide_root_compliance --set stiffness_Nmm_per_rad=5e6");
+  ASSERT_EQ(run.code, 0) << run.out;
+  EXPECT_EQ(added(old), with_effect(old, test::effect("guide_root_compliance"), test::values({5e6})));
+  const std::string text = contents(folder / "new.yaml");
+  EXPECT_TRUE(text.starts_with("# haptic-6psu with\n#   guide_root_compliance (stiffness_Nmm_per_rad = 5e+06)\n"))
+      << text;
+  EXPECT_NE(
+      read_mechanism(folder / "new.yaml").about.find("; with guide_root_compliance (stiffness_Nmm_per_rad = 5e+06)"),
+      std::string::npos);
+  EXPECT_EQ(read_mechanism(folder / "new.yaml").ours, old.ours);
+  const json j = json::parse(contents(folder / "added.json"));
+  EXPECT_EQ(j["added"][0]["effect"], "guide_root_compliance");
+  EXPECT_EQ(j["added"][0]["site"], "all legs");
+  EXPECT_EQ(j["added"][0]["parameters"][0]["value"], 5e6);
+}
+
+TEST_F(AddProgram, AddsToWhatWasAddedBefore) {
+  ASSERT_EQ(add("haptic-6psu modulus --set factor=0.9").code, 0);
+  std::filesystem::rename(folder / "new.yaml", folder / "first.yaml");
+  ASSERT_EQ(add(path("first.yaml") + " leg_defect --leg 3 --set factor=0.5").code, 0);
+  const Mechanism m = read_mechanism(folder / "new.yaml");
+  EXPECT_NE(m.about.find("; with modulus (factor = 0.9); with leg_defect of leg 3 (factor = 0.5)"), std::string::npos)
+      << m.about;
+  EXPECT_EQ(std::get<Member>(*find(leg_parts(m, 3), "guideway")).bending_factor, 0.5);
+}
+
+TEST_F(AddProgram, TakesEffectLegAndValuesFromADiagnosis) {
+  const std::string from = " --from " + file("d.json", diagnosis);
+  const Mechanism root = with_effect(old, test::effect("guide_root_compliance"), test::values({5e6}));
+  ASSERT_EQ(add("haptic-6psu guide_root_compliance" + from).code, 0);
+  EXPECT_EQ(added(old), root);
+  ASSERT_EQ(add("haptic-6psu" + from).code, 0);  // all that is missing
+  EXPECT_EQ(added(old), with_effect(root, test::effect("leg_defect"), test::values({0.7}), 4));
+  ASSERT_EQ(add("haptic-6psu leg_defect --leg 2" + from).code, 0);
+  EXPECT_EQ(added(old), with_effect(old, test::effect("leg_defect"), test::values({0.9}), 2));
+  ASSERT_EQ(add("haptic-6psu modulus --set factor=0.85" + from).code, 0);
+  EXPECT_EQ(added(old), with_effect(old, test::effect("modulus"), test::values({0.85})));
+}
+
+TEST_F(AddProgram, RefusesADiagnosisThatIsNone) {
+  const std::string effect = "haptic-6psu modulus --from ";
+  expect_refused(effect + file("text.json", "nothing"), "not valid JSON");
+  expect_refused(effect + file("other.json", "{}"), "candidates: a list is wanted");
+  expect_refused(effect + file("list.json", "[1]"), "candidates: a list is wanted");
+  expect_refused(
+      effect + file("value.json",
+                    R"({"missing": [], "candidates": [{"effect": "modulus", "parameters": [{"name": "factor"}]}]})"),
+      "candidates[0].parameters: each is");
+  expect_refused(effect + path("none.json"), "cannot be read");
+  expect_refused("haptic-6psu joint_complience --from " + file("d.json", diagnosis),
+                 "the diagnosis has no effect 'joint_complience'");
+  expect_refused("haptic-6psu --from " + file("empty.json", R"({"missing": [], "candidates": []})"),
+                 "nothing is missing there");
+}
+
+TEST_F(AddProgram, RefusesValuesThatDoNotFit) {
+  const std::string effect = "haptic-6psu guide_root_compliance ";
+  expect_refused(effect + "--set stifness_Nmm_per_rad=5e6",
+                 "has no parameter 'stifness_Nmm_per_rad', did you mean 'stiffness_Nmm_per_rad'?");
+  expect_refused(effect, "needs a value: --set stiffness_Nmm_per_rad=1e+07");
+  expect_refused(effect + "--set stiffness_Nmm_per_rad=5", "the value must lie between 10000 and 1e+12");
+  expect_refused(effect + "--set stiffness_Nmm_per_rad=nan", "--set 'stiffness_Nmm_per_rad=nan'");
+  expect_refused(effect + "--set stiffness_Nmm_per_rad=5e6Nm", "the unit is that of the name");
+  expect_refused(effect + "--set stiffness_Nmm_per_rad", "write name=value");
+  expect_refused(effect + "--set stiffness_Nmm_per_rad=5e6 --set stiffness_Nmm_per_rad=6e6", "is set twice");
+  expect_refused(effect + "--set stiffness_Nmm_per_rad=5e6 --leg 3", "it takes no leg");
+  expect_refused("haptic-6psu leg_defect --set factor=0.5", "say which, 1 to 6");
+  expect_refused("haptic-6psu leg_defect --set factor=0.5 --leg 7", "there is no leg 7");
+  expect_refused("haptic-6psu leg_defect --set factor=0.5 --leg four", "--leg 'four'");
+  expect_refused("haptic-6psu", "name the effect to add");
+}
+
+TEST_F(AddProgram, RefusesWhatTheDeviceCannotHaveAndNamesTheNearest) {
+  expect_refused("haptic-6psu guide_rot_compliance --set a=1", "did you mean 'guide_root_compliance'?");
+  expect_refused("haptic-6ps modulus --set factor=0.9", "did you mean 'haptic-6psu'?");
+  expect_refused("tripteron carriage_compliance --set stiffness_N_per_mm=2000", "there is no 'carriage'");
+}
+
+TEST_F(AddProgram, KnowsEffectsOfOnesOwn) {
+  const std::string own = file("pad.yaml", test::effect_text());
+  const test::Run run = add("fanuc-r2000ic soft_pad --set stiffness_N_per_mm=300 --effects " + own);
+  ASSERT_EQ(run.code, 0) << run.out;
+  const Mechanism m = read_mechanism(folder / "new.yaml");
+  ASSERT_EQ(m.tool.laws[2].size(), 1u);
+  EXPECT_EQ(std::get<LinearLaw>(m.tool.laws[2][0]).stiffness, 3e5);
+}
+
+}  // namespace
+}  // namespace deflect

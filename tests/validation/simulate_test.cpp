@@ -1,0 +1,144 @@
+// Simulated measurements.
+#include "validation/compare/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/devices.h"
+#include "validation/compare/as_built.h"
+#include "validation/compare/prediction.h"
+#include "validation/measurement/campaign.h"
+#include "validation/measurement/configure_all.h"
+
+namespace deflect {
+namespace {
+
+Mechanism ideal() { return test::device("haptic-6psu-ideal-joints"); }
+
+TEST(Campaign, HasTheReadingsThatItsHeaderSays) {
+  const Mechanism m = ideal();
+  for (const auto& [name, readings, poses] :
+       {std::tuple{"paper", 27, 9}, {"cycle", 432, 9}, {"rich", 720, 15}, {"random", 280, 20}}) {
+    const Measurements plan = campaign(name, m, 50, 1);
+    EXPECT_EQ(plan.readings.size(), static_cast<std::size_t>(readings)) << name;
+    EXPECT_EQ(plan.poses.size(), static_cast<std::size_t>(poses)) << name;
+    configure_all(m, plan);  // all can be reached
+    for (const Reading& r : plan.readings) EXPECT_LE(r.load.head<3>().norm(), 50 * (1 + 1e-12));
+  }
+  EXPECT_THROW(campaign("poor", m, 50, 1), InputError);
+}
+
+TEST(Campaign, WorksForEveryDeviceWithAWorkspace) {
+  for (const char* name : {"tripteron", "delta", "stewart-6ups", "hybrid", "haptic-6psu"})
+    EXPECT_EQ(campaign("random", test::device(name), 50, 2).readings.size(), 280u) << name;
+}
+
+TEST(Simulate, ExactReadingsOfTheDrawingAreTheMsa) {
+  const Mechanism m = ideal();
+  SimulationOptions o;
+  o.sigma_u = 0;
+  o.sigma_th = 0;
+  o.tolerances = 0;
+  o.geometry = Geometry::linear;
+  const Measurements data = simulate(m, campaign("paper", m, 50, 1), o);
+  PredictionOptions p;  // the other theory
+  const std::vector<Vector6> d = predict(m, configure_all(m, data), data, p);
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (std::size_t k = 0; k < 6; ++k)
+      EXPECT_NEAR(*data.readings[i].displacement[k], d[i](static_cast<Eigen::Index>(k)), 1e-9 * d[i].norm());
+}
+
+TEST(Simulate, SeedInSameFileOut) {
+  const Mechanism m = ideal();
+  SimulationOptions o;
+  o.geometry = Geometry::linear;
+  const auto text = [&](std::uint64_t seed, int threads) {
+    o.seed = seed;
+    o.threads = threads;
+    return measurements_text(simulate(m, campaign("random", m, 50, 1), o));
+  };
+  EXPECT_EQ(text(5, 1), text(5, 3));
+  EXPECT_NE(text(5, 1), text(6, 1));
+}
+
+TEST(Simulate, NoiseAndTolerancesHaveTheirSize) {
+  Mechanism m = ideal();
+  SimulationOptions o;
+  o.tolerances = 0;
+  o.geometry = Geometry::linear;
+  o.sigma_u = 3e-6;
+  const Measurements data = simulate(m, campaign("rich", m, 50, 1), o);
+  const std::vector<Vector6> d = predict(m, configure_all(m, data), data, {});
+  double squares = 0;
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      squares += std::pow(*data.readings[i].displacement[k] - d[i](static_cast<Eigen::Index>(k)), 2);
+  // 2160 numbers: the estimate scatters by 1/√4320.
+  EXPECT_NEAR(std::sqrt(squares / 2160) / 3e-6, 1, 5 / std::sqrt(4320.0));
+}
+
+TEST(AsBuilt, AMachineAsDrawnIsTheDrawing) {
+  const Mechanism m = ideal();
+  AsBuilt built;
+  built.legs.resize(6);
+  const Configuration drawn = configure(m, test::random_poses(m, 1)[0]);
+  const Configuration same = configure_as_built(with_geometry(m, built), built, drawn);
+  EXPECT_LT((same.pose.p_WT - drawn.pose.p_WT).norm(), 1e-12);
+  EXPECT_LT((same.pose.R_WT - drawn.pose.R_WT).norm(), 1e-12);
+}
+
+TEST(AsBuilt, APlatformOnLiftedJointsIsLifted) {
+  const Mechanism m = ideal();
+  AsBuilt built;
+  built.legs.resize(6);
+  for (LegAsBuilt& leg : built.legs) leg.base_joint.z() = 2e-5;
+  const Configuration drawn = configure(m, test::random_poses(m, 1)[0]);
+  const Configuration lifted = configure_as_built(with_geometry(m, built), built, drawn);
+  EXPECT_LT((lifted.pose.p_WT - drawn.pose.p_WT - Vector3(0, 0, 2e-5)).norm(), 1e-12);
+  // Sliders that stand too far out by as much do the same.
+  const Configuration pushed = configure_as_built(m, {}, drawn, VectorX::Constant(6, 2e-5));
+  EXPECT_LT((pushed.pose.p_WT - lifted.pose.p_WT).norm(), 1e-12);
+}
+
+TEST(AsBuilt, EveryLinkLongerLiftsTheSymmetricPlatform) {
+  const Mechanism m = ideal();
+  AsBuilt built;
+  built.legs.resize(6);
+  for (LegAsBuilt& leg : built.legs) leg.link_length = 1e-6;
+  const Configuration drawn = configure(m, home_pose(m));
+  const Configuration longer = configure_as_built(with_geometry(m, built), built, drawn);
+  // dz = dL · L2/√(L2² − beside²), to first order.
+  const SixPsuLeg leg = leg_at(test::six_psu(m), 1, drawn.pose);
+  const double slope = test::six_psu(m).link_length / (leg.p_WC - leg.p_WB).z();
+  EXPECT_NEAR(longer.pose.p_WT.z() - drawn.pose.p_WT.z(), 1e-6 * slope, 1e-10);
+}
+
+TEST(AsBuilt, ThickerGuidesBendLessByTheFourthPower) {
+  const Mechanism m = ideal();
+  AsBuilt built;
+  built.legs.resize(6);
+  for (LegAsBuilt& leg : built.legs) leg.guide_diameter = 0.01;
+  const Configuration drawn = configure(m, home_pose(m));
+  const Configuration thick = configure_as_built(with_geometry(m, built), built, drawn);
+  const auto first = [](const Configuration& c) {
+    for (const PlacedPart& part : c.legs[2].parts)
+      if (const auto* member = std::get_if<PlacedMember>(&part)) return *member;
+    throw std::logic_error("no member");
+  };
+  EXPECT_NEAR(first(thick).section.Iy / first(drawn).section.Iy, std::pow(1.01, 4), 1e-12);
+  EXPECT_NEAR(first(thick).section.A / first(drawn).section.A, std::pow(1.01, 2), 1e-12);
+}
+
+TEST(Deviations, StandInTheDeviceFileAndMoveTheLeg) {
+  const Mechanism m = test::with(ideal(), "kinematics.deviations",
+                                 "[{leg: 3, base_joint: [0 mm, 0 mm, 0.5 mm], link_length: -0.2 mm}]");
+  const Mechanism again = parse_mechanism(write_mechanism(m), "again");
+  ASSERT_EQ(test::six_psu(again).deviations.size(), 1u);
+  const Pose pose = home_pose(ideal());
+  EXPECT_NEAR(leg_at(test::six_psu(again), 3, pose).p_WA.z(), 5e-4, 1e-15);
+  EXPECT_EQ(leg_at(test::six_psu(again), 2, pose).p_WA.z(), 0);
+  const SixPsuLeg leg = leg_at(test::six_psu(again), 3, pose);
+  EXPECT_NEAR((leg.p_WC - leg.p_WB).norm(), 0.1253, 1e-12);
+}
+
+}  // namespace
+}  // namespace deflect

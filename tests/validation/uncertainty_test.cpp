@@ -1,0 +1,132 @@
+// Residuals weighed by noise and tolerances.
+#include "validation/compare/uncertainty.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "tests/support/devices.h"
+#include "validation/compare/prediction.h"
+#include "validation/measurement/campaign.h"
+#include "validation/measurement/configure_all.h"
+#include "validation/measurement/random.h"
+
+namespace deflect {
+namespace {
+
+/// Twelve readings of three components each, displacement d, σ each.
+struct Small {
+  std::vector<MeasuredValue> values;
+  std::vector<double> sigma;
+  std::vector<Vector6> d;
+  MatrixX A;
+  Random random{3};
+
+  Small() {
+    for (std::size_t reading = 0; reading < 12; ++reading) {
+      Vector6 x = Vector6::Zero();
+      x.head<3>() = 1e-4 * random.normal3();
+      d.push_back(x);
+      for (std::size_t k = 0; k < 3; ++k) {
+        values.push_back({reading, k, x(static_cast<Eigen::Index>(k)), {}});
+        sigma.push_back(1e-6 * random.uniform(1, 3));
+      }
+    }
+    A = matrix(5) * 3e-6;
+  }
+  MatrixX matrix(Eigen::Index columns) {
+    MatrixX out(36, columns);
+    for (double& x : out.reshaped()) x = random.normal();
+    return out;
+  }
+  MatrixX dense(double load) const {
+    MatrixX S = A * A.transpose();
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (std::size_t j = 0; j < values.size(); ++j) {
+        const auto r = static_cast<Eigen::Index>(i), c = static_cast<Eigen::Index>(j);
+        if (i == j) S(r, c) += sigma[i] * sigma[i];
+        if (values[i].reading == values[j].reading) S(r, c) += load * load * values[i].value * values[j].value;
+      }
+    return S;
+  }
+};
+
+TEST(Uncertainty, WeighsByTheInverseOfTheWholeCovariance) {
+  Small s;
+  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01);
+  const MatrixX X = s.matrix(2), Y = s.matrix(3), inverse = s.dense(0.01).inverse();
+  const MatrixX wanted = X.transpose() * inverse * Y;
+  EXPECT_LT((u.inner(X, Y) - wanted).norm(), 1e-10 * wanted.norm());
+  EXPECT_EQ(u.count(), 36u);
+}
+
+TEST(Uncertainty, CovarianceOfContrastsIsThatOfTheirReadings) {
+  Small s;
+  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01);
+  Eigen::SparseMatrix<double, Eigen::RowMajor> T(2, 36);
+  T.insert(0, 0) = 1;
+  T.insert(0, 7) = -1;
+  T.insert(1, 3) = 0.5;
+  const MatrixX dense(T), wanted = dense * s.dense(0.01) * dense.transpose();
+  EXPECT_LT((u.covariance(T) - wanted).norm(), 1e-12 * wanted.norm());
+}
+
+TEST(Uncertainty, ReadingsSetAsideWeighNothing) {
+  Small s;
+  std::vector<bool> aside(12, false);
+  aside[4] = true;
+  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01, aside);
+  VectorX r = VectorX::Zero(36);
+  r.segment<3>(12).setConstant(1);  // of reading 4
+  EXPECT_EQ(u.inner(r, r)(0, 0), 0);
+  EXPECT_EQ(u.count(), 33u);
+}
+
+TEST(Regression, FindsAmplitudesAndTheirScatter) {
+  Small s;
+  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01);
+  const MatrixX G = s.matrix(3);
+  const VectorX truth = Vector3(2e-6, -1e-6, 5e-7), r = G * truth;
+  const Regression fit = regress(u, r, G);
+  EXPECT_LT((fit.amplitude - truth).norm(), 1e-10 * truth.norm());
+  EXPECT_EQ(fit.freedoms, 3);
+  const MatrixX wanted = (G.transpose() * s.dense(0.01).inverse() * G).inverse();
+  EXPECT_LT((fit.covariance - wanted).norm(), 1e-8 * wanted.norm());
+  EXPECT_NEAR(fit.gain, u.inner(r, r)(0, 0), 1e-9 * fit.gain);  // all of it
+}
+
+TEST(Regression, LeavesOpenWhatTheDataDoNotDetermine) {
+  Small s;
+  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01);
+  MatrixX G(36, 2);
+  G.col(0) = s.matrix(1);
+  G.col(1) = -2 * G.col(0);
+  const Regression fit = regress(u, 1e-6 * G.col(0), G);
+  EXPECT_EQ(fit.freedoms, 1);
+  EXPECT_LT((G * fit.amplitude - 1e-6 * G.col(0)).norm(), 1e-12);
+  EXPECT_EQ(regress(u, s.matrix(1), G.col(0), G).freedoms, 0);  // beside itself nothing is left of it
+}
+
+TEST(ToleranceModel, AMachineOfSofterSteelMovesInProportion) {
+  Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const Measurements data = campaign("paper", m, 50, 1);
+  std::vector<MeasuredValue> values;
+  for (std::size_t i = 0; i < data.readings.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) values.push_back({i, k, 0, {}});
+  const std::vector<Configuration> drawn = configure_all(m, data);
+  const ToleranceModel t = tolerance_model(m, drawn, data, values);
+  // One modulus; per leg a diameter, two joints, a link; per pose six sliders.
+  EXPECT_EQ(t.nuisances.size(), 1u + 6 * (1 + 6 + 1) + 9 * 6);
+  EXPECT_EQ(t.nuisances[0].name, "modulus");
+  const VectorX d = rows_of(values, predict(m, drawn, data, {}));
+  // d ∝ 1/E: a step of 1 % changes it by 1/1.01 − 1.
+  EXPECT_LT((t.A.col(0) - d * (1 / 1.01 - 1)).norm(), 1e-9 * d.norm());
+  // A pose's sliders move its own readings only.
+  const Eigen::Index slider = 49;
+  EXPECT_EQ(t.nuisances[49].name, "pose 0 leg 1 slider");
+  EXPECT_GT(t.A.col(slider).head(9).norm(), 0);
+  EXPECT_EQ(t.A.col(slider).tail(72).norm(), 0);
+}
+
+}  // namespace
+}  // namespace deflect

@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/compare/comparison.h"
+#include "validation/report/compare_figures.h"
+#include "validation/report/compare_results.h"
+
+namespace deflect::cli {
+namespace {
+
+struct Arguments {
+  std::string device, data, json, out;
+  double sigma_mm = 0, sigma_rad = 0, threads = 0;
+};
+
+void run(const Arguments& a) {
+  const Mechanism m = read_mechanism(device_file(a.device));
+  const Measurements data = read_measurements(a.data);
+  ComparisonOptions o;
+  if (a.sigma_mm < 0 || a.sigma_rad < 0)
+    throw InputError("--sigma, --sigma-rotation: a standard deviation above zero is wanted");
+  if (a.sigma_mm > 0) o.sigma_u = a.sigma_mm / 1e3;
+  if (a.sigma_rad > 0) o.sigma_th = a.sigma_rad;
+  o.threads = whole("--threads", a.threads, 0, 1024);
+  const Comparison c = compare(m, data, o);
+  const std::filesystem::path folder = a.out;
+  if (!a.out.empty()) {
+    for (const Figure& f : compare_figures(c)) render(f, folder);
+    write_text(folder / "residuals.csv", residuals_csv(c));
+    write_text(folder / "errors.csv", errors_csv(c));
+    write_text(folder / "tests.csv", tests_csv(c));
+  }
+  if (!a.json.empty()) write_text(a.json, compare_json(c));
+  fmt::print("{}", compare_report(c));
+  if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
+}
+
+}  // namespace
+
+Command compare_command() {
+  auto a = std::make_shared<Arguments>();
+  return {
+      "compare",
+      "Measurements against the closed form, nothing fitted: where the model fails, in sentences with numbers; tests "
+      "that need no idea of what is missing; patterns of the residual; errors by pose, direction and magnitude",
+      "deflect compare haptic-6psu-ideal-joints measurements.csv --out comparison --json comparison.json",
+      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+       {"data", "DATA", "measurements (CSV)", &a->data, true},
+       {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
+       {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
+       {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+       {"--json", "FILE", "write the result", &a->json},
+       {"--out", "DIR", "write figures and tables", &a->out}},
+      [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

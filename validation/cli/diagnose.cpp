@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/effects.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/report/diagnosis_results.h"
+
+namespace deflect::cli {
+namespace {
+
+struct Arguments {
+  std::string device, data, json;
+  std::vector<std::string> files;
+  double sigma_mm = 0, sigma_rad = 0, threads = 0;
+};
+
+void run(const Arguments& a) {
+  const Mechanism m = read_mechanism(device_file(a.device));
+  const Measurements data = read_measurements(a.data);
+  const std::vector<Effect> effects = known_effects(a.files);
+  DiagnosisOptions o;
+  if (a.sigma_mm > 0) o.comparison.sigma_u = a.sigma_mm / 1e3;
+  if (a.sigma_rad > 0) o.comparison.sigma_th = a.sigma_rad;
+  o.threads = o.comparison.threads = whole("--threads", a.threads, 0, 1024);
+  const Diagnosis d = diagnose(m, data, effects, o);
+  if (!a.json.empty()) write_text(a.json, diagnosis_json(d));
+  fmt::print("{}", diagnosis_report(d, m.name, data.origin));
+}
+
+}  // namespace
+
+Command diagnose_command() {
+  auto a = std::make_shared<Arguments>();
+  return {"diagnose",
+          "Which physical effect is missing: every effect of the catalogue at every place it has in the device, fitted "
+          "with all "
+          "tolerances free under their priors, weighed by the evidence; ties, unknown effects and what the campaign "
+          "cannot see "
+          "are said",
+          "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"data", "DATA", "measurements (CSV)", &a->data, true},
+           {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
+           {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
+           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+           {"--json", "FILE", "write the result", &a->json}},
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

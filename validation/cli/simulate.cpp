@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+
+#include "msa/base/error.h"
+#include "msa/base/units.h"
+#include "msa/mechanism/configuration.h"
+#include "msa/mechanism/device_file.h"
+#include "msa/mechanism/yaml_tree.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/effects.h"
+#include "validation/compare/simulate.h"
+#include "validation/effects/effect_file.h"
+#include "validation/effects/with_effect.h"
+#include "validation/measurement/campaign.h"
+
+namespace deflect::cli {
+namespace {
+
+struct Arguments {
+  std::string device, out, campaign = "rich", geometry = "finite", temperature;
+  std::vector<std::string> with, files;
+  double seed = 1, noise_mm = 0.002, noise_rad = -1, tolerances = 1, outliers = 0, force = 50, elements = 4,
+         threads = 0;
+};
+
+/// "EFFECT,leg=4,name=value,…": parameters that are not named keep the value at which a search begins.
+EffectInstance parse_with(const std::string& text, const std::vector<Effect>& all) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    words.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  const Effect& effect = find_effect(all, words.front());
+  EffectInstance out{{&effect, {}}, start_values(effect)};
+  std::vector<std::string> names = {"leg"};
+  for (const EffectParameter& p : effect.parameters) names.push_back(p.name);
+  for (auto word = words.begin() + 1; word != words.end(); ++word) {
+    const std::size_t equals = word->find('=');
+    if (equals == word->npos)
+      throw InputError(fmt::format("--with '{}': write name=value after '{}'", text, effect.name));
+    const std::string name = word->substr(0, equals);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      throw InputError(
+          fmt::format("--with '{}': {} has no parameter '{}'{}", text, effect.name, name, suggestion(name, names)));
+    double value = 0;
+    try {
+      value = parse_number(std::string_view(*word).substr(equals + 1));
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("--with '{}': {}", text, e.what()));
+    }
+    if (found == names.begin())
+      out.leg = whole("--with leg", value, 1, 1000);
+    else
+      out.values(found - names.begin() - 1) = value;
+  }
+  return out;
+}
+
+Geometry parse_geometry(const std::string& text) {
+  const auto found = std::find(std::begin(geometry_names), std::end(geometry_names), text);
+  if (found == std::end(geometry_names))
+    throw InputError(fmt::format("--geometry '{}': write {}", text, fmt::join(geometry_names, ", ")));
+  return static_cast<Geometry>(found - std::begin(geometry_names));
+}
+
+SimulationOptions options_of(const Arguments& a) {
+  SimulationOptions o;
+  if (!(a.seed >= 0 && a.seed < 9e15) || a.seed != std::floor(a.seed))
+    throw InputError(fmt::format("--seed {}: a whole number is wanted", a.seed));
+  o.seed = static_cast<std::uint64_t>(a.seed);
+  if (!(a.noise_mm >= 0)) throw InputError(fmt::format("--noise {}: mm, zero or more, are wanted", a.noise_mm));
+  o.sigma_u = a.noise_mm / 1e3;
+  if (a.noise_rad >= 0) o.sigma_th = a.noise_rad;
+  if (!(a.tolerances >= 0))
+    throw InputError(fmt::format("--tolerances {}: a factor, zero or more, is wanted", a.tolerances));
+  o.tolerances = a.tolerances;
+  if (!(a.outliers >= 0 && a.outliers < 0.5))
+    throw InputError(fmt::format("--outliers {}: a share from 0 to 0.5 is wanted", a.outliers));
+  o.outliers = a.outliers;
+  if (!a.temperature.empty()) {
+    const std::vector<double> t = parse_list("--temperature", a.temperature, {1, 2}, "mean or mean,swing in deg C");
+    o.temperature = t[0];
+    if (t.size() > 1) o.swing = t[1];
+  }
+  o.geometry = parse_geometry(a.geometry);
+  o.threads = whole("--threads", a.threads, 0, 1024);
+  return o;
+}
+
+/// Every member in `elements` equal parts.
+frame::MemberDivision division_of(const Mechanism& m, int elements) {
+  std::vector<double> at;
+  for (int i = 0; i <= elements; ++i) at.push_back(static_cast<double>(i) / elements);
+  frame::MemberDivision out;
+  const Configuration home = configure(m, home_pose(m));
+  for_each_part(home.legs, [&](const auto& part) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, PlacedMember>) out[part.part] = at;
+  });
+  return out;
+}
+
+Measurements plan_of(const Arguments& a, const Mechanism& m, std::uint64_t seed) {
+  const bool named = std::any_of(std::begin(campaign_names), std::end(campaign_names),
+                                 [&](const char* name) { return a.campaign == name; });
+  if (!named && std::filesystem::exists(a.campaign)) return read_plan(a.campaign);
+  if (!(std::isfinite(a.force) && a.force != 0))
+    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.force));
+  return campaign(a.campaign, m, a.force, seed);
+}
+
+void run(const Arguments& a) {
+  const std::vector<Effect> all = known_effects(a.files);
+  Mechanism m = read_mechanism(device_file(a.device));
+  SimulationOptions o = options_of(a);
+  Measurements plan = plan_of(a, m, o.seed);
+  std::string hidden;
+  for (const std::string& text : a.with) {
+    const EffectInstance effect = parse_with(text, all);
+    m = with_effect(m, effect);
+    if (effect.effect->name == "geometric_nonlinearity") o.geometry = m.geometry;
+    hidden += fmt::format("{}{} ({})", hidden.empty() ? "" : ", ", effect.effect->name, site_of(effect));
+  }
+  o.division = division_of(m, whole("--elements", a.elements, 1, 1000));
+  const Measurements data = simulate(m, std::move(plan), o);
+  write_measurements(a.out, data);
+  fmt::print("{}: {} readings at {} poses of {}{}, seed {}\n", a.out, data.readings.size(), data.poses.size(), m.name,
+             hidden.empty() ? ", nothing hidden" : " with " + hidden, o.seed);
+}
+
+}  // namespace
+
+Command simulate_command() {
+  auto a = std::make_shared<Arguments>();
+  return {"simulate",
+          "Measurements of a device as a laboratory would hand them over, with effects hidden in it, every part a "
+          "little off its "
+          "drawing within the device's tolerances, and reading noise; computed by the MSA in the deformed shape. The "
+          "same seed "
+          "gives the same file",
+          "deflect simulate haptic-6psu-ideal-joints --with joint_clearance,gap_mm=0.01 --campaign rich --seed 7 -o "
+          "hidden.csv",
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--with", "EFFECT,NAME=VALUE,...",
+            "hide an effect of the catalogue, with values for its parameters and, for one of a single leg, leg=4; "
+            "several times "
+            "for several effects",
+            &a->with},
+           {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
+           {"--campaign", "NAME|FILE",
+            "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280); or a "
+            "measurement "
+            "file whose poses, loads, sequence and temperatures are taken",
+            &a->campaign},
+           {"--force", "N", "largest force of a named campaign (default 50)", &a->force},
+           {"--noise", "MM", "standard deviation of a translation in mm (default 0.002)", &a->noise_mm},
+           {"--noise-rotation", "RAD", "measure rotations too, with this standard deviation", &a->noise_rad},
+           {"--tolerances", "FACTOR", "times the device's tolerances (default 1; 0: built as drawn)", &a->tolerances},
+           {"--outliers", "SHARE", "share of gross outliers, 10 to 30 standard deviations (default 0)", &a->outliers},
+           {"--temperature", "MEAN,SWING", "deg C: a slow wave about the mean over the campaign (default 20)",
+            &a->temperature},
+           {"--geometry", "NAME", "equilibrium in which shape: linear, second-order or finite (default finite)",
+            &a->geometry},
+           {"--elements", "N", "elements per member (default 4)", &a->elements},
+           {"--seed", "N", "of everything drawn by lot (default 1)", &a->seed},
+           {"--threads", "N", "threads (default 0: all cores); the file does not depend on it", &a->threads},
+           {"-o,--output", "DATA", "file to write", &a->out, true}},
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

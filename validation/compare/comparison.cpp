@@ -1,0 +1,195 @@
+#include "validation/compare/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "msa/base/error.h"
+#include "validation/compare/errors_by_group.h"
+#include "validation/compare/findings.h"
+#include "validation/compare/plausibility.h"
+#include "validation/compare/residual_study.h"
+
+namespace deflect {
+namespace {
+
+double chi2_tail(double freedoms, double chi2) {
+  return freedoms > 0 ? boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedoms), chi2)) : 1;
+}
+
+double root_mean_square(const VectorX& x) { return x.size() > 0 ? x.norm() / std::sqrt(double(x.size())) : 0; }
+
+/// σ of every measured number: the file's or replicates', else the option's.
+std::optional<std::vector<double>> sigma_of(const std::vector<MeasuredValue>& values, const ComparisonOptions& o) {
+  std::vector<double> out;
+  for (const MeasuredValue& v : values) {
+    const std::optional<double> sigma = v.sigma ? v.sigma : v.component < 3 ? o.sigma_u : o.sigma_th;
+    if (!sigma) return std::nullopt;
+    out.push_back(*sigma);
+  }
+  return out;
+}
+
+/// The scatter that no pattern explains, alike for all translations and for all rotations.
+std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const MatrixX& patterns) {
+  const std::vector<double> one(s.values.size(), 1e-6);
+  const Uncertainty u(MatrixX(r.size(), 0), s.values, one, s.predicted, 0);
+  const Regression fit = regress(u, r, patterns);
+  const VectorX left = r - patterns * fit.amplitude;
+  double squares[2] = {0, 0}, n[2] = {0, 0};
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    const std::size_t kind = s.values[i].component < 3 ? 0 : 1;
+    squares[kind] += left(static_cast<Eigen::Index>(i)) * left(static_cast<Eigen::Index>(i));
+    n[kind] += 1;
+  }
+  const auto count = static_cast<double>(s.values.size());
+  std::vector<double> out;
+  for (const MeasuredValue& v : s.values) {
+    const std::size_t kind = v.component < 3 ? 0 : 1;
+    out.push_back(std::max(1e-12, std::sqrt(squares[kind] / n[kind] * count / std::max(1.0, count - fit.freedoms))));
+  }
+  return out;
+}
+
+/// Root mean square of a translation's residual with nothing missing.
+double expected_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma) {
+  double squares = 0, n = 0;
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    const MeasuredValue& v = s.values[i];
+    if (v.component >= 3) continue;
+    const double load = s.mechanism->tolerances.load * s.predicted[v.reading](static_cast<Eigen::Index>(v.component));
+    squares += sigma[i] * sigma[i] + load * load + A.row(static_cast<Eigen::Index>(i)).squaredNorm();
+    n += 1;
+  }
+  return n > 0 ? std::sqrt(squares / n) : 0;
+}
+
+/// All patterns side by side.
+MatrixX all_columns(const std::vector<MatrixX>& patterns, Eigen::Index rows) {
+  Eigen::Index columns = 0;
+  for (const MatrixX& p : patterns) columns += p.cols();
+  MatrixX out(rows, columns);
+  columns = 0;
+  for (const MatrixX& p : patterns) {
+    out.middleCols(columns, p.cols()) = p;
+    columns += p.cols();
+  }
+  return out;
+}
+
+/// Gross outliers: readings that neither tolerances nor any pattern bring within six of the rest's standard deviations.
+std::vector<bool> gross_outliers(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma,
+                                 const VectorX& residual, const MatrixX& patterns) {
+  std::vector<bool> aside(s.data->readings.size(), false);
+  for (int round = 0; round < 3; ++round) {
+    const Uncertainty u(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, aside);
+    // Once more without those set aside, whose rest is judged by what the others say.
+    const VectorX rest = residual - patterns * regress(u, residual, patterns).amplitude;
+    const VectorX left = rest - A * u.nuisances(rest);
+    std::vector<double> worst(aside.size(), 0);
+    for (std::size_t i = 0; i < s.values.size(); ++i) {
+      const MeasuredValue& v = s.values[i];
+      const double load = s.mechanism->tolerances.load * s.predicted[v.reading](static_cast<Eigen::Index>(v.component));
+      worst[v.reading] =
+          std::max(worst[v.reading], std::abs(left(static_cast<Eigen::Index>(i))) / std::hypot(sigma[i], load));
+    }
+    std::vector<double> sorted = worst;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    const double typical = sorted[sorted.size() / 2];  // about 1.2 for three Gaussian numbers
+    std::vector<bool> next(aside.size());
+    for (std::size_t i = 0; i < worst.size(); ++i) next[i] = worst[i] > 6 * std::max(1.0, typical / 1.2);
+    if (next == aside) break;
+    aside = next;
+  }
+  return aside;
+}
+
+}  // namespace
+
+double held_out_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma, const VectorX& r) {
+  const std::size_t poses = s.data->poses.size(), folds = std::min<std::size_t>(10, poses);
+  if (poses < 2) return 0;
+  double squares = 0;
+  std::size_t n = 0;
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    std::vector<bool> aside(s.data->readings.size());
+    for (std::size_t i = 0; i < aside.size(); ++i) aside[i] = s.data->readings[i].pose % folds == fold;
+    const Uncertainty u(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, aside);
+    const VectorX left = r - A * u.nuisances(r);
+    for (std::size_t i = 0; i < s.values.size(); ++i)
+      if (aside[s.values[i].reading] && s.values[i].component < 3) {
+        squares += left(static_cast<Eigen::Index>(i)) * left(static_cast<Eigen::Index>(i));
+        ++n;
+      }
+  }
+  return n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0;
+}
+
+Comparison compare(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) {
+  if (data.readings.size() < 2)
+    throw InputError(fmt::format("{}: one reading says nothing of a model: two or more are wanted", data.origin));
+  Comparison c;
+  c.device = m.name;
+  c.data = data.origin;
+  c.readings = data.readings.size();
+  c.poses = data.poses.size();
+  c.study = residual_study(m, data, o.threads);
+  const ResidualStudy& s = c.study;
+  c.numbers = s.values.size();
+  c.pure_error = pure_error(data).u;
+  VectorX measured(static_cast<Eigen::Index>(s.values.size()));
+  for (std::size_t i = 0; i < s.values.size(); ++i) measured(static_cast<Eigen::Index>(i)) = s.values[i].value;
+  c.residual = measured - rows_of(s.values, s.predicted);
+  add_errors(c);
+  c.looks_like = what_data_look_like(s);
+
+  c.tolerances = tolerance_model(m, s.machines, data, s.values, o.threads);
+  const std::vector<Pattern> patterns = patterns_of(s);
+  std::vector<MatrixX> columns;
+  for (const Pattern& p : patterns) columns.push_back(rows_of(s.values, p.by_reading));
+  const MatrixX all = all_columns(columns, c.residual.size());
+
+  // A linear model leaves the deformed shape out, which is known in size: what follows looks for other things.
+  VectorX r = c.residual, shape;
+  if (!s.deformed_shape.empty()) {
+    shape = rows_of(s.values, s.deformed_shape);
+    c.deformed_shape = root_mean_square(shape);
+    r -= shape;
+  }
+  if (const auto sigma = sigma_of(s.values, o))
+    c.sigma = *sigma;
+  else
+    c.sigma = scatter(s, r, all), c.sigma_from_residuals = true;
+  const std::vector<bool> aside = gross_outliers(s, c.tolerances.A, c.sigma, r, all);
+  for (std::size_t i = 0; i < aside.size(); ++i)
+    if (aside[i]) c.set_aside.push_back(data.readings[i].line);
+  const Uncertainty u(c.tolerances.A, s.values, c.sigma, s.predicted, m.tolerances.load, aside);
+
+  const double chi2 = u.inner(c.residual, c.residual)(0, 0);
+  const auto freedoms = static_cast<double>(u.count());
+  c.chi2_per_dof = chi2 / freedoms;
+  c.p_value = chi2_tail(freedoms, chi2);
+  c.sigma_u = root_mean_square(Eigen::Map<const VectorX>(c.sigma.data(), static_cast<Eigen::Index>(c.sigma.size())));
+  c.noise_and_tolerances = expected_rmse(s, c.tolerances.A, c.sigma);
+  c.held_out = held_out_rmse(s, c.tolerances.A, c.sigma, c.residual);
+  c.contrasts = contrast_tests(s, u, r, aside);
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    PatternTest t{patterns[i].id, patterns[i].title, regress(u, r, columns[i]), 0};
+    t.size = root_mean_square(columns[i] * t.alone.amplitude);
+    c.patterns.push_back(std::move(t));
+  }
+  const Findings found = find_patterns(s, u, r, patterns, columns);
+  c.findings = found.findings;
+  c.unexplained_chi2_per_dof = found.chi2_left / (freedoms - found.columns.cols());
+  if (shape.size() > 0) c.deformed_shape_fit = regress(u, c.residual, shape, found.columns);
+  c.curves = elongation_curves(s, u, r);
+  const VectorX eta = u.nuisances(r);
+  for (Eigen::Index i = 0; i < eta.size(); ++i)
+    if (std::abs(eta(i)) > 2) c.strained.emplace_back(c.tolerances.nuisances[static_cast<std::size_t>(i)].name, eta(i));
+  return c;
+}
+
+}  // namespace deflect

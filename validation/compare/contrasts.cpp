@@ -1,0 +1,252 @@
+#include "validation/compare/contrasts.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace deflect {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Weights = std::vector<std::pair<std::size_t, double>>;  // reading, weight
+
+constexpr std::size_t most_contrasts = 1200;
+
+/// Contrasts of translations: one row for each component that all its readings have.
+class Contrasts {
+ public:
+  Contrasts(const ResidualStudy& s, const std::vector<bool>& set_aside) : aside_(set_aside) {
+    row_.assign(s.data->readings.size(), {-1, -1, -1});
+    for (std::size_t i = 0; i < s.values.size(); ++i)
+      if (s.values[i].component < 3) row_[s.values[i].reading][s.values[i].component] = static_cast<Eigen::Index>(i);
+    columns_ = static_cast<Eigen::Index>(s.values.size());
+  }
+
+  void add(const Weights& w) {
+    for (std::size_t k = 0; k < 3; ++k) add(w, k, k);
+  }
+
+  /// Weights by component: rows of a matrix that differ.
+  void add(const std::vector<std::array<double, 3>>& by_component, const std::vector<std::size_t>& readings) {
+    std::vector<std::pair<Eigen::Index, double>> row;
+    for (std::size_t i = 0; i < readings.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (by_component[i][k] != 0) {
+          if (!usable(readings[i], k)) return;
+          row.emplace_back(row_[readings[i]][k], by_component[i][k]);
+        }
+    rows_.push_back(std::move(row));
+  }
+
+  bool usable(std::size_t reading, std::size_t component) const {
+    return row_[reading][component] >= 0 && (aside_.empty() || !aside_[reading]);
+  }
+
+  ContrastTest judge(ContrastTest t, const Uncertainty& u, const VectorX& r) const {
+    std::vector<std::vector<std::pair<Eigen::Index, double>>> rows = rows_;
+    if (rows.size() > most_contrasts) {  // evenly over the plan
+      std::vector<std::vector<std::pair<Eigen::Index, double>>> some;
+      for (std::size_t i = 0; i < most_contrasts; ++i) some.push_back(rows[i * rows.size() / most_contrasts]);
+      rows = std::move(some);
+    }
+    t.contrasts = rows.size();
+    if (rows.empty()) return t;
+    Sparse T(static_cast<Eigen::Index>(rows.size()), columns_);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (const auto& [column, weight] : rows[i]) entries.emplace_back(static_cast<Eigen::Index>(i), column, weight);
+    T.setFromTriplets(entries.begin(), entries.end());
+    const VectorX z = T * r;
+    const MatrixX covariance = u.covariance(T);
+    const VectorX scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(scale.asDiagonal() * covariance * scale.asDiagonal());
+    const VectorX along = axes.eigenvectors().transpose() * scale.cwiseProduct(z);
+    double chi2 = 0;
+    int freedoms = 0;
+    for (Eigen::Index i = 0; i < along.size(); ++i)
+      if (axes.eigenvalues()(i) > 1e-9) {
+        chi2 += along(i) * along(i) / axes.eigenvalues()(i);
+        ++freedoms;
+      }
+    t.p_value = boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedoms), chi2));
+    t.size = std::sqrt(std::max(0.0, (z.squaredNorm() - covariance.trace()) / static_cast<double>(z.size())));
+    return t;
+  }
+
+ private:
+  void add(const Weights& w, std::size_t component, std::size_t) {
+    std::vector<std::pair<Eigen::Index, double>> row;
+    for (const auto& [reading, weight] : w) {
+      if (!usable(reading, component)) return;
+      row.emplace_back(row_[reading][component], weight);
+    }
+    rows_.push_back(std::move(row));
+  }
+
+  const std::vector<bool>& aside_;
+  std::vector<std::array<Eigen::Index, 3>> row_;
+  Eigen::Index columns_ = 0;
+  std::vector<std::vector<std::pair<Eigen::Index, double>>> rows_;
+};
+
+/// A load to 1e-9 N and Nm, so that equal ones meet.
+std::array<long long, 6> key(const Vector6& F) {
+  std::array<long long, 6> out;
+  for (std::size_t i = 0; i < 6; ++i) out[i] = std::llround(1e9 * F(static_cast<Eigen::Index>(i)));
+  return out;
+}
+
+Weights mean(const std::vector<std::size_t>& readings, double weight) {
+  Weights out;
+  for (const std::size_t i : readings) out.emplace_back(i, weight / static_cast<double>(readings.size()));
+  return out;
+}
+
+Weights operator+(Weights a, const Weights& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+using ByLoad = std::map<std::array<long long, 6>, std::vector<std::size_t>>;
+
+ByLoad by_load(const ResidualStudy& s, const PoseGroup& group, const std::vector<bool>& aside) {
+  ByLoad out;
+  for (const std::size_t i : group.readings)
+    if (aside.empty() || !aside[i]) out[key(s.data->readings[i].load)].push_back(i);
+  return out;
+}
+
+std::array<long long, 6> opposite(std::array<long long, 6> k) {
+  for (long long& x : k) x = -x;
+  return k;
+}
+
+void add_parity(Contrasts& c, const ByLoad& loads) {
+  for (const auto& [load, readings] : loads) {
+    const auto other = opposite(load);
+    if (!(load < other)) continue;
+    if (const auto found = loads.find(other); found != loads.end())
+      c.add(mean(readings, 0.5) + mean(found->second, 0.5));
+  }
+}
+
+/// Lines of loads: unit vector to readings of that sense, and their magnitudes.
+void add_intercepts(Contrasts& c, const ResidualStudy& s, const ByLoad& loads) {
+  std::map<std::array<long long, 6>, std::vector<std::pair<double, std::size_t>>> lines;
+  for (const auto& [load, readings] : loads)
+    for (const std::size_t i : readings) {
+      const Vector6& F = s.data->readings[i].load;
+      if (F.isZero(0)) continue;
+      lines[key(F / F.norm() * 1e-3)].emplace_back(F.norm(), i);
+    }
+  for (const auto& [direction, points] : lines) {
+    double sum = 0, squares = 0;
+    const auto n = static_cast<double>(points.size());
+    for (const auto& [F, i] : points) sum += F, squares += F * F;
+    const double spread = squares - sum * sum / n;
+    if (!(spread > 1e-6 * squares)) continue;
+    Weights w;  // of the intercept of a straight line: Σ w = 1, Σ w F = 0
+    for (const auto& [F, i] : points) w.emplace_back(i, 1 / n - (F - sum / n) * (sum / n) / spread);
+    c.add(w);
+  }
+}
+
+/// Along the load: whether it was reached from below or from above (by its change since the reading before).
+void add_hysteresis(Contrasts& c, const ResidualStudy& s, const PoseGroup& group, const ByLoad& loads) {
+  std::vector<std::size_t> order = group.readings;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return s.data->readings[a].sequence < s.data->readings[b].sequence; });
+  std::map<std::size_t, Vector6> change;
+  Vector6 before = Vector6::Zero();
+  for (const std::size_t i : order) {
+    change[i] = s.data->readings[i].load - before;
+    before = s.data->readings[i].load;
+  }
+  for (const auto& [load, readings] : loads) {
+    std::vector<std::size_t> up, down;
+    const Vector6& F = s.data->readings[readings.front()].load;
+    for (const std::size_t i : readings) {
+      double along = change[i].dot(F);
+      if (F.isZero(0)) along = change[i].sum();
+      if (std::abs(along) > 0) (along > 0 ? up : down).push_back(i);
+    }
+    if (!up.empty() && !down.empty()) c.add(mean(up, 1) + mean(down, -1));
+  }
+}
+
+void add_drift(Contrasts& c, const ResidualStudy& s, const ByLoad& loads) {
+  for (const auto& [load, readings] : loads) {
+    std::vector<std::size_t> order = readings;
+    if (order.size() < 2) continue;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return s.data->readings[a].sequence < s.data->readings[b].sequence;
+    });
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+    c.add(mean({middle, order.end()}, 1) + mean({order.begin(), middle}, -1));
+  }
+}
+
+/// The antisymmetric part of C in u = C f + c0, least squares over the pose's readings under forces alone.
+void add_reciprocity(Contrasts& c, const ResidualStudy& s, const PoseGroup& group) {
+  std::vector<std::size_t> readings;
+  for (const std::size_t i : group.readings)
+    if (s.data->readings[i].load.tail<3>().isZero(0) && c.usable(i, 0) && c.usable(i, 1) && c.usable(i, 2))
+      readings.push_back(i);
+  if (readings.size() < 4) return;
+  MatrixX X(static_cast<Eigen::Index>(readings.size()), 4);
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    X.row(static_cast<Eigen::Index>(i)) << s.data->readings[readings[i]].load.head<3>().transpose(), 0;
+  const double force = X.norm() / std::sqrt(static_cast<double>(readings.size()));
+  X.col(3).setConstant(force);
+  const Eigen::ColPivHouseholderQR<MatrixX> qr(X);
+  if (qr.rank() < 4) return;
+  const MatrixX pseudo = qr.solve(MatrixX::Identity(X.rows(), X.rows()));  // C_kl = Σ_i pseudo(l, i) u_ik
+  for (const auto& [k, l] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}}) {
+    std::vector<std::array<double, 3>> weights(readings.size(), {0, 0, 0});
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      // In metres at the plan's force.
+      weights[i][k] = 0.5 * force * pseudo(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(i));
+      weights[i][l] = -0.5 * force * pseudo(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
+    }
+    c.add(weights, readings);
+  }
+}
+
+}  // namespace
+
+std::vector<ContrastTest> contrast_tests(const ResidualStudy& s, const Uncertainty& u, const VectorX& residual,
+                                         const std::vector<bool>& aside) {
+  enum { parity, proportionality, hysteresis, zero, drift, reciprocity };
+  std::vector<ContrastTest> tests = {
+      {"parity", "is the misfit the same for a load and its opposite (even)?", 0, 0, 1, "pairs of opposite loads"},
+      {"proportionality", "does the misfit begin away from zero?", 0, 0, 1, "two magnitudes of a load in one sense"},
+      {"hysteresis", "does it depend on the way the load was reached?", 0, 0, 1,
+       "a sequence with the same load reached from both sides"},
+      {"zero return", "is something left without load?", 0, 0, 1, "readings at no load"},
+      {"drift", "has a repeated reading changed?", 0, 0, 1, "a sequence with repeated loads"},
+      {"reciprocity", "do forces and displacements answer each other alike?", 0, 0, 1,
+       "forces in all directions at a pose"}};
+  std::vector<Contrasts> contrasts(tests.size(), Contrasts(s, aside));
+  for (const PoseGroup& group : s.data->poses) {
+    const ByLoad loads = by_load(s, group, aside);
+    add_parity(contrasts[parity], loads);
+    add_intercepts(contrasts[proportionality], s, loads);
+    if (s.sequence) {
+      add_hysteresis(contrasts[hysteresis], s, group, loads);
+      add_drift(contrasts[drift], s, loads);
+    }
+    if (const auto unloaded = loads.find({}); unloaded != loads.end())
+      for (const std::size_t i : unloaded->second) contrasts[zero].add(Weights{{i, 1}});
+    add_reciprocity(contrasts[reciprocity], s, group);
+  }
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    tests[i] = contrasts[i].judge(std::move(tests[i]), u, residual);
+    if (tests[i].contrasts > 0) tests[i].missing.clear();
+  }
+  return tests;
+}
+
+}  // namespace deflect

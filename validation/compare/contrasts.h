@@ -1,0 +1,33 @@
+// Questions to the readings that need no idea of what may be missing: sums and differences of residuals of the same
+// pose that vanish, but for noise and tolerances, where the model is right in that respect.
+//
+//   parity            [r(F) + r(−F)]/2 of pairs of opposite loads: what is even in the load
+//   proportionality   the intercept at no load of r along one line of loads, from two or more magnitudes of one sense:
+//                     free travel, contact
+//   hysteresis        r after the load rose − r after it fell, at the same load of the same pose
+//   zero return       r at no load
+//   drift             r of the same load later − earlier
+//   reciprocity       the antisymmetric part of a compliance fitted to all force readings of a pose: no structure has
+//                     one, turned axes of a sensor or load cell have
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "validation/compare/patterns.h"
+#include "validation/compare/uncertainty.h"
+
+namespace deflect {
+
+struct ContrastTest {
+  std::string id, question;
+  std::size_t contrasts = 0;  ///< numbers that were compared; 0: the plan does not answer
+  double size = 0;            ///< m: root mean square beyond what noise and tolerances give; 0 where below
+  double p_value = 1;
+  std::string missing;  ///< what the plan would have to hold, where it does not answer
+};
+
+std::vector<ContrastTest> contrast_tests(const ResidualStudy&, const Uncertainty&, const VectorX& residual,
+                                         const std::vector<bool>& set_aside);
+
+}  // namespace deflect

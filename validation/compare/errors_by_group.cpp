@@ -1,0 +1,104 @@
+#include "validation/compare/errors_by_group.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+
+namespace deflect {
+namespace {
+
+/// Whether a measured number belongs to the group.
+using Belongs = std::function<bool(const MeasuredValue&)>;
+
+Errors errors_of(const Comparison& c, const std::string& group, bool rotations, const Belongs& belongs) {
+  Errors e;
+  e.group = group;
+  double squares = 0, measured = 0, n = 0;
+  Vector3 sum = Vector3::Zero(), count = Vector3::Zero();
+  std::size_t last = c.readings;
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const MeasuredValue& v = c.study.values[i];
+    if ((v.component >= 3) != rotations || !belongs(v)) continue;
+    const double r = c.residual(static_cast<Eigen::Index>(i));
+    squares += r * r;
+    measured += v.value * v.value;
+    n += 1;
+    sum(static_cast<Eigen::Index>(v.component % 3)) += r;
+    count(static_cast<Eigen::Index>(v.component % 3)) += 1;
+    if (v.reading != last) ++e.readings;
+    last = v.reading;
+    if (std::abs(r) > e.worst) e.worst = std::abs(r), e.worst_line = c.study.data->readings[v.reading].line;
+  }
+  if (n == 0) return e;
+  e.rmse = std::sqrt(squares / n);
+  e.measured = std::sqrt(measured / n);
+  e.bias = sum.cwiseQuotient(count.cwiseMax(1));
+  return e;
+}
+
+/// "fx > 0", "mz < 0" where one component is all of the load, "oblique", "no load".
+std::string direction_of(const Vector6& F) {
+  constexpr const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+  Eigen::Index largest = 0;
+  Vector6 weighed = F;
+  weighed.tail<3>() *= 10;  // moments against forces on 100 mm
+  weighed.cwiseAbs().maxCoeff(&largest);
+  if (weighed(largest) == 0) return "no load";
+  if (weighed.norm() > 1.001 * std::abs(weighed(largest))) return "oblique";
+  return fmt::format("{} {} 0", names[largest], F(largest) > 0 ? ">" : "<");
+}
+
+}  // namespace
+
+void add_errors(Comparison& c) {
+  const Measurements& data = *c.study.data;
+  bool rotations = true;
+  for (const MeasuredValue& v : c.study.values) rotations = rotations && v.component >= 3;
+  const auto group = [&](const std::string& name, const Belongs& belongs) {
+    return errors_of(c, name, rotations, belongs);
+  };
+  c.all = group("", [](const MeasuredValue&) { return true; });
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Errors e = group(std::string(1, "xyz"[k]), [&](const MeasuredValue& v) { return v.component % 3 == k; });
+    if (e.readings > 0) c.by_axis.push_back(e);
+  }
+  for (std::size_t p = 0; p < data.poses.size(); ++p)
+    c.by_pose.push_back(group("pose " + data.poses[p].label,
+                              [&](const MeasuredValue& v) { return data.readings[v.reading].pose == p; }));
+  std::map<std::string, std::size_t> directions;
+  double most = 0;
+  for (const Reading& r : data.readings) {
+    ++directions[direction_of(r.load)];
+    most = std::max(most, r.load.head<3>().norm());
+  }
+  for (const auto& [name, count] : directions)
+    c.by_direction.push_back(group(
+        name, [&, n = name](const MeasuredValue& v) { return direction_of(data.readings[v.reading].load) == n; }));
+  if (most > 0)
+    for (int third = 0; third < 3; ++third) {
+      const double low = most * third / 3, high = most * (third + 1) / 3;
+      const auto within = [&, third](const MeasuredValue& v) {
+        const double F = data.readings[v.reading].load.head<3>().norm();
+        return F > low * (1 + 1e-9) && F <= high * (1 + 1e-9) && (third > 0 || F > 0);
+      };
+      const Errors e = group(fmt::format("{:.3g} … {:.3g} N", low, high), within);
+      if (e.readings > 0) c.by_magnitude.push_back(e);
+    }
+  if (!c.study.sequence) return;
+  // Whether the largest site force had risen or fallen in size.
+  const auto heading = [&](const MeasuredValue& v) {
+    const VectorX &f = c.study.force[v.reading], &h = c.study.heading[v.reading];
+    if (f.size() == 0) return 0.0;
+    Eigen::Index k = 0;
+    f.cwiseAbs().maxCoeff(&k);
+    return f(k) * h(k);
+  };
+  for (const auto& [name, sign] : {std::pair<const char*, double>{"loading", 1}, {"unloading", -1}}) {
+    const Errors e = group(name, [&, s = sign](const MeasuredValue& v) { return heading(v) * s > 0; });
+    if (e.readings > 0) c.by_heading.push_back(e);
+  }
+}
+
+}  // namespace deflect

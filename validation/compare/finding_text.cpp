@@ -1,0 +1,175 @@
+#include "validation/compare/finding_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace deflect {
+namespace {
+
+std::string plus_minus(double value, double deviation, double scale, const char* unit) {
+  return fmt::format("{:.3g} ± {:.2g} {}", scale * value, scale * deviation, unit);
+}
+
+std::string by_column(const Finding& f, double scale, const char* unit) {
+  std::string out;
+  for (std::size_t i = 0; i < f.columns.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    out += fmt::format("{}{} {}", i ? ", " : "", f.columns[i], plus_minus(f.amplitude(k), f.deviation(k), scale, unit));
+  }
+  return out;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string out;
+  for (const std::string& p : parts) out += (out.empty() ? "" : "; ") + p;
+  return out;
+}
+
+/// How much a site of this geometry yields in the pattern found, which grows as a root's or a guide's does across
+/// slides.
+double weight_of(const Finding& found, const ResidualStudy& s, const Site& site) {
+  if (found.pattern == "elastic along slides") return site.along;
+  if (found.pattern != "elastic across slides") return 1;
+  const double L = site.extension / mean_extension(s);
+  double weight = 0, power = 1;
+  for (Eigen::Index k = 0; k < found.amplitude.size(); ++k, power *= L) weight += found.amplitude(k) * power;
+  return (1 - site.along) * weight / found.amplitude.cwiseAbs().maxCoeff();
+}
+
+/// Whether each site's own size of the same shape says more than a common one.
+std::string alike(const Finding& found, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+                  const MatrixX& beside) {
+  const std::vector<Site>& sites = s.sites.front();
+  if (sites.size() < 2) return "";
+  const auto shape = [&](std::size_t i, std::size_t k) {
+    return weight_of(found, s, s.sites[s.data->readings[i].pose][k]) * s.force[i](static_cast<Eigen::Index>(k));
+  };
+  const MatrixX own = rows_of(s.values, site_columns(s, shape));
+  MatrixX both(r.size(), beside.cols() + found.shape.cols());
+  both << beside, found.shape;
+  const Regression spread = regress(u, r, own, both);
+  return spread.p_value > 0.01 ? fmt::format("the same at all {} sites (p = {:.2g})", sites.size(), spread.p_value)
+                               : fmt::format("not the same at all sites (p = {:.1g})", spread.p_value);
+}
+
+std::string elastic(const Finding& f, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+                    const MatrixX& beside) {
+  std::vector<std::string> parts;
+  const bool rotation = s.sites.front().front().rotation;
+  const bool softer = f.columns.size() != 1 || f.amplitude(0) > 0;
+  std::string first = softer ? "an elastic compliance is missing" : "the machine is stiffer than the model";
+  if (f.pattern.starts_with("elastic at ")) first += fmt::format(" at {} alone", f.pattern.substr(11));
+  if (f.pattern == "elastic along slides") first += " along the slides";
+  if (f.pattern == "elastic across slides") first += " across the slides";
+  if (f.columns.size() == 1)
+    first += rotation
+                 ? fmt::format(": {} under each moment", plus_minus(f.amplitude(0), f.deviation(0), 1e3, "µrad/Nmm"))
+                 : fmt::format(": {}", plus_minus(f.amplitude(0), f.deviation(0), 1e6, "µm/N"));
+  else if (f.pattern == "elastic by site")
+    first += ": " + (rotation ? by_column(f, 1e3, "µrad/Nmm") : by_column(f, 1e6, "µm/N"));
+  parts.push_back(first);
+  const auto weight = [&](const Site& site) { return weight_of(f, s, site); };
+  if (const auto p = force_exponent(s, u, r, weight, beside); p && !f.pattern.starts_with("elastic at "))
+    parts.push_back(
+        fmt::format("odd in the load and {} (it grows as the force to the {:.2f} ± {:.2f})",
+                    std::abs(p->value - 1) < 3 * p->deviation + 0.05 ? "proportional" : "not quite proportional",
+                    p->value, p->deviation));
+  if (!f.pattern.starts_with("elastic at "))
+    if (const auto p = extension_exponent(s, u, r, beside); p && f.pattern == "elastic across slides")
+      parts.push_back(fmt::format("the excess grows as their length to the {:.1f} ± {:.1f}", p->value, p->deviation));
+  if (!f.pattern.starts_with("elastic at ") && f.pattern != "elastic by site")
+    if (const std::string same = alike(f, s, u, r, beside); !same.empty()) parts.push_back(same);
+  return joined(parts);
+}
+
+}  // namespace
+
+bool has_slides(const ResidualStudy& s) {
+  for (const auto& sites : s.sites)
+    for (const Site& site : sites)
+      if (site.along < 0.999) return true;
+  return false;
+}
+
+bool varies_in_extension(const ResidualStudy& s) {
+  double low = INFINITY, high = 0;
+  for (const auto& sites : s.sites)
+    for (const Site& site : sites) low = std::min(low, site.extension), high = std::max(high, site.extension);
+  return low > 0 && high > 1.2 * low;
+}
+
+double mean_extension(const ResidualStudy& s) {
+  double sum = 0, n = 0;
+  for (const auto& sites : s.sites)
+    for (const Site& site : sites) sum += site.extension, n += 1;
+  return n > 0 && sum > 0 ? sum / n : 1;
+}
+
+Columns elastic_along(const ResidualStudy& s) {
+  return site_column(s, [&](std::size_t i, std::size_t k) {
+    return s.force[i](static_cast<Eigen::Index>(k)) * s.sites[s.data->readings[i].pose][k].along;
+  });
+}
+
+Columns elastic_across(const ResidualStudy& s, double power) {
+  const double mean = mean_extension(s);
+  return site_column(s, [&](std::size_t i, std::size_t k) {
+    const Site& site = s.sites[s.data->readings[i].pose][k];
+    return s.force[i](static_cast<Eigen::Index>(k)) * (1 - site.along) * std::pow(site.extension / mean, power);
+  });
+}
+
+std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+                        const MatrixX& beside) {
+  const bool rotation = !s.sites.front().empty() && s.sites.front().front().rotation;
+  const auto amplitude = [&](double scale, const char* unit) {
+    return plus_minus(f.amplitude(0), f.deviation(0), scale, unit);
+  };
+  if (f.pattern.starts_with("elastic")) return elastic(f, s, u, r, beside);
+  if (f.pattern == "step")
+    return fmt::format(
+        "the misfit does not grow with the load: every site {} {} as soon as it is loaded, in the sense of its "
+        "force: free travel",
+        f.amplitude(0) > 0 ? "gives way by" : "holds back by",
+        rotation ? amplitude(1e6, "µrad") : amplitude(1e6, "µm"));
+  if (f.pattern == "power") {
+    const auto p = force_exponent(
+        s, u, r, [](const Site&) { return 1.0; }, beside);
+    return fmt::format(
+        "the misfit is odd in the load and grows less than in proportion{}: a contact that stiffens under load",
+        p ? fmt::format(" (as the force to the {:.2f} ± {:.2f})", p->value, p->deviation) : "");
+  }
+  if (f.pattern == "one-sided")
+    return fmt::format("the misfit is even in the load: sites give {} where they are {}, not in the other sense",
+                       rotation ? amplitude(2e3, "µrad/Nmm") : amplitude(2e6, "µm/N"),
+                       f.amplitude(0) > 0 ? "pulled" : "pushed");
+  if (f.pattern == "hysteresis")
+    return "the misfit depends on the way the load was reached and lags behind it: hysteresis, friction";
+  if (f.pattern == "base tilt")
+    return fmt::format("the whole machine tilts under the load's moment about its base: {}; no single leg does this",
+                       by_column(f, 1e3, "µrad/Nmm"));
+  if (f.pattern == "tool") return "the point measured moves against the platform: " + by_column(f, 1e6, "µm/N");
+  if (f.pattern == "weight")
+    return fmt::format(
+        "the misfit does not depend on the load and points where a constant force of {} downwards would push: even",
+        amplitude(1, "N"));
+  if (f.pattern == "offset")
+    return "every reading is displaced alike, whatever pose and load: " + by_column(f, 1e6, "µm");
+  if (f.pattern == "drift") return "readings drift with time, over the sequence by " + by_column(f, 1e6, "µm");
+  if (f.pattern == "temperature") return "readings follow the temperature: " + by_column(f, 1e6, "µm/K");
+  if (f.pattern == "load gain")
+    return fmt::format(
+        "all displacements are larger than predicted by one factor, {:.4f} ± {:.4f}: the modulus of everything, "
+        "or the load cell's gain",
+        1 + f.amplitude(0), f.deviation(0));
+  if (f.pattern == "load axes")
+    return "the misfit is perpendicular to the model's answer and not reciprocal: loads are recorded in axes turned "
+           "by " +
+           by_column(f, 1e3, "mrad") + ": misaligned";
+  return "the misfit is perpendicular to the displacement and not reciprocal: the sensor's axes are turned by " +
+         by_column(f, 1e3, "mrad") + ": misaligned";
+}
+
+}  // namespace deflect

@@ -1,0 +1,151 @@
+#include "validation/compare/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/compare/finding_text.h"
+
+namespace deflect {
+namespace {
+
+constexpr double least_score = 10, close_call = 10, least_p = 1e-4;
+constexpr std::size_t most_findings = 4;
+
+struct Candidate {
+  std::string id;
+  std::vector<std::string> names;
+  std::string unit;
+  MatrixX columns;
+};
+
+/// What one site alone can do: yield along its line; where it has a slide, along this, across it, and across as a bent
+/// guide does.
+void add_single_sites(const ResidualStudy& s, const Pattern& p, const MatrixX& columns, std::vector<Candidate>& out) {
+  for (std::size_t site = 0; site < p.columns.size(); ++site) {
+    const auto only = [&](const auto& e) {
+      return rows_of(s.values, site_column(s, [&](std::size_t reading, std::size_t k) {
+                       return k == site ? e(s.sites[s.data->readings[reading].pose][k]) *
+                                              s.force[reading](static_cast<Eigen::Index>(k))
+                                        : 0.0;
+                     }));
+    };
+    Candidate c{
+        "elastic at " + p.columns[site], {p.columns[site]}, p.unit, columns.col(static_cast<Eigen::Index>(site))};
+    if (has_slides(s)) {
+      c.columns.resize(Eigen::NoChange, 3);
+      c.columns.col(0) = only([](const Site& x) { return x.along; });
+      c.columns.col(1) = only([](const Site& x) { return 1 - x.along; });
+      c.columns.col(2) =
+          only([&](const Site& x) { return (1 - x.along) * std::pow(x.extension / mean_extension(s), 3); });
+      c.names = {"along its slide", "across", "across, as L^3"};
+    }
+    out.push_back(std::move(c));
+  }
+}
+
+/// The patterns; elastic ones along and across slides; and the elastic one of each site alone.
+std::vector<Candidate> candidates_of(const ResidualStudy& s, const std::vector<Pattern>& patterns,
+                                     const std::vector<MatrixX>& columns) {
+  std::vector<Candidate> out;
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    const Pattern& p = patterns[i];
+    if (p.id == "elastic by site") add_single_sites(s, p, columns[i], out);
+    out.push_back({p.id, p.columns, p.unit, columns[i]});
+    if (p.id == "elastic" && has_slides(s)) {
+      out.push_back({"elastic along slides", {"all"}, p.unit, rows_of(s.values, elastic_along(s))});
+      const int powers = varies_in_extension(s) ? 4 : 1;  // a carriage, its guide's clamp tilting, the guide bending
+      MatrixX across(columns[i].rows(), powers);
+      std::vector<std::string> names;
+      for (int power = 0; power < powers; ++power) {
+        names.push_back(fmt::format("L^{}", power));
+        across.col(power) = rows_of(s.values, elastic_across(s, power));
+      }
+      out.push_back({"elastic across slides", names, p.unit, across});
+    }
+  }
+  return out;
+}
+
+MatrixX joined(const MatrixX& a, const MatrixX& b) {
+  MatrixX out(b.rows(), a.cols() + b.cols());
+  if (a.cols() > 0) out.leftCols(a.cols()) = a;
+  out.rightCols(b.cols()) = b;
+  return out;
+}
+
+/// The exponent that takes most χ² away: grid, then a parabola through the best three.
+std::optional<Exponent> best_exponent(double low, double high, double step, const std::function<double(double)>& gain) {
+  std::vector<double> at, gains;
+  for (double p = low; p <= high + 1e-9; p += step) at.push_back(p), gains.push_back(gain(p));
+  const auto best = static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
+  if (best == 0 || best + 1 == at.size() || gains[best] < 25) return std::nullopt;
+  const double curvature = (gains[best - 1] - 2 * gains[best] + gains[best + 1]) / (step * step);
+  if (!(curvature < 0)) return std::nullopt;
+  const double slope = (gains[best + 1] - gains[best - 1]) / (2 * step);
+  return Exponent{at[best] - slope / curvature, std::sqrt(-2 / curvature)};
+}
+
+}  // namespace
+
+std::optional<Exponent> force_exponent(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+                                       const std::function<double(const Site&)>& weight, const MatrixX& beside) {
+  return best_exponent(-0.5, 2.5, 0.1, [&](double p) {
+    const Columns e = site_column(s, [&](std::size_t i, std::size_t k) {
+      const double f = s.force[i](static_cast<Eigen::Index>(k));
+      return f == 0 ? 0 : weight(s.sites[s.data->readings[i].pose][k]) * std::copysign(std::pow(std::abs(f), p), f);
+    });
+    return regress(u, r, rows_of(s.values, e), beside).gain;
+  });
+}
+
+std::optional<Exponent> extension_exponent(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+                                           const MatrixX& beside) {
+  if (!varies_in_extension(s)) return std::nullopt;
+  return best_exponent(-2, 5, 0.1,
+                       [&](double p) { return regress(u, r, rows_of(s.values, elastic_across(s, p)), beside).gain; });
+}
+
+Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+                       const std::vector<Pattern>& patterns, const std::vector<MatrixX>& columns) {
+  const std::vector<Candidate> candidates = candidates_of(s, patterns, columns);
+  const double penalty = std::log(static_cast<double>(s.data->readings.size()));
+  const double chi2 = u.inner(r, r)(0, 0), freedoms = static_cast<double>(u.count());
+  Findings out;
+  out.columns = MatrixX(r.size(), 0);
+  out.chi2_left = chi2;
+  while (out.findings.size() < most_findings) {
+    std::vector<Regression> fits;
+    std::vector<double> scores;
+    for (const Candidate& c : candidates) {
+      fits.push_back(regress(u, r, c.columns, out.columns));
+      scores.push_back(fits.back().gain - penalty * fits.back().freedoms);
+    }
+    const auto best = static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
+    const Candidate& c = candidates[best];
+    const Regression& fit = fits[best];
+    if (scores[best] < least_score || fit.p_value * static_cast<double>(candidates.size()) > least_p) break;
+    Finding f;
+    f.pattern = c.id;
+    f.columns = c.names;
+    f.unit = c.unit;
+    f.amplitude = fit.amplitude;
+    f.deviation = fit.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+    f.gain = fit.gain;
+    f.freedoms = fit.freedoms;
+    f.p_value = fit.p_value;
+    f.size = (c.columns * fit.amplitude).norm() / std::sqrt(static_cast<double>(r.size()));
+    f.share = fit.gain / std::max(chi2 - freedoms, fit.gain);
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      if (i != best && scores[i] > scores[best] - close_call && scores[i] > 0) f.instead.push_back(candidates[i].id);
+    f.shape = c.columns;
+    f.sentence = sentence_of(f, s, u, r, out.columns);
+    out.chi2_left -= fit.gain;
+    out.columns = joined(out.columns, c.columns);
+    out.findings.push_back(std::move(f));
+  }
+  return out;
+}
+
+}  // namespace deflect

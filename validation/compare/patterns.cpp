@@ -1,0 +1,203 @@
+#include "validation/compare/patterns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace deflect {
+namespace {
+
+using Block = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+const std::vector<std::string> axes = {"x", "y", "z"};
+
+double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
+/// Columns of a reading, made one by one.
+Columns by_reading(const ResidualStudy& s, const std::function<Block(std::size_t)>& make) {
+  Columns out;
+  out.reserve(s.data->readings.size());
+  for (std::size_t i = 0; i < s.data->readings.size(); ++i) out.push_back(make(i));
+  return out;
+}
+
+const Vector6& load(const ResidualStudy& s, std::size_t reading) { return s.data->readings[reading].load; }
+
+/// Columns d_k = Rotation by a unit of axis k of the six-vector v, then M.
+Block turned(const Matrix6& M, const Vector6& v) {
+  Block out(6, 3);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Matrix3 S = skew(Vector3::Unit(k));
+    Vector6 d;
+    d << S * v.head<3>(), S * v.tail<3>();
+    out.col(k) = M * d;
+  }
+  return out;
+}
+
+Block translations(double size) {
+  Block out = Block::Zero(6, 3);
+  out.topRows<3>() = size * Matrix3::Identity();
+  return out;
+}
+
+/// Rank in the sequence over N, about its middle.
+std::vector<double> ranks(const Measurements& m) {
+  std::vector<double> out(m.readings.size());
+  const std::vector<std::size_t> order = in_sequence(m, "drift");
+  for (std::size_t i = 0; i < order.size(); ++i)
+    out[order[i]] = (static_cast<double>(i) + 0.5) / static_cast<double>(order.size()) - 0.5;
+  return out;
+}
+
+Pattern base_tilt(const ResidualStudy& s) {
+  return {"base tilt", "the whole machine tilts on its base", {"rx", "ry"}, "rad/Nm", by_reading(s, [&](std::size_t i) {
+            const Configuration& c = s.machines[s.data->readings[i].pose];
+            Block out(6, 2);
+            for (std::size_t k = 0; k < 2; ++k) {
+              Vector6 t;
+              const Vector3 axis = c.base.R_WJ.col(static_cast<Eigen::Index>(k));
+              t << axis.cross(c.pose.p_WT - c.base.p_W), axis;
+              out.col(static_cast<Eigen::Index>(k)) = t * t.dot(load(s, i));
+            }
+            return out;
+          })};
+}
+
+Pattern tool(const ResidualStudy& s) {
+  return {"tool", "the tool yields on its platform", axes, "m/N", by_reading(s, [&](std::size_t i) {
+            const Matrix3& R = s.machines[s.data->readings[i].pose].pose.R_WT;
+            Block out = Block::Zero(6, 3);
+            for (Eigen::Index k = 0; k < 3; ++k) out.col(k).head<3>() = R.col(k) * R.col(k).dot(load(s, i).head<3>());
+            return out;
+          })};
+}
+
+constexpr double stops[] = {0.02, 0.05, 0.1, 0.2, 0.4};  // of the largest force
+
+/// What an element beside each site takes over: by reading, sites × stops.
+std::vector<MatrixX> stop_forces(const ResidualStudy& s) {
+  double most = 0;
+  for (const VectorX& f : s.force) most = std::max(most, f.size() > 0 ? f.cwiseAbs().maxCoeff() : 0);
+  std::vector<MatrixX> out(s.force.size());
+  for (const PoseGroup& group : s.data->poses) {
+    std::vector<std::size_t> order = group.readings;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return s.data->readings[a].sequence < s.data->readings[b].sequence;
+    });
+    VectorX before = VectorX::Zero(s.force[order.front()].size());
+    MatrixX state = MatrixX::Zero(before.size(), std::ssize(stops));
+    for (const std::size_t i : order) {
+      for (Eigen::Index r = 0; r < state.cols(); ++r) {
+        const double limit = stops[r] * most;
+        state.col(r) = (state.col(r) + s.force[i] - before).cwiseMax(-limit).cwiseMin(limit);
+      }
+      before = s.force[i];
+      out[i] = state;
+    }
+  }
+  return out;
+}
+
+Pattern hysteresis(const ResidualStudy& s, bool rotation) {
+  Pattern p{"hysteresis",
+            "lags behind the load: friction",
+            {"lag"},
+            rotation ? "rad" : "m",
+            site_column(s, [&](std::size_t i, std::size_t k) { return -s.heading[i](static_cast<Eigen::Index>(k)); })};
+  if (s.sites.front().front().s.isZero(0)) return p;
+  const std::vector<MatrixX> stopped = stop_forces(s);
+  for (const double r : stops) p.columns.push_back("stop at " + std::to_string(static_cast<int>(100 * r)) + " %");
+  for (std::size_t i = 0; i < p.by_reading.size(); ++i) {
+    const std::size_t pose = s.data->readings[i].pose;
+    Block moved = Block::Zero(6, std::ssize(stops));
+    for (std::size_t k = 0; k < s.sites[pose].size(); ++k)
+      moved -= (s.compliance[pose] * s.sites[pose][k].s) * stopped[i].row(static_cast<Eigen::Index>(k));
+    Block both(6, 1 + moved.cols());
+    both << p.by_reading[i], moved;
+    p.by_reading[i] = both;
+  }
+  return p;
+}
+
+}  // namespace
+
+Columns site_column(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
+  return by_reading(s, [&](std::size_t i) {
+    const std::vector<Site>& sites = s.sites[s.data->readings[i].pose];
+    Block out = Block::Zero(6, 1);
+    for (std::size_t k = 0; k < sites.size(); ++k) out.col(0) += sites[k].g * elongation(i, k);
+    return out;
+  });
+}
+
+Columns site_columns(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
+  return by_reading(s, [&](std::size_t i) {
+    const std::vector<Site>& sites = s.sites[s.data->readings[i].pose];
+    Block out(6, static_cast<Eigen::Index>(sites.size()));
+    for (std::size_t k = 0; k < sites.size(); ++k)
+      out.col(static_cast<Eigen::Index>(k)) = sites[k].g * elongation(i, k);
+    return out;
+  });
+}
+
+std::vector<Pattern> patterns_of(const ResidualStudy& s) {
+  std::vector<Pattern> out;
+  const auto& sites = s.sites.front();
+  const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](static_cast<Eigen::Index>(k)); };
+  std::vector<std::string> names;
+  for (const Site& site : sites) names.push_back(site.name);
+  const bool alike = !sites.empty() && std::all_of(sites.begin(), sites.end(),
+                                                   [&](const Site& x) { return x.rotation == sites[0].rotation; });
+  const std::string per_force = alike && sites[0].rotation ? "rad/Nm" : "m/N";
+  const bool rotation = alike && sites[0].rotation;
+  if (alike) {
+    out.push_back({"elastic", "a compliance is missing, alike everywhere", {"all"}, per_force, site_column(s, f)});
+    if (names.size() > 1)
+      out.push_back({"elastic by site", "a compliance is missing, not alike", names, per_force, site_columns(s, f)});
+    out.push_back({"step",
+                   "free travel, whatever the force",
+                   {"all"},
+                   rotation ? "rad" : "m",
+                   site_column(s, [&](std::size_t i, std::size_t k) { return sign(f(i, k)); })});
+    out.push_back({"power",
+                   "contact that stiffens under load",
+                   {"all"},
+                   rotation ? "rad/Nm^2/3" : "m/N^2/3",
+                   site_column(s, [&](std::size_t i, std::size_t k) {
+                     return sign(f(i, k)) * std::pow(std::abs(f(i, k)), 2.0 / 3);
+                   })});
+    out.push_back(
+        {"one-sided", "gives in one sense only", {"all"}, per_force, site_column(s, [&](std::size_t i, std::size_t k) {
+           return std::abs(f(i, k));
+         })});
+    if (s.sequence) out.push_back(hysteresis(s, rotation));
+  }
+  out.push_back(base_tilt(s));
+  out.push_back(tool(s));
+  out.push_back({"weight", "a constant load pulls downwards", {"-z"}, "N", by_reading(s, [&](std::size_t i) {
+                   return Block(-s.compliance[s.data->readings[i].pose].col(2));
+                 })});
+  out.push_back({"offset", "every reading is displaced alike", axes, "m",
+                 by_reading(s, [&](std::size_t) { return translations(1); })});
+  if (s.sequence) {
+    const std::vector<double> rank = ranks(*s.data);
+    out.push_back({"drift", "readings drift with time", axes, "m",
+                   by_reading(s, [&](std::size_t i) { return translations(rank[i]); })});
+  }
+  if (s.data->temperature_recorded)
+    out.push_back({"temperature", "readings follow the temperature", axes, "m/K",
+                   by_reading(s, [&](std::size_t i) { return translations(s.data->readings[i].temperature_C - 20); })});
+  out.push_back(
+      {"load gain", "loads are recorded with a wrong factor", {"gain"}, "1", by_reading(s, [&](std::size_t i) {
+         return Block(s.predicted[i]);
+       })});
+  out.push_back({"load axes", "loads are recorded in turned axes", axes, "rad", by_reading(s, [&](std::size_t i) {
+                   return turned(s.compliance[s.data->readings[i].pose], load(s, i));
+                 })});
+  out.push_back({"sensor axes", "displacements are recorded in turned axes", axes, "rad",
+                 by_reading(s, [&](std::size_t i) { return turned(Matrix6::Identity(), s.predicted[i]); })});
+  return out;
+}
+
+}  // namespace deflect

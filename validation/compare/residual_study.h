@@ -1,0 +1,11 @@
+// The ground of a comparison: machines, predictions, forces at sites.
+#pragma once
+
+#include "validation/compare/patterns.h"
+
+namespace deflect {
+
+/// Predicts and looks inside: the mechanism and the data must outlive the study.
+ResidualStudy residual_study(const Mechanism&, const Measurements&, int threads);
+
+}  // namespace deflect

@@ -1,0 +1,25 @@
+// How much data speak for an effect.
+//
+// With a gain g in χ² by k parameters the amplitude in its own standard deviations, a, is seen as z = a + N(0, 1), |z|²
+// = g. Its prior is Gaussian of deviation τ per parameter, τ spread evenly in ln τ from 1/2 to 500, so that no scale of
+// an effect is preferred and the bounds of its parameters do not count. The evidence against "nothing" is then
+//   B = ⟨ (1 + τ²)^(−k/2) exp(½ g τ²/(1 + τ²)) s ⟩_τ,   s = 2 Φ(√g τ/√(1 + τ²)) where the sign is fixed, else 1.
+#pragma once
+
+#include <vector>
+
+#include "msa/base/spatial.h"
+
+namespace deflect {
+
+/// ln B.
+double log_evidence(double gain, int parameters, bool one_sided);
+
+/// ln of the evidence for a structured discrepancy: residual r ~ N(0, 1 + τ² B Bᵀ) against N(0, 1), the columns of B
+/// scaled to length √(rows of r), τ as small as a discrepancy can be: spread evenly in ln τ from 1e-3 to 10.
+double log_evidence_of_discrepancy(const VectorX& r, const MatrixX& B);
+
+/// Probabilities of hypotheses from ln(prior · evidence).
+std::vector<double> normalised(const std::vector<double>& log_weights);
+
+}  // namespace deflect

@@ -1,0 +1,187 @@
+#include "validation/diagnosis/hypothesis.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <unsupported/Eigen/NonLinearOptimization>
+
+#include "msa/base/error.h"
+
+namespace deflect {
+namespace {
+
+constexpr double huge = 1e6;  // a whitened residual where the device cannot be predicted
+
+/// Coordinates of the search: ln p, or p over half the range, so that steps of size 1 are large.
+double coordinate(const EffectParameter& p, double value) {
+  return p.log ? std::log(value) : value / (0.5 * (p.high - p.low));
+}
+double value_at(const EffectParameter& p, double x) {
+  const double value = p.log ? std::exp(x) : x * 0.5 * (p.high - p.low);
+  return std::clamp(value, p.low, p.high);
+}
+
+/// The whitened residual over the coordinates.
+class Problem {
+ public:
+  Problem(const Observations& o, const Hypothesis& h)
+      : observations_(o), parameters_(parameters_of(h)), prepared_(o.device(), h) {}
+
+  VectorX values(const VectorX& x) const {
+    VectorX out(x.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*parameters_[static_cast<std::size_t>(i)], x(i));
+    return out;
+  }
+  VectorX coordinates(const VectorX& values) const {
+    VectorX out(values.size());
+    for (Eigen::Index i = 0; i < out.size(); ++i)
+      out(i) = coordinate(*parameters_[static_cast<std::size_t>(i)], values(i));
+    return out;
+  }
+  VectorX residual(const VectorX& x) const {
+    try {
+      return observations_.whitened_residual(prepared_(values(x)));
+    } catch (const ModelError&) {
+    } catch (const NumericalError&) {
+    }
+    return VectorX::Constant(observations_.null_residual().size(), huge);
+  }
+  const std::vector<const EffectParameter*>& parameters() const { return parameters_; }
+
+ private:
+  const Observations& observations_;
+  std::vector<const EffectParameter*> parameters_;
+  PreparedEffects prepared_;
+};
+
+/// As MINPACK's port in Eigen wants it.
+struct Functor {
+  using Scalar = double;
+  using InputType = VectorX;
+  using ValueType = VectorX;
+  using JacobianType = MatrixX;
+  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+
+  const Problem* problem;
+  Eigen::Index rows, columns;
+
+  int inputs() const { return static_cast<int>(columns); }
+  int values() const { return static_cast<int>(rows); }
+  int operator()(const VectorX& x, VectorX& r) const {
+    r = problem->residual(x);
+    return 0;
+  }
+  int df(const VectorX& x, MatrixX& J) const {
+    const VectorX here = problem->residual(x);
+    J.resize(rows, columns);
+    for (Eigen::Index i = 0; i < columns; ++i) {
+      // Towards the inside where a bound is near.
+      const EffectParameter& p = *problem->parameters()[static_cast<std::size_t>(i)];
+      double step = 1e-5 * std::max(1.0, std::abs(x(i)));
+      if (!(value_at(p, x(i) + step) < p.high)) step = -step;
+      VectorX moved = x;
+      moved(i) += step;
+      J.col(i) = (problem->residual(moved) - here) / step;
+    }
+    return 0;
+  }
+};
+
+/// Starts of the last effect's parameters: over the bounds where its size is searched on a logarithmic scale, where
+/// signs are open the value at which it vanishes.
+std::vector<VectorX> starts(const PlacedEffect& e) {
+  const std::vector<EffectParameter>& all = e.effect->parameters;
+  std::vector<VectorX> out = {VectorX(static_cast<Eigen::Index>(all.size()))};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const EffectParameter& p = all[i];
+    std::vector<double> tries;
+    const bool from_nothing = p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high;
+    if (from_nothing && !p.log)
+      tries = {*p.vanishes};
+    else if (from_nothing)
+      tries = {*p.vanishes * 1.02, *p.vanishes / 1.02};
+    else if (p.log) {
+      const int count = all.size() == 1 ? 9 : 3;
+      const double low = std::max(std::log(p.low), std::log(p.start) - 9),
+                   high = std::min(std::log(p.high), std::log(p.start) + 9);
+      for (int k = 0; k < count; ++k) tries.push_back(std::exp(low + (high - low) * (k + 0.5) / count));
+      tries.push_back(p.start);
+    } else
+      tries = {p.start, p.low + 0.9 * (p.high - p.low), p.low + 0.1 * (p.high - p.low)};
+    std::vector<VectorX> more;
+    for (const VectorX& begun : out)
+      for (const double value : tries) {
+        more.push_back(begun);
+        more.back()(static_cast<Eigen::Index>(i)) = value;
+      }
+    out = std::move(more);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string name_of(const PlacedEffect& p) {
+  return p.leg ? fmt::format("{} ({})", p.effect->name, site_of(p)) : p.effect->name;
+}
+
+std::vector<const EffectParameter*> parameters_of(const Hypothesis& h) {
+  std::vector<const EffectParameter*> out;
+  for (const PlacedEffect& e : h)
+    for (const EffectParameter& p : e.effect->parameters) out.push_back(&p);
+  return out;
+}
+
+bool one_sided(const PlacedEffect& e) {
+  if (e.effect->parameters.size() != 1) return false;
+  const EffectParameter& p = e.effect->parameters.front();
+  return p.vanishes && (*p.vanishes <= p.low || *p.vanishes >= p.high);
+}
+
+Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess) {
+  Fit out;
+  const Problem problem(o, h);
+  const std::size_t own = h.back().effect->parameters.size();
+  VectorX best;
+  double least = INFINITY;
+  for (const VectorX& tail : guess ? std::vector<VectorX>{*guess} : starts(h.back())) {
+    VectorX values(from.size() + static_cast<Eigen::Index>(own));
+    values << from, tail;
+    const VectorX x = problem.coordinates(values);
+    const double chi2 = problem.residual(x).squaredNorm();
+    if (chi2 < least) least = chi2, best = x;
+  }
+  const Eigen::Index rows = o.null_residual().size();
+  if (!(least < huge * huge)) return out;
+  if (best.size() > 0) {
+    Functor functor{&problem, rows, best.size()};
+    Eigen::LevenbergMarquardt<Functor> search(functor);
+    search.parameters.maxfev = 40;
+    search.parameters.ftol = 1e-5;  // of χ²: far below what one unit of it means
+    search.parameters.xtol = 1e-5;
+    VectorX x = best;
+    search.minimize(x);
+    if (problem.residual(x).squaredNorm() <= least) best = x;
+    best = problem.coordinates(problem.values(best));  // inside the bounds
+    functor.df(best, out.signature);
+    const MatrixX information = out.signature.transpose() * out.signature;
+    out.covariance = information.completeOrthogonalDecomposition().pseudoInverse();
+  }
+  out.values = problem.values(best);
+  out.residual = problem.residual(best);
+  out.chi2 = out.residual.squaredNorm();
+  out.found = true;
+  return out;
+}
+
+std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::size_t i) {
+  const EffectParameter& p = *parameters_of(h).at(i);
+  const auto at = static_cast<Eigen::Index>(i);
+  const double x = coordinate(p, f.values(at)), half = 1.959964 * std::sqrt(std::max(0.0, f.covariance(at, at)));
+  return {value_at(p, x - half), value_at(p, x + half)};
+}
+
+}  // namespace deflect

@@ -1,0 +1,41 @@
+// A hypothesis: effects, each with its place, whose parameters are to be found.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validation/diagnosis/observations.h"
+#include "validation/effects/with_effect.h"
+
+namespace deflect {
+
+using Hypothesis = std::vector<PlacedEffect>;
+
+/// "guide_root_compliance", "leg_defect (leg 5)".
+std::string name_of(const PlacedEffect&);
+
+/// Least squares of the whitened residual over the parameters, those on a logarithmic scale in their logarithm, within
+/// their bounds (Levenberg–Marquardt, MINPACK's, from the best of a few starts).
+struct Fit {
+  VectorX values;      ///< in the parameters' units, effect after effect
+  MatrixX covariance;  ///< of the coordinates: ln of parameters on a logarithmic scale
+  MatrixX signature;   ///< derivative of the whitened residual by the coordinates
+  VectorX residual;    ///< whitened, at the values
+  double chi2 = 0;
+  bool found = false;  ///< false: the device cannot be predicted with it anywhere
+};
+/// `from`: values of the effects that were fitted before, the first ones. The last effect starts from the guess (its
+/// values), else from the best of a few.
+Fit fit(const Observations&, const Hypothesis&, const VectorX& from = {}, const std::optional<VectorX>& guess = {});
+
+/// 95 % interval of parameter i: in the logarithm for a logarithmic scale, within the bounds.
+std::pair<double, double> interval95(const Hypothesis&, const Fit&, std::size_t i);
+
+/// The parameters of all effects, one after the other.
+std::vector<const EffectParameter*> parameters_of(const Hypothesis&);
+
+/// Whether an amplitude of the effect has a sign that physics fixes (one parameter, which vanishes at a bound).
+bool one_sided(const PlacedEffect&);
+
+}  // namespace deflect

@@ -1,0 +1,78 @@
+#include "validation/diagnosis/observations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "msa/base/error.h"
+#include "validation/compare/prediction.h"
+#include "validation/measurement/configure_all.h"
+
+namespace deflect {
+namespace {
+
+Uncertainty uncertainty_of(const Mechanism& m, const Comparison& c) {
+  std::vector<bool> aside(c.readings, false);
+  for (std::size_t i = 0; i < c.readings; ++i)
+    aside[i] = std::find(c.set_aside.begin(), c.set_aside.end(), c.study.data->readings[i].line) != c.set_aside.end();
+  return Uncertainty(c.tolerances.A, c.study.values, c.sigma, c.study.predicted, m.tolerances.load, aside);
+}
+
+}  // namespace
+
+Observations::Observations(const Mechanism& m, const Measurements& data, const ComparisonOptions& o)
+    : device_(&m), comparison_(compare(m, data, o)), uncertainty_(uncertainty_of(m, comparison_)) {
+  const ResidualStudy& s = comparison_.study;
+  measured_ = comparison_.residual + rows_of(s.values, s.predicted);
+  shape_ = s.deformed_shape.empty() ? VectorX(VectorX::Zero(measured_.size())) : rows_of(s.values, s.deformed_shape);
+  null_ = whitened_residual(m);
+}
+
+VectorX Observations::residual(const Mechanism& m) const {
+  const ResidualStudy& s = comparison_.study;
+  PredictionOptions o;
+  o.geometry = Geometry::linear;
+  o.threads = 1;
+  return measured_ - shape_ - rows_of(s.values, predict(m, configure_all(m, *s.data), *s.data, o));
+}
+
+VectorX Observations::whitened_residual(const Mechanism& m) const { return uncertainty_.whitened(residual(m)); }
+
+double Observations::rmse(const Mechanism& m) const {
+  const VectorX r = residual(m);
+  double squares = 0, n = 0;
+  for (std::size_t i = 0; i < comparison_.study.values.size(); ++i)
+    if (comparison_.study.values[i].component < 3) {
+      squares += r(static_cast<Eigen::Index>(i)) * r(static_cast<Eigen::Index>(i));
+      n += 1;
+    }
+  return n > 0 ? std::sqrt(squares / n) : 0;
+}
+
+double Observations::held_out_rmse(const Mechanism& m) const {
+  return deflect::held_out_rmse(comparison_.study, comparison_.tolerances.A, comparison_.sigma, residual(m));
+}
+
+std::vector<std::pair<std::string, double>> Observations::strained(const Mechanism& m) const {
+  const VectorX eta = uncertainty_.nuisances(residual(m));
+  std::vector<std::pair<std::string, double>> out;
+  for (Eigen::Index i = 0; i < eta.size(); ++i)
+    if (std::abs(eta(i)) > 2)
+      out.emplace_back(comparison_.tolerances.nuisances[static_cast<std::size_t>(i)].name, eta(i));
+  return out;
+}
+
+void Observations::take_deformed_shape_of(const Mechanism& m) {
+  const ResidualStudy& s = comparison_.study;
+  const std::vector<Configuration> machines = configure_all(m, *s.data);
+  PredictionOptions linear, finite;
+  linear.geometry = Geometry::linear;
+  finite.geometry = Geometry::finite;
+  try {
+    shape_ = rows_of(s.values, predict(m, machines, *s.data, finite)) -
+             rows_of(s.values, predict(m, machines, *s.data, linear));
+    null_ = whitened_residual(*device_);
+  } catch (const NumericalError&) {  // beyond what the deformed shape carries: the one known stays
+  }
+}
+
+}  // namespace deflect

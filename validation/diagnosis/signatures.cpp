@@ -1,0 +1,168 @@
+#include "validation/diagnosis/signatures.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+#include "msa/base/error.h"
+#include "validation/compare/parallel.h"
+#include "validation/measurement/random.h"
+
+namespace deflect {
+namespace {
+
+constexpr double unseen = 1e-6;  // of a whitened change at the start: nothing that these data show
+
+/// The start, and where a parameter cannot vanish (it shapes the effect) this a hundredth and a hundred times of it.
+std::vector<VectorX> shapes(const std::vector<EffectParameter>& all, const VectorX& start) {
+  std::vector<VectorX> out = {start};
+  if (all.size() == 1) return out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i].log) continue;
+    for (const double times : {0.01, 0.1, 10.0, 100.0}) {
+      out.push_back(start);
+      double& value = out.back()(static_cast<Eigen::Index>(i));
+      value = std::clamp(times * value, all[i].low, all[i].high);
+    }
+  }
+  return out;
+}
+
+/// Parameter by parameter where each can vanish alone, else all at the start; parameters that only shape the effect
+/// are tried at several values.
+MatrixX directions(const Observations& o, const PlacedEffect& e, const VectorX& start) {
+  const PreparedEffects prepared(o.device(), {e});
+  const std::vector<EffectParameter>& all = e.effect->parameters;
+  const auto change = [&](const VectorX& values) {
+    return VectorX(o.whitened_residual(prepared(values)) - o.null_residual());
+  };
+  std::vector<VectorX> columns;
+  bool separate = all.size() > 1;
+  for (const EffectParameter& p : all) separate = separate && p.vanishes && std::isfinite(*p.vanishes);
+  if (separate)
+    for (Eigen::Index i = 0; i < start.size(); ++i) {
+      VectorX values = start;
+      for (Eigen::Index k = 0; k < start.size(); ++k)
+        if (k != i) values(k) = *all[static_cast<std::size_t>(k)].vanishes;
+      columns.push_back(change(values));
+    }
+  else
+    for (const VectorX& values : shapes(all, start)) columns.push_back(change(values));
+  MatrixX out(o.null_residual().size(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = columns[i];
+  return out;
+}
+
+MatrixX orthonormal(const MatrixX& X) {
+  const Eigen::ColPivHouseholderQR<MatrixX> qr(X);
+  return qr.householderQ() * MatrixX::Identity(X.rows(), qr.rank());
+}
+
+double tail(int freedoms, bool one_sided, double gain) {
+  if (!(gain > 0)) return 1;
+  const double p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedoms), gain));
+  return one_sided ? p / 2 : p;
+}
+
+}  // namespace
+
+std::vector<Signature> signatures(const Observations& o, const std::vector<Effect>& effects, int threads) {
+  std::vector<PlacedEffect> places;
+  for (const Effect& e : effects)
+    if (e.name != "geometric_nonlinearity")
+      for (const PlacedEffect& place : places_of(e, o.device())) places.push_back(place);
+  std::vector<Signature> all(places.size());
+  for_each_case(places.size(), 1, threads, [&](std::size_t i) {
+    Signature& s = all[i];
+    s.effect = places[i];
+    s.one_sided = one_sided(places[i]);
+    try {
+      const VectorX start = start_values(*places[i].effect);
+      const MatrixX columns = directions(o, places[i], start);
+      s.at_start = columns.cols() == start.size() ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0));
+      if (columns.norm() > unseen) s.basis = orthonormal(columns);
+    } catch (const ModelError&) {  // the device cannot stand with it: no hypothesis
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {  // wants what the file does not have, a sequence
+    }
+  });
+  std::erase_if(all, [](const Signature& s) { return s.basis.cols() == 0; });
+  return all;
+}
+
+std::optional<VectorX> guess(const Signature& s, const VectorX& residual) {
+  const Effect& e = *s.effect.effect;
+  if (e.parameters.size() != 1) return std::nullopt;
+  const EffectParameter& p = e.parameters.front();
+  if (!p.vanishes) return std::nullopt;
+  // at_start is the change of the residual: to take it away the effect must be −⟨r, s⟩/⟨s, s⟩ times that large.
+  const double times = -s.at_start.dot(residual) / s.at_start.squaredNorm();
+  const bool infinite = std::isinf(*p.vanishes);
+  double value = infinite ? p.start / times : *p.vanishes + times * (p.start - *p.vanishes);
+  if (infinite && !(times > 0)) return std::nullopt;
+  if (p.log && !(value > 0)) value = times > 0 ? p.high : p.low;
+  value = std::clamp(value, p.low, p.high);
+  return VectorX::Constant(1, value);
+}
+
+double most_gain(const Signature& s, const VectorX& residual, const MatrixX& fitted) {
+  MatrixX columns = s.basis;
+  if (fitted.cols() > 0) {
+    const MatrixX Q = orthonormal(fitted);
+    columns -= Q * (Q.transpose() * columns);
+  }
+  const Eigen::ColPivHouseholderQR<MatrixX> qr = [&] {
+    Eigen::ColPivHouseholderQR<MatrixX> out;
+    out.setThreshold(1e-3);
+    out.compute(columns);
+    return out;
+  }();
+  return (qr.householderQ().transpose() * residual).head(qr.rank()).squaredNorm();
+}
+
+double cosine(const Signature& a, const Signature& b) {
+  return Eigen::JacobiSVD<MatrixX>(a.basis.transpose() * b.basis).singularValues()(0);
+}
+
+double single_p_value(const Signature& s, double gain) {
+  return tail(static_cast<int>(s.basis.cols()), s.one_sided, gain);
+}
+
+double chance_of_any(const std::vector<Signature>& all, double least_p, int draws) {
+  if (all.empty()) return 1;
+  Eigen::Index columns = 0;
+  for (const Signature& s : all) columns += s.basis.cols();
+  MatrixX B(all.front().basis.rows(), columns);
+  columns = 0;
+  for (const Signature& s : all) {
+    B.middleCols(columns, s.basis.cols()) = s.basis;
+    columns += s.basis.cols();
+  }
+  // z = Bᵀr of r ~ N(0, 1) has the covariance BᵀB.
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(B.transpose() * B);
+  const MatrixX root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  Random random(20110101);
+  int as_good = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    VectorX xi(columns);
+    for (double& x : xi) x = random.normal();
+    const VectorX z = root * xi;
+    Eigen::Index at = 0;
+    bool found = false;
+    for (const Signature& s : all) {
+      const auto own = z.segment(at, s.basis.cols());
+      at += s.basis.cols();
+      // One-sided: half of the draws have the wrong sign.
+      const double gain =
+          s.one_sided && own(0) * (s.basis.col(0).dot(s.at_start) > 0 ? 1 : -1) < 0 ? 0 : own.squaredNorm();
+      found = found || tail(static_cast<int>(own.size()), s.one_sided, gain) <= least_p;
+    }
+    as_good += found;
+  }
+  return (as_good + 1.0) / (draws + 1.0);
+}
+
+}  // namespace deflect

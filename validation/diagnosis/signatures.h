@@ -1,0 +1,39 @@
+// What each effect would do to the data, small: directions of the whitened residual.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "validation/diagnosis/hypothesis.h"
+
+namespace deflect {
+
+struct Signature {
+  PlacedEffect effect;
+  MatrixX basis;     ///< orthonormal; as many columns as the effect has directions
+  VectorX at_start;  ///< change of the whitened residual at the start values: its length is λ there
+  bool one_sided = false;
+};
+
+/// Those of the places that effects have in the device and that change what was measured. Equilibrium in the deformed
+/// shape is no hypothesis: it is known in size, and in the prediction. The effects must outlive the result.
+std::vector<Signature> signatures(const Observations&, const std::vector<Effect>&, int threads);
+
+/// What the effect's value would be, were its signature in proportion to its distance from where it vanishes: from the
+/// residual it is to explain. Nothing for effects of several parameters, or of the wrong sign.
+std::optional<VectorX> guess(const Signature&, const VectorX& residual);
+
+/// The most that the effect can take off χ² where its signature is a linear space, beside what is fitted already.
+double most_gain(const Signature&, const VectorX& residual, const MatrixX& fitted);
+
+/// Largest cosine between the spaces of two signatures.
+double cosine(const Signature&, const Signature&);
+
+/// p-value of a gain in χ² by the effect alone, as if it were the only one looked at.
+double single_p_value(const Signature&, double gain);
+
+/// Chance that in data with nothing missing some effect looks at least as good (as improbable) as `least_p`: a
+/// parametric bootstrap of the null, in the space of the signatures. Deterministic.
+double chance_of_any(const std::vector<Signature>&, double least_p, int draws = 1999);
+
+}  // namespace deflect

@@ -1,0 +1,152 @@
+#include "validation/effects/edit_paths.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "msa/base/error.h"
+#include "msa/mechanism/configuration.h"
+#include "msa/mechanism/device_file.h"
+#include "msa/mechanism/field_writer.h"
+#include "msa/mechanism/place.h"
+#include "msa/mechanism/tree_edit.h"
+
+namespace deflect {
+namespace {
+
+struct Selector {
+  std::string_view name;
+  bool slides, turns;
+  const char* none;  // what to say where no drive is meant
+};
+constexpr std::string_view actuated = "<actuated>";
+constexpr Selector motions[] = {{"<motion>", true, true, "nothing is driven"},
+                                {"<slide>", true, false, "nothing is driven along a slide"},
+                                {"<turn>", false, true, "nothing is driven about an axis"}};
+
+struct Drive {
+  std::string path;                   // of the part
+  std::vector<std::size_t> freedoms;  // its actuated ones
+};
+
+void find_drives(const Named<Part>& parts, const std::string& path, std::vector<Drive>& found) {
+  for (const auto& [name, part] : parts) {
+    const std::string here = joined(path, name);
+    if (const auto* joint = std::get_if<Joint>(&part)) {
+      Drive drive{here, {}};
+      const std::array<Freedom, 6> freedoms = freedoms_of(*joint);
+      for (std::size_t i = 0; i < 6; ++i)
+        if (freedoms[i] == Freedom::actuated) drive.freedoms.push_back(i);
+      if (!drive.freedoms.empty()) found.push_back(std::move(drive));
+    } else if (const auto* group = std::get_if<Parallel>(&part)) {
+      find_drives(group->leg, joined(here, "leg"), found);
+      for (std::size_t i = 0; i < group->mounts.size(); ++i)
+        find_drives(group->mounts[i].leg, fmt::format("{}.mounts.{}.leg", here, i), found);
+    }
+  }
+}
+
+std::vector<Drive> drives_of(const Mechanism& m, std::optional<int> leg) {
+  std::vector<Drive> found;
+  if (leg) {
+    find_drives(leg_parts(m, *leg), fmt::format("leg[{}]", *leg), found);
+    return found;
+  }
+  find_drives(m.leg, "leg", found);
+  for (std::size_t i = 0; i < m.mounts.size(); ++i)
+    find_drives(m.mounts[i].leg, fmt::format("mounts.{}.leg", i), found);
+  return found;
+}
+
+/// "leg.<actuated>.<slide>" as the paths of the drives.
+std::vector<std::string> selected(const std::string& path, const Mechanism& m, std::optional<int> leg) {
+  if (path.find('<') == path.npos) {
+    if (!leg) return {path};
+    return {fmt::format("leg[{}]{}", *leg, path.substr(3))};  // "leg.…", as the reader has seen to
+  }
+  const std::string head = fmt::format("leg.{}.", actuated);
+  std::string rest = path.starts_with(head) ? path.substr(head.size()) : path;
+  const Selector* motion = nullptr;
+  for (const Selector& each : motions)
+    if (rest.starts_with(each.name)) motion = &each;
+  if (motion) rest = rest.substr(motion->name.size());
+  if (rest.find('<') != rest.npos)
+    throw InputError(
+        fmt::format("{}: a path with selectors begins with '{}', then '<motion>', '<slide>', '<turn>' or "
+                    "a field",
+                    path, head));
+  std::vector<std::string> out;
+  for (const Drive& drive : drives_of(m, leg)) {
+    if (!motion) out.push_back(joined(drive.path, rest));
+    for (const std::size_t i : drive.freedoms)
+      if (motion && (i < 3 ? motion->slides : motion->turns))
+        out.push_back(fmt::format("{}.{}{}", drive.path, freedom_names[i], rest));
+  }
+  if (out.empty()) throw InputError(fmt::format("{}: {}", path, motion ? motion->none : motions[0].none));
+  return out;
+}
+
+/// Throws what is wrong with a path, beginning with the path itself.
+void require_there(const YamlNode& tree, const std::string& path, const Mechanism& m) {
+  if (!path.starts_with("leg[")) {
+    places(tree, path, "");
+    return;
+  }
+  const std::size_t bracket = path.find(']');
+  const int leg = std::stoi(path.substr(4, bracket - 4));
+  places(tree_of(leg_parts(m, leg), {}, m), path.substr(bracket + 2), path.substr(0, bracket + 2));
+}
+
+std::vector<std::string> segments_of(const std::string& path) {
+  std::vector<std::string> out(1);
+  for (const char c : path)
+    if (c == '.')
+      out.emplace_back();
+    else
+      out.back() += c;
+  return out;
+}
+
+/// What stands at `path` stands inside what `variation` replaced.
+bool inside(const std::string& path, const std::string& variation) {
+  const std::vector<std::string> at = segments_of(path), outer = segments_of(variation);
+  const auto same = [](const std::string& a, const std::string& b) { return a == b || a == "*"; };
+  return outer.size() <= at.size() &&
+         std::equal(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(outer.size()), outer.begin(), same);
+}
+
+/// An edit of every leg does not reach a leg whose variation holds the whole field: there it is made once more.
+std::vector<std::string> in_varied_legs_too(std::vector<std::string> paths, const Mechanism& m) {
+  for (std::size_t i = 0, count = paths.size(); i < count; ++i) {
+    if (!paths[i].starts_with("leg.")) continue;
+    const std::string rest = paths[i].substr(4);
+    std::set<int> legs;
+    for (const Variation& v : m.variations)
+      if (inside(rest, v.path)) legs.insert(v.leg);
+    for (const int leg : legs) paths.push_back(fmt::format("leg[{}].{}", leg, rest));
+  }
+  return paths;
+}
+
+std::vector<std::string> first_alternative(const EffectEdit& edit, const Mechanism& m, std::optional<int> leg) {
+  if (edit.paths.size() == 1) return selected(edit.paths.front(), m, leg);
+  const YamlNode tree = tree_of(m);
+  std::string first_error;
+  for (const std::string& path : edit.paths) try {
+      std::vector<std::string> all = selected(path, m, leg);
+      for (const std::string& each : all) require_there(tree, each, m);
+      return all;
+    } catch (const InputError& e) {
+      if (first_error.empty()) first_error = e.what();
+    }
+  throw InputError(first_error);
+}
+
+}  // namespace
+
+std::vector<std::string> paths_of(const EffectEdit& edit, const Mechanism& m, std::optional<int> leg) {
+  return in_varied_legs_too(first_alternative(edit, m, leg), m);
+}
+
+}  // namespace deflect

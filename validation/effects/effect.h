@@ -1,0 +1,63 @@
+// An effect: something a model can lack (a clamp that yields, a load cell that reads too little), as data. It is a few
+// edits of the description whose values hold physical parameters. Both theories see it only through the edited
+// description. Effects are read from files, see effect_file.h; the catalogue is a folder of them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace deflect {
+
+/// Numbers are in the unit that the name ends with: "stiffness_N_per_mm". A name without one is a plain number.
+struct EffectParameter {
+  std::string name, unit;          ///< unit as a value is written with it, "N/mm"; empty for a plain number
+  double start = 0;                ///< where a search begins
+  double low = 0, high = 0;        ///< bounds of a search, both allowed
+  bool log = false;                ///< searched on a logarithmic scale; low > 0
+  std::optional<double> vanishes;  ///< the value, maybe infinity, at which the edits that use it do nothing
+  std::string about;
+};
+
+/// What is done to the description. `paths` are alternatives for devices of different make: the first that the device
+/// has is taken. Beside the paths of edited() they know, after "leg",
+///   <actuated>  every part with a driven freedom, where it stands (in the legs, in mounts of their own, in branches);
+///   <motion>    after it: each of its driven freedoms; <slide> those along, <turn> those about an axis.
+/// `value` is YAML in flow style, in which "$name" is a parameter with its unit, "$name unit" one with another unit.
+struct EffectEdit {
+  enum class Action {
+    set,       ///< the field takes the value
+    append,    ///< the value joins a list: laws in series
+    multiply,  ///< the number is multiplied by the plain number `value`
+    add,       ///< the value is added to the number
+  };
+  Action action = Action::set;
+  std::vector<std::string> paths;
+  std::string value;
+  int line = 0;  ///< in the file
+};
+
+/// What the effect sits in. An effect of one leg is applied to the leg that is asked for: its paths begin with "leg.".
+enum class Scope { all_legs, one_leg, machine, rig };
+inline constexpr const char* scope_names[] = {"all legs", "one leg", "machine", "rig"};
+
+/// For a person, in plain words.
+struct EffectPages {
+  std::string machine;  ///< what happens in the machine
+  std::string data;     ///< what it looks like in the data
+  std::string bench;    ///< how to confirm it on the bench
+  std::string cure;     ///< what to do about it
+};
+
+struct Effect {
+  std::string name, title;
+  Scope scope = Scope::all_legs;
+  std::vector<EffectParameter> parameters;
+  std::vector<EffectEdit> edits;
+  EffectPages pages;
+  std::string see;     ///< sources
+  std::string origin;  ///< the file, for messages
+  int line = 0;        ///< of its name there
+};
+
+}  // namespace deflect

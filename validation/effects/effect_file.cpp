@@ -1,0 +1,255 @@
+#include "validation/effects/effect_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/base/units.h"
+#include "msa/mechanism/field_reader.h"
+#include "validation/effects/effect_value.h"
+#include "validation/effects/parameter_unit.h"
+
+namespace deflect {
+namespace {
+
+constexpr const char* action_keys[] = {"set", "append", "multiply", "add"};
+
+void describe(FieldVisitor& v, EffectParameter& p) {
+  const Quantity number{Dimension::none, {}, std::nullopt};
+  const auto unit = unit_of_parameter(p.name);
+  v.require(unit.has_value(), "",
+            fmt::format("ends like a unit that is not known: end the name with one of {}, or with none for a plain "
+                        "number",
+                        known_parameter_units()));
+  p.unit = unit.value_or("");
+  v.quantity("start", p.start, number, "where a search begins");
+  v.quantity("low", p.low, number, "lower bound of a search");
+  v.quantity("high", p.high, number, "upper bound of a search");
+  std::string scale = p.log ? "log" : "linear";
+  v.word("scale", scale, {"scale", {"linear", "log"}, "linear"}, "how it is searched");
+  p.log = scale == "log";
+  std::string vanishes;
+  v.text("vanishes", vanishes, Need::optional, "value at which the effect is absent, or infinity");
+  p.vanishes.reset();
+  if (vanishes == "infinity") {
+    p.vanishes = std::numeric_limits<double>::infinity();
+  } else if (!vanishes.empty()) {
+    try {
+      p.vanishes = parse_number(vanishes);
+    } catch (const InputError& e) {
+      v.require(false, "vanishes", fmt::format("{}: a number or 'infinity' is wanted", e.what()));
+    }
+  }
+  v.text("about", p.about, Need::required, "what it is, with its unit");
+  v.require(p.low < p.high, "high", fmt::format("{} must be above low, {}", p.high, p.low));
+  v.require(p.low <= p.start && p.start <= p.high, "start",
+            fmt::format("{} must lie between low, {}, and high, {}", p.start, p.low, p.high));
+  v.require(!p.log || p.low > 0, "low", fmt::format("{} must be above 0 on a logarithmic scale", p.low));
+}
+
+class Parameters final : public Elements {
+ public:
+  explicit Parameters(std::vector<EffectParameter>& all) : all_(all) {}
+  std::size_t size() const override { return all_.size(); }
+  std::string name(std::size_t i) const override { return all_[i].name; }
+  void add(const std::string& name) override { all_.emplace_back().name = name; }
+  void describe_element(FieldVisitor& v, std::size_t i) override { describe(v, all_[i]); }
+
+ private:
+  std::vector<EffectParameter>& all_;
+};
+
+class Edits final : public Elements {
+ public:
+  explicit Edits(Effect& effect) : effect_(effect) {}
+  std::size_t size() const override { return effect_.edits.size(); }
+  std::string name(std::size_t) const override { return ""; }
+  void add(const std::string&) override { effect_.edits.emplace_back(); }
+  void describe_element(FieldVisitor& v, std::size_t i) override {
+    EffectEdit& edit = effect_.edits[i];
+    v.keys({"at", action_keys[0], action_keys[1], action_keys[2], action_keys[3]});
+    v.texts("at", edit.paths, Need::required, "path of the field, or a list of alternatives");
+    const std::size_t action =
+        v.alternative({std::begin(action_keys), std::end(action_keys)}, static_cast<std::size_t>(edit.action));
+    edit.action = static_cast<EffectEdit::Action>(action);
+    v.any(action_keys[action], edit.value, "what stands there then");
+    if (effect_.scope != Scope::one_leg) return;
+    for (const std::string& path : edit.paths)
+      v.require(path.starts_with("leg."), "at",
+                fmt::format("'{}' is not in a leg: an effect of one leg edits what begins with 'leg.'", path));
+  }
+
+ private:
+  Effect& effect_;
+};
+
+void describe(FieldVisitor& v, Effect& e) {
+  v.keys({"name", "title", "scope", "parameters", "edits", "pages", "see"});
+  v.text("name", e.name, Need::required, "id of the effect");
+  const auto in_name = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+  v.require(std::all_of(e.name.begin(), e.name.end(), in_name), "name",
+            "consists of letters, digits, '_' and '-': it is written on command lines");
+  v.text("title", e.title, Need::required, "the effect in one line");
+  std::string scope = scope_names[static_cast<std::size_t>(e.scope)];
+  const std::vector<std::string> scopes{std::begin(scope_names), std::end(scope_names)};
+  v.word("scope", scope, {"scope", scopes, std::nullopt}, "what the effect sits in");
+  e.scope = static_cast<Scope>(std::find(scopes.begin(), scopes.end(), scope) - scopes.begin());
+  Parameters parameters(e.parameters);
+  v.entries("parameters", parameters, Need::optional, "physical parameters by name");
+  Edits edits(e);
+  v.list("edits", edits, "what changes in the description");
+  v.require(!e.edits.empty(), "edits", "needs at least one edit '- {at: PATH, set: VALUE}'");
+  const auto pages = [&] {
+    v.text("machine", e.pages.machine, Need::required, "what happens in the machine");
+    v.text("data", e.pages.data, Need::required, "what it looks like in the data");
+    v.text("bench", e.pages.bench, Need::required, "how to confirm it on the bench");
+    v.text("cure", e.pages.cure, Need::required, "what to do about it");
+  };
+  v.object("pages", Need::required, false, pages, "the effect explained");
+  v.text("see", e.see, Need::optional, "sources");
+}
+
+/// What the field list cannot see: parameters in values, and laws, which are tried with the parameters' start.
+class ValueCheck {
+ public:
+  ValueCheck(const Effect& effect, VectorX start) : effect_(effect), start_(std::move(start)) {}
+
+  void check(const YamlNode& edits) {
+    std::vector<bool> used(effect_.parameters.size());
+    for (std::size_t i = 0; i < effect_.edits.size(); ++i) {
+      const char* key = action_keys[static_cast<std::size_t>(effect_.edits[i].action)];
+      const YamlNode& value = *edits.children[i].child(key);
+      const std::string path = fmt::format("edits.{}.{}", i, key);
+      check_names(value, path);
+      check_laws(value, path, effect_.edits[i].paths);
+      const std::vector<bool> here = parameters_used(value, effect_);
+      for (std::size_t k = 0; k < used.size(); ++k) used[k] = used[k] || here[k];
+    }
+    for (std::size_t k = 0; k < used.size(); ++k)
+      if (!used[k])
+        fail(edits.key_line, "edits",
+             fmt::format("none uses the parameter: write '${}' in a value or remove it", effect_.parameters[k].name));
+  }
+
+ private:
+  [[noreturn]] void fail(int line, const std::string& path, const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}: {}", effect_.origin, line, path, what));
+  }
+
+  void check_names(const YamlNode& node, const std::string& path) const {
+    for (std::size_t i = 0; i < node.children.size(); ++i)
+      check_names(node.children[i], joined(path, node.keys.empty() ? std::to_string(i) : node.keys[i]));
+    if (node.kind != YamlNode::Kind::scalar || node.text.find('$') == std::string::npos) return;
+    if (node.text.find('$', 1) != std::string::npos || !node.text.starts_with('$'))
+      fail(node.line, path,
+           fmt::format("'{}': a parameter stands alone or before a unit, as in '$name N/mm'", node.text));
+    const ParameterUse use = parameter_use(node.text);
+    std::vector<std::string> names;
+    for (const EffectParameter& p : effect_.parameters) names.push_back("$" + p.name);
+    if (std::find(names.begin(), names.end(), "$" + use.name) == names.end())
+      fail(node.line, path, fmt::format("unknown parameter '${}'{}", use.name, suggestion("$" + use.name, names)));
+  }
+
+  /// A law needs no device to be read, except for names of materials, which are taken as they come.
+  void check_laws(const YamlNode& value, const std::string& path, const std::vector<std::string>& paths) const {
+    if (value.kind == YamlNode::Kind::list)
+      for (std::size_t i = 0; i < value.children.size(); ++i)
+        check_laws(value.children[i], joined(path, std::to_string(i)), paths);
+    if (value.kind != YamlNode::Kind::map || !value.child("law")) return;
+    const YamlNode node = filled_in(value, effect_, start_);
+    Named<Material> materials;
+    if (const YamlNode* material = node.child("material")) materials.emplace_back(material->text, Material{});
+    std::string first_error;
+    for (const bool rotation : motions_of(paths)) try {
+        FieldReader reader(effect_.origin, path);
+        reader.surroundings.materials = &materials;
+        reader.surroundings.rotation = rotation;
+        Law law;
+        reader.read(node, [&] { describe(reader, law); });
+        return;
+      } catch (const InputError& e) {
+        if (first_error.empty()) first_error = e.what();
+      }
+    throw InputError(first_error);
+  }
+
+  /// Whether the laws at these paths act on rotations: no, yes or, where only the device knows, both.
+  static std::vector<bool> motions_of(const std::vector<std::string>& paths) {
+    const auto on = [&](char kind) {
+      return std::any_of(paths.begin(), paths.end(), [&](const std::string& path) {
+        const std::string end = path.substr(path.rfind('.') + 1);
+        if (end == "<slide>" || end == "<turn>") return end[1] == (kind == 't' ? 's' : 't');
+        return end.size() != 2 || end[0] == kind;
+      });
+    };
+    std::vector<bool> out;
+    if (on('t')) out.push_back(false);
+    if (on('r')) out.push_back(true);
+    return out;
+  }
+
+  const Effect& effect_;
+  VectorX start_;
+};
+
+void trim(std::string& text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+}
+
+}  // namespace
+
+Effect parse_effect(std::string_view yaml, const std::string& origin) {
+  const YamlNode tree = parse_yaml(yaml, origin);
+  Effect e;
+  e.origin = origin;
+  FieldReader reader(origin);
+  reader.read(tree, [&] { describe(reader, e); });
+  for (const std::string& path : reader.ours())
+    throw InputError(fmt::format("{}: {}: an effect has no !ours", origin, path));
+  e.line = tree.child("name")->line;
+  const YamlNode& edits = *tree.child("edits");
+  VectorX start(static_cast<Eigen::Index>(e.parameters.size()));
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) start(static_cast<Eigen::Index>(i)) = e.parameters[i].start;
+  ValueCheck(e, start).check(edits);
+  for (std::size_t i = 0; i < e.edits.size(); ++i) e.edits[i].line = edits.children[i].line;
+  for (std::string* text : {&e.title, &e.pages.machine, &e.pages.data, &e.pages.bench, &e.pages.cure, &e.see})
+    trim(*text);
+  return e;
+}
+
+Effect read_effect(const std::filesystem::path& path) { return parse_effect(read_text(path), path.string()); }
+
+std::vector<Effect> catalogue(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+  if (error)
+    throw InputError(fmt::format("{}: the folder of effects cannot be read: {}", folder.string(), error.message()));
+  std::sort(files.begin(), files.end());
+  std::vector<Effect> all;
+  for (const std::filesystem::path& file : files) add_effect(all, read_effect(file));
+  return all;
+}
+
+void add_effect(std::vector<Effect>& all, Effect e) {
+  for (const Effect& other : all)
+    if (other.name == e.name)
+      throw InputError(fmt::format("{}:{}: name: there is an effect '{}' already ({}:{}): give this one another name",
+                                   e.origin, e.line, e.name, other.origin, other.line));
+  all.push_back(std::move(e));
+}
+
+const Effect& find_effect(const std::vector<Effect>& all, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Effect& e : all) {
+    if (e.name == name) return e;
+    names.push_back(e.name);
+  }
+  throw InputError(fmt::format("there is no effect '{}'{}", name, suggestion(name, names)));
+}
+
+}  // namespace deflect

@@ -1,0 +1,122 @@
+#include "validation/effects/with_effect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "msa/base/error.h"
+#include "msa/mechanism/configuration.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/effects/edit_paths.h"
+#include "validation/effects/effect_value.h"
+
+namespace deflect {
+namespace {
+
+/// The effect's edits as edits of this mechanism; edits whose parameters vanish are left out.
+std::vector<Edit> edits_of(const Effect& e, const EffectEdit& edit, const Mechanism& m, const VectorX& values,
+                           std::optional<int> leg) {
+  const YamlNode value = parse_yaml(edit.value, e.origin);
+  const std::vector<bool> used = parameters_used(value, e);
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i] && e.parameters[i].vanishes == values(static_cast<Eigen::Index>(i))) return {};
+  static_assert(static_cast<int>(Edit::Action::add) == static_cast<int>(EffectEdit::Action::add) &&
+                static_cast<int>(Edit::Action::multiply) == static_cast<int>(EffectEdit::Action::multiply));
+  const std::string text = flow_yaml(filled_in(value, e, values));
+  std::vector<Edit> out;
+  for (const std::string& path : paths_of(edit, m, leg))
+    out.push_back({path, text, static_cast<Edit::Action>(edit.action)});
+  return out;
+}
+
+void check_arguments(const Effect& e, const Mechanism& m, const VectorX& values, std::optional<int> leg) {
+  if (static_cast<std::size_t>(values.size()) != e.parameters.size())
+    throw InputError(fmt::format("effect '{}' has {} parameter{}, {} values are given", e.name, e.parameters.size(),
+                                 e.parameters.size() == 1 ? "" : "s", values.size()));
+  const int legs = leg_count(m);
+  if (e.scope == Scope::one_leg && !leg)
+    throw InputError(fmt::format("effect '{}' belongs to one leg: say which, 1 to {}", e.name, legs));
+  if (e.scope != Scope::one_leg && leg)
+    throw InputError(fmt::format("effect '{}' belongs to {}: it takes no leg", e.name,
+                                 e.scope == Scope::all_legs ? "all legs" : site_of({&e, {}})));
+  if (leg && (*leg < 1 || *leg > legs))
+    throw InputError(fmt::format("{}: there is no leg {}, legs are 1 to {}", m.name, *leg, legs));
+}
+
+std::string line_of(const Effect& e, std::size_t edit) {
+  return fmt::format("{}:{}: edits.{}: ", e.origin, e.edits[edit].line, edit);
+}
+
+/// Edit by edit, so that a message can name the line that does not fit, and an edit can reach into the one before.
+Mechanism one_by_one(const Mechanism& m, const Effect& e, const VectorX& values, std::optional<int> leg) {
+  Mechanism so_far = m;
+  for (std::size_t i = 0; i < e.edits.size(); ++i) try {
+      so_far = edited_in_turn(so_far, edits_of(e, e.edits[i], so_far, values, leg));
+    } catch (const InputError& error) {
+      throw InputError(line_of(e, i) + error.what());
+    }
+  return so_far;
+}
+
+/// Without the places that the reader of the file knows: "leg.carriage: there is no 'carriage' (known: …)".
+std::string reason(const std::string& message, const Effect& e) {
+  std::string text = message;
+  for (std::size_t i = 0; i < e.edits.size(); ++i)
+    if (text.starts_with(line_of(e, i))) text = text.substr(line_of(e, i).size());
+  if (const std::size_t end = text.find("': "); text.starts_with("edit '") && end != text.npos)
+    text = text.substr(end + 3);
+  return text;
+}
+
+}  // namespace
+
+std::string site_of(const PlacedEffect& p) {
+  return p.leg ? fmt::format("leg {}", *p.leg) : scope_names[static_cast<std::size_t>(p.effect->scope)];
+}
+
+VectorX start_values(const Effect& e) {
+  VectorX out(static_cast<Eigen::Index>(e.parameters.size()));
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) out(static_cast<Eigen::Index>(i)) = e.parameters[i].start;
+  return out;
+}
+
+Mechanism with_effect(const Mechanism& m, const Effect& e, const VectorX& values, std::optional<int> leg) {
+  check_arguments(e, m, values, leg);
+  try {
+    std::vector<Edit> all;
+    for (const EffectEdit& edit : e.edits)
+      for (Edit& each : edits_of(e, edit, m, values, leg)) all.push_back(std::move(each));
+    return edited_in_turn(m, all);
+  } catch (const InputError&) {
+    return one_by_one(m, e, values, leg);
+  }
+}
+
+Mechanism with_effect(const Mechanism& m, const EffectInstance& i) {
+  return with_effect(m, *i.effect, i.values, i.leg);
+}
+
+std::optional<std::string> why_not(const Effect& e, const Mechanism& m, std::optional<int> leg) {
+  std::optional<std::string> first;
+  const bool each = e.scope == Scope::one_leg && !leg;
+  for (int i = 1; i <= (each ? leg_count(m) : 1); ++i) try {
+      with_effect(m, e, start_values(e), each ? std::optional(i) : leg);
+      return std::nullopt;
+    } catch (const InputError& error) {
+      if (!first) first = reason(error.what(), e);
+    }
+  return first;
+}
+
+std::vector<PlacedEffect> places_of(const Effect& e, const Mechanism& m) {
+  std::vector<PlacedEffect> out;
+  if (e.scope != Scope::one_leg) {
+    if (!why_not(e, m)) out.push_back({&e, {}});
+    return out;
+  }
+  for (int leg = 1; leg <= leg_count(m); ++leg)
+    if (!why_not(e, m, leg)) out.push_back({&e, leg});
+  return out;
+}
+
+}  // namespace deflect

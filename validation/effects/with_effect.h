@@ -1,0 +1,73 @@
+// Descriptions with effects in them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "msa/mechanism/description.h"
+#include "validation/effects/effect.h"
+
+namespace deflect {
+
+/// An effect with its place: `leg` (1-based) is given if and only if the effect's scope is one leg.
+struct PlacedEffect {
+  const Effect* effect = nullptr;
+  std::optional<int> leg;
+};
+
+/// The same with values for its parameters, in their units and order.
+struct EffectInstance : PlacedEffect {
+  VectorX values;
+};
+
+/// "all legs", "leg 4", "machine" or "rig".
+std::string site_of(const PlacedEffect&);
+
+/// The parameters' start.
+VectorX start_values(const Effect&);
+
+/// A new description with the effect in it, checked like a file. An edit one of whose parameters has the value at which
+/// it vanishes (infinity too) is left out. Values may lie outside the bounds of a search as long as the description
+/// can hold them. InputError "file:line: edits.i: …" naming what does not fit, and the nearest valid name.
+Mechanism with_effect(const Mechanism&, const Effect&, const VectorX& values, std::optional<int> leg = {});
+Mechanism with_effect(const Mechanism&, const EffectInstance&);
+
+/// Why the effect has no place in the mechanism (or in that leg of it), in words; nothing when it has one.
+std::optional<std::string> why_not(const Effect&, const Mechanism&, std::optional<int> leg = {});
+
+/// Every place the effect has in the mechanism: one, or one per leg, or none.
+std::vector<PlacedEffect> places_of(const Effect&, const Mechanism&);
+
+/// Effects placed in one mechanism, for many values in a row: the edits are worked out once, so that a call only sets
+/// numbers, and the legs are resolved (see `resolved` in device_file.h): for models, not for files.
+class PreparedEffects {
+ public:
+  /// The effects must outlive this object. InputError as with_effect.
+  PreparedEffects(const Mechanism&, std::vector<PlacedEffect>);
+
+  /// Values of all effects one after the other.
+  Mechanism operator()(const VectorX& values) const;
+
+  Eigen::Index parameter_count() const { return static_cast<Eigen::Index>(parameters_.size()); }
+
+ private:
+  /// Number `at` of the description is offset + factor · parameter.
+  struct Slot {
+    std::size_t at = 0, parameter = 0;
+    double offset = 0, factor = 0;
+  };
+
+  Mechanism edited_one_by_one(const VectorX& values) const;
+  VectorX probe(double part) const;  // of the way from the start towards the farther bound
+  bool find_slots();                 // which numbers follow which parameter, seen at a few values
+  bool slots_hold() const;           // at another value
+
+  Mechanism bare_, with_;  // without the effects; with them, at some values
+  std::vector<PlacedEffect> effects_;
+  std::vector<const EffectParameter*> parameters_;
+  std::vector<Slot> slots_;  // by `at`
+  bool affine_ = true;       // otherwise every call goes the long way
+};
+
+}  // namespace deflect

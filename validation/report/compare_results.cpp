@@ -1,0 +1,242 @@
+#include "validation/report/compare_results.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "validation/report/json_text.h"
+#include "validation/report/text.h"
+
+namespace deflect {
+namespace {
+
+constexpr double um = 1e6, mm = 1e3;
+constexpr double significant = 1e-3;
+
+std::string p_text(double p) { return p < 1e-16 ? "< 1e-16" : fmt::format("{:.2g}", p); }
+
+std::string verdict(const Comparison& c) {
+  if (!c.looks_like.empty() && c.looks_like.front().starts_with("these data"))
+    return "Before anything else: " + c.looks_like.front() + ".";
+  const double beyond =
+      std::sqrt(std::max(0.0, c.all.rmse * c.all.rmse - c.noise_and_tolerances * c.noise_and_tolerances));
+  if (c.findings.empty())
+    return c.unexplained_chi2_per_dof < 1.3
+               ? fmt::format(
+                     "Nothing is missing that these readings can show: {:.2f} µm rms are left, noise and tolerances "
+                     "give {:.2f} µm.",
+                     um * c.all.rmse, um * c.noise_and_tolerances)
+               : fmt::format(
+                     "The residual of {:.2f} µm rms is more than noise and tolerances ({:.2f} µm), but none of the "
+                     "patterns looked for describes it.",
+                     um * c.all.rmse, um * c.noise_and_tolerances);
+  return fmt::format(
+      "Something is missing: the model fails by {:.2f} µm rms beyond noise and tolerances ({:.0f} % of what was "
+      "measured).",
+      um * beyond, 100 * beyond / c.all.measured);
+}
+
+std::string findings_text(const Comparison& c) {
+  std::string out;
+  int number = 0;
+  for (const Finding& f : c.findings) {
+    out += fmt::format("  {}. {}.\n", ++number, f.sentence);
+    out += fmt::format("     {:.2f} µm rms of the readings, {:.0f} % of the misfit beyond noise, p {}{}\n", um * f.size,
+                       100 * f.share, p_text(f.p_value),
+                       f.instead.empty() ? "" : fmt::format("; nearly as well: {}", fmt::join(f.instead, ", ")));
+  }
+  if (!c.findings.empty())
+    out += fmt::format(
+        "  After that the misfit is {:.2f} times what noise and tolerances give (chi2 per degree of freedom).\n",
+        c.unexplained_chi2_per_dof);
+  if (c.deformed_shape_fit && c.deformed_shape > 0.02 * c.sigma_u)
+    out += fmt::format(
+        "  Equilibrium in the deformed shape, which this linear device leaves out, is taken into account: {:.2f} µm "
+        "rms; the data ask for {:.2f} ± {:.2f} times that.\n",
+        um * c.deformed_shape, c.deformed_shape_fit->amplitude(0), std::sqrt(c.deformed_shape_fit->covariance(0, 0)));
+  return out;
+}
+
+void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<Errors>& groups) {
+  for (const Errors& e : groups)
+    rows.push_back({"  " + e.group, std::to_string(e.readings), fmt::format("{:.2f}", um * e.rmse),
+                    fmt::format("{:.2f}", um * e.bias.x()), fmt::format("{:.2f}", um * e.bias.y()),
+                    fmt::format("{:.2f}", um * e.bias.z()), fmt::format("{:.2f}", um * e.worst),
+                    std::to_string(e.worst_line)});
+}
+
+std::string errors_table(const Comparison& c) {
+  std::vector<std::vector<std::string>> rows = {
+      {"measured − predicted, µm", "readings", "rms", "mean x", "mean y", "mean z", "worst", "in line"}};
+  Errors all = c.all;
+  all.group = "all";
+  add_rows(rows, {all});
+  for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading, &c.by_pose})
+    add_rows(rows, *groups);
+  return aligned(rows);
+}
+
+std::string tests_table(const Comparison& c) {
+  std::vector<std::vector<std::string>> rows = {{"tests without a model of what is missing", "numbers", "µm", "p"}};
+  for (const ContrastTest& t : c.contrasts)
+    rows.push_back(
+        t.contrasts == 0
+            ? std::vector<std::string>{fmt::format("  {}: {}", t.id, t.question), "0", "–", "needs " + t.missing}
+            : std::vector<std::string>{fmt::format("  {}: {}", t.id, t.question), std::to_string(t.contrasts),
+                                       fmt::format("{:.2f}", um * t.size),
+                                       p_text(t.p_value) + (t.p_value < significant ? " *" : "")});
+  rows.push_back({"patterns, each alone", "columns", "µm", "p"});
+  for (const PatternTest& t : c.patterns)
+    rows.push_back({fmt::format("  {}: {}", t.pattern, t.title), std::to_string(t.alone.freedoms),
+                    fmt::format("{:.2f}", um * t.size),
+                    p_text(t.alone.p_value) + (t.alone.p_value < significant ? " *" : "")});
+  return aligned(rows);
+}
+
+Json errors_json(const std::vector<Errors>& groups) {
+  Json out = Json::array();
+  for (const Errors& e : groups)
+    out.push_back({{"group", e.group},
+                   {"readings", e.readings},
+                   {"rmse_mm", json_number(mm * e.rmse, "rmse")},
+                   {"bias_mm", {mm * e.bias.x(), mm * e.bias.y(), mm * e.bias.z()}},
+                   {"worst_mm", json_number(mm * e.worst, "worst")},
+                   {"worst_line", e.worst_line}});
+  return out;
+}
+
+std::vector<double> list_of(const VectorX& x) { return {x.data(), x.data() + x.size()}; }
+
+}  // namespace
+
+std::string compare_report(const Comparison& c) {
+  std::string out =
+      fmt::format("{} against {}: {} readings at {} poses\n\n{}\n", c.device, c.data, c.readings, c.poses, verdict(c));
+  const std::string found = findings_text(c);
+  if (!found.empty()) out += "\n" + found;
+  for (const std::string& s : c.looks_like) out += fmt::format("\n  {}\n", s);
+  out += fmt::format(
+      "\nresidual {:.2f} µm rms (held-out poses {:.2f}), σ of a reading {:.2f} µm{}, noise and tolerances {:.2f} µm, "
+      "chi2 per degree of freedom {:.2f}\n",
+      um * c.all.rmse, um * c.held_out, um * c.sigma_u,
+      c.sigma_from_residuals ? " (from the residuals: neither σ nor replicates in the file)" : "",
+      um * c.noise_and_tolerances, c.chi2_per_dof);
+  if (c.pure_error)
+    out += fmt::format("replicates scatter by {:.2f} µm ({} degrees of freedom)\n", um * c.pure_error->sigma,
+                       c.pure_error->degrees_of_freedom);
+  if (!c.set_aside.empty())
+    out += fmt::format("set aside as gross outliers: {} readings, lines {}\n", c.set_aside.size(),
+                       fmt::join(c.set_aside, ", "));
+  if (!c.strained.empty()) {
+    out += "tolerances alone would have to be off by more than two of their standard deviations:";
+    for (const auto& [name, eta] : c.strained) out += fmt::format(" {} {:+.1f}", name, eta);
+    out += "\n";
+  }
+  return out + "\n" + tests_table(c) + "\n" + errors_table(c);
+}
+
+std::string compare_json(const Comparison& c) {
+  Json j;
+  j["device"] = c.device;
+  j["data"] = c.data;
+  j["readings"] = c.readings;
+  j["poses"] = c.poses;
+  j["baseline"] = {{"rmse_mm", json_number(mm * c.all.rmse, "rmse")},
+                   {"held_out_rmse_mm", json_number(mm * c.held_out, "held-out rmse")},
+                   {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")},
+                   {"p_value", c.p_value},
+                   {"measured_rms_mm", mm * c.all.measured},
+                   {"worst_mm", mm * c.all.worst}};
+  j["noise_floor_mm"] = json_number(mm * c.noise_and_tolerances, "noise floor");
+  j["sigma_u_mm"] = mm * c.sigma_u;
+  j["sigma_from_residuals"] = c.sigma_from_residuals;
+  if (c.pure_error)
+    j["pure_error"] = {{"sigma_mm", mm * c.pure_error->sigma},
+                       {"degrees_of_freedom", c.pure_error->degrees_of_freedom}};
+  j["verdict"] = verdict(c);
+  j["findings"] = Json::array();
+  for (const Finding& f : c.findings)
+    j["findings"].push_back({{"pattern", f.pattern},
+                             {"sentence", f.sentence},
+                             {"columns", f.columns},
+                             {"amplitude_SI", list_of(f.amplitude)},
+                             {"deviation_SI", list_of(f.deviation)},
+                             {"unit_SI", f.unit},
+                             {"size_mm", mm * f.size},
+                             {"share_of_misfit", f.share},
+                             {"chi2_gain", f.gain},
+                             {"p_value", f.p_value},
+                             {"instead", f.instead}});
+  j["unexplained_chi2_per_dof"] = json_number(c.unexplained_chi2_per_dof, "unexplained chi2");
+  if (c.deformed_shape_fit)
+    j["deformed_shape"] = {{"size_mm", mm * c.deformed_shape},
+                           {"amplitude", c.deformed_shape_fit->amplitude(0)},
+                           {"deviation", std::sqrt(c.deformed_shape_fit->covariance(0, 0))}};
+  j["tests"] = Json::array();
+  for (const ContrastTest& t : c.contrasts) {
+    Json test = {{"test", t.id}, {"question", t.question}, {"numbers", t.contrasts}};
+    if (t.contrasts > 0)
+      test["size_mm"] = mm * t.size, test["p_value"] = t.p_value;
+    else
+      test["needs"] = t.missing;
+    j["tests"].push_back(test);
+  }
+  j["patterns"] = Json::array();
+  for (const PatternTest& t : c.patterns)
+    j["patterns"].push_back({{"pattern", t.pattern},
+                             {"title", t.title},
+                             {"size_mm", mm * t.size},
+                             {"chi2_gain", t.alone.gain},
+                             {"columns", t.alone.freedoms},
+                             {"p_value", t.alone.p_value}});
+  j["errors"] = {{"by_axis", errors_json(c.by_axis)},
+                 {"by_pose", errors_json(c.by_pose)},
+                 {"by_direction", errors_json(c.by_direction)},
+                 {"by_magnitude", errors_json(c.by_magnitude)},
+                 {"by_heading", errors_json(c.by_heading)}};
+  j["strained_tolerances"] = Json::array();
+  for (const auto& [name, eta] : c.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});
+  j["looks_like"] = c.looks_like;
+  j["set_aside_lines"] = c.set_aside;
+  return json_text(j);
+}
+
+std::string residuals_csv(const Comparison& c) {
+  constexpr const char* names[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
+  const ResidualStudy& s = c.study;
+  std::string out = "line,pose,component,unit,measured,predicted,residual,sigma\n";
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    const MeasuredValue& v = s.values[i];
+    const Reading& r = s.data->readings[v.reading];
+    const double unit = v.component < 3 ? mm : 1;
+    const double residual = c.residual(static_cast<Eigen::Index>(i));
+    out += fmt::format("{},\"{}\",{},{},{:.9g},{:.9g},{:.9g},{:.4g}\n", r.line, s.data->poses[r.pose].label,
+                       names[v.component], v.component < 3 ? "mm" : "rad", unit * v.value, unit * (v.value - residual),
+                       unit * residual, unit * c.sigma[i]);
+  }
+  return out;
+}
+
+std::string errors_csv(const Comparison& c) {
+  std::string out = "group,readings,rmse_um,mean_x_um,mean_y_um,mean_z_um,worst_um,worst_line\n";
+  Errors all = c.all;
+  all.group = "all";
+  std::vector<Errors> rows = {all};
+  for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading, &c.by_pose})
+    rows.insert(rows.end(), groups->begin(), groups->end());
+  for (const Errors& e : rows)
+    out += fmt::format("\"{}\",{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", e.group, e.readings, um * e.rmse,
+                       um * e.bias.x(), um * e.bias.y(), um * e.bias.z(), um * e.worst, e.worst_line);
+  return out;
+}
+
+std::string tests_csv(const Comparison& c) {
+  std::string out = "kind,name,numbers,size_um,p_value\n";
+  for (const ContrastTest& t : c.contrasts)
+    out += fmt::format("contrast,{},{},{:.6g},{:.6g}\n", t.id, t.contrasts, um * t.size, t.p_value);
+  for (const PatternTest& t : c.patterns)
+    out += fmt::format("pattern,{},{},{:.6g},{:.6g}\n", t.pattern, t.alone.freedoms, um * t.size, t.alone.p_value);
+  return out;
+}
+
+}  // namespace deflect

@@ -1,0 +1,22 @@
+// A comparison as a report for a person, JSON and tables.
+#pragma once
+
+#include <string>
+
+#include "validation/compare/comparison.h"
+
+namespace deflect {
+
+/// Verdict, findings in sentences, errors by group, tests.
+std::string compare_report(const Comparison&);
+
+/// {"device", "data", "readings", "poses", "baseline": {"rmse_mm", "held_out_rmse_mm", "chi2_per_dof", …},
+/// "findings": […], "tests": […], "patterns": […], "errors": {…}, "looks_like": […], "set_aside_lines": […]}.
+std::string compare_json(const Comparison&);
+
+/// Tables: a row per reading with measured, predicted, residual, its σ and the sites' forces; errors by group; tests.
+std::string residuals_csv(const Comparison&);
+std::string errors_csv(const Comparison&);
+std::string tests_csv(const Comparison&);
+
+}  // namespace deflect

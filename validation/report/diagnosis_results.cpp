@@ -1,0 +1,161 @@
+#include "validation/report/diagnosis_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/report/json_text.h"
+#include "validation/report/text.h"
+
+namespace deflect {
+namespace {
+
+constexpr double um = 1e6, mm = 1e3;
+
+std::string site_words(const PlacedEffect& e) { return fmt::format("{} ({})", e.effect->name, site_of(e)); }
+
+/// "stiffness_Nmm_per_rad 5.00e+06 (4.9e+06 … 5.1e+06)".
+std::string values_words(const Hypothesis& h, const Fit& f) {
+  const std::vector<const EffectParameter*> all = parameters_of(h);
+  std::string out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [low, high] = interval95(h, f, i);
+    out += fmt::format("{}{} = {:.4g} ({:.3g} … {:.3g})", i ? ", " : "", all[i]->name,
+                       f.values(static_cast<Eigen::Index>(i)), low, high);
+  }
+  return out;
+}
+
+std::string verdict_words(const Diagnosis& d) {
+  std::string names;
+  for (const PlacedEffect& e : d.missing)
+    names += (names.empty() ? "" : " and ") + e.effect->title + " (" + site_words(e) + ")";
+  const double explained = d.baseline.rmse > 0 ? 100 * (1 - d.final.rmse / d.baseline.rmse) : 0;
+  switch (d.verdict) {
+    case Verdict::nothing_missing:
+      return fmt::format(
+          "Nothing is missing that these data can show: what is left, {:.2f} µm rms, is noise and tolerances.",
+          um * d.baseline.rmse);
+    case Verdict::effect:
+      return fmt::format(
+          "Missing: {}. With it the error falls from {:.2f} to {:.2f} µm rms ({:.0f} %); the readings' noise is {:.2f} "
+          "µm.",
+          names, um * d.baseline.rmse, um * d.final.rmse, explained, um * d.noise_floor);
+    case Verdict::ambiguous: {
+      std::string group;
+      for (const std::vector<std::string>& g : d.indistinguishable)
+        group += fmt::format("{}{}", group.empty() ? "" : "; and ", fmt::join(g, " or "));
+      return fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}.", group, names);
+    }
+    case Verdict::unknown_effect:
+      return fmt::format(
+          "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
+          names.empty() ? "" : ", not even with " + names, d.pattern);
+  }
+  return "";
+}
+
+std::string candidates_table(const Diagnosis& d) {
+  std::vector<std::vector<std::string>> rows = {
+      {"candidate", "probability", "rms µm", "held-out", "chi2/n", "values with 95 % interval"}};
+  std::size_t shown = 0;
+  for (const Candidate& c : d.candidates) {
+    if (shown >= 8 || (c.probability < 1e-6 && shown >= 3)) break;
+    rows.push_back({"  " + site_words(c.added()), fmt::format("{:.3g}", c.probability),
+                    fmt::format("{:.2f}", um * c.rmse), fmt::format("{:.2f}", um * c.held_out),
+                    fmt::format("{:.2f}", c.chi2_per_dof), c.fit.found ? values_words(c.hypothesis, c.fit) : "no fit"});
+    ++shown;
+  }
+  rows.push_back({"  nothing", fmt::format("{:.3g}", d.probability_nothing),
+                  fmt::format("{:.2f}", um * d.baseline.rmse), fmt::format("{:.2f}", um * d.baseline.held_out),
+                  fmt::format("{:.2f}", d.baseline.chi2_per_dof), ""});
+  rows.push_back({"  something unknown", fmt::format("{:.3g}", d.probability_unknown)});
+  return aligned(rows);
+}
+
+Json quality_json(const Quality& q) {
+  return {{"rmse_mm", json_number(mm * q.rmse, "rmse")},
+          {"held_out_rmse_mm", json_number(mm * q.held_out, "held-out rmse")},
+          {"chi2_per_dof", json_number(q.chi2_per_dof, "chi2")}};
+}
+
+Json parameters_json(const Hypothesis& h, const Fit& f, std::size_t from, std::size_t count) {
+  Json out = Json::array();
+  const std::vector<const EffectParameter*> all = parameters_of(h);
+  for (std::size_t i = from; i < from + count && f.found; ++i) {
+    const auto [low, high] = interval95(h, f, i);
+    out.push_back(
+        {{"name", all[i]->name}, {"value", f.values(static_cast<Eigen::Index>(i))}, {"low95", low}, {"high95", high}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string diagnosis_report(const Diagnosis& d, const std::string& device, const std::string& data) {
+  std::string out = fmt::format("{} against {}\n\n{}\n\n", device, data, verdict_words(d));
+  if (!d.missing.empty()) out += "fitted: " + values_words(d.missing, d.fit) + "\n\n";
+  out += candidates_table(d);
+  out += fmt::format("\nchance that some effect looks as good in data with nothing missing: {:.2g}\n", d.chance);
+  if (d.unexplained) out += fmt::format("left unexplained: {:.0f} % of the misfit\n", 100 * d.share_unexplained);
+  if (!d.strained.empty()) {
+    out += "tolerances beyond two standard deviations:";
+    for (const auto& [name, eta] : d.strained) out += fmt::format(" {} {:+.1f},", name, eta);
+    out.back() = '\n';
+  }
+  std::vector<std::vector<std::string>> rows = {
+      {"smallest size this plan would show (λ = 4)", "", "would be mistaken for"}};
+  for (const Detectable& e : d.detectable) {
+    std::string sizes;
+    for (std::size_t i = 0; i < e.smallest.size(); ++i) sizes += fmt::format("{}{:.3g}", i ? ", " : "", e.smallest[i]);
+    rows.push_back({"  " + site_words(e.effect), sizes.empty() ? "none within bounds" : sizes,
+                    e.mistaken_for.empty() ? "" : fmt::format("{} (cosine {:.3f})", e.mistaken_for, e.cosine)});
+  }
+  return out + "\n" + aligned(rows);
+}
+
+std::string diagnosis_json(const Diagnosis& d) {
+  Json j;
+  j["verdict"] = verdict_names[static_cast<int>(d.verdict)];
+  j["missing"] = Json::array();
+  for (const PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
+  j["candidates"] = Json::array();
+  for (const Candidate& c : d.candidates)
+    j["candidates"].push_back(
+        {{"effect", c.added().effect->name},
+         {"site", site_of(c.added())},
+         {"probability", c.probability},
+         {"parameters", parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size())},
+         {"rmse_mm", mm * c.rmse},
+         {"held_out_rmse_mm", mm * c.held_out},
+         {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")}});
+  j["indistinguishable"] = d.indistinguishable;
+  j["baseline"] = quality_json(d.baseline);
+  j["final"] = quality_json(d.final);
+  j["noise_floor_mm"] = json_number(mm * d.noise_floor, "noise floor");
+  j["unexplained"] = {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained}, {"pattern", d.pattern}};
+  j["found"] = Json::array();  // the effects of "missing", fitted together
+  std::size_t from = 0;
+  for (const PlacedEffect& e : d.missing) {
+    j["found"].push_back({{"effect", e.effect->name},
+                          {"site", site_of(e)},
+                          {"parameters", parameters_json(d.missing, d.fit, from, e.effect->parameters.size())}});
+    from += e.effect->parameters.size();
+  }
+  j["probability_nothing"] = d.probability_nothing;
+  j["probability_unknown"] = d.probability_unknown;
+  j["chance_of_any"] = d.chance;
+  j["strained_tolerances"] = Json::array();
+  for (const auto& [name, eta] : d.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});
+  j["detectable"] = Json::array();
+  for (const Detectable& e : d.detectable)
+    j["detectable"].push_back({{"effect", e.effect.effect->name},
+                               {"site", site_of(e.effect)},
+                               {"smallest", e.smallest},
+                               {"mistaken_for", e.mistaken_for},
+                               {"cosine", e.cosine}});
+  return json_text(j);
+}
+
+}  // namespace deflect

@@ -1,0 +1,132 @@
+#include "validation/report/effect_results.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "validation/effects/parameter_unit.h"
+#include "validation/report/json_text.h"
+#include "validation/report/text.h"
+
+namespace deflect {
+namespace {
+
+constexpr std::size_t line_length = 110;
+constexpr const char* action_names[] = {"set", "append", "multiply", "add"};
+
+const char* scope_name(const Effect& e) { return scope_names[static_cast<std::size_t>(e.scope)]; }
+const char* action_name(const EffectEdit& e) { return action_names[static_cast<std::size_t>(e.action)]; }
+
+std::string parameter_names(const Effect& e) {
+  std::string text;
+  for (const EffectParameter& p : e.parameters) text += (text.empty() ? "" : " ") + p.name;
+  return text.empty() ? "no parameter" : text;
+}
+
+std::string row(const std::string& name, const std::string& scope, const std::string& text) {
+  return fmt::format("{:<24} {:<9} {}\n", name, scope, text);
+}
+
+std::string paragraph(const std::string& heading, const std::string& text) {
+  std::string out = heading + "\n";
+  for (const std::string& line : wrap(text, line_length - 2)) out += "  " + line + "\n";
+  return out;
+}
+
+std::string parameter_text(const EffectParameter& p) {
+  const std::string unit = printed_unit(p.name);
+  std::string absent;
+  if (p.vanishes)
+    absent = std::isfinite(*p.vanishes) ? fmt::format(", absent at {:g}", *p.vanishes) : ", absent at infinity";
+  return fmt::format("  {}: {}\n    from {:g} to {:g}{}{}, search begins at {:g}{}{}\n", p.name, p.about, p.low, p.high,
+                     unit.empty() ? "" : " ", unit, p.start, p.log ? ", logarithmic" : "", absent);
+}
+
+Json parameter_json(const EffectParameter& p) {
+  Json j = {{"name", p.name}, {"unit", printed_unit(p.name)},     {"start", p.start}, {"low", p.low},
+            {"high", p.high}, {"scale", p.log ? "log" : "linear"}};
+  if (p.vanishes && std::isfinite(*p.vanishes)) j["vanishes"] = *p.vanishes;
+  if (p.vanishes && !std::isfinite(*p.vanishes)) j["vanishes"] = "infinity";
+  j["about"] = p.about;
+  return j;
+}
+
+Json effect_json(const Effect& e) {
+  Json j = {{"effect", e.name}, {"title", e.title}, {"scope", scope_name(e)}, {"parameters", Json::array()}};
+  for (const EffectParameter& p : e.parameters) j["parameters"].push_back(parameter_json(p));
+  j["edits"] = Json::array();
+  for (const EffectEdit& edit : e.edits)
+    j["edits"].push_back({{"at", edit.paths}, {"action", action_name(edit)}, {"value", edit.value}});
+  j["pages"] = {{"machine", e.pages.machine}, {"data", e.pages.data}, {"bench", e.pages.bench}, {"cure", e.pages.cure}};
+  if (!e.see.empty()) j["see"] = e.see;
+  return j;
+}
+
+}  // namespace
+
+std::string effect_table(const std::vector<Effect>& all) {
+  std::string out = row("effect", "scope", "what is missing, and its parameters");
+  for (const Effect& e : all) out += row(e.name, scope_name(e), e.title) + row("", "", "  " + parameter_names(e));
+  return out;
+}
+
+std::string effects_in_device(const std::vector<Effect>& all, const Mechanism& m) {
+  std::string there = fmt::format("effects that {} can have\n", m.name), not_there;
+  for (const Effect& e : all)
+    if (const auto reason = why_not(e, m))
+      not_there += fmt::format("  {:<24} {}\n", e.name, *reason);
+    else
+      there += fmt::format("  {:<24} {:<9} {}\n", e.name, scope_name(e), parameter_names(e));
+  return there + (not_there.empty() ? "" : "effects that it cannot have, and why\n" + not_there);
+}
+
+std::string effect_page(const Effect& e) {
+  std::string out = fmt::format("{}\n{}. Scope: {}.\n\n", e.name, e.title, scope_name(e));
+  out += paragraph("In the machine", e.pages.machine) + paragraph("In the data", e.pages.data) +
+         paragraph("On the bench", e.pages.bench) + paragraph("Cure", e.pages.cure);
+  if (!e.parameters.empty()) out += "Parameters\n";
+  for (const EffectParameter& p : e.parameters) out += parameter_text(p);
+  out += "Edits of the description\n";
+  for (const EffectEdit& edit : e.edits)
+    out += fmt::format("  {} {} {}\n", fmt::join(edit.paths, " or "), action_name(edit), edit.value);
+  if (!e.see.empty()) out += paragraph("See", e.see);
+  return out;
+}
+
+std::string effects_json(const std::vector<Effect>& all, const Mechanism* device) {
+  Json list = Json::array();
+  for (const Effect& e : all) {
+    Json j = effect_json(e);
+    if (device) {
+      const auto reason = why_not(e, *device);
+      j["applies"] = !reason;
+      if (reason) j["reason"] = *reason;
+    }
+    list.push_back(std::move(j));
+  }
+  return json_text(list);
+}
+
+std::string words(const EffectInstance& i) {
+  std::string out = i.effect->name, values;
+  if (i.leg) out += fmt::format(" of leg {}", *i.leg);
+  for (std::size_t k = 0; k < i.effect->parameters.size(); ++k)
+    values += fmt::format("{}{} = {:.6g}", k > 0 ? ", " : "", i.effect->parameters[k].name,
+                          i.values(static_cast<Eigen::Index>(k)));
+  return values.empty() ? out : fmt::format("{} ({})", out, values);
+}
+
+std::string added_json(const std::string& device, const std::string& new_device,
+                       const std::vector<EffectInstance>& added) {
+  Json out = {{"device", device}, {"new_device", new_device}, {"added", Json::array()}};
+  for (const EffectInstance& i : added) {
+    Json parameters = Json::array();
+    for (std::size_t k = 0; k < i.effect->parameters.size(); ++k)
+      parameters.push_back({{"name", i.effect->parameters[k].name}, {"value", i.values(static_cast<Eigen::Index>(k))}});
+    out["added"].push_back({{"effect", i.effect->name}, {"site", site_of(i)}, {"parameters", parameters}});
+  }
+  return json_text(out);
+}
+
+}  // namespace deflect

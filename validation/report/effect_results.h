@@ -1,0 +1,32 @@
+// Effects as a table, as a page for a person, and as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "msa/mechanism/description.h"
+#include "validation/effects/with_effect.h"
+
+namespace deflect {
+
+/// One paragraph per effect: name, scope, title, parameters.
+std::string effect_table(const std::vector<Effect>&);
+
+/// Which of them have a place in the device; of the others, why not.
+std::string effects_in_device(const std::vector<Effect>&, const Mechanism&);
+
+/// Everything about one effect.
+std::string effect_page(const Effect&);
+
+/// [{"effect", "title", "scope", "parameters": [{"name", "unit", "start", "low", "high", "scale", "vanishes",
+/// "about"}], "edits": [{"at": […], "action", "value"}], "pages": {…}, "see"}]; with a device also "applies" and
+/// "reason". "vanishes" is a number, "infinity", or absent.
+std::string effects_json(const std::vector<Effect>&, const Mechanism* device);
+
+/// "guide_root_compliance (stiffness_Nmm_per_rad = 5e+06)", "leg_defect of leg 4 (factor = 0.7)".
+std::string words(const EffectInstance&);
+
+/// {"device", "new_device", "added": [{"effect", "site", "parameters": [{"name", "value"}]}]}.
+std::string added_json(const std::string& device, const std::string& new_device, const std::vector<EffectInstance>&);
+
+}  // namespace deflect
