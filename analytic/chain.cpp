@@ -139,6 +139,20 @@ Response Chain::respond(const Vector6& F, double least, const Circumstances& c) 
   return r;
 }
 
+Vector6 Chain::deflection(const Vector6& F, const Circumstances& c) const {
+  Vector6 d = misfit + c.warmer * expansion + C * F;
+  for (const ElasticFreedom& f : freedoms) {
+    const double force = f.twist.dot(F);
+    d += f.twist * analytic::deflection(f.spring, force, c.printed);
+    for (const SteppedLaw& law : f.stepped) {
+      const Step step = step_of(law, force, c);
+      d += f.twist * (step.offset + step.compliance * force);
+    }
+  }
+  for (const Group& g : groups) d += g.solve(F, c).t;
+  return d;
+}
+
 bool Chain::has_open(const Circumstances& c) const {
   for (const ElasticFreedom& f : freedoms)
     for (const SteppedLaw& law : f.stepped)

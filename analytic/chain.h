@@ -68,7 +68,7 @@ struct Chain {
   /// Motion under F but for J_q θ; the tangent's compliance takes a force below `least` (N, Nm) for `least`, so that
   /// unloaded contacts stay finite; with least = 0 they let go, and so do released steps.
   Response respond(const Vector6& F, double least, const Circumstances&) const;
-  Vector6 deflection(const Vector6& F, const Circumstances& c) const { return respond(F, 0, c).d; }
+  Vector6 deflection(const Vector6& F, const Circumstances&) const;
   /// Tangent stiffness K_c. Contacts without load do not resist. Throws ModelError where it is infinite.
   Matrix6 stiffness(const Vector6& F, const Circumstances&) const;
   /// No law's stiffness depends on its load.

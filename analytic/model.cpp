@@ -28,16 +28,19 @@ Circumstances drawn(Circumstances c) {
   return c;
 }
 
-/// Gaps and friction taken out: the first are closed, the others let go.
+/// Laws that jump taken out: gaps are closed, frictions let go, the sides of a one-sided law yield alike.
 Configuration without_steps(Configuration c) {
   const auto strip = [](PlacedJoint& joint) {
     for (std::size_t i = 0; i < 6; ++i) {
-      const bool slips = std::any_of(joint.laws[i].begin(), joint.laws[i].end(),
-                                     [](const Law& law) { return std::holds_alternative<FrictionLaw>(law); });
-      std::erase_if(joint.laws[i], [](const Law& law) {
-        return std::holds_alternative<FrictionLaw>(law) || std::holds_alternative<ClearanceLaw>(law);
-      });
-      if (slips) joint.freedoms[i] = Freedom::free;
+      std::vector<Law> smooth;
+      for (const Law& law : joint.laws[i]) {
+        if (std::holds_alternative<FrictionLaw>(law)) joint.freedoms[i] = Freedom::free;
+        if (!is_stepped(law)) smooth.push_back(law);
+        if (const auto* l = std::get_if<OneSidedLaw>(&law))
+          if (const double both = l->pull.value_or(0) + l->push.value_or(0); both > 0)
+            smooth.push_back(LinearLaw{2 / both});
+      }
+      joint.laws[i] = std::move(smooth);
     }
   };
   for_each_part(c.legs, [&](auto& part) {
@@ -58,6 +61,7 @@ AnalyticModel::AnalyticModel(const Configuration& given, const AsPrinted& as_pri
   through_ = chain_of({"base and tool", {c.base, c.tool}}, c.pose.p_WT, c.size);
   weight_ << c.weight, Vector3::Zero();
   for (Chain& leg : legs_.branches) leg.number_steps(stepped_);
+  if (!through_.has_steps() && as_printed.empty()) lines_ = Lines::of(legs_);
   through_.number_steps(stepped_);
   double stiffest = 0, beside = 0;
   for_each_part(c.legs, [&](const auto& part) {
@@ -73,7 +77,11 @@ AnalyticModel::AnalyticModel(const Configuration& given, const AsPrinted& as_pri
 
 /// Displacements from the drawing.
 AnalyticSolution AnalyticModel::equilibrium_under(const Vector6& F, const Circumstances& under) const {
-  const Group::State state = legs_.solve(F, under);
+  return solution(legs_.solve(F, under), F, under);
+}
+
+AnalyticSolution AnalyticModel::solution(const Group::State& state, const Vector6& F,
+                                         const Circumstances& under) const {
   AnalyticSolution s;
   s.displacement = state.t + through_.deflection(F, drawn(under));
   s.load = F;
@@ -97,6 +105,13 @@ AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& 
   if (conditions.geometry != Geometry::linear && !(F.isZero(0) && legs_.fits()))
     return deformed_equilibrium(F, conditions.geometry);
   if (stepped_.empty()) return equilibrium_under(F, under);
+  if (lines_)
+    if (const std::optional<Lines::Answer> found = lines_->solve(legs_, F, conditions.slips, under)) {
+      under.steps = found->steps;
+      AnalyticSolution s = solution(found->state, F, under);
+      s.slips = found->slips;
+      return s;
+    }
   const double length = legs_.length;
   const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
   // Where heat or misfits are all that drives it, forces that should vanish are the rounding of those that they held.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analytic/chain.h"
+#include "analytic/lines.h"
 #include "msa/mechanism/conditions.h"
 
 namespace deflect::analytic {
@@ -73,6 +74,7 @@ class AnalyticModel {
  private:
   AnalyticSolution equilibrium(const Vector6& F, const Conditions&) const;
   AnalyticSolution equilibrium_under(const Vector6& F, const Circumstances&) const;
+  AnalyticSolution solution(const Group::State&, const Vector6& F, const Circumstances&) const;
   AnalyticSolution deformed_equilibrium(const Vector6& F, Geometry) const;
   AnalyticSolution solve_in_part(const Vector6& F, const Conditions&) const;
   Flexibility flexibility(const AnalyticSolution&) const;
@@ -84,6 +86,7 @@ class AnalyticModel {
   Vector6 weight_;                            ///< at T
   double heat_force_ = 0, misfit_force_ = 0;  ///< that the stiffest member would bear: per kelvin, by the misfits
   std::vector<SteppedLaw> stepped_;
+  std::optional<Lines> lines_;  ///< where frictions beside the legs are all that jumps
   int frictions_ = 0;
 };
 

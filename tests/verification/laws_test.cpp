@@ -106,6 +106,26 @@ std::vector<std::pair<const char*, const char*>> laws_by_site() {
 
 INSTANTIATE_TEST_SUITE_P(Sites, EveryLaw, ::testing::ValuesIn(laws_by_site()));
 
+// In the deformed shape the closed form adds what laws that jump do in the undeformed one: most of what the shape
+// changes is there.
+class JumpInDeformedShape : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(JumpInDeformedShape, IsThatOfTheMsaButForASmallPart) {
+  const Mechanism m = test::with(haptic(), "leg.actuator.tz", GetParam());
+  std::mt19937 random(7);
+  for (const Pose& pose : test::random_poses(m, 5, 9)) {
+    const Vector6 F = test::random_wrench(random);
+    const Both bent = both(configure(m, pose), F, Geometry::finite), straight = both(configure(m, pose), F);
+    ASSERT_TRUE(bent.a.converged && bent.f.state.converged) << bent.a.message;
+    const Vector6 change = straight.f.displacement - bent.f.displacement;
+    EXPECT_LE((bent.a.displacement - bent.f.displacement).head<3>().norm(), 0.3 * change.head<3>().norm());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, JumpInDeformedShape,
+                         ::testing::Values("{law: one_sided, pull: 0.0001 mm/N}", "{law: clearance, gap: 0.01 mm}",
+                                           "{law: one_sided, pull: 1e-4 mm/N, push: 2e-4 mm/N}"));
+
 const char* beside(double force_N, double stiffness_N_per_mm) {
   static std::string text;
   text = fmt::format(
