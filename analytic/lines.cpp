@@ -17,6 +17,16 @@ const SteppedLaw* friction_alone(const Chain& branch) {
   return std::holds_alternative<FrictionLaw>(law.law) && law.preload == 0 && !law.rotation ? &law : nullptr;
 }
 
+/// Laws that jump, if any, whose phase is that of their own force.
+bool known_by_force(const Chain& leg) {
+  for (const ElasticFreedom& f : leg.freedoms)
+    for (const SteppedLaw& law : f.stepped)
+      if (!std::holds_alternative<OneSidedLaw>(law.law)) return false;
+  return std::none_of(leg.groups.begin(), leg.groups.end(), [](const Group& g) {
+    return std::any_of(g.branches.begin(), g.branches.end(), [](const Chain& b) { return b.has_steps(); });
+  });
+}
+
 /// α with b = α a, where the wrenches lie on one line.
 std::optional<double> ratio(const Vector6& a, const Vector6& b, double length) {
   Vector6 weight = Vector6::Ones();
@@ -67,6 +77,12 @@ Shared share(const FrictionLaw& law, double slip, double lambda, double beta, co
   return {x, (lambda - x) / beta, slip, true};
 }
 
+Step& step_at(std::vector<Step>& steps, int number) {
+  const auto n = static_cast<std::size_t>(number);
+  if (steps.size() <= n) steps.resize(n + 1);
+  return steps[n];
+}
+
 }  // namespace
 
 std::optional<Lines> Lines::of(const Group& g) {
@@ -76,11 +92,11 @@ std::optional<Lines> Lines::of(const Group& g) {
   for (std::size_t i = 0; i < g.branches.size(); ++i) {
     const Chain& branch = g.branches[i];
     if (branch.N.cols() != 1) return std::nullopt;
-    if (branch.has_steps()) {
-      if (!friction_alone(branch)) return std::nullopt;
+    if (friction_alone(branch)) {
       besides.push_back(i);
       continue;
     }
+    if (!known_by_force(branch)) return std::nullopt;
     out.lines_.push_back({i, std::nullopt});
     D.conservativeResize(Eigen::NoChange, D.cols() + 1);
     D.rightCols<1>() = g.R.transpose() * branch.N;
@@ -120,14 +136,13 @@ std::optional<Lines::Answer> Lines::solve(const Group& g, const Vector6& F, cons
     double own = lambda(at);
     if (line.friction) {
       const Beside& b = *line.friction;
-      const auto number = static_cast<std::size_t>(std::max(b.law.number, 0)), step = static_cast<std::size_t>(b.step);
+      const auto number = static_cast<std::size_t>(std::max(b.law.number, 0));
       const double slip = number < slips.size() ? slips[number] : 0;
       const Shared shared = share(b.law, slip, own, b.beta, [&](double x) { return b.beta * lengthens(x); });
       own = shared.leg;
       s.wrenches[b.branch] = w * (b.beta * shared.friction);
-      out.steps.resize(std::max(out.steps.size(), step + 1));
-      out.steps[step] = shared.sticks ? Step{shared.slip, 1 / b.law.stiffness}
-                                      : Step{shared.slip + shared.friction / b.law.stiffness, 0, true};
+      step_at(out.steps, b.step) = shared.sticks ? Step{shared.slip, 1 / b.law.stiffness}
+                                                 : Step{shared.slip + shared.friction / b.law.stiffness, 0, true};
       out.slips.resize(std::max(out.slips.size(), number + 1));
       out.slips[number] = shared.slip;
     }
@@ -136,6 +151,9 @@ std::optional<Lines::Answer> Lines::solve(const Group& g, const Vector6& F, cons
     if (r.tangent.N.cols() < 1) return std::nullopt;
     s.converged = s.converged && r.converged;
     e(at) = w.dot(r.d);
+    for (const ElasticFreedom& f : leg.freedoms)
+      for (const SteppedLaw& law : f.stepped)
+        step_at(out.steps, law.number) = law.at_force(f.twist.dot(s.wrenches[line.leg]));
   }
   s.t = g.R * statics_.transpose().solve(e);
   return out;

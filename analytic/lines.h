@@ -1,5 +1,6 @@
 // Legs with a friction beside each, solved line by line: where every leg carries a force along one line only and the
 // lines are statically determinate, the force in each line follows from statics, and leg and friction share it alone.
+// Legs may hold one-sided laws, whose phase is that of the force.
 // On a line with the wrench w of the leg, λ in all, f in the friction and the friction's motion δ = β wᵀd_leg:
 //   sticks   f = k (β wᵀd_leg(λ − β f) − slip),  |f| ≤ F
 //   slides   f = ±F, the slip follows.
@@ -14,7 +15,7 @@ namespace deflect::analytic {
 
 class Lines {
  public:
-  /// Nothing where the group is not of that kind: a law that jumps elsewhere, lines that are not determinate.
+  /// Nothing where the group is not of that kind: another law that jumps, lines that are not determinate.
   static std::optional<Lines> of(const Group&);
 
   struct Answer {

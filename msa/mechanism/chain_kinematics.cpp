@@ -96,13 +96,18 @@ void refuse_singular(const Assembly& a, const Assembly& home) {
   }
 }
 
+Assembly with_joints_at_home(const Mechanism& m) {
+  Assembly a;
+  a.legs = legs_of(m);
+  for (const LegParts& leg : a.legs) a.states.push_back(home_states(one(leg)));
+  return a;
+}
+
 }  // namespace
 
 Assembly home_assembly(const Mechanism& m) {
   const Chains& k = std::get<Chains>(m.kinematics);
-  Assembly a;
-  a.legs = legs_of(m);
-  for (const LegParts& leg : a.legs) a.states.push_back(home_states(one(leg)));
+  Assembly a = with_joints_at_home(m);
   std::vector<JointState> all;
   for (const auto& states : a.states) all.insert(all.end(), states.begin(), states.end());
   const Trace guess = walk(a.legs, all);
@@ -192,5 +197,7 @@ ActuatedCoordinates actuated(const Assembly& a) {
   out.values = Eigen::Map<VectorX>(values.data(), static_cast<Eigen::Index>(values.size()));
   return out;
 }
+
+ActuatedCoordinates actuated_at_home(const Mechanism& m) { return actuated(with_joints_at_home(m)); }
 
 }  // namespace deflect

@@ -32,4 +32,7 @@ struct ActuatedCoordinates {
 };
 ActuatedCoordinates actuated(const Assembly&);
 
+/// The same with the joints at home, where the loops need not close.
+ActuatedCoordinates actuated_at_home(const Mechanism&);
+
 }  // namespace deflect

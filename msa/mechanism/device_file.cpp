@@ -1,12 +1,37 @@
 #include "msa/mechanism/device_file.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/mechanism/chain_kinematics.h"
 #include "msa/mechanism/field_reader.h"
 #include "msa/mechanism/field_writer.h"
 #include "msa/mechanism/mechanism_tree.h"
 
 namespace deflect {
+namespace {
+
+/// The controller has a row for each actuated coordinate, which only the whole description knows.
+void check_controller(const Mechanism& m, const YamlNode& tree, const std::string& origin) {
+  const auto* chains = std::get_if<Chains>(&m.kinematics);
+  if (!chains || chains->controller.size() == 0) return;
+  const std::vector<std::string> names = actuated_at_home(m).names;
+  const auto rows = static_cast<std::size_t>(chains->controller.rows());
+  if (rows == names.size()) return;
+  const int line = tree.child("kinematics")->child("controller")->line;
+  const std::string place = line > 0 ? fmt::format("{}:{}: ", origin, line) : origin + ": ";
+  const std::string have =
+      fmt::format("{}kinematics.controller: has {} row{}, and the mechanism ", place, rows, rows == 1 ? "" : "s");
+  if (names.empty()) throw InputError(have + "no actuated coordinate: leave the controller out");
+  throw InputError(
+      fmt::format("{}{} actuated coordinate{} ({}): write as many rows of as many numbers, or leave the controller out "
+                  "where users give these coordinates themselves",
+                  have, names.size(), names.size() == 1 ? "" : "s", fmt::join(names, ", ")));
+}
+
+}  // namespace
 
 Mechanism mechanism_of(const YamlNode& tree, const std::string& origin) {
   if (tree.ours) throw InputError(origin + ": !ours marks single values, not a whole file");
@@ -15,6 +40,7 @@ Mechanism mechanism_of(const YamlNode& tree, const std::string& origin) {
   reader.read(tree, [&] { describe(reader, m); });
   m.ours = reader.ours();
   varied_legs(m, tree.child("variations"), origin);  // throws where a variation does not fit
+  check_controller(m, tree, origin);
   return m;
 }
 

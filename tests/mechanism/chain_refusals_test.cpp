@@ -113,6 +113,16 @@ TEST(Refusal, ControllerThatDoesNotFitTheChain) {
     EXPECT_THROW(ask(), InputError);
 }
 
+TEST(Refusal, ControllerThatAnEditLeavesWithoutItsJoint) {
+  const Mechanism fanuc = device("fanuc-r2000ic");
+  try {
+    test::with(fanuc, "kinematics.controller", "[[1, 0], [0, 1]]");
+    FAIL();
+  } catch (const InputError& e) {
+    expect_says(e.what(), {"kinematics.controller: has 2 rows, and the mechanism 6 actuated coordinates (joint_1, "});
+  }
+}
+
 // Coordinates of any joint can be driven, those of a joint that also turns freely too.
 TEST(Joints, CommandedCoordinatesAreTaken) {
   for (const char* letters : {"aaaaaa", "rrraaa", "rrrffa", "rrrafa", "rrafaf", "arafar"}) {

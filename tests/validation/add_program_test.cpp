@@ -108,6 +108,59 @@ TEST_F(AddProgram, RefusesADiagnosisThatIsNone) {
                  "nothing is missing there");
 }
 
+// Two effects that share the misfit: each alone would have to be larger.
+TEST_F(AddProgram, TakesValuesThatWereFittedTogether) {
+  std::string together = diagnosis;
+  together.insert(together.rfind(']') + 1, R"(, "found": [
+    {"effect": "guide_root_compliance", "site": "all legs", "parameters": [{"name": "stiffness_Nmm_per_rad", "value": 6e6}]},
+    {"effect": "leg_defect", "site": "leg 2", "parameters": [{"name": "factor", "value": 0.8}]}])");
+  ASSERT_EQ(add("haptic-6psu --from " + file("d.json", together)).code, 0);
+  const Mechanism root = with_effect(old, test::effect("guide_root_compliance"), test::values({6e6}));
+  EXPECT_EQ(added(old), with_effect(root, test::effect("leg_defect"), test::values({0.8}), 2));
+  std::filesystem::remove(folder / "new.yaml");
+  std::string fewer = together;
+  fewer.replace(fewer.find(R"(, "leg_defect"])"), 14, "");
+  expect_refused("haptic-6psu --from " + file("fewer.json", fewer), "found[1]: 'missing' names 1 effects, 'found' 2");
+  std::string other = together;
+  other.replace(other.rfind("leg_defect"), 10, "modulus");
+  expect_refused("haptic-6psu --from " + file("other.json", other),
+                 "other.json: found[1]: is 'modulus', where 'missing' has 'leg_defect'");
+}
+
+TEST_F(AddProgram, ADiagnosisThatDoesNotFitIsNamed) {
+  const auto from = [&](const std::string& missing, const std::string& candidate) {
+    return "haptic-6psu --from " +
+           file("d.json", R"({"missing": [")" + missing + R"("], "candidates": [)" + candidate + "]}");
+  };
+  const auto root = [&](const std::string& parameters) {
+    return from("guide_root_compliance",
+                R"({"effect": "guide_root_compliance", "site": "all legs")" + parameters + "}");
+  };
+  const auto value = [&](const std::string& number) {
+    return root(R"(, "parameters": [{"name": "stiffness_Nmm_per_rad", "value": )" + number + "}]");
+  };
+  const auto leg = [&](const std::string& site) {
+    return from("leg_defect", R"({"effect": "leg_defect", "site": ")" + site +
+                                  R"(", "parameters": [{"name": "factor", "value": 0.7}]})");
+  };
+  const std::string needs = "d.json: effect 'guide_root_compliance' needs a value: --set stiffness_Nmm_per_rad=1e+07";
+  expect_refused(from("guide_rot_compliance", R"({"effect": "guide_rot_compliance"})"),
+                 "d.json: there is no effect 'guide_rot_compliance', did you mean 'guide_root_compliance'?");
+  expect_refused(from("guide_root_compliance", ""), needs);
+  expect_refused(root(""), needs);
+  expect_refused(root(R"(, "parameters": [])"), needs);
+  expect_refused(root(R"(, "parameters": {"stiffness_Nmm_per_rad": 5e6})"),
+                 "d.json: candidates[0].parameters: a list is wanted");
+  expect_refused(value(R"("5e6")"), "d.json: candidates[0].parameters: each is");
+  expect_refused(value("5"), "d.json: stiffness_Nmm_per_rad=5: the value must lie between 10000 and 1e+12");
+  expect_refused(value("1e999"), "d.json: a number is beyond what a double holds");
+  expect_refused(leg("leg 9"), "d.json: haptic-6psu: there is no leg 9");
+  expect_refused(leg("legs"), "d.json: effect 'leg_defect' belongs to one leg: say which, 1 to 6");
+  expect_refused("haptic-6psu --from " + file("d.json", R"({"candidates": []})"), "d.json: missing: a list is wanted");
+  expect_refused("haptic-6psu --from " + file("d.json", R"({"missing": [3], "candidates": []})"),
+                 "d.json: missing[0]: has no 'effect'");
+}
+
 TEST_F(AddProgram, RefusesValuesThatDoNotFit) {
   const std::string effect = "haptic-6psu guide_root_compliance ";
   expect_refused(effect + "--set stifness_Nmm_per_rad=5e6",

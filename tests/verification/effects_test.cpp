@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/chains.h"
 #include "tests/support/devices.h"
 #include "validation/compare/prediction.h"
 #include "validation/compare/theories.h"
@@ -21,7 +22,8 @@ Measurements plan(const Mechanism& m, std::mt19937& random) {
   Measurements data;
   data.origin = "plan";
   data.temperature_recorded = true;
-  for (const Pose& pose : test::random_poses(m, 50, 7)) {
+  const bool chains = std::holds_alternative<Chains>(m.kinematics);
+  for (const Pose& pose : chains ? test::workspace_poses(m, 50) : test::random_poses(m, 50, 7)) {
     PoseGroup group{std::to_string(data.poses.size()), mm_deg_from(pose), {}, {}};
     const Vector6 F = test::random_wrench(random);
     for (const double share : {1.0, 0.3, -0.8}) {
@@ -58,17 +60,23 @@ double tolerance(const std::string& effect) {
   return 1e-7;
 }
 
+std::optional<int> leg_of(const Effect& e) { return e.scope == Scope::one_leg ? std::optional<int>(2) : std::nullopt; }
+
+/// The first of these devices in which the effect has a place.
+Mechanism bare_device(const Effect& e) {
+  for (const char* name : {"haptic-6psu-ideal-joints", "haptic-6psu", "delta"})
+    if (Mechanism m = test::device(name); !why_not(e, m, leg_of(e))) return m;
+  throw std::runtime_error(e.name + " has no place in any device");
+}
+
 class EveryEffect : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(EveryEffect, ActsAlikeInBothTheories) {
   static const std::vector<Effect> effects = all_effects();
   const Effect& e = effects.at(GetParam());
-  const Mechanism bare = test::device("haptic-6psu-ideal-joints");
-  if (const auto reason = why_not(e, bare, e.scope == Scope::one_leg ? std::optional<int>(2) : std::nullopt))
-    GTEST_SKIP() << e.name << ": " << *reason;
+  const Mechanism bare = bare_device(e);
   std::mt19937 random(static_cast<unsigned>(GetParam()) + 1);
   const Measurements data = plan(bare, random);
-  const std::optional<int> leg = e.scope == Scope::one_leg ? std::optional<int>(2) : std::nullopt;
   PredictionOptions closed, matrix;
   matrix.theory = Theory::msa;
   if (e.name == "geometric_nonlinearity")
@@ -76,7 +84,7 @@ TEST_P(EveryEffect, ActsAlikeInBothTheories) {
   double worst = 0;
   bool acts = false;
   for (int draw = 0; draw < 3; ++draw) {
-    const Mechanism m = with_effect(bare, e, drawn_values(e, random), leg);
+    const Mechanism m = with_effect(bare, e, drawn_values(e, random), leg_of(e));
     const std::vector<Configuration> machines = configure_all(m, data);
     const std::vector<Vector6> a = predict(m, machines, data, closed), b = predict(m, machines, data, matrix);
     const std::vector<Vector6> without = predict(bare, configure_all(bare, data), data, closed);

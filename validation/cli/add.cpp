@@ -49,8 +49,6 @@ std::vector<std::pair<std::string, double>> parse_values(const std::vector<std::
   return out;
 }
 
-std::string told(const EffectParameter& p) { return fmt::format("between {:g} and {:g}", p.low, p.high); }
-
 EffectInstance instance(const Effect& e, const FoundEffect& found) {
   std::vector<std::string> names;
   for (const EffectParameter& p : e.parameters) names.push_back(p.name);
@@ -64,13 +62,9 @@ EffectInstance instance(const Effect& e, const FoundEffect& found) {
     const auto at = std::find_if(found.parameters.begin(), found.parameters.end(),
                                  [&](const auto& given) { return given.first == p.name; });
     if (at == found.parameters.end())
-      throw InputError(
-          fmt::format("effect '{}' needs a value: --set {}={:g} ({}; {})", e.name, p.name, p.start, p.about, told(p)));
-    if (!(p.low <= at->second && at->second <= p.high))
-      throw InputError(
-          fmt::format("--set {}={:g}: the value must lie {} ({}). For another range copy the effect with "
-                      "'deflect effects {} --yaml', give it a name of its own and name it with --effects",
-                      p.name, at->second, told(p), p.about, e.name));
+      throw InputError(fmt::format("effect '{}' needs a value: --set {}={:g} ({}; between {:g} and {:g})", e.name,
+                                   p.name, p.start, p.about, p.low, p.high));
+    require_in_bounds(fmt::format("{}={:g}", p.name, at->second), e, p, at->second);
     out.values(static_cast<Eigen::Index>(i)) = at->second;
   }
   return out;
@@ -127,14 +121,25 @@ std::string device_text(Mechanism m, const std::string& device, const std::vecto
   return fmt::format("# {} with\n#   {}\n{}", device, fmt::join(names, "\n#   "), write_mechanism(m));
 }
 
-void run(const Arguments& a) {
-  const std::vector<Effect> all = known_effects(a.files);
-  Mechanism m = read_mechanism(device_file(a.device));
+/// One after the other into the device; a diagnosis that they do not fit is named.
+std::vector<EffectInstance> add_effects(Mechanism& m, const Arguments& a, const std::vector<Effect>& all) {
+  const std::vector<FoundEffect> effects = wanted(a);
   std::vector<EffectInstance> added;
-  for (const FoundEffect& found : wanted(a)) {
-    added.push_back(instance(find_effect(all, found.effect), found));
-    m = with_effect(m, added.back());
+  try {
+    for (const FoundEffect& found : effects) {
+      added.push_back(instance(find_effect(all, found.effect), found));
+      m = with_effect(m, added.back());
+    }
+  } catch (const InputError& e) {
+    throw InputError(a.from.empty() ? e.what() : fmt::format("{}: {}", a.from, e.what()));
   }
+  return added;
+}
+
+void run(const Arguments& a) {
+  Mechanism m = read_mechanism(device_file(a.device));
+  const std::vector<Effect> all = known_effects(a.files);
+  const std::vector<EffectInstance> added = add_effects(m, a, all);
   const std::string old = m.name, text = device_text(m, old, added, a.out);
   const Mechanism written = parse_mechanism(text, a.out);
   configure(written, home_pose(written));  // it stands

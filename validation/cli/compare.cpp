@@ -15,18 +15,16 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string device, data, json, out;
-  double sigma_mm = 0, sigma_rad = 0, threads = 0;
+  std::string device, data, json, out, sigma_mm, sigma_rad;
+  double threads = 0;
 };
 
 void run(const Arguments& a) {
   const Mechanism m = read_mechanism(device_file(a.device));
   const Measurements data = read_measurements(a.data);
   ComparisonOptions o;
-  if (a.sigma_mm < 0 || a.sigma_rad < 0)
-    throw InputError("--sigma, --sigma-rotation: a standard deviation above zero is wanted");
-  if (a.sigma_mm > 0) o.sigma_u = a.sigma_mm / 1e3;
-  if (a.sigma_rad > 0) o.sigma_th = a.sigma_rad;
+  o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
+  o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   o.threads = whole("--threads", a.threads, 0, 1024);
   const Comparison c = compare(m, data, o);
   const std::filesystem::path folder = a.out;

@@ -146,6 +146,15 @@ Command devices_command() {
           }};
 }
 
+std::optional<double> parse_sigma(const std::string& option, const std::string& text, const std::string& unit,
+                                  double per_SI) {
+  if (text.empty()) return {};
+  const double value = parse_list(option, text, {1}, "a standard deviation in " + unit)[0];
+  if (!(value > 0))
+    throw InputError(fmt::format("{} {}: a standard deviation above zero, in {}, is wanted", option, text, unit));
+  return value / per_SI;
+}
+
 int whole(const std::string& option, double value, double low, double high) {
   if (!(value >= low && value <= high) || value != std::floor(value))
     throw InputError(fmt::format("{} {:g}: a whole number from {:g} to {:g} is wanted", option, value, low, high));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,11 @@ double parse_length(const std::string& option, const std::string& text);
 
 /// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose.
 frame::MemberDivision divide(const Mechanism&, const std::string& element_size);
+
+/// The standard deviation that an option gave in a unit of which `per_SI` make one in SI; none where it is empty.
+/// Throws InputError where it is not above zero.
+std::optional<double> parse_sigma(const std::string& option, const std::string& text, const std::string& unit,
+                                  double per_SI);
 
 /// The whole number that an option gave. Throws InputError where it is none between low and high.
 int whole(const std::string& option, double value, double low, double high);

@@ -13,7 +13,7 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string data, json, out;
+  std::string data, json, out, sigma_mm, sigma_rad;
   std::vector<std::string> devices;
   double threads = 0;
 };
@@ -21,6 +21,8 @@ struct Arguments {
 void run(const Arguments& a) {
   const Measurements data = read_measurements(a.data);
   ComparisonOptions o;
+  o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
+  o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   o.threads = whole("--threads", a.threads, 0, 1024);
   std::vector<Mechanism> devices;
   for (const std::string& name : a.devices) devices.push_back(read_mechanism(device_file(name)));
@@ -47,6 +49,8 @@ Command history_command() {
           "deflect history measurements.csv haptic-6psu-ideal-joints softer.yaml --out history",
           {{"data", "DATA", "measurements (CSV)", &a->data, true},
            {"devices", "DEVICE", "devices in order, built-in or files", &a->devices, true},
+           {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
            {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
            {"--json", "FILE", "write the result", &a->json},
            {"--out", "DIR", "write the figure and the table", &a->out}},

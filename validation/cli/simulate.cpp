@@ -21,11 +21,12 @@
 namespace deflect::cli {
 namespace {
 
+constexpr double most_noise_mm = 1000, most_tolerances = 1000;
+
 struct Arguments {
-  std::string device, out, campaign = "rich", geometry = "finite", temperature;
+  std::string device, out, campaign = "rich", geometry = "finite", temperature, noise_rad;
   std::vector<std::string> with, files;
-  double seed = 1, noise_mm = 0.002, noise_rad = -1, tolerances = 1, outliers = 0, force = 50, elements = 4,
-         threads = 0;
+  double seed = 1, noise_mm = 0.002, tolerances = 1, outliers = 0, force = 50, elements = 4, threads = 0;
 };
 
 /// "EFFECT,leg=4,name=value,…": parameters that are not named keep the value at which a search begins.
@@ -40,6 +41,7 @@ EffectInstance parse_with(const std::string& text, const std::vector<Effect>& al
   EffectInstance out{{&effect, {}}, start_values(effect)};
   std::vector<std::string> names = {"leg"};
   for (const EffectParameter& p : effect.parameters) names.push_back(p.name);
+  std::vector<bool> given(names.size());
   for (auto word = words.begin() + 1; word != words.end(); ++word) {
     const std::size_t equals = word->find('=');
     if (equals == word->npos)
@@ -49,16 +51,21 @@ EffectInstance parse_with(const std::string& text, const std::vector<Effect>& al
     if (found == names.end())
       throw InputError(
           fmt::format("--with '{}': {} has no parameter '{}'{}", text, effect.name, name, suggestion(name, names)));
+    const auto at = static_cast<std::size_t>(found - names.begin());
+    if (given[at]) throw InputError(fmt::format("--with '{}': '{}' is set twice", text, name));
+    given[at] = true;
     double value = 0;
     try {
       value = parse_number(std::string_view(*word).substr(equals + 1));
     } catch (const InputError& e) {
       throw InputError(fmt::format("--with '{}': {}", text, e.what()));
     }
-    if (found == names.begin())
+    if (at == 0) {
       out.leg = whole("--with leg", value, 1, 1000);
-    else
-      out.values(found - names.begin() - 1) = value;
+      continue;
+    }
+    require_in_bounds(fmt::format("--with '{}': {}={:g}", text, name, value), effect, effect.parameters[at - 1], value);
+    out.values(static_cast<Eigen::Index>(at - 1)) = value;
   }
   return out;
 }
@@ -75,11 +82,16 @@ SimulationOptions options_of(const Arguments& a) {
   if (!(a.seed >= 0 && a.seed < 9e15) || a.seed != std::floor(a.seed))
     throw InputError(fmt::format("--seed {}: a whole number is wanted", a.seed));
   o.seed = static_cast<std::uint64_t>(a.seed);
-  if (!(a.noise_mm >= 0)) throw InputError(fmt::format("--noise {}: mm, zero or more, are wanted", a.noise_mm));
+  if (!(a.noise_mm >= 0 && a.noise_mm <= most_noise_mm))
+    throw InputError(fmt::format("--noise {}: mm, from 0 to {}, are wanted", a.noise_mm, most_noise_mm));
   o.sigma_u = a.noise_mm / 1e3;
-  if (a.noise_rad >= 0) o.sigma_th = a.noise_rad;
-  if (!(a.tolerances >= 0))
-    throw InputError(fmt::format("--tolerances {}: a factor, zero or more, is wanted", a.tolerances));
+  if (!a.noise_rad.empty()) {
+    o.sigma_th = parse_list("--noise-rotation", a.noise_rad, {1}, "rad")[0];
+    if (!(*o.sigma_th >= 0 && *o.sigma_th <= 1))
+      throw InputError(fmt::format("--noise-rotation {}: rad, from 0 to 1, are wanted", a.noise_rad));
+  }
+  if (!(a.tolerances >= 0 && a.tolerances <= most_tolerances))
+    throw InputError(fmt::format("--tolerances {}: a factor from 0 to {} is wanted", a.tolerances, most_tolerances));
   o.tolerances = a.tolerances;
   if (!(a.outliers >= 0 && a.outliers < 0.5))
     throw InputError(fmt::format("--outliers {}: a share from 0 to 0.5 is wanted", a.outliers));
@@ -88,6 +100,8 @@ SimulationOptions options_of(const Arguments& a) {
     const std::vector<double> t = parse_list("--temperature", a.temperature, {1, 2}, "mean or mean,swing in deg C");
     o.temperature = t[0];
     if (t.size() > 1) o.swing = t[1];
+    if (const double coldest = o.temperature - std::abs(o.swing); coldest < -273.15 || !std::isfinite(coldest))
+      throw InputError(fmt::format("--temperature {}: colder than -273.15 deg C", a.temperature));
   }
   o.geometry = parse_geometry(a.geometry);
   o.threads = whole("--threads", a.threads, 0, 1024);

@@ -3,22 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "msa/base/error.h"
 #include "validation/compare/errors_by_group.h"
 #include "validation/compare/findings.h"
+#include "validation/compare/outliers.h"
 #include "validation/compare/plausibility.h"
 #include "validation/compare/residual_study.h"
+#include "validation/compare/tail.h"
 
 namespace deflect {
 namespace {
-
-double chi2_tail(double freedoms, double chi2) {
-  return freedoms > 0 ? boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedoms), chi2)) : 1;
-}
 
 double root_mean_square(const VectorX& x) { return x.size() > 0 ? x.norm() / std::sqrt(double(x.size())) : 0; }
 
@@ -33,11 +30,19 @@ std::optional<std::vector<double>> sigma_of(const std::vector<MeasuredValue>& va
   return out;
 }
 
+constexpr int fewest_left = 10;  // freedoms, for a scatter to within a quarter of itself
+
 /// The scatter that no pattern explains, alike for all translations and for all rotations.
 std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const MatrixX& patterns) {
   const std::vector<double> one(s.values.size(), 1e-6);
   const Uncertainty u(MatrixX(r.size(), 0), s.values, one, s.predicted, 0);
   const Regression fit = regress(u, r, patterns);
+  if (static_cast<int>(s.values.size()) < fit.freedoms + fewest_left)
+    throw InputError(
+        fmt::format("{}: neither σ nor replicates, and {} measured numbers are too few to read the scatter off what no "
+                    "pattern explains: add a column sigma_u_mm (sigma_th_rad), repeat readings, or give --sigma "
+                    "(--sigma-rotation)",
+                    s.data->origin, s.values.size()));
   const VectorX left = r - patterns * fit.amplitude;
   double squares[2] = {0, 0}, n[2] = {0, 0};
   for (std::size_t i = 0; i < s.values.size(); ++i) {
@@ -80,47 +85,22 @@ MatrixX all_columns(const std::vector<MatrixX>& patterns, Eigen::Index rows) {
   return out;
 }
 
-/// Gross outliers: readings that neither tolerances nor any pattern bring within six of the rest's standard deviations.
-std::vector<bool> gross_outliers(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma,
-                                 const VectorX& residual, const MatrixX& patterns) {
-  std::vector<bool> aside(s.data->readings.size(), false);
-  for (int round = 0; round < 3; ++round) {
-    const Uncertainty u(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, aside);
-    // Once more without those set aside, whose rest is judged by what the others say.
-    const VectorX rest = residual - patterns * regress(u, residual, patterns).amplitude;
-    const VectorX left = rest - A * u.nuisances(rest);
-    std::vector<double> worst(aside.size(), 0);
-    for (std::size_t i = 0; i < s.values.size(); ++i) {
-      const MeasuredValue& v = s.values[i];
-      const double load = s.mechanism->tolerances.load * s.predicted[v.reading](static_cast<Eigen::Index>(v.component));
-      worst[v.reading] =
-          std::max(worst[v.reading], std::abs(left(static_cast<Eigen::Index>(i))) / std::hypot(sigma[i], load));
-    }
-    std::vector<double> sorted = worst;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double typical = sorted[sorted.size() / 2];  // about 1.2 for three Gaussian numbers
-    std::vector<bool> next(aside.size());
-    for (std::size_t i = 0; i < worst.size(); ++i) next[i] = worst[i] > 6 * std::max(1.0, typical / 1.2);
-    if (next == aside) break;
-    aside = next;
-  }
-  return aside;
-}
-
 }  // namespace
 
-double held_out_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma, const VectorX& r) {
+double held_out_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma, const VectorX& r,
+                     const std::vector<bool>& set_aside) {
   const std::size_t poses = s.data->poses.size(), folds = std::min<std::size_t>(10, poses);
-  if (poses < 2) return 0;
   double squares = 0;
   std::size_t n = 0;
   for (std::size_t fold = 0; fold < folds; ++fold) {
-    std::vector<bool> aside(s.data->readings.size());
-    for (std::size_t i = 0; i < aside.size(); ++i) aside[i] = s.data->readings[i].pose % folds == fold;
-    const Uncertainty u(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, aside);
-    const VectorX left = r - A * u.nuisances(r);
+    const auto asked = [&](std::size_t i) { return s.data->readings[i].pose % folds == fold; };
+    std::vector<bool> hidden = set_aside;
+    for (std::size_t i = 0; i < hidden.size(); ++i) hidden[i] = hidden[i] || asked(i);
+    VectorX left = r;  // where there is one pose, nothing is learnt at others
+    if (poses > 1)
+      left -= A * Uncertainty(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, hidden).nuisances(r);
     for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (aside[s.values[i].reading] && s.values[i].component < 3) {
+      if (asked(s.values[i].reading) && !set_aside[s.values[i].reading] && s.values[i].component < 3) {
         squares += left(static_cast<Eigen::Index>(i)) * left(static_cast<Eigen::Index>(i));
         ++n;
       }
@@ -171,10 +151,10 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   const double chi2 = u.inner(c.residual, c.residual)(0, 0);
   const auto freedoms = static_cast<double>(u.count());
   c.chi2_per_dof = chi2 / freedoms;
-  c.p_value = chi2_tail(freedoms, chi2);
+  c.p_value = chi_squared_tail(freedoms, chi2);
   c.sigma_u = root_mean_square(Eigen::Map<const VectorX>(c.sigma.data(), static_cast<Eigen::Index>(c.sigma.size())));
   c.noise_and_tolerances = expected_rmse(s, c.tolerances.A, c.sigma);
-  c.held_out = held_out_rmse(s, c.tolerances.A, c.sigma, c.residual);
+  c.held_out = held_out_rmse(s, c.tolerances.A, c.sigma, c.residual, aside);
   c.contrasts = contrast_tests(s, u, r, aside);
   for (std::size_t i = 0; i < patterns.size(); ++i) {
     PatternTest t{patterns[i].id, patterns[i].title, regress(u, r, columns[i]), 0};
@@ -183,7 +163,7 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   }
   const Findings found = find_patterns(s, u, r, patterns, columns);
   c.findings = found.findings;
-  c.unexplained_chi2_per_dof = found.chi2_left / (freedoms - found.columns.cols());
+  c.unexplained_chi2_per_dof = found.chi2_left / std::max(1.0, freedoms - static_cast<double>(found.columns.cols()));
   if (shape.size() > 0) c.deformed_shape_fit = regress(u, c.residual, shape, found.columns);
   c.curves = elongation_curves(s, u, r);
   const VectorX eta = u.nuisances(r);

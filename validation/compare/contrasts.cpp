@@ -2,10 +2,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <map>
 #include <optional>
+
+#include "validation/compare/tail.h"
 
 namespace deflect {
 namespace {
@@ -71,7 +72,7 @@ class Contrasts {
         chi2 += along(i) * along(i) / axes.eigenvalues()(i);
         ++freedoms;
       }
-    t.p_value = boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedoms), chi2));
+    t.p_value = chi_squared_tail(freedoms, chi2);
     t.size = std::sqrt(std::max(0.0, (z.squaredNorm() - covariance.trace()) / static_cast<double>(z.size())));
     return t;
   }

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-#include <boost/math/distributions/chi_squared.hpp>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "validation/compare/as_built.h"
 #include "validation/compare/parallel.h"
 #include "validation/compare/prediction.h"
+#include "validation/compare/tail.h"
 
 namespace deflect {
 namespace {
@@ -184,6 +187,37 @@ VectorX Uncertainty::nuisances(const VectorX& r) const {
   return V_ * share.cwiseProduct(Q_.transpose() * whitened_by_noise(r));
 }
 
+// In the axes of PA, P taking out the span of `beside`: numbers of variance 1 + s² w.
+double Uncertainty::scale_of_tolerances(const VectorX& residual, const MatrixX& beside) const {
+  if (A_.cols() == 0) return 1;
+  MatrixX A = A_;
+  VectorX r = whitened_by_noise(residual);
+  if (beside.cols() > 0) {
+    Eigen::ColPivHouseholderQR<MatrixX> qr;
+    qr.setThreshold(1e-8);
+    qr.compute(whitened_by_noise(beside));
+    const MatrixX Q = qr.householderQ() * MatrixX::Identity(A.rows(), qr.rank());
+    A -= Q * (Q.transpose() * A);
+    r -= Q * (Q.transpose() * r);
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(A.transpose() * A);
+  const VectorX w = axes.eigenvalues();
+  // (uᵀr)² of the unit vectors u = A v/√w, times w.
+  const VectorX along = axes.eigenvectors().transpose() * (A.transpose() * r);
+  const auto log_likelihood = [&](double s) {
+    double sum = 0;
+    for (Eigen::Index i = 0; i < w.size(); ++i) {
+      const double more = s * s * std::max(0.0, w(i));
+      sum += 0.5 * (along(i) * along(i) * s * s / (1 + more) - std::log1p(more));
+    }
+    return sum;
+  };
+  double best = 1, most = log_likelihood(1) + 4;
+  for (double s = 1; s <= 3; s *= 1.1)
+    if (const double here = log_likelihood(s); here > most) most = here, best = s;
+  return best;
+}
+
 MatrixX Uncertainty::covariance(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const {
   std::vector<Eigen::Triplet<double>> entries;
   for (const Block& b : blocks_)
@@ -227,8 +261,7 @@ Regression regress(const Uncertainty& u, const VectorX& r, const MatrixX& G, con
     out.gain += along * along / w;
     ++out.freedoms;
   }
-  if (out.freedoms > 0)
-    out.p_value = boost::math::cdf(boost::math::complement(boost::math::chi_squared(out.freedoms), out.gain));
+  out.p_value = chi_squared_tail(out.freedoms, out.gain);
   return out;
 }
 

@@ -8,18 +8,18 @@
 
 #include <vector>
 
-#include "msa/base/spatial.h"
-
 namespace deflect {
 
 /// ln B.
 double log_evidence(double gain, int parameters, bool one_sided);
 
-/// ln of the evidence for a structured discrepancy: residual r ~ N(0, 1 + τ² B Bᵀ) against N(0, 1), the columns of B
-/// scaled to length √(rows of r), τ as small as a discrepancy can be: spread evenly in ln τ from 1e-3 to 10.
-double log_evidence_of_discrepancy(const VectorX& r, const MatrixX& B);
-
 /// Probabilities of hypotheses from ln(prior · evidence).
 std::vector<double> normalised(const std::vector<double>& log_weights);
+
+/// ln of the mean of exp(x).
+double log_mean_exp(const std::vector<double>& x);
+
+/// `count` numbers between low and high, evenly in their logarithm, none at the ends.
+std::vector<double> log_spaced(double low, double high, int count);
 
 }  // namespace deflect

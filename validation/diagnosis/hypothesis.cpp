@@ -177,6 +177,19 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
   return out;
 }
 
+Fit fit_of_all(const Observations& o, const Hypothesis& h, const VectorX& values) {
+  if (!h.empty()) {
+    const auto own = static_cast<Eigen::Index>(h.back().effect->parameters.size());
+    return fit(o, h, values.head(values.size() - own), VectorX(values.tail(own)));
+  }
+  Fit null;
+  null.values = VectorX(0);
+  null.residual = o.null_residual();
+  null.chi2 = null.residual.squaredNorm();
+  null.found = true;
+  return null;
+}
+
 std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::size_t i) {
   const EffectParameter& p = *parameters_of(h).at(i);
   const auto at = static_cast<Eigen::Index>(i);

@@ -29,6 +29,9 @@ struct Fit {
 /// values), else from the best of a few.
 Fit fit(const Observations&, const Hypothesis&, const VectorX& from = {}, const std::optional<VectorX>& guess = {});
 
+/// The same from values of all of them, without a search for starts; of no effect: the null.
+Fit fit_of_all(const Observations&, const Hypothesis&, const VectorX& values);
+
 /// 95 % interval of parameter i: in the logarithm for a logarithmic scale, within the bounds.
 std::pair<double, double> interval95(const Hypothesis&, const Fit&, std::size_t i);
 

@@ -4,27 +4,50 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "validation/compare/outliers.h"
 #include "validation/compare/prediction.h"
+#include "validation/diagnosis/discrepancy.h"
 #include "validation/measurement/configure_all.h"
 
 namespace deflect {
 namespace {
 
-Uncertainty uncertainty_of(const Mechanism& m, const Comparison& c) {
+std::vector<bool> set_aside_by(const Comparison& c) {
   std::vector<bool> aside(c.readings, false);
   for (std::size_t i = 0; i < c.readings; ++i)
     aside[i] = std::find(c.set_aside.begin(), c.set_aside.end(), c.study.data->readings[i].line) != c.set_aside.end();
-  return Uncertainty(c.tolerances.A, c.study.values, c.sigma, c.study.predicted, m.tolerances.load, aside);
+  return aside;
+}
+
+Uncertainty uncertainty_of(const Comparison& c, const MatrixX& A, const std::vector<bool>& aside) {
+  return Uncertainty(A, c.study.values, c.sigma, c.study.predicted, c.study.mechanism->tolerances.load, aside);
 }
 
 }  // namespace
 
 Observations::Observations(const Mechanism& m, const Measurements& data, const ComparisonOptions& o)
-    : device_(&m), comparison_(compare(m, data, o)), uncertainty_(uncertainty_of(m, comparison_)) {
+    : device_(&m),
+      comparison_(compare(m, data, o)),
+      patterns_(discrepancy_columns(comparison_.study)),
+      A_(comparison_.tolerances.A),
+      aside_(set_aside_by(comparison_)),
+      uncertainty_(uncertainty_of(comparison_, A_, aside_)) {
   const ResidualStudy& s = comparison_.study;
   measured_ = comparison_.residual + rows_of(s.values, s.predicted);
   shape_ = s.deformed_shape.empty() ? VectorX(VectorX::Zero(measured_.size())) : rows_of(s.values, s.deformed_shape);
-  null_ = whitened_residual(m);
+  tolerance_scale_ = uncertainty_.scale_of_tolerances(residual(m), patterns_);
+  A_ *= tolerance_scale_;
+  weigh(aside_);
+}
+
+void Observations::weigh(const std::vector<bool>& aside) {
+  aside_ = aside;
+  uncertainty_ = uncertainty_of(comparison_, A_, aside_);
+  null_ = whitened_residual(*device_);
+}
+
+std::size_t Observations::set_aside() const {
+  return static_cast<std::size_t>(std::count(aside_.begin(), aside_.end(), true));
 }
 
 VectorX Observations::residual(const Mechanism& m) const {
@@ -41,7 +64,7 @@ double Observations::rmse(const Mechanism& m) const {
   const VectorX r = residual(m);
   double squares = 0, n = 0;
   for (std::size_t i = 0; i < comparison_.study.values.size(); ++i)
-    if (comparison_.study.values[i].component < 3) {
+    if (comparison_.study.values[i].component < 3 && !aside_[comparison_.study.values[i].reading]) {
       squares += r(static_cast<Eigen::Index>(i)) * r(static_cast<Eigen::Index>(i));
       n += 1;
     }
@@ -49,11 +72,11 @@ double Observations::rmse(const Mechanism& m) const {
 }
 
 double Observations::held_out_rmse(const Mechanism& m) const {
-  return deflect::held_out_rmse(comparison_.study, comparison_.tolerances.A, comparison_.sigma, residual(m));
+  return deflect::held_out_rmse(comparison_.study, A_, comparison_.sigma, residual(m), aside_);
 }
 
 std::vector<std::pair<std::string, double>> Observations::strained(const Mechanism& m) const {
-  const VectorX eta = uncertainty_.nuisances(residual(m));
+  const VectorX eta = tolerance_scale_ * uncertainty_.nuisances(residual(m));
   std::vector<std::pair<std::string, double>> out;
   for (Eigen::Index i = 0; i < eta.size(); ++i)
     if (std::abs(eta(i)) > 2)
@@ -61,7 +84,7 @@ std::vector<std::pair<std::string, double>> Observations::strained(const Mechani
   return out;
 }
 
-void Observations::take_deformed_shape_of(const Mechanism& m) {
+void Observations::take_for_granted(const Mechanism& m) {
   const ResidualStudy& s = comparison_.study;
   const std::vector<Configuration> machines = configure_all(m, *s.data);
   PredictionOptions linear, finite;
@@ -70,9 +93,11 @@ void Observations::take_deformed_shape_of(const Mechanism& m) {
   try {
     shape_ = rows_of(s.values, predict(m, machines, *s.data, finite)) -
              rows_of(s.values, predict(m, machines, *s.data, linear));
-    null_ = whitened_residual(*device_);
   } catch (const NumericalError&) {  // beyond what the deformed shape carries: the one known stays
   }
+  const std::vector<bool> aside = gross_outliers(s, A_, comparison_.sigma, residual(m), {});
+  const auto count = static_cast<std::size_t>(std::count(aside.begin(), aside.end(), true));
+  weigh(20 * count <= aside.size() ? aside : aside_);
 }
 
 }  // namespace deflect

@@ -5,7 +5,8 @@
 
 namespace deflect {
 
-/// A comparison, its uncertainty kept, and predictions asked for again and again.
+/// A comparison, its uncertainty kept, and predictions asked for again and again. Tolerances count as large as the
+/// data say where they look larger than declared (Uncertainty::scale_of_tolerances).
 class Observations {
  public:
   Observations(const Mechanism&, const Measurements&, const ComparisonOptions&);
@@ -14,27 +15,37 @@ class Observations {
   const Comparison& comparison() const { return comparison_; }
   const Uncertainty& uncertainty() const { return uncertainty_; }
   std::size_t numbers() const { return uncertainty_.count(); }
+  double tolerance_scale() const { return tolerance_scale_; }
+  std::size_t set_aside() const;  ///< readings
 
-  /// Measured − predicted, m and rad, of a device: as below.
+  /// Measured − predicted, m and rad, of a device, small displacements, the deformed shape's share added (see below).
   VectorX residual(const Mechanism&) const;
-  /// Σ^(−1/2) (measured − predicted) of a device, small displacements, the deformed shape's share added (see below).
+  /// Σ^(−1/2) of it.
   VectorX whitened_residual(const Mechanism&) const;
   /// The same for a device in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
+  /// All patterns that a residual can have (discrepancy.h), whitened.
+  MatrixX whitened_patterns() const { return uncertainty_.whitened(patterns_); }
 
-  /// Root mean square of measured − predicted, translations, m.
+  /// Root mean square of measured − predicted, translations, m, of the readings that are not set aside.
   double rmse(const Mechanism&) const;
   /// The same at each pose with the tolerances learnt at the others (in ten folds at most).
   double held_out_rmse(const Mechanism&) const;
-  /// Tolerances beyond two prior standard deviations where that device is right, with them.
+  /// Tolerances beyond two declared standard deviations where that device is right, with them.
   std::vector<std::pair<std::string, double>> strained(const Mechanism&) const;
 
-  /// What equilibrium in the deformed shape adds to the prediction, as of this device, from now on.
-  void take_deformed_shape_of(const Mechanism&);
+  /// From now on what equilibrium in the deformed shape adds to the prediction is that of this device, and readings
+  /// that are gross outliers to it are set aside, unless they are more than one in twenty.
+  void take_for_granted(const Mechanism&);
 
  private:
+  void weigh(const std::vector<bool>& aside);
+
   const Mechanism* device_;
   Comparison comparison_;
+  MatrixX patterns_, A_;
+  double tolerance_scale_ = 1;
+  std::vector<bool> aside_;
   Uncertainty uncertainty_;
   VectorX measured_, shape_, null_;
 };

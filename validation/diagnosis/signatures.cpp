@@ -4,11 +4,11 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "msa/base/error.h"
 #include "validation/compare/parallel.h"
+#include "validation/compare/tail.h"
 #include "validation/measurement/random.h"
 
 namespace deflect {
@@ -63,7 +63,7 @@ MatrixX orthonormal(const MatrixX& X) {
 
 double tail(int freedoms, bool one_sided, double gain) {
   if (!(gain > 0)) return 1;
-  const double p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedoms), gain));
+  const double p = chi_squared_tail(freedoms, gain);
   return one_sided ? p / 2 : p;
 }
 
@@ -121,6 +121,12 @@ double most_gain(const Signature& s, const VectorX& residual, const MatrixX& fit
     return out;
   }();
   return (qr.householderQ().transpose() * residual).head(qr.rank()).squaredNorm();
+}
+
+double own_share(const Signature& s, const MatrixX& fitted) {
+  if (fitted.cols() == 0) return 1;
+  const MatrixX Q = orthonormal(fitted);
+  return (s.basis - Q * (Q.transpose() * s.basis)).norm() / std::sqrt(static_cast<double>(s.basis.cols()));
 }
 
 double cosine(const Signature& a, const Signature& b) {

@@ -26,6 +26,10 @@ std::optional<VectorX> guess(const Signature&, const VectorX& residual);
 /// The most that the effect can take off χ² where its signature is a linear space, beside what is fitted already.
 double most_gain(const Signature&, const VectorX& residual, const MatrixX& fitted);
 
+/// How much of the signature is its own beside what is fitted: the sine of its angle to their span, over
+/// all its directions in the root mean square.
+double own_share(const Signature&, const MatrixX& fitted);
+
 /// Largest cosine between the spaces of two signatures.
 double cosine(const Signature&, const Signature&);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "msa/base/error.h"
@@ -20,6 +21,11 @@ class Reader {
     } catch (const json::parse_error& e) {
       throw InputError(
           fmt::format("{}: not valid JSON at byte {}: give the file of 'deflect diagnose --json'", file_, e.byte));
+    } catch (const json::out_of_range&) {
+      throw InputError(
+          fmt::format("{}: a number is beyond what a double holds: give the file of 'deflect diagnose "
+                      "--json' as it was written",
+                      file_));
     }
   }
 
@@ -32,14 +38,30 @@ class Reader {
     for (std::size_t i = 0; i < missing.size(); ++i) {
       const std::string where = fmt::format("missing[{}]", i);
       out.missing.push_back(missing[i].is_string() ? named(missing[i]) : hypothesis(missing[i], where));
-      complete(out.missing.back(), out.candidates);
     }
+    if (root_.contains("found")) take_found(out.missing);
+    for (FoundEffect& f : out.missing) complete(f, out.candidates);
     return out;
   }
 
  private:
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
     throw InputError(fmt::format("{}: {}: {}", file_, where, what));
+  }
+
+  /// Legs and values of what is missing, fitted together: of several effects each alone has others.
+  void take_found(std::vector<FoundEffect>& missing) const {
+    const json& found = list(root_, "found", "");
+    for (std::size_t i = 0; i < std::max(found.size(), missing.size()); ++i) {
+      const std::string where = fmt::format("found[{}]", i);
+      if (i >= found.size() || i >= missing.size())
+        fail(where,
+             fmt::format("'missing' names {} effects, 'found' {}: each has its entry", missing.size(), found.size()));
+      FoundEffect f = hypothesis(found[i], where);
+      if (f.effect != missing[i].effect)
+        fail(where, fmt::format("is '{}', where 'missing' has '{}'", f.effect, missing[i].effect));
+      missing[i] = std::move(f);
+    }
   }
 
   static FoundEffect named(const json& name) { return {name.get<std::string>(), {}, {}}; }

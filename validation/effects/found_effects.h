@@ -16,7 +16,8 @@ struct FoundEffect {
 };
 
 struct FoundEffects {
-  std::vector<FoundEffect> missing;     ///< in the order in which they were added; values of the best candidate
+  std::vector<FoundEffect>
+      missing;  ///< in the order in which they were added; values of "found", else of the best candidate
   std::vector<FoundEffect> candidates;  ///< every hypothesis, best first
 };
 

@@ -22,7 +22,7 @@ Vector6 as_written(const Vector6& pose) { return ((pose * 1e6).array().round() /
 /// Builds a plan pose by pose; sequence numbers in the order of building.
 class Plan {
  public:
-  Plan(const Mechanism& m, std::uint64_t seed) : mechanism_(m), random_(seed) { plan_.origin = "plan"; }
+  Plan(const Mechanism& m, std::uint64_t seed) : mechanism_(m), random_(seed) { plan_.origin = "campaign"; }
 
   std::size_t pose(const std::string& label, const Vector6& mm_deg) {
     plan_.poses.push_back({label, mm_deg, {}, {}});
@@ -66,6 +66,7 @@ class Plan {
     r.pose = pose;
     r.load = load + Vector6::Zero();  // no −0
     r.sequence = static_cast<double>(plan_.readings.size());
+    r.line = plan_.readings.size() + 2;
     plan_.poses[pose].readings.push_back(plan_.readings.size());
     plan_.readings.push_back(r);
   }

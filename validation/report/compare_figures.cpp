@@ -66,14 +66,20 @@ Figure residuals(const Comparison& c, const std::vector<Cells>& cells) {
     const double at = c.study.sequence ? *c.study.data->readings[i].sequence : static_cast<double>(i);
     s.put("{} {} {} {}", at, um * cells[i].residual.x(), um * cells[i].residual.y(), um * cells[i].residual.z());
   }
-  s.put("EOD\nset multiplot layout 3,1 margins 0.11,0.97,0.12,0.88 spacing 0.05");
+  std::vector<std::size_t> measured;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::any_of(c.study.values.begin(), c.study.values.end(),
+                    [k](const MeasuredValue& v) { return static_cast<std::size_t>(v.component) == k; }))
+      measured.push_back(k);
+  s.put("EOD\nset multiplot layout {},1 margins 0.11,0.97,0.12,0.88 spacing 0.05", measured.size());
   const double band = 2 * um * c.noise_and_tolerances;
-  for (int k = 0; k < 3; ++k) {
+  for (const std::size_t k : measured) {
     s.put("set ylabel 'Δ{} (µm)'\nset xzeroaxis lt 1 lc rgb '#404040' lw 0.7", axis_letter[k]);
     s.put("set object 1 rectangle from graph 0,first {} to graph 1,first {} fc rgb '#E8E8E8' fs solid noborder behind",
           -band, band);
-    s.put("{}", k == 2 ? "set xtics\nset xlabel 'reading'" : "set format x ''");
-    if (k == 2) s.put("set format x '%g'");
+    const bool last = k == measured.back();
+    s.put("{}", last ? "set xtics\nset xlabel 'reading'" : "set format x ''");
+    if (last) s.put("set format x '%g'");
     s.put("plot $data using 1:{} with points pt 7 ps 0.3 lc rgb '{}' notitle", k + 2, colours[k]);
     s.put("unset label 100\nunset label 101");
   }
@@ -154,9 +160,9 @@ std::optional<std::size_t> pure_axis(const Vector6& F) {
 std::optional<Figure> secant(const Comparison& c, const std::vector<Cells>& cells) {
   Script s;
   title(s, c, "Displacement over load along the load: measured (points) and predicted (lines)", 80);
-  bool any = false;
-  std::vector<std::string> blocks;
+  std::vector<std::size_t> loaded;  // axes with points; gnuplot refuses a panel without
   for (std::size_t k = 0; k < 3; ++k) {
+    bool any = false;
     std::string block = fmt::format("$d{} << EOD\n", k);
     for (const PoseGroup& group : c.study.data->poses) {
       std::vector<std::size_t> order;
@@ -177,13 +183,16 @@ std::optional<Figure> secant(const Comparison& c, const std::vector<Cells>& cell
       if (!order.empty()) block += "\n";
     }
     s.put("{}EOD", block);
+    if (any) loaded.push_back(k);
   }
-  if (!any) return std::nullopt;
+  if (loaded.empty()) return std::nullopt;
   s.put(
-      "set multiplot layout 1,3 margins 0.09,0.97,0.17,0.84 spacing 0.08\nset offsets graph 0.05, graph 0.05, graph "
-      "0.05, graph 0.05");
-  for (std::size_t k = 0; k < 3; ++k) {
-    s.put("set xlabel 'f{} (N)'\nset ylabel {}", axis_letter[k], k == 0 ? "'secant compliance (µm/N)'" : "''");
+      "set multiplot layout 1,{} margins 0.09,0.97,0.17,0.84 spacing 0.08\nset offsets graph 0.05, graph 0.05, graph "
+      "0.05, graph 0.05",
+      loaded.size());
+  for (const std::size_t k : loaded) {
+    s.put("set xlabel 'f{} (N)'\nset ylabel {}", axis_letter[k],
+          k == loaded.front() ? "'secant compliance (µm/N)'" : "''");
     s.put(
         "plot $d{} using 1:3 with lines lc rgb '#808080' lw 0.8 notitle, '' using 1:2 with points pt 7 ps 0.35 lc rgb "
         "'{}' notitle",
@@ -239,7 +248,7 @@ std::optional<Figure> loops(const Comparison& c, const std::vector<Cells>& cells
   const PoseGroup& group = c.study.data->poses[static_cast<std::size_t>(worst - c.by_pose.begin())];
   Script s;
   title(s, c, fmt::format("Displacement over load in the order taken, {}", worst->group), 80);
-  bool any = false;
+  std::vector<std::size_t> loaded;
   std::vector<std::size_t> order = group.readings;
   if (c.study.sequence)
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -248,6 +257,7 @@ std::optional<Figure> loops(const Comparison& c, const std::vector<Cells>& cells
   for (std::size_t k = 0; k < 3; ++k) {
     std::string block = fmt::format("$d{} << EOD\n", k);
     const auto at = static_cast<Eigen::Index>(k);
+    bool any = false;
     for (const std::size_t i : order) {
       const Vector6& F = c.study.data->readings[i].load;
       if (!F.isZero(0) && pure_axis(F) != k) continue;
@@ -256,13 +266,16 @@ std::optional<Figure> loops(const Comparison& c, const std::vector<Cells>& cells
       any = any || !F.isZero(0);
     }
     s.put("{}EOD", block);
+    if (any) loaded.push_back(k);
   }
-  if (!any) return std::nullopt;
+  if (loaded.empty()) return std::nullopt;
   s.put(
-      "set multiplot layout 1,3 margins 0.09,0.97,0.17,0.84 spacing 0.08\nset offsets graph 0.05, graph 0.05, graph "
-      "0.05, graph 0.05");
-  for (std::size_t k = 0; k < 3; ++k) {
-    s.put("set xlabel 'f{} (N)'\nset ylabel {}", axis_letter[k], k == 0 ? "'displacement along the load (µm)'" : "''");
+      "set multiplot layout 1,{} margins 0.09,0.97,0.17,0.84 spacing 0.08\nset offsets graph 0.05, graph 0.05, graph "
+      "0.05, graph 0.05",
+      loaded.size());
+  for (const std::size_t k : loaded) {
+    s.put("set xlabel 'f{} (N)'\nset ylabel {}", axis_letter[k],
+          k == loaded.front() ? "'displacement along the load (µm)'" : "''");
     s.put(
         "plot $d{} using 1:3 with lines lc rgb '#808080' lw 0.9 notitle, '' using 1:2 with {} pt 7 ps 0.4 lw 0.8 lc "
         "rgb '{}' notitle",
@@ -278,7 +291,9 @@ std::optional<Figure> loops(const Comparison& c, const std::vector<Cells>& cells
 std::vector<Figure> compare_figures(const Comparison& c) {
   const std::vector<Cells> cells = cells_of(c);
   std::vector<Figure> out;
-  if (!c.by_axis.empty()) out = {residuals(c, cells), residual_map(c), groups(c)};
+  const bool translations =
+      std::any_of(c.study.values.begin(), c.study.values.end(), [](const MeasuredValue& v) { return v.component < 3; });
+  if (translations) out = {residuals(c, cells), residual_map(c), groups(c)};
   for (const std::optional<Figure>& f : {secant(c, cells), elongation(c), loops(c, cells)})
     if (f) out.push_back(*f);
   return out;

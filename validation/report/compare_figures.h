@@ -8,7 +8,7 @@
 
 namespace deflect {
 
-/// Those that the data allow:
+/// Those that the data allow, the first three where translations were measured:
 ///   residuals       by reading in the order taken, x y z apart, with the band of ±2 standard deviations of what noise
 ///                   and tolerances give; colour by axis
 ///   residual-map    rms at each pose in the plane x–y and x–z of the workspace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "validation/report/json_text.h"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double um = 1e6, mm = 1e3;
 constexpr double significant = 1e-3;
+constexpr std::size_t most_poses = 12, poses_of_many = 10;  // in the report
 
 std::string p_text(double p) { return p < 1e-16 ? "< 1e-16" : fmt::format("{:.2g}", p); }
 
@@ -65,15 +67,29 @@ void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<Err
                     std::to_string(e.worst_line)});
 }
 
+/// Of more poses than a person reads, the worst in descending order.
+std::vector<Errors> poses_shown(const std::vector<Errors>& by_pose) {
+  if (by_pose.size() <= most_poses) return by_pose;
+  std::vector<Errors> worst = by_pose;
+  std::stable_sort(worst.begin(), worst.end(), [](const Errors& a, const Errors& b) { return a.rmse > b.rmse; });
+  worst.resize(poses_of_many);
+  return worst;
+}
+
 std::string errors_table(const Comparison& c) {
   std::vector<std::vector<std::string>> rows = {
       {"measured − predicted, µm", "readings", "rms", "mean x", "mean y", "mean z", "worst", "in line"}};
   Errors all = c.all;
   all.group = "all";
   add_rows(rows, {all});
-  for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading, &c.by_pose})
-    add_rows(rows, *groups);
-  return aligned(rows);
+  for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading}) add_rows(rows, *groups);
+  const std::vector<Errors> shown = poses_shown(c.by_pose);
+  add_rows(rows, shown);
+  std::string out = aligned(rows);
+  if (shown.size() < c.by_pose.size())
+    out += fmt::format("  these poses are the worst; {} more are in the files of --json and --out\n",
+                       c.by_pose.size() - shown.size());
+  return out;
 }
 
 std::string tests_table(const Comparison& c) {

@@ -21,7 +21,7 @@ std::string values_words(const Hypothesis& h, const Fit& f) {
   std::string out;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [low, high] = interval95(h, f, i);
-    out += fmt::format("{}{} = {:.4g} ({:.3g} … {:.3g})", i ? ", " : "", all[i]->name,
+    out += fmt::format("{}{} = {:.4g} ({:.4g} … {:.4g})", i ? ", " : "", all[i]->name,
                        f.values(static_cast<Eigen::Index>(i)), low, high);
   }
   return out;
@@ -98,7 +98,16 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
   if (!d.missing.empty()) out += "fitted: " + values_words(d.missing, d.fit) + "\n\n";
   out += candidates_table(d);
   out += fmt::format("\nchance that some effect looks as good in data with nothing missing: {:.2g}\n", d.chance);
-  if (d.unexplained) out += fmt::format("left unexplained: {:.0f} % of the misfit\n", 100 * d.share_unexplained);
+  if (d.unexplained) {
+    out += fmt::format("left unexplained: {:.0f} % of the misfit; of that", 100 * d.share_unexplained);
+    for (const Localised& l : d.localised) out += fmt::format(" {:.0f} % by {};", 100 * l.share, l.what);
+    if (!d.nearest.empty()) out += fmt::format(" the nearest entry, {}, {:.0f} %", d.nearest, 100 * d.nearest_share);
+    out += "\n";
+  }
+  if (d.tolerance_scale > 1)
+    out += fmt::format("the machine's tolerances look {:.1f} times as large as declared and count so\n",
+                       d.tolerance_scale);
+  if (d.set_aside > 0) out += fmt::format("readings set aside as gross outliers: {}\n", d.set_aside);
   if (!d.strained.empty()) {
     out += "tolerances beyond two standard deviations:";
     for (const auto& [name, eta] : d.strained) out += fmt::format(" {} {:+.1f},", name, eta);
@@ -134,7 +143,11 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["baseline"] = quality_json(d.baseline);
   j["final"] = quality_json(d.final);
   j["noise_floor_mm"] = json_number(mm * d.noise_floor, "noise floor");
-  j["unexplained"] = {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained}, {"pattern", d.pattern}};
+  Json localised = Json::array();
+  for (const Localised& l : d.localised) localised.push_back({{"what", l.what}, {"share", l.share}});
+  j["unexplained"] = {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained},
+                      {"pattern", d.pattern},         {"localised", localised},
+                      {"nearest", d.nearest},         {"nearest_share", d.nearest_share}};
   j["found"] = Json::array();  // the effects of "missing", fitted together
   std::size_t from = 0;
   for (const PlacedEffect& e : d.missing) {
@@ -146,6 +159,8 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["probability_nothing"] = d.probability_nothing;
   j["probability_unknown"] = d.probability_unknown;
   j["chance_of_any"] = d.chance;
+  j["tolerance_scale"] = d.tolerance_scale;
+  j["set_aside"] = d.set_aside;
   j["strained_tolerances"] = Json::array();
   for (const auto& [name, eta] : d.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});
   j["detectable"] = Json::array();

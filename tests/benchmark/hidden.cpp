@@ -1,0 +1,111 @@
+#include "tests/benchmark/hidden.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "msa/base/error.h"
+
+namespace deflect::benchmark {
+namespace {
+
+constexpr double accuracy = 0.02;  // of λ
+
+/// ±1 for each parameter whose sign is free; of several of them a direction of length √n.
+VectorX drawn_signs(const Effect& e, Random& random) {
+  VectorX out = VectorX::Ones(static_cast<Eigen::Index>(e.parameters.size()));
+  Eigen::Index free = 0;
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const EffectParameter& p = e.parameters[i];
+    if (!p.vanishes || !(p.low < *p.vanishes && *p.vanishes < p.high)) continue;
+    out(static_cast<Eigen::Index>(i)) = random.normal();
+    ++free;
+  }
+  if (free == out.size() && free > 0) out *= std::sqrt(static_cast<double>(free)) / out.norm();
+  return out;
+}
+
+/// The values at which the effect is `times` as large as at its start; nothing outside the bounds.
+std::optional<VectorX> values_at(const Effect& e, const VectorX& signs, double times) {
+  VectorX out = start_values(e);
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const EffectParameter& p = e.parameters[i];
+    double& value = out(static_cast<Eigen::Index>(i));
+    const double by = times * signs(static_cast<Eigen::Index>(i));
+    if (p.vanishes) value = std::isinf(*p.vanishes) ? p.start / by : *p.vanishes + by * (p.start - *p.vanishes);
+    if (!(p.low <= value && value <= p.high)) return std::nullopt;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<Hidden> hidden_effect(const Plan& plan, const Effect& e, double lambda, Random& random) {
+  const std::vector<PlacedEffect> places = places_of(e, plan.observations->device());
+  if (places.empty()) return std::nullopt;
+  Hidden out;
+  const double lot = random.uniform(0, static_cast<double>(places.size()));
+  static_cast<PlacedEffect&>(out.effect) = places[static_cast<std::size_t>(lot)];
+  const VectorX signs = drawn_signs(e, random);
+  const auto at = [&](double x) {  // ln λ over ln of the size; nothing outside the bounds
+    std::optional<double> y;
+    if (const std::optional<VectorX> values = values_at(e, signs, std::exp(x))) try {
+        out.effect.values = *values;
+        out.change = plan.whitened_change(out.effect);
+        if (out.lambda() > 0) y = std::log(out.lambda());
+      } catch (const ModelError&) {
+      } catch (const NumericalError&) {
+      } catch (const InputError&) {  // wants a sequence or a temperature
+      }
+    return y;
+  };
+  double x = 0, slope = 1;
+  std::optional<double> y = at(x);
+  for (int tries = 0; y && tries < 20; ++tries) {
+    const double step = (std::log(lambda) - *y) / slope;
+    if (std::abs(out.lambda() / lambda - 1) < accuracy) return out;
+    double next = x + std::clamp(step, -4.0, 4.0);
+    std::optional<double> there = at(next);
+    for (int back = 0; !there && back < 8; ++back) there = at(next = (next + x) / 2);
+    if (!there) return std::nullopt;
+    slope = std::clamp((*there - *y) / (next - x), 0.2, 5.0);
+    x = next;
+    y = there;
+  }
+  return std::nullopt;
+}
+
+Nearest nearest_entry(const Plan& plan, const Hidden& hidden) {
+  Eigen::Index directions = 1;
+  for (const Signature& s : plan.signatures)
+    if (s.effect.effect == hidden.effect.effect) directions = s.basis.cols();
+  Nearest out;
+  for (const Signature& s : plan.signatures) {
+    if (s.effect.effect == hidden.effect.effect || s.basis.cols() > directions) continue;
+    const double c = (s.basis.transpose() * hidden.change).norm() / hidden.lambda();
+    if (c > out.cosine) out.cosine = c, out.entry = s.effect.effect->name;
+  }
+  out.separation = std::pow(hidden.lambda(), 2) * std::max(0.0, 1 - out.cosine * out.cosine);
+  return out;
+}
+
+double cosine(const Hidden& a, const Hidden& b) { return std::abs(a.change.dot(b.change)) / (a.lambda() * b.lambda()); }
+
+VectorX beyond_catalogue(const Plan& plan, const VectorX& change, const Effect* left_out) {
+  Eigen::Index columns = 0;
+  MatrixX all(change.size(), 0);
+  for (const Signature& s : plan.signatures) {
+    if (s.effect.effect == left_out) continue;
+    all.conservativeResize(Eigen::NoChange, columns + s.basis.cols());
+    all.rightCols(s.basis.cols()) = s.basis;
+    columns = all.cols();
+  }
+  Eigen::ColPivHouseholderQR<MatrixX> qr;
+  qr.setThreshold(1e-6);
+  qr.compute(all);
+  VectorX along = qr.householderQ().transpose() * change;
+  along.head(qr.rank()).setZero();
+  return qr.householderQ() * along;
+}
+
+}  // namespace deflect::benchmark

@@ -1,0 +1,39 @@
+// Effects to be hidden, made as large as is wanted.
+#pragma once
+
+#include <optional>
+
+#include "tests/benchmark/plan.h"
+#include "validation/measurement/random.h"
+
+namespace deflect::benchmark {
+
+/// λ: length of what the effect changes in the plan's numbers, whitened with noise and tolerances.
+struct Hidden {
+  EffectInstance effect;
+  VectorX change;  ///< whitened
+
+  double lambda() const { return change.norm(); }
+};
+
+/// The effect with that λ (to 2 %) at a leg and with signs drawn by lot where they are free; parameters that only shape
+/// it stay at their start. Nothing where the bounds of its parameters do not let it become so large.
+std::optional<Hidden> hidden_effect(const Plan&, const Effect&, double lambda, Random&);
+
+/// The entry of another name, of no more directions, that comes nearest to the change. Separation: what the best of it
+/// leaves of λ², the difference of 2 ln L to be expected. A tie has a cosine above 0.995: data of this plan cannot tell
+/// the two apart.
+struct Nearest {
+  std::string entry;  ///< empty where no entry is at all alike
+  double cosine = 0, separation = 0;
+  bool tie() const { return cosine > 0.995; }
+};
+Nearest nearest_entry(const Plan&, const Hidden&);
+
+/// |cosine| of two changes.
+double cosine(const Hidden&, const Hidden&);
+
+/// What is left of a whitened change once the signatures of all effects, one left out, are taken out of it.
+VectorX beyond_catalogue(const Plan&, const VectorX& change, const Effect* left_out = nullptr);
+
+}  // namespace deflect::benchmark

@@ -1,0 +1,122 @@
+// Benchmark of `diagnose`: simulated sets whose truth is known, scored, beside simpler methods.
+#include <fmt/format.h>
+#include <getopt.h>
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/base/units.h"
+#include "msa/mechanism/device_file.h"
+#include "tests/benchmark/scores.h"
+#include "validation/compare/parallel.h"
+#include "validation/effects/effect_file.h"
+#include "validation/report/progress.h"
+
+namespace deflect::benchmark {
+namespace {
+
+constexpr const char* usage = R"(benchmark_diagnosis [options]
+  --group NAME   one group of sets: {}
+  --sets N       about N sets, every group thinned alike (default: all)
+  --seed N       of everything drawn by lot (default 1)
+  --threads N    sets side by side (default 0: all cores); the scores do not depend on it
+  --json FILE    write every set and the scores
+)";
+
+struct Arguments {
+  std::string group, json;
+  std::size_t sets = 0;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  bool help = false;
+};
+
+std::size_t whole(const char* option, const char* text) {
+  const double value = parse_number(text);
+  if (!(value >= 0 && value < 1e9) || value != static_cast<double>(static_cast<std::size_t>(value)))
+    throw InputError(fmt::format("--{} '{}': a whole number is wanted", option, text));
+  return static_cast<std::size_t>(value);
+}
+
+Arguments parse(int argc, char** argv) {
+  const option options[] = {{"group", required_argument, nullptr, 'g'},
+                            {"sets", required_argument, nullptr, 'n'},
+                            {"seed", required_argument, nullptr, 's'},
+                            {"threads", required_argument, nullptr, 't'},
+                            {"json", required_argument, nullptr, 'j'},
+                            {"help", no_argument, nullptr, 'h'},
+                            {nullptr, 0, nullptr, 0}};
+  Arguments a;
+  for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) switch (c) {
+      case 'g':
+        a.group = optarg;
+        break;
+      case 'n':
+        a.sets = whole("sets", optarg);
+        break;
+      case 's':
+        a.seed = whole("seed", optarg);
+        break;
+      case 't':
+        a.threads = static_cast<int>(whole("threads", optarg));
+        break;
+      case 'j':
+        a.json = optarg;
+        break;
+      case 'h':
+        a.help = true;
+        break;
+      default:
+        throw InputError("see --help");
+    }
+  if (optind < argc) throw InputError(fmt::format("'{}' is no option; see --help", argv[optind]));
+  if (!a.group.empty() && std::find(std::begin(group_names), std::end(group_names), a.group) == std::end(group_names))
+    throw InputError(fmt::format("--group '{}': write {}", a.group, fmt::join(group_names, ", ")));
+  return a;
+}
+
+void run_all(const Arguments& a) {
+  const std::string data = std::string(DEFLECT_SOURCE_DIR) + "/validation";
+  const Mechanism device = read_mechanism(data + "/devices/haptic-6psu-ideal-joints.yaml");
+  const std::vector<Effect> effects = catalogue(data + "/effects");
+  const std::vector<Case> orders = cases(a.seed, a.group, a.sets);
+  Plans plans(device, effects, a.seed);
+  std::vector<Record> records(orders.size());
+  {
+    Progress progress(orders.size(), "sets", terminal_stream());
+    for_each_case(
+        orders.size(), 1, a.threads, [&](std::size_t i) { records[i] = run(orders[i], device, effects, plans); },
+        [&](std::size_t done) { progress.update(done); });
+  }
+  if (!a.json.empty()) {
+    Json json = {{"device", device.name}, {"seed", a.seed}};
+    json.update(report_json(records));
+    write_text(a.json, json_text(json));
+  }
+  fmt::print("{}", report(records));
+}
+
+}  // namespace
+}  // namespace deflect::benchmark
+
+// OpenBLAS, where it is the BLAS: one thread, since sets run side by side.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
+int main(int argc, char** argv) {
+  using namespace deflect::benchmark;
+  if (openblas_set_num_threads) openblas_set_num_threads(1);
+  try {
+    const Arguments a = parse(argc, argv);
+    if (a.help)
+      fmt::print(usage, fmt::join(group_names, ", "));
+    else
+      run_all(a);
+    return 0;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "benchmark_diagnosis: {}\n", e.what());
+    return 1;
+  }
+}

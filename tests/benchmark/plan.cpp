@@ -1,0 +1,145 @@
+#include "tests/benchmark/plan.h"
+
+#include <cmath>
+#include <iterator>
+
+#include "msa/base/error.h"
+#include "msa/mechanism/configuration.h"
+#include "validation/compare/theories.h"
+#include "validation/measurement/campaign.h"
+#include "validation/measurement/configure_all.h"
+#include "validation/measurement/random.h"
+
+namespace deflect::benchmark {
+namespace {
+
+constexpr int elements = 2;  // per member
+
+frame::MemberDivision division_of(const Mechanism& m) {
+  std::vector<double> at;
+  for (int i = 0; i <= elements; ++i) at.push_back(static_cast<double>(i) / elements);
+  frame::MemberDivision out;
+  const Configuration home = configure(m, home_pose(m));
+  for_each_part(home.legs, [&](const auto& part) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, PlacedMember>) out[part.part] = at;
+  });
+  return out;
+}
+
+/// The first three loads of each pose of a random plan, halved moments about x, y, z added by turns; at 23 °C.
+Measurements new_poses(const Mechanism& m, std::uint64_t seed) {
+  const Measurements many = campaign("random", m, force, seed);
+  Measurements out;
+  out.origin = "new poses";
+  out.temperature_recorded = true;
+  for (const PoseGroup& group : many.poses) {
+    out.poses.push_back(group);
+    out.poses.back().readings.clear();
+    for (std::size_t i = 0; i < 3; ++i) {
+      Reading r = many.readings[group.readings[i]];
+      r.pose = out.poses.size() - 1;
+      r.sequence = static_cast<double>(out.readings.size());
+      r.temperature_C = 23;
+      out.poses.back().readings.push_back(out.readings.size());
+      out.readings.push_back(r);
+    }
+  }
+  return out;
+}
+
+VectorX translations(const std::vector<Vector6>& all) {
+  VectorX out(3 * static_cast<Eigen::Index>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = all[i].head<3>();
+  return out;
+}
+
+VectorX predicted_elsewhere(const Plan& plan, const Mechanism& m, Theory theory, Geometry geometry) {
+  PredictionOptions o;
+  o.theory = theory;
+  o.geometry = geometry;
+  o.division = plan.simulation.division;
+  o.threads = 1;
+  return translations(predict(m, configure_all(m, plan.elsewhere), plan.elsewhere, o));
+}
+
+/// Sets of values at which the effect's parameters act one at a time; at the start together where one shapes others.
+std::vector<VectorX> one_at_a_time(const Effect& e) {
+  const VectorX start = start_values(e);
+  for (const EffectParameter& p : e.parameters)
+    if (!p.vanishes) return {start};
+  if (e.parameters.empty()) return {start};
+  std::vector<VectorX> out;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    VectorX values = start;
+    for (Eigen::Index k = 0; k < start.size(); ++k)
+      if (k != i) values(k) = *e.parameters[static_cast<std::size_t>(k)].vanishes;
+    out.push_back(values);
+  }
+  return out;
+}
+
+VectorX numbers_of(const Measurements& data) {
+  const std::vector<MeasuredValue> values = measured_values(data);
+  VectorX out(static_cast<Eigen::Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) out(static_cast<Eigen::Index>(i)) = values[i].value;
+  return out;
+}
+
+}  // namespace
+
+Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::string& name, std::uint64_t seed,
+           bool temperature) {
+  simulation.seed = seed;
+  simulation.sigma_u = sigma_u;
+  if (temperature) simulation.temperature = 22, simulation.swing = 2;
+  simulation.division = division_of(m);
+  simulation.threads = 1;
+  readings = campaign(name, m, force, seed);
+  healthy = simulate(m, readings, simulation);
+  ComparisonOptions comparison;
+  comparison.threads = 1;
+  observations = std::make_unique<Observations>(m, healthy, comparison);
+  signatures = deflect::signatures(*observations, effects, 1);
+  const VectorX rest = observations->residual(m);
+  nominal = numbers_of(healthy) - rest;
+  elsewhere = new_poses(m, seed + 1);
+  nominal_elsewhere = predict_elsewhere(*this, m, Theory::analytic);
+  const VectorX linear = predicted_elsewhere(*this, m, Theory::analytic, Geometry::linear);
+  for (const Signature& s : signatures) {
+    const std::vector<VectorX> values = one_at_a_time(*s.effect.effect);
+    const auto columns = static_cast<Eigen::Index>(values.size());
+    Change c{s.effect, MatrixX(rest.size(), columns), MatrixX(linear.size(), columns)};
+    for (Eigen::Index i = 0; i < columns; ++i) {
+      const Mechanism with = with_effect(m, *s.effect.effect, values[static_cast<std::size_t>(i)], s.effect.leg);
+      c.measured.col(i) = rest - observations->residual(with);
+      c.elsewhere.col(i) = predicted_elsewhere(*this, with, Theory::analytic, Geometry::linear) - linear;
+    }
+    changes.push_back(std::move(c));
+  }
+}
+
+VectorX Plan::residual(const Measurements& data) const { return numbers_of(data) - nominal; }
+
+VectorX Plan::whitened_change(const EffectInstance& e) const {
+  return observations->null_residual() - observations->whitened_residual(with_effect(observations->device(), e));
+}
+
+VectorX predict_elsewhere(const Plan& plan, const Mechanism& m, Theory theory) {
+  return predicted_elsewhere(plan, m, theory, Geometry::finite);
+}
+
+Plans::Plans(const Mechanism& m, const std::vector<Effect>& effects, std::uint64_t seed)
+    : device_(m), effects_(effects), seed_(seed), slots_(std::size(campaign_names) * variants) {}
+
+const Plan& Plans::at(const std::string& campaign, int variant) {
+  std::size_t at = 0;
+  while (campaign != campaign_names[at]) ++at;
+  Slot& slot = slots_[at * variants + static_cast<std::size_t>(variant)];
+  std::call_once(slot.once, [&] {
+    slot.plan =
+        std::make_unique<Plan>(device_, effects_, campaign, seed_ + 1000 * (at + 1) + 10 * variant, variant % 2 == 1);
+  });
+  return *slot.plan;
+}
+
+}  // namespace deflect::benchmark

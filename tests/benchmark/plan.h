@@ -1,0 +1,72 @@
+// A plan of measurements with what is known before anything is measured: how every effect would change its numbers.
+//
+// Measured numbers are the translations of all readings, reading by reading (m).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "validation/compare/simulate.h"
+#include "validation/diagnosis/observations.h"
+#include "validation/diagnosis/signatures.h"
+
+namespace deflect::benchmark {
+
+inline constexpr double sigma_u = 2e-6;  // m: of a reading
+inline constexpr double force = 50;      // N: largest of a plan
+
+/// An effect at a place: what it adds to the numbers at the start of its parameters, parameter by parameter where each
+/// can vanish alone.
+struct Change {
+  PlacedEffect effect;
+  MatrixX measured, elsewhere;  ///< of the plan's numbers; at the new poses
+};
+
+/// Must stand where it was made: its parts point at each other.
+struct Plan {
+  Plan(const Mechanism&, const std::vector<Effect>&, const std::string& campaign, std::uint64_t seed, bool temperature);
+  Plan(const Plan&) = delete;
+  Plan& operator=(const Plan&) = delete;
+
+  SimulationOptions simulation;                ///< of a machine within tolerances, read with noise
+  Measurements readings;                       ///< poses and loads
+  Measurements healthy;                        ///< nothing hidden, seed of its own
+  std::unique_ptr<Observations> observations;  ///< of `healthy`
+  std::vector<Signature> signatures;
+  std::vector<Change> changes;
+  Measurements elsewhere;     ///< twenty poses that are not in the plan, three loads each
+  VectorX nominal_elsewhere;  ///< m: prediction there with nothing added
+  VectorX nominal;            ///< m: the same of the plan's numbers
+
+  /// Measured − predicted with nothing added, m.
+  VectorX residual(const Measurements&) const;
+  /// Σ^(−1/2) times what an effect changes in the plan's numbers.
+  VectorX whitened_change(const EffectInstance&) const;
+};
+
+/// Translations of a device at the plan's new poses in the deformed shape, m. NumericalError where there is none.
+VectorX predict_elsewhere(const Plan&, const Mechanism&, Theory);
+
+/// Plans of all campaigns, made when first asked for; from any thread.
+class Plans {
+ public:
+  Plans(const Mechanism&, const std::vector<Effect>&, std::uint64_t seed);
+
+  static constexpr int variants = 4;  ///< of one campaign: other poses, and temperatures recorded in those that are odd
+  const Plan& at(const std::string& campaign, int variant);
+
+ private:
+  struct Slot {
+    std::once_flag once;
+    std::unique_ptr<Plan> plan;
+  };
+  const Mechanism& device_;
+  const std::vector<Effect>& effects_;
+  std::uint64_t seed_;
+  std::vector<Slot> slots_;
+};
+
+}  // namespace deflect::benchmark

@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "tests/benchmark/scores.h"
+
+namespace deflect::benchmark {
+namespace {
+
+std::string cell(double value) {
+  return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, value > 0 && value < 0.1 ? 3 : 2);
+}
+
+std::vector<double> seconds_of(const std::vector<Record>& all) {
+  std::vector<double> out;
+  for (const Record& r : all)
+    if (r.skipped.empty()) out.push_back(r.seconds);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+Json set_json(const Record& r) {
+  const Case& c = r.order;
+  Json out = {
+      {"group", c.group}, {"index", c.index}, {"campaign", c.campaign}, {"variant", c.variant}, {"seed", c.seed}};
+  if (!r.skipped.empty()) {
+    out["effect"] = c.effect;
+    out["skipped"] = r.skipped;
+    return out;
+  }
+  out["truth"] = r.truth.effects;
+  out["unknown"] = r.truth.unknown;
+  if (!r.truth.tied.empty()) out["tied_with"] = r.truth.tied;
+  out["hidden"] = Json::array();
+  for (const EffectInstance& e : r.hidden) {
+    Json hidden = {{"effect", e.effect->name}, {"site", site_of(e)}};
+    for (std::size_t i = 0; i < e.effect->parameters.size(); ++i)
+      hidden[e.effect->parameters[i].name] = e.values(static_cast<Eigen::Index>(i));
+    out["hidden"].push_back(hidden);
+  }
+  out["lambda"] = r.lambda;
+  if (!r.hidden.empty() && !r.truth.unknown) out["separation"] = r.separation;
+  if (r.truth.unknown) out["lambda_res"] = r.lambda_left;
+  out["answers"] = Json::array();
+  for (std::size_t i = 0; i < r.answers.size(); ++i) {
+    const Answer& a = r.answers[i];
+    out["answers"].push_back({{"method", method_names[i]},
+                              {"outcome", outcome_names[static_cast<int>(judge(r.truth, a))]},
+                              {"verdict", a.verdict},
+                              {"missing", a.missing},
+                              {"indistinguishable", a.groups},
+                              {"first", a.first},
+                              {"probability", a.probability}});
+  }
+  for (std::size_t i = 0; i < r.new_poses.size(); ++i)
+    if (!std::isnan(r.new_poses[i])) out["error_at_new_poses_in_sigma"][method_names[i]] = r.new_poses[i];
+  out["intervals"] = r.intervals;
+  out["intervals_with_truth"] = r.covering;
+  out["seconds"] = r.seconds;
+  return out;
+}
+
+}  // namespace
+
+std::string report(const std::vector<Record>& all) {
+  std::string out = fmt::format("| score | goal | sets | {} |\n|---|---|---|", fmt::join(method_names, " | "));
+  for (std::size_t i = 0; i < std::size(method_names); ++i) out += "---|";
+  out += "\n";
+  for (const Score& s : scores(all)) {
+    if (s.sets == 0) continue;
+    out += fmt::format("| {} | {} | {} |", s.name, s.goal, s.sets);
+    for (const double value : s.values) out += fmt::format(" {} |", cell(value));
+    out += "\n";
+  }
+  out += "\n| method | probability of the first candidate | mean | it is the truth | sets |\n|---|---|---|---|---|\n";
+  for (const Reliability& r : reliability(all))
+    out += fmt::format("| {} | {}–{} | {:.3f} | {:.3f} | {} |\n", r.method, r.low, r.high, r.mean, r.right, r.sets);
+  if (const std::vector<double> seconds = seconds_of(all); !seconds.empty())
+    out += fmt::format("\nSeconds per set: median {:.1f}, max {:.1f}; {} sets.\n", seconds[seconds.size() / 2],
+                       seconds.back(), seconds.size());
+  for (const Record& r : all)
+    if (!r.skipped.empty()) out += fmt::format("Skipped: {} {}: {}.\n", r.order.group, r.order.index, r.skipped);
+  return out;
+}
+
+Json report_json(const std::vector<Record>& all) {
+  Json out;
+  out["scores"] = Json::array();
+  for (const Score& s : scores(all)) {
+    Json row = {{"name", s.name}, {"goal", s.goal}, {"sets", s.sets}};
+    for (std::size_t i = 0; i < s.values.size(); ++i)
+      if (!std::isnan(s.values[i])) row[method_names[i]] = s.values[i];
+    out["scores"].push_back(row);
+  }
+  out["reliability"] = Json::array();
+  for (const Reliability& r : reliability(all))
+    out["reliability"].push_back({{"method", r.method},
+                                  {"low", r.low},
+                                  {"high", r.high},
+                                  {"mean_probability", r.mean},
+                                  {"share_right", r.right},
+                                  {"sets", r.sets}});
+  out["sets"] = Json::array();
+  for (const Record& r : all) out["sets"].push_back(set_json(r));
+  return out;
+}
+
+}  // namespace deflect::benchmark

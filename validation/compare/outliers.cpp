@@ -1,0 +1,38 @@
+#include "validation/compare/outliers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/compare/uncertainty.h"
+
+namespace deflect {
+
+constexpr double limit = 4.5;
+
+std::vector<bool> gross_outliers(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma,
+                                 const VectorX& residual, const MatrixX& patterns) {
+  std::vector<bool> aside(s.data->readings.size(), false);
+  for (int round = 0; round < 5; ++round) {
+    const Uncertainty u(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, aside);
+    const VectorX rest =
+        patterns.cols() > 0 ? VectorX(residual - patterns * regress(u, residual, patterns).amplitude) : residual;
+    const VectorX left = rest - A * u.nuisances(rest);
+    std::vector<double> worst(aside.size(), 0);
+    for (std::size_t i = 0; i < s.values.size(); ++i) {
+      const MeasuredValue& v = s.values[i];
+      const double load = s.mechanism->tolerances.load * s.predicted[v.reading](static_cast<Eigen::Index>(v.component));
+      worst[v.reading] =
+          std::max(worst[v.reading], std::abs(left(static_cast<Eigen::Index>(i))) / std::hypot(sigma[i], load));
+    }
+    std::vector<double> sorted = worst;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    const double typical = sorted[sorted.size() / 2];  // about 1.2 for three Gaussian numbers
+    std::vector<bool> next(aside.size());
+    for (std::size_t i = 0; i < worst.size(); ++i) next[i] = worst[i] > limit * std::max(1.0, typical / 1.2);
+    if (next == aside) break;
+    aside = next;
+  }
+  return aside;
+}
+
+}  // namespace deflect

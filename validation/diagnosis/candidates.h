@@ -1,0 +1,50 @@
+// Hypotheses side by side: each effect at each place, beside what is there already.
+#pragma once
+
+#include <functional>
+
+#include "validation/diagnosis/hypothesis.h"
+#include "validation/diagnosis/signatures.h"
+
+namespace deflect {
+
+/// One hypothesis looked at.
+struct Candidate {
+  Hypothesis hypothesis;  ///< with the effects beside it, if any, in front
+  Fit fit;                ///< not found: judged by its signature
+  double gain = 0;        ///< in χ² over what is beside it
+  double log_odds = 0;    ///< against what is beside it alone: ln(prior · evidence)
+  double probability = 0;
+  double rmse = 0, held_out = 0;  ///< m
+  double chi2_per_dof = 0;
+
+  const PlacedEffect& added() const { return hypothesis.back(); }
+};
+
+class Candidates {
+ public:
+  /// All must outlive it. progress(done, all): of one round.
+  Candidates(const Observations&, const std::vector<Signature>&, int threads,
+             std::function<void(std::size_t, std::size_t)> progress = {});
+
+  /// Every effect beside others that are fitted: in the order of the signatures. Fits are made for those that can come
+  /// near the best and whose log_odds can reach `least`; of two that do all but the same only one can be there.
+  std::vector<Candidate> beside(const Hypothesis&, const Fit&, double least) const;
+
+  /// ln(prior · evidence) of one of the effects against its absence.
+  double log_odds_of(const PlacedEffect&, double gain) const;
+
+  static constexpr double prior_missing = 0.5, prior_unknown = 0.1;  ///< the second as a share of the first
+
+ private:
+  double log_odds(std::size_t i, double gain) const;
+
+  const Observations& observations_;
+  const std::vector<Signature>& signatures_;
+  int threads_;
+  std::function<void(std::size_t, std::size_t)> progress_;
+  /// Places of an entry share what the entry has, entries that do the same to these data have one share together.
+  std::vector<double> priors_;
+};
+
+}  // namespace deflect
