@@ -52,14 +52,14 @@ MatrixX discrepancy_columns(const ResidualStudy& s) {
 
 Discrepancy::Discrepancy(const MatrixX& columns, const MatrixX& fitted) {
   MatrixX B = columns;
+  const double length = std::sqrt(static_cast<double>(B.rows()));
+  for (auto column : B.colwise())
+    if (const double norm = column.norm(); norm > 0) column *= length / norm;
   if (fitted.cols() > 0) {
     const Eigen::ColPivHouseholderQR<MatrixX> qr(fitted);
     const MatrixX Q = qr.householderQ() * MatrixX::Identity(fitted.rows(), qr.rank());
     B -= Q * (Q.transpose() * B);
   }
-  const double length = std::sqrt(static_cast<double>(B.rows()));
-  for (auto column : B.colwise())
-    if (const double norm = column.norm(); norm > 0) column *= length / norm;
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(B.transpose() * B);
   const VectorX& all = axes.eigenvalues();
   Eigen::Index first = 0;

@@ -11,7 +11,7 @@ MatrixX discrepancy_columns(const ResidualStudy&);
 
 class Discrepancy {
  public:
-  /// `columns`: whitened. What `fitted` (whitened too) spans is taken out of them.
+  /// `columns`: whitened. What `fitted` (whitened too) spans is taken out of the patterns, which keep their size.
   explicit Discrepancy(const MatrixX& columns, const MatrixX& fitted = {});
 
   /// ln of the evidence against "nothing", τ spread evenly in ln τ from 1e-3 to 10: none is too small to be one.

@@ -1,0 +1,214 @@
+// What `diagnose` finds in simulated measurements (MSA, deformed shape, every part off by its tolerance), and what must
+// not change it.
+#include "validation/diagnosis/diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+#include "validation/compare/simulate.h"
+#include "validation/compare/theories.h"
+#include "validation/measurement/campaign.h"
+#include "validation/report/diagnosis_results.h"
+
+namespace deflect {
+namespace {
+
+const Mechanism& ideal() {
+  static const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  return m;
+}
+
+/// 280 readings at 20 poses of a device.
+Measurements measured(const Mechanism& truth, std::uint64_t seed, const std::string& plan = "random") {
+  SimulationOptions o;
+  o.seed = seed;
+  return simulate(truth, campaign(plan, ideal(), 50, seed), o);
+}
+
+Mechanism with(const std::string& effect, std::initializer_list<double> values, std::optional<int> leg = {}) {
+  return with_effect(ideal(), test::effect(effect), test::values(values), leg);
+}
+
+std::vector<std::string> names(const Hypothesis& h) {
+  std::vector<std::string> out;
+  for (const PlacedEffect& e : h) out.push_back(e.effect->name);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+double probability(const Diagnosis& d, const std::string& effect, std::optional<int> leg = {}) {
+  double sum = 0;
+  for (const Candidate& c : d.candidates)
+    if (c.added().effect->name == effect && (!leg || c.added().leg == leg)) sum += c.probability;
+  return sum;
+}
+
+double total(const Diagnosis& d) {
+  double sum = d.probability_nothing + d.probability_unknown;
+  for (const Candidate& c : d.candidates) sum += c.probability;
+  return sum;
+}
+
+TEST(Diagnose, NamesTheEffectWithItsValueAndTheErrorFallsToTheNoise) {
+  const Diagnosis d = diagnose(ideal(), measured(with("guide_root_compliance", {5e6}), 11), test::all_effects());
+  EXPECT_EQ(d.verdict, Verdict::effect);
+  ASSERT_EQ(names(d.missing), std::vector<std::string>{"guide_root_compliance"});
+  const auto [low, high] = interval95(d.missing, d.fit, 0);
+  EXPECT_LT(low, 5e6);
+  EXPECT_GT(high, 5e6);
+  EXPECT_NEAR(total(d), 1, 1e-12);
+  EXPECT_GT(probability(d, "guide_root_compliance"), 0.9);
+  EXPECT_GT(d.baseline.rmse, 3 * d.final.rmse);
+  EXPECT_GT(d.baseline.held_out, 1.2 * d.final.held_out);  // tolerances bent to the data hide most of it
+  // 840 numbers: χ²/n within five of its deviations √(2/840).
+  EXPECT_NEAR(d.final.chi2_per_dof, 1, 5 * std::sqrt(2.0 / 840));
+  EXPECT_LT(d.final.rmse, 1.5 * d.noise_floor);
+}
+
+TEST(Diagnose, FindsNothingInAHealthyMachine) {
+  const Diagnosis d = diagnose(ideal(), measured(ideal(), 12), test::all_effects());
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing);
+  EXPECT_TRUE(d.missing.empty());
+  EXPECT_GT(d.probability_nothing, 0.5);
+  EXPECT_NEAR(total(d), 1, 1e-12);
+}
+
+TEST(Diagnose, FindsTwoEffectsTogether) {
+  Mechanism truth = with("joint_compliance", {1000});
+  truth = with_effect(truth, test::effect("leg_defect"), test::values({0.6}), 3);
+  const Diagnosis d = diagnose(ideal(), measured(truth, 13), test::all_effects());
+  EXPECT_EQ(names(d.missing), (std::vector<std::string>{"joint_compliance", "leg_defect"}));
+  for (const PlacedEffect& e : d.missing) {
+    if (e.effect->name == "leg_defect") {
+      EXPECT_EQ(e.leg, 3);
+    }
+  }
+  EXPECT_FALSE(d.unexplained);
+}
+
+// Loads of one sign and one size per axis, without moments: a platform that yields is an actuator that yields.
+TEST(Diagnose, SaysThatTheDataCannotTell) {
+  const Diagnosis d =
+      diagnose(ideal(), measured(with("platform_flexibility", {2000}), 14, "paper"), test::all_effects());
+  ASSERT_EQ(d.verdict, Verdict::ambiguous);
+  ASSERT_FALSE(d.indistinguishable.empty());
+  const std::vector<std::string>& group = d.indistinguishable.front();
+  EXPECT_NE(std::find(group.begin(), group.end(), "platform_flexibility"), group.end());
+}
+
+// An effect of one's own: the machine turns on its base about the vertical.
+const char* own_effect = R"(name: turntable
+title: The machine turns on its base
+scope: machine
+parameters:
+  stiffness_Nmm_per_rad: {start: 1e7, low: 1e3, high: 1e12, scale: log, vanishes: infinity, about: of the base}
+edits:
+  - {at: base.rz, append: {law: linear, stiffness: $stiffness_Nmm_per_rad}}
+pages: {machine: It turns., data: More displacement far from the middle., bench: Push it sideways., cure: Clamp it.}
+)";
+
+TEST(Diagnose, FindsAnEffectOfOnesOwnAndCallsItUnknownWithoutItsFile) {
+  std::vector<Effect> effects = test::all_effects();
+  const Effect own = parse_effect(own_effect, "own.yaml");
+  const Measurements data = measured(with_effect(ideal(), own, test::values({2e6})), 15);
+
+  const Diagnosis without = diagnose(ideal(), data, effects);
+  EXPECT_EQ(without.verdict, Verdict::unknown_effect);
+  EXPECT_FALSE(without.pattern.empty());
+  ASSERT_FALSE(without.localised.empty());
+  EXPECT_EQ(without.localised.front().what, "the base's rz, like a spring");
+
+  add_effect(effects, own);
+  const Diagnosis with_file = diagnose(ideal(), data, effects);
+  ASSERT_EQ(names(with_file.missing), std::vector<std::string>{"turntable"});
+  const auto [low, high] = interval95(with_file.missing, with_file.fit, 0);
+  EXPECT_LT(low, 2e6);
+  EXPECT_GT(high, 2e6);
+}
+
+TEST(Diagnose, AnEffectRegisteredTwiceSharesItsProbability) {
+  const Measurements data = measured(with("hertz_contact", {0.0003}), 16);
+  const Diagnosis once = diagnose(ideal(), data, test::all_effects());
+  std::vector<Effect> effects = test::all_effects();
+  Effect twin = test::effect("hertz_contact");
+  twin.name = "hertz_contact_again";
+  effects.push_back(twin);
+  const Diagnosis twice = diagnose(ideal(), data, effects);
+  EXPECT_NEAR(probability(twice, "hertz_contact") + probability(twice, "hertz_contact_again"),
+              probability(once, "hertz_contact"), 1e-6);
+  for (const char* other : {"joint_compliance", "joint_clearance", "modulus"})
+    EXPECT_NEAR(probability(twice, other), probability(once, other), 1e-6) << other;
+}
+
+TEST(Diagnose, DoesNotDependOnTheNumberOfThreads) {
+  const Measurements data = measured(with("leg_defect", {0.9}, 2), 17);
+  DiagnosisOptions one, three;
+  one.threads = one.comparison.threads = 1;
+  three.threads = three.comparison.threads = 3;
+  EXPECT_EQ(diagnosis_json(diagnose(ideal(), data, test::all_effects(), one)),
+            diagnosis_json(diagnose(ideal(), data, test::all_effects(), three)));
+}
+
+/// The effects that need no history, so that the order of readings says nothing.
+std::vector<Effect> timeless() {
+  std::vector<Effect> out = test::all_effects();
+  std::erase_if(out, [](const Effect& e) { return e.name == "joint_friction" || e.name == "sensor_drift"; });
+  return out;
+}
+
+Measurements without_sequence(Measurements data) {
+  for (Reading& r : data.readings) r.sequence.reset();
+  return data;
+}
+
+TEST(Diagnose, DoesNotDependOnTheOrderOfRows) {
+  const std::vector<Effect> effects = timeless();
+  const Measurements data = without_sequence(measured(with("actuator_compliance", {5000}), 18));
+  Measurements reversed = data;
+  const std::size_t n = data.readings.size();
+  std::reverse(reversed.readings.begin(), reversed.readings.end());
+  for (PoseGroup& p : reversed.poses) {
+    for (std::size_t& i : p.readings) i = n - 1 - i;
+    std::sort(p.readings.begin(), p.readings.end());
+  }
+  const Diagnosis a = diagnose(ideal(), data, effects), b = diagnose(ideal(), reversed, effects);
+  EXPECT_EQ(names(a.missing), names(b.missing));
+  EXPECT_EQ(a.verdict, b.verdict);
+  for (const Effect& e : effects) EXPECT_NEAR(probability(a, e.name), probability(b, e.name), 1e-6) << e.name;
+}
+
+// The device is the same after a turn by 120° about z, with legs 1, 2 where 3, 4 were.
+TEST(Diagnose, TurningTheMachineRenamesTheLegs) {
+  const std::vector<Effect> effects = timeless();
+  const Measurements data = without_sequence(measured(with("leg_joint_compliance", {800}, 5), 19));
+  Measurements turned = data;
+  const Matrix3 R = Eigen::AngleAxisd(2 * std::numbers::pi / 3, Vector3::UnitZ()).toRotationMatrix();
+  for (PoseGroup& p : turned.poses) {
+    const Pose pose = pose_from(p.pose_mm_deg);
+    const Matrix3 turn = R * pose.R_WT * R.transpose();  // Rz(yaw) Ry(pitch) Rx(roll)
+    p.pose_mm_deg << 1e3 * R * pose.p_WT, 180 / std::numbers::pi * std::atan2(turn(2, 1), turn(2, 2)),
+        180 / std::numbers::pi * std::asin(-turn(2, 0)), 180 / std::numbers::pi * std::atan2(turn(1, 0), turn(0, 0));
+  }
+  for (Reading& r : turned.readings) {
+    r.load.head<3>() = R * r.load.head<3>();
+    r.load.tail<3>() = R * r.load.tail<3>();
+    Vector3 u;
+    for (std::size_t k = 0; k < 3; ++k) u(static_cast<Eigen::Index>(k)) = *r.displacement[k];
+    u = R * u;
+    for (std::size_t k = 0; k < 3; ++k) r.displacement[k] = u(static_cast<Eigen::Index>(k));
+  }
+  const Diagnosis a = diagnose(ideal(), data, effects), b = diagnose(ideal(), turned, effects);
+  ASSERT_EQ(a.missing.size(), 1u);
+  ASSERT_EQ(b.missing.size(), 1u);
+  EXPECT_EQ(a.missing[0].leg, 5);
+  EXPECT_EQ(b.missing[0].leg, 1);
+  EXPECT_NEAR(a.fit.values(0) / b.fit.values(0), 1, 1e-4);
+}
+
+}  // namespace
+}  // namespace deflect
