@@ -76,13 +76,14 @@ std::optional<Hidden> hidden_effect(const Plan& plan, const Effect& e, double la
 }
 
 Nearest nearest_entry(const Plan& plan, const Hidden& hidden) {
-  Eigen::Index directions = 1;
+  int amplitudes = 1;
   for (const Signature& s : plan.signatures)
-    if (s.effect.effect == hidden.effect.effect) directions = s.basis.cols();
+    if (s.effect.effect == hidden.effect.effect) amplitudes = s.amplitudes();
   Nearest out;
   for (const Signature& s : plan.signatures) {
-    if (s.effect.effect == hidden.effect.effect || s.basis.cols() > directions) continue;
-    const double c = (s.basis.transpose() * hidden.change).norm() / hidden.lambda();
+    if (s.effect.effect == hidden.effect.effect || s.amplitudes() > amplitudes) continue;
+    const VectorX along = s.basis.transpose() * hidden.change;
+    const double c = (s.shaped ? along.cwiseAbs().maxCoeff() : along.norm()) / hidden.lambda();
     if (c > out.cosine) out.cosine = c, out.entry = s.effect.effect->name;
   }
   out.separation = std::pow(hidden.lambda(), 2) * std::max(0.0, 1 - out.cosine * out.cosine);

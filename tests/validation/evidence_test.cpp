@@ -68,7 +68,7 @@ TEST(Evidence, GrowsWithTheGainAndFallsWithTheParameters) {
 TEST(Discrepancy, HasTheEvidenceOfItsCovariance) {
   MatrixX B = noise(12, 3, 1);
   const VectorX r = noise(12, 1, 2) + 2 * B.col(1);
-  const Discrepancy d(B);
+  const Discrepancy d({B});
   for (auto column : B.colwise()) column *= std::sqrt(12.0) / column.norm();
   std::vector<double> terms;
   for (const double tau : log_spaced(1e-3, 10, 40)) {
@@ -76,14 +76,14 @@ TEST(Discrepancy, HasTheEvidenceOfItsCovariance) {
     terms.push_back(0.5 * (r.squaredNorm() - r.dot(S.llt().solve(r)) - std::log(S.determinant())));
   }
   EXPECT_NEAR(d.log_evidence(r), log_mean_exp(terms), 1e-9);
-  const double tau = d.likeliest_scale(r);
+  const double tau = d.likeliest(r).tau;
   const MatrixX S = MatrixX::Identity(12, 12) + tau * tau * B * B.transpose();
-  EXPECT_NEAR(d.whitened(r, tau).squaredNorm(), r.dot(S.llt().solve(r)), 1e-9 * r.squaredNorm());
+  EXPECT_NEAR(d.whitened(r, d.likeliest(r)).squaredNorm(), r.dot(S.llt().solve(r)), 1e-9 * r.squaredNorm());
 }
 
 TEST(Discrepancy, SeesNothingOfWhatIsFitted) {
   const MatrixX B = noise(30, 2, 3);
-  const Discrepancy all(B), beside(B, B.col(0));
+  const Discrepancy all({B}), beside({B}, B.col(0));
   const VectorX r = 50 * B.col(0);
   EXPECT_LT(all.p_value(r), 1e-10);
   EXPECT_GT(beside.p_value(r), 0.999);

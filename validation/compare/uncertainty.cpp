@@ -212,7 +212,7 @@ double Uncertainty::scale_of_tolerances(const VectorX& residual, const MatrixX& 
     }
     return sum;
   };
-  double best = 1, most = log_likelihood(1) + 4;
+  double best = 1, most = log_likelihood(1) + 2;
   for (double s = 1; s <= 3; s *= 1.1)
     if (const double here = log_likelihood(s); here > most) most = here, best = s;
   return best;

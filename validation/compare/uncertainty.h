@@ -51,7 +51,7 @@ class Uncertainty {
   VectorX nuisances(const VectorX& residual) const;
   /// How many times the declared tolerances those of the machine look, 1 … 3: where noise, the tolerances so scaled and
   /// the patterns `beside` (columns over the measured numbers, of any size) make up the residual; 1 unless the data say
-  /// otherwise by more than 4 in ln of the likelihood.
+  /// otherwise by more than 2 in ln of the likelihood.
   double scale_of_tolerances(const VectorX& residual, const MatrixX& beside) const;
   /// The covariance of T r for contrasts T (rows) of the measured numbers, none of which may be set aside.
   MatrixX covariance(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const;

@@ -23,7 +23,8 @@ std::vector<double> shared_priors(const std::vector<Signature>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     cluster[i] = i;
     for (std::size_t k = 0; k < i; ++k)
-      if (all[i].basis.cols() == all[k].basis.cols() && cosine(all[i], all[k]) > alike) {
+      if (all[i].amplitudes() == all[k].amplitudes() && all[i].shaped == all[k].shaped &&
+          cosine(all[i], all[k]) > alike) {
         cluster[i] = cluster[k];
         break;
       }
@@ -58,7 +59,9 @@ Candidates::Candidates(const Observations& o, const std::vector<Signature>& all,
 
 double Candidates::log_odds(std::size_t i, double gain) const {
   const Signature& s = signatures_[i];
-  return std::log(priors_[i] / (1 - prior_missing)) + log_evidence(gain, static_cast<int>(s.basis.cols()), s.one_sided);
+  // Of the shapes tried one in three, or so, does what the best does.
+  const double shape = s.shaped ? std::log(3.0) : 0;
+  return std::log(priors_[i] / (1 - prior_missing)) + log_evidence(gain, s.amplitudes(), s.one_sided) - shape;
 }
 
 double Candidates::log_odds_of(const PlacedEffect& e, double gain) const {
@@ -89,7 +92,7 @@ std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& s
     if (allowed[i] && c.gain >= enough && log_odds(i, 1.2 * c.gain + bent) > least) {
       c.fit = fit(observations_, c.hypothesis, so_far.values, guess(s, so_far.residual));
       c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
-    } else if (s.one_sided && s.at_start.dot(so_far.residual) > 0) {
+    } else if (!s.shaped && s.one_sided && s.at_start.dot(so_far.residual) > 0) {
       c.gain = 0;
     }
     c.log_odds = allowed[i] ? log_odds(i, c.gain) : -1e9;

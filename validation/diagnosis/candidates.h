@@ -34,7 +34,7 @@ class Candidates {
   /// ln(prior · evidence) of one of the effects against its absence.
   double log_odds_of(const PlacedEffect&, double gain) const;
 
-  static constexpr double prior_missing = 0.5, prior_unknown = 0.1;  ///< the second as a share of the first
+  static constexpr double prior_missing = 0.8, prior_unknown = 0.1;  ///< the second as a share of the first
 
  private:
   double log_odds(std::size_t i, double gain) const;

@@ -11,10 +11,10 @@
 namespace deflect {
 namespace {
 
-constexpr double alarm = 0.02;  // chance above which nothing is called missing
-constexpr double sure = 0.9;    // probability from which something unknown is there
+constexpr double alarm = 0.03;  // chance above which nothing is called missing
+constexpr double sure = 0.7;    // probability from which something unknown is there
 constexpr std::size_t quality_of = 5;
-constexpr double left_over_evidence = 3, left_over_p = 1e-3;
+constexpr double left_over_evidence = 2, left_over_p = 3e-3;
 
 Mechanism device_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
   return h.empty() ? o.device() : PreparedEffects(o.device(), h)(values);
@@ -70,7 +70,7 @@ double log_weight(const std::vector<Candidate>& all) {
 Selection beside_unknown(const Observations& o, const Candidates& candidates, Selection s) {
   const Discrepancy all(o.whitened_patterns());
   const Discrepancy left(o.whitened_patterns(), s.fit.signature);
-  const double tau = left.likeliest_scale(s.fit.residual);
+  const Discrepancy::Size size = left.likeliest(s.fit.residual);
   for (std::size_t i = s.effects.size(); i-- > 0;) {
     Hypothesis others = s.effects;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
@@ -82,7 +82,7 @@ Selection beside_unknown(const Observations& o, const Candidates& candidates, Se
     rest << values.head(at), values.tail(values.size() - at - own);
     const Fit without = fit_of_all(o, others, rest);
     const double gain =
-        all.whitened(without.residual, tau).squaredNorm() - all.whitened(s.fit.residual, tau).squaredNorm();
+        all.whitened(without.residual, size).squaredNorm() - all.whitened(s.fit.residual, size).squaredNorm();
     if (candidates.log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
     s.effects = others;
     s.fit = without;
@@ -142,7 +142,7 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   for (std::size_t i = 0; i < all.size(); ++i)
     least_p = std::min(least_p, single_p_value(all[i], d.candidates[i].gain));
   d.chance = chance_of_any(all, least_p);
-  const bool missing = (d.chance < alarm && d.probability_nothing < 0.5) ||
+  const bool missing = (d.chance < alarm && d.probability_nothing < 0.6) ||
                        (d.probability_unknown > sure && discrepancy.p_value(null.residual) < left_over_p);
   const std::vector<Candidate> first = d.candidates;
   sort_candidates(d, o);

@@ -6,7 +6,6 @@
 #include "msa/base/error.h"
 #include "validation/compare/outliers.h"
 #include "validation/compare/prediction.h"
-#include "validation/diagnosis/discrepancy.h"
 #include "validation/measurement/configure_all.h"
 
 namespace deflect {
@@ -28,14 +27,14 @@ Uncertainty uncertainty_of(const Comparison& c, const MatrixX& A, const std::vec
 Observations::Observations(const Mechanism& m, const Measurements& data, const ComparisonOptions& o)
     : device_(&m),
       comparison_(compare(m, data, o)),
-      patterns_(discrepancy_columns(comparison_.study)),
+      patterns_(discrepancy_families(comparison_.study)),
       A_(comparison_.tolerances.A),
       aside_(set_aside_by(comparison_)),
       uncertainty_(uncertainty_of(comparison_, A_, aside_)) {
   const ResidualStudy& s = comparison_.study;
   measured_ = comparison_.residual + rows_of(s.values, s.predicted);
   shape_ = s.deformed_shape.empty() ? VectorX(VectorX::Zero(measured_.size())) : rows_of(s.values, s.deformed_shape);
-  tolerance_scale_ = uncertainty_.scale_of_tolerances(residual(m), patterns_);
+  tolerance_scale_ = uncertainty_.scale_of_tolerances(residual(m), patterns_.front());
   A_ *= tolerance_scale_;
   weigh(aside_);
 }
@@ -44,6 +43,12 @@ void Observations::weigh(const std::vector<bool>& aside) {
   aside_ = aside;
   uncertainty_ = uncertainty_of(comparison_, A_, aside_);
   null_ = whitened_residual(*device_);
+}
+
+Families Observations::whitened_patterns() const {
+  Families out;
+  for (const MatrixX& family : patterns_) out.push_back(uncertainty_.whitened(family));
+  return out;
 }
 
 std::size_t Observations::set_aside() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "validation/compare/comparison.h"
+#include "validation/diagnosis/discrepancy.h"
 
 namespace deflect {
 
@@ -25,7 +26,7 @@ class Observations {
   /// The same for a device in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
   /// All patterns that a residual can have (discrepancy.h), whitened.
-  MatrixX whitened_patterns() const { return uncertainty_.whitened(patterns_); }
+  Families whitened_patterns() const;
 
   /// Root mean square of measured − predicted, translations, m, of the readings that are not set aside.
   double rmse(const Mechanism&) const;
@@ -43,7 +44,8 @@ class Observations {
 
   const Mechanism* device_;
   Comparison comparison_;
-  MatrixX patterns_, A_;
+  Families patterns_;
+  MatrixX A_;
   double tolerance_scale_ = 1;
   std::vector<bool> aside_;
   Uncertainty uncertainty_;

@@ -15,7 +15,7 @@ struct Selection {
 };
 
 /// ln of the odds from which a further effect is called for.
-inline constexpr double called_for = 5;
+inline constexpr double called_for = 4;
 
 /// What is right so far becomes granted for the observations (take_for_granted). `first`: candidates of the first step.
 Selection select(Observations&, const Candidates&, const std::vector<Candidate>& first);

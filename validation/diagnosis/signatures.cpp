@@ -33,13 +33,14 @@ std::vector<VectorX> shapes(const std::vector<EffectParameter>& all, const Vecto
 
 /// Parameter by parameter where each can vanish alone, else all at the start; parameters that only shape the effect
 /// are tried at several values.
-MatrixX directions(const Observations& o, const PlacedEffect& e, const VectorX& start) {
+MatrixX directions(const Observations& o, const PlacedEffect& e, const VectorX& start, bool& shaped) {
   const PreparedEffects prepared(o.device(), {e});
   const std::vector<EffectParameter>& all = e.effect->parameters;
   const auto change = [&](const VectorX& values) {
     return VectorX(o.whitened_residual(prepared(values)) - o.null_residual());
   };
   std::vector<VectorX> columns;
+  shaped = std::any_of(all.begin(), all.end(), [](const EffectParameter& p) { return !p.vanishes; });
   bool separate = all.size() > 1;
   for (const EffectParameter& p : all) separate = separate && p.vanishes && std::isfinite(*p.vanishes);
   if (separate)
@@ -61,6 +62,24 @@ MatrixX orthonormal(const MatrixX& X) {
   return qr.householderQ() * MatrixX::Identity(X.rows(), qr.rank());
 }
 
+/// Those that are not 0.
+MatrixX unit_columns(const MatrixX& X) {
+  MatrixX out(X.rows(), 0);
+  for (const auto column : X.colwise())
+    if (column.norm() > unseen) {
+      out.conservativeResize(Eigen::NoChange, out.cols() + 1);
+      out.rightCols<1>() = column.normalized();
+    }
+  return out;
+}
+
+/// Of a shaped effect: its amplitude vanishes at a bound.
+bool amplitude_from_nothing(const Effect& e) {
+  return std::any_of(e.parameters.begin(), e.parameters.end(), [](const EffectParameter& p) {
+    return p.vanishes && (*p.vanishes <= p.low || *p.vanishes >= p.high);
+  });
+}
+
 double tail(int freedoms, bool one_sided, double gain) {
   if (!(gain > 0)) return 1;
   const double p = chi_squared_tail(freedoms, gain);
@@ -78,12 +97,13 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
   for_each_case(places.size(), 1, threads, [&](std::size_t i) {
     Signature& s = all[i];
     s.effect = places[i];
-    s.one_sided = one_sided(places[i]);
     try {
       const VectorX start = start_values(*places[i].effect);
-      const MatrixX columns = directions(o, places[i], start);
-      s.at_start = columns.cols() == start.size() ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0));
-      if (columns.norm() > unseen) s.basis = orthonormal(columns);
+      const MatrixX columns = directions(o, places[i], start, s.shaped);
+      s.at_start =
+          !s.shaped && columns.cols() == start.size() ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0));
+      s.one_sided = s.shaped ? amplitude_from_nothing(*places[i].effect) : one_sided(places[i]);
+      if (columns.norm() > unseen) s.basis = s.shaped ? unit_columns(columns) : orthonormal(columns);
     } catch (const ModelError&) {  // the device cannot stand with it: no hypothesis
     } catch (const NumericalError&) {
     } catch (const InputError&) {  // wants what the file does not have, a sequence
@@ -114,6 +134,15 @@ double most_gain(const Signature& s, const VectorX& residual, const MatrixX& fit
     const MatrixX Q = orthonormal(fitted);
     columns -= Q * (Q.transpose() * columns);
   }
+  if (s.shaped) {
+    double most = 0;
+    for (const auto column : columns.colwise()) {
+      const double along = column.dot(residual);  // against the effect's own change of the residual
+      if (column.norm() > 1e-3 && !(s.one_sided && along > 0))
+        most = std::max(most, along * along / column.squaredNorm());
+    }
+    return most;
+  }
   const Eigen::ColPivHouseholderQR<MatrixX> qr = [&] {
     Eigen::ColPivHouseholderQR<MatrixX> out;
     out.setThreshold(1e-3);
@@ -130,12 +159,14 @@ double own_share(const Signature& s, const MatrixX& fitted) {
 }
 
 double cosine(const Signature& a, const Signature& b) {
-  return Eigen::JacobiSVD<MatrixX>(a.basis.transpose() * b.basis).singularValues()(0);
+  const MatrixX cross = a.basis.transpose() * b.basis;
+  if (a.shaped && b.shaped) return cross.cwiseAbs().maxCoeff();
+  if (a.shaped) return cross.rowwise().norm().maxCoeff();
+  if (b.shaped) return cross.colwise().norm().maxCoeff();
+  return Eigen::JacobiSVD<MatrixX>(cross).singularValues()(0);
 }
 
-double single_p_value(const Signature& s, double gain) {
-  return tail(static_cast<int>(s.basis.cols()), s.one_sided, gain);
-}
+double single_p_value(const Signature& s, double gain) { return tail(s.amplitudes(), s.one_sided, gain); }
 
 double chance_of_any(const std::vector<Signature>& all, double least_p, int draws) {
   if (all.empty()) return 1;
@@ -161,10 +192,14 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int draw
     for (const Signature& s : all) {
       const auto own = z.segment(at, s.basis.cols());
       at += s.basis.cols();
-      // One-sided: half of the draws have the wrong sign.
-      const double gain =
-          s.one_sided && own(0) * (s.basis.col(0).dot(s.at_start) > 0 ? 1 : -1) < 0 ? 0 : own.squaredNorm();
-      found = found || tail(static_cast<int>(own.size()), s.one_sided, gain) <= least_p;
+      double gain = 0;
+      if (s.shaped) {
+        for (const double along : own)
+          if (!(s.one_sided && along > 0)) gain = std::max(gain, along * along);
+      } else if (!(s.one_sided && own(0) * s.basis.col(0).dot(s.at_start) > 0)) {
+        gain = own.squaredNorm();
+      }
+      found = found || tail(s.amplitudes(), s.one_sided, gain) <= least_p;
     }
     as_good += found;
   }

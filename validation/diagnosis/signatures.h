@@ -10,9 +10,14 @@ namespace deflect {
 
 struct Signature {
   PlacedEffect effect;
-  MatrixX basis;     ///< orthonormal; as many columns as the effect has directions
-  VectorX at_start;  ///< change of the whitened residual at the start values: its length is λ there
-  bool one_sided = false;
+  /// Unit columns. Of an effect whose parameters are amplitudes: orthonormal, as many as it has. Of one with an
+  /// amplitude and parameters that shape it: the direction at each of a few shapes, of which it takes one.
+  MatrixX basis;
+  bool shaped = false;
+  VectorX at_start;        ///< change of the whitened residual at the start values: its length is λ there
+  bool one_sided = false;  ///< physics fixes the amplitude's sign: that of the columns of `basis`, where shaped
+
+  int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
 };
 
 /// Those of the places that effects have in the device and that change what was measured. Equilibrium in the deformed
@@ -23,7 +28,7 @@ std::vector<Signature> signatures(const Observations&, const std::vector<Effect>
 /// residual it is to explain. Nothing for effects of several parameters, or of the wrong sign.
 std::optional<VectorX> guess(const Signature&, const VectorX& residual);
 
-/// The most that the effect can take off χ² where its signature is a linear space, beside what is fitted already.
+/// The most that the effect can take off χ² as far as it is linear in its amplitudes, beside what is fitted already.
 double most_gain(const Signature&, const VectorX& residual, const MatrixX& fitted);
 
 /// How much of the signature is its own beside what is fitted: the sine of its angle to their span, over
