@@ -80,7 +80,7 @@ TEST_F(HistoryProgram, TheErrorFallsWithWhatADiagnosisAdds) {
   EXPECT_LT(text.find("\n" + device + " "), text.find("\nstiff "));
   EXPECT_LT(text.find("\nstiff "), text.find("\nright "));
   const std::string table = contents(folder / "out" / "history.csv");
-  EXPECT_TRUE(table.starts_with("device,rmse_um,held_out_rmse_um,")) << table;
+  EXPECT_TRUE(table.starts_with("device,rmse_um,placebo_rmse_um,held_out_rmse_um,")) << table;
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4);
   const std::string svg = contents(folder / "out" / "history.svg");
   EXPECT_NE(svg.find("</svg>"), std::string::npos);

@@ -8,6 +8,7 @@
 #include "validation/cli/effects.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/report/diagnosis_results.h"
+#include "validation/report/progress.h"
 
 namespace deflect::cli {
 namespace {
@@ -15,7 +16,8 @@ namespace {
 struct Arguments {
   std::string device, data, json;
   std::vector<std::string> files;
-  double sigma_mm = 0, sigma_rad = 0, threads = 0;
+  std::string sigma_mm, sigma_rad;
+  double threads = 0;
 };
 
 void run(const Arguments& a) {
@@ -23,10 +25,15 @@ void run(const Arguments& a) {
   const Measurements data = read_measurements(a.data);
   const std::vector<Effect> effects = known_effects(a.files);
   DiagnosisOptions o;
-  if (a.sigma_mm > 0) o.comparison.sigma_u = a.sigma_mm / 1e3;
-  if (a.sigma_rad > 0) o.comparison.sigma_th = a.sigma_rad;
+  o.comparison.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
+  o.comparison.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   o.threads = o.comparison.threads = whole("--threads", a.threads, 0, 1024);
-  const Diagnosis d = diagnose(m, data, effects, o);
+  Diagnosis d;
+  {
+    Progress progress(100, "percent", terminal_stream());
+    o.progress = [&progress](double share) { progress.update(static_cast<std::size_t>(100 * share)); };
+    d = diagnose(m, data, effects, o);
+  }
   if (!a.json.empty()) write_text(a.json, diagnosis_json(d));
   fmt::print("{}", diagnosis_report(d, m.name, data.origin));
 }
@@ -37,10 +44,8 @@ Command diagnose_command() {
   auto a = std::make_shared<Arguments>();
   return {"diagnose",
           "Which physical effect is missing: every effect of the catalogue at every place it has in the device, fitted "
-          "with all "
-          "tolerances free under their priors, weighed by the evidence; ties, unknown effects and what the campaign "
-          "cannot see "
-          "are said",
+          "with all tolerances free under their priors, weighed by the evidence; ties, unknown effects and what the "
+          "campaign cannot see are said. Verdict first; exit code 0 whatever it is",
           "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
           {{"device", "DEVICE", "built-in device or device file", &a->device, true},
            {"data", "DATA", "measurements (CSV)", &a->data, true},

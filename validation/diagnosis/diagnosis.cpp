@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "validation/compare/findings.h"
 #include "validation/diagnosis/discrepancy.h"
@@ -52,14 +53,12 @@ void weigh(Diagnosis& d, double unknown) {
   d.probability_unknown = unknown;
 }
 
-/// Probability of a discrepancy of that evidence, beside hypotheses of that weight.
-double probability_of_unknown(double log_evidence, double log_weight_of_others) {
-  const double odds = std::log(Candidates::prior_missing * Candidates::prior_unknown) + log_evidence -
-                      std::log(1 - Candidates::prior_missing) - log_weight_of_others;
-  return 1 / (1 + std::exp(-odds));
+/// Probability of a discrepancy of that evidence in its favour, with its prior odds.
+double probability_of_unknown(double log_evidence, double prior_odds) {
+  return 1 / (1 + std::exp(-log_evidence) / prior_odds);
 }
 
-/// ln of the summed weights of "nothing", 1, and all candidates.
+/// Sum of the weights of "nothing", 1, and all candidates, its logarithm.
 double log_weight(const std::vector<Candidate>& all) {
   std::vector<double> weights = {0};
   for (const Candidate& c : all) weights.push_back(c.log_odds);
@@ -106,6 +105,27 @@ void describe_left_over(Diagnosis& d, const Observations& o, const std::vector<S
     }
 }
 
+/// Rounds of candidates on a scale from 0 to 1: how many there will be is not known, each takes half of what is left.
+class Rounds {
+ public:
+  Rounds(std::function<void(double)> tell, double from) : tell_(std::move(tell)), from_(from), to_((1 + from) / 2) {
+    if (tell_) tell_(from_);
+  }
+  void operator()(std::size_t done, std::size_t all) {
+    if (!tell_) return;
+    const std::lock_guard lock(mutex_);
+    tell_(from_ + (to_ - from_) * static_cast<double>(done) / static_cast<double>(all));
+    if (done < all) return;
+    from_ = to_;
+    to_ = (1 + to_) / 2;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::function<void(double)> tell_;
+  double from_, to_;
+};
+
 /// The candidates by their probability; of those that the table shows how well they predict.
 void sort_candidates(Diagnosis& d, const Observations& o) {
   std::stable_sort(d.candidates.begin(), d.candidates.end(),
@@ -127,8 +147,10 @@ void sort_candidates(Diagnosis& d, const Observations& o) {
 Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vector<Effect>& effects,
                    const DiagnosisOptions& options) {
   Observations o(m, data, options.comparison);
+  if (options.progress) options.progress(0.2);
   const std::vector<Signature> all = signatures(o, effects, options.threads);
-  const Candidates candidates(o, all, options.threads, options.progress);
+  Rounds rounds(options.progress, 0.3);
+  const Candidates candidates(o, all, options.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); });
   Diagnosis d;
   d.noise_floor = o.comparison().sigma_u;
   d.tolerance_scale = o.tolerance_scale();
@@ -137,7 +159,9 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   d.baseline = quality(o, {}, null);
   d.candidates = candidates.beside({}, null, -1e6);
   const Discrepancy discrepancy(o.whitened_patterns());
-  weigh(d, probability_of_unknown(discrepancy.log_evidence(null.residual), log_weight(d.candidates)));
+  constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
+  weigh(d, probability_of_unknown(discrepancy.log_evidence(null.residual) - log_weight(d.candidates),
+                                  missing_odds * Candidates::prior_unknown));
   double least_p = 1;
   for (std::size_t i = 0; i < all.size(); ++i)
     least_p = std::min(least_p, single_p_value(all[i], d.candidates[i].gain));
@@ -153,7 +177,8 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   const Discrepancy left(o.whitened_patterns(), found.fit.signature);
   const double evidence_left = left.log_evidence(found.fit.residual);
   d.unexplained = missing && evidence_left > left_over_evidence && left.p_value(found.fit.residual) < left_over_p;
-  if (!found.effects.empty()) weigh(d, probability_of_unknown(evidence_left, 0));
+  if (!found.effects.empty())
+    weigh(d, probability_of_unknown(evidence_left, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
   if (d.unexplained) {
     found = beside_unknown(o, candidates, std::move(found));
     describe_left_over(d, o, all, found, options.threads);

@@ -51,7 +51,7 @@ struct Diagnosis {
 struct DiagnosisOptions {
   ComparisonOptions comparison;
   int threads = 0;
-  std::function<void(std::size_t done, std::size_t all)> progress;
+  std::function<void(double share)> progress;  ///< of the work, as far as it can be told; from any thread
 };
 
 /// The effects must outlive the result.
