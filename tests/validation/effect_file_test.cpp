@@ -92,6 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"low: 10,", "low: 0,", "low: 0 must be above 0 on a logarithmic scale"},
         Refused{"scale: log", "scale: lgo", "unknown scale 'lgo', did you mean 'log'?"},
         Refused{"vanishes: infinity", "vanishes: never", "vanishes: 'never'"},
+        Refused{"vanishes: infinity", "vanishes: 500",
+                "pad.yaml:5: parameters.stiffness_N_per_mm.start: 500 is where the effect is absent"},
         Refused{"start: 500,", "start: 500 N/mm,", "parameters.stiffness_N_per_mm.start"},
         Refused{"edits:", "  stiffness_N_per_mm: {}\nedits:",
                 "pad.yaml:6: parameters.stiffness_N_per_mm: given twice, first on line 5"},

@@ -148,10 +148,10 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
                    const DiagnosisOptions& options) {
   Observations o(m, data, options.comparison);
   if (options.progress) options.progress(0.2);
-  const std::vector<Signature> all = signatures(o, effects, options.threads);
+  Diagnosis d;
+  const std::vector<Signature> all = signatures(o, effects, options.threads, &d.left_out);
   Rounds rounds(options.progress, 0.3);
   const Candidates candidates(o, all, options.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); });
-  Diagnosis d;
   d.noise_floor = o.comparison().sigma_u;
   d.tolerance_scale = o.tolerance_scale();
   d.detectable = detectable_sizes(all);

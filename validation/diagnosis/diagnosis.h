@@ -46,6 +46,7 @@ struct Diagnosis {
   std::vector<Localised> localised;                      ///< where it acts, by the systematic scan
   std::vector<std::pair<std::string, double>> strained;  ///< tolerances beyond two deviations at the end
   std::vector<Detectable> detectable;
+  std::vector<LeftOut> left_out;  ///< entries that are no hypothesis for this device and these data
 };
 
 struct DiagnosisOptions {

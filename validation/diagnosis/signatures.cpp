@@ -88,12 +88,20 @@ double tail(int freedoms, bool one_sided, double gain) {
 
 }  // namespace
 
-std::vector<Signature> signatures(const Observations& o, const std::vector<Effect>& effects, int threads) {
+std::vector<Signature> signatures(const Observations& o, const std::vector<Effect>& effects, int threads,
+                                  std::vector<LeftOut>* left_out) {
   std::vector<PlacedEffect> places;
-  for (const Effect& e : effects)
-    if (e.name != "geometric_nonlinearity")
-      for (const PlacedEffect& place : places_of(e, o.device())) places.push_back(place);
+  for (const Effect& e : effects) {
+    if (e.name == "geometric_nonlinearity") continue;
+    const std::vector<PlacedEffect> own = places_of(e, o.device());
+    places.insert(places.end(), own.begin(), own.end());
+    if (left_out && own.empty()) {
+      const auto leg = e.scope == Scope::one_leg ? std::optional(1) : std::nullopt;
+      left_out->push_back({e.name, why_not(e, o.device(), leg).value_or("")});
+    }
+  }
   std::vector<Signature> all(places.size());
+  std::vector<std::string> why(places.size());
   for_each_case(places.size(), 1, threads, [&](std::size_t i) {
     Signature& s = all[i];
     s.effect = places[i];
@@ -103,12 +111,20 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
       s.at_start =
           !s.shaped && columns.cols() == start.size() ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0));
       s.one_sided = s.shaped ? amplitude_from_nothing(*places[i].effect) : one_sided(places[i]);
-      if (columns.norm() > unseen) s.basis = s.shaped ? unit_columns(columns) : orthonormal(columns);
-    } catch (const ModelError&) {  // the device cannot stand with it: no hypothesis
-    } catch (const NumericalError&) {
-    } catch (const InputError&) {  // wants what the file does not have, a sequence
+      if (columns.norm() > unseen)
+        s.basis = s.shaped ? unit_columns(columns) : orthonormal(columns);
+      else
+        why[i] = "changes nothing that was measured";
+    } catch (const ModelError& e) {  // the device cannot stand with it
+      why[i] = e.what();
+    } catch (const NumericalError& e) {
+      why[i] = e.what();
+    } catch (const InputError& e) {  // wants what the file does not have, a sequence
+      why[i] = e.what();
     }
   });
+  for (std::size_t i = 0; left_out && i < all.size(); ++i)
+    if (all[i].basis.cols() == 0) left_out->push_back({name_of(places[i]), why[i]});
   std::erase_if(all, [](const Signature& s) { return s.basis.cols() == 0; });
   return all;
 }

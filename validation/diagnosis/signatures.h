@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "validation/diagnosis/hypothesis.h"
@@ -20,9 +21,16 @@ struct Signature {
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
 };
 
-/// Those of the places that effects have in the device and that change what was measured. Equilibrium in the deformed
-/// shape is no hypothesis: it is known in size, and in the prediction. The effects must outlive the result.
-std::vector<Signature> signatures(const Observations&, const std::vector<Effect>&, int threads);
+/// An effect that is no hypothesis for these data, and why.
+struct LeftOut {
+  std::string effect, why;
+};
+
+/// Those of the places that effects have in the device and that change what was measured; the others are told in
+/// `left_out`. Equilibrium in the deformed shape is no hypothesis: it is known in size, and in the prediction. The
+/// effects must outlive the result.
+std::vector<Signature> signatures(const Observations&, const std::vector<Effect>&, int threads,
+                                  std::vector<LeftOut>* left_out = nullptr);
 
 /// What the effect's value would be, were its signature in proportion to its distance from where it vanishes: from the
 /// residual it is to explain. Nothing for effects of several parameters, or of the wrong sign.

@@ -47,6 +47,9 @@ void describe(FieldVisitor& v, EffectParameter& p) {
   v.require(p.low < p.high, "high", fmt::format("{} must be above low, {}", p.high, p.low));
   v.require(p.low <= p.start && p.start <= p.high, "start",
             fmt::format("{} must lie between low, {}, and high, {}", p.start, p.low, p.high));
+  v.require(
+      !p.vanishes || *p.vanishes != p.start, "start",
+      fmt::format("{} is where the effect is absent, so that nothing would be seen of it: start beside it", p.start));
   v.require(!p.log || p.low > 0, "low", fmt::format("{} must be above 0 on a logarithmic scale", p.low));
 }
 

@@ -113,6 +113,11 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
     for (const auto& [name, eta] : d.strained) out += fmt::format(" {} {:+.1f},", name, eta);
     out.back() = '\n';
   }
+  if (!d.left_out.empty()) {
+    out += "not looked at:";
+    for (const LeftOut& e : d.left_out) out += fmt::format(" {} ({});", e.effect, e.why);
+    out.back() = '\n';
+  }
   std::vector<std::vector<std::string>> rows = {
       {"smallest size this plan would show (λ = 4)", "", "would be mistaken for"}};
   for (const Detectable& e : d.detectable) {
@@ -170,6 +175,8 @@ std::string diagnosis_json(const Diagnosis& d) {
                                {"smallest", e.smallest},
                                {"mistaken_for", e.mistaken_for},
                                {"cosine", e.cosine}});
+  j["left_out"] = Json::array();
+  for (const LeftOut& e : d.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});
   return json_text(j);
 }
 
