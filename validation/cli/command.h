@@ -34,6 +34,7 @@ Command check_command();
 Command compare_command();
 Command diagnose_command();
 Command history_command();
+Command report_command();
 Command simulate_command();
 Command effects_command();
 Command add_command();

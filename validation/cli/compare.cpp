@@ -7,6 +7,7 @@
 #include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/report.h"
 #include "validation/compare/comparison.h"
 #include "validation/report/compare_figures.h"
 #include "validation/report/compare_results.h"
@@ -15,11 +16,12 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string device, data, json, out, sigma_mm, sigma_rad;
+  std::string device, data, json, out, report, sigma_mm, sigma_rad;
   double threads = 0;
 };
 
 void run(const Arguments& a) {
+  require_pages(a.report);
   const Mechanism m = read_mechanism(device_file(a.device));
   const Measurements data = read_measurements(a.data);
   ComparisonOptions o;
@@ -37,6 +39,7 @@ void run(const Arguments& a) {
   if (!a.json.empty()) write_text(a.json, compare_json(c));
   fmt::print("{}", compare_report(c));
   if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
+  if (!a.report.empty()) write_report(a.report, a.device, {c}, {{"compare", compare_json(c)}});
 }
 
 }  // namespace
@@ -54,6 +57,7 @@ Command compare_command() {
        {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
        {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
        {"--json", "FILE", "write the result", &a->json},
+       report_option(&a->report),
        {"--out", "DIR", "write figures and tables", &a->out}},
       [a] { run(*a); }};
 }

@@ -6,6 +6,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/effects.h"
+#include "validation/cli/report.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/report/diagnosis_results.h"
 #include "validation/report/progress.h"
@@ -14,13 +15,14 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string device, data, json;
+  std::string device, data, json, report;
   std::vector<std::string> files;
   std::string sigma_mm, sigma_rad;
   double threads = 0;
 };
 
 void run(const Arguments& a) {
+  require_pages(a.report);
   const Mechanism m = read_mechanism(device_file(a.device));
   const Measurements data = read_measurements(a.data);
   const std::vector<Effect> effects = known_effects(a.files);
@@ -36,6 +38,8 @@ void run(const Arguments& a) {
   }
   if (!a.json.empty()) write_text(a.json, diagnosis_json(d));
   fmt::print("{}", diagnosis_report(d, m.name, data.origin));
+  if (!a.report.empty())
+    write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, {{"diagnose", diagnosis_json(d)}});
 }
 
 }  // namespace
@@ -53,7 +57,8 @@ Command diagnose_command() {
            {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
            {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
            {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
-           {"--json", "FILE", "write the result", &a->json}},
+           {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report)},
           [a] { run(*a); }};
 }
 

@@ -7,18 +7,20 @@
 #include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/report.h"
 #include "validation/report/history_results.h"
 
 namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string data, json, out, sigma_mm, sigma_rad;
+  std::string data, json, out, report, sigma_mm, sigma_rad;
   std::vector<std::string> devices;
   double threads = 0;
 };
 
 void run(const Arguments& a) {
+  require_pages(a.report);
   const Measurements data = read_measurements(a.data);
   ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
@@ -36,6 +38,7 @@ void run(const Arguments& a) {
   if (!a.json.empty()) write_text(a.json, history_json(all));
   fmt::print("{}", history_report(all));
   if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(folder).string());
+  if (!a.report.empty()) write_report(a.report, a.devices.front(), all, {{"history", history_json(all)}});
 }
 
 }  // namespace
@@ -53,6 +56,7 @@ Command history_command() {
            {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
            {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
            {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report),
            {"--out", "DIR", "write the figure and the table", &a->out}},
           [a] { run(*a); }};
 }

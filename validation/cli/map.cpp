@@ -9,6 +9,7 @@
 #include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/report.h"
 #include "validation/compare/map.h"
 #include "validation/report/fig11.h"
 #include "validation/report/map_results.h"
@@ -18,7 +19,7 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string device, ranges[3], n, tilt, load, theory = "both", length, json, out;
+  std::string device, ranges[3], n, tilt, load, theory = "both", length, json, out, report;
   double force_N = 50, threads = 0;
 };
 
@@ -75,6 +76,7 @@ MapOptions options_of(const Mechanism& m, const Arguments& a) {
 }
 
 void run(const Arguments& a) {
+  require_pages(a.report);
   const Mechanism m = read_mechanism(device_file(a.device));
   MapOptions o = options_of(m, a);
   StiffnessMap map;
@@ -100,6 +102,12 @@ void run(const Arguments& a) {
   if (!a.out.empty())
     fmt::print("\nTables map.csv, map.vtu and figures {} in {}\n", figures.empty() ? "(none)" : figures,
                std::filesystem::absolute(folder).string());
+  if (!a.report.empty()) {
+    const Stand home = parse_stand(m, "", "", true);
+    const Vector6 load = o.load_N_Nmm.value_or(o.force_N * Vector6::Unit(2));
+    write_report_of_stands(a.report, a.device, {{"home", home.pose_mm_deg, home.configuration}}, {load},
+                           {"map", map_json(map)});
+  }
 }
 
 }  // namespace
@@ -130,6 +138,7 @@ Command map_command() {
         &a->length},
        {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
        {"--json", "FILE", "write summary and arrays", &a->json},
+       report_option(&a->report),
        {"--out", "DIR", "write fig11 and stiffness-vs-length as SVG, PDF, PNG, and map.csv, map.vtu", &a->out}},
       [a] { run(*a); }};
 }

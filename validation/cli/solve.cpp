@@ -8,6 +8,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/motions.h"
+#include "validation/cli/report.h"
 #include "validation/compare/solve_result.h"
 #include "validation/compare/theories.h"
 #include "validation/report/solve_results.h"
@@ -16,7 +17,7 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string device, pose, joints, load, json, out, element_size = "25 mm", geometry = "linear";
+  std::string device, pose, joints, load, json, out, report, element_size = "25 mm", geometry = "linear";
 };
 
 void write_structure(const std::filesystem::path& folder, const SolveResult& r) {
@@ -31,16 +32,21 @@ Geometry parse_geometry(const std::string& text) {
 }
 
 void run(const Arguments& a) {
+  require_pages(a.report);
   const Mechanism m = read_mechanism(device_file(a.device));
   const Vector6 load = parse_load(a.load);
   const Geometry geometry = parse_geometry(a.geometry);
-  const SolveResult r = solve(m, parse_stand(m, a.pose, a.joints, false), load, divide(m, a.element_size), geometry);
+  const Stand at = parse_stand(m, a.pose, a.joints, false);
+  const SolveResult r = solve(m, at, load, divide(m, a.element_size), geometry);
   if (!a.out.empty()) write_structure(a.out, r);
   if (!a.json.empty()) write_text(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));
   if (load.isZero(0) && r.msa.stiffness_mm.isZero(1e-9))
     fmt::print("Without load the contacts have no stiffness; give --load for the stiffness under it.\n");
   if (!a.out.empty()) fmt::print("Deflected structure: {0}/deflected.msh, {0}/deflected.vtu\n", a.out);
+  if (!a.report.empty())
+    write_report_of_stands(a.report, a.device, {{"", at.pose_mm_deg, at.configuration}}, {load},
+                           {"solve", solve_json(r)}, geometry);
 }
 
 }  // namespace
@@ -65,6 +71,7 @@ Command solve_command() {
         "size of the MSA's elements, with unit (default '25 mm'; in the deformed shape at least 8 in a member)",
         &a->element_size},
        {"--json", "FILE", "write the result", &a->json},
+       report_option(&a->report),
        {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
       [a] { drawing_motions(a->out, [a] { run(*a); }); }};
 }

@@ -9,6 +9,7 @@
 #include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/report.h"
 #include "validation/compare/theories.h"
 #include "validation/measurement/points_file.h"
 #include "validation/report/errata_table.h"
@@ -19,7 +20,7 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string device, points, as_printed, json, out, element_size = "25 mm";
+  std::string device, points, as_printed, json, out, report, element_size = "25 mm";
   double load_N = 50;
   bool errata = false, mesh_study = false;
 };
@@ -37,6 +38,7 @@ void print_mesh_study(const Mechanism& m, const std::vector<ValidationPoint>& po
 }
 
 void run(const Arguments& a) {
+  require_pages(a.report);
   const Mechanism m = read_mechanism(device_file(a.device));
   const std::set<Erratum> as_printed = parse_errata(a.as_printed);
   if (!std::isfinite(a.load_N) || a.load_N == 0)
@@ -55,6 +57,14 @@ void run(const Arguments& a) {
   if (a.errata) fmt::print("\n{}", errata_table(prices));
   if (a.mesh_study) print_mesh_study(m, points, a.load_N);
   if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
+  if (!a.report.empty()) {
+    std::vector<SceneStand> stands;
+    for (const ValidationPoint& p : points)
+      stands.push_back({p.label, p.pose_mm_deg, stand(m, p.pose_mm_deg).configuration});
+    std::vector<Vector6> loads;
+    for (int axis = 0; axis < 3; ++axis) loads.push_back(a.load_N * Vector6::Unit(axis));
+    write_report_of_stands(a.report, a.device, stands, loads, {"validate", validation_json(v)});
+  }
 }
 
 }  // namespace
@@ -76,6 +86,7 @@ Command validate_command() {
        {"--mesh-study", "", "the difference of the theories for finer and finer meshes", &a->mesh_study},
        {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
        {"--json", "FILE", "write the result", &a->json},
+       report_option(&a->report),
        {"--out", "DIR", "write Fig. 10 as SVG, PDF, PNG and the table as CSV", &a->out}},
       [a] { run(*a); }};
 }

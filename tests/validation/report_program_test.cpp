@@ -1,0 +1,216 @@
+// `--report` and `deflect report` as a user meets them: the page is opened and used in a browser.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "msa/base/files.h"
+#include "tests/support/page.h"
+#include "validation/report/page.h"
+
+namespace deflect {
+namespace {
+
+using nlohmann::json;
+using test::contents;
+using test::page_data;
+
+class ReportProgram : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!pages_are_built()) GTEST_SKIP() << "built without pages";
+  }
+  std::string path(const std::string& name) { return "'" + (folder / name).string() + "'"; }
+  void run(const std::string& arguments) {
+    const test::Run run = test::deflect(arguments);
+    ASSERT_EQ(run.code, 0) << run.out;
+  }
+  void simulate(const std::string& more = "") {
+    run("simulate haptic-6psu-ideal-joints --campaign paper --with guide_root_compliance,stiffness_Nmm_per_rad=1e6 "
+        "--seed 5 -o " +
+        path("data.csv") + more);
+  }
+  /// What the browser saw, after what holds for every page.
+  json used(const std::string& page, const std::string& window = "1200,900", bool dark = false) {
+    const auto seen = test::used_page(folder / page, folder, window, dark);
+    EXPECT_TRUE(seen) << "the browser said nothing";
+    if (!seen) return {};
+    EXPECT_EQ(seen->at("failures"), json::array()) << seen->at("failures").dump(1);
+    for (const json& chart : seen->at("charts")) {
+      EXPECT_GT(chart.at("drawn"), 0) << chart;
+      EXPECT_GT(chart.at("colours"), 3) << chart;
+    }
+    for (const json& colours : seen->at("views")) EXPECT_GT(colours, 20);
+    for (const json& notes : seen->at("notes")) EXPECT_FALSE(notes.empty()) << "nothing to read under the pointer";
+    if (seen->contains("still")) {
+      EXPECT_FALSE(seen->at("still"));
+      EXPECT_TRUE(seen->at("dragged"));
+      EXPECT_TRUE(seen->at("turned"));
+    }
+    EXPECT_FALSE(seen->at("wide")) << "wider than the window";
+    EXPECT_EQ(seen->at("scripts"), 3);  // data, program, the check
+    EXPECT_LT(std::filesystem::file_size(folder / page), 5'000'000u);
+    return *seen;
+  }
+
+  test::Folder folder;
+};
+
+#define NEEDS_BROWSER() \
+  if (test::browser().empty()) GTEST_SKIP() << "no Chromium here"
+
+/// Cells of a CSV without quotes in the row that begins so.
+std::vector<std::string> row_of(const std::string& csv, const std::string& begin) {
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(begin)) continue;
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    return cells;
+  }
+  return {};
+}
+
+TEST_F(ReportProgram, APageOfADiagnosisIsUsedInABrowserAndHoldsTheNumbersOfItsJson) {
+  NEEDS_BROWSER();
+  simulate();
+  run("diagnose haptic-6psu-ideal-joints " + path("data.csv") + " --json " + path("d.json") + " --report " +
+      path("page.html"));
+  const json d = json::parse(contents(folder / "d.json")), data = page_data(contents(folder / "page.html"));
+  EXPECT_EQ(data.at("results").at(0).at("result"), d);
+  EXPECT_EQ(data.at("data").at("text"), contents(folder / "data.csv"));
+
+  const json seen = used("page.html");
+  for (const char* each : {"posed", "readout", "deflected"}) EXPECT_TRUE(seen.at(each)) << each;
+  EXPECT_NE(seen.at("verdict").get<std::string>().find("guide_root_compliance"), std::string::npos);
+  EXPECT_GE(seen.at("charts").size(), 10u);  // candidates, waterfall, residuals twice, six legs
+
+  const json& best = d.at("candidates").at(0);
+  const auto row = row_of(seen.at("saved").at("candidates.csv"), best.at("effect").get<std::string>() + " (");
+  ASSERT_GE(row.size(), 5u);
+  EXPECT_EQ(std::stod(row[1]), best.at("probability"));
+  EXPECT_EQ(std::stod(row[2]), best.at("rmse_mm"));
+  EXPECT_EQ(std::stod(row[3]), best.at("held_out_rmse_mm"));
+  EXPECT_EQ(json::parse(seen.at("saved").at("diagnosis.json").get<std::string>()), d);
+
+  const json& versions = data.at("versions");
+  ASSERT_EQ(versions.size(), 2u);
+  EXPECT_LT(versions[1].at("result").at("baseline").at("rmse_mm"),
+            versions[0].at("result").at("baseline").at("rmse_mm"));
+  EXPECT_EQ(data.at("scene").at("guilty").size(), 6u);
+
+  run("report " + path("d.json") + " -o " + path("alone.html"));
+  EXPECT_EQ(used("alone.html").at("charts").size(), 2u);  // candidates, waterfall
+  run("report " + path("d.json") + " --device haptic-6psu-ideal-joints --data " + path("data.csv") + " -o " +
+      path("again.html"));
+  const json again = page_data(contents(folder / "again.html"));
+  for (const char* each : {"versions", "scene", "device", "data"}) EXPECT_EQ(again.at(each), data.at(each)) << each;
+}
+
+TEST_F(ReportProgram, ResidualsOfAPageAreMeasuredMinusPredicted) {
+  simulate();
+  run("compare haptic-6psu-ideal-joints " + path("data.csv") + " --json " + path("c.json") + " --report " +
+      path("page.html"));
+  const json data = page_data(contents(folder / "page.html")), c = json::parse(contents(folder / "c.json"));
+  const json& version = data.at("versions").at(0);
+  EXPECT_EQ(version.at("result"), c);
+  double squares = 0;
+  std::size_t n = 0;
+  for (const json& r : version.at("readings"))
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double residual = r.at("residual").at(i);
+      EXPECT_NEAR(residual, r.at("measured").at(i).get<double>() - r.at("predicted").at(i).get<double>(), 1e-12);
+      squares += residual * residual;
+      ++n;
+    }
+  const double rmse = c.at("baseline").at("rmse_mm"), floor = c.at("noise_floor_mm");
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(n)), rmse, 1e-3 * rmse);
+  for (const json& p : version.at("poses"))
+    for (const json& draw : p.at("with_nothing_missing")) {
+      EXPECT_GT(draw, 0.1 * floor);
+      EXPECT_LT(draw, 4 * floor);
+    }
+}
+
+TEST_F(ReportProgram, TheShapeInThePictureIsTheAnswerOfSolve) {
+  run("solve haptic-6psu --pose 25,25,198.9 --load 50,0,0 --json " + path("s.json") + " --report " + path("page.html"));
+  const json s = json::parse(contents(folder / "s.json")),
+             scene = page_data(contents(folder / "page.html")).at("scene");
+  const json& u =
+      scene.at("poses").at(0).at("shapes").at(0).at("displacement_mm").at(scene.at("tool").get<std::size_t>());
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(u.at(i), s.at("msa").at("displacement").at(i).get<double>(), 1e-5);
+}
+
+TEST_F(ReportProgram, TextOfUsersStaysText) {
+  NEEDS_BROWSER();
+  simulate();
+  std::string device = test::deflect("devices haptic-6psu-ideal-joints").out;
+  const std::string evil = "</script><script>window.broken = document.write('x')</script><img src=x onerror=alert(1)>";
+  device.replace(device.find("name: haptic-6psu-ideal-joints"), 30, "name: \"" + evil + "\"");
+  write_text(folder / "evil.yaml", device);
+  std::istringstream lines(contents(folder / "data.csv"));
+  std::string text, line;
+  for (bool head = true; std::getline(lines, line); head = false)
+    text += line + (head ? ",note_<b>who</b>" : ",\"" + evil + "\"") + "\n";
+  write_text(folder / "noted.csv", text);
+  run("compare " + path("evil.yaml") + " " + path("noted.csv") + " --report " + path("page.html"));
+  const json seen = used("page.html");
+  EXPECT_NE(seen.at("saved").at("readings-0.csv").get<std::string>().find("onerror=alert(1)"), std::string::npos);
+  EXPECT_EQ(page_data(contents(folder / "page.html")).at("versions").at(0).at("device"), evil);
+}
+
+TEST_F(ReportProgram, APageFitsATelephoneInLightAndInDark) {
+  NEEDS_BROWSER();
+  simulate();
+  run("compare haptic-6psu-ideal-joints " + path("data.csv") + " --report " + path("page.html"));
+  const json light = used("page.html", "390,844"), dark = used("page.html", "390,844", true);
+  EXPECT_NE(light.at("background"), dark.at("background"));
+}
+
+TEST_F(ReportProgram, SeveralResultsAreOnePage) {
+  NEEDS_BROWSER();
+  simulate();
+  run("compare haptic-6psu-ideal-joints " + path("data.csv") + " --json " + path("c.json"));
+  run("history " + path("data.csv") + " haptic-6psu-ideal-joints haptic-6psu --json " + path("h.json"));
+  run("solve delta --pose 0,0,-900 --load 0,0,10 --json " + path("s.json"));
+  run("validate tripteron --json " + path("v.json"));
+  run("map haptic-6psu-ideal-joints --n 3 --json " + path("m.json"));
+  std::string files;
+  for (const char* each : {"c.json", "h.json", "s.json", "v.json", "m.json"}) files += " " + path(each);
+  run("report" + files + " -o " + path("page.html"));
+  const json seen = used("page.html");
+  for (const char* id : {"tests", "fall", "displacement", "stiffness", "validation", "map"})
+    EXPECT_TRUE(std::any_of(seen.at("tables").begin(), seen.at("tables").end(), [&](const json& t) {
+      return t.at("id") == id && t.at("rows") > 0;
+    })) << id;
+}
+
+TEST_F(ReportProgram, EveryCommandThatHasSomethingToShowMakesAPage) {
+  NEEDS_BROWSER();
+  simulate();
+  for (const std::string& command :
+       {"history " + path("data.csv") + " haptic-6psu-ideal-joints haptic-6psu", std::string("validate hybrid"),
+        std::string("map delta --n 2"),
+        std::string("solve fanuc-r2000ic --joints 0.1,0.2,-0.3,0.1,0.4,0 --load 0,0,-500")}) {
+    run(command + " --report " + path("page.html"));
+    const json seen = used("page.html");
+    EXPECT_TRUE(seen.contains("turned")) << command;
+  }
+}
+
+TEST_F(ReportProgram, WhatIsNoResultIsRefused) {
+  write_text(folder / "x.json", "{\"a\": 1}");
+  write_text(folder / "y.json", "{");
+  for (const auto& [file, message] :
+       {std::pair{"x.json", "x.json: not a result of"}, std::pair{"y.json", "y.json: not valid JSON"}}) {
+    const test::Run run = test::deflect("report " + path(file) + " -o " + path("page.html"));
+    EXPECT_EQ(run.code, 2) << run.out;
+    EXPECT_NE(run.out.find(message), std::string::npos) << run.out;
+    EXPECT_FALSE(std::filesystem::exists(folder / "page.html"));
+  }
+}
+
+}  // namespace
+}  // namespace deflect

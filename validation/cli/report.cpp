@@ -1,0 +1,166 @@
+#include "validation/cli/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/cli/devices.h"
+#include "validation/compare/theories.h"
+#include "validation/effects/effect_file.h"
+#include "validation/effects/with_effect.h"
+#include "validation/report/compare_results.h"
+#include "validation/report/history_results.h"
+
+namespace deflect::cli {
+namespace {
+
+constexpr std::size_t most_stands = 40;
+
+/// What was typed, one space between words, words with others than plain letters in quotes.
+std::string command_line() {
+  std::string raw, out;
+  try {
+    raw = read_text("/proc/self/cmdline");
+  } catch (const InputError&) {
+    return "";
+  }
+  for (std::size_t from = 0; from < raw.size();) {
+    const std::size_t to = std::min(raw.find('\0', from), raw.size());
+    std::string word = raw.substr(from, to - from);
+    if (from == 0) word = std::filesystem::path(word).filename().string();
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+      return std::isalnum(c) || c > 127 ||
+             std::string_view("-_./,=:+@%").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    out += (out.empty() ? "" : " ") + (plain ? word : "'" + word + "'");
+    from = to + 1;
+  }
+  return out;
+}
+
+PageSource source_of(const std::string& path) {
+  return {std::filesystem::path(path).filename().string(), read_text(path)};
+}
+
+PageContents contents(const std::string& device) {
+  PageContents page;
+  page.version = DEFLECT_VERSION;
+  page.command = command_line();
+  if (!device.empty()) page.device = source_of(device_file(device).string());
+  return page;
+}
+
+void write_page(const std::string& file, const PageContents& page) {
+  write_text(file, page_html(page));
+  fmt::print("Report: {}\n", std::filesystem::absolute(file).string());
+}
+
+/// Poses of the measurements, of many those where the residual is largest, in their order.
+std::vector<SceneStand> stands_of(const Comparison& c) {
+  std::vector<std::size_t> shown(c.by_pose.size());
+  std::iota(shown.begin(), shown.end(), std::size_t{0});
+  std::stable_sort(shown.begin(), shown.end(),
+                   [&](std::size_t a, std::size_t b) { return c.by_pose[a].rmse > c.by_pose[b].rmse; });
+  shown.resize(std::min(shown.size(), most_stands));
+  std::sort(shown.begin(), shown.end());
+  std::vector<SceneStand> out;
+  for (const std::size_t p : shown) {
+    const Configuration& machine = c.study.machines[p];
+    out.push_back({c.study.data->poses[p].label, mm_deg_from(machine.pose), machine});
+  }
+  return out;
+}
+
+/// For each component that the readings load, its largest size alone.
+std::vector<Vector6> loads_of(const Measurements& data) {
+  Vector6 largest = Vector6::Zero();
+  for (const Reading& r : data.readings) largest = largest.cwiseMax(r.load.cwiseAbs());
+  std::vector<Vector6> out;
+  for (int i = 0; i < 6; ++i)
+    if (largest(i) > 0) out.push_back(largest(i) * Vector6::Unit(i));
+  return out;
+}
+
+/// {"found": [{"effect", "site", "parameters": [{"name", "value"}]}]} of a diagnosis, or of its best candidates.
+std::vector<EffectInstance> found_in(const Json& diagnosis, const std::vector<Effect>& effects) {
+  std::vector<EffectInstance> out;
+  for (const Json& found : diagnosis.value("found", Json::array())) {
+    EffectInstance e;
+    e.effect = &find_effect(effects, found.at("effect"));
+    const std::string site = found.at("site");
+    if (site.starts_with("leg ")) e.leg = std::stoi(site.substr(4));
+    e.values = start_values(*e.effect);
+    for (const Json& parameter : found.at("parameters"))
+      for (std::size_t i = 0; i < e.effect->parameters.size(); ++i)
+        if (e.effect->parameters[i].name == parameter.at("name"))
+          e.values(static_cast<Eigen::Index>(i)) = parameter.at("value");
+    out.push_back(e);
+  }
+  return out;
+}
+
+}  // namespace
+
+Option report_option(std::string* file) {
+  return {"--report", "FILE.html", "write a page that explains the result in pictures with their numbers", file};
+}
+
+void require_pages(const std::string& file) {
+  if (file.empty() || pages_are_built()) return;
+  throw InputError(
+      fmt::format("--report {}: this deflect was built without pages: install esbuild, libjs-three and libjs-chart.js, "
+                  "configure and build again",
+                  file));
+}
+
+void write_report(const std::string& file, const std::string& device, const std::vector<Comparison>& versions,
+                  std::vector<PageResult> results) {
+  const Comparison &first = versions.front(), &last = versions.back();
+  PageContents page = contents(device);
+  page.data = source_of(first.study.data->origin);
+  page.results = std::move(results);
+  const std::string origin = page.results.empty() ? first.data : page.results.front().origin;
+  if (versions.size() > 1 && origin != "history") page.results.push_back({origin, history_json(versions)});
+  for (const Comparison& c : versions) page.versions.push_back(&c);
+  page.scene = scene_json(stands_of(first), loads_of(*first.study.data),
+                          changed_parts(first.study.machines.front(), last.study.machines.front()),
+                          first.study.mechanism->geometry);
+  write_page(file, page);
+}
+
+void write_report_of_diagnosis(const std::string& file, const std::string& device, const Mechanism& m,
+                               const Measurements& data, const std::vector<Effect>& effects,
+                               const ComparisonOptions& options, std::vector<PageResult> results) {
+  std::vector<Mechanism> devices = {m};
+  for (const PageResult& result : results)
+    for (const EffectInstance& e : found_in(Json::parse(result.json), effects)) {
+      devices.push_back(with_effect(devices.back(), e));
+      devices.back().name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + site_of(e) + ")" : "");
+    }
+  std::vector<Comparison> versions;
+  for (const Mechanism& each : devices) versions.push_back(compare(each, data, options));
+  write_report(file, device, versions, std::move(results));
+}
+
+void write_report_of_stands(const std::string& file, const std::string& device, const std::vector<SceneStand>& stands,
+                            const std::vector<Vector6>& loads_N_Nmm, PageResult result, Geometry geometry) {
+  PageContents page = contents(device);
+  page.results = {std::move(result)};
+  std::vector<Vector6> loads;
+  for (const Vector6& load : loads_N_Nmm) loads.push_back(wrench_from_mm(load));
+  page.scene = scene_json(stands, loads, {}, geometry);
+  write_page(file, page);
+}
+
+void write_report_of_results(const std::string& file, std::vector<PageResult> results) {
+  PageContents page = contents("");
+  page.results = std::move(results);
+  write_page(file, page);
+}
+
+}  // namespace deflect::cli

@@ -1,0 +1,40 @@
+# Called by the build: BUNDLED, ESBUILD, THREE, ORBIT, CHART → OUTPUT, a source that defines page_template().
+set(here ${CMAKE_CURRENT_LIST_DIR})
+set(page "")
+if(BUNDLED)
+  foreach(kind js css)
+    get_filename_component(folder ${OUTPUT} DIRECTORY)
+    set(${kind}_file ${folder}/page.${kind})
+    execute_process(
+      COMMAND ${ESBUILD} ${here}/main.${kind} --bundle --minify --legal-comments=eof --log-level=warning
+              --target=es2020 --alias:three=${THREE} --alias:orbit-controls=${ORBIT} --alias:chart.js=${CHART}
+              --outfile=${${kind}_file}
+      RESULT_VARIABLE failed)
+    if(failed)
+      message(FATAL_ERROR "esbuild cannot bundle main.${kind}")
+    endif()
+  endforeach()
+  file(READ ${here}/page.html page)
+  foreach(kind js css)
+    string(FIND "${page}" "@DEFLECT_${kind}@" at)
+    string(LENGTH "@DEFLECT_${kind}@" length)
+    math(EXPR behind "${at} + ${length}")
+    string(SUBSTRING "${page}" 0 ${at} before)
+    string(SUBSTRING "${page}" ${behind} -1 after)
+    file(READ ${${kind}_file} content)
+    set(page "${before}${content}${after}")
+  endforeach()
+endif()
+
+# A text of the program in pieces, which compilers take of any number.
+set(source "#include \"validation/report/page_template.h\"\n\nnamespace deflect {\n\nstd::string_view page_template() {\n")
+string(APPEND source "  using namespace std::literals;\n  return \"\"")
+string(LENGTH "${page}" length)
+set(at 0)
+while(at LESS length)
+  string(SUBSTRING "${page}" ${at} 12000 piece)
+  string(APPEND source "\n      R\"deflect_page(${piece})deflect_page\"")
+  math(EXPR at "${at} + 12000")
+endwhile()
+string(APPEND source "sv;\n}\n\n}  // namespace deflect\n")
+file(WRITE ${OUTPUT} "${source}")

@@ -1,0 +1,76 @@
+// Charts by Chart.js: one configuration per drawing, made anew for each theme.
+import {BarController, BarElement, CategoryScale, Chart, Filler, Legend, LinearScale, LineController, LineElement,
+        LogarithmicScale, PointElement, ScatterController, Tooltip} from 'chart.js';
+import {el, num} from './dom.js';
+import {onTheme, theme} from './theme.js';
+
+Chart.register(BarController, BarElement, CategoryScale, Filler, Legend, LinearScale, LineController, LineElement,
+               LogarithmicScale, PointElement, ScatterController, Tooltip);
+Chart.defaults.animation = false;
+Chart.defaults.maintainAspectRatio = false;
+Chart.defaults.font.family = 'system-ui, sans-serif';
+Object.assign(Chart.defaults.plugins.legend.labels, {boxWidth: 8, boxHeight: 7});
+
+export function axis(title, t, more = {}) {
+  return {title: {display: Boolean(title), text: title, color: t.quiet}, grid: {color: t.line},
+          ticks: {color: t.quiet, callback: undefined}, ...more};
+}
+
+/** `about` says in words what is drawn; `make(theme)` gives Chart.js' configuration. */
+export function chart(about, height, make) {
+  const canvas = el('canvas', {role: 'img', 'aria-label': about});
+  const holder = el('div', {class: 'chart', style: {height: height + 'px'}}, canvas);
+  let drawn = null;
+  const draw = () => {
+    if (drawn) drawn.destroy();
+    const t = theme();
+    Chart.defaults.color = t.text;
+    Chart.defaults.borderColor = t.line;
+    const configuration = make(t);
+    for (const scale of Object.values(configuration.options.scales || {}))
+      if (scale.ticks && scale.ticks.callback === undefined) delete scale.ticks.callback;
+    drawn = new Chart(canvas, configuration);
+    canvas.dataset.drawn = String(configuration.data.datasets.reduce((n, d) => n + d.data.length, 0));
+  };
+  onTheme(draw);
+  requestAnimationFrame(draw);
+  return holder;
+}
+
+/** Tooltip lines "series: value unit". */
+export function labelled(unit, of = (item) => item.parsed.y) {
+  return {callbacks: {label: (item) => `${item.dataset.label}: ${num(of(item))} ${unit}`}};
+}
+
+/** The error from version to version: what is left, what each step takes off, held-out poses, a placebo, the floor. */
+export function waterfall(steps, unit = 'µm') {
+  const bars = [{label: steps[0].name, from: 0, to: steps[0].rmse, kind: 'level'}];
+  for (let i = 1; i < steps.length; ++i) {
+    bars.push({label: steps[i].step, from: steps[i].rmse, to: steps[i - 1].rmse, kind: steps[i].rmse <= steps[i - 1].rmse ? 'fall' : 'rise', held: steps[i].held, placebo: steps[i].placebo});
+  }
+  const last = steps[steps.length - 1];
+  if (steps.length > 1) bars.push({label: 'left', from: 0, to: last.rmse, kind: 'level'});
+  bars[0].held = steps[0].held;
+  if (steps.length > 1) bars[bars.length - 1].held = last.held, bars[bars.length - 2].held = null;
+  const points = (label, key, colour, style) => ({type: 'line', label, data: bars.map((b) => b[key] ?? null), showLine: false, pointStyle: style, pointRadius: 6, borderWidth: 2, borderColor: colour, backgroundColor: colour});
+  return chart('Waterfall of the error', 320, (t) => ({
+    type: 'bar',
+    data: {
+      labels: bars.map((b) => b.label.match(/.{1,22}(_|\s|$)|.{1,22}/g) || [b.label]),
+      datasets: [
+        points('held-out poses', 'held', t.purple, 'rectRot'),
+        ...(bars.some((b) => b.placebo !== null && b.placebo !== undefined) ? [points('a placebo in its place', 'placebo', t.grey, 'crossRot')] : []),
+        {type: 'line', label: 'noise and tolerances', data: bars.map(() => last.floor), borderColor: t.orange, borderDash: [6, 4], borderWidth: 2, pointRadius: 0, pointStyle: 'line'},
+        {label: 'rms of measured − predicted', data: bars.map((b) => [b.from, b.to]), backgroundColor: bars.map((b) => ({level: t.blue, fall: t.green, rise: t.guilty}[b.kind])), maxBarThickness: 90},
+      ],
+    },
+    options: {
+      scales: {x: axis('', t, {grid: {display: false}}), y: axis('µm rms', t, {beginAtZero: true})},
+      plugins: {legend: {position: 'bottom', labels: {usePointStyle: true}}, tooltip: {callbacks: {label: (item) => {
+        const raw = item.raw;
+        if (!Array.isArray(raw)) return `${item.dataset.label}: ${num(raw)} ${unit}`;
+        return bars[item.dataIndex].kind === 'level' ? `rms: ${num(raw[1])} ${unit}` : `from ${num(raw[1])} to ${num(raw[0])} ${unit}`;
+      }}}},
+    },
+  }));
+}
