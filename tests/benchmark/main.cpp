@@ -24,10 +24,11 @@ constexpr const char* usage = R"(benchmark_diagnosis [options]
   --seed N       of everything drawn by lot (default 1)
   --threads N    sets side by side (default 0: all cores); the scores do not depend on it
   --json FILE    write every set and the scores
+  --out DIR      draw how reliable the probabilities are
 )";
 
 struct Arguments {
-  std::string group, json;
+  std::string group, json, out;
   std::size_t sets = 0;
   std::uint64_t seed = 1;
   int threads = 0;
@@ -42,13 +43,10 @@ std::size_t whole(const char* option, const char* text) {
 }
 
 Arguments parse(int argc, char** argv) {
-  const option options[] = {{"group", required_argument, nullptr, 'g'},
-                            {"sets", required_argument, nullptr, 'n'},
-                            {"seed", required_argument, nullptr, 's'},
-                            {"threads", required_argument, nullptr, 't'},
-                            {"json", required_argument, nullptr, 'j'},
-                            {"help", no_argument, nullptr, 'h'},
-                            {nullptr, 0, nullptr, 0}};
+  const option options[] = {{"group", required_argument, nullptr, 'g'}, {"sets", required_argument, nullptr, 'n'},
+                            {"seed", required_argument, nullptr, 's'},  {"threads", required_argument, nullptr, 't'},
+                            {"json", required_argument, nullptr, 'j'},  {"out", required_argument, nullptr, 'o'},
+                            {"help", no_argument, nullptr, 'h'},        {nullptr, 0, nullptr, 0}};
   Arguments a;
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) switch (c) {
       case 'g':
@@ -65,6 +63,9 @@ Arguments parse(int argc, char** argv) {
         break;
       case 'j':
         a.json = optarg;
+        break;
+      case 'o':
+        a.out = optarg;
         break;
       case 'h':
         a.help = true;
@@ -96,6 +97,7 @@ void run_all(const Arguments& a) {
     json.update(report_json(records));
     write_text(a.json, json_text(json));
   }
+  if (!a.out.empty()) render(reliability_figure(records), a.out);
   fmt::print("{}", report(records));
 }
 

@@ -86,6 +86,34 @@ std::string report(const std::vector<Record>& all) {
   return out;
 }
 
+// Wilson's interval of a share p of n, z = 1.96: (p + z²/2n ± z √(p(1 − p)/n + z²/4n²))/(1 + z²/n).
+Figure reliability_figure(const std::vector<Record>& all) {
+  std::string data, plots;
+  for (const char* method : {"deflect", "BIC"}) {
+    data += fmt::format("${} << EOD\n", method);
+    for (const Reliability& r : reliability(all)) {
+      if (r.method != method) continue;
+      const auto n = static_cast<double>(r.sets);
+      const double z = 1.96, middle = (r.right + z * z / (2 * n)) / (1 + z * z / n),
+                   half = z * std::sqrt(r.right * (1 - r.right) / n + z * z / (4 * n * n)) / (1 + z * z / n);
+      data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {}\n", r.mean, r.right, middle - half, middle + half, r.sets);
+    }
+    data += "EOD\n";
+    const bool own = method == std::string_view("deflect");
+    plots += fmt::format(
+        ", ${0} using 1:2:3:4 with yerrorbars pt {1} ps 0.7 lw 1.2 lc rgb '{2}' title '{0}', "
+        "'' using 1:4:5 with labels offset 0,0.7 font 'DejaVu Sans,6' textcolor rgb '{2}' notitle",
+        method, own ? 7 : 5, own ? "#0072B2" : "#D55E00");
+  }
+  return {"reliability",
+          data +
+              "set size square\nset xrange [0:1]\nset yrange [0:1.1]\nset key left top\nset xlabel 'probability "
+              "given to the first candidate (mean of the bin)'\nset ylabel 'how often it is the truth'\n"
+              "plot x with lines dt 2 lc rgb '#888888' title 'calibrated'" +
+              plots,
+          100, 100};
+}
+
 Json report_json(const std::vector<Record>& all) {
   Json out;
   out["scores"] = Json::array();

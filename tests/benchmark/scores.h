@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/benchmark/record.h"
+#include "validation/report/gnuplot.h"
 #include "validation/report/json_text.h"
 
 namespace deflect::benchmark {
@@ -22,6 +23,9 @@ struct Reliability {
   std::size_t sets = 0;
 };
 std::vector<Reliability> reliability(const std::vector<Record>&);
+
+/// The bins as a picture: share of the truth against mean probability, with 95 % intervals of the share.
+Figure reliability_figure(const std::vector<Record>&);
 
 /// Tables in Markdown: scores, reliability, time, what was left out and why.
 std::string report(const std::vector<Record>&);

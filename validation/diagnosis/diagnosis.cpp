@@ -12,7 +12,7 @@
 namespace deflect {
 namespace {
 
-constexpr double alarm = 0.03;  // chance above which nothing is called missing
+constexpr double alarm = 0.02;  // chance above which nothing is called missing
 constexpr double sure = 0.7;    // probability from which something unknown is there
 constexpr std::size_t quality_of = 5;
 constexpr double left_over_evidence = 2, left_over_p = 3e-3;

@@ -11,6 +11,8 @@
 namespace deflect {
 namespace {
 
+constexpr double shape_known_to = 0.2;
+
 std::vector<bool> set_aside_by(const Comparison& c) {
   std::vector<bool> aside(c.readings, false);
   for (std::size_t i = 0; i < c.readings; ++i)
@@ -36,8 +38,12 @@ Observations::Observations(const Mechanism& m, const Measurements& data, const C
   shape_ = s.deformed_shape.empty() ? VectorX(VectorX::Zero(measured_.size())) : rows_of(s.values, s.deformed_shape);
   tolerance_scale_ = uncertainty_.scale_of_tolerances(residual(m), patterns_.front());
   A_ *= tolerance_scale_;
+  A_.conservativeResize(Eigen::NoChange, A_.cols() + 1);
+  count_shape();
   weigh(aside_);
 }
+
+void Observations::count_shape() { A_.rightCols<1>() = shape_known_to * shape_; }
 
 void Observations::weigh(const std::vector<bool>& aside) {
   aside_ = aside;
@@ -81,11 +87,15 @@ double Observations::held_out_rmse(const Mechanism& m) const {
 }
 
 std::vector<std::pair<std::string, double>> Observations::strained(const Mechanism& m) const {
-  const VectorX eta = tolerance_scale_ * uncertainty_.nuisances(residual(m));
+  VectorX eta = uncertainty_.nuisances(residual(m));
+  const Eigen::Index tolerances = eta.size() - 1;
+  eta.head(tolerances) *= tolerance_scale_;
   std::vector<std::pair<std::string, double>> out;
   for (Eigen::Index i = 0; i < eta.size(); ++i)
     if (std::abs(eta(i)) > 2)
-      out.emplace_back(comparison_.tolerances.nuisances[static_cast<std::size_t>(i)].name, eta(i));
+      out.emplace_back(
+          i < tolerances ? comparison_.tolerances.nuisances[static_cast<std::size_t>(i)].name : "the deformed shape",
+          eta(i));
   return out;
 }
 
@@ -100,6 +110,7 @@ void Observations::take_for_granted(const Mechanism& m) {
              rows_of(s.values, predict(m, machines, *s.data, linear));
   } catch (const NumericalError&) {  // beyond what the deformed shape carries: the one known stays
   }
+  count_shape();
   const std::vector<bool> aside = gross_outliers(s, A_, comparison_.sigma, residual(m), {});
   const auto count = static_cast<std::size_t>(std::count(aside.begin(), aside.end(), true));
   weigh(20 * count <= aside.size() ? aside : aside_);

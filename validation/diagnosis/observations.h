@@ -7,7 +7,8 @@
 namespace deflect {
 
 /// A comparison, its uncertainty kept, and predictions asked for again and again. Tolerances count as large as the
-/// data say where they look larger than declared (Uncertainty::scale_of_tolerances).
+/// data say where they look larger than declared (Uncertainty::scale_of_tolerances); what equilibrium in the deformed
+/// shape adds is known to a fifth of it, one more nuisance.
 class Observations {
  public:
   Observations(const Mechanism&, const Measurements&, const ComparisonOptions&);
@@ -41,6 +42,7 @@ class Observations {
 
  private:
   void weigh(const std::vector<bool>& aside);
+  void count_shape();  // its column of A_
 
   const Mechanism* device_;
   Comparison comparison_;
