@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "msa/base/files.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "validation/compare/simulate.h"
@@ -152,6 +153,21 @@ TEST(Diagnose, DoesNotDependOnTheNumberOfThreads) {
   three.threads = three.comparison.threads = 3;
   EXPECT_EQ(diagnosis_json(diagnose(ideal(), data, test::all_effects(), one)),
             diagnosis_json(diagnose(ideal(), data, test::all_effects(), three)));
+}
+
+TEST(Diagnose, DoesNotDependOnTheUnitsOfTheDevice) {
+  std::string text = read_text(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/haptic-6psu-ideal-joints.yaml");
+  for (const auto& [from, to] :
+       {std::pair{"118 mm", "11.8 cm"}, {"125.5 mm", "0.1255 m"}, {"210 GPa", "2.1e11 Pa"}, {"0.03 mm", "30 um"}}) {
+    ASSERT_NE(text.find(from), text.npos) << from;
+    for (std::size_t at; (at = text.find(from)) != text.npos;) text.replace(at, std::string(from).size(), to);
+  }
+  const Measurements data = measured(with("base_tilt", {2e8}), 20, "paper");
+  const Diagnosis a = diagnose(ideal(), data, test::all_effects()),
+                  b = diagnose(parse_mechanism(text, "units.yaml"), data, test::all_effects());
+  EXPECT_EQ(names(a.missing), names(b.missing));
+  for (const Effect& e : test::all_effects())
+    EXPECT_NEAR(probability(a, e.name), probability(b, e.name), 1e-6) << e.name;
 }
 
 /// The effects that need no history, so that the order of readings says nothing.
