@@ -164,6 +164,16 @@ class Builder {
 
 }  // namespace
 
+MemberDivision equal_division(const Configuration& c, int elements) {
+  std::vector<double> at;
+  for (int i = 0; i <= elements; ++i) at.push_back(static_cast<double>(i) / elements);
+  MemberDivision out;
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, PlacedMember>) out[part.part] = at;
+  });
+  return out;
+}
+
 MechanismModel build(const Configuration& c, const MemberDivision& division) {
   Builder b(division);
   MechanismModel out;

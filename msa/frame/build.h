@@ -15,6 +15,9 @@ namespace deflect::frame {
 /// is not named is one element.
 using MemberDivision = std::map<std::string, std::vector<double>>;
 
+/// Every member in that many equal elements.
+MemberDivision equal_division(const Configuration&, int elements);
+
 struct MechanismModel {
   Model model;
   int ground = 0;    ///< fixed

@@ -12,16 +12,6 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
-std::vector<std::string> segments_of(const std::string& path) {
-  std::vector<std::string> out(1);
-  for (const char c : path)
-    if (c == '.')
-      out.emplace_back();
-    else
-      out.back() += c;
-  return out;
-}
-
 class Search {
  public:
   Search(const std::string& path, const std::string& where) : segments_(segments_of(path)), where_(where) {}
@@ -155,6 +145,16 @@ void add(YamlNode& node, const YamlNode& value, const std::string& here) {
 }
 
 }  // namespace
+
+std::vector<std::string> segments_of(const std::string& path) {
+  std::vector<std::string> out(1);
+  for (const char c : path)
+    if (c == '.')
+      out.emplace_back();
+    else
+      out.back() += c;
+  return out;
+}
 
 std::vector<Place> places(const YamlNode& root, const std::string& path, const std::string& where) {
   if (path.empty()) throw InputError(where + "the path is empty");

@@ -12,6 +12,9 @@ namespace deflect {
 /// A place in a tree: the index of the child at each level.
 using Place = std::vector<std::size_t>;
 
+/// What stands between the dots.
+std::vector<std::string> segments_of(const std::string& path);
+
 /// The places a path means, several where it holds "*". A list of laws that has one element lets its index be left
 /// out. Among the entries that "*" stands for, those of another kind than the path's fields (a joint has no
 /// bending_factor) are left out, as long as one entry has them. InputError, beginning with `where` and the path as

@@ -15,17 +15,6 @@ namespace {
 
 constexpr int elements = 2;  // per member
 
-frame::MemberDivision division_of(const Mechanism& m) {
-  std::vector<double> at;
-  for (int i = 0; i <= elements; ++i) at.push_back(static_cast<double>(i) / elements);
-  frame::MemberDivision out;
-  const Configuration home = configure(m, home_pose(m));
-  for_each_part(home.legs, [&](const auto& part) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, PlacedMember>) out[part.part] = at;
-  });
-  return out;
-}
-
 /// The first three loads of each pose of a random plan, halved moments about x, y, z added by turns; at 23 °C.
 Measurements new_poses(const Mechanism& m, std::uint64_t seed) {
   const Measurements many = campaign("random", m, force, seed);
@@ -92,7 +81,7 @@ Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::st
   simulation.seed = seed;
   simulation.sigma_u = sigma_u;
   if (temperature) simulation.temperature = 22, simulation.swing = 2;
-  simulation.division = division_of(m);
+  simulation.division = frame::equal_division(configure(m, home_pose(m)), elements);
   simulation.threads = 1;
   readings = campaign(name, m, force, seed);
   healthy = simulate(m, readings, simulation);

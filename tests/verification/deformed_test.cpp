@@ -13,17 +13,6 @@
 namespace deflect {
 namespace {
 
-frame::MemberDivision divided(const Configuration& c, int elements) {
-  frame::MemberDivision division;
-  for_each_part(c.legs, [&](const auto& part) {
-    if constexpr (requires { part.section; }) {
-      division[part.part].clear();
-      for (int i = 0; i <= elements; ++i) division[part.part].push_back(static_cast<double>(i) / elements);
-    }
-  });
-  return division;
-}
-
 /// |a − b| / |b|, rotations weighed by a length.
 double difference(const Vector6& a, const Vector6& b, double length) {
   Vector6 w = Vector6::Ones();
@@ -54,7 +43,7 @@ constexpr double rounding = 4 * 2.2e-16 * 65536;
 /// By the MSA with 8 and 16 elements in each member, whose errors fall by 4, and what these leave taken off.
 Vector6 refined(const Configuration& c, const Vector6& F, Geometry geometry) {
   const auto by = [&](int elements) {
-    const frame::MsaSolution s = frame::MsaModel(c, divided(c, elements)).solve(F, geometry);
+    const frame::MsaSolution s = frame::MsaModel(c, frame::equal_division(c, elements)).solve(F, geometry);
     EXPECT_TRUE(s.state.converged);
     return s.displacement;
   };
@@ -106,7 +95,7 @@ TEST_P(DeformedDevice, TheMsaSettlesAsItsElementsAreRefined) {
     for (const Vector6& F : loads()) {
       std::vector<Vector6> d;
       for (const int elements : {4, 8, 16})
-        d.push_back(frame::MsaModel(c, divided(c, elements)).solve(F, geometry).displacement);
+        d.push_back(frame::MsaModel(c, frame::equal_division(c, elements)).solve(F, geometry).displacement);
       EXPECT_LE((d[1] - d[2]).norm(), (d[0] - d[1]).norm() / 3.5 + rounding * d[2].norm());
     }
 }
@@ -114,7 +103,7 @@ TEST_P(DeformedDevice, TheMsaSettlesAsItsElementsAreRefined) {
 // Stiffness by both theories, the stresses of the load in it, to a share of what these change, and its own rounding.
 TEST_P(DeformedDevice, StiffnessAgreesAsTheDisplacementDoes) {
   const analytic::AnalyticModel a(c);
-  frame::MsaModel f(c, divided(c, 16));
+  frame::MsaModel f(c, frame::equal_division(c, 16));
   for (const Geometry geometry : {Geometry::second_order, Geometry::finite})
     for (const Vector6& F : loads()) {
       const Matrix6 of_a = a.stiffness(a.solve(F, geometry)), linear = a.stiffness(a.solve(F));

@@ -109,17 +109,6 @@ SimulationOptions options_of(const Arguments& a) {
 }
 
 /// Every member in `elements` equal parts.
-frame::MemberDivision division_of(const Mechanism& m, int elements) {
-  std::vector<double> at;
-  for (int i = 0; i <= elements; ++i) at.push_back(static_cast<double>(i) / elements);
-  frame::MemberDivision out;
-  const Configuration home = configure(m, home_pose(m));
-  for_each_part(home.legs, [&](const auto& part) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, PlacedMember>) out[part.part] = at;
-  });
-  return out;
-}
-
 Measurements plan_of(const Arguments& a, const Mechanism& m, std::uint64_t seed) {
   const bool named = std::any_of(std::begin(campaign_names), std::end(campaign_names),
                                  [&](const char* name) { return a.campaign == name; });
@@ -141,7 +130,7 @@ void run(const Arguments& a) {
     if (effect.effect->name == "geometric_nonlinearity") o.geometry = m.geometry;
     hidden += fmt::format("{}{} ({})", hidden.empty() ? "" : ", ", effect.effect->name, site_of(effect));
   }
-  o.division = division_of(m, whole("--elements", a.elements, 1, 1000));
+  o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));
   const Measurements data = simulate(m, std::move(plan), o);
   write_measurements(a.out, data);
   fmt::print("{}: {} readings at {} poses of {}{}, seed {}\n", a.out, data.readings.size(), data.poses.size(), m.name,

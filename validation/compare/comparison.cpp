@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "msa/base/error.h"
+#include "validation/compare/columns.h"
 #include "validation/compare/errors_by_group.h"
 #include "validation/compare/findings.h"
 #include "validation/compare/outliers.h"
@@ -72,19 +73,6 @@ double expected_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector
   return n > 0 ? std::sqrt(squares / n) : 0;
 }
 
-/// All patterns side by side.
-MatrixX all_columns(const std::vector<MatrixX>& patterns, Eigen::Index rows) {
-  Eigen::Index columns = 0;
-  for (const MatrixX& p : patterns) columns += p.cols();
-  MatrixX out(rows, columns);
-  columns = 0;
-  for (const MatrixX& p : patterns) {
-    out.middleCols(columns, p.cols()) = p;
-    columns += p.cols();
-  }
-  return out;
-}
-
 }  // namespace
 
 double held_out_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma, const VectorX& r,
@@ -130,7 +118,7 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   const std::vector<Pattern> patterns = patterns_of(s);
   std::vector<MatrixX> columns;
   for (const Pattern& p : patterns) columns.push_back(rows_of(s.values, p.by_reading));
-  const MatrixX all = all_columns(columns, c.residual.size());
+  const MatrixX all = side_by_side(columns, c.residual.size());
 
   // A linear model leaves the deformed shape out, which is known in size: what follows looks for other things.
   VectorX r = c.residual, shape;

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "validation/compare/as_built.h"
+#include "validation/compare/columns.h"
 #include "validation/compare/parallel.h"
 #include "validation/compare/prediction.h"
 #include "validation/compare/tail.h"
@@ -193,10 +194,7 @@ double Uncertainty::scale_of_tolerances(const VectorX& residual, const MatrixX& 
   MatrixX A = A_;
   VectorX r = whitened_by_noise(residual);
   if (beside.cols() > 0) {
-    Eigen::ColPivHouseholderQR<MatrixX> qr;
-    qr.setThreshold(1e-8);
-    qr.compute(whitened_by_noise(beside));
-    const MatrixX Q = qr.householderQ() * MatrixX::Identity(A.rows(), qr.rank());
+    const MatrixX Q = orthonormal(whitened_by_noise(beside), 1e-8);
     A -= Q * (Q.transpose() * A);
     r -= Q * (Q.transpose() * r);
   }

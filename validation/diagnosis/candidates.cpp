@@ -11,38 +11,55 @@
 namespace deflect {
 namespace {
 
+constexpr double out_of_question = -1e9;           // ln of the odds of what is there already, or cannot be
 constexpr double alike = 0.999;                    // cosine from which signatures are one
 constexpr double near_nothing = 6, hopeless = 30;  // gains in χ² that are not looked into
 constexpr double bent = 8;                         // that a fit may gain beyond what the signature says, where small
 constexpr double of_its_own = 0.05;                // share of a signature that others must leave it
 
-std::vector<double> shared_priors(const std::vector<Signature>& all) {
-  std::map<std::string, double> places;
-  for (const Signature& s : all) places[s.effect.effect->name] += 1;
-  std::vector<std::size_t> cluster(all.size());
+/// Per signature the first one that does all but the same.
+std::vector<std::size_t> classes_of(const std::vector<Signature>& all) {
+  std::vector<std::size_t> out(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    cluster[i] = i;
+    out[i] = i;
     for (std::size_t k = 0; k < i; ++k)
       if (all[i].amplitudes() == all[k].amplitudes() && all[i].shaped == all[k].shaped &&
           cosine(all[i], all[k]) > alike) {
-        cluster[i] = cluster[k];
+        out[i] = out[k];
         break;
       }
   }
-  std::map<std::size_t, double> largest, sum;
-  std::vector<double> weight(all.size());
+  return out;
+}
+
+std::vector<double> summed(const std::vector<double>& x, const std::vector<std::size_t>& classes) {
+  std::vector<double> sum(x.size(), 0), out;
+  for (std::size_t i = 0; i < x.size(); ++i) sum[classes[i]] += x[i];
+  for (const std::size_t c : classes) out.push_back(sum[c]);
+  return out;
+}
+
+std::vector<double> shared_priors(const std::vector<Signature>& all, const std::vector<std::size_t>& classes) {
+  std::map<std::string, double> places;
+  for (const Signature& s : all) places[s.effect.effect->name] += 1;
+  std::vector<double> weight, largest(all.size(), 0);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    weight[i] = 1 / places[all[i].effect.effect->name];
-    largest[cluster[i]] = std::max(largest[cluster[i]], weight[i]);
-    sum[cluster[i]] += weight[i];
+    weight.push_back(1 / places[all[i].effect.effect->name]);
+    largest[classes[i]] = std::max(largest[classes[i]], weight[i]);
   }
+  const std::vector<double> together = summed(weight, classes);
   double total = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    weight[i] *= largest[cluster[i]] / sum[cluster[i]];
+    weight[i] *= largest[classes[i]] / together[i];
     total += weight[i];
   }
   for (double& w : weight) w *= Candidates::prior_missing * (1 - Candidates::prior_unknown) / total;
   return weight;
+}
+
+/// Physics lets it act to one side only, and the residual asks for the other.
+bool wrong_way(const Signature& s, const VectorX& residual) {
+  return !s.shaped && s.one_sided && s.at_start.dot(residual) > 0;
 }
 
 bool same(const PlacedEffect& a, const PlacedEffect& b) { return a.effect == b.effect && a.leg == b.leg; }
@@ -55,19 +72,31 @@ Candidates::Candidates(const Observations& o, const std::vector<Signature>& all,
       signatures_(all),
       threads_(threads),
       progress_(std::move(progress)),
-      priors_(shared_priors(all)) {}
+      classes_(classes_of(all)),
+      priors_(shared_priors(all, classes_)),
+      class_priors_(summed(priors_, classes_)) {}
 
-double Candidates::log_odds(std::size_t i, double gain) const {
+double Candidates::log_odds(std::size_t i, double gain, double prior) const {
   const Signature& s = signatures_[i];
   // Of the shapes tried one in three, or so, does what the best does.
   const double shape = s.shaped ? std::log(3.0) : 0;
-  return std::log(priors_[i] / (1 - prior_missing)) + log_evidence(gain, s.amplitudes(), s.one_sided) - shape;
+  return std::log(prior / (1 - prior_missing)) + log_evidence(gain, s.amplitudes(), s.one_sided) - shape;
 }
 
-double Candidates::log_odds_of(const PlacedEffect& e, double gain) const {
+double Candidates::class_log_odds_of(const PlacedEffect& e, double gain) const {
   for (std::size_t i = 0; i < signatures_.size(); ++i)
-    if (same(signatures_[i].effect, e)) return log_odds(i, gain);
-  return -1e9;
+    if (same(signatures_[i].effect, e)) return log_odds(i, gain, class_priors_[i]);
+  return out_of_question;
+}
+
+void Candidates::add_up_classes(std::vector<Candidate>& all) const {
+  std::vector<double> most(all.size(), out_of_question), sum(all.size(), 0);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].fit.found) most[classes_[i]] = std::max(most[classes_[i]], all[i].log_odds);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].fit.found) sum[classes_[i]] += std::exp(all[i].log_odds - most[classes_[i]]);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i].class_log_odds = all[i].fit.found ? most[classes_[i]] + std::log(sum[classes_[i]]) : out_of_question;
 }
 
 std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& so_far, double least) const {
@@ -81,7 +110,7 @@ std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& s
     c.hypothesis.push_back(s.effect);
     const bool there = std::any_of(before.begin(), before.end(), [&](const auto& p) { return same(p, s.effect); });
     allowed[i] = !there && own_share(s, so_far.signature) > of_its_own;
-    c.gain = allowed[i] ? most_gain(s, so_far.residual, so_far.signature) : 0;
+    c.gain = allowed[i] && !wrong_way(s, so_far.residual) ? most_gain(s, so_far.residual, so_far.signature) : 0;
     best = std::max(best, c.gain);
   }
   const double enough = std::max(near_nothing, 0.5 * best - hopeless);
@@ -89,16 +118,15 @@ std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& s
   for_each_case(out.size(), 1, threads_, [&](std::size_t i) {
     Candidate& c = out[i];
     const Signature& s = signatures_[i];
-    if (allowed[i] && c.gain >= enough && log_odds(i, 1.2 * c.gain + bent) > least) {
+    if (allowed[i] && c.gain >= enough && log_odds(i, 1.2 * c.gain + bent, class_priors_[i]) > least) {
       c.fit = fit(observations_, c.hypothesis, so_far.values, guess(s, so_far.residual));
       c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
-    } else if (!s.shaped && s.one_sided && s.at_start.dot(so_far.residual) > 0) {
-      c.gain = 0;
     }
-    c.log_odds = allowed[i] ? log_odds(i, c.gain) : -1e9;
+    c.log_odds = allowed[i] ? log_odds(i, c.gain, priors_[i]) : out_of_question;
     c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations_.numbers());
     if (progress_) progress_(++done, out.size());
   });
+  add_up_classes(out);
   return out;
 }
 

@@ -14,6 +14,9 @@ struct Candidate {
   Fit fit;                ///< not found: judged by its signature
   double gain = 0;        ///< in χ² over what is beside it
   double log_odds = 0;    ///< against what is beside it alone: ln(prior · evidence)
+  /// The same for all together that were fitted and do the same to these data: what is chosen by, so that an entry
+  /// registered twice changes nothing.
+  double class_log_odds = 0;
   double probability = 0;
   double rmse = 0, held_out = 0;  ///< m
   double chi2_per_dof = 0;
@@ -31,20 +34,22 @@ class Candidates {
   /// near the best and whose log_odds can reach `least`; of two that do all but the same only one can be there.
   std::vector<Candidate> beside(const Hypothesis&, const Fit&, double least) const;
 
-  /// ln(prior · evidence) of one of the effects against its absence.
-  double log_odds_of(const PlacedEffect&, double gain) const;
+  /// ln(prior · evidence) of all that do the same as one of the effects, against their absence.
+  double class_log_odds_of(const PlacedEffect&, double gain) const;
 
   static constexpr double prior_missing = 0.8, prior_unknown = 0.1;  ///< the second as a share of the first
 
  private:
-  double log_odds(std::size_t i, double gain) const;
+  double log_odds(std::size_t i, double gain, double prior) const;
+  void add_up_classes(std::vector<Candidate>&) const;
 
   const Observations& observations_;
   const std::vector<Signature>& signatures_;
   int threads_;
   std::function<void(std::size_t, std::size_t)> progress_;
-  /// Places of an entry share what the entry has, entries that do the same to these data have one share together.
-  std::vector<double> priors_;
+  std::vector<std::size_t> classes_;  ///< per signature the first one that does the same to these data
+  /// Places of an entry share what the entry has; those of one class have one share together.
+  std::vector<double> priors_, class_priors_;
 };
 
 }  // namespace deflect

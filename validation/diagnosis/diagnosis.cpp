@@ -17,10 +17,6 @@ constexpr double sure = 0.7;    // probability from which something unknown is t
 constexpr std::size_t quality_of = 5;
 constexpr double left_over_evidence = 2, left_over_p = 3e-3;
 
-Mechanism device_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
-  return h.empty() ? o.device() : PreparedEffects(o.device(), h)(values);
-}
-
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
   q.chi2_per_dof = f.chi2 / std::max(1.0, static_cast<double>(o.numbers()) - static_cast<double>(f.values.size()));
@@ -71,20 +67,13 @@ Selection beside_unknown(const Observations& o, const Candidates& candidates, Se
   const Discrepancy left(o.whitened_patterns(), s.fit.signature);
   const Discrepancy::Size size = left.likeliest(s.fit.residual);
   for (std::size_t i = s.effects.size(); i-- > 0;) {
-    Hypothesis others = s.effects;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    VectorX values = s.fit.values;
-    Eigen::Index at = 0;
-    for (std::size_t k = 0; k < i; ++k) at += static_cast<Eigen::Index>(s.effects[k].effect->parameters.size());
-    const auto own = static_cast<Eigen::Index>(s.effects[i].effect->parameters.size());
-    VectorX rest(values.size() - own);
-    rest << values.head(at), values.tail(values.size() - at - own);
-    const Fit without = fit_of_all(o, others, rest);
+    auto [others, values] = without(s.effects, s.fit.values, i);
+    Fit rest = fit_of_all(o, others, values);
     const double gain =
-        all.whitened(without.residual, size).squaredNorm() - all.whitened(s.fit.residual, size).squaredNorm();
-    if (candidates.log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
-    s.effects = others;
-    s.fit = without;
+        all.whitened(rest.residual, size).squaredNorm() - all.whitened(s.fit.residual, size).squaredNorm();
+    if (candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
+    s.effects = std::move(others);
+    s.fit = std::move(rest);
     if (i < s.ties.size()) s.ties.erase(s.ties.begin() + static_cast<std::ptrdiff_t>(i));
   }
   return s;

@@ -1,10 +1,10 @@
 #include "validation/diagnosis/discrepancy.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "validation/compare/columns.h"
 #include "validation/compare/finding_text.h"
 #include "validation/compare/tail.h"
 #include "validation/diagnosis/evidence.h"
@@ -15,18 +15,6 @@ namespace {
 const std::vector<double>& scales() {
   static const std::vector<double> all = log_spaced(1e-3, 10, 40);
   return all;
-}
-
-MatrixX side_by_side(const std::vector<MatrixX>& parts, Eigen::Index rows) {
-  Eigen::Index columns = 0;
-  for (const MatrixX& p : parts) columns += p.cols();
-  MatrixX out(rows, columns);
-  columns = 0;
-  for (const MatrixX& p : parts) {
-    out.middleCols(columns, p.cols()) = p;
-    columns += p.cols();
-  }
-  return out;
 }
 
 MatrixX by_sites(const ResidualStudy& s) {
@@ -99,11 +87,7 @@ MatrixX by_loads(const ResidualStudy& s) {
 Families discrepancy_families(const ResidualStudy& s) { return {by_sites(s), by_poses(s), by_loads(s)}; }
 
 Discrepancy::Discrepancy(const Families& families, const MatrixX& fitted) {
-  MatrixX Q(families.front().rows(), 0);
-  if (fitted.cols() > 0) {
-    const Eigen::ColPivHouseholderQR<MatrixX> qr(fitted);
-    Q = qr.householderQ() * MatrixX::Identity(fitted.rows(), qr.rank());
-  }
+  const MatrixX Q = fitted.cols() > 0 ? orthonormal(fitted) : MatrixX(families.front().rows(), 0);
   for (const MatrixX& columns : families) {
     MatrixX B = columns;
     const double length = std::sqrt(static_cast<double>(B.rows()));

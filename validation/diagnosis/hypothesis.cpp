@@ -190,6 +190,23 @@ Fit fit_of_all(const Observations& o, const Hypothesis& h, const VectorX& values
   return null;
 }
 
+std::pair<Hypothesis, VectorX> without(Hypothesis h, const VectorX& values, std::size_t i) {
+  const auto sizes = [&](std::size_t first, std::size_t last) {
+    std::size_t sum = 0;
+    for (std::size_t k = first; k < last; ++k) sum += h[k].effect->parameters.size();
+    return static_cast<Eigen::Index>(sum);
+  };
+  const Eigen::Index before = sizes(0, i), after = sizes(i + 1, h.size());
+  VectorX rest(before + after);
+  rest << values.head(before), values.tail(after);
+  h.erase(h.begin() + static_cast<std::ptrdiff_t>(i));
+  return {std::move(h), std::move(rest)};
+}
+
+Mechanism device_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
+  return h.empty() ? o.device() : PreparedEffects(o.device(), h)(values);
+}
+
 std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::size_t i) {
   const EffectParameter& p = *parameters_of(h).at(i);
   const auto at = static_cast<Eigen::Index>(i);

@@ -32,6 +32,12 @@ Fit fit(const Observations&, const Hypothesis&, const VectorX& from = {}, const 
 /// The same from values of all of them, without a search for starts; of no effect: the null.
 Fit fit_of_all(const Observations&, const Hypothesis&, const VectorX& values);
 
+/// What is left when effect i is taken away, and the values of that.
+std::pair<Hypothesis, VectorX> without(Hypothesis, const VectorX& values, std::size_t i);
+
+/// The device with the effects at those values.
+Mechanism device_with(const Observations&, const Hypothesis&, const VectorX& values);
+
 /// 95 % interval of parameter i: in the logarithm for a logarithmic scale, within the bounds.
 std::pair<double, double> interval95(const Hypothesis&, const Fit&, std::size_t i);
 

@@ -13,24 +13,16 @@ constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; o
 constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
 constexpr double never = -1e6;
 
-/// Values of effect i of a hypothesis.
-VectorX values_of(const Hypothesis& h, const VectorX& values, std::size_t i) {
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < i; ++k) at += static_cast<Eigen::Index>(h[k].effect->parameters.size());
-  return values.segment(at, static_cast<Eigen::Index>(h[i].effect->parameters.size()));
-}
-
 class Search {
  public:
   Search(Observations& o, const Candidates& c) : o_(o), candidates_(c) { s_.fit = fit_of_all(o, {}, VectorX(0)); }
 
   /// The best candidate beside what is there, if it is called for.
   bool add(const std::vector<Candidate>& all, double least) {
-    const auto best = std::max_element(all.begin(), all.end(),
-                                       [](const Candidate& a, const Candidate& b) { return odds(a) < odds(b); });
-    if (best == all.end() || !(odds(*best) > least)) return false;
-    if (!s_.effects.empty() && o_.held_out_rmse(device(best->hypothesis, best->fit.values)) >
-                                   o_.held_out_rmse(device(s_.effects, s_.fit.values)))
+    const auto best = std::max_element(all.begin(), all.end(), less_likely);
+    if (best == all.end() || !(best->class_log_odds > least)) return false;
+    if (!s_.effects.empty() && o_.held_out_rmse(device_with(o_, best->hypothesis, best->fit.values)) >
+                                   o_.held_out_rmse(device_with(o_, s_.effects, s_.fit.values)))
       return false;
     grant(best->hypothesis, best->fit.values);
     return true;
@@ -42,34 +34,23 @@ class Search {
   bool reconsider() {
     s_.ties.assign(s_.effects.size(), {});
     for (std::size_t i = 0; i < s_.effects.size(); ++i) {
-      Hypothesis others = s_.effects;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      VectorX values(0);
-      for (std::size_t k = 0; k < s_.effects.size(); ++k)
-        if (k != i) {
-          const VectorX own = values_of(s_.effects, s_.fit.values, k);
-          values.conservativeResize(values.size() + own.size());
-          values.tail(own.size()) = own;
-        }
+      const auto [others, values] = without(s_.effects, s_.fit.values, i);
       const Fit rest = fit_of_all(o_, others, values);
       const std::vector<Candidate> all = candidates_.beside(others, rest, never);
-      std::vector<double> log_odds;
-      std::size_t best = 0, own = 0;
-      for (std::size_t k = 0; k < all.size(); ++k) {
-        log_odds.push_back(odds(all[k]));
-        if (log_odds[k] > log_odds[best]) best = k;
-        const PlacedEffect& e = all[k].added();
-        if (e.effect == s_.effects[i].effect && e.leg == s_.effects[i].leg) own = k;
-      }
-      if (!others.empty() && log_odds[best] < called_for) {
+      const auto own = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
+        return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
+      });
+      const auto best = std::max_element(all.begin(), all.end(), less_likely);
+      if (!others.empty() && best->class_log_odds < called_for) {
         grant(others, rest.values);
         return true;
       }
-      if (log_odds[best] > log_odds[own] + better) {
-        grant(all[best].hypothesis, all[best].fit.values);
+      const double more = best->class_log_odds - own->class_log_odds;
+      if (more > better || (more == 0 && best->log_odds > own->log_odds + better)) {
+        grant(best->hypothesis, best->fit.values);
         return true;
       }
-      s_.ties[i] = tie(all, log_odds);
+      s_.ties[i] = tie(all);
     }
     return false;
   }
@@ -78,19 +59,20 @@ class Search {
   std::size_t size() const { return s_.effects.size(); }
 
  private:
-  static double odds(const Candidate& c) { return c.fit.found ? c.log_odds : never; }
-
-  Mechanism device(const Hypothesis& h, const VectorX& values) const {
-    return h.empty() ? o_.device() : PreparedEffects(o_.device(), h)(values);
+  /// By what is the same to these data, then by the entry's own.
+  static bool less_likely(const Candidate& a, const Candidate& b) {
+    return std::pair(a.class_log_odds, a.log_odds) < std::pair(b.class_log_odds, b.log_odds);
   }
 
   void grant(const Hypothesis& h, const VectorX& values) {
-    o_.take_for_granted(device(h, values));
+    o_.take_for_granted(device_with(o_, h, values));
     s_.effects = h;
     s_.fit = fit_of_all(o_, h, values);
   }
 
-  static std::vector<std::string> tie(const std::vector<Candidate>& all, const std::vector<double>& log_odds) {
+  static std::vector<std::string> tie(const std::vector<Candidate>& all) {
+    std::vector<double> log_odds;
+    for (const Candidate& c : all) log_odds.push_back(c.fit.found ? c.log_odds : never);
     const std::vector<double> among = normalised(log_odds);
     std::vector<std::size_t> by(all.size());
     for (std::size_t i = 0; i < by.size(); ++i) by[i] = i;

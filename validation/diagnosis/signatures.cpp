@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "validation/compare/columns.h"
 #include "validation/compare/parallel.h"
 #include "validation/compare/tail.h"
 #include "validation/measurement/random.h"
@@ -55,11 +56,6 @@ MatrixX directions(const Observations& o, const PlacedEffect& e, const VectorX& 
   MatrixX out(o.null_residual().size(), static_cast<Eigen::Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = columns[i];
   return out;
-}
-
-MatrixX orthonormal(const MatrixX& X) {
-  const Eigen::ColPivHouseholderQR<MatrixX> qr(X);
-  return qr.householderQ() * MatrixX::Identity(X.rows(), qr.rank());
 }
 
 /// Those that are not 0.
@@ -159,13 +155,7 @@ double most_gain(const Signature& s, const VectorX& residual, const MatrixX& fit
     }
     return most;
   }
-  const Eigen::ColPivHouseholderQR<MatrixX> qr = [&] {
-    Eigen::ColPivHouseholderQR<MatrixX> out;
-    out.setThreshold(1e-3);
-    out.compute(columns);
-    return out;
-  }();
-  return (qr.householderQ().transpose() * residual).head(qr.rank()).squaredNorm();
+  return (orthonormal(columns, 1e-3).transpose() * residual).squaredNorm();
 }
 
 double own_share(const Signature& s, const MatrixX& fitted) {

@@ -98,16 +98,6 @@ void require_there(const YamlNode& tree, const std::string& path, const Mechanis
   places(tree_of(leg_parts(m, leg), {}, m), path.substr(bracket + 2), path.substr(0, bracket + 2));
 }
 
-std::vector<std::string> segments_of(const std::string& path) {
-  std::vector<std::string> out(1);
-  for (const char c : path)
-    if (c == '.')
-      out.emplace_back();
-    else
-      out.back() += c;
-  return out;
-}
-
 /// What stands at `path` stands inside what `variation` replaced.
 bool inside(const std::string& path, const std::string& variation) {
   const std::vector<std::string> at = segments_of(path), outer = segments_of(variation);

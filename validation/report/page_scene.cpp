@@ -23,16 +23,6 @@ Json position(const Vector3& p) {
   return {rounded(mm * p.x(), 1e-4), rounded(mm * p.y(), 1e-4), rounded(mm * p.z(), 1e-4)};
 }
 
-frame::MemberDivision division_of(const Configuration& c) {
-  std::vector<double> at;
-  for (int i = 0; i <= elements; ++i) at.push_back(static_cast<double>(i) / elements);
-  frame::MemberDivision out;
-  for_each_part(c.legs, [&](const auto& part) {
-    if constexpr (requires { part.length(); }) out[part.part] = at;
-  });
-  return out;
-}
-
 class Drawing {
  public:
   Drawing(const Configuration& c, const frame::MechanismModel& built, const std::vector<ChangedPart>& guilty)
@@ -140,7 +130,7 @@ Json scene_json(const std::vector<SceneStand>& stands, const std::vector<Vector6
                 const std::vector<ChangedPart>& guilty, Geometry geometry) {
   Json scene;
   for (const SceneStand& stand : stands) {
-    MsaAtPose msa(stand.configuration, division_of(stand.configuration), "pose " + stand.label);
+    MsaAtPose msa(stand.configuration, frame::equal_division(stand.configuration, elements), "pose " + stand.label);
     const auto& nodes = msa.mechanism().model.nodes;
     if (scene.is_null()) {
       scene = Drawing(stand.configuration, msa.mechanism(), guilty).json();
