@@ -44,20 +44,21 @@ Vector3 translation(const VirtualChain& whole, const Linearised& l, Geometry geo
 
 /// What the freedoms that the whole chain has under a known wrench resist with.
 struct Tangent {
-  Tangent(const Linearised& l, const Vector3& moment)
-      : J(l.J * l.Z), A(l.Z.transpose() * (l.K - l.H) * l.Z), stable(l.stable) {
-    if (A.size() == 0) return;
-    const VectorX s = A.diagonal().cwiseAbs().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-    const MatrixX scaled = s.asDiagonal() * A * s.asDiagonal();
-    stable = stable && Eigen::SelfAdjointEigenSolver<MatrixX>(scaled, Eigen::EigenvaluesOnly).eigenvalues()(0) > 1e-13;
+  Tangent(const Linearised& l, const Vector3& moment) : J(l.J * l.Z), A(l.Z.transpose() * (l.K - l.H) * l.Z) {
     const MatrixX spins = J.bottomRows<3>();
     A -= 0.5 * spins.transpose() * skew(moment) * spins;
   }
 
   MatrixX solve(const MatrixX& right) const { return A.size() == 0 ? right : MatrixX(A.partialPivLu().solve(right)); }
+  /// Without moment.
+  bool positive() const {
+    if (A.size() == 0) return true;
+    const VectorX s = A.diagonal().cwiseAbs().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+    const MatrixX scaled = s.asDiagonal() * A * s.asDiagonal();
+    return Eigen::SelfAdjointEigenSolver<MatrixX>(scaled, Eigen::EigenvaluesOnly).eigenvalues()(0) > 1e-13;
+  }
 
   MatrixX J, A;
-  bool stable;
 };
 
 /// Newton's method in finite motions needs the stiffness by spins of a dead moment; second order solves by K_E + K_G.
@@ -97,7 +98,9 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit) {
 
 /// Reads off the state what is asked of it; false where it is not stable.
 bool conclude(Deformed& d) {
-  const Linearised l = d.whole.linearise(d.outlook);
+  Outlook asked = d.outlook;
+  asked.judged = true;
+  const Linearised l = d.whole.linearise(asked);
   const Geometry geometry = d.outlook.geometry;
   d.translation = translation(d.whole, l, geometry);
   d.turning = l.end.D;
@@ -105,7 +108,16 @@ bool conclude(Deformed& d) {
   const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), geometry));
   d.leg_wrenches.clear();
   for (const VirtualChain& leg : legs_of(d.whole).branches) d.leg_wrenches.push_back(axes * leg.F);
-  return Tangent(l, Vector3::Zero()).stable;
+  return l.stable && Tangent(l, Vector3::Zero()).positive();
+}
+
+bool all_fit(const std::vector<PlacedLeg>& legs) {
+  return std::all_of(legs.begin(), legs.end(), [](const PlacedLeg& leg) {
+    return leg.misfit.isZero(0) && std::all_of(leg.parts.begin(), leg.parts.end(), [](const PlacedPart& part) {
+             const auto* group = std::get_if<PlacedParallel>(&part);
+             return !group || all_fit(group->branches);
+           });
+  });
 }
 
 /// From the state as it is to all of the misfits under F, where F is given to a state that has them already.
@@ -144,8 +156,9 @@ Deformed deform(const Configuration& c, Geometry geometry, const Vector6& F) {
   d.whole = virtual_chain_of({"the mechanism", {c.base, legs, c.tool}}, c.pose.p_WT, c.pose.p_WT, c.size);
   d.outlook.geometry = geometry;
   d.leg_wrenches.assign(c.legs.size(), Vector6::Zero());
-  approach(d, F, true);
-  if (d.converged && !F.isZero(0)) approach(d, F, false);
+  const bool fits = all_fit(c.legs);
+  if (!fits || F.isZero(0)) approach(d, F, true);
+  if ((fits || d.converged) && !F.isZero(0)) approach(d, F, false);
   return d;
 }
 

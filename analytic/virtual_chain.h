@@ -67,8 +67,9 @@ struct Tip {
 /// How the state is to be looked at.
 struct Outlook {
   Geometry geometry = Geometry::finite;
-  double least = 0;   ///< N, Nm: forces below count as this in the compliance of contacts
-  double misfit = 1;  ///< share of the misfits that is in place
+  double least = 0;     ///< N, Nm: forces below count as this in the compliance of contacts
+  double misfit = 1;    ///< share of the misfits that is in place
+  bool judged = false;  ///< whether the state is stable is asked for
 };
 
 /// How a body is held, linearised about the state: F = F0 + K t + B μ where Bᵀt = b, t = [δ; ψ] its further motion.
@@ -78,7 +79,7 @@ struct Restraint {
   Matrix6X B = Matrix6X(6, 0);
   VectorX b = VectorX(0);
   Vector3 m = Vector3::Zero();  ///< moment of the state: by spins the stiffness is K − ½[m]×
-  bool stable = true;           ///< while the body is held still
+  bool stable = true;           ///< while the body is held still; known where the outlook asks for it
 };
 
 /// How far freedoms have moved, and in the last step; the largest of them, rotations times length (m).

@@ -113,7 +113,8 @@ Restraint VirtualChain::restrain(const Tip& end, const Outlook& outlook) {
   held.F0.tail<3>() -= 0.5 * held.m.cross(c.tail<3>());
   held.B = W.asDiagonal() * B;
   held.b = -held.B.transpose() * c;
-  held.stable = l.stable && negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
+  held.stable = l.stable;
+  if (outlook.judged && held.stable) held.stable = negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
   return held;
 }
 

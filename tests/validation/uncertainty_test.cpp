@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <cmath>
 
 #include "tests/support/devices.h"
+#include "validation/compare/held_out.h"
 #include "validation/compare/prediction.h"
 #include "validation/measurement/campaign.h"
 #include "validation/measurement/configure_all.h"
@@ -58,6 +61,37 @@ TEST(Uncertainty, WeighsByTheInverseOfTheWholeCovariance) {
   const MatrixX wanted = X.transpose() * inverse * Y;
   EXPECT_LT((u.inner(X, Y) - wanted).norm(), 1e-10 * wanted.norm());
   EXPECT_EQ(u.count(), 36u);
+}
+
+// The tolerances' share of a pose is its expectation given the residuals at the others: A_p Aᵀ_o Σ_oo⁻¹ r_o.
+TEST(HeldOut, LearnsTolerancesAtTheOtherPoses) {
+  Small s;
+  Measurements data;
+  data.poses.resize(4);
+  for (std::size_t i = 0; i < 12; ++i) {
+    data.readings.emplace_back();
+    data.readings.back().pose = i / 3;
+  }
+  ResidualStudy study;
+  study.data = &data;
+  study.values = s.values;
+  std::vector<bool> aside(12, false);
+  aside[7] = true;
+  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01, aside);
+  const VectorX r = s.A * s.matrix(1).topRows(5) + 1e-6 * s.matrix(1);
+  const MatrixX all = s.dense(0.01);
+  double squares = 0, n = 0;
+  for (std::size_t pose = 0; pose < 4; ++pose) {
+    std::vector<Eigen::Index> own, others;
+    for (std::size_t i = 0; i < 36; ++i)
+      if (i / 3 != 7) (i / 9 == pose ? own : others).push_back(static_cast<Eigen::Index>(i));
+    const MatrixX A = s.A(own, Eigen::all) * s.A(others, Eigen::all).transpose();
+    const VectorX left = r(own) - A * MatrixX(all(others, others)).llt().solve(VectorX(r(others)));
+    squares += left.squaredNorm();
+    n += static_cast<double>(own.size());
+  }
+  const double wanted = std::sqrt(squares / n);
+  EXPECT_NEAR(HeldOut(study, u, aside).rmse(r), wanted, 1e-9 * wanted);
 }
 
 TEST(Uncertainty, CovarianceOfContrastsIsThatOfTheirReadings) {

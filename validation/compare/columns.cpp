@@ -17,6 +17,7 @@ MatrixX side_by_side(const std::vector<MatrixX>& parts, Eigen::Index rows) {
 }
 
 MatrixX orthonormal(const MatrixX& X, double threshold) {
+  if (X.cols() == 0) return X;
   Eigen::ColPivHouseholderQR<MatrixX> qr;
   if (threshold > 0) qr.setThreshold(threshold);
   qr.compute(X);

@@ -10,6 +10,7 @@
 #include "validation/compare/columns.h"
 #include "validation/compare/errors_by_group.h"
 #include "validation/compare/findings.h"
+#include "validation/compare/held_out.h"
 #include "validation/compare/outliers.h"
 #include "validation/compare/plausibility.h"
 #include "validation/compare/residual_study.h"
@@ -75,27 +76,6 @@ double expected_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector
 
 }  // namespace
 
-double held_out_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma, const VectorX& r,
-                     const std::vector<bool>& set_aside) {
-  const std::size_t poses = s.data->poses.size(), folds = std::min<std::size_t>(10, poses);
-  double squares = 0;
-  std::size_t n = 0;
-  for (std::size_t fold = 0; fold < folds; ++fold) {
-    const auto asked = [&](std::size_t i) { return s.data->readings[i].pose % folds == fold; };
-    std::vector<bool> hidden = set_aside;
-    for (std::size_t i = 0; i < hidden.size(); ++i) hidden[i] = hidden[i] || asked(i);
-    VectorX left = r;  // where there is one pose, nothing is learnt at others
-    if (poses > 1)
-      left -= A * Uncertainty(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, hidden).nuisances(r);
-    for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (asked(s.values[i].reading) && !set_aside[s.values[i].reading] && s.values[i].component < 3) {
-        squares += left(static_cast<Eigen::Index>(i)) * left(static_cast<Eigen::Index>(i));
-        ++n;
-      }
-  }
-  return n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0;
-}
-
 Comparison compare(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) {
   if (data.readings.size() < 2)
     throw InputError(fmt::format("{}: one reading says nothing of a model: two or more are wanted", data.origin));
@@ -142,7 +122,7 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   c.p_value = chi_squared_tail(freedoms, chi2);
   c.sigma_u = root_mean_square(Eigen::Map<const VectorX>(c.sigma.data(), static_cast<Eigen::Index>(c.sigma.size())));
   c.noise_and_tolerances = expected_rmse(s, c.tolerances.A, c.sigma);
-  c.held_out = held_out_rmse(s, c.tolerances.A, c.sigma, c.residual, aside);
+  c.held_out = HeldOut(s, u, aside).rmse(c.residual);
   c.contrasts = contrast_tests(s, u, r, aside);
   for (std::size_t i = 0; i < patterns.size(); ++i) {
     PatternTest t{patterns[i].id, patterns[i].title, regress(u, r, columns[i]), 0};

@@ -84,9 +84,4 @@ struct ComparisonOptions {
 /// Throws InputError where the data are too few, ModelError, NumericalError as predict() does.
 Comparison compare(const Mechanism&, const Measurements&, const ComparisonOptions& = {});
 
-/// Rmse of translations (m) at each pose with the tolerances learnt at all others; poses in ten folds at most. A: as in
-/// ToleranceModel. Readings set aside neither teach nor count.
-double held_out_rmse(const ResidualStudy&, const MatrixX& A, const std::vector<double>& sigma, const VectorX& residual,
-                     const std::vector<bool>& set_aside);
-
 }  // namespace deflect

@@ -58,9 +58,12 @@ class Uncertainty {
   /// Numbers that are not set aside.
   std::size_t count() const { return count_; }
 
- private:
-  MatrixX whitened_by_noise(const MatrixX&) const;  // by cov(ε)
+  /// By cov(ε) alone; rows set aside are 0.
+  MatrixX whitened_by_noise(const MatrixX&) const;
+  const MatrixX& tolerances() const { return bare_A_; }
+  const MatrixX& tolerances_by_noise() const { return A_; }
 
+ private:
   struct Block {
     Eigen::Index first, size;
     MatrixX covariance, inverse_factor;  // and L⁻¹ of it, 0 where set aside

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "validation/compare/columns.h"
 #include "validation/compare/parallel.h"
 #include "validation/diagnosis/evidence.h"
 
@@ -102,6 +103,7 @@ void Candidates::add_up_classes(std::vector<Candidate>& all) const {
 std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& so_far, double least) const {
   std::vector<Candidate> out(signatures_.size());
   std::vector<char> allowed(out.size(), 1);
+  const MatrixX fitted = orthonormal(so_far.signature);
   double best = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Signature& s = signatures_[i];
@@ -109,8 +111,8 @@ std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& s
     c.hypothesis = before;
     c.hypothesis.push_back(s.effect);
     const bool there = std::any_of(before.begin(), before.end(), [&](const auto& p) { return same(p, s.effect); });
-    allowed[i] = !there && own_share(s, so_far.signature) > of_its_own;
-    c.gain = allowed[i] && !wrong_way(s, so_far.residual) ? most_gain(s, so_far.residual, so_far.signature) : 0;
+    allowed[i] = !there && own_share(s, fitted) > of_its_own;
+    c.gain = allowed[i] && !wrong_way(s, so_far.residual) ? most_gain(s, so_far.residual, fitted) : 0;
     best = std::max(best, c.gain);
   }
   const double enough = std::max(near_nothing, 0.5 * best - hopeless);

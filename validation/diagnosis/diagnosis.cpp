@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "validation/compare/columns.h"
 #include "validation/compare/findings.h"
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/diagnosis/evidence.h"
@@ -87,8 +88,9 @@ void describe_left_over(Diagnosis& d, const Observations& o, const std::vector<S
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
   d.pattern = left_over_pattern(o, device_with(o, found.effects, found.fit.values));
   d.localised = scan(o, found.fit, threads);
+  const MatrixX fitted = orthonormal(found.fit.signature);
   for (const Signature& s : all)
-    if (const double share = most_gain(s, found.fit.residual, found.fit.signature) / left; share > d.nearest_share) {
+    if (const double share = most_gain(s, found.fit.residual, fitted) / left; share > d.nearest_share) {
       d.nearest = name_of(s.effect);
       d.nearest_share = std::min(1.0, share);
     }

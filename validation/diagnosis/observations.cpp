@@ -48,6 +48,7 @@ void Observations::count_shape() { A_.rightCols<1>() = shape_known_to * shape_; 
 void Observations::weigh(const std::vector<bool>& aside) {
   aside_ = aside;
   uncertainty_ = uncertainty_of(comparison_, A_, aside_);
+  held_out_.emplace(comparison_.study, uncertainty_, aside_);
   null_ = whitened_residual(*device_);
 }
 
@@ -82,9 +83,7 @@ double Observations::rmse(const Mechanism& m) const {
   return n > 0 ? std::sqrt(squares / n) : 0;
 }
 
-double Observations::held_out_rmse(const Mechanism& m) const {
-  return deflect::held_out_rmse(comparison_.study, A_, comparison_.sigma, residual(m), aside_);
-}
+double Observations::held_out_rmse(const Mechanism& m) const { return held_out_->rmse(residual(m)); }
 
 std::vector<std::pair<std::string, double>> Observations::strained(const Mechanism& m) const {
   VectorX eta = uncertainty_.nuisances(residual(m));

@@ -1,7 +1,10 @@
 // What a diagnosis has to explain: the measured numbers with all that is known of their scatter.
 #pragma once
 
+#include <optional>
+
 #include "validation/compare/comparison.h"
+#include "validation/compare/held_out.h"
 #include "validation/diagnosis/discrepancy.h"
 
 namespace deflect {
@@ -12,6 +15,8 @@ namespace deflect {
 class Observations {
  public:
   Observations(const Mechanism&, const Measurements&, const ComparisonOptions&);
+  Observations(const Observations&) = delete;
+  Observations& operator=(const Observations&) = delete;
 
   const Mechanism& device() const { return *device_; }
   const Comparison& comparison() const { return comparison_; }
@@ -51,6 +56,7 @@ class Observations {
   double tolerance_scale_ = 1;
   std::vector<bool> aside_;
   Uncertainty uncertainty_;
+  std::optional<HeldOut> held_out_;
   VectorX measured_, shape_, null_;
 };
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "msa/mechanism/device_file.h"
+#include "validation/compare/columns.h"
 #include "validation/diagnosis/signatures.h"
 
 namespace deflect {
@@ -88,11 +89,12 @@ std::vector<Effect> hypotheses(const Mechanism& m) {
 std::vector<Localised> scan(const Observations& o, const Fit& fit, int threads, std::size_t most) {
   const std::vector<Effect> all = hypotheses(o.device());
   const std::vector<Signature> found = signatures(o, all, threads);
+  const MatrixX fitted = orthonormal(fit.signature);
   std::vector<double> gain;
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Signature& s = found[i];
-    gain.push_back(most_gain(s, fit.residual, fit.signature));
+    gain.push_back(most_gain(s, fit.residual, fitted));
     order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gain[a] > gain[b]; });

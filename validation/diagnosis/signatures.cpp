@@ -140,12 +140,9 @@ std::optional<VectorX> guess(const Signature& s, const VectorX& residual) {
   return VectorX::Constant(1, value);
 }
 
-double most_gain(const Signature& s, const VectorX& residual, const MatrixX& fitted) {
+double most_gain(const Signature& s, const VectorX& residual, const MatrixX& beside) {
   MatrixX columns = s.basis;
-  if (fitted.cols() > 0) {
-    const MatrixX Q = orthonormal(fitted);
-    columns -= Q * (Q.transpose() * columns);
-  }
+  if (beside.cols() > 0) columns -= beside * (beside.transpose() * columns);
   if (s.shaped) {
     double most = 0;
     for (const auto column : columns.colwise()) {
@@ -158,10 +155,9 @@ double most_gain(const Signature& s, const VectorX& residual, const MatrixX& fit
   return (orthonormal(columns, 1e-3).transpose() * residual).squaredNorm();
 }
 
-double own_share(const Signature& s, const MatrixX& fitted) {
-  if (fitted.cols() == 0) return 1;
-  const MatrixX Q = orthonormal(fitted);
-  return (s.basis - Q * (Q.transpose() * s.basis)).norm() / std::sqrt(static_cast<double>(s.basis.cols()));
+double own_share(const Signature& s, const MatrixX& beside) {
+  if (beside.cols() == 0) return 1;
+  return (s.basis - beside * (beside.transpose() * s.basis)).norm() / std::sqrt(static_cast<double>(s.basis.cols()));
 }
 
 double cosine(const Signature& a, const Signature& b) {

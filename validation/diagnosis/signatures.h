@@ -36,12 +36,13 @@ std::vector<Signature> signatures(const Observations&, const std::vector<Effect>
 /// residual it is to explain. Nothing for effects of several parameters, or of the wrong sign.
 std::optional<VectorX> guess(const Signature&, const VectorX& residual);
 
-/// The most that the effect can take off χ² as far as it is linear in its amplitudes, beside what is fitted already.
-double most_gain(const Signature&, const VectorX& residual, const MatrixX& fitted);
+/// The most that the effect can take off χ² as far as it is linear in its amplitudes, beside what is fitted already:
+/// orthonormal columns (columns.h).
+double most_gain(const Signature&, const VectorX& residual, const MatrixX& beside);
 
 /// How much of the signature is its own beside what is fitted: the sine of its angle to their span, over
 /// all its directions in the root mean square.
-double own_share(const Signature&, const MatrixX& fitted);
+double own_share(const Signature&, const MatrixX& beside);
 
 /// Largest cosine between the spaces of two signatures.
 double cosine(const Signature&, const Signature&);

@@ -1,0 +1,60 @@
+#include "validation/compare/held_out.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deflect {
+
+HeldOut::HeldOut(const ResidualStudy& s, const Uncertainty& u, const std::vector<bool>& set_aside)
+    : study_(&s), uncertainty_(&u), set_aside_(set_aside), folds_(std::min<std::size_t>(10, s.data->poses.size())) {
+  const MatrixX& A = u.tolerances_by_noise();
+  if (folds_ < 2 || A.cols() == 0) return;
+  std::vector<std::vector<Eigen::Index>> rows(folds_);
+  for (std::size_t i = 0; i < s.values.size(); ++i) rows[fold_of(i)].push_back(static_cast<Eigen::Index>(i));
+  std::vector<MatrixX> taught;
+  for (const std::vector<Eigen::Index>& own : rows) {
+    const MatrixX part = A(own, Eigen::all);
+    taught.push_back(part.transpose() * part);
+  }
+  for (std::size_t fold = 0; fold < folds_; ++fold) {
+    MatrixX information = MatrixX::Identity(A.cols(), A.cols());
+    for (std::size_t other = 0; other < folds_; ++other)
+      if (other != fold) information += taught[other];
+    others_.emplace_back(information);
+  }
+}
+
+std::size_t HeldOut::fold_of(std::size_t value) const {
+  return study_->data->readings[study_->values[value].reading].pose % folds_;
+}
+
+double HeldOut::rmse(const VectorX& residual) const {
+  const MatrixX& A = uncertainty_->tolerances_by_noise();
+  const VectorX r = uncertainty_->whitened_by_noise(residual);
+  std::vector<VectorX> eta(folds_, VectorX::Zero(A.cols()));
+  if (!others_.empty()) {  // where there is one pose, nothing is learnt at others
+    std::vector<VectorX> score(folds_, VectorX::Zero(A.cols()));
+    for (std::size_t i = 0; i < study_->values.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      score[fold_of(i)] += r(row) * A.row(row).transpose();
+    }
+    for (std::size_t fold = 0; fold < folds_; ++fold) {
+      VectorX all = VectorX::Zero(A.cols());
+      for (std::size_t other = 0; other < folds_; ++other)
+        if (other != fold) all += score[other];
+      eta[fold] = others_[fold].solve(all);
+    }
+  }
+  double squares = 0;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < study_->values.size(); ++i) {
+    if (set_aside_[study_->values[i].reading] || study_->values[i].component >= 3) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    const double left = residual(row) - uncertainty_->tolerances().row(row).dot(eta[fold_of(i)]);
+    squares += left * left;
+    ++n;
+  }
+  return n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0;
+}
+
+}  // namespace deflect

@@ -1,0 +1,32 @@
+// How well a device predicts where it was not looked at.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <vector>
+
+#include "validation/compare/residual_study.h"
+#include "validation/compare/uncertainty.h"
+
+namespace deflect {
+
+/// Residuals at each pose with the tolerances learnt at all others; poses in ten folds at most: η = (1 + ÃᵀÃ)⁻¹Ãᵀr̃ over
+/// the readings of the other folds, Ã and r̃ whitened by their noise. Readings set aside neither teach nor count.
+class HeldOut {
+ public:
+  /// The study must outlive it. Readings that the uncertainty sets aside are those given.
+  HeldOut(const ResidualStudy&, const Uncertainty&, const std::vector<bool>& set_aside);
+
+  /// Root mean square of the translations, m. The residual: of all measured numbers, m and rad.
+  double rmse(const VectorX& residual) const;
+
+ private:
+  std::size_t fold_of(std::size_t value) const;
+
+  const ResidualStudy* study_;
+  const Uncertainty* uncertainty_;
+  std::vector<bool> set_aside_;
+  std::size_t folds_;
+  std::vector<Eigen::LLT<MatrixX>> others_;  // of 1 + ÃᵀÃ over all folds but one
+};
+
+}  // namespace deflect
