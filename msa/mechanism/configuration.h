@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -116,6 +117,22 @@ int leg_count(const Mechanism&);
 /// Throws ModelError naming leg and limit when the pose is out of reach, or when it is singular, naming the direction
 /// that is lost; InputError on names that do not resolve.
 Configuration configure(const Mechanism&, const Pose&);
+
+/// One device at pose after pose, names resolved once. Of the family "6-psu" nothing is allocated after the first pose.
+class Posing {
+ public:
+  explicit Posing(const Mechanism&);  ///< must outlive it
+  ~Posing();
+  Posing(const Posing&) = delete;
+  Posing& operator=(const Posing&) = delete;
+
+  /// As configure(), bit by bit; the same errors. Until the next call.
+  const Configuration& at(const Pose&);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// The same from commanded joint coordinates, one per actuator (m, rad), by closing the loops from home; a singular
 /// pose is no error there.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "msa/base/error.h"
 #include "msa/mechanism/family.h"
@@ -30,7 +31,23 @@ Vector6 twist_at(const Vector3& p_WT, const Placement& displaced, const Vector3&
   return shift_twist(p_WT - p) * d;
 }
 
-Configuration completed(PlacedMechanism placed, const Mechanism& m) {
+/// What follows from where the legs stand.
+void complete(Configuration& c, const std::vector<Seats>& seats, const Mechanism& m) {
+  c.tool.p_W = c.pose.p_WT;
+  c.tool.R_WJ = c.pose.R_WT;
+  c.size = extent(c.legs, c.pose.p_WT);
+  if (!(c.size > 0)) c.size = 1;
+  for (const Misfit& misfit : m.misfits) c.legs[static_cast<std::size_t>(misfit.leg - 1)].misfit.setZero();
+  for (const Misfit& misfit : m.misfits) {
+    const auto leg = static_cast<std::size_t>(misfit.leg - 1);
+    const Seats& s = seats.at(leg);
+    c.legs[leg].misfit += twist_at(c.pose.p_WT, misfit.base, s.p_W_base, Matrix3::Identity()) -
+                          twist_at(c.pose.p_WT, misfit.platform, s.p_W_platform, c.pose.R_WT);
+  }
+}
+
+/// Takes legs and actuators out of what was placed.
+Configuration completed(PlacedMechanism& placed, const Mechanism& m) {
   Configuration c;
   c.pose = placed.pose;
   c.legs = std::move(placed.legs);
@@ -38,15 +55,14 @@ Configuration completed(PlacedMechanism placed, const Mechanism& m) {
   c.base = deflect::placed(m.base, "base", {Vector3::Zero(), Matrix3::Identity()}, m);
   c.tool = deflect::placed(m.tool, "tool", {c.pose.p_WT, c.pose.R_WT}, m);
   c.weight = -m.payload * standard_gravity * Vector3::UnitZ();
-  c.size = extent(c.legs, c.pose.p_WT);
-  if (!(c.size > 0)) c.size = 1;
-  for (const Misfit& misfit : m.misfits) {
-    const auto leg = static_cast<std::size_t>(misfit.leg - 1);
-    const Seats& seats = placed.seats.at(leg);
-    c.legs[leg].misfit += twist_at(c.pose.p_WT, misfit.base, seats.p_W_base, Matrix3::Identity()) -
-                          twist_at(c.pose.p_WT, misfit.platform, seats.p_W_platform, c.pose.R_WT);
-  }
+  complete(c, placed.seats, m);
   return c;
+}
+
+std::string at_pose(const Mechanism& m, const Pose& pose, const ModelError& e) {
+  const Vector3 p = 1e3 * pose.p_WT, a = rpy_from_rotation(pose.R_WT) * 180 / pi;
+  return fmt::format("{} at ({:.6g}, {:.6g}, {:.6g}) mm, ({:.6g}, {:.6g}, {:.6g}) deg: {}", m.name, p.x(), p.y(), p.z(),
+                     a.x(), a.y(), a.z(), e.what());
 }
 
 }  // namespace
@@ -65,17 +81,49 @@ int leg_count(const Mechanism& m) {
 }
 
 Configuration configure(const Mechanism& m, const Pose& pose) try {
-  return completed(std::visit([&](const auto& k) { return place(k, m, pose); }, m.kinematics), m);
+  PlacedMechanism placed = std::visit([&](const auto& k) { return place(k, m, pose); }, m.kinematics);
+  return completed(placed, m);
 } catch (const ModelError& e) {
-  const Vector3 p = 1e3 * pose.p_WT, a = rpy_from_rotation(pose.R_WT) * 180 / pi;
-  throw ModelError(fmt::format("{} at ({:.6g}, {:.6g}, {:.6g}) mm, ({:.6g}, {:.6g}, {:.6g}) deg: {}", m.name, p.x(),
-                               p.y(), p.z(), a.x(), a.y(), a.z(), e.what()));
+  throw ModelError(at_pose(m, pose, e));
+}
+
+struct Posing::Impl {
+  const Mechanism& mechanism;
+  std::optional<SixPsuMoves> moves;
+  std::vector<Seats> seats;
+  Configuration configuration;
+};
+
+Posing::Posing(const Mechanism& m) : impl_(new Impl{m, {}, {}, {}}) {}
+Posing::~Posing() = default;
+
+const Configuration& Posing::at(const Pose& pose) {
+  const Mechanism& m = impl_->mechanism;
+  Configuration& c = impl_->configuration;
+  const auto* k = std::get_if<SixPsu>(&m.kinematics);
+  if (!k) return c = configure(m, pose);
+  try {
+    if (!impl_->moves) {
+      PlacedMechanism placed = place(*k, m, pose);
+      c = completed(placed, m);
+      impl_->seats = std::move(placed.seats);
+      impl_->moves.emplace(*k, m);
+      return c;
+    }
+    impl_->moves->move(*k, pose, c.legs, c.actuators, impl_->seats);
+    c.pose = pose;
+    complete(c, impl_->seats, m);
+    return c;
+  } catch (const ModelError& e) {
+    throw ModelError(at_pose(m, pose, e));
+  }
 }
 
 Configuration configure_joints(const Mechanism& m, const VectorX& q) try {
   if (const std::size_t wanted = actuators_of(m).size(); static_cast<std::size_t>(q.size()) != wanted)
     throw InputError(fmt::format("{} has {} joint coordinates, {} are given", m.name, wanted, q.size()));
-  return completed(std::visit([&](const auto& k) { return place_joints(k, m, q); }, m.kinematics), m);
+  PlacedMechanism placed = std::visit([&](const auto& k) { return place_joints(k, m, q); }, m.kinematics);
+  return completed(placed, m);
 } catch (const ModelError& e) {
   throw ModelError(fmt::format("{} at joint coordinates ({:.6g}) (m, rad): {}", m.name,
                                fmt::join(q.data(), q.data() + q.size(), ", "), e.what()));

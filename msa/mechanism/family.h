@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msa/mechanism/configuration.h"
+#include "msa/mechanism/six_psu.h"
 
 namespace deflect {
 
@@ -15,6 +16,23 @@ struct PlacedMechanism {
   std::vector<PlacedLeg> legs;
   std::vector<Seats> seats;  ///< of the legs
   std::vector<Actuator> actuators;
+};
+
+/// Where the parts of a 6-PSU stand at any pose, names resolved.
+class SixPsuMoves {
+ public:
+  /// Throws InputError on names that do not resolve.
+  SixPsuMoves(const SixPsu&, const Mechanism&);
+  /// What place() made for one pose, moved to another; nothing is allocated. Throws ModelError as place() does.
+  void move(const SixPsu&, const Pose&, std::vector<PlacedLeg>&, std::vector<Actuator>&, std::vector<Seats>&) const;
+
+ private:
+  struct Move {
+    std::size_t leg, first, second;                           // point and axes of a joint, points of a member
+    std::vector<std::pair<std::size_t, std::size_t>> cables;  // freedom and law: as long as the slider stands out
+  };
+  std::vector<SixPsuDrawing> drawn_;
+  std::vector<std::vector<Move>> moves_;  // as PlacedMechanism::legs
 };
 
 /// At a pose, from joint coordinates, at home: as configure(), configure_joints(), home_pose() say.

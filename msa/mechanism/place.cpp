@@ -60,11 +60,7 @@ PlacedMember placed(const Member& member, const std::string& part, const Vector3
   const Material& material = look_up(m.materials, member.material, "material");
   PlacedMember out;
   out.part = part;
-  out.p_W_start = p_W_start;
-  out.p_W_end = p_W_end;
-  const Vector3 along = p_W_end - p_W_start;
-  if (!(along.norm() > 1e-9)) throw ModelError(fmt::format("{}: the member has no length", part));
-  out.R_WM = axes_along_x(along, across(along, reference, otherwise));
+  place_between(out, p_W_start, p_W_end, reference, otherwise);
   out.section = properties(look_up(m.sections, member.section, "section"), material.poisson());
   out.section.Iy *= member.bending_factor;
   out.section.Iz *= member.bending_factor;
@@ -73,6 +69,15 @@ PlacedMember placed(const Member& member, const std::string& part, const Vector3
   out.expansion = material.expansion;
   out.beam = member.beam;
   return out;
+}
+
+void place_between(PlacedMember& m, const Vector3& p_W_start, const Vector3& p_W_end, const Vector3& reference,
+                   const Vector3& otherwise) {
+  m.p_W_start = p_W_start;
+  m.p_W_end = p_W_end;
+  const Vector3 along = p_W_end - p_W_start;
+  if (!(along.norm() > 1e-9)) throw ModelError(fmt::format("{}: the member has no length", m.part));
+  m.R_WM = axes_along_x(along, across(along, reference, otherwise));
 }
 
 Matrix3 axes_along_z(const Vector3& z, const Vector3& reference, const Vector3& otherwise) {

@@ -20,6 +20,10 @@ PlacedJoint placed(const Joint&, const std::string& part, const JointPlace&, con
 PlacedMember placed(const Member&, const std::string& part, const Vector3& p_W_start, const Vector3& p_W_end,
                     const Vector3& reference, const Vector3& otherwise, const Mechanism&);
 
+/// The same for a member that is known but for its place.
+void place_between(PlacedMember&, const Vector3& p_W_start, const Vector3& p_W_end, const Vector3& reference,
+                   const Vector3& otherwise);
+
 /// The freedoms of a joint: of its type's row, or its own letters.
 std::array<Freedom, 6> freedoms_of(const Joint&);
 

@@ -39,26 +39,33 @@ double link_length(const SixPsu& k, int leg) { return deviation(k, leg, &LegDevi
 
 }  // namespace
 
-SixPsuLeg leg_at(const SixPsu& k, int leg, const Pose& pose) {
+SixPsuDrawing drawing_of(const SixPsu& k, int leg) {
+  return {leg, base_joint(k, leg), platform_joint(k, leg), on_circle(1, pair_angle(leg) + side(leg) * k.base_angle / 2),
+          link_length(k, leg)};
+}
+
+SixPsuLeg leg_at(const SixPsu& k, const SixPsuDrawing& drawn, const Pose& pose) {
   SixPsuLeg g;
-  g.p_WA = base_joint(k, leg);
-  g.p_WC = pose.p_WT + pose.R_WT * platform_joint(k, leg);
-  g.radial = on_circle(1, pair_angle(leg) + side(leg) * k.base_angle / 2);
+  g.p_WA = drawn.p_WA;
+  g.p_WC = pose.p_WT + pose.R_WT * drawn.p_TC;
+  g.radial = drawn.radial;
   const Vector3 d = g.p_WC - g.p_WA;
-  const double beside = std::hypot(d.x(), d.y()), L2 = link_length(k, leg);
+  const double beside = std::hypot(d.x(), d.y()), L2 = drawn.link_length;
   if (!(beside <= L2))
     throw ModelError(fmt::format(
         "leg {}: the link does not reach: its platform joint is {:.6g} mm beside the guideway, the link is {:.6g} mm "
         "long",
-        leg, 1e3 * beside, 1e3 * L2));
+        drawn.leg, 1e3 * beside, 1e3 * L2));
   g.slider = d.z() - std::sqrt(L2 * L2 - beside * beside);
   if (g.slider < k.slider_min || g.slider > k.slider_max)
     throw ModelError(
-        fmt::format("leg {}: the slider would stand at {:.6g} mm, outside its range of {:.6g} to {:.6g} mm", leg,
+        fmt::format("leg {}: the slider would stand at {:.6g} mm, outside its range of {:.6g} to {:.6g} mm", drawn.leg,
                     1e3 * g.slider, 1e3 * k.slider_min, 1e3 * k.slider_max));
   g.p_WB = g.p_WA + g.slider * Vector3::UnitZ();
   return g;
 }
+
+SixPsuLeg leg_at(const SixPsu& k, int leg, const Pose& pose) { return leg_at(k, drawing_of(k, leg), pose); }
 
 Pose centred_pose(const SixPsu& measured, double slider) {
   SixPsu k = measured;

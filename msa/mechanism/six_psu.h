@@ -14,9 +14,18 @@ struct SixPsuLeg {
   double slider = 0;  ///< L1 = |AB|
 };
 
+/// What of a leg no pose changes: A, C in the platform's axes, the link's length.
+struct SixPsuDrawing {
+  int leg = 0;
+  Vector3 p_WA, p_TC, radial;
+  double link_length = 0;
+};
+SixPsuDrawing drawing_of(const SixPsu&, int leg);
+
 /// Inverse kinematics, ball joint below the platform: L1 = d_z − √(L2² − d_x² − d_y²), d = C − A. `leg` is 1-based.
 /// Throws ModelError naming the leg when its link does not reach or its slider leaves its range.
 SixPsuLeg leg_at(const SixPsu&, int leg, const Pose&);
+SixPsuLeg leg_at(const SixPsu&, const SixPsuDrawing&, const Pose&);
 
 /// The pose without tilt above the base centre at which every slider of the drawing stands at `slider`. Throws
 /// ModelError when the links cannot reach from the base circle to the platform circle.

@@ -1,7 +1,7 @@
 // The legs of the family "6-psu": parts at the points A, B, C.
 #include <fmt/format.h>
 
-#include <map>
+#include <array>
 
 #include "msa/base/error.h"
 #include "msa/mechanism/device_file.h"
@@ -14,42 +14,43 @@ namespace {
 
 constexpr int legs = 6;
 
-/// The named points and axes of one leg at one pose.
+constexpr std::array point_names = {"A", "B", "C"};
+constexpr std::array axes_names = {"base", "guide", "link", "platform"};
+
+/// The points and axes of one leg at one pose, in the order of their names.
 struct LegFrames {
-  std::map<std::string, Vector3> points;
-  std::map<std::string, Matrix3> axes;
+  std::array<Vector3, point_names.size()> points;
+  std::array<Matrix3, axes_names.size()> axes;
   Vector3 radial;
   double slider = 0;
 };
 
-LegFrames frames(const SixPsu& k, int leg, const Pose& pose) {
-  const SixPsuLeg g = leg_at(k, leg, pose);
-  return {{{"A", g.p_WA}, {"B", g.p_WB}, {"C", g.p_WC}},
-          {{"base", Matrix3::Identity()},
-           {"guide", axes_along_z(Vector3::UnitZ(), g.radial)},
-           {"link", axes_along_z(g.p_WC - g.p_WB, g.radial)},
-           {"platform", pose.R_WT}},
+LegFrames frames(const SixPsu& k, const SixPsuDrawing& drawn, const Pose& pose) {
+  const SixPsuLeg g = leg_at(k, drawn, pose);
+  return {{g.p_WA, g.p_WB, g.p_WC},
+          {Matrix3::Identity(), axes_along_z(Vector3::UnitZ(), g.radial), axes_along_z(g.p_WC - g.p_WB, g.radial),
+           pose.R_WT},
           g.radial,
           g.slider};
 }
 
-template <class T>
-const T& look_up(const std::map<std::string, T>& list, const std::string& name, const char* what) {
-  if (const auto found = list.find(name); found != list.end()) return found->second;
+template <std::size_t n>
+std::size_t number_of(const std::string& name, const std::array<const char*, n>& names, const char* what) {
+  for (std::size_t i = 0; i < n; ++i)
+    if (name == names[i]) return i;
   throw InputError(fmt::format("there is no {} '{}'", what, name));
 }
 
 PlacedPart placed_part(const Part& part, const std::string& name, const LegFrames& f, const Mechanism& m) {
+  const auto point = [&](const std::string& p) { return f.points[number_of(p, point_names, "point")]; };
   if (const auto* member = std::get_if<Member>(&part))
-    return placed(*member, name, look_up(f.points, member->from, "point"), look_up(f.points, member->to, "point"),
-                  f.radial, Vector3::UnitZ(), m);
+    return placed(*member, name, point(member->from), point(member->to), f.radial, Vector3::UnitZ(), m);
   const Joint& joint = std::get<Joint>(part);
-  return placed(joint, name,
-                {look_up(f.points, joint.at, "point"), look_up(f.axes, joint.axes, "set of axes"), f.slider}, m);
+  return placed(joint, name, {point(joint.at), f.axes[number_of(joint.axes, axes_names, "set of axes")], f.slider}, m);
 }
 
 PlacedLeg placed_leg(const SixPsu& k, const Mechanism& m, const Named<Part>& parts, int leg, const Pose& pose) {
-  const LegFrames f = frames(k, leg, pose);
+  const LegFrames f = frames(k, drawing_of(k, leg), pose);
   PlacedLeg out;
   out.name = fmt::format("leg {}", leg);
   for (const auto& [name, part] : parts) try {
@@ -66,7 +67,7 @@ PlacedLeg placed_beside(const SixPsu& k, const Mechanism& m, const std::string& 
                         const Pose& pose) try {
   PlacedLeg out;
   out.name = fmt::format("leg {} {}", leg, name);
-  out.parts.push_back(placed_part(joint, name, frames(k, leg, pose), m));
+  out.parts.push_back(placed_part(joint, name, frames(k, drawing_of(k, leg), pose), m));
   out.beside = true;
   return out;
 } catch (const InputError& e) {
@@ -87,6 +88,54 @@ PlacedMechanism place(const SixPsu& k, const Mechanism& m, const Pose& pose) {
   for (const auto& [name, joint] : m.beside)
     for (int leg = 1; leg <= legs; ++leg) out.legs.push_back(placed_beside(k, m, name, joint, leg, pose));
   return out;
+}
+
+SixPsuMoves::SixPsuMoves(const SixPsu& k, const Mechanism& m) {
+  const auto moves_of = [](const Part& part, std::size_t leg) -> Move {
+    if (const auto* member = std::get_if<Member>(&part))
+      return {leg, number_of(member->from, point_names, "point"), number_of(member->to, point_names, "point"), {}};
+    const Joint& joint = std::get<Joint>(part);
+    Move move{leg, number_of(joint.at, point_names, "point"), number_of(joint.axes, axes_names, "set of axes"), {}};
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t n = 0; n < joint.laws[i].size(); ++n)
+        if (const auto* cable = std::get_if<CableLaw>(&joint.laws[i][n]); cable && !cable->length)
+          move.cables.emplace_back(i, n);
+    return move;
+  };
+  for (int leg = 1; leg <= legs; ++leg) {
+    drawn_.push_back(drawing_of(k, leg));
+    moves_.emplace_back();
+    for (const auto& [name, part] : leg_parts(m, leg)) moves_.back().push_back(moves_of(part, drawn_.size() - 1));
+  }
+  for (const auto& [name, joint] : m.beside)
+    for (std::size_t leg = 0; leg < legs; ++leg) moves_.push_back({moves_of(joint, leg)});
+}
+
+void SixPsuMoves::move(const SixPsu& k, const Pose& pose, std::vector<PlacedLeg>& placed,
+                       std::vector<Actuator>& actuators, std::vector<Seats>& seats) const {
+  std::array<LegFrames, legs> all;
+  for (std::size_t leg = 0; leg < legs; ++leg) {
+    all[leg] = frames(k, drawn_[leg], pose);
+    seats[leg] = {all[leg].points[0], all[leg].points[2]};
+    actuators[leg].value = all[leg].slider;
+  }
+  for (std::size_t l = 0; l < moves_.size(); ++l)
+    for (std::size_t p = 0; p < moves_[l].size(); ++p) {
+      const Move& how = moves_[l][p];
+      const LegFrames& f = all[how.leg];
+      if (auto* member = std::get_if<PlacedMember>(&placed[l].parts[p])) {
+        try {
+          place_between(*member, f.points[how.first], f.points[how.second], f.radial, Vector3::UnitZ());
+        } catch (const ModelError& e) {
+          throw ModelError(fmt::format("leg {}: {}", how.leg + 1, e.what()));
+        }
+        continue;
+      }
+      auto& joint = std::get<PlacedJoint>(placed[l].parts[p]);
+      joint.p_W = f.points[how.first];
+      joint.R_WJ = f.axes[how.second];
+      for (const auto& [freedom, law] : how.cables) std::get<CableLaw>(joint.laws[freedom][law]).length = f.slider;
+    }
 }
 
 PlacedMechanism place_joints(const SixPsu& k, const Mechanism& m, const VectorX& coordinates) {

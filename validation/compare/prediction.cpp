@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "analytic/model.h"
+#include "analytic/pose_sweep.h"
 #include "msa/base/error.h"
 #include "msa/frame/msa.h"
 #include "validation/compare/parallel.h"
@@ -17,21 +18,22 @@ namespace {
 /// One theory of one machine.
 class Predictor {
  public:
-  Predictor(const Configuration& c, const PredictionOptions& o) {
-    if (o.theory == Theory::analytic)
-      analytic_.emplace(c);
-    else
+  /// The configuration must outlive it.
+  Predictor(const Configuration& c, const PredictionOptions& o) : configuration_(&c) {
+    if (o.theory != Theory::analytic)
       msa_.emplace(c, o.division);
+    else if (analytic::PoseSweep sweep(c); sweep.applies())
+      sweep_.emplace(std::move(sweep));
   }
 
   /// Answers are affine in load and temperature: a few of them give all.
   void expect_many() {
-    if (!analytic_ || !analytic_->linear() || analytic_->jumps()) return;
+    if (msa_ || sweep_ || !model().linear() || model().jumps()) return;
     affine_.emplace();
     const auto at = [&](const Vector6& F, double warmer) {
       Conditions conditions;
       conditions.warmer = warmer;
-      const analytic::AnalyticSolution s = analytic_->solve(F, conditions);
+      const analytic::AnalyticSolution s = model().solve(F, conditions);
       affine_->converged = affine_->converged && s.converged;
       return s.displacement;
     };
@@ -48,16 +50,25 @@ class Predictor {
   Response solve(const Vector6& F, const Conditions& conditions) {
     if (affine_ && conditions.geometry == Geometry::linear)
       return {affine_->rest + affine_->C * F + conditions.warmer * affine_->per_kelvin, affine_->converged, {}};
-    if (analytic_) {
-      const analytic::AnalyticSolution s = analytic_->solve(F, conditions);
-      return {s.displacement, s.converged, s.slips};
+    if (sweep_ && conditions.geometry == Geometry::linear && sweep_->solve(*configuration_, F, conditions.warmer))
+      return {sweep_->displacement(), true, {}};
+    if (msa_) {
+      const frame::MsaSolution s = msa_->solve(F, conditions);
+      return {s.displacement, s.state.converged, s.slips};
     }
-    const frame::MsaSolution s = msa_->solve(F, conditions);
-    return {s.displacement, s.state.converged, s.slips};
+    const analytic::AnalyticSolution s = model().solve(F, conditions);
+    return {s.displacement, s.converged, s.slips};
   }
 
  private:
-  std::optional<analytic::AnalyticModel> analytic_;
+  const analytic::AnalyticModel& model() {
+    if (!analytic_) analytic_.emplace(*configuration_);
+    return *analytic_;
+  }
+
+  const Configuration* configuration_;
+  std::optional<analytic::PoseSweep> sweep_;
+  std::optional<analytic::AnalyticModel> analytic_;  // where the sweep does not reach
   struct Affine {
     Vector6 rest, per_kelvin;
     Matrix6 C;

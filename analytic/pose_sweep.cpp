@@ -1,0 +1,208 @@
+#include "analytic/pose_sweep.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "analytic/chain.h"
+#include "analytic/member.h"
+
+namespace deflect::analytic {
+namespace {
+
+constexpr double dependent = 1e-9;  // of twists, as in complement()
+constexpr std::size_t most_passive = 12;
+
+bool rigid(const PlacedJoint& j) {
+  for (std::size_t i = 0; i < 6; ++i)
+    if (j.elastic(i) || j.free(i)) return false;
+  return true;
+}
+
+/// The wrenches that do no work on the twists, as many columns as come out: Gauss and Jordan with full pivoting on the
+/// rows twistᵀ, rotations weighed by the length.
+template <class Columns>
+void carried_by(std::array<Vector6, most_passive>& rows, std::size_t count, double length, Columns& N) {
+  std::array<Eigen::Index, 6> column = {0, 1, 2, 3, 4, 5};
+  Eigen::Index rank = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    rows[i].tail<3>() *= length;
+    largest = std::max(largest, rows[i].cwiseAbs().maxCoeff());
+  }
+  for (; rank < 6 && static_cast<std::size_t>(rank) < count; ++rank) {
+    std::size_t pivot_row = 0;
+    Eigen::Index pivot = 0;
+    double most = dependent * largest;
+    for (std::size_t i = static_cast<std::size_t>(rank); i < count; ++i)
+      for (Eigen::Index k = rank; k < 6; ++k)
+        if (const double size = std::abs(rows[i](column[static_cast<std::size_t>(k)])); size > most)
+          most = size, pivot_row = i, pivot = k + 1;
+    if (pivot == 0) break;
+    std::swap(rows[static_cast<std::size_t>(rank)], rows[pivot_row]);
+    std::swap(column[static_cast<std::size_t>(rank)], column[static_cast<std::size_t>(pivot - 1)]);
+    Vector6& own = rows[static_cast<std::size_t>(rank)];
+    own /= own(column[static_cast<std::size_t>(rank)]);
+    for (std::size_t i = 0; i < count; ++i)
+      if (i != static_cast<std::size_t>(rank)) rows[i] -= rows[i](column[static_cast<std::size_t>(rank)]) * own;
+  }
+  N.setZero(6, 6 - rank);
+  for (Eigen::Index k = rank; k < 6; ++k) {
+    const Eigen::Index free = column[static_cast<std::size_t>(k)];
+    N(free, k - rank) = 1;
+    for (Eigen::Index r = 0; r < rank; ++r)
+      N(column[static_cast<std::size_t>(r)], k - rank) = -rows[static_cast<std::size_t>(r)](free);
+    N.col(k - rank).normalize();
+  }
+  N.template bottomRows<3>() *= length;
+}
+
+}  // namespace
+
+PoseSweep::PoseSweep(const Configuration& c) {
+  applies_ = rigid(c.base) && rigid(c.tool);
+  for (std::size_t l = 0; applies_ && l < c.legs.size(); ++l) {
+    const PlacedLeg& placed = c.legs[l];
+    Leg leg;
+    applies_ = !placed.beside && placed.misfit.isZero(0);
+    for (std::size_t p = 0; applies_ && p < placed.parts.size(); ++p) {
+      const auto shared = [&](const std::string& name) {
+        if (parts_.empty() || parts_.back().leg != l || parts_.back().name != name) parts_.push_back({l, name});
+        return parts_.size() - 1;
+      };
+      if (const auto* member = std::get_if<PlacedMember>(&placed.parts[p])) {
+        leg.members.push_back({p, shared(member->part), {}});
+        continue;
+      }
+      const auto* joint = std::get_if<PlacedJoint>(&placed.parts[p]);
+      applies_ = joint && !joint->stiffness;
+      for (std::size_t i = 0; applies_ && i < 6; ++i) {
+        if (joint->free(i)) leg.passive.emplace_back(p, i);
+        if (!joint->elastic(i)) continue;
+        const std::vector<Law>& laws = joint->laws[i];
+        applies_ = std::none_of(laws.begin(), laws.end(), is_stepped);
+        linear_ = linear_ && std::all_of(laws.begin(), laws.end(), is_linear);
+        const bool cable =
+            std::any_of(laws.begin(), laws.end(), [](const Law& law) { return std::holds_alternative<CableLaw>(law); });
+        leg.springs.push_back({p, i, shared(joint->part), {laws, joint->preload[i]}, cable});
+      }
+    }
+    applies_ = applies_ && leg.passive.size() <= most_passive;
+    legs_.push_back(std::move(leg));
+  }
+  derivatives_.resize(parts_.size());
+}
+
+/// What the leg carries, and the part of its compliance that no force changes.
+void PoseSweep::carry(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, double length) {
+  std::array<Vector6, most_passive> twists;
+  for (std::size_t k = 0; k < leg.passive.size(); ++k)
+    twists[k] = freedom_twist(std::get<PlacedJoint>(placed.parts[leg.passive[k].first]), leg.passive[k].second, p_WT);
+  carried_by(twists, leg.passive.size(), length, leg.N);
+  const Eigen::Index n = leg.N.cols();
+  leg.A.setZero(n, n);
+  leg.expansion.setZero();
+  for (Flexible& f : leg.members) {
+    const auto& member = std::get<PlacedMember>(placed.parts[f.part]);
+    const Matrix6 C = tip_compliance(member);
+    const Vector3 arm = p_WT - member.p_W_end;
+    Columns w(6, n);  // at the tip, in member axes
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Vector3 force = leg.N.col(k).head<3>();
+      w.col(k).head<3>() = member.R_WM.transpose() * force;
+      w.col(k).tail<3>() = member.R_WM.transpose() * (leg.N.col(k).tail<3>() + arm.cross(force));
+    }
+    f.A.noalias() = w.transpose().lazyProduct(Columns(C.lazyProduct(w)));
+    leg.A += f.A;
+    leg.expansion += member.expansion * (member.p_W_end - member.p_W_start);
+  }
+  for (Freedom& f : leg.springs) {
+    const auto& joint = std::get<PlacedJoint>(placed.parts[f.part]);
+    if (f.given_by_pose) f.spring.laws = joint.laws[f.index];
+    const Vector6 twist = freedom_twist(joint, f.index, p_WT);
+    for (Eigen::Index k = 0; k < n; ++k) f.twist[static_cast<std::size_t>(k)] = twist.dot(leg.N.col(k));
+  }
+}
+
+/// λ of all legs, one after the other.
+bool PoseSweep::determine_forces(const Vector6& F) {
+  Eigen::Index carried = 0;
+  for (const Leg& leg : legs_) carried += leg.N.cols();
+  determinate_ = carried == 6;
+  lambda_.setZero();
+  if (!determinate_) return linear_;
+  Matrix6 all;
+  Eigen::Index at = 0;
+  for (const Leg& leg : legs_)
+    for (Eigen::Index k = 0; k < leg.N.cols(); ++k) all.col(at++) = leg.N.col(k);
+  statics_.compute(all);
+  const Vector6 pivots = statics_.matrixLU().diagonal().cwiseAbs();
+  if (!(pivots.minCoeff() > 1e-12 * pivots.maxCoeff())) return false;
+  lambda_ = statics_.solve(F);
+  return true;
+}
+
+bool PoseSweep::solve(const Configuration& c, const Vector6& F_T_W, double warmer) {
+  Vector6 F = F_T_W;
+  F.head<3>() += c.weight;
+  for (std::size_t l = 0; l < legs_.size(); ++l) carry(legs_[l], c.legs[l], c.pose.p_WT, c.size);
+  if (!determine_forces(F) || (warmer != 0 && !determinate_)) return false;
+  stiffness_.setZero();
+  Vector6 moved = Vector6::Zero();  // e
+  Eigen::Index at = 0;
+  for (Leg& leg : legs_) {
+    const Eigen::Index n = leg.N.cols();
+    if (n == 0) continue;
+    const auto lambda = lambda_.segment(determinate_ ? at : 0, n);
+    if (determinate_)
+      moved.segment(at, n) = leg.A.lazyProduct(lambda) + warmer * leg.N.topRows<3>().transpose() * leg.expansion;
+    for (Freedom& f : leg.springs) {
+      const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>> w(f.twist.data(), n);
+      f.force = determinate_ ? w.dot(lambda) : 0;
+      f.yields = compliance(f.spring, f.force);
+      if (!std::isfinite(f.yields)) return false;
+      leg.A += f.yields * w.lazyProduct(w.transpose());
+      if (determinate_) moved.segment(at, n) += w * deflection(f.spring, f.force);
+    }
+    if (n == 1) {
+      if (!(leg.A(0, 0) > 0)) return false;
+      leg.inverse = Small::Constant(1, 1, 1 / leg.A(0, 0));
+      stiffness_ += leg.N.col(0) * (leg.inverse(0, 0) * leg.N.col(0)).transpose();
+    } else {
+      const Eigen::LLT<Small> llt(leg.A);
+      const auto pivots = llt.matrixLLT().diagonal();
+      if (llt.info() != Eigen::Success || !(pivots.minCoeff() > 1e-6 * pivots.maxCoeff())) return false;
+      leg.inverse = llt.solve(Small::Identity(n, n));
+      stiffness_ += leg.N * leg.inverse * leg.N.transpose();
+    }
+    at += determinate_ ? n : 0;
+  }
+  if (determinate_) {
+    displacement_ = statics_.transpose().solve(moved);
+    return true;
+  }
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(1 / c.size);
+  const Eigen::LDLT<Matrix6> held(weight.asDiagonal() * stiffness_ * weight.asDiagonal());
+  if (!held.isPositive() || !(held.vectorD().minCoeff() > 1e-10 * held.vectorD().maxCoeff())) return false;
+  displacement_ = weight.cwiseProduct(held.solve(weight.cwiseProduct(F)));
+  return true;
+}
+
+const std::vector<Matrix6>& PoseSweep::derivatives() {
+  for (Matrix6& d : derivatives_) d.setZero();
+  for (const Leg& leg : legs_) {
+    const Eigen::Index n = leg.N.cols();
+    if (n == 0) continue;
+    const Columns line = leg.N.lazyProduct(leg.inverse);
+    for (const Flexible& f : leg.members) derivatives_[f.shared] += line * f.A * line.transpose();
+    for (const Freedom& f : leg.springs) {
+      const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>> w(f.twist.data(), n);
+      const Vector6 along = line.lazyProduct(w);
+      derivatives_[f.shared] += (f.yields * along) * along.transpose();
+    }
+  }
+  return derivatives_;
+}
+
+}  // namespace deflect::analytic

@@ -1,0 +1,86 @@
+// The closed form for one device at many poses and loads: what no pose changes is worked out once, and nothing is
+// allocated afterwards. The same equations as those of a Group of Chains (chain.h), for what sweeps are made of:
+//
+//   A_i = N_iᵀ C_i N_i,   K = Σ N_i A_i⁻¹ N_iᵀ                       (45), (46), passive joints released
+//
+// N_i the wrenches at T that the passive joints of leg i carry, C_i the compliance of its members and laws. Where laws
+// depend on their force the legs must be statically determinate: Σ N_i λ_i = F gives λ, and N_iᵀ t = e_i(λ_i), the
+// legs' own deflections, gives the displacement t.
+#pragma once
+
+#include <Eigen/LU>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "analytic/deflection.h"
+#include "msa/mechanism/configuration.h"
+
+namespace deflect::analytic {
+
+class PoseSweep {
+ public:
+  /// For configurations of this device: of the same parts, freedoms and laws.
+  explicit PoseSweep(const Configuration&);
+
+  /// False where the device has what a sweep leaves to AnalyticModel: parts in parallel within a leg, laws that jump,
+  /// joints of given 6×6 stiffness, legs beside, misfits, base or tool that move or yield.
+  bool applies() const { return applies_; }
+
+  /// Response to the wrench F at T, the weight and so many K above 20 °C, base axes, SI: displacement [δ; θ] of T from
+  /// the assembled state and the tangent stiffness. False, and no result, where a pose or load asks for more: a leg
+  /// that yields nowhere along what it carries, a law of no stiffness at its force, legs that do not hold T, heat or
+  /// laws that depend on their force and legs that are not statically determinate.
+  bool solve(const Configuration&, const Vector6& F_T_W, double warmer = 0);
+
+  const Vector6& displacement() const { return displacement_; }
+  const Matrix6& stiffness() const { return stiffness_; }
+
+  struct Part {
+    std::size_t leg;  ///< from 0
+    std::string name;
+  };
+  /// What yields, leg by leg from base to platform: members, and joints with laws.
+  const std::vector<Part>& parts() const { return parts_; }
+
+  /// ∂K/∂ln s by part, s a factor on all of the part's stiffness at its force: N A⁻¹ NᵀC_part N A⁻¹ Nᵀ, symmetric and
+  /// not negative; they add up to K. Of linear laws the derivative of K at constant load. Of the last solve().
+  const std::vector<Matrix6>& derivatives();
+
+ private:
+  using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+  struct Freedom {
+    std::size_t part, index;  // of the leg; tx … rz
+    std::size_t shared;       // in parts_
+    Spring spring;
+    bool given_by_pose;  // a cable as long as the actuator stands out
+    std::array<double, 6> twist{};
+    double force = 0, yields = 0;
+  };
+  struct Flexible {
+    std::size_t part, shared;
+    Small A;  // NᵀC N
+  };
+  struct Leg {
+    std::vector<Flexible> members;
+    std::vector<Freedom> springs;
+    std::vector<std::pair<std::size_t, std::size_t>> passive;
+    Vector3 expansion = Vector3::Zero();  // per kelvin, of the end against the start
+    Columns N;
+    Small A, inverse;
+  };
+
+  static void carry(Leg&, const PlacedLeg&, const Vector3& p_WT, double length);
+  bool determine_forces(const Vector6& F);
+
+  bool applies_ = true, linear_ = true, determinate_ = false;
+  std::vector<Leg> legs_;
+  std::vector<Part> parts_;
+  std::vector<Matrix6> derivatives_;
+  Eigen::PartialPivLU<Matrix6> statics_;
+  Vector6 lambda_ = Vector6::Zero(), displacement_ = Vector6::Zero();
+  Matrix6 stiffness_ = Matrix6::Zero();
+};
+
+}  // namespace deflect::analytic
