@@ -31,16 +31,6 @@ std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
   return out;
 }
 
-BeamRigidity rigidity(const PlacedMember& m) {
-  const double none = std::numeric_limits<double>::infinity();
-  BeamRigidity r{m.E * m.section.A, m.E * m.section.Iy, m.E * m.section.Iz, m.G * m.section.J, none, none};
-  if (m.beam == BeamTheory::timoshenko) {
-    r.GAs_y = m.G * m.section.As_y;
-    r.GAs_z = m.G * m.section.As_z;
-  }
-  return r;
-}
-
 /// A stiffness of all six freedoms together is Σ λ v vᵀ over its eigenvectors: a spring λ for each, along the relative
 /// motion vᵀ[δ; θ]. Rotations are weighed by the stiffness' own length, so that eigenvectors are well defined.
 void connect_elastic(Model& model, int a, int b, const PlacedJoint& j, const std::string& name) {
@@ -163,6 +153,16 @@ class Builder {
 };
 
 }  // namespace
+
+BeamRigidity rigidity(const PlacedMember& m) {
+  const double none = std::numeric_limits<double>::infinity();
+  BeamRigidity r{m.E * m.section.A, m.E * m.section.Iy, m.E * m.section.Iz, m.G * m.section.J, none, none};
+  if (m.beam == BeamTheory::timoshenko) {
+    r.GAs_y = m.G * m.section.As_y;
+    r.GAs_z = m.G * m.section.As_z;
+  }
+  return r;
+}
 
 MemberDivision equal_division(const Configuration& c, int elements) {
   std::vector<double> at;

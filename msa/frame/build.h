@@ -15,6 +15,9 @@ namespace deflect::frame {
 /// is not named is one element.
 using MemberDivision = std::map<std::string, std::vector<double>>;
 
+/// Of Young's and shear modulus and section; shear deforms a Timoshenko member only.
+BeamRigidity rigidity(const PlacedMember&);
+
 /// Every member in that many equal elements.
 MemberDivision equal_division(const Configuration&, int elements);
 

@@ -5,6 +5,7 @@
 #include "analytic/model.h"
 #include "analytic/pose_sweep.h"
 #include "msa/frame/msa.h"
+#include "msa/frame/msa_sweep.h"
 #include "tests/support/devices.h"
 
 namespace {
@@ -81,6 +82,20 @@ void msa_model(benchmark::State& state, const char* name) {
 }
 BENCHMARK_CAPTURE(msa_model, haptic_6psu, "haptic-6psu")->Arg(1)->Arg(4);
 BENCHMARK_CAPTURE(msa_model, ideal_joints, "haptic-6psu-ideal-joints")->Arg(1)->Arg(4);
+
+/// The same from pose to pose, legs condensed.
+void msa_sweep(benchmark::State& state, const char* name) {
+  Case c(name);
+  Posing posing(c.mechanism);
+  const Configuration& first = posing.at(c.next());
+  frame::MsaSweep sweep(first, frame::equal_division(first, static_cast<int>(state.range(0))));
+  for (auto _ : state) {
+    if (!sweep.solve(posing.at(c.next()), c.F)) state.SkipWithError("no solution");
+    benchmark::DoNotOptimize(sweep.stiffness());
+  }
+}
+BENCHMARK_CAPTURE(msa_sweep, haptic_6psu, "haptic-6psu")->Arg(1)->Arg(4);
+BENCHMARK_CAPTURE(msa_sweep, ideal_joints, "haptic-6psu-ideal-joints")->Arg(1)->Arg(4);
 
 }  // namespace
 
