@@ -153,7 +153,8 @@ bool PoseSweep::solve(const Configuration& c, const Vector6& F_T_W, double warme
   for (Leg& leg : legs_) {
     const Eigen::Index n = leg.N.cols();
     if (n == 0) continue;
-    const auto lambda = lambda_.segment(determinate_ ? at : 0, n);
+    leg.lambda = lambda_.segment(determinate_ ? at : 0, n);
+    const auto& lambda = leg.lambda;
     if (determinate_)
       moved.segment(at, n) = leg.A.lazyProduct(lambda) + warmer * leg.N.topRows<3>().transpose() * leg.expansion;
     for (Freedom& f : leg.springs) {
@@ -186,7 +187,37 @@ bool PoseSweep::solve(const Configuration& c, const Vector6& F_T_W, double warme
   const Eigen::LDLT<Matrix6> held(weight.asDiagonal() * stiffness_ * weight.asDiagonal());
   if (!held.isPositive() || !(held.vectorD().minCoeff() > 1e-10 * held.vectorD().maxCoeff())) return false;
   displacement_ = weight.cwiseProduct(held.solve(weight.cwiseProduct(F)));
+  for (Leg& leg : legs_) {
+    leg.lambda = leg.inverse * (leg.N.transpose() * displacement_);
+    for (Freedom& f : leg.springs)
+      f.force = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>>(f.twist.data(), leg.N.cols())
+                    .dot(leg.lambda);
+  }
   return true;
+}
+
+Matrix6 PoseSweep::leg_stiffness(std::size_t leg) const {
+  const Leg& l = legs_[leg];
+  if (l.N.cols() == 0) return Matrix6::Zero();
+  return l.N * l.inverse * l.N.transpose();
+}
+
+double PoseSweep::energy() const {
+  double sum = 0;
+  for (const Leg& leg : legs_) {
+    for (const Flexible& f : leg.members) sum += 0.5 * leg.lambda.dot(f.A * leg.lambda);
+    for (const Freedom& f : leg.springs) sum += stored_energy(f.spring, f.force);
+  }
+  return sum;
+}
+
+Matrix6X PoseSweep::passive_twists(const Configuration& c, std::size_t leg) const {
+  const Leg& l = legs_[leg];
+  Matrix6X out(6, static_cast<Eigen::Index>(l.passive.size()));
+  for (std::size_t k = 0; k < l.passive.size(); ++k)
+    out.col(static_cast<Eigen::Index>(k)) =
+        freedom_twist(std::get<PlacedJoint>(c.legs[leg].parts[l.passive[k].first]), l.passive[k].second, c.pose.p_WT);
+  return out;
 }
 
 const std::vector<Matrix6>& PoseSweep::derivatives() {

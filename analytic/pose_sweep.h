@@ -36,6 +36,14 @@ class PoseSweep {
   const Vector6& displacement() const { return displacement_; }
   const Matrix6& stiffness() const { return stiffness_; }
 
+  bool linear() const { return linear_; }  ///< no law's stiffness depends on its force
+  /// Of the last solve(): what the platform exerts on a leg, at T; its stiffness; the strain energy of all, J.
+  Vector6 leg_wrench(std::size_t leg) const { return legs_[leg].N * legs_[leg].lambda; }
+  Matrix6 leg_stiffness(std::size_t leg) const;
+  double energy() const;
+  /// Twists at T of a leg's passive joints (columns).
+  Matrix6X passive_twists(const Configuration&, std::size_t leg) const;
+
   struct Part {
     std::size_t leg;  ///< from 0
     std::string name;
@@ -69,6 +77,7 @@ class PoseSweep {
     Vector3 expansion = Vector3::Zero();  // per kelvin, of the end against the start
     Columns N;
     Small A, inverse;
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> lambda;
   };
 
   static void carry(Leg&, const PlacedLeg&, const Vector3& p_WT, double length);

@@ -208,8 +208,10 @@ bool MsaSweep::condense(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, 
   return true;
 }
 
-/// From the platform back to the ground: the springs' forces.
-void MsaSweep::follow(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT) {
+/// From the platform back to the ground: the springs' motions and forces. Calls of_element(member, element, d_a, d_b)
+/// with the displacements of its ends, member axes.
+template <class OfElement>
+void MsaSweep::follow(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, const OfElement& of_element) {
   Vector6 d = displacement_;
   Vector3 at = p_WT;
   const auto see_from = [&](const Vector3& point) {
@@ -219,6 +221,7 @@ void MsaSweep::follow(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT) {
   const auto tell = [&](int number, double theta) {
     if (number < 0) return;
     Spring& spring = springs_[static_cast<std::size_t>(number)];
+    spring.elongation = theta;
     spring.force = spring.s + spring.k * theta;
   };
   for (std::size_t i = leg.steps.size(); i-- > leg.first_member;) {
@@ -227,10 +230,16 @@ void MsaSweep::follow(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT) {
       see_from(member->p_W_end);
       d = turned(member->R_WM.transpose(), d);
       for (std::size_t e = step.elements.size(); e-- > 0;) {
-        if (i == leg.first_member && e == 0) break;
-        d = step.elements[e].back * d + step.elements[e].shift;
+        if (i == leg.first_member && e == 0) {
+          Eigen::Index n = 0;
+          const Angles theta = leg.theta_back * d + leg.theta_shift;
+          for (std::size_t joint = 0; joint < i; ++joint)
+            for (const Freedom& f : leg.steps[joint].freedoms) tell(f.spring, theta(n++));
+        }
+        const Vector6 near = step.elements[e].back * d + step.elements[e].shift;
+        of_element(*member, step.elements[e], near, d);
+        d = near;
       }
-      if (i == leg.first_member) break;
       d = turned(member->R_WM, d);
       at = member->p_W_start;
       continue;
@@ -244,10 +253,46 @@ void MsaSweep::follow(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT) {
       d -= f.t * theta;
     }
   }
-  const Angles theta = leg.theta_back * d + leg.theta_shift;
-  Eigen::Index n = 0;
-  for (std::size_t i = 0; i < leg.first_member; ++i)
-    for (const Freedom& f : leg.steps[i].freedoms) tell(f.spring, theta(n++));
+}
+
+void MsaSweep::follow_springs(const Configuration& c) {
+  for (std::size_t l = 0; l < legs_.size(); ++l)
+    follow(legs_[l], c.legs[l], c.pose.p_WT,
+           [](const PlacedMember&, const Element&, const Vector6&, const Vector6&) {});
+}
+
+/// Energies and reactions of the elements themselves.
+void MsaSweep::conclude(const Configuration& c) {
+  energy_ = 0;
+  reaction_.setZero();
+  for (std::size_t l = 0; l < legs_.size(); ++l) {
+    Vector6 foot = Vector6::Zero();  // on the first end of the last element that is reported, the first of the leg
+    Vector3 p_W_foot = Vector3::Zero();
+    follow(legs_[l], c.legs[l], c.pose.p_WT,
+           [&](const PlacedMember& member, const Element& element, const Vector6& a, const Vector6& b) {
+             const Matrix12 k = local_stiffness(rigidity(member), element.share * member.length());
+             Vector12 ends;
+             ends << a, b;
+             const Vector12 forces = k * ends;
+             energy_ += 0.5 * forces.dot(ends);
+             foot = turned(member.R_WM, Vector6(forces.head<6>()));
+             p_W_foot = member.p_W_start;
+           });
+    foot.tail<3>() += (p_W_foot - c.pose.p_WT).cross(foot.head<3>());
+    reaction_ += foot;
+  }
+  for (const Spring& spring : springs_) energy_ += frame::energy(spring.law, spring.elongation);
+}
+
+Matrix6X MsaSweep::passive_twists(const Configuration& c, std::size_t leg) const {
+  Matrix6X out(6, 0);
+  for (const Step& step : legs_[leg].steps)
+    for (const Freedom& f : step.freedoms)
+      if (f.spring < 0) {
+        out.conservativeResize(6, out.cols() + 1);
+        out.rightCols<1>() = motion(std::get<PlacedJoint>(c.legs[leg].parts[step.part]), f.index, c.pose.p_WT);
+      }
+  return out;
 }
 
 /// Springs linearised about the forces that they have been found to carry: how far that changes what they pull with at
@@ -256,11 +301,11 @@ double MsaSweep::settle() {
   double change = 0;
   for (Spring& spring : springs_) {
     if (is_linear(spring.law)) continue;
-    const double found = (spring.force - spring.s) / spring.k, at = elongation(spring.law, spring.force);
+    const double at = frame::elongation(spring.law, spring.force);
     spring.k = std::visit([&](const auto& l) { return l.at_force(spring.force + spring.law.preload); }, spring.law);
     if (!(spring.k > 0) || !std::isfinite(spring.k)) return INFINITY;
     spring.s = spring.force - spring.k * at;
-    change = std::max(change, spring.k * std::abs(found - at));
+    change = std::max(change, spring.k * std::abs(spring.elongation - at));
   }
   return change;
 }
@@ -293,14 +338,20 @@ bool MsaSweep::solve(const Configuration& c, const Vector6& F_T_W) {
     const Vector6 pivots = llt.matrixLLT().diagonal();
     if (llt.info() != Eigen::Success || !(pivots.minCoeff() > 1e-5 * pivots.maxCoeff())) return false;
     displacement_ = weight.cwiseProduct(llt.solve(weight.cwiseProduct(left)));
-    if (linear_) return true;
-    for (std::size_t l = 0; l < legs_.size(); ++l) follow(legs_[l], c.legs[l], c.pose.p_WT);
+    if (linear_) {
+      conclude(c);
+      return true;
+    }
+    follow_springs(c);
     double largest = size;
     for (const Spring& spring : springs_)
       largest = std::max(largest, std::abs(spring.force) * (spring.law.rotation ? 1 / c.size : 1));
     const double change = settle();
     if (!std::isfinite(change)) return false;
-    if (change <= settled * largest) return true;
+    if (change <= settled * largest) {
+      conclude(c);
+      return true;
+    }
   }
   return false;
 }

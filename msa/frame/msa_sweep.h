@@ -34,6 +34,13 @@ class MsaSweep {
 
   const Vector6& displacement() const { return displacement_; }
   const Matrix6& stiffness() const { return stiffness_; }
+  bool linear() const { return linear_; }  ///< no spring's stiffness depends on its load
+  /// Of the last solve(): a leg's stiffness; the wrench of the ground on the legs, about T; the stored energy, J.
+  const Matrix6& leg_stiffness(std::size_t leg) const { return legs_[leg].end.K; }
+  const Vector6& reaction() const { return reaction_; }
+  double energy() const { return energy_; }
+  /// Twists at T of a leg's passive joints (columns).
+  Matrix6X passive_twists(const Configuration&, std::size_t leg) const;
   int iterations() const { return iterations_; }  ///< of the last solve; 1 where all springs are linear
 
  private:
@@ -50,7 +57,7 @@ class MsaSweep {
   };
   struct Spring {
     SpringLaw law;
-    double k = 0, s = 0, force = 0;
+    double k = 0, s = 0, force = 0, elongation = 0;
   };
   struct Freedom {
     std::size_t index;  // tx … rz
@@ -80,14 +87,18 @@ class MsaSweep {
 
   bool condense(Leg&, const PlacedLeg&, const Vector3& p_WT, std::size_t from);
   bool start(Leg&, const PlacedMember&, const Matrix12& element, Element&, Matrix6& K, Vector6& p);
-  void follow(Leg&, const PlacedLeg&, const Vector3& p_WT);
+  template <class OfElement>
+  void follow(Leg&, const PlacedLeg&, const Vector3& p_WT, const OfElement&);
+  void follow_springs(const Configuration&);
+  void conclude(const Configuration&);
   double settle();
 
   bool applies_ = true, linear_ = true;
   int iterations_ = 0;
   std::vector<Leg> legs_;
   std::vector<Spring> springs_;
-  Vector6 displacement_ = Vector6::Zero();
+  double energy_ = 0;
+  Vector6 displacement_ = Vector6::Zero(), reaction_ = Vector6::Zero();
   Matrix6 stiffness_ = Matrix6::Zero();
 };
 

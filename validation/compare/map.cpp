@@ -9,14 +9,15 @@
 
 #include "msa/base/error.h"
 #include "msa/mechanism/configuration.h"
-#include "validation/compare/at_pose.h"
 #include "validation/compare/parallel.h"
+#include "validation/compare/swept.h"
 #include "validation/compare/theories.h"
 
 namespace deflect {
 namespace {
 
-constexpr std::size_t chunk = 8;  // poses that a thread takes at a time
+/// Poses that a thread takes at a time.
+std::size_t chunk_of(std::size_t poses) { return std::clamp<std::size_t>(poses / 64, 4, 128); }
 
 /// (C_δδ)⁻¹ as the Schur complement of the rotations: no inverse of a K that may be singular. N/mm.
 Matrix3 translational(const Matrix6& K_mm) {
@@ -65,11 +66,12 @@ MapValues values_of(const std::vector<Answer>& states, const MapOptions& o) {
   return v;
 }
 
-void check_finite(const MapValues& v, const std::string& where, const char* theory) {
+template <class Where>
+void check_finite(const MapValues& v, const Where& where, const char* theory) {
   if (v.compliance_mm_N.allFinite() && v.stiffness_N_mm.allFinite() && v.K_ii.allFinite() &&
       std::isfinite(v.smallest_N_mm) && std::isfinite(v.largest_N_mm) && std::isfinite(v.isotropy))
     return;
-  throw ModelError(fmt::format("{}: the {} stiffness is singular: a force there meets no resistance", where, theory));
+  throw ModelError(fmt::format("{}: the {} stiffness is singular: a force there meets no resistance", where(), theory));
 }
 
 std::vector<Vector6> loads_of(const MapOptions& o) {
@@ -77,37 +79,38 @@ std::vector<Vector6> loads_of(const MapOptions& o) {
   return {o.force_N * Vector6::Unit(0), o.force_N * Vector6::Unit(1), o.force_N * Vector6::Unit(2)};
 }
 
-MapPose map_pose(const Mechanism& m, const MapOptions& o, const std::vector<Vector6>& loads, std::size_t index) {
+MapPose map_pose(SweptTheories& theories, const Mechanism& m, const MapOptions& o, const std::vector<Vector6>& loads,
+                 std::size_t index) {
   MapPose out;
   out.pose_mm_deg = o.grid.pose_mm_deg(index);
-  Configuration c;
+  const Configuration* c = nullptr;
   try {
-    c = configure(m, pose_from(out.pose_mm_deg));
+    c = &theories.at(pose_from(out.pose_mm_deg));
   } catch (const ModelError& e) {
     out.out_of_reach = e.what();
     return out;
   }
-  std::vector<double> slides;
-  for (const Actuator& actuator : c.actuators)
-    if (!actuator.rotation) slides.push_back(1e3 * actuator.value);
-  if (!slides.empty()) {
-    const auto [least, most] = std::minmax_element(slides.begin(), slides.end());
-    out.slide_min_mm = *least;
-    out.slide_max_mm = *most;
-    for (const double q : slides) out.slide_mean_mm += q / static_cast<double>(slides.size());
+  double slides = 0;
+  for (const Actuator& actuator : c->actuators) {
+    if (actuator.rotation) continue;
+    const double q = 1e3 * actuator.value;
+    out.slide_min_mm = slides == 0 ? q : std::min(out.slide_min_mm, q);
+    out.slide_max_mm = slides == 0 ? q : std::max(out.slide_max_mm, q);
+    out.slide_mean_mm += q;
+    ++slides;
   }
-  const std::string where =
-      fmt::format("{} at ({})", m.name, fmt::join(out.pose_mm_deg.data(), out.pose_mm_deg.data() + 6, ", "));
+  if (slides > 0) out.slide_mean_mm /= slides;
   std::vector<Answer> analytic, msa;
+  const auto where = [&] {
+    return fmt::format("{} at ({})", m.name, fmt::join(out.pose_mm_deg.data(), out.pose_mm_deg.data() + 6, ", "));
+  };
   if (o.analytic) {
-    const AnalyticAtPose theory(c, where);
-    for (const Vector6& F : loads) analytic.push_back(theory.solve(F));
+    for (const Vector6& F : loads) analytic.push_back(theories.analytic(F));
     out.analytic = values_of(analytic, o);
     check_finite(*out.analytic, where, "analytic");
   }
   if (o.msa) {
-    MsaAtPose theory(c, {}, where);
-    for (const Vector6& F : loads) msa.push_back(theory.solve(F));
+    for (const Vector6& F : loads) msa.push_back(theories.msa(F));
     out.msa = values_of(msa, o);
     check_finite(*out.msa, where, "MSA");
   }
@@ -199,9 +202,15 @@ StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options) {
   check(options);
   StiffnessMap map{m.name, slide_words(m), options, std::vector<MapPose>(options.grid.size())};
   const std::vector<Vector6> loads = loads_of(options);
-  for_each_case(
-      map.poses.size(), chunk, options.threads, [&](std::size_t i) { map.poses[i] = map_pose(m, options, loads, i); },
-      options.progress);
+  const std::size_t poses = map.poses.size(), chunk = chunk_of(poses);
+  const auto progress = [&](std::size_t chunks) { options.progress(std::min(poses, chunks * chunk)); };
+  for_each_case((poses + chunk - 1) / chunk, 1, options.threads,
+                [&](std::size_t k) {
+                  SweptTheories theories(m);
+                  for (std::size_t i = k * chunk; i < std::min(poses, (k + 1) * chunk); ++i)
+                    map.poses[i] = map_pose(theories, m, options, loads, i);
+                },
+                options.progress ? std::function<void(std::size_t)>(progress) : nullptr);
   return map;
 }
 
