@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/csv_columns.h"
 #include "tests/support/program.h"
 
 namespace deflect {
 namespace {
 
 using nlohmann::json;
+using test::columns;
 using test::contents;
+using test::lines_of;
 
 /// A clamp that tilts, hidden in the 27 readings of the paper.
 const std::string& soft_root() {
@@ -26,13 +29,6 @@ const std::string& soft_root() {
     return contents(file);
   }();
   return text;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> out;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) out.push_back(line);
-  return out;
 }
 
 /// The header and the first `rows` rows.
@@ -142,23 +138,6 @@ TEST_F(CompareProgram, FiguresAndTablesAreWhole) {
   EXPECT_TRUE(contents(folder / "out" / "tests.csv").starts_with("kind,name,numbers,size_um,p_value\n"));
 }
 
-/// The columns of these names.
-std::string columns(const std::string& text, const std::vector<std::string>& names) {
-  std::vector<std::vector<std::string>> cells;
-  for (const std::string& line : lines_of(text)) {
-    cells.emplace_back();
-    std::istringstream in(line);
-    for (std::string cell; std::getline(in, cell, ',');) cells.back().push_back(cell);
-  }
-  std::string out;
-  for (const auto& row : cells)
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto at = std::find(cells[0].begin(), cells[0].end(), names[i]) - cells[0].begin();
-      out += row.at(static_cast<std::size_t>(at)) + (i + 1 < names.size() ? "," : "\n");
-    }
-  return out;
-}
-
 TEST_F(CompareProgram, WhatIsNotMeasuredOrLoadedIsNotDrawn) {
   const std::vector<std::string> pose = {"pose",      "x_mm",    "y_mm", "z_mm", "roll_deg",
                                          "pitch_deg", "yaw_deg", "fx_N", "fy_N", "fz_N"};
@@ -174,9 +153,84 @@ TEST_F(CompareProgram, WhatIsNotMeasuredOrLoadedIsNotDrawn) {
   drawn({"ux_mm", "sigma_u_mm"});
   EXPECT_NE(contents(folder / "ux_mm" / "residuals.svg").find("Δx"), std::string::npos);
   EXPECT_EQ(contents(folder / "ux_mm" / "residuals.svg").find("Δy"), std::string::npos);
-  drawn({"thx_rad", "thy_rad", "sigma_th_rad"});
-  EXPECT_FALSE(std::filesystem::exists(folder / "thx_rad" / "residuals.svg"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "thx_rad" / "elongation.svg"));
+}
+
+TEST_F(CompareProgram, RotationsAloneAreNotCalledMicrometres) {
+  ASSERT_EQ(test::deflect("simulate haptic-6psu-ideal-joints --campaign paper --noise-rotation 1e-5 --with "
+                          "guide_root_compliance,stiffness_Nmm_per_rad=1e6 -o " +
+                          path("all.csv"))
+                .code,
+            0);
+  const std::string text =
+      columns(contents(folder / "all.csv"), {"pose", "x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg", "fx_N",
+                                             "fy_N", "fz_N", "thx_rad", "thy_rad", "sigma_th_rad"});
+  const test::Run run = compare(text, "--out " + path("out") + " --json " + path("r.json"));
+  ASSERT_EQ(run.code, 0) << run.out;
+  EXPECT_NE(run.out.find("µrad rms"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("measured − predicted, µrad"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("µm rms"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("predicted, µm"), std::string::npos) << run.out;
+  EXPECT_TRUE(contents(folder / "out" / "errors.csv").starts_with("group,readings,rmse_urad,"));
+  EXPECT_TRUE(contents(folder / "out" / "tests.csv").starts_with("kind,name,numbers,size_urad,"));
+  for (const char* name : {"residuals", "residual-map", "groups", "elongation"}) {
+    const std::string svg = contents(folder / "out" / (std::string(name) + ".svg"));
+    EXPECT_NE(svg.find("µrad"), std::string::npos) << name;
+    if (name != std::string("elongation")) {
+      EXPECT_EQ(svg.substr(svg.find("</desc>")).find("µm"), std::string::npos) << name;
+    }
+    EXPECT_NE(contents(folder / "out" / (std::string(name) + ".txt")).find("otations"), std::string::npos) << name;
+  }
+  const json j = json::parse(contents(folder / "r.json"));
+  EXPECT_EQ(j["unit"], "mrad");
+  EXPECT_GT(j["noise_floor_mm"].get<double>(), 0.009) << "noise of rotations counts where they are all there is";
+  EXPECT_GT(j["baseline"]["held_out_rmse_mm"].get<double>(), 0);
+}
+
+TEST_F(CompareProgram, RotationsBesideTranslationsDoNotEnterMillimetres) {
+  ASSERT_EQ(
+      test::deflect("simulate haptic-6psu-ideal-joints --campaign paper --noise-rotation 1e-3 -o " + path("all.csv"))
+          .code,
+      0);
+  const json j = compared(contents(folder / "all.csv"));
+  EXPECT_NEAR(j["sigma_u_mm"].get<double>(), 0.002, 1e-9);
+  for (const json& pattern : j["patterns"])
+    if (pattern["pattern"] == "load gain") {
+      EXPECT_LT(pattern["size_mm"].get<double>(), 0.02);
+    }
+}
+
+TEST_F(CompareProgram, ResidualMapIsSigned) {
+  const test::Run run = compare(soft_root(), "--out " + path("out"));
+  ASSERT_EQ(run.code, 0) << run.out;
+  const std::string svg = contents(folder / "out" / "residual-map.svg"),
+                    caption = contents(folder / "out" / "residual-map.txt");
+  for (const char* text : {"Δx in the sense of fx", "Δy, mean", "µm", "−"})
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  for (const char* text : {"one scale of ±", "base axes", "27 readings at 9 poses", "fx 0 … 50",
+                           "Standard deviation of "
+                           "a reading 2 µm",
+                           "deflect 0."})
+    EXPECT_NE(caption.find(text), std::string::npos) << text << "\n" << caption;
+}
+
+TEST_F(CompareProgram, FiguresFitTheColumnThatIsAskedFor) {
+  const test::Run run = compare(soft_root(),
+                                "--figure-width '88 mm' --figure-font 'DejaVu Serif' --figure-font-size 7 "
+                                "--out " +
+                                    path("out"));
+  ASSERT_EQ(run.code, 0) << run.out;
+  for (const char* name : {"residuals", "residual-map", "groups", "secant", "elongation", "loops"}) {
+    const std::string svg = contents(folder / "out" / (std::string(name) + ".svg"));
+    EXPECT_NE(svg.find("width=\"88mm\""), std::string::npos) << name;
+    EXPECT_NE(svg.find("font-size=\"7.00\""), std::string::npos) << name;
+    EXPECT_EQ(svg.find("DejaVu Sans"), std::string::npos) << name;
+  }
+  expect_refused(soft_root(), "--figure-width: '88'", "--figure-width 88");
+  expect_refused(soft_root(), "figures: 30 mm are too narrow for text of 8 pt", "--figure-width '30 mm'");
+  expect_refused(soft_root(), "'No Such Family' is not installed", "--figure-font 'No Such Family'");
+  const test::Run without = compare(soft_root(), "--figure-width '88 mm'");
+  EXPECT_EQ(without.code, 2);
+  EXPECT_NE(without.out.find("belong to --out"), std::string::npos) << without.out;
 }
 
 TEST_F(CompareProgram, ThreadsDoNotChangeADigit) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/csv_columns.h"
 #include "tests/support/program.h"
 
 namespace deflect {
@@ -72,6 +73,24 @@ TEST_F(DiagnoseProgram, RefusesWhatItCannotUse) {
   for (const char* wrong : {"--sigma 0", "--sigma nan", "--threads -1", "--effects nowhere.yaml"})
     EXPECT_EQ(diagnose(wrong).code, 2) << wrong;
   EXPECT_FALSE(std::filesystem::exists(folder / "d.json"));
+}
+
+TEST_F(DiagnoseProgram, RotationsAloneAreNotCalledMicrometres) {
+  ASSERT_EQ(
+      simulated("--campaign paper --noise-rotation 1e-5 --with guide_root_compliance,stiffness_Nmm_per_rad=1e6").code,
+      0);
+  const std::string text = contents(folder / "data.csv");
+  std::ofstream(folder / "data.csv") << test::columns(
+      text, {"pose", "x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg", "fx_N", "fy_N", "fz_N", "thx_rad",
+             "thy_rad", "sigma_th_rad"});
+  const test::Run run = diagnose();
+  ASSERT_EQ(run.code, 0) << run.out;
+  EXPECT_NE(run.out.find("rms µrad"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("rms µm"), std::string::npos) << run.out;
+  const json d = json::parse(contents(folder / "d.json"));
+  EXPECT_EQ(d["unit"], "mrad");
+  EXPECT_NEAR(d["noise_floor_mm"].get<double>(), 1e-2, 1e-9);
+  EXPECT_GT(d["baseline"]["rmse_mm"].get<double>(), 2 * d["noise_floor_mm"].get<double>());
 }
 
 TEST_F(DiagnoseProgram, IsSilentAboutItsProgressInAPipe) {

@@ -2,6 +2,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +11,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "validation/report/child_process.h"
 #include "validation/report/fig10.h"
 #include "validation/report/gnuplot.h"
 
@@ -62,7 +65,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 TEST_F(FigureTest, ThreeFormatsAndTheSameBytesAgain) {
   const Figure figure = fig10(validation(9, true, 1e-9));
   const auto paths = render(figure, folder_ / "new");
-  ASSERT_EQ(paths.size(), 3u);
+  ASSERT_EQ(paths.size(), 4u);
   std::vector<std::string> first;
   for (const fs::path& path : paths) first.push_back(read_text(path));
   EXPECT_EQ(paths[0].filename(), "fig10.svg");
@@ -73,11 +76,12 @@ TEST_F(FigureTest, ThreeFormatsAndTheSameBytesAgain) {
   EXPECT_TRUE(has(first[1], "%%EOF"));
   EXPECT_TRUE(first[2].starts_with("\x89PNG"));
   EXPECT_TRUE(has(first[2], "IEND"));
+  EXPECT_EQ(paths[3].filename(), "fig10.txt");
 
   ::sleep(1);  // a time stamp of whole seconds would show now
   EXPECT_EQ(render(figure, folder_ / "new"), paths);
   for (std::size_t i = 0; i < paths.size(); ++i) EXPECT_TRUE(read_text(paths[i]) == first[i]) << paths[i];
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "new"), fs::directory_iterator()), 3)
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "new"), fs::directory_iterator()), 4)
       << "nothing else is left";
 }
 
@@ -168,13 +172,74 @@ TEST_F(FigureTest, Fig10ChoosesTheUnitOfTheResidual) {
 TEST_F(FigureTest, Fig10OfOtherSetsOfPoints) {
   for (const int points : {1, 2, 10, 40, 343}) {
     SCOPED_TRACE(points);
-    EXPECT_EQ(render(fig10(validation(points, points == 1, 1e-9)), folder_).size(), 3u);
+    EXPECT_EQ(render(fig10(validation(points, points == 1, 1e-9)), folder_).size(), 4u);
   }
   Validation one_axis = validation(9, false, 1e-9);
   std::erase_if(one_axis.rows, [](const ValidationRow& row) { return row.axis != 1; });
   const std::string svg = read_text(render(fig10(one_axis), folder_).front());
   EXPECT_TRUE(has(svg, "Y-MSA"));
   EXPECT_FALSE(has(svg, "X-MSA"));
+}
+
+TEST_F(FigureTest, CaptionSaysWhatUnitsLoadFrameAndProgram) {
+  const auto paths = render(fig10(validation(9, true, 1e-9)), folder_);
+  const std::string caption = read_text(folder_ / "fig10.txt"), svg = read_text(paths.front());
+  for (const char* text : {"haptic-6psu", "50 N", "mm", "base axes", "positive", "9 points", "passive-joints",
+                           "no noise", "deflect 0.", "analytic − MSA"})
+    EXPECT_TRUE(has(caption, text)) << text << "\n" << caption;
+  EXPECT_EQ(std::count(caption.begin(), caption.end(), '\n'), 1) << "one paragraph";
+  EXPECT_TRUE(has(svg, "<title>haptic-6psu: linear deflection under 50 N in x, y, z</title>"));
+  EXPECT_TRUE(has(svg, "<desc>" + caption.substr(0, 40)));
+}
+
+/// Sizes of the text in an SVG, points; and the ends of each line of text, supposing wide letters.
+TEST_F(FigureTest, WidthFontAndSizeAreThoseAskedFor) {
+  for (const double width : {88.0, 180.0})
+    for (const double size : {7.0, 10.0}) {
+      const FigureStyle style{width, "DejaVu Serif", size};
+      const Figure figure = fig10(validation(9, false, 1e-9), style);
+      EXPECT_EQ(figure.width_mm, width);
+      const auto paths = render(figure, folder_);
+      const std::string svg = read_text(paths[0]), pdf = read_text(paths[1]), png = read_text(paths[2]);
+      EXPECT_TRUE(has(svg, fmt::format("width=\"{}mm\"", width)));
+      EXPECT_TRUE(has(svg, "font-family=\"DejaVu Serif"));
+      EXPECT_FALSE(has(svg, "DejaVu Sans"));
+      EXPECT_TRUE(has(svg, fmt::format("font-size=\"{:.2f}\"", size)));
+      EXPECT_TRUE(has(pdf, "DejaVuSerif"));
+      EXPECT_FALSE(has(pdf, "DejaVuSans"));
+      // The width in the PNG's header, big-endian pixels; 300 dpi.
+      const auto byte = [&](std::size_t i) { return static_cast<double>(static_cast<unsigned char>(png[16 + i])); };
+      EXPECT_NEAR(((byte(0) * 256 + byte(1)) * 256 + byte(2)) * 256 + byte(3), width / 25.4 * 300, 1);
+    }
+}
+
+/// Lines of text are 1.164 times as high as DejaVu Sans is large.
+TEST_F(FigureTest, TextOfThePdfHasItsSize) {
+  const auto paths =
+      render({"word", "set key off\nset xlabel 'Sizes'\nplot x", 80, 60, "", "", {0, "DejaVu Sans", 10}}, folder_);
+  const ChildOutcome boxes = run_child({"pdftotext", "-bbox", paths[1].string(), "-"}, "");
+  if (!boxes.succeeded()) GTEST_SKIP() << "pdftotext (poppler-utils) is not installed";
+  const std::string& text = boxes.output;
+  const std::size_t word = text.rfind("<word", text.find(">Sizes<"));
+  const auto number = [&](const char* name) {
+    return std::stod(text.substr(text.find(name, word) + std::string(name).size()));
+  };
+  EXPECT_NEAR(number("yMax=\"") - number("yMin=\""), 11.64, 0.15) << text;
+}
+
+TEST_F(FigureTest, TextThatDoesNotFitOrIsNotInstalledIsRefused) {
+  EXPECT_THROW(fig10(validation(9, false, 1e-9), {40, "DejaVu Sans", 8}), InputError);
+  EXPECT_THROW(fig10(validation(9, false, 1e-9), {160, "DejaVu Sans", 60}), InputError);
+  check_font("DejaVu Sans");
+  check_font("dejavu serif");
+  try {
+    check_font("No Such Family-7");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(has(error.what(), "'No Such Family-7' is not installed; fontconfig would take '")) << error.what();
+    EXPECT_TRUE(has(error.what(), "fc-list")) << error.what();
+  }
+  for (const char* name : {"", "a,12", "a:bold", "it's", "a\nb"}) EXPECT_THROW(check_font(name), InputError) << name;
 }
 
 TEST_F(FigureTest, Fig10RefusesWhatCannotBeDrawn) {

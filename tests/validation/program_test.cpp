@@ -211,5 +211,18 @@ TEST(Program, AsPrintedShowsThePriceBesideTheCorrectedTheory) {
   EXPECT_NE(run.out.find("K_c J_q = 0 fails"), std::string::npos);
 }
 
+TEST(Program, PriceOfTheErrataIsDrawnSigned) {
+  const test::Folder folder;
+  const std::string out = (folder / "out").string();
+  const auto run = deflect("validate haptic-6psu --errata --out '" + out + "'");
+  ASSERT_EQ(run.code, 0) << run.out;
+  const std::string svg = test::contents(folder / "out" / "errata.svg"),
+                    caption = test::contents(folder / "out" / "errata.txt");
+  for (const char* text : {"scalar-direction", "too stiff", "too soft", "load along z", "÷2", "×10", "+1 %"})
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  for (const char* text : {"haptic-6psu", "50 N", "base axes", "9 points", "as printed over corrected"})
+    EXPECT_NE(caption.find(text), std::string::npos) << text << "\n" << caption;
+}
+
 }  // namespace
 }  // namespace deflect

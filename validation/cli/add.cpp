@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
-#include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
@@ -12,6 +11,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/effects.h"
+#include "validation/cli/talk.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/found_effects.h"
 #include "validation/report/effect_results.h"
@@ -129,6 +129,7 @@ std::vector<EffectInstance> add_effects(Mechanism& m, const Arguments& a, const 
     for (const FoundEffect& found : effects) {
       added.push_back(instance(find_effect(all, found.effect), found));
       m = with_effect(m, added.back());
+      tell("effect {} from {}", found.effect, a.from.empty() ? "the command line" : a.from);
     }
   } catch (const InputError& e) {
     throw InputError(a.from.empty() ? e.what() : fmt::format("{}: {}", a.from, e.what()));
@@ -137,14 +138,14 @@ std::vector<EffectInstance> add_effects(Mechanism& m, const Arguments& a, const 
 }
 
 void run(const Arguments& a) {
-  Mechanism m = read_mechanism(device_file(a.device));
+  Mechanism m = read_device(a.device);
   const std::vector<Effect> all = known_effects(a.files);
   const std::vector<EffectInstance> added = add_effects(m, a, all);
   const std::string old = m.name, text = device_text(m, old, added, a.out);
   const Mechanism written = parse_mechanism(text, a.out);
   configure(written, home_pose(written));  // it stands
-  write_text(a.out, text);
-  if (!a.json.empty()) write_text(a.json, added_json(a.device, a.out, added));
+  write_file(a.out, text);
+  if (!a.json.empty()) write_file(a.json, added_json(a.device, a.out, added));
   fmt::print("{}: {} with {}\n", a.out, old, fmt::join(names_of(added), ", "));
 }
 

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include "msa/base/error.h"
-#include "msa/base/files.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/at_pose.h"
 #include "validation/compare/theories.h"
 #include "validation/report/check_results.h"
@@ -30,7 +29,7 @@ MatrixConvention convention_of(const Arguments& a) {
 
 /// The closed form's stiffness, which has passed its checks, in N and the unit of length.
 PrintedMatrix stiffness_of(const Arguments& a, double unit_m) {
-  const Mechanism m = read_mechanism(device_file(a.device));
+  const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
   Matrix6 K = AnalyticAtPose(at.configuration, m.name).solve(wrench_from_mm(load)).stiffness;
@@ -63,15 +62,15 @@ MatrixCheckOptions options_of(const Arguments& a) {
 }
 
 void run(const Arguments& a) {
-  const MatrixCheck m = check_matrix(options_of(a));
+  const MatrixCheck m = timed("checks of " + a.matrix, [&] { return check_matrix(options_of(a)); });
   const CheckedFiles files{a.matrix, a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints)};
   const std::string report = check_report(m, files);
-  if (!a.json.empty()) write_text(a.json, check_json(m, files));
+  if (!a.json.empty()) write_file(a.json, check_json(m, files));
   if (!a.out.empty()) {
     const std::filesystem::path folder = a.out;
-    write_text(folder / "check.txt", report);
-    write_text(folder / "checks.csv", checks_csv(m));
-    write_text(folder / "structure.csv", structure_csv(m));
+    write_file(folder / "check.txt", report);
+    write_file(folder / "checks.csv", checks_csv(m));
+    write_file(folder / "structure.csv", structure_csv(m));
   }
   fmt::print("{}", report);
   if (!m.passes()) throw NumericalError(a.matrix + " fails its checks");

@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include "msa/base/error.h"
-#include "msa/base/files.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/figures.h"
 #include "validation/cli/report.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/comparison.h"
 #include "validation/report/compare_figures.h"
 #include "validation/report/compare_results.h"
@@ -18,25 +18,28 @@ namespace {
 struct Arguments {
   std::string device, data, json, out, report, sigma_mm, sigma_rad;
   double threads = 0;
+  FigureArguments figures;
 };
 
 void run(const Arguments& a) {
   require_pages(a.report);
-  const Mechanism m = read_mechanism(device_file(a.device));
-  const Measurements data = read_measurements(a.data);
+  const FigureStyle style = figure_style(a.figures, a.out);
+  const Mechanism m = read_device(a.device);
+  const Measurements data = read_data(a.data);
   ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
-  o.threads = whole("--threads", a.threads, 0, 1024);
-  const Comparison c = compare(m, data, o);
+  o.threads = parse_threads(a.threads);
+  const Comparison c =
+      timed("compare: closed form at every reading, tolerances, patterns", [&] { return compare(m, data, o); });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
-    for (const Figure& f : compare_figures(c)) render(f, folder);
-    write_text(folder / "residuals.csv", residuals_csv(c));
-    write_text(folder / "errors.csv", errors_csv(c));
-    write_text(folder / "tests.csv", tests_csv(c));
+    draw(compare_figures(c, style), folder);
+    write_file(folder / "residuals.csv", residuals_csv(c));
+    write_file(folder / "errors.csv", errors_csv(c));
+    write_file(folder / "tests.csv", tests_csv(c));
   }
-  if (!a.json.empty()) write_text(a.json, compare_json(c));
+  if (!a.json.empty()) write_file(a.json, compare_json(c));
   fmt::print("{}", compare_report(c));
   if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
   if (!a.report.empty()) write_report(a.report, a.device, {c}, {{"compare", compare_json(c)}});
@@ -51,14 +54,16 @@ Command compare_command() {
       "Measurements against the closed form, nothing fitted: where the model fails, in sentences with numbers; tests "
       "that need no idea of what is missing; patterns of the residual; errors by pose, direction and magnitude",
       "deflect compare haptic-6psu-ideal-joints measurements.csv --out comparison --json comparison.json",
-      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-       {"data", "DATA", "measurements (CSV)", &a->data, true},
-       {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
-       {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
-       {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
-       {"--json", "FILE", "write the result", &a->json},
-       report_option(&a->report),
-       {"--out", "DIR", "write figures and tables", &a->out}},
+      with_figures(
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"data", "DATA", "measurements (CSV)", &a->data, true},
+           {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
+           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+           {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report),
+           {"--out", "DIR", "write figures (SVG, PDF, PNG, each with its caption) and tables", &a->out}},
+          &a->figures),
       [a] { run(*a); }};
 }
 

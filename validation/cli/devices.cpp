@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "meshes/structure.h"
 #include "msa/base/error.h"
@@ -11,6 +12,7 @@
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/theories.h"
 
 namespace deflect::cli {
@@ -40,6 +42,40 @@ fs::path device_file(const std::string& name) {
   const std::string hint = nearest(name, names);
   throw InputError(fmt::format("there is no device '{}'{}: name a built-in one ({}) or a file", name,
                                hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), fmt::join(names, ", ")));
+}
+
+Mechanism read_device(const std::string& name) {
+  const fs::path file = device_file(name);
+  Mechanism m = read_mechanism(file);
+  tell("device {}: {}, {} driven coordinates, geometry {}", m.name, file.string(), actuators_of(m).size(),
+       geometry_names[static_cast<std::size_t>(m.geometry)]);
+  return m;
+}
+
+Measurements read_data(const std::string& file) {
+  Measurements data = read_measurements(file);
+  const auto count = [&](auto has) { return std::count_if(data.readings.begin(), data.readings.end(), has); };
+  tell(
+      "measurements {}: {} readings at {} poses, {} with translations, {} with rotations, {} with their own standard "
+      "deviation, {}",
+      file, data.readings.size(), data.poses.size(),
+      count([](const Reading& r) { return r.displacement[0] || r.displacement[1] || r.displacement[2]; }),
+      count([](const Reading& r) { return r.displacement[3] || r.displacement[4] || r.displacement[5]; }),
+      count([](const Reading& r) { return r.sigma_u || r.sigma_th; }),
+      data.readings.front().sequence ? "in a known order" : "in no known order");
+  return data;
+}
+
+int parse_threads(double value) {
+  const int threads = whole("--threads", value, 0, 1024);
+  tell("threads: {}", threads > 0 ? std::to_string(threads)
+                                  : fmt::format("all {} of the machine", std::thread::hardware_concurrency()));
+  return threads;
+}
+
+void write_file(const fs::path& path, const std::string& text) {
+  write_text(path, text);
+  tell("wrote {}, {} bytes", path.string(), text.size());
 }
 
 std::vector<double> parse_list(const std::string& option, const std::string& text,

@@ -9,6 +9,7 @@
 #include "msa/frame/build.h"
 #include "msa/mechanism/description.h"
 #include "validation/compare/theories.h"
+#include "validation/measurement/measurements.h"
 
 namespace deflect::cli {
 
@@ -20,6 +21,18 @@ std::vector<std::string> device_names();
 
 /// The file of a built-in device's name, or of a path. Throws InputError with the nearest name.
 std::filesystem::path device_file(const std::string& name_or_path);
+
+/// The device of that name or path; InputError as device_file() and read_mechanism() have it.
+Mechanism read_device(const std::string& name_or_path);
+
+/// As read_measurements(), told where verbose.
+Measurements read_data(const std::string& file);
+
+/// The number of --threads; 0: all.
+int parse_threads(double);
+
+/// As write_text(), told where verbose.
+void write_file(const std::filesystem::path&, const std::string& text);
 
 /// "1,2.5,-3" → numbers; exactly one of `counts` of them, or InputError naming the option and what it wants.
 std::vector<double> parse_list(const std::string& option, const std::string& text,

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
 #include "msa/base/error.h"
-#include "msa/base/files.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/effects.h"
 #include "validation/cli/report.h"
+#include "validation/cli/talk.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/report/diagnosis_results.h"
 #include "validation/report/progress.h"
@@ -23,20 +22,22 @@ struct Arguments {
 
 void run(const Arguments& a) {
   require_pages(a.report);
-  const Mechanism m = read_mechanism(device_file(a.device));
-  const Measurements data = read_measurements(a.data);
+  const Mechanism m = read_device(a.device);
+  const Measurements data = read_data(a.data);
   const std::vector<Effect> effects = known_effects(a.files);
   DiagnosisOptions o;
   o.comparison.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.comparison.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
-  o.threads = o.comparison.threads = whole("--threads", a.threads, 0, 1024);
+  o.threads = o.comparison.threads = parse_threads(a.threads);
   Diagnosis d;
   {
-    Progress progress(100, "percent", terminal_stream());
+    const Step step("diagnose: every effect fitted and weighed");
+    Progress progress(100, "percent", progress_stream());
     o.progress = [&progress](double share) { progress.update(static_cast<std::size_t>(100 * share)); };
     d = diagnose(m, data, effects, o);
   }
-  if (!a.json.empty()) write_text(a.json, diagnosis_json(d));
+  for (const PlacedEffect& found : d.missing) tell("found: {}", name_of(found));
+  if (!a.json.empty()) write_file(a.json, diagnosis_json(d));
   fmt::print("{}", diagnosis_report(d, m.name, data.origin));
   if (!a.report.empty())
     write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, {{"diagnose", diagnosis_json(d)}});

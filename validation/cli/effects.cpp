@@ -4,9 +4,9 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
 #include "validation/effects/effect_file.h"
 #include "validation/report/effect_results.h"
 
@@ -14,7 +14,11 @@ namespace deflect::cli {
 
 std::vector<Effect> known_effects(const std::vector<std::string>& files) {
   std::vector<Effect> all = catalogue(data_folder() / "effects");
-  for (const std::string& file : files) add_effect(all, read_effect(file));
+  tell("effects: {} from {}", all.size(), (data_folder() / "effects").string());
+  for (const std::string& file : files) {
+    add_effect(all, read_effect(file));
+    tell("effect {} from {}", all.back().name, file);
+  }
   return all;
 }
 
@@ -43,8 +47,8 @@ void run(const Arguments& a) {
     return;
   }
   std::optional<Mechanism> device;
-  if (!a.device.empty()) device = read_mechanism(device_file(a.device));
-  if (!a.json.empty()) write_text(a.json, effects_json(all, device ? &*device : nullptr));
+  if (!a.device.empty()) device = read_device(a.device);
+  if (!a.json.empty()) write_file(a.json, effects_json(all, device ? &*device : nullptr));
   if (!a.name.empty())
     fmt::print("{}", effect_page(all.front()));
   else if (!device)

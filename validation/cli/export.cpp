@@ -8,11 +8,10 @@
 #include "meshes/structure.h"
 #include "meshes/vtu.h"
 #include "msa/base/error.h"
-#include "msa/base/files.h"
 #include "msa/base/units.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/at_pose.h"
 #include "validation/compare/theories.h"
 
@@ -124,14 +123,15 @@ std::filesystem::path path_of(const Mechanism& m, const Format& format, const Ar
 
 void run(const Arguments& a) {
   const Format& format = format_of(a.to);
-  const Mechanism m = read_mechanism(device_file(a.device));
+  const Mechanism m = read_device(a.device);
   const std::filesystem::path path = path_of(m, format, a);
   std::filesystem::path deflected_path = path;
   deflected_path.replace_filename(path.stem().string() + "-deflected" + format.suffix);
   const Stand at = parse_stand(m, a.pose, a.joints, true);
   const Vector6 load = parse_load(a.load);
   MsaAtPose msa(at.configuration, divide(m, a.element_size), m.name);
-  const Vector6 d = twist_in_mm(msa.solve(wrench_from_mm(load)).displacement);
+  const Vector6 d =
+      timed("MSA: sparse Cholesky", [&] { return twist_in_mm(msa.solve(wrench_from_mm(load)).displacement); });
   LineMesh mesh = lines_of(msa.mechanism());
   FieldData fields = fields_of(msa.mechanism(), msa.displacements());
   group_by_leg(msa.mechanism(), mesh, fields);
@@ -140,7 +140,7 @@ void run(const Arguments& a) {
   const LineMesh moved = deflected(mesh, fields, scale);
   if (a.to == "msh") {
     gmsh::write_msh(path, mesh, fields);
-    write_text(path.string() + ".opt", gmsh_options(fields, scale));
+    write_file(path.string() + ".opt", gmsh_options(fields, scale));
     gmsh::write_msh(deflected_path, moved, fields);
   } else {
     write_vtu(path, mesh, fields);

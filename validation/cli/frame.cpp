@@ -8,12 +8,12 @@
 #include "meshes/gmsh.h"
 #include "meshes/vtu.h"
 #include "msa/base/error.h"
-#include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/frame/frame_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/motions.h"
+#include "validation/cli/talk.h"
 #include "validation/report/frame_results.h"
 
 namespace deflect::cli {
@@ -52,10 +52,10 @@ frame::FrameDivision divide_members(const frame::FrameDescription& f, const std:
 
 void write_results(const fs::path& folder, const frame::FrameDescription& f, const frame::FrameResult& r) {
   const FrameTables tables = frame_tables(f, r);
-  write_text(folder / "displacements.csv", tables.displacements);
-  write_text(folder / "reactions.csv", tables.reactions);
-  write_text(folder / "members.csv", tables.members);
-  write_text(folder / "shares.csv", tables.shares);
+  write_file(folder / "displacements.csv", tables.displacements);
+  write_file(folder / "reactions.csv", tables.reactions);
+  write_file(folder / "members.csv", tables.members);
+  write_file(folder / "shares.csv", tables.shares);
   const LineMesh mesh = lines_of(r.structure);
   for (const frame::CaseResult& c : r.cases) {
     const FieldData fields = fields_of(r.structure, c);
@@ -66,11 +66,13 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
 
 void run(const Arguments& a) {
   const frame::FrameDescription f = frame::read_frame(frame_file(a.file));
-  const frame::FrameResult r = frame::analyse(f, {divide_members(f, a.element_size)});
+  tell("frame {}: {}, {} nodes, {} members", f.name, frame_file(a.file).string(), f.nodes.size(), f.members.size());
+  const frame::FrameResult r = timed("frame: sparse Cholesky, every load case",
+                                     [&] { return frame::analyse(f, {divide_members(f, a.element_size)}); });
   if (const std::string failure = frame::failed_check(r); !failure.empty())
     throw NumericalError(fmt::format("{}: {}", f.name, failure));
   if (!a.out.empty()) write_results(a.out, f, r);
-  if (!a.json.empty()) write_text(a.json, frame_json(f, r));
+  if (!a.json.empty()) write_file(a.json, frame_json(f, r));
   fmt::print("{}", frame_report(f, r));
   if (!a.out.empty()) fmt::print("Tables and deflected shapes: {}/*.csv, *.msh, *.vtu\n", a.out);
 }

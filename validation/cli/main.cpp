@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
+#include <thread>
 
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
+#include "validation/cli/talk.h"
 
 namespace {
 
@@ -49,16 +51,25 @@ int main(int argc, char** argv) {
                                          add_command(),     compare_command(),  simulate_command(), diagnose_command(),
                                          history_command(), report_command()};
   std::vector<CLI::App*> parsers;
+  bool quiet = false, loud = false;
   for (const Command& command : commands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     sub->footer("Example:\n  " + command.example);
     for (const Option& option : command.options) declare(*sub, option);
+    CLI::Option* const q = sub->add_flag("--quiet", quiet, "print nothing but errors; files are written all the same");
+    sub->add_flag("--verbose", loud, "tell every step with its time and choices on standard error")->excludes(q);
     parsers.push_back(sub);
   }
   try {
     app.parse(argc, argv);
+    set_talk(quiet ? Talk::quiet : loud ? Talk::verbose : Talk::usual);
+    tell("version {}, {} threads in this machine, BLAS {}", DEFLECT_VERSION, std::thread::hardware_concurrency(),
+         openblas_set_num_threads ? "OpenBLAS, one thread" : "of the system");
     for (std::size_t i = 0; i < commands.size(); ++i)
-      if (parsers[i]->parsed()) commands[i].run();
+      if (parsers[i]->parsed()) {
+        const Step step(commands[i].name);
+        commands[i].run();
+      }
     if (std::fflush(stdout) != 0) return fail(2, "", "standard output cannot be written");
     return 0;
   } catch (const CLI::ParseError& e) {

@@ -4,12 +4,12 @@
 #include <filesystem>
 
 #include "msa/base/error.h"
-#include "msa/base/files.h"
 #include "msa/base/units.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/figures.h"
 #include "validation/cli/report.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/map.h"
 #include "validation/report/fig11.h"
 #include "validation/report/map_results.h"
@@ -21,6 +21,7 @@ namespace {
 struct Arguments {
   std::string device, ranges[3], n, tilt, load, theory = "both", length, json, out, report;
   double force_N = 50, threads = 0;
+  FigureArguments figures;
 };
 
 MapGrid grid_of(const Mechanism& m, const Arguments& a) {
@@ -71,17 +72,19 @@ MapOptions options_of(const Mechanism& m, const Arguments& a) {
   o.analytic = a.theory != "msa";
   o.msa = a.theory != "analytic";
   o.length_mm = length_mm(m, a.length);
-  o.threads = whole("--threads", a.threads, 0, 1024);
+  o.threads = parse_threads(a.threads);
   return o;
 }
 
 void run(const Arguments& a) {
   require_pages(a.report);
-  const Mechanism m = read_mechanism(device_file(a.device));
+  const FigureStyle style = figure_style(a.figures, a.out);
+  const Mechanism m = read_device(a.device);
   MapOptions o = options_of(m, a);
   StiffnessMap map;
   {
-    Progress progress(o.grid.size(), "poses", terminal_stream());
+    const Step step(fmt::format("map: {} poses, theory {}", o.grid.size(), a.theory));
+    Progress progress(o.grid.size(), "poses", progress_stream());
     o.progress = [&progress](std::size_t done) { progress.update(done); };
     map = map_stiffness(m, o);
     map.options.progress = nullptr;
@@ -89,15 +92,13 @@ void run(const Arguments& a) {
   const std::filesystem::path folder = a.out;
   std::string figures;
   if (!a.out.empty()) {
-    write_text(folder / "map.csv", map_csv(map));
-    write_text(folder / "map.vtu", map_vtu(map));
-    for (const auto& set : {fig11(map), stiffness_against_length(map)})
-      for (const Figure& figure : set) {
-        render(figure, folder);
-        figures += fmt::format("{}{}", figures.empty() ? "" : ", ", figure.name);
-      }
+    write_file(folder / "map.csv", map_csv(map));
+    write_file(folder / "map.vtu", map_vtu(map));
+    std::vector<Figure> drawn = fig11(map, style);
+    for (Figure& figure : stiffness_against_length(map, style)) drawn.push_back(std::move(figure));
+    figures = draw(drawn, folder);
   }
-  if (!a.json.empty()) write_text(a.json, map_json(map));
+  if (!a.json.empty()) write_file(a.json, map_json(map));
   fmt::print("{}", map_report(map));
   if (!a.out.empty())
     fmt::print("\nTables map.csv, map.vtu and figures {} in {}\n", figures.empty() ? "(none)" : figures,
@@ -122,24 +123,28 @@ Command map_command() {
       "the force. With --load both are tangent under that wrench. They differ where contacts carry load. The MSA takes "
       "one element per member, which is exact at its nodes.",
       "deflect map haptic-6psu --n 21,21,21 --x -40,40 --y -40,40 --z 124,224 --out map --json map.json",
-      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-       {"--x", "from,to", "range of the tool point in mm, or one value (default: the cube of the device's workspace)",
-        &a->ranges[0]},
-       {"--y", "from,to", "likewise", &a->ranges[1]},
-       {"--z", "from,to", "likewise", &a->ranges[2]},
-       {"--n", "nx,ny,nz", "poses along x, y, z, or one number for all (default 11)", &a->n},
-       {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default 0,0,0)", &a->tilt},
-       {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},
-       {"--load", "fx,fy,fz,mx,my,mz", "one wrench in N and Nmm instead of --force", &a->load},
-       {"--theory", "NAME", "analytic, msa or both (default)", &a->theory},
-       {"--length", "LENGTH",
-        "characteristic length, with unit, that makes rotations comparable to displacements in the isotropy (default: "
-        "the platform's radius, or the machine's extent)",
-        &a->length},
-       {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
-       {"--json", "FILE", "write summary and arrays", &a->json},
-       report_option(&a->report),
-       {"--out", "DIR", "write fig11 and stiffness-vs-length as SVG, PDF, PNG, and map.csv, map.vtu", &a->out}},
+      with_figures(
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--x", "from,to",
+            "range of the tool point in mm, or one value (default: the cube of the device's workspace)", &a->ranges[0]},
+           {"--y", "from,to", "likewise", &a->ranges[1]},
+           {"--z", "from,to", "likewise", &a->ranges[2]},
+           {"--n", "nx,ny,nz", "poses along x, y, z, or one number for all (default 11)", &a->n},
+           {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default 0,0,0)", &a->tilt},
+           {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},
+           {"--load", "fx,fy,fz,mx,my,mz", "one wrench in N and Nmm instead of --force", &a->load},
+           {"--theory", "NAME", "analytic, msa or both (default)", &a->theory},
+           {"--length", "LENGTH",
+            "characteristic length, with unit, that makes rotations comparable to displacements in the isotropy "
+            "(default: "
+            "the platform's radius, or the machine's extent)",
+            &a->length},
+           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+           {"--json", "FILE", "write summary and arrays", &a->json},
+           report_option(&a->report),
+           {"--out", "DIR",
+            "write fig11 and stiffness-vs-length as SVG, PDF, PNG with their captions, and map.csv, map.vtu", &a->out}},
+          &a->figures),
       [a] { run(*a); }};
 }
 

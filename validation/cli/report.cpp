@@ -8,8 +8,8 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/theories.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
@@ -56,7 +56,7 @@ PageContents contents(const std::string& device) {
 }
 
 void write_page(const std::string& file, const PageContents& page) {
-  write_text(file, page_html(page));
+  write_file(file, page_html(page));
   fmt::print("Report: {}\n", std::filesystem::absolute(file).string());
 }
 
@@ -125,7 +125,7 @@ void write_report(const std::string& file, const std::string& device, const std:
   page.data = source_of(first.study.data->origin);
   page.results = std::move(results);
   const std::string origin = page.results.empty() ? first.data : page.results.front().origin;
-  if (versions.size() > 1 && origin != "history") page.results.push_back({origin, history_json(versions)});
+  if (versions.size() > 1 && origin != "history") page.results.push_back({origin, history_json(history(versions))});
   for (const Comparison& c : versions) page.versions.push_back(&c);
   page.scene = scene_json(stands_of(first), loads_of(*first.study.data),
                           changed_parts(first.study.machines.front(), last.study.machines.front()),
@@ -143,7 +143,8 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
       devices.back().name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + site_of(e) + ")" : "");
     }
   std::vector<Comparison> versions;
-  for (const Mechanism& each : devices) versions.push_back(compare(each, data, options));
+  for (const Mechanism& each : devices)
+    versions.push_back(timed("compare with " + each.name, [&] { return compare(each, data, options); }));
   write_report(file, device, versions, std::move(results));
 }
 

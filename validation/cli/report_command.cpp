@@ -2,7 +2,6 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/effects.h"
 #include "validation/cli/report.h"
@@ -29,9 +28,9 @@ void run(const Arguments& a) {
   ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
-  o.threads = whole("--threads", a.threads, 0, 1024);
-  write_report_of_diagnosis(a.output, a.device, read_mechanism(device_file(a.device)), read_measurements(a.data),
-                            known_effects(a.effects), o, std::move(results));
+  o.threads = parse_threads(a.threads);
+  write_report_of_diagnosis(a.output, a.device, read_device(a.device), read_data(a.data), known_effects(a.effects), o,
+                            std::move(results));
 }
 
 }  // namespace

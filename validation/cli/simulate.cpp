@@ -8,11 +8,11 @@
 #include "msa/base/error.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/configuration.h"
-#include "msa/mechanism/device_file.h"
 #include "msa/mechanism/yaml_tree.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/effects.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/simulate.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
@@ -104,7 +104,7 @@ SimulationOptions options_of(const Arguments& a) {
       throw InputError(fmt::format("--temperature {}: colder than -273.15 deg C", a.temperature));
   }
   o.geometry = parse_geometry(a.geometry);
-  o.threads = whole("--threads", a.threads, 0, 1024);
+  o.threads = parse_threads(a.threads);
   return o;
 }
 
@@ -120,18 +120,21 @@ Measurements plan_of(const Arguments& a, const Mechanism& m, std::uint64_t seed)
 
 void run(const Arguments& a) {
   const std::vector<Effect> all = known_effects(a.files);
-  Mechanism m = read_mechanism(device_file(a.device));
+  Mechanism m = read_device(a.device);
   SimulationOptions o = options_of(a);
   Measurements plan = plan_of(a, m, o.seed);
   std::string hidden;
   for (const std::string& text : a.with) {
     const EffectInstance effect = parse_with(text, all);
     m = with_effect(m, effect);
+    tell("hidden: {} ({})", effect.effect->name, site_of(effect));
     if (effect.effect->name == "geometric_nonlinearity") o.geometry = m.geometry;
     hidden += fmt::format("{}{} ({})", hidden.empty() ? "" : ", ", effect.effect->name, site_of(effect));
   }
   o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));
-  const Measurements data = simulate(m, std::move(plan), o);
+  tell("campaign {}: {} readings; {} elements a member, geometry {}", a.campaign, plan.readings.size(), a.elements,
+       a.geometry);
+  const Measurements data = timed("simulate: MSA at every reading", [&] { return simulate(m, std::move(plan), o); });
   write_measurements(a.out, data);
   fmt::print("{}: {} readings at {} poses of {}{}, seed {}\n", a.out, data.readings.size(), data.poses.size(), m.name,
              hidden.empty() ? ", nothing hidden" : " with " + hidden, o.seed);

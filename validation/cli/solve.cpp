@@ -3,12 +3,11 @@
 #include "meshes/gmsh.h"
 #include "meshes/vtu.h"
 #include "msa/base/error.h"
-#include "msa/base/files.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/motions.h"
 #include "validation/cli/report.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/solve_result.h"
 #include "validation/compare/theories.h"
 #include "validation/report/solve_results.h"
@@ -33,13 +32,16 @@ Geometry parse_geometry(const std::string& text) {
 
 void run(const Arguments& a) {
   require_pages(a.report);
-  const Mechanism m = read_mechanism(device_file(a.device));
+  const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
   const Geometry geometry = parse_geometry(a.geometry);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
-  const SolveResult r = solve(m, at, load, divide(m, a.element_size), geometry);
+  const SolveResult r = timed(fmt::format("both theories, geometry {}: closed form; MSA with elements of {}, sparse "
+                                          "Cholesky",
+                                          a.geometry, a.element_size),
+                              [&] { return solve(m, at, load, divide(m, a.element_size), geometry); });
   if (!a.out.empty()) write_structure(a.out, r);
-  if (!a.json.empty()) write_text(a.json, solve_json(r));
+  if (!a.json.empty()) write_file(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));
   if (load.isZero(0) && r.msa.stiffness_mm.isZero(1e-9))
     fmt::print("Without load the contacts have no stiffness; give --load for the stiffness under it.\n");

@@ -5,13 +5,14 @@
 
 #include "meshes/structure.h"
 #include "msa/base/error.h"
-#include "msa/base/files.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/figures.h"
 #include "validation/cli/report.h"
+#include "validation/cli/talk.h"
 #include "validation/compare/theories.h"
 #include "validation/measurement/points_file.h"
+#include "validation/report/errata_figure.h"
 #include "validation/report/errata_table.h"
 #include "validation/report/fig10.h"
 #include "validation/report/validation_results.h"
@@ -23,6 +24,7 @@ struct Arguments {
   std::string device, points, as_printed, json, out, report, element_size = "25 mm";
   double load_N = 50;
   bool errata = false, mesh_study = false;
+  FigureArguments figures;
 };
 
 void print_mesh_study(const Mechanism& m, const std::vector<ValidationPoint>& points, double load_N) {
@@ -39,20 +41,27 @@ void print_mesh_study(const Mechanism& m, const std::vector<ValidationPoint>& po
 
 void run(const Arguments& a) {
   require_pages(a.report);
-  const Mechanism m = read_mechanism(device_file(a.device));
+  const FigureStyle style = figure_style(a.figures, a.out);
+  const Mechanism m = read_device(a.device);
   const std::set<Erratum> as_printed = parse_errata(a.as_printed);
   if (!std::isfinite(a.load_N) || a.load_N == 0)
     throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.load_N));
   const std::vector<ValidationPoint> points = a.points.empty() ? cube_points(m) : read_points(a.points);
-  const Validation v = validate(m, points, a.load_N, as_printed, divide(m, a.element_size));
-  const std::vector<ErratumPrice> prices = a.errata ? price_errata(m, points, a.load_N) : std::vector<ErratumPrice>{};
+  const Validation v = timed(fmt::format("both theories at {} points: closed form; MSA with elements of {}, sparse "
+                                         "Cholesky",
+                                         points.size(), a.element_size),
+                             [&] { return validate(m, points, a.load_N, as_printed, divide(m, a.element_size)); });
+  std::vector<ErratumPrice> prices;
+  if (a.errata) prices = timed("price of the errata", [&] { return price_errata(m, points, a.load_N); });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
-    render(fig10(v), folder);
-    write_text(folder / "validation.csv", validation_csv(v));
-    if (a.errata) write_text(folder / "errata.csv", errata_csv(prices));
+    std::vector<Figure> figures = {fig10(v, style)};
+    if (a.errata) figures.push_back(errata_figure(prices, v, style));
+    draw(figures, folder);
+    write_file(folder / "validation.csv", validation_csv(v));
+    if (a.errata) write_file(folder / "errata.csv", errata_csv(prices));
   }
-  if (!a.json.empty()) write_text(a.json, validation_json(v));
+  if (!a.json.empty()) write_file(a.json, validation_json(v, prices));
   fmt::print("{}", validation_table(v));
   if (a.errata) fmt::print("\n{}", errata_table(prices));
   if (a.mesh_study) print_mesh_study(m, points, a.load_N);
@@ -63,7 +72,7 @@ void run(const Arguments& a) {
       stands.push_back({p.label, p.pose_mm_deg, stand(m, p.pose_mm_deg).configuration});
     std::vector<Vector6> loads;
     for (int axis = 0; axis < 3; ++axis) loads.push_back(a.load_N * Vector6::Unit(axis));
-    write_report_of_stands(a.report, a.device, stands, loads, {"validate", validation_json(v)});
+    write_report_of_stands(a.report, a.device, stands, loads, {"validate", validation_json(v, prices)});
   }
 }
 
@@ -78,16 +87,21 @@ Command validate_command() {
       "Analytic theory against MSA at the nine points of the device's cube (or --points) for a force along x, y and z: "
       "table of errors, Fig. 10",
       "deflect validate haptic-6psu --out figures --as-printed passive-joints,ujoint-parallel",
-      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-       {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg", &a->points},
-       {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
-       {"--as-printed", "ERRATA", errata_help, &a->as_printed},
-       {"--errata", "", "the price of each erratum, one at a time", &a->errata},
-       {"--mesh-study", "", "the difference of the theories for finer and finer meshes", &a->mesh_study},
-       {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
-       {"--json", "FILE", "write the result", &a->json},
-       report_option(&a->report),
-       {"--out", "DIR", "write Fig. 10 as SVG, PDF, PNG and the table as CSV", &a->out}},
+      with_figures(
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg",
+            &a->points},
+           {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
+           {"--as-printed", "ERRATA", errata_help, &a->as_printed},
+           {"--errata", "", "the price of each erratum, one at a time", &a->errata},
+           {"--mesh-study", "", "the difference of the theories for finer and finer meshes", &a->mesh_study},
+           {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '25 mm')", &a->element_size},
+           {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report),
+           {"--out", "DIR",
+            "write Fig. 10 and, with --errata, their price as SVG, PDF, PNG with captions, and the tables as CSV",
+            &a->out}},
+          &a->figures),
       [a] { run(*a); }};
 }
 

@@ -19,8 +19,6 @@
 namespace deflect {
 namespace {
 
-double root_mean_square(const VectorX& x) { return x.size() > 0 ? x.norm() / std::sqrt(double(x.size())) : 0; }
-
 /// σ of every measured number: the file's or replicates', else the option's.
 std::optional<std::vector<double>> sigma_of(const std::vector<MeasuredValue>& values, const ComparisonOptions& o) {
   std::vector<double> out;
@@ -61,12 +59,13 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
   return out;
 }
 
-/// Root mean square of a translation's residual with nothing missing.
+/// Root mean square of a residual that Errors speak of, with nothing missing.
 double expected_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma) {
   double squares = 0, n = 0;
+  const bool rotations = rotations_alone(s.values);
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const MeasuredValue& v = s.values[i];
-    if (v.component >= 3) continue;
+    if ((v.component >= 3) != rotations) continue;
     const double load = s.mechanism->tolerances.load * s.predicted[v.reading](static_cast<Eigen::Index>(v.component));
     squares += sigma[i] * sigma[i] + load * load + A.row(static_cast<Eigen::Index>(i)).squaredNorm();
     n += 1;
@@ -75,6 +74,21 @@ double expected_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector
 }
 
 }  // namespace
+
+bool rotations_alone(const std::vector<MeasuredValue>& values) {
+  return std::all_of(values.begin(), values.end(), [](const MeasuredValue& v) { return v.component >= 3; });
+}
+
+double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x) {
+  const bool rotations = rotations_alone(values);
+  double squares = 0, n = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if ((values[i].component >= 3) == rotations) {
+      squares += x(static_cast<Eigen::Index>(i)) * x(static_cast<Eigen::Index>(i));
+      n += 1;
+    }
+  return n > 0 ? std::sqrt(squares / n) : 0;
+}
 
 Comparison compare(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) {
   if (data.readings.size() < 2)
@@ -87,7 +101,7 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   c.study = residual_study(m, data, o.threads);
   const ResidualStudy& s = c.study;
   c.numbers = s.values.size();
-  c.pure_error = pure_error(data).u;
+  c.pure_error = rotations_alone(s.values) ? pure_error(data).th : pure_error(data).u;
   VectorX measured(static_cast<Eigen::Index>(s.values.size()));
   for (std::size_t i = 0; i < s.values.size(); ++i) measured(static_cast<Eigen::Index>(i)) = s.values[i].value;
   c.residual = measured - rows_of(s.values, s.predicted);
@@ -104,7 +118,7 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   VectorX r = c.residual, shape;
   if (!s.deformed_shape.empty()) {
     shape = rows_of(s.values, s.deformed_shape);
-    c.deformed_shape = root_mean_square(shape);
+    c.deformed_shape = rms_of_errors(s.values, shape);
     r -= shape;
   }
   if (const auto sigma = sigma_of(s.values, o))
@@ -120,13 +134,14 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   const auto freedoms = static_cast<double>(u.count());
   c.chi2_per_dof = chi2 / freedoms;
   c.p_value = chi_squared_tail(freedoms, chi2);
-  c.sigma_u = root_mean_square(Eigen::Map<const VectorX>(c.sigma.data(), static_cast<Eigen::Index>(c.sigma.size())));
+  c.sigma_u =
+      rms_of_errors(s.values, Eigen::Map<const VectorX>(c.sigma.data(), static_cast<Eigen::Index>(c.sigma.size())));
   c.noise_and_tolerances = expected_rmse(s, c.tolerances.A, c.sigma);
   c.held_out = HeldOut(s, u, aside).rmse(c.residual);
   c.contrasts = contrast_tests(s, u, r, aside);
   for (std::size_t i = 0; i < patterns.size(); ++i) {
     PatternTest t{patterns[i].id, patterns[i].title, regress(u, r, columns[i]), 0};
-    t.size = root_mean_square(columns[i] * t.alone.amplitude);
+    t.size = rms_of_errors(s.values, columns[i] * t.alone.amplitude);
     c.patterns.push_back(std::move(t));
   }
   const Findings found = find_patterns(s, u, r, patterns, columns);

@@ -14,6 +14,12 @@
 
 namespace deflect {
 
+/// Whether no translation was measured: the errors are then those of rotations, in rad where m is said below.
+bool rotations_alone(const std::vector<MeasuredValue>&);
+
+/// Root mean square over the numbers that errors speak of: m, or rad of rotations alone; 0 without any.
+double rms_of_errors(const std::vector<MeasuredValue>&, const VectorX&);
+
 /// Of residuals measured − predicted: translations in m, or rotations in rad where none were measured.
 struct Errors {
   std::string group;  ///< "pose 3", "fx > 0", "30 … 50 N"; empty for all

@@ -54,8 +54,7 @@ std::string direction_of(const Vector6& F) {
 
 void add_errors(Comparison& c) {
   const Measurements& data = *c.study.data;
-  bool rotations = true;
-  for (const MeasuredValue& v : c.study.values) rotations = rotations && v.component >= 3;
+  const bool rotations = rotations_alone(c.study.values);
   const auto group = [&](const std::string& name, const Belongs& belongs) {
     return errors_of(c, name, rotations, belongs);
   };

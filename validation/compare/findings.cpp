@@ -135,7 +135,7 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
     f.gain = fit.gain;
     f.freedoms = fit.freedoms;
     f.p_value = fit.p_value;
-    f.size = (c.columns * fit.amplitude).norm() / std::sqrt(static_cast<double>(r.size()));
+    f.size = rms_of_errors(s.values, c.columns * fit.amplitude);
     f.share = fit.gain / std::max(chi2 - freedoms, fit.gain);
     for (std::size_t i = 0; i < candidates.size(); ++i)
       if (i != best && scores[i] > scores[best] - close_call && scores[i] > 0) f.instead.push_back(candidates[i].id);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validation/compare/comparison.h"
+
 namespace deflect {
 
 HeldOut::HeldOut(const ResidualStudy& s, const Uncertainty& u, const std::vector<bool>& set_aside)
@@ -45,10 +47,11 @@ double HeldOut::rmse(const VectorX& residual) const {
       eta[fold] = others_[fold].solve(all);
     }
   }
+  const bool rotations = rotations_alone(study_->values);
   double squares = 0;
   std::size_t n = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
-    if (set_aside_[study_->values[i].reading] || study_->values[i].component >= 3) continue;
+    if (set_aside_[study_->values[i].reading] || (study_->values[i].component >= 3) != rotations) continue;
     const auto row = static_cast<Eigen::Index>(i);
     const double left = residual(row) - uncertainty_->tolerances().row(row).dot(eta[fold_of(i)]);
     squares += left * left;

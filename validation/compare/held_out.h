@@ -16,7 +16,8 @@ class HeldOut {
   /// The study must outlive it. Readings that the uncertainty sets aside are those given.
   HeldOut(const ResidualStudy&, const Uncertainty&, const std::vector<bool>& set_aside);
 
-  /// Root mean square of the translations, m. The residual: of all measured numbers, m and rad.
+  /// Root mean square of the translations, m, or of rotations alone, rad. The residual: of all measured numbers, m and
+  /// rad.
   double rmse(const VectorX& residual) const;
 
  private:

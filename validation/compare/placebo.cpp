@@ -11,6 +11,7 @@ double placebo_rmse(const Comparison& before, const Comparison& after) {
   const ResidualStudy& s = before.study;
   const VectorX change = rows_of(s.values, after.study.predicted) - rows_of(s.values, s.predicted);
   const VectorX& r = before.residual;
+  const bool rotations = rotations_alone(s.values);
   Random random(20110101);
   std::vector<double> reached;
   for (int draw = 0; draw < 99; ++draw) {
@@ -23,7 +24,7 @@ double placebo_rmse(const Comparison& before, const Comparison& after) {
     const VectorX left = own > 0 ? VectorX(r - x * (x.dot(r) / own)) : r;
     double squares = 0, n = 0;
     for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (s.values[i].component < 3) {
+      if ((s.values[i].component >= 3) == rotations) {
         squares += left(static_cast<Eigen::Index>(i)) * left(static_cast<Eigen::Index>(i));
         n += 1;
       }

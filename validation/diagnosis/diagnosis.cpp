@@ -143,6 +143,7 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   const std::vector<Signature> all = signatures(o, effects, options.threads, &d.left_out);
   Rounds rounds(options.progress, 0.3);
   const Candidates candidates(o, all, options.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); });
+  d.rotations = rotations_alone(o.comparison().study.values);
   d.noise_floor = o.comparison().sigma_u;
   d.tolerance_scale = o.tolerance_scale();
   d.detectable = detectable_sizes(all);

@@ -35,6 +35,7 @@ struct Diagnosis {
   Fit fit;                            ///< of all of them
   std::vector<std::vector<std::string>> indistinguishable;
   Quality baseline, final;
+  bool rotations = false;      ///< none but rotations were measured: rad where m is said
   double noise_floor = 0;      ///< m: σ of a reading
   double tolerance_scale = 1;  ///< how many times the declared tolerances those of the machine look
   std::size_t set_aside = 0;   ///< readings that are gross outliers to what was found

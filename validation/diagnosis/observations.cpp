@@ -74,13 +74,14 @@ VectorX Observations::whitened_residual(const Mechanism& m) const { return uncer
 
 double Observations::rmse(const Mechanism& m) const {
   const VectorX r = residual(m);
-  double squares = 0, n = 0;
+  std::vector<MeasuredValue> used;
+  std::vector<Eigen::Index> rows;
   for (std::size_t i = 0; i < comparison_.study.values.size(); ++i)
-    if (comparison_.study.values[i].component < 3 && !aside_[comparison_.study.values[i].reading]) {
-      squares += r(static_cast<Eigen::Index>(i)) * r(static_cast<Eigen::Index>(i));
-      n += 1;
+    if (const MeasuredValue& v = comparison_.study.values[i]; !aside_[v.reading]) {
+      used.push_back(v);
+      rows.push_back(static_cast<Eigen::Index>(i));
     }
-  return n > 0 ? std::sqrt(squares / n) : 0;
+  return rms_of_errors(used, r(rows));
 }
 
 double Observations::held_out_rmse(const Mechanism& m) const { return held_out_->rmse(residual(m)); }

@@ -34,7 +34,8 @@ class Observations {
   /// All patterns that a residual can have (discrepancy.h), whitened.
   Families whitened_patterns() const;
 
-  /// Root mean square of measured − predicted, translations, m, of the readings that are not set aside.
+  /// Root mean square of measured − predicted, translations, m (or rotations alone, rad), of the readings that are not
+  /// set aside.
   double rmse(const Mechanism&) const;
   /// The same at each pose with the tolerances learnt at the others (in ten folds at most).
   double held_out_rmse(const Mechanism&) const;

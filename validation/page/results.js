@@ -117,10 +117,24 @@ export function validated(v) {
     })},
     options: {scales: {x: axis('point', t), y: axis(`µm along ${num(v.points[0].load_N)} N`, t)}, plugins: {legend: {position: 'bottom', labels: {usePointStyle: true}}, tooltip: labelled('µm')}},
   }));
-  return figure('validation', 'Two theories at the same points', `Largest relative difference ${num(v.max_relative_difference, 2)}, rms ${num(v.rms_relative_difference, 2)}.`, picture,
+  const validation = figure('validation', 'Two theories at the same points', `Largest relative difference ${num(v.max_relative_difference, 2)}, rms ${num(v.rms_relative_difference, 2)}.`, picture,
     numbers('validation', () => ({
       columns: ['point', 'x_mm', 'y_mm', 'z_mm', 'roll_deg', 'pitch_deg', 'yaw_deg', 'load_axis', 'load_N', ...places.map((n) => 'analytic_' + n), ...places.map((n) => 'msa_' + n)],
       rows: v.points.map((p) => [p.point, ...p.pose, p.load_axis, p.load_N, ...p.analytic, ...p.msa]),
+    })));
+  return v.errata ? [validation, errata(v)] : validation;
+}
+
+/** Ratios as printed / corrected as ranges; the stronger the colour, the farther from 1, four decades at most. */
+function errata(v) {
+  const range = (e, k) => (e.refused ? 'no solution' : e.smallest[k] === e.largest[k] ? num(e.smallest[k], 4) : `${num(e.smallest[k], 4)} … ${num(e.largest[k], 4)}`);
+  const away = (e, k) => (e.refused ? 0 : Math.max(...[e.smallest[k], e.largest[k]].map((x) => (x > 0 ? Math.abs(Math.log10(x)) / 4 : 1))));
+  return figure('errata', 'Price of the errata', `Deflection along ${num(v.points[0].load_N)} N as printed / corrected, smallest … largest of the points; below 1 the printed equation makes the device too stiff.`,
+    table(['erratum', 'equations', 'x', 'y', 'z', 'check that fails'], v.errata.map((e) => [e.erratum, e.equations, ...[0, 1, 2].map((k) => range(e, k)), e.failed_check.split(':')[0]]),
+      {shade: (i, j) => (j >= 2 && j <= 4 ? away(v.errata[i], j - 2) : null), show: (x) => x}),
+    numbers('errata', () => ({
+      columns: ['erratum', ...['x', 'y', 'z'].flatMap((n) => ['ratio_' + n + '_min', 'ratio_' + n + '_max'])],
+      rows: v.errata.map((e) => [e.erratum, ...[0, 1, 2].flatMap((k) => (e.refused ? [null, null] : [e.smallest[k], e.largest[k]]))]),
     })));
 }
 

@@ -5,19 +5,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validation/report/compare_words.h"
 #include "validation/report/json_text.h"
 #include "validation/report/text.h"
 
 namespace deflect {
 namespace {
 
-constexpr double um = 1e6, mm = 1e3;
+constexpr double um = 1e6, mm = 1e3;  // of rotations: µrad, mrad
 constexpr double significant = 1e-3;
 constexpr std::size_t most_poses = 12, poses_of_many = 10;  // in the report
 
 std::string p_text(double p) { return p < 1e-16 ? "< 1e-16" : fmt::format("{:.2g}", p); }
 
 std::string verdict(const Comparison& c) {
+  const char* unit = error_unit(c).micro;
   if (!c.looks_like.empty() && c.looks_like.front().starts_with("these data"))
     return "Before anything else: " + c.looks_like.front() + ".";
   const double beyond =
@@ -25,26 +27,27 @@ std::string verdict(const Comparison& c) {
   if (c.findings.empty())
     return c.unexplained_chi2_per_dof < 1.3
                ? fmt::format(
-                     "Nothing is missing that these readings can show: {:.2f} µm rms are left, noise and tolerances "
-                     "give {:.2f} µm.",
-                     um * c.all.rmse, um * c.noise_and_tolerances)
+                     "Nothing is missing that these readings can show: {:.2f} {} rms are left, noise and tolerances "
+                     "give {:.2f} {}.",
+                     um * c.all.rmse, unit, um * c.noise_and_tolerances, unit)
                : fmt::format(
-                     "The residual of {:.2f} µm rms is more than noise and tolerances ({:.2f} µm), but none of the "
+                     "The residual of {:.2f} {} rms is more than noise and tolerances ({:.2f} {}), but none of the "
                      "patterns looked for describes it.",
-                     um * c.all.rmse, um * c.noise_and_tolerances);
+                     um * c.all.rmse, unit, um * c.noise_and_tolerances, unit);
   return fmt::format(
-      "Something is missing: the model fails by {:.2f} µm rms beyond noise and tolerances ({:.0f} % of what was "
+      "Something is missing: the model fails by {:.2f} {} rms beyond noise and tolerances ({:.0f} % of what was "
       "measured).",
-      um * beyond, 100 * beyond / c.all.measured);
+      um * beyond, unit, 100 * beyond / c.all.measured);
 }
 
 std::string findings_text(const Comparison& c) {
+  const char* unit = error_unit(c).micro;
   std::string out;
   int number = 0;
   for (const Finding& f : c.findings) {
     out += fmt::format("  {}. {}.\n", ++number, f.sentence);
-    out += fmt::format("     {:.2f} µm rms of the readings, {:.0f} % of the misfit beyond noise, p {}{}\n", um * f.size,
-                       100 * f.share, p_text(f.p_value),
+    out += fmt::format("     {:.2f} {} rms of the readings, {:.0f} % of the misfit beyond noise, p {}{}\n", um * f.size,
+                       unit, 100 * f.share, p_text(f.p_value),
                        f.instead.empty() ? "" : fmt::format("; nearly as well: {}", fmt::join(f.instead, ", ")));
   }
   if (!c.findings.empty())
@@ -53,9 +56,10 @@ std::string findings_text(const Comparison& c) {
         c.unexplained_chi2_per_dof);
   if (c.deformed_shape_fit && c.deformed_shape > 0.02 * c.sigma_u)
     out += fmt::format(
-        "  Equilibrium in the deformed shape, which this linear device leaves out, is taken into account: {:.2f} µm "
+        "  Equilibrium in the deformed shape, which this linear device leaves out, is taken into account: {:.2f} {} "
         "rms; the data ask for {:.2f} ± {:.2f} times that.\n",
-        um * c.deformed_shape, c.deformed_shape_fit->amplitude(0), std::sqrt(c.deformed_shape_fit->covariance(0, 0)));
+        um * c.deformed_shape, unit, c.deformed_shape_fit->amplitude(0),
+        std::sqrt(c.deformed_shape_fit->covariance(0, 0)));
   return out;
 }
 
@@ -77,8 +81,8 @@ std::vector<Errors> poses_shown(const std::vector<Errors>& by_pose) {
 }
 
 std::string errors_table(const Comparison& c) {
-  std::vector<std::vector<std::string>> rows = {
-      {"measured − predicted, µm", "readings", "rms", "mean x", "mean y", "mean z", "worst", "in line"}};
+  std::vector<std::vector<std::string>> rows = {{fmt::format("measured − predicted, {}", error_unit(c).micro),
+                                                 "readings", "rms", "mean x", "mean y", "mean z", "worst", "in line"}};
   Errors all = c.all;
   all.group = "all";
   add_rows(rows, {all});
@@ -93,7 +97,8 @@ std::string errors_table(const Comparison& c) {
 }
 
 std::string tests_table(const Comparison& c) {
-  std::vector<std::vector<std::string>> rows = {{"tests without a model of what is missing", "numbers", "µm", "p"}};
+  const char* unit = error_unit(c).micro;
+  std::vector<std::vector<std::string>> rows = {{"tests without a model of what is missing", "numbers", unit, "p"}};
   for (const ContrastTest& t : c.contrasts)
     rows.push_back(
         t.contrasts == 0
@@ -101,7 +106,7 @@ std::string tests_table(const Comparison& c) {
             : std::vector<std::string>{fmt::format("  {}: {}", t.id, t.question), std::to_string(t.contrasts),
                                        fmt::format("{:.2f}", um * t.size),
                                        p_text(t.p_value) + (t.p_value < significant ? " *" : "")});
-  rows.push_back({"patterns, each alone", "columns", "µm", "p"});
+  rows.push_back({"patterns, each alone", "columns", unit, "p"});
   for (const PatternTest& t : c.patterns)
     rows.push_back({fmt::format("  {}: {}", t.pattern, t.title), std::to_string(t.alone.freedoms),
                     fmt::format("{:.2f}", um * t.size),
@@ -126,19 +131,20 @@ std::vector<double> list_of(const VectorX& x) { return {x.data(), x.data() + x.s
 }  // namespace
 
 std::string compare_report(const Comparison& c) {
+  const char* unit = error_unit(c).micro;
   std::string out =
       fmt::format("{} against {}: {} readings at {} poses\n\n{}\n", c.device, c.data, c.readings, c.poses, verdict(c));
   const std::string found = findings_text(c);
   if (!found.empty()) out += "\n" + found;
   for (const std::string& s : c.looks_like) out += fmt::format("\n  {}\n", s);
   out += fmt::format(
-      "\nresidual {:.2f} µm rms (held-out poses {:.2f}), σ of a reading {:.2f} µm{}, noise and tolerances {:.2f} µm, "
+      "\nresidual {:.2f} {} rms (held-out poses {:.2f}), σ of a reading {:.2f} {}{}, noise and tolerances {:.2f} {}, "
       "chi2 per degree of freedom {:.2f}\n",
-      um * c.all.rmse, um * c.held_out, um * c.sigma_u,
+      um * c.all.rmse, unit, um * c.held_out, um * c.sigma_u, unit,
       c.sigma_from_residuals ? " (from the residuals: neither σ nor replicates in the file)" : "",
-      um * c.noise_and_tolerances, c.chi2_per_dof);
+      um * c.noise_and_tolerances, unit, c.chi2_per_dof);
   if (c.pure_error)
-    out += fmt::format("replicates scatter by {:.2f} µm ({} degrees of freedom)\n", um * c.pure_error->sigma,
+    out += fmt::format("replicates scatter by {:.2f} {} ({} degrees of freedom)\n", um * c.pure_error->sigma, unit,
                        c.pure_error->degrees_of_freedom);
   if (!c.set_aside.empty())
     out += fmt::format("set aside as gross outliers: {} readings, lines {}\n", c.set_aside.size(),
@@ -157,6 +163,7 @@ std::string compare_json(const Comparison& c) {
   j["data"] = c.data;
   j["readings"] = c.readings;
   j["poses"] = c.poses;
+  j["unit"] = error_unit(c).milli;  // of what ends with _mm
   j["baseline"] = {{"rmse_mm", json_number(mm * c.all.rmse, "rmse")},
                    {"held_out_rmse_mm", json_number(mm * c.held_out, "held-out rmse")},
                    {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")},
@@ -234,7 +241,8 @@ std::string residuals_csv(const Comparison& c) {
 }
 
 std::string errors_csv(const Comparison& c) {
-  std::string out = "group,readings,rmse_um,mean_x_um,mean_y_um,mean_z_um,worst_um,worst_line\n";
+  std::string out = fmt::format("group,readings,rmse_{0},mean_x_{0},mean_y_{0},mean_z_{0},worst_{0},worst_line\n",
+                                error_unit(c).column);
   Errors all = c.all;
   all.group = "all";
   std::vector<Errors> rows = {all};
@@ -247,7 +255,7 @@ std::string errors_csv(const Comparison& c) {
 }
 
 std::string tests_csv(const Comparison& c) {
-  std::string out = "kind,name,numbers,size_um,p_value\n";
+  std::string out = fmt::format("kind,name,numbers,size_{},p_value\n", error_unit(c).column);
   for (const ContrastTest& t : c.contrasts)
     out += fmt::format("contrast,{},{},{:.6g},{:.6g}\n", t.id, t.contrasts, um * t.size, t.p_value);
   for (const PatternTest& t : c.patterns)

@@ -11,7 +11,9 @@
 namespace deflect {
 namespace {
 
-constexpr double um = 1e6, mm = 1e3;
+constexpr double um = 1e6, mm = 1e3;  // of rotations: µrad, mrad
+
+const char* micro(const Diagnosis& d) { return d.rotations ? "µrad" : "µm"; }
 
 std::string site_words(const PlacedEffect& e) { return fmt::format("{} ({})", e.effect->name, site_of(e)); }
 
@@ -35,13 +37,13 @@ std::string verdict_words(const Diagnosis& d) {
   switch (d.verdict) {
     case Verdict::nothing_missing:
       return fmt::format(
-          "Nothing is missing that these data can show: what is left, {:.2f} µm rms, is noise and tolerances.",
-          um * d.baseline.rmse);
+          "Nothing is missing that these data can show: what is left, {:.2f} {} rms, is noise and tolerances.",
+          um * d.baseline.rmse, micro(d));
     case Verdict::effect:
       return fmt::format(
-          "Missing: {}. With it the error falls from {:.2f} to {:.2f} µm rms ({:.0f} %); the readings' noise is {:.2f} "
-          "µm.",
-          names, um * d.baseline.rmse, um * d.final.rmse, explained, um * d.noise_floor);
+          "Missing: {}. With it the error falls from {:.2f} to {:.2f} {} rms ({:.0f} %); the readings' noise is {:.2f} "
+          "{}.",
+          names, um * d.baseline.rmse, um * d.final.rmse, micro(d), explained, um * d.noise_floor, micro(d));
     case Verdict::ambiguous: {
       std::string group;
       for (const std::vector<std::string>& g : d.indistinguishable)
@@ -58,7 +60,7 @@ std::string verdict_words(const Diagnosis& d) {
 
 std::string candidates_table(const Diagnosis& d) {
   std::vector<std::vector<std::string>> rows = {
-      {"candidate", "probability", "rms µm", "held-out", "chi2/n", "values with 95 % interval"}};
+      {"candidate", "probability", fmt::format("rms {}", micro(d)), "held-out", "chi2/n", "values with 95 % interval"}};
   std::size_t shown = 0;
   for (const Candidate& c : d.candidates) {
     if (shown >= 8 || (c.probability < 1e-6 && shown >= 3)) break;
@@ -147,6 +149,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["indistinguishable"] = d.indistinguishable;
   j["baseline"] = quality_json(d.baseline);
   j["final"] = quality_json(d.final);
+  j["unit"] = d.rotations ? "mrad" : "mm";  // of what ends with _mm
   j["noise_floor_mm"] = json_number(mm * d.noise_floor, "noise floor");
   Json localised = Json::array();
   for (const Localised& l : d.localised) localised.push_back({{"what", l.what}, {"share", l.share}});

@@ -12,7 +12,8 @@ std::string diagnosis_report(const Diagnosis&, const std::string& device, const 
 
 /// {"verdict", "missing", "candidates": [{"effect", "site", "probability", "parameters": [{"name", "value", "low95",
 /// "high95"}], "rmse_mm", "held_out_rmse_mm", "chi2_per_dof"}], "indistinguishable", "baseline", "final",
-/// "noise_floor_mm", "unexplained": {"significant", "share_of_misfit", "pattern"}, …}
+/// "noise_floor_mm", "unit" (of what ends with _mm: mrad where rotations alone were measured), "unexplained":
+/// {"significant", "share_of_misfit", "pattern"}, …}
 std::string diagnosis_json(const Diagnosis&);
 
 }  // namespace deflect

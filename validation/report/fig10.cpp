@@ -1,6 +1,6 @@
 #include "validation/report/fig10.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "validation/report/by_point.h"
+#include "validation/report/sheet.h"
 #include "validation/report/text.h"
 
 namespace deflect {
@@ -21,9 +22,8 @@ struct Look {
 constexpr Look looks[] = {{"#0072B2", "#8CC4E8", 7, 6}, {"#D55E00", "#F3B587", 5, 4}, {"#009E73", "#8ED6BF", 13, 12}};
 constexpr const char* capitals[] = {"X", "Y", "Z"};
 
-constexpr double width = 160, left = 19, right = 3;  // mm
-constexpr double panel = 62, gap = 5, strip = 22;    // mm
-constexpr double line = 4;                           // mm from one line of text to the next, 8 points
+constexpr double right = 3, panel = 0.3875, strip = 0.1375;  // mm; heights in widths of the figure
+
 struct Unit {
   const char* name;
   double per_mm;
@@ -95,75 +95,127 @@ Data data_of(const std::vector<PointRows>& points) {
 }
 
 /// Labels under the points: upright or, where they would touch, turned, and then as many as fit.
-struct Tics {
+struct PointLabels {
   std::string labels, bare;  ///< the list with the labels and with empty ones
   bool turned = false;
-  double height = line;  ///< mm
+  double height = 0;  ///< mm
 };
 
-Tics tics_of(const std::vector<PointRows>& points, double room) {
-  constexpr std::size_t most = 16;   // letters of a label
-  constexpr double letter_mm = 1.8;  // digits and capitals
+PointLabels labels_of(const std::vector<PointRows>& points, double room, const Sheet& s) {
+  constexpr std::size_t most = 16;  // letters of a label
   std::size_t longest = 1;
   for (const PointRows& p : points) longest = std::max(longest, std::min(most, letters(p.point->label)));
-  const double upright = static_cast<double>(longest + 1) * letter_mm;
-  Tics tics;
-  tics.turned = longest > 3 && upright > room;
-  const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil((tics.turned ? line : upright) / room)));
+  const double upright = s.text_mm(longest + 1);
+  PointLabels l;
+  l.turned = longest > 3 && upright > room;
+  const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil((l.turned ? s.line() : upright) / room)));
   for (std::size_t i = 0; i < points.size(); i += every) {
-    tics.labels += fmt::format("{}{} {}", i ? ", " : "", gnuplot_tic_label(clip(points[i].point->label, most)), i);
-    tics.bare += fmt::format("{}'' {}", i ? ", " : "", i);
+    l.labels += fmt::format("{}{} {}", i ? ", " : "", gnuplot_tic_label(clip(points[i].point->label, most)), i);
+    l.bare += fmt::format("{}'' {}", i ? ", " : "", i);
   }
-  if (tics.turned) tics.height = static_cast<double>(longest) * letter_mm;
-  return tics;
+  l.height = l.turned ? s.text_mm(longest) : s.line();
+  return l;
 }
 
-struct Text {
-  std::string text, style;
-};
-
-std::vector<Text> heading(const Validation& validation) {
-  const std::string title =
-      fmt::format("{}: linear deflection under {} in x, y, z", clip(validation.device, 50), load_text(validation));
-  const double size = std::clamp(9.5 * 70 / static_cast<double>(letters(title)), 7.0, 9.5);
-  std::vector<Text> lines = {{title, fmt::format("font 'DejaVu Sans:Bold,{:.1f}'", size)}};
-  const std::string small = "textcolor rgb '#505050'";
-  lines.push_back({"Force at the tool point, its displacement along the force, base axes", small});
-  if (has_as_printed(validation))
-    for (const std::string& l : wrap("As printed: analytic theory with " + errata_text(validation), 88))
-      lines.push_back({l, small});
-  return lines;
+bool there(const std::vector<PointRows>& points, std::size_t axis, bool as_printed) {
+  return std::any_of(points.begin(), points.end(),
+                     [&](const PointRows& p) { return p.rows[axis] && (!as_printed || p.rows[axis]->as_printed); });
 }
 
-/// Commands one by one.
-class Script {
- public:
-  std::string text;
-
-  template <class... T>
-  void put(fmt::format_string<T...> format, T&&... values) {
-    text += fmt::format(format, std::forward<T>(values)...) + "\n";
-  }
-  void plot(const std::vector<std::string>& series) { put("plot {}", fmt::join(series, ", \\\n  ")); }
+/// How a series is drawn.
+struct Stroke {
+  const char *colour, *name;
+  int shape;
+  double marker, width;
+  int dashes;
 };
+
+std::vector<Stroke> strokes_of(const std::vector<PointRows>& points, std::size_t axis) {
+  const Look& look = looks[axis];
+  std::vector<Stroke> out;
+  if (there(points, axis, true)) out.push_back({look.light, "As printed", look.filled, 0.5, 1.1, 2});
+  if (!there(points, axis, false)) return out;
+  out.push_back({look.colour, "Analytical", look.filled, 0.5, 1.1, 1});
+  out.push_back({look.colour, "MSA", look.open, 1.1, 0.8, 3});
+  return out;
+}
+
+/// A column for each axis, where the paper is too narrow a row for each, or all below each other; y below it.
+double put_legend(Sheet& s, const std::vector<PointRows>& points, double top, double left) {
+  const double line = s.line(), dash = 1.75 * line, entry = dash + 1 + 0.9 * s.text_mm(12) + 2;
+  std::size_t most = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) most = std::max(most, strokes_of(points, axis).size());
+  const double room = s.width() - left;
+  const bool beside = 3 * entry <= room + 2, in_rows = !beside && static_cast<double>(most) * entry <= room + 2;
+  double foot = top;
+  std::size_t at = 0;
+  int tag = 60;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::vector<Stroke> strokes = strokes_of(points, axis);
+    for (std::size_t i = 0; i < strokes.size(); ++i, ++at, ++tag) {
+      const std::size_t column = beside ? axis : in_rows ? i : 0, row = beside ? i : in_rows ? axis : at;
+      const double x = left + static_cast<double>(column) * entry,
+                   y = top + (static_cast<double>(row) + 0.5) * 1.05 * line;
+      const Stroke& stroke = strokes[i];
+      s.put("set arrow {} from {} to {} nohead lc rgb '{}' lw {} dt {}", tag, s.at(x, y).substr(3),
+            s.at(x + dash, y).substr(3), stroke.colour, stroke.width, stroke.dashes);
+      s.put("set label {} '' {} point pt {} ps {} lc rgb '{}'", tag, s.at(x + dash / 2, y), stroke.shape, stroke.marker,
+            stroke.colour);
+      s.label(fmt::format("{}-{}", capitals[axis], stroke.name), x + dash + 1, y, "left");
+      foot = std::max(foot, y + 0.55 * line);
+    }
+  }
+  return foot;
+}
+
+std::string poses_text(const std::vector<PointRows>& points) {
+  Vector6 low = points.front().point->pose_mm_deg, high = low;
+  for (const PointRows& p : points)
+    low = low.cwiseMin(p.point->pose_mm_deg), high = high.cwiseMax(p.point->pose_mm_deg);
+  constexpr const char* names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+  std::string out;
+  for (int i = 0; i < 6; ++i) {
+    if (i >= 3 && low(i) == 0 && high(i) == 0) continue;
+    out += fmt::format("{}{} {:.4g}{}{}", out.empty() ? "" : ", ", names[i], low(i) + 0.0,
+                       low(i) == high(i) ? "" : fmt::format(" … {:.4g}", high(i) + 0.0), i < 3 ? " mm" : "°");
+  }
+  return out;
+}
+
+std::string caption_of(const Validation& validation, const std::vector<PointRows>& points, const Data& data) {
+  return fmt::format(
+      "Linear deflection of the tool point of {} along a force of {} on it in x, y and z in turn (mm, base axes, "
+      "positive "
+      "along a positive force) at {} points of the workspace ({}), by the closed form (analytical) and by matrix "
+      "structural analysis (MSA){}. Below: analytic − MSA along the force in {}, at most {:.2g} {}. Computed, no "
+      "measurements and no noise.",
+      validation.device, load_text(validation), points.size(), poses_text(points),
+      has_as_printed(validation) ? ", and by the closed form with " + errata_text(validation) + " as printed" : "",
+      data.unit.name, data.residual * data.unit.per_mm, data.unit.name);
+}
 
 }  // namespace
 
-Figure fig10(const Validation& validation) {
+Figure fig10(const Validation& validation, const FigureStyle& style) {
   const std::vector<PointRows> points = by_point(validation);
   const Data data = data_of(points);
-  const double room = (width - left - right) / static_cast<double>(points.size());
-  const Tics tics = tics_of(points, room);
-  const std::vector<Text> lines = heading(validation);
   const bool printed = has_as_printed(validation);
+  Sheet s("fig10", style, 160);
+  const double line = s.line(), panel_height = std::max(panel * s.width(), 10 * line),
+               strip_height = std::max(strip * s.width(), 5.5 * line);
 
-  // From the top, mm: heading, legend, panel, gap, strip, labels, name of the axis.
-  const double legend = 3.5 + line * static_cast<double>(lines.size());
-  const double top = legend + line * (printed ? 3 : 2) + 3;
-  const double foot = top + panel + gap + strip;
-  const double height = foot + 2.5 + tics.height + 5;
-  const auto across = [](double mm) { return mm / width; };
-  const auto up = [&](double mm_from_top) { return 1 - mm_from_top / height; };
+  // Two per cent of margin, so that no marker sits on the frame; whole steps at both ends.
+  const double span = data.high > data.low ? data.high - data.low : 1;
+  const double step = nice_below(span / 3.5);
+  const double low = std::floor((data.low - 0.02 * span) / step), high = std::ceil((data.high + 0.02 * span) / step);
+  const double residual = data.residual > 0 ? data.residual * data.unit.per_mm : 1;
+  const double residual_step = nice_below(residual);
+  Tics widest{step, 1};
+  for (const double number : {low * step, high * step, -residual_step})
+    widest.letters = std::max(widest.letters, letters(fmt::format("{:.6g}", number)));
+  const double left = s.left_of(widest) + line;  // two lines name the strip's axis
+  const double w = s.width() - left - right, room = w / static_cast<double>(points.size());
+  const PointLabels tics = labels_of(points, room, s);
 
   // Markers shrink where points are many; x, y, z stand side by side, or those that coincide would hide each
   // other.
@@ -172,73 +224,57 @@ Figure fig10(const Validation& validation) {
   const auto place = [&](Series series, std::size_t axis) {
     return fmt::format("$data using ($1{:+.4f}):{}", aside * (static_cast<double>(axis) - 1), column(series, axis));
   };
-  const auto there = [&](std::size_t axis, bool as_printed) {
-    return std::any_of(points.begin(), points.end(),
-                       [&](const PointRows& p) { return p.rows[axis] && (!as_printed || p.rows[axis]->as_printed); });
-  };
+  s.put("{}set multiplot\nunset key", data.block);
+  s.put("set xrange [-0.5:{}]", static_cast<double>(points.size()) - 0.5);
+  std::vector<std::string> notes = {"Force at the tool point, its displacement along the force, base axes"};
+  if (printed) notes.push_back("As printed: analytic theory with " + errata_text(validation));
+  const double keys = s.heading(
+      fmt::format("{}: linear deflection under {} in x, y, z", clip(validation.device, 50), load_text(validation)),
+      notes, s.narrow() ? 2 : left);
 
-  Script script;
-  script.text = data.block;
-  script.put("set multiplot");
-  script.put("set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}", across(left), across(width - right));
-  script.put("set xrange [-0.5:{}]", static_cast<double>(points.size()) - 0.5);
+  const double top = put_legend(s, points, keys + 0.2 * line, s.narrow() ? 2 : left) + 0.6 * line;
 
-  // Upper panel. Two per cent of margin, so that no marker sits on the frame; whole steps at both ends.
-  const double span = data.high > data.low ? data.high - data.low : 1;
-  const double step = nice_below(span / 3.5);
-  const double low = std::floor((data.low - 0.02 * span) / step), high = std::ceil((data.high + 0.02 * span) / step);
-  script.put("set tmargin at screen {:.5f}\nset bmargin at screen {:.5f}", up(top), up(top + panel));
-  script.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", low * step, high * step, step);
-  script.put("set xtics ({})", tics.bare);
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    script.put("set label {} {} at screen {:.5f},{:.5f} left {} noenhanced", i + 1, gnuplot_quote(lines[i].text),
-               across(left), up((i == 0 ? 3.5 : 4.2) + line * static_cast<double>(i)), lines[i].style);
-  const char* const axis_name = "set label {} {} at screen {:.5f},{:.5f} center rotate by 90";
-  script.put(fmt::runtime(axis_name), 20, "'deflection along the load (mm)'", across(3), up(top + panel / 2));
-  script.put(
-      "set key at screen {:.5f},{:.5f} left top vertical maxrows {} Left reverse samplen 2.5 spacing 1.2 "
-      "width 3",
-      across(left - 2), up(legend), printed ? 3 : 2);
+  s.panel(left, top, w, panel_height);
+  s.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", low * step, high * step, step);
+  s.put("set xtics ({})", tics.bare);
+  s.axis_names("", s.narrow() ? "deflection (mm)" : "deflection along the load (mm)", widest);
   std::vector<std::string> series;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Look& look = looks[axis];
-    const auto add = [&](Series which, const char* colour, int shape, double size, const char* style,
-                         const char* name) {
-      series.push_back(fmt::format("{} with linespoints lc rgb '{}' pt {} ps {:.2f} {} title '{}-{}'",
-                                   place(which, axis), colour, shape, size * marker, style, capitals[axis], name));
-    };
-    if (there(axis, true)) add(Series::as_printed, look.light, look.filled, 0.5, "lw 1.1 dt 2", "As printed");
-    if (!there(axis, false)) continue;
-    add(Series::analytic, look.colour, look.filled, 0.5, "lw 1.1", "Analytical");
-    add(Series::msa, look.colour, look.open, 1.1, "lw 0.8 dt 3", "MSA");
+    const std::vector<Stroke> strokes = strokes_of(points, axis);
+    for (std::size_t i = 0; i < strokes.size(); ++i) {
+      const Stroke& stroke = strokes[i];
+      const Series which = strokes.size() == 3 && i == 0 ? Series::as_printed
+                           : i + 1 == strokes.size()     ? Series::msa
+                                                         : Series::analytic;
+      series.push_back(fmt::format("{} with linespoints lc rgb '{}' pt {} ps {:.2f} lw {} dt {} notitle",
+                                   place(which, axis), stroke.colour, stroke.shape, stroke.marker * marker,
+                                   stroke.width, stroke.dashes));
+    }
   }
-  script.plot(series);
+  s.plot(fmt::format("plot {}", fmt::join(series, ", \\\n  ")));
 
   // Residuals as stems.
-  for (std::size_t tag = 1; tag <= lines.size(); ++tag) script.put("unset label {}", tag);
-  script.put("unset label 20\nunset key");
-  const double residual = data.residual > 0 ? data.residual * data.unit.per_mm : 1;
-  script.put("set tmargin at screen {:.5f}\nset bmargin at screen {:.5f}", up(foot - strip), up(foot));
-  script.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", -1.15 * residual, 1.15 * residual,
-             nice_below(residual));
-  script.put("set xtics ({}) {} noenhanced", tics.labels, tics.turned ? "rotate by 90 right" : "norotate");
-  script.put("set xzeroaxis lt 1 lc rgb '#404040' lw 0.7");
-  script.put(fmt::runtime(axis_name), 20, "'analytic − MSA'", across(3), up(foot - strip / 2));
-  script.put(fmt::runtime(axis_name), 21, fmt::format("'({})'", data.unit.name), across(3 + line),
-             up(foot - strip / 2));
-  script.put("set label 22 'point of the workspace' at screen {:.5f},{:.5f} center", across((left + width - right) / 2),
-             up(height - 2.5));
+  const double below = top + panel_height + 1.25 * line, foot = below + strip_height;
+  for (int tag = 60; tag < 69; ++tag) s.put("unset arrow {0}\nunset label {0}", tag);
+  s.panel(left, below, w, strip_height);
+  s.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", -1.15 * residual, 1.15 * residual, residual_step);
+  s.put("set xtics ({}) {} noenhanced", tics.labels, tics.turned ? "rotate by 90 right" : "norotate");
+  s.put("set xzeroaxis lt 1 lc rgb '#404040' lw 0.7");
+  const double name = left - s.left_of(widest) - 0.4 * line;
+  s.label("analytic − MSA", name, foot - strip_height / 2, "center rotate by 90");
+  s.label(fmt::format("({})", data.unit.name), name + line, foot - strip_height / 2, "center rotate by 90");
+  s.label("point of the workspace", left + w / 2, foot + 0.6 * line + tics.height + 0.6 * line, "center");
   std::vector<std::string> stems;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!there(axis, false)) continue;
+    if (!there(points, axis, false)) continue;
     const std::string where = place(Series::residual, axis);
     stems.push_back(fmt::format("{} with impulses lc rgb '{}' lw {:.2f}", where, looks[axis].colour, 1.2 * marker));
     stems.push_back(fmt::format("{} with points lc rgb '{}' pt {} ps {:.2f}", where, looks[axis].colour,
                                 looks[axis].filled, 0.5 * marker));
   }
-  script.plot(stems);
-  script.text += "unset multiplot";
-  return {"fig10", script.text, width, height};
+  s.plot(fmt::format("plot {}", fmt::join(stems, ", \\\n  ")));
+  s.put("unset multiplot");
+  return s.figure(foot + 1.9 * line + tics.height, caption_of(validation, points, data));
 }
 
 }  // namespace deflect

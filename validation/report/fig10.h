@@ -10,6 +10,6 @@ namespace deflect {
 /// filled, MSA open around it, the theory as printed (where rows carry it) in a lighter shade. Lower panel,
 /// same points: analytic − MSA along the load in the unit that suits it, mm … fm. Throws
 /// std::invalid_argument without rows and on a deflection that is not finite.
-Figure fig10(const Validation&);
+Figure fig10(const Validation&, const FigureStyle& = {});
 
 }  // namespace deflect

@@ -1,6 +1,6 @@
 #include "validation/report/fig11.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,8 @@
 #include "validation/report/by_point.h"
 #include "validation/report/map_correlation.h"
 #include "validation/report/map_results.h"
+#include "validation/report/map_words.h"
+#include "validation/report/sheet.h"
 #include "validation/report/text.h"
 
 namespace deflect {
@@ -19,21 +21,7 @@ namespace {
 constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73"};  // Okabe–Ito, as in Fig. 10
 constexpr int shapes[] = {7, 5, 13};
 
-// mm on paper
-constexpr double left = 14, panel = 41, gap = 4.5, bar_gap = 4, bar = 4, bar_text = 16.5;
-constexpr double width = left + 3 * panel + 2 * gap + bar_gap + bar + bar_text;
-constexpr double line = 4, row_title = 5.5, tic_room = 5.5;
-
 const double none = std::numeric_limits<double>::quiet_NaN();
-
-/// Commands one by one.
-struct Script {
-  std::string text;
-  template <class... T>
-  void put(fmt::format_string<T...> format, T&&... values) {
-    text += fmt::format(format, std::forward<T>(values)...) + "\n";
-  }
-};
 
 /// Stiffness along x, y, z at the grid's poses; NaN out of reach. All are positive or the map would have no stiffness.
 struct Extremes {
@@ -117,19 +105,17 @@ std::string surface(const StiffnessMap& map, const Slice& s, int axis) {
   return text;
 }
 
-/// 1, 2 or 5 times a power of ten, the smallest that is not below x > 0.
-double nice_above(double x) {
-  const double power = std::pow(10, std::floor(std::log10(x))), lead = x / power;
-  return (lead <= 1 ? 1 : lead <= 2 ? 2 : lead <= 5 ? 5 : 10) * power;
-}
-
-/// Tics of an axis: whole steps, none of them so near to an end that its label would touch the next panel's.
-std::string inner_tics(double low, double high) {
-  const double step = nice_above((high - low) / 7), margin = 0.07 * (high - low);
-  std::string list;
-  for (double k = std::ceil((low + margin) / step); k * step <= high - margin; ++k)
-    list += fmt::format("{}{:.10g}", list.empty() ? "" : ", ", k * step + 0.0);
-  return list;
+/// Tics of an axis of so many mm: whole steps, none of them so near to an end that its label would touch the next
+/// panel's; where there is no room for all, the first and the last.
+std::string inner_tics(const Sheet& s, double low, double high, double room_mm) {
+  const double margin = 0.07 * (high - low);
+  const Tics t = s.tics(low + margin, high - margin, room_mm);
+  std::vector<double> numbers;
+  for (double k = std::ceil((low + margin) / t.step); k * t.step <= high - margin; ++k)
+    numbers.push_back(k * t.step + 0.0);
+  if (numbers.size() > 2 && static_cast<double>(numbers.size()) * s.text_mm(t.letters + 1) > room_mm)
+    numbers = {numbers.front(), numbers.back()};
+  return fmt::format("{:.10g}", fmt::join(numbers, ", "));
 }
 
 /// Preferred numbers within the range: the coarsest series that has at least `wanted` of them, or the finest.
@@ -165,8 +151,8 @@ std::string tics(const Extremes& e, bool named = true) {
   return list;
 }
 
-/// The mean positions of the slides that occur in a slice.
-std::string slide_text(const StiffnessMap& map, const Slice& s) {
+/// The mean positions of the slides that occur in a slice; briefly for narrow paper.
+std::string slide_text(const StiffnessMap& map, const Slice& s, bool brief) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int j = 0; j < map.options.grid.counts[static_cast<std::size_t>(s.up)]; ++j)
     for (int i = 0; i < map.options.grid.counts[static_cast<std::size_t>(s.across)]; ++i)
@@ -175,29 +161,9 @@ std::string slide_text(const StiffnessMap& map, const Slice& s) {
         high = std::max(high, p.slide_mean_mm);
       }
   if (low > high) return ": out of reach";
-  return map.slides.key.empty() ? "" : fmt::format(": mean {} {:.0f}–{:.0f} mm", map.slides.words, low, high);
-}
-
-std::vector<std::string> heading(const StiffnessMap& map, const std::string& title, const char* note) {
-  const Vector3& tilt = map.options.grid.tilt_deg;
-  std::string theory = fmt::format("{} theory", shown_theory(map));
-  if (map.options.analytic && map.options.msa) {
-    double largest = 1e-15;
-    for (const MapPose& p : map.poses) largest = std::max(largest, p.relative_difference);
-    theory += fmt::format(", MSA within {:.0e} of it", std::pow(10, std::ceil(std::log10(largest))));
-  }
-  return {fmt::format("{}: {}", clip(map.device, 40), title),
-          fmt::format("1/C_ii at the tool point, base axes, {}; {}",
-                      map.options.load_N_Nmm ? "tangent" : "secant from no load", map_load_text(map)),
-          fmt::format("{}; roll, pitch, yaw {:g}°, {:g}°, {:g}°{}", theory, tilt(0), tilt(1), tilt(2), note)};
-}
-
-void put_heading(Script& script, const StiffnessMap& map, const std::string& title, const char* note, double height) {
-  const std::vector<std::string> lines = heading(map, title, note);
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    script.put("set label {} {} at screen {:.5f},{:.5f} left noenhanced {}", i + 1, gnuplot_quote(lines[i]),
-               left / width, 1 - (3.5 + line * static_cast<double>(i)) / height,
-               i == 0 ? "font 'DejaVu Sans:Bold,9.5'" : "textcolor rgb '#505050'");
+  return map.slides.key.empty()
+             ? ""
+             : fmt::format(": {}{} {:.0f}–{:.0f} mm", brief ? "" : "mean ", map.slides.words, low, high);
 }
 
 // Viridis, which grows evenly lighter for every colour vision.
@@ -207,7 +173,7 @@ constexpr const char* palette =
 
 }  // namespace
 
-std::vector<Figure> fig11(const StiffnessMap& map) {
+std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
   const MapGrid& g = map.options.grid;
   const std::vector<Slice> slices = slices_of(g);
   const Extremes e = extremes(map);
@@ -215,22 +181,22 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
 
   const bool all_reached =
       std::all_of(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); });
+  // Three panels in a row; the bar of colours beside them, on narrow paper below.
+  Sheet script("fig11", style, 170.5);
+  const double line = script.line(), width = script.width(), left = 3.5 * line;
+  const bool below = script.narrow();
+  const double gap = below ? 3 : 4.5, bar = 4, bar_room = below ? 3 : 4 + bar + script.text_mm(4) + 2.45 * line;
+  const double panel = (width - left - 2 * gap - bar_room) / 3, row_title = 1.375 * line,
+               row_foot = script.below() - 0.25 * line;
   const auto extent = [&](int axis) { return g.high_mm(axis) - g.low_mm(axis); };
   const auto panel_height = [&](const Slice& s) {
     return std::clamp(panel * extent(s.up) / extent(s.across), 0.5 * panel, 1.4 * panel);
   };
-  const double top = 3.5 + 3 * line + 4;
-  double height = top;
-  for (const Slice& s : slices) height += row_title + panel_height(s) + tic_room + 4.5;
-  const double foot = height;
-  const auto across = [](double mm) { return mm / width; };
-  const auto up = [&](double mm_from_top) { return 1 - mm_from_top / height; };
 
-  Script script;
   for (std::size_t r = 0; r < slices.size(); ++r)
     for (int axis = 0; axis < 3; ++axis) script.put("$s{}{} << EOD\n{}EOD", r, axis, surface(map, slices[r], axis));
   // Iso-curves as tables, made before there is a plot to disturb.
-  const std::vector<double> iso = levels(e, 14), index = levels(e, 4);
+  const std::vector<double> iso = levels(e, below ? 8 : 14), index = levels(e, 4);
   if (!iso.empty()) {
     script.put("set contour base\nunset surface\nset cntrparam linear\nset cntrparam levels discrete {:g}",
                fmt::join(iso, ","));
@@ -243,73 +209,81 @@ std::vector<Figure> fig11(const StiffnessMap& map) {
   script.put("{}\nset logscale cb\nset cbrange [{:.6g}:{:.6g}]\nset cbtics ({}) scale 0.5", palette, e.low,
              std::max(e.high, e.low * 1.001), tics(e));
   script.put("set multiplot\nunset key\nunset grid\nset border 15 lc rgb '#404040' lw 0.7");
-  put_heading(script, map, "stiffness over the workspace", all_reached ? "" : "; hatched: out of reach", height);
+  double y = map_heading(script, map, "stiffness over the workspace", all_reached ? "" : "; hatched: out of reach",
+                         below ? 3 : left) +
+             1.3 * line;
   const double light = std::exp(std::log(e.low) + 0.62 * std::log(e.high / e.low));  // dark lines on light colours
   const std::string ink = fmt::format("($3 < {:.6g} ? 0xFFFFFF : 0x000000)", light);
   std::string is_index = "0";  // the iso-curves that are heavier and carry their number
   for (const double level : index) is_index += fmt::format("||abs($3/{:g}-1)<1e-3", level);
-  double y = top;
+  const double top = y + row_title;
+  double foot = top;
+  for (const Slice& s : slices) foot += panel_height(s) + row_foot + row_title;
+  foot -= row_foot + row_title;
   for (std::size_t r = 0; r < slices.size(); ++r) {
     const Slice& s = slices[r];
     y += row_title;
     const double h = panel_height(s);
+    const bool last_row = r + 1 == slices.size();
     for (int axis = 0; axis < 3; ++axis) {
       const double x = left + axis * (panel + gap);
-      script.put("set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}", across(x), across(x + panel));
-      script.put("set tmargin at screen {:.5f}\nset bmargin at screen {:.5f}", up(y), up(y + h));
+      script.panel(x, y, panel, h);
       script.put("set xrange [{:.8g}:{:.8g}]\nset yrange [{:.8g}:{:.8g}]", g.low_mm(s.across), g.high_mm(s.across),
                  g.low_mm(s.up), g.high_mm(s.up));
       script.put("set object 1 rect from graph 0,0 to graph 1,1 behind fc rgb '#f4f4f4' fs solid noborder");
       script.put("set object 2 rect from graph 0,0 to graph 1,1 behind fc rgb '#b0b0b0' fs pattern 4 noborder");
       script.put("set xtics ({}) offset 0,0.4\nset ytics ({}) offset 0.6,0\nset format y '{}'",
-                 inner_tics(g.low_mm(s.across), g.high_mm(s.across)), inner_tics(g.low_mm(s.up), g.high_mm(s.up)),
-                 axis == 0 ? "%g" : "");
+                 inner_tics(script, g.low_mm(s.across), g.high_mm(s.across), panel),
+                 inner_tics(script, g.low_mm(s.up), g.high_mm(s.up), h), axis == 0 ? "%g" : "");
       if (axis == 0) {
-        script.put("set label 10 '{} (mm)' at screen {:.5f},{:.5f} center rotate by 90", axis_names[s.up], across(2.5),
-                   up(y + h / 2));
-        script.put("set label 11 {} at screen {:.5f},{:.5f} left textcolor rgb '#202020'",
-                   gnuplot_quote(fmt::format("{} = {:.4g} mm{}", axis_names[s.fixed()], g.coordinate(s.fixed(), s.at),
-                                             slide_text(map, s))),
-                   across(left), up(y - 2.4));
+        script.label(fmt::format("{} (mm)", axis_names[s.up]), 0.65 * line, y + h / 2, "center rotate by 90");
+        script.label(fmt::format("{} = {:.4g} mm{}", axis_names[s.fixed()], g.coordinate(s.fixed(), s.at),
+                                 slide_text(map, s, below)),
+                     below ? 3 : left, y - 0.6 * line, "left textcolor rgb '#202020'");
       }
-      script.put("set label 12 '{} (mm)' at screen {:.5f},{:.5f} center", axis_names[s.across], across(x + panel / 2),
-                 up(y + h + tic_room + 1));
+      script.label(fmt::format("{} (mm)", axis_names[s.across]), x + panel / 2, y + h + 1.65 * line, "center");
       if (r == 0)
-        script.put(
-            "set label 13 'force along {}' at screen {:.5f},{:.5f} right font 'DejaVu Sans:Bold,8' "
-            "textcolor rgb '{}'",
-            axis_names[axis], across(x + panel), up(y - 5.5), colours[axis]);
-      if (r == 0 && axis == 2)
-        script.put(
-            "set colorbox vertical user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f}\n"
-            "set label 14 'stiffness along the force (N/mm)' at screen {:.5f},{:.5f} center rotate by 90",
-            across(left + 3 * panel + 2 * gap + bar_gap), up(foot - tic_room - 4.5), across(bar),
-            (foot - tic_room - 4.5 - y) / height, across(width - 2), up((y + foot - tic_room - 4.5) / 2));
-      else
+        script.label((below ? "force " : "force along ") + std::string(axis_names[axis]), x + panel, y - 1.6 * line,
+                     fmt::format("right {} textcolor rgb '{}'", script.font(1, true), colours[axis]));
+      if (below && last_row && axis == 2) {
+        const double bar_top = foot + row_foot + 0.3 * line, bar_width = width - left - 6;
+        script.put("set colorbox horizontal user origin {} size screen {:.5f},{:.5f}/H",
+                   script.at(left, bar_top + bar).substr(3), bar_width / width, bar);
+        script.label("stiffness along the force (N/mm)", left + bar_width / 2, bar_top + bar + 2.2 * line, "center");
+      } else if (!below && r == 0 && axis == 2) {
+        script.put("set colorbox vertical user origin {} size screen {:.5f},{:.5f}/H",
+                   script.at(width - bar_room + 4, foot).substr(3), bar / width, foot - top);
+        script.label("stiffness along the force (N/mm)", width - 0.55 * line, (top + foot) / 2, "center rotate by 90");
+      } else {
         script.put("unset colorbox");
+      }
       std::string curves;
       if (!iso.empty()) {
-        const double margin_x = 0.1 * extent(s.across), margin_y = 0.06 * extent(s.up);
+        const double margin_x = std::min(0.4, 4.1 * line / 4 / panel) * extent(s.across),
+                     margin_y = 0.06 * extent(s.up);
         const std::string inside =
             fmt::format("$1>{:.6g}&&$1<{:.6g}&&$2>{:.6g}&&$2<{:.6g}", g.low_mm(s.across) + margin_x,
                         g.high_mm(s.across) - margin_x, g.low_mm(s.up) + margin_y, g.high_mm(s.up) - margin_y);
         curves = fmt::format(
             ", $c{0}{1} using 1:2:{2} with lines lc rgb variable lw 0.3"
             ", $c{0}{1} using 1:({3} ? $2 : NaN):{2} with lines lc rgb variable lw 0.9"
-            ", $c{0}{1} using 1:(({3})&&{4} ? $2 : NaN):(sprintf('%g',$3)):{2} every ::28::28 with labels font "
-            "'DejaVu Sans,6' offset 0,0.35 textcolor rgb variable",
-            r, axis, ink, is_index, inside);
+            ", $c{0}{1} using 1:(({3})&&{4} ? $2 : NaN):(sprintf('%g',$3)):{2} every ::28::28 with labels {5} "
+            "offset 0,0.35 textcolor rgb variable",
+            r, axis, ink, is_index, inside, script.font(0.75));
       }
-      script.put("plot $s{}{} using 1:2:3 with image{}", r, axis, curves);
-      for (const int tag : {1, 2, 3, 10, 11, 12, 13, 14}) script.put("unset label {}", tag);
+      script.plot(fmt::format("plot $s{}{} using 1:2:3 with image{}", r, axis, curves));
     }
-    y += h + tic_room + 4.5;
+    y += h + row_foot;
   }
-  script.text += "unset multiplot";
-  return {{"fig11", script.text, width, height}};
+  script.put("unset multiplot");
+  return {script.figure(y + (below ? bar + 3.2 * line : 0),
+                        map_caption(map, fmt::format("Slices of the workspace, by the direction of the force, on one "
+                                                     "logarithmic scale of colours ({:.4g} … {:.4g} N/mm) with "
+                                                     "iso-curves{}.",
+                                                     e.low, e.high, all_reached ? "" : "; hatched: out of reach")))};
 }
 
-std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
+std::vector<Figure> stiffness_against_length(const StiffnessMap& map, const FigureStyle& style) {
   const Extremes e = extremes(map);
   if (e.high == 0 || map.slides.key.empty()) return {};
   std::vector<const MapPose*> poses;
@@ -342,43 +316,51 @@ std::vector<Figure> stiffness_against_length(const StiffnessMap& map) {
     medians += row(poses[(from + to) / 2]->slide_mean_mm, median);
   }
 
-  constexpr double height = 82, top = 25, bottom = 11, from_left = left + 3,
-                   room = (width - from_left - 5 - 2 * gap) / 3;
-  Script script;
+  Sheet script("stiffness-vs-length", style, 170.5);
+  const double line = script.line(), width = script.width(),
+               from_left = 1.8 * line + script.text_mm(letters(fmt::format("{:.0f}", e.high))),
+               gap = script.narrow() ? 3 : 4.5, room = (width - from_left - 5 - 2 * gap) / 3,
+               tall = std::clamp(1.05 * room, 8 * line, 60.0);
   script.put("$points << EOD\n{}EOD\n$median << EOD\n{}EOD", points, medians);
   script.put("set multiplot\nunset key");
-  put_heading(script, map, "stiffness against the mean " + map.slides.words, bins > 1 ? "; line: median" : "", height);
-  script.put("set tmargin at screen {:.5f}\nset bmargin at screen {:.5f}", 1 - top / height, bottom / height);
+  const double top = map_heading(script, map, "stiffness against the mean " + map.slides.words,
+                                 bins > 1 ? "; line: median" : "", script.narrow() ? 3 : from_left) +
+                     2.6 * line;
   script.put("set logscale y\nset mytics default");
   const double beside = 0.04 * std::max(longest - shortest, 1.0);
   script.put("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]", shortest - beside, longest + beside,
              e.low / 1.15, e.high * 1.15);
-  script.put("set xtics ({}) offset 0,0.2", inner_tics(shortest - beside, longest + beside));
-  script.put("set label 10 'stiffness along the force (N/mm)' at screen {:.5f},{:.5f} center rotate by 90", 3 / width,
-             (bottom + (height - top - bottom) / 2) / height);
-  script.put("set label 11 'mean {} (mm)' at screen {:.5f},{:.5f} center", map.slides.words,
-             (from_left + width - 5) / 2 / width, 3 / height);
+  script.put("set xtics ({}) offset 0,0.2", inner_tics(script, shortest - beside, longest + beside, room));
   for (int axis = 0; axis < 3; ++axis) {
     const double x = from_left + axis * (room + gap);
-    script.put("set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}", x / width, (x + room) / width);
-    script.put(
-        "set label 12 'force along {}' at screen {:.5f},{:.5f} left font 'DejaVu Sans:Bold,8' textcolor rgb '{}'",
-        axis_names[axis], x / width, 1 - (top - 5.5) / height, colours[axis]);
+    script.panel(x, top, room, tall);
+    if (axis == 0) {
+      script.label(script.narrow() ? "stiffness (N/mm)" : "stiffness along the force (N/mm)", 0.5 * line,
+                   top + tall / 2, "center rotate by 90");
+      script.label(fmt::format("mean {} (mm)", map.slides.words), (from_left + width - 5) / 2, top + tall + 2 * line,
+                   "center");
+    }
+    script.label((script.narrow() ? "force " : "force along ") + std::string(axis_names[axis]), x, top - 1.5 * line,
+                 fmt::format("left {} textcolor rgb '{}'", script.font(1, true), colours[axis]));
     script.put("set ytics ({})", tics({e.low / 1.15, e.high * 1.15}, axis == 0));
     const double rho = with_slides(map, axis).spearman;
-    script.put("set label 13 'Spearman’s ρ = {}{:.2f}' at screen {:.5f},{:.5f} left textcolor rgb '#505050'",
-               rho < 0 ? "−" : "", std::abs(rho), x / width, 1 - (top - 2) / height);
-    script.put("plot $points using 1:{} with points lc rgb '#90{}' pt {} ps {:.2f}{}", axis + 2, colours[axis] + 1,
-               shapes[axis], std::clamp(8 / std::sqrt(static_cast<double>(poses.size())), 0.22, 0.6),
-               bins > 1
-                   ? fmt::format(", $median using 1:{0} with lines lc rgb '#ffffff' lw 3, $median using 1:{0} with "
-                                 "lines lc rgb '#202020' lw 1.4",
-                                 axis + 2)
-                   : "");
-    for (const int tag : {1, 2, 3, 10, 11, 12, 13}) script.put("unset label {}", tag);
+    script.label(
+        fmt::format("{} = {}{:.2f}", script.narrow() ? "ρ" : "Spearman’s ρ", rho < 0 ? "−" : "", std::abs(rho)), x,
+        top - 0.55 * line, "left textcolor rgb '#505050'");
+    script.plot(fmt::format(
+        "plot $points using 1:{} with points lc rgb '#90{}' pt {} ps {:.2f}{}", axis + 2, colours[axis] + 1,
+        shapes[axis], std::clamp(8 / std::sqrt(static_cast<double>(poses.size())), 0.22, 0.6),
+        bins > 1 ? fmt::format(", $median using 1:{0} with lines lc rgb '#ffffff' lw 3, $median using 1:{0} with "
+                               "lines lc rgb '#202020' lw 1.4",
+                               axis + 2)
+                 : ""));
   }
-  script.text += "unset multiplot";
-  return {{"stiffness-vs-length", script.text, width, height}};
+  script.put("unset multiplot");
+  return {script.figure(
+      top + tall + script.below(),
+      map_caption(map, fmt::format("Stiffness at every pose over the mean {} there, by the direction of the force; ρ: "
+                                   "Spearman’s rank correlation of the two{}.",
+                                   map.slides.words, bins > 1 ? "; line: median of poses of like length" : "")))};
 }
 
 }  // namespace deflect

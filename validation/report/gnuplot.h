@@ -1,4 +1,4 @@
-// Figures by gnuplot, run as a child process: one script body, three files of one look.
+// Figures by gnuplot, run as a child process: one script body, three files of one look, and a caption.
 #pragma once
 
 #include <filesystem>
@@ -6,22 +6,27 @@
 #include <string_view>
 #include <vector>
 
+#include "validation/report/figure_style.h"
+
 namespace deflect {
 
 /// A figure as gnuplot commands with inline data. The body sets neither terminal nor output nor encoding; its
 /// font sizes are points, its line widths points at `lw 1`, and it may count on the common look set by
-/// render(): open border, tics outside, grey grid, typographic minus.
+/// render(): open border, tics outside, grey grid, typographic minus. Text without a font of its own has the style's.
 struct Figure {
   std::string name;  ///< of the files, without suffix: letters, digits, '-', '_', '.'
   std::string body;
   double width_mm = 160, height_mm = 100;
+  std::string title = {};    ///< of the SVG
+  std::string caption = {};  ///< one paragraph, ready to paste: what is drawn, units, load, frame, sign, data
+  FigureStyle style = {};    ///< font and size of the text; the body is laid out for them
 };
 
-/// Writes name.svg, name.pdf and name.png (200 dpi) into the folder, creating it, and returns their paths.
-/// All three are drawn before the first is written, so a refused script leaves the folder as it was, and each
-/// file is replaced whole. The same figure gives the same bytes. Throws InputError when gnuplot is not
-/// installed or the folder cannot be written, std::logic_error with gnuplot's own words when it refuses the
-/// script.
+/// Writes name.svg, name.pdf, name.png (300 dpi) and, with a caption, name.txt into the folder, creating it, and
+/// returns their paths. The caption ends with the program's version and is the SVG's description too. All are drawn
+/// before the first is written, so a refused script leaves the folder as it was, and each file is replaced whole. The
+/// same figure gives the same bytes. Throws InputError when gnuplot is not installed or the folder cannot be written,
+/// std::logic_error with gnuplot's own words when it refuses the script.
 std::vector<std::filesystem::path> render(const Figure&, const std::filesystem::path& folder);
 
 /// The text as a gnuplot string that prints as it is, wherever `noenhanced` is set; control characters become

@@ -106,8 +106,7 @@ Json curves_json(const Comparison& c) {
 }  // namespace
 
 Json residuals_json(const Comparison& c, std::size_t most_readings) {
-  const bool rotations = std::none_of(c.study.values.begin(), c.study.values.end(),
-                                      [](const MeasuredValue& v) { return v.component < 3; });
+  const bool rotations = rotations_alone(c.study.values);
   Json out;
   out["device"] = c.device;
   out["result"] = Json::parse(compare_json(c));

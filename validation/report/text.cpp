@@ -21,6 +21,16 @@ std::string clip(std::string_view utf8, std::size_t most) {
   return std::string(utf8.substr(0, bytes)) + "…";
 }
 
+std::string with_minus(std::string_view utf8) {
+  std::string out;
+  for (std::size_t i = 0; i < utf8.size(); ++i) {
+    const bool sign = utf8[i] == '-' && i + 1 < utf8.size() && utf8[i + 1] >= '0' && utf8[i + 1] <= '9' &&
+                      (i == 0 || std::string_view(" (,").find(utf8[i - 1]) != std::string_view::npos);
+    out += sign ? std::string("−") : std::string(1, utf8[i]);
+  }
+  return out;
+}
+
 std::vector<std::string> wrap(std::string_view text, std::size_t most) {
   std::vector<std::string> lines(1);
   while (!text.empty()) {

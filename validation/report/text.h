@@ -14,6 +14,9 @@ std::size_t letters(std::string_view utf8);
 /// The text, or its beginning and "…" where it has more than `most` letters.
 std::string clip(std::string_view utf8, std::size_t most);
 
+/// The text with typographic minus signs before its numbers: "from -2 to 3" → "from −2 to 3"; "leg-2" stays.
+std::string with_minus(std::string_view utf8);
+
 /// Lines of at most `most` letters, broken at spaces; a longer word gets a line of its own.
 std::vector<std::string> wrap(std::string_view text, std::size_t most);
 

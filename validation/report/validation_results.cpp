@@ -83,7 +83,7 @@ std::vector<std::vector<std::string>> with_printed(const std::vector<PointRows>&
 
 }  // namespace
 
-std::string validation_json(const Validation& validation) {
+std::string validation_json(const Validation& validation, const std::vector<ErratumPrice>& prices) {
   Json points = Json::array();
   for (const ValidationRow& row : validation.rows) {
     const std::string name = row_name(row);
@@ -102,6 +102,16 @@ std::string validation_json(const Validation& validation) {
   result["points"] = std::move(points);
   result["max_relative_difference"] = json_number(validation.max_relative_difference, "max_relative_difference");
   result["rms_relative_difference"] = json_number(validation.rms_relative_difference, "rms_relative_difference");
+  for (const ErratumPrice& p : prices) {
+    Json price = {{"erratum", info(p.erratum).name}, {"equations", info(p.erratum).equations}};
+    for (int axis = 0; axis < 3 && p.refused.empty(); ++axis) {
+      price["smallest"].push_back(std::isfinite(p.smallest(axis)) ? Json(p.smallest(axis)) : Json());
+      price["largest"].push_back(std::isfinite(p.largest(axis)) ? Json(p.largest(axis)) : Json());
+    }
+    if (!p.refused.empty()) price["refused"] = p.refused;
+    price["failed_check"] = p.failed_check;
+    result["errata"].push_back(std::move(price));
+  }
   return json_text(result);
 }
 

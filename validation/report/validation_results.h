@@ -11,8 +11,9 @@ namespace deflect {
 
 /// {"device", "points": [{"point", "pose", "load_axis", "load_N", "analytic", "msa", "as_printed" where
 /// present}, …], "max_relative_difference", "rms_relative_difference"}. "point" is an integer where the label
-/// is one.
-std::string validation_json(const Validation&);
+/// is one. With prices, "errata": [{"erratum", "equations", "smallest", "largest": ratios printed / corrected for loads
+/// along x, y, z, null where not finite, or "refused"; "failed_check"}, …].
+std::string validation_json(const Validation&, const std::vector<ErratumPrice>& = {});
 
 /// One line per row: point, x_mm … yaw_deg, load_axis, load_N, analytic_ux_mm … analytic_thz_rad, msa_…,
 /// as_printed_… (where any row has it; empty where that row has none), relative_difference.

@@ -1,0 +1,46 @@
+#include "validation/cli/figures.h"
+
+#include <fmt/format.h>
+
+#include "msa/base/error.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
+
+namespace deflect::cli {
+
+std::vector<Option> with_figures(std::vector<Option> options, FigureArguments* a) {
+  options.push_back({"--figure-width", "LENGTH",
+                     "width of figures on paper, with unit, as '88 mm' for one column (default: each figure's own)",
+                     &a->width});
+  options.push_back(
+      {"--figure-font", "NAME", "family of figures' text, one that fontconfig knows (default: DejaVu Sans)", &a->font});
+  options.push_back({"--figure-font-size", "PT", "size of figures' text in points (default 8)", &a->size});
+  return options;
+}
+
+FigureStyle figure_style(const FigureArguments& a, const std::string& out) {
+  if (out.empty() && !(a.width + a.font + a.size).empty())
+    throw InputError("--figure-width, --figure-font and --figure-font-size belong to --out, which draws figures");
+  FigureStyle style;
+  if (!a.width.empty()) style.width_mm = 1e3 * parse_length("--figure-width", a.width);
+  if (!a.size.empty()) style.size_pt = parse_list("--figure-font-size", a.size, {1}, "points")[0];
+  if (!a.font.empty()) {
+    style.font = a.font;
+    check_font(style.font);
+  }
+  check_size(style);
+  return style;
+}
+
+std::string draw(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+  std::string names;
+  for (const Figure& figure : figures) {
+    const Step step(fmt::format("figure {}: {:.4g} x {:.4g} mm, {} {:g} pt", (folder / figure.name).string(),
+                                figure.width_mm, figure.height_mm, figure.style.font, figure.style.size_pt));
+    render(figure, folder);
+    names += (names.empty() ? "" : ", ") + figure.name;
+  }
+  return names;
+}
+
+}  // namespace deflect::cli

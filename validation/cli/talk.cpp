@@ -1,0 +1,47 @@
+#include "validation/cli/talk.h"
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+
+#include "msa/base/error.h"
+#include "validation/report/progress.h"
+
+namespace deflect::cli {
+namespace {
+
+Talk talk = Talk::usual;
+
+double seconds() {
+  static const auto start = std::chrono::steady_clock::now();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+void set_talk(Talk wanted) {
+  talk = wanted;
+  seconds();
+  if (talk == Talk::quiet && !std::freopen("/dev/null", "w", stdout))
+    throw InputError("--quiet: standard output cannot be closed");
+}
+
+bool verbose() { return talk == Talk::verbose; }
+
+std::ostream* progress_stream() { return talk == Talk::quiet ? nullptr : terminal_stream(); }
+
+void tell_line(const std::string& text) {
+  fmt::print(stderr, "deflect {:.2f} s: {}\n", seconds(), text);
+  std::fflush(stderr);
+}
+
+Step::Step(std::string what) : what_(std::move(what)), start_(seconds()), failing_(std::uncaught_exceptions()) {
+  tell("{} …", what_);
+}
+
+Step::~Step() {
+  if (verbose() && std::uncaught_exceptions() == failing_)
+    tell_line(fmt::format("{}: {:.2f} s", what_, seconds() - start_));
+}
+
+}  // namespace deflect::cli

@@ -1,0 +1,50 @@
+// What the program tells beside its report: nothing, progress on a terminal, or every step with its time and choices.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <ostream>
+#include <string>
+#include <utility>
+
+namespace deflect::cli {
+
+enum class Talk { quiet, usual, verbose };
+
+/// For the rest of the run. Quiet: reports, and whatever else goes to standard output, are thrown away.
+void set_talk(Talk);
+bool verbose();
+
+/// Where progress of long work is drawn: standard error where it is a terminal, nullptr otherwise and when quiet.
+std::ostream* progress_stream();
+
+/// One line on standard error where verbose, with the seconds since the program began: "deflect 0.12 s: …".
+void tell_line(const std::string&);
+
+template <class... T>
+void tell(fmt::format_string<T...> format, T&&... values) {
+  if (verbose()) tell_line(fmt::format(format, std::forward<T>(values)...));
+}
+
+/// A step of the work, told when it begins and, unless it fails, when it is done, with its time.
+class Step {
+ public:
+  explicit Step(std::string what);
+  ~Step();
+  Step(const Step&) = delete;
+  Step& operator=(const Step&) = delete;
+
+ private:
+  std::string what_;
+  double start_;
+  int failing_;
+};
+
+/// What `work` returns, as a step.
+template <class Work>
+auto timed(std::string what, const Work& work) {
+  const Step step(std::move(what));
+  return work();
+}
+
+}  // namespace deflect::cli

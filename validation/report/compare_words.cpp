@@ -1,0 +1,99 @@
+#include "validation/report/compare_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/report/text.h"
+
+namespace deflect {
+namespace {
+
+std::string file_of(const Comparison& c) { return c.data.substr(c.data.find_last_of('/') + 1); }
+
+std::string range(double low, double high) {
+  return std::abs(high - low) < 1e-9 * std::max(std::abs(low), std::abs(high)) + 1e-12
+             ? fmt::format("{:.4g}", low + 0.0)
+             : fmt::format("{:.4g} … {:.4g}", low + 0.0, high + 0.0);
+}
+
+/// "fx −50 … 50, fz −20 … 50 N, mx 0 … 100 Nmm".
+std::string loads_text(const Measurements& data) {
+  constexpr const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+  std::string out;
+  for (int kind = 0; kind < 2; ++kind) {
+    std::string list;
+    for (int k = 3 * kind; k < 3 * kind + 3; ++k) {
+      double low = 0, high = 0;
+      for (const Reading& r : data.readings) low = std::min(low, r.load(k)), high = std::max(high, r.load(k));
+      const double unit = kind == 0 ? 1 : 1e3;
+      if (low < high)
+        list += fmt::format("{}{} {}", list.empty() ? "" : ", ", names[k], range(unit * low, unit * high));
+    }
+    if (!list.empty()) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", list, kind == 0 ? "N" : "Nmm");
+  }
+  return out.empty() ? "no load" : "loads on the tool point " + out;
+}
+
+}  // namespace
+
+ErrorUnit error_unit(const Comparison& c) {
+  if (!rotations_alone(c.study.values)) return {};
+  return {true, "µrad", "mrad", "urad", "Nm", {"Δθx", "Δθy", "Δθz"}, {"mx", "my", "mz"}};
+}
+
+std::vector<ReadingCells> cells_of(const Comparison& c) {
+  const Eigen::Index first = error_unit(c).rotations ? 3 : 0;
+  std::vector<ReadingCells> out(c.readings);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Reading& r = c.study.data->readings[i];
+    out[i].measured = out[i].residual = Vector3::Constant(NAN);
+    out[i].predicted = c.study.predicted[i].segment<3>(first);
+    out[i].load = r.load.segment<3>(first);
+    out[i].pure = (out[i].load.array() != 0).count() <= 1 && r.load.segment<3>(3 - first).isZero(0);
+    out[i].set_aside = std::find(c.set_aside.begin(), c.set_aside.end(), r.line) != c.set_aside.end();
+  }
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const MeasuredValue& v = c.study.values[i];
+    const Eigen::Index k = static_cast<Eigen::Index>(v.component) - first;
+    if (k < 0 || k >= 3) continue;
+    out[v.reading].measured(k) = v.value;
+    out[v.reading].residual(k) = c.residual(static_cast<Eigen::Index>(i));
+  }
+  return out;
+}
+
+std::string subjects(const Comparison& c) {
+  return fmt::format("{} against {}", clip(c.device, 40), clip(file_of(c), 40));
+}
+
+std::string data_sentence(const Comparison& c) {
+  Vector3 low = Vector3::Constant(INFINITY), high = -low;
+  for (const Configuration& machine : c.study.machines) {
+    low = low.cwiseMin(1e3 * machine.pose.p_WT);
+    high = high.cwiseMax(1e3 * machine.pose.p_WT);
+  }
+  return fmt::format("Device {}, measurements {}: {} readings at {} poses (tool point x {}, y {}, z {} mm), {}.",
+                     c.device, file_of(c), c.readings, c.poses, range(low.x(), high.x()), range(low.y(), high.y()),
+                     range(low.z(), high.z()), loads_text(*c.study.data));
+}
+
+std::string noise_sentence(const Comparison& c) {
+  const ErrorUnit unit = error_unit(c);
+  return fmt::format(
+      "Standard deviation of a reading {:.3g} {}{}; noise and tolerances of manufacture together give "
+      "{:.3g} {} rms.",
+      1e6 * c.sigma_u, unit.micro, c.sigma_from_residuals ? " (estimated from the residuals)" : "",
+      1e6 * c.noise_and_tolerances, unit.micro);
+}
+
+std::string axes_sentence(const Comparison& c) {
+  return error_unit(c).rotations
+             ? "Rotations of the tool frame against the unloaded machine, about base axes; residual = measured − "
+               "predicted."
+             : "Displacements of the tool point against the unloaded machine, base axes; residual = measured − "
+               "predicted.";
+}
+
+}  // namespace deflect

@@ -1,0 +1,41 @@
+// What the tables, pictures and captions of a comparison say alike: the unit of errors, each reading's three numbers,
+// sentences about data, noise and axes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "validation/compare/comparison.h"
+
+namespace deflect {
+
+/// Errors speak of translations, or of rotations where no translation was measured. Both are printed in millionths of
+/// the SI unit.
+struct ErrorUnit {
+  bool rotations = false;
+  const char* micro = "µm";  ///< of 1e6 times the error
+  const char* milli = "mm";  ///< of 1e3 times
+  const char* column = "um";
+  const char* load = "N";  ///< of the load that goes with them
+  const char* components[3] = {"Δx", "Δy", "Δz"};
+  const char* loads[3] = {"fx", "fy", "fz"};
+};
+ErrorUnit error_unit(const Comparison&);
+
+/// Of a reading, m or rad as Errors speak of: NaN where not measured. The load in N or Nm.
+struct ReadingCells {
+  Vector3 measured, predicted, residual, load;
+  bool pure = false;  ///< nothing but `load`, and of that one component
+  bool set_aside = false;
+};
+std::vector<ReadingCells> cells_of(const Comparison&);
+
+/// "device against file.csv".
+std::string subjects(const Comparison&);
+
+/// Captions: "Device … against data …: readings, poses and where they lie, loads." "σ of a reading …, …" and the axes.
+std::string data_sentence(const Comparison&);
+std::string noise_sentence(const Comparison&);
+std::string axes_sentence(const Comparison&);
+
+}  // namespace deflect
