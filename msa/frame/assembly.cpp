@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
+#include <utility>
+
+#include "msa/frame/two_at_once.h"
 
 namespace deflect::frame {
 namespace {
@@ -16,20 +20,35 @@ LinearForm reduced(const LinearForm& form, const Elimination& e) {
   return out;
 }
 
+constexpr std::size_t many_beams = 2000, chunk = 1024;
+
 struct ReducedBeam {
-  std::vector<int> q;
+  std::vector<int> q, positions;  // of (i, j), i ≥ j, column by column
   MatrixX K;
 };
 
-ReducedBeam reduced(const Beam& beam, const Elimination& e) {
-  std::vector<int> dofs;  // those of end a count only where the beam has no relative motion of its own
+/// Those of end a only where the beam has no relative motion of its own.
+std::vector<int> freedoms_of(const Beam& beam) {
+  std::vector<int> dofs;
   for (int i = 0; i < 6 && beam.relative < 0; ++i) dofs.push_back(6 * beam.a + i);
   for (int i = 0; i < 6; ++i) dofs.push_back(beam.relative < 0 ? 6 * beam.b + i : beam.relative + i);
-  ReducedBeam out;
+  return dofs;
+}
+
+/// The q of these freedoms, ascending.
+std::vector<int> reduced(const std::vector<int>& dofs, const Elimination& e) {
+  std::vector<int> q;
   for (const int dof : dofs)
-    for (const Term& t : e.T[static_cast<std::size_t>(dof)]) out.q.push_back(t.dof);
-  std::sort(out.q.begin(), out.q.end());
-  out.q.erase(std::unique(out.q.begin(), out.q.end()), out.q.end());
+    for (const Term& t : e.T[static_cast<std::size_t>(dof)]) q.push_back(t.dof);
+  std::sort(q.begin(), q.end());
+  q.erase(std::unique(q.begin(), q.end()), q.end());
+  return q;
+}
+
+ReducedBeam reduced(const Beam& beam, const Elimination& e) {
+  const std::vector<int> dofs = freedoms_of(beam);
+  ReducedBeam out;
+  out.q = reduced(dofs, e);
   MatrixX B = MatrixX::Zero(static_cast<Eigen::Index>(dofs.size()), static_cast<Eigen::Index>(out.q.size()));
   for (std::size_t i = 0; i < dofs.size(); ++i)
     for (const Term& t : e.T[static_cast<std::size_t>(dofs[i])]) {
@@ -41,20 +60,43 @@ ReducedBeam reduced(const Beam& beam, const Elimination& e) {
   return out;
 }
 
-SparsePattern pattern_of(int n, const std::vector<std::vector<int>>& groups) {
-  std::vector<std::vector<int>> columns(static_cast<std::size_t>(n));
-  for (int j = 0; j < n; ++j) columns[static_cast<std::size_t>(j)].push_back(j);
-  for (const std::vector<int>& q : groups)  // ascending
-    for (std::size_t j = 0; j < q.size(); ++j)
-      columns[static_cast<std::size_t>(q[j])].insert(columns[static_cast<std::size_t>(q[j])].end(),
-                                                     q.begin() + static_cast<std::ptrdiff_t>(j) + 1, q.end());
+/// Lists of q, each ascending, one behind the other.
+struct Groups {
+  std::vector<int> start{0}, q;
+  void add(const std::vector<int>& group) {
+    q.insert(q.end(), group.begin(), group.end());
+    start.push_back(static_cast<int>(q.size()));
+  }
+};
+
+/// Every two q of a group meet.
+SparsePattern pattern_of(int n, const Groups& groups) {
+  std::vector<int> first(static_cast<std::size_t>(n) + 1, 0), member(groups.q.size());  // groups by q
+  for (const int q : groups.q) ++first[static_cast<std::size_t>(q) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<int> next(first.begin(), first.end() - 1);
+  for (std::size_t g = 0; g + 1 < groups.start.size(); ++g)
+    for (int k = groups.start[g]; k < groups.start[g + 1]; ++k)
+      member[static_cast<std::size_t>(next[static_cast<std::size_t>(groups.q[static_cast<std::size_t>(k)])]++)] =
+          static_cast<int>(g);
   SparsePattern p{n, {0}, {}};
-  for (auto& column : columns) {
-    std::sort(column.begin(), column.end());
-    column.erase(std::unique(column.begin(), column.end()), column.end());
-    p.row.insert(p.row.end(), column.begin(), column.end());
+  std::vector<int> met(static_cast<std::size_t>(n), -1);
+  for (int j = 0; j < n; ++j) {
+    const auto from = static_cast<std::ptrdiff_t>(p.row.size());
+    met[static_cast<std::size_t>(j)] = j;
+    p.row.push_back(j);
+    for (int k = first[static_cast<std::size_t>(j)]; k < first[static_cast<std::size_t>(j) + 1]; ++k) {
+      const auto g = static_cast<std::size_t>(member[static_cast<std::size_t>(k)]);
+      for (int at = groups.start[g + 1] - 1; at >= groups.start[g]; --at) {
+        const int i = groups.q[static_cast<std::size_t>(at)];
+        if (i <= j) break;
+        if (std::exchange(met[static_cast<std::size_t>(i)], j) != j) p.row.push_back(i);
+      }
+    }
+    std::sort(p.row.begin() + from, p.row.end());
     p.column_start.push_back(static_cast<int>(p.row.size()));
   }
+  p.row.shrink_to_fit();
   return p;
 }
 
@@ -62,6 +104,12 @@ int position(const SparsePattern& p, int row, int column) {
   const auto from = p.row.begin() + p.column_start[static_cast<std::size_t>(column)];
   const auto to = p.row.begin() + p.column_start[static_cast<std::size_t>(column) + 1];
   return static_cast<int>(std::lower_bound(from, to, row) - p.row.begin());
+}
+
+ReducedBeam placed(ReducedBeam beam, const SparsePattern& p) {
+  for (std::size_t j = 0; j < beam.q.size(); ++j)
+    for (std::size_t i = j; i < beam.q.size(); ++i) beam.positions.push_back(position(p, beam.q[i], beam.q[j]));
+  return beam;
 }
 
 VectorX beam_forces(const Model& m, const VectorX& u) {
@@ -80,26 +128,32 @@ VectorX beam_forces(const Model& m, const VectorX& u) {
 
 }  // namespace
 
-Assembly::Assembly(const Model& m, const Elimination& e) {
-  std::vector<std::vector<int>> groups;
-  std::vector<ReducedBeam> beams;
-  for (const Beam& beam : m.beams) {
-    beams.push_back(reduced(beam, e));
-    groups.push_back(beams.back().q);
-  }
+Assembly::Assembly(const Model& m, const Elimination& e, int threads) {
+  Groups groups;
+  for (const Beam& beam : m.beams) groups.add(reduced(freedoms_of(beam), e));
   for (const Spring& spring : m.springs) {
     springs_.push_back({reduced(spring.elongation, e), {}});
     std::vector<int> q;
     for (const Term& t : springs_.back().form) q.push_back(t.dof);
-    groups.push_back(std::move(q));
+    groups.add(q);
   }
   pattern_ = pattern_of(e.independent, groups);
+  groups = {};
   beams_.assign(pattern_.row.size(), 0);
-  for (const ReducedBeam& beam : beams)
-    for (std::size_t j = 0; j < beam.q.size(); ++j)
-      for (std::size_t i = j; i < beam.q.size(); ++i)
-        beams_[static_cast<std::size_t>(position(pattern_, beam.q[i], beam.q[j]))] +=
-            beam.K(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  TwoAtOnce both(m.beams.size() < many_beams ? 1 : threads);
+  std::vector<ReducedBeam> some(std::min(chunk, m.beams.size()));
+  for (std::size_t from = 0; from < m.beams.size(); from += chunk) {
+    const std::size_t to = std::min(from + chunk, m.beams.size()), half = (from + to) / 2;
+    const auto reduce = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) some[b - from] = placed(reduced(m.beams[b], e), pattern_);
+    };
+    both([&] { reduce(from, half); }, [&] { reduce(half, to); });
+    for (std::size_t b = 0; b < to - from; ++b) {  // in the order of the beams, whatever the threads
+      auto at = some[b].positions.begin();
+      for (Eigen::Index j = 0; j < some[b].K.cols(); ++j)
+        for (Eigen::Index i = j; i < some[b].K.cols(); ++i) beams_[static_cast<std::size_t>(*at++)] += some[b].K(i, j);
+    }
+  }
   for (ReducedSpring& spring : springs_)
     for (std::size_t i = 0; i < spring.form.size(); ++i)
       for (std::size_t j = 0; j <= i; ++j)

@@ -10,7 +10,8 @@ namespace deflect::frame {
 
 class Assembly {
  public:
-  Assembly(const Model&, const Elimination&);
+  /// threads: 0: as many as there are, where there are many beams. The same bits for any number.
+  Assembly(const Model&, const Elimination&, int threads = 0);
 
   const SparsePattern& pattern() const { return pattern_; }
   /// Values in the pattern's order for the tangent stiffness of each spring (in the model's order).

@@ -177,6 +177,18 @@ void check_consistent(const Model& m, const Elimination& e, const VectorX& value
   }
 }
 
+std::vector<std::string> redundancies(const Model& m, const Elimination& e) {
+  std::vector<std::string> notes;
+  for (const Redundancy& r : e.redundant) {
+    std::string names;
+    for (std::size_t i = 0; i < std::min<std::size_t>(r.implied_by.size(), 6); ++i)
+      names += fmt::format("{}'{}'", i ? ", " : "", m.constraints[static_cast<std::size_t>(r.implied_by[i].dof)].name);
+    notes.push_back(fmt::format("constraint '{}' is redundant: {} already imply it",
+                                m.constraints[static_cast<std::size_t>(r.constraint)].name, names));
+  }
+  return notes;
+}
+
 VectorX Elimination::expand(const VectorX& q, const VectorX& values) const {
   VectorX u(static_cast<Eigen::Index>(T.size()));
   for (std::size_t dof = 0; dof < T.size(); ++dof) {

@@ -37,6 +37,9 @@ Elimination eliminate(const Model&);
 /// Throws ModelError naming the constraints when a redundant one contradicts those that imply it for these values.
 void check_consistent(const Model&, const Elimination&, const VectorX& values);
 
+/// "constraint 'a' is redundant: 'b', 'c' already imply it", for each.
+std::vector<std::string> redundancies(const Model&, const Elimination&);
+
 /// The values stored in the model's constraints.
 VectorX constraint_values(const Model&);
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "msa/frame/solver.h"
+#include "msa/frame/linear_solution.h"
 
 namespace deflect::frame {
 namespace {
@@ -107,11 +107,11 @@ double equilibrium(const CaseResult& r, const FrameModel& m, const Work& work) {
   return std::max(ratio(resultant.norm(), forces), ratio(moment.norm(), moments));
 }
 
-void check(CaseResult& r, const FrameModel& m, const Solver& solver, const Work& work) {
+void check(CaseResult& r, const FrameModel& m, const Elimination& e, const Work& work) {
   VectorX tangents;
   const VectorX load = padded(work.load.forces, m.model.dofs());
   const VectorX pulls = internal_forces(m.model, r.u, tangents);
-  const VectorX free = solver.elimination().reduce(load), held = solver.elimination().reduce(pulls);
+  const VectorX free = e.reduce(load), held = e.reduce(pulls);
   r.checks.residual = ratio(largest(free - held), largest(load) + largest(pulls) + cancelling * work.gross.force);
   r.checks.equilibrium = equilibrium(r, m, work);
 
@@ -149,7 +149,7 @@ VectorX elongations(const Model& m, const VectorX& u) {
   return out;
 }
 
-void analyse_linear(const FrameDescription& f, FrameResult& out) {
+void analyse_linear(const FrameDescription& f, const EquationOptions& options, FrameResult& out) {
   FrameModel& m = out.structure;
   std::vector<Work> work;
   for (const auto& [name, load] : f.loads) work.push_back({load_of(f, m, load), {}, {}, 0, 0});
@@ -160,25 +160,23 @@ void analyse_linear(const FrameDescription& f, FrameResult& out) {
     values.col(c) = work[static_cast<std::size_t>(c)].load.values;
   }
 
-  Solver solver(m.model);
-  m.model = solver.model();  // with what the solver added to it
-  out.notes = solver.notes();
-  VectorX tangents(static_cast<Eigen::Index>(m.model.springs.size()));
-  for (std::size_t s = 0; s < m.model.springs.size(); ++s)
-    tangents(static_cast<Eigen::Index>(s)) = tangent(m.model.springs[s].law, 0);
-  const MatrixX U = solver.linear(tangents, loads, values);
+  LinearSolution solution = solve_linear(std::move(m.model), loads, values, options);
+  m.model = std::move(solution.model);  // with what the solver added to it
+  out.notes = std::move(solution.notes);
+  out.equations = std::move(solution.summary);
+  const Elimination& elimination = solution.elimination;
 
   for (std::size_t c = 0; c < work.size(); ++c) {
     CaseResult r;
     r.name = f.loads[c].first;
-    r.u = U.col(static_cast<Eigen::Index>(c));
+    r.u = solution.u.col(static_cast<Eigen::Index>(c));
     for (std::size_t i = 0; i < f.nodes.size(); ++i)
       r.displacements.push_back(r.u.segment<6>(static_cast<Eigen::Index>(6 * i)));
-    work[c].lambda = constraint_forces(m.model, solver.elimination(), r.u, padded(work[c].load.forces, m.model.dofs()));
+    work[c].lambda = constraint_forces(m.model, elimination, r.u, padded(work[c].load.forces, m.model.dofs()));
     find_reactions(r, f, m, work[c].lambda);
     find_member_forces(r, m, work[c]);
     find_energies(r, f, m, elongations(m.model, r.u));
-    check(r, m, solver, work[c]);
+    check(r, m, elimination, work[c]);
     r.loads = work[c].load.elements;
     out.cases.push_back(std::move(r));
   }
@@ -212,7 +210,7 @@ FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
   out.geometry = f.geometry;
   out.structure = build_frame(f, options.division);
   if (f.geometry == Geometry::linear)
-    analyse_linear(f, out);
+    analyse_linear(f, options.equations, out);
   else
     analyse_geometric(f, out);
   return out;

@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "msa/frame/frame_build.h"
+#include "msa/frame/linear_solution.h"
 
 namespace deflect::frame {
 
 struct FrameOptions {
-  FrameDivision division;  ///< empty: as the description divides; one element is exact at its nodes where linear
+  FrameDivision division;     ///< empty: as the description divides; one element is exact at its nodes where linear
+  EquationOptions equations;  ///< linear only; where the geometry is not linear the direct way is the only one
 };
 
 /// The bending moment with the largest magnitude along a member.
@@ -71,6 +73,7 @@ struct FrameResult {
   FrameModel structure;
   std::vector<CaseResult> cases;
   std::vector<std::string> notes;  ///< redundant constraints by name, idle spins that were held
+  EquationSummary equations;       ///< which way they were solved, and why; linear only
   /// Betti: f_i·u_j + λ_i·v_j = f_j·u_i + λ_j·v_i between all cases, f with the forces that heat is equivalent to;
   /// largest difference, relative. Linear only.
   double reciprocity = 0;

@@ -27,6 +27,7 @@ void describe_freedoms(FieldVisitor& v, const char* key, Freedoms& freedoms, con
   if (support && freedoms == all_freedoms) words = {"clamped"};
   v.texts(key, words, need, about);
   freedoms = {};
+  if (words.empty()) return;
   std::vector<std::string> known(names.begin(), names.end());
   if (support) known.insert(known.end(), {"clamped", "pinned"});
   for (const std::string& word : words) {
@@ -72,10 +73,12 @@ void describe_geometry(FieldVisitor& v, FrameDescription& f) {
 }
 
 void describe_theory(FieldVisitor& v, FrameMember& m, const Section* section, const FrameMaterial* material) {
-  const std::vector<std::string> theories{std::begin(beam_theory_names), std::end(beam_theory_names)};
-  std::string beam = theories[static_cast<std::size_t>(m.beam)];
-  v.word("beam", beam, {"beam theory", theories, theories[0]}, "beam theory");
-  m.beam = static_cast<BeamTheory>(std::find(theories.begin(), theories.end(), beam) - theories.begin());
+  static const Words theories{
+      "beam theory", {std::begin(beam_theory_names), std::end(beam_theory_names)}, beam_theory_names[0]};
+  std::string beam = theories.allowed[static_cast<std::size_t>(m.beam)];
+  v.word("beam", beam, theories, "beam theory");
+  m.beam = static_cast<BeamTheory>(std::find(theories.allowed.begin(), theories.allowed.end(), beam) -
+                                   theories.allowed.begin());
   if (m.beam != BeamTheory::timoshenko || !section) return;
   const auto* given = std::get_if<GivenSection>(&section->shape);
   v.require(!given || (given->As_y && given->As_z), "beam",

@@ -44,6 +44,15 @@ void make_relative(Model& m, Spring& spring) {
   spring.defined_by = static_cast<int>(m.constraints.size()) - 1;
 }
 
+bool is_stiff(const Beam& beam, double limit) {
+  return std::min(beam.rigidity.EIy, beam.rigidity.EIz) / beam.length > limit;
+}
+
+bool is_stiff(const Spring& spring, double limit, double length) {
+  const auto* linear = std::get_if<LinearSpring>(&spring.law);
+  return linear && linear->k * length * length > limit * 1e4;
+}
+
 /// Of the translations that the structure resists, N/m.
 double stiffest(const Model& m) {
   const double length = characteristic_length(m);
@@ -70,18 +79,26 @@ void give_contacts_stiffness(Model& m) {
   }
 }
 
+bool wants_relative_motion(const Model& m, double ratio) {
+  const double limit = ratio * softest(m), length = characteristic_length(m);
+  return std::any_of(m.beams.begin(), m.beams.end(),
+                     [&](const Beam& b) { return b.relative < 0 && is_stiff(b, limit); }) ||
+         std::any_of(m.springs.begin(), m.springs.end(), [&](const Spring& s) {
+           return s.elongation.size() > 1 && (is_stiff(s, limit, length) || jumps(s.law));
+         });
+}
+
 std::vector<std::string> use_relative_motion(Model& m, double ratio) {
   std::vector<std::string> names;
   const double limit = ratio * softest(m);
   for (Beam& beam : m.beams)
-    if (beam.relative < 0 && std::min(beam.rigidity.EIy, beam.rigidity.EIz) / beam.length > limit) {
+    if (beam.relative < 0 && is_stiff(beam, limit)) {
       make_relative(m, beam);
       names.push_back(beam.name);
     }
   const double length = characteristic_length(m);
   for (Spring& spring : m.springs) {
-    const auto* linear = std::get_if<LinearSpring>(&spring.law);
-    const bool stiff = linear && linear->k * length * length > limit * 1e4;
+    const bool stiff = is_stiff(spring, limit, length);
     if (spring.elongation.size() > 1 && (stiff || jumps(spring.law))) {
       make_relative(m, spring);
       if (stiff) names.push_back(spring.name);

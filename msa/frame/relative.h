@@ -12,6 +12,9 @@ namespace deflect::frame {
 /// that each step of λ leaves at most a tenth of what it lacks.
 void give_contacts_stiffness(Model&);
 
+/// Whether the next function would find a beam or a spring to change.
+bool wants_relative_motion(const Model&, double ratio = 1e5);
+
 /// Gives relative coordinates to springs that jump, to beams whose bending stiffness EI/L exceeds `ratio` times the
 /// softest beam's, and to linear springs whose stiffness times the squared length of the structure exceeds 1e4 times
 /// that limit (a translational spring; a rotational one counts alike). Returns the names of those parts.

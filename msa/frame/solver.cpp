@@ -31,8 +31,10 @@ Solver::Solver(Model m) : model_(std::make_unique<Model>(std::move(m))) {
   use_relative_motion(*model_);
   prepare();
   if (held_idle_spins()) prepare();
-  note_redundant();
+  for (std::string& note : redundancies(*model_, *elimination_)) notes_.push_back(std::move(note));
 }
+
+std::pair<Model, Elimination> Solver::structure() && { return {std::move(*model_), std::move(*elimination_)}; }
 
 bool Solver::linear_springs() const {
   return std::all_of(model_->springs.begin(), model_->springs.end(), [](const Spring& s) { return is_linear(s.law); });
@@ -95,17 +97,6 @@ void Solver::refuse_driven_spins(const VectorX& load) const {
 void Solver::check(const VectorX& load, const VectorX& values) const {
   check_consistent(*model_, *elimination_, padded(values, static_cast<Eigen::Index>(model_->constraints.size())));
   refuse_driven_spins(padded(load, model_->dofs()));
-}
-
-void Solver::note_redundant() {
-  for (const Redundancy& r : elimination_->redundant) {
-    std::string names;
-    for (std::size_t i = 0; i < std::min<std::size_t>(r.implied_by.size(), 6); ++i)
-      names +=
-          fmt::format("{}'{}'", i ? ", " : "", model_->constraints[static_cast<std::size_t>(r.implied_by[i].dof)].name);
-    notes_.push_back(fmt::format("constraint '{}' is redundant: {} already imply it",
-                                 model_->constraints[static_cast<std::size_t>(r.constraint)].name, names));
-  }
 }
 
 void Solver::factor(const VectorX& tangents) {

@@ -43,6 +43,8 @@ class Solver {
   /// The structure that is solved: the given one, with the constraints and coordinates that were added behind its own.
   const Model& model() const { return *model_; }
   const Elimination& elimination() const { return *elimination_; }
+  /// Both of these, from a solver that is done.
+  std::pair<Model, Elimination> structure() &&;
   /// How many of the model's constraints, the last ones, hold idle spins.
   std::size_t held_spins() const { return idle_.size(); }
 
@@ -74,7 +76,6 @@ class Solver {
  private:
   void prepare();
   bool held_idle_spins();
-  void note_redundant();
   void refuse_driven_spins(const VectorX& load) const;
   struct Work;
   void begin_by_forces(Work&);

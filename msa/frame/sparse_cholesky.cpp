@@ -2,10 +2,18 @@
 
 #include <cholmod.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <new>
 #include <stdexcept>
+#include <utility>
+
+#include "msa/frame/two_at_once.h"
+
+// OpenBLAS, where it is the BLAS.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+extern "C" int openblas_get_num_threads() __attribute__((weak));
 
 namespace deflect::frame {
 
@@ -34,6 +42,81 @@ struct SparseCholesky::Impl {
   double* values() const { return static_cast<double*>(A->x); }
 };
 
+namespace {
+
+// From here on METIS on the graph of nodes, without a trial of others before it.
+constexpr std::size_t many_columns = 5000;
+
+/// As many threads of the BLAS as the machine has while a large matrix is worked on; then as before.
+class BlasThreads {
+ public:
+  explicit BlasThreads(std::size_t columns) {
+    if (columns < many_columns || !openblas_set_num_threads || !openblas_get_num_threads) return;
+    before_ = openblas_get_num_threads();
+    openblas_set_num_threads(threads_of(0));
+  }
+  ~BlasThreads() {
+    if (before_ > 0) openblas_set_num_threads(before_);
+  }
+  BlasThreads(const BlasThreads&) = delete;
+  BlasThreads& operator=(const BlasThreads&) = delete;
+
+ private:
+  int before_ = 0;
+};
+
+/// By column, a number for all that follow each other and have the same rows: the freedoms of a node.
+std::vector<int> groups_of(const SparsePattern& p) {
+  const auto rows = [&p](int j, int skip) {
+    const auto k = static_cast<std::size_t>(j);
+    return std::pair{p.row.begin() + p.column_start[k] + skip, p.row.begin() + p.column_start[k + 1]};
+  };
+  std::vector<int> group(static_cast<std::size_t>(p.n), 0);
+  for (int j = 1; j < p.n; ++j) {
+    const auto [from, to] = rows(j - 1, 1);
+    const auto [first, last] = rows(j, 0);
+    group[static_cast<std::size_t>(j)] = group[static_cast<std::size_t>(j) - 1] + !std::equal(from, to, first, last);
+  }
+  return group;
+}
+
+/// Nested dissection (Karypis and Kumar's METIS) of groups of columns; an order of columns.
+std::vector<int> dissected(const SparsePattern& p, cholmod_common& common) {
+  const std::vector<int> group = groups_of(p);
+  const auto groups = static_cast<std::size_t>(group.back()) + 1;
+  std::vector<int> column_start{0}, row, met(groups, -1), first{0};
+  for (int j = 0; j < p.n; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    const int g = group[k];
+    for (int at = p.column_start[k]; at < p.column_start[k + 1]; ++at) {
+      const int other = group[static_cast<std::size_t>(p.row[static_cast<std::size_t>(at)])];
+      if (std::exchange(met[static_cast<std::size_t>(other)], g) != g) row.push_back(other);
+    }
+    if (j + 1 == p.n || group[k + 1] != g) {
+      column_start.push_back(static_cast<int>(row.size()));
+      first.push_back(j + 1);
+    }
+  }
+  cholmod_sparse graph{};
+  graph.nrow = graph.ncol = groups;
+  graph.nzmax = row.size();
+  graph.p = column_start.data();
+  graph.i = row.data();
+  graph.stype = -1;
+  graph.itype = CHOLMOD_INT;
+  graph.xtype = CHOLMOD_PATTERN;
+  graph.dtype = CHOLMOD_DOUBLE;
+  graph.packed = true;
+  std::vector<int> of_groups(groups), order;
+  if (!cholmod_metis(&graph, nullptr, 0, true, of_groups.data(), &common)) throw std::bad_alloc();
+  for (const int g : of_groups)
+    for (int j = first[static_cast<std::size_t>(g)]; j < first[static_cast<std::size_t>(g) + 1]; ++j)
+      order.push_back(j);
+  return order;
+}
+
+}  // namespace
+
 SparseCholesky::SparseCholesky(const SparsePattern& p) : impl_(std::make_unique<Impl>()) {
   if (p.n == 0) return;  // nothing is free to move; CHOLMOD has no empty factor
   const auto n = static_cast<std::size_t>(p.n);
@@ -42,7 +125,14 @@ SparseCholesky::SparseCholesky(const SparsePattern& p) : impl_(std::make_unique<
   std::copy(p.column_start.begin(), p.column_start.end(), impl_->columns());
   std::copy(p.row.begin(), p.row.end(), impl_->rows());
   std::fill_n(impl_->values(), p.row.size(), 0.0);
-  impl_->L = cholmod_analyze(impl_->A, &impl_->common);
+  if (n < many_columns) {
+    impl_->L = cholmod_analyze(impl_->A, &impl_->common);
+  } else {
+    std::vector<int> order = dissected(p, impl_->common);
+    impl_->common.nmethods = 1;
+    impl_->common.method[0].ordering = CHOLMOD_GIVEN;
+    impl_->L = cholmod_analyze_p(impl_->A, order.data(), nullptr, 0, &impl_->common);
+  }
   if (!impl_->L) throw std::bad_alloc();
 }
 
@@ -63,6 +153,7 @@ double SparseCholesky::factor(const std::vector<double>& values) {
   for (int j = 0; j < n; ++j)
     for (int k = s.columns()[j]; k < s.columns()[j + 1]; ++k)
       s.values()[k] = values[static_cast<std::size_t>(k)] * s.scale(j) * s.scale(s.rows()[k]);
+  const BlasThreads threads(s.A->nrow);
   cholmod_factorize(s.A, s.L, &s.common);
   if (s.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
   if (s.common.status < 0) throw std::logic_error("CHOLMOD refused the matrix");
@@ -74,6 +165,7 @@ MatrixX SparseCholesky::solve(const MatrixX& B) const {
   Impl& s = *impl_;
   if (!s.A) return B;
   const auto rows = static_cast<std::size_t>(B.rows()), columns = static_cast<std::size_t>(B.cols());
+  const BlasThreads threads(s.A->nrow);
   MatrixX scaled = s.scale.asDiagonal() * B;
   cholmod_dense b{rows, columns, rows * columns, rows, scaled.data(), nullptr, CHOLMOD_REAL, CHOLMOD_DOUBLE};
   cholmod_dense* x = cholmod_solve(CHOLMOD_A, s.L, &b, &s.common);

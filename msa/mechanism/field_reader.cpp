@@ -127,62 +127,69 @@ void FieldReader::read(const YamlNode& map, const std::function<void()>& fields)
     fail(map, path_,
          map.kind == Kind::null ? "is empty: a map of fields 'key: value' is wanted"
                                 : "a map of fields 'key: value' is wanted");
-  const Level outer = std::exchange(level_, Level{&map, {}, "", ""});
+  const Level outer = std::exchange(level_, Level{&map, nullptr, {}, "", ""});
   fields();
   for (std::size_t i = 0; i < map.keys.size(); ++i)
     if (std::find(level_.asked.begin(), level_.asked.end(), map.keys[i]) == level_.asked.end())
-      refuse_key(i, level_.asked);
+      refuse_key(i, {level_.asked.begin(), level_.asked.end()});
   for (const std::string& error : {level_.missing, level_.broken})
     if (!error.empty()) throw InputError(error);
   level_ = outer;
 }
 
-const YamlNode* FieldReader::find(const char* key, bool needed, const std::string& sample, const char* about) {
+const YamlNode* FieldReader::child(std::string_view key) const {
+  if (level_.only) return key.empty() ? level_.only : nullptr;
+  return level_.map->child(key);
+}
+
+const YamlNode* FieldReader::find(const char* key, bool needed, LaterText sample, const char* about) {
   level_.asked.emplace_back(key);
-  const YamlNode* node = level_.map->child(key);
-  if (node) note(*node, joined(path_, key));
+  const YamlNode* node = child(key);
+  if (node && node->ours) note(*node, joined(path_, key));
   if (node || !needed || !level_.missing.empty()) return node;
   YamlNode at;
   at.line = level_.map->key_line > 0 ? level_.map->key_line : level_.map->line;
-  level_.missing = message(at, path_, fmt::format("'{}' is missing ({}): write for example '{}'", key, about, sample));
+  level_.missing =
+      message(at, path_, fmt::format("'{}' is missing ({}): write for example '{}'", key, about, sample()));
   return nullptr;
 }
 
-std::string FieldReader::scalar(const YamlNode& node, const std::string& path, const std::string& sample) const {
-  if (node.kind == Kind::null) fail(node, path, fmt::format("has no value: write for example '{}'", sample));
+const std::string& FieldReader::scalar(const YamlNode& node, LaterText path, LaterText sample) const {
+  if (node.kind == Kind::null) fail(node, path(), fmt::format("has no value: write for example '{}'", sample()));
   if (node.kind != Kind::scalar)
-    fail(node, path,
+    fail(node, path(),
          fmt::format("a single value is wanted, not a {}: write for example '{}'",
-                     node.kind == Kind::map ? "map" : "list", sample));
+                     node.kind == Kind::map ? "map" : "list", sample()));
   return node.text;
 }
 
-double FieldReader::number(const YamlNode& node, const std::string& path, const Quantity& q,
-                           const std::string& sample) const {
-  const std::string text = scalar(node, path, sample);
+double FieldReader::number(const YamlNode& node, LaterText path, const Quantity& q, LaterText sample) const {
+  const std::string& text = scalar(node, path, sample);
   double value = 0;
   try {
     value = parse_quantity(text, q.dimension);
   } catch (const InputError& e) {
-    fail(node, path, e.what());
+    fail(node, path(), e.what());
   }
-  if (!q.range.holds(value)) fail(node, path, fmt::format("'{}' must be {}", text, words(q.range, q.dimension)));
+  if (!q.range.holds(value)) fail(node, path(), fmt::format("'{}' must be {}", text, words(q.range, q.dimension)));
   return value;
 }
 
 void FieldReader::quantity(const char* key, double& value, const Quantity& q, const char* about) {
-  const std::string sample = example(key, q.dimension);
+  const auto sample = [&] { return example(key, q.dimension); };
+  const auto path = [&] { return joined(path_, key); };
   if (const YamlNode* node = find(key, !q.otherwise, sample, about))
-    value = number(*node, joined(path_, key), q, sample);
+    value = number(*node, path, q, sample);
   else if (q.otherwise)
     value = *q.otherwise;
 }
 
 void FieldReader::quantity_if_given(const char* key, std::optional<double>& value, const Quantity& q,
                                     const char* about) {
-  const std::string sample = example(key, q.dimension);
+  const auto sample = [&] { return example(key, q.dimension); };
+  const auto path = [&] { return joined(path_, key); };
   value.reset();
-  if (const YamlNode* node = find(key, false, sample, about)) value = number(*node, joined(path_, key), q, sample);
+  if (const YamlNode* node = find(key, false, sample, about)) value = number(*node, path, q, sample);
 }
 
 void FieldReader::integer(const char* key, int& value, int low, int high, const char* about) {
@@ -196,22 +203,23 @@ void FieldReader::integer(const char* key, int& value, int low, int high, const 
 }
 
 void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const char* about) {
-  const std::string unit = example_of(d);
-  const std::string sample = example(key, d == Dimension::none ? "[0, 0, 1]" : fmt::format("[{0}, {0}, {0}]", unit));
+  const auto sample = [&] {
+    return example(key, d == Dimension::none ? "[0, 0, 1]" : fmt::format("[{0}, {0}, {0}]", example_of(d)));
+  };
+  const auto path = [&] { return joined(path_, key); };
   value.setZero();
   const YamlNode* node = find(key, false, sample, about);
   if (!node) return;
-  const std::string path = joined(path_, key);
   if (node->kind != Kind::list || node->children.size() != 3)
-    fail(*node, path, fmt::format("a list of three values is wanted: write for example '{}'", sample));
+    fail(*node, path(), fmt::format("a list of three values is wanted: write for example '{}'", sample()));
   for (int i = 0; i < 3; ++i) {
     const YamlNode& item = node->children[static_cast<std::size_t>(i)];
-    const std::string item_path = joined(path, std::to_string(i));
-    note(item, item_path);
+    const auto item_path = [&] { return joined(path(), std::to_string(i)); };
+    if (item.ours) note(item, item_path());
     value(i) = number(item, item_path, {d, {}, std::nullopt}, sample);
   }
   if (d == Dimension::none && value.isZero(0))
-    fail(*node, path, fmt::format("is no direction: write for example '{}'", sample));
+    fail(*node, path(), fmt::format("is no direction: write for example '{}'", sample()));
 }
 
 void FieldReader::matrix(const char* key, MatrixX& value, Eigen::Index size, Need need, const char* about) {
@@ -243,17 +251,18 @@ void FieldReader::matrix(const char* key, MatrixX& value, Eigen::Index size, Nee
 }
 
 void FieldReader::text(const char* key, std::string& value, Need need, const char* about) {
-  const std::string sample = fmt::format("{}: \"text\"", key);
+  const auto sample = [&] { return fmt::format("{}: \"text\"", key); };
+  const auto path = [&] { return joined(path_, key); };
   value.clear();
   const YamlNode* node = find(key, need == Need::required, sample, about);
   if (!node) return;
-  value = scalar(*node, joined(path_, key), sample);
+  value = scalar(*node, path, sample);
   if (value.empty() && need == Need::required)
-    fail(*node, joined(path_, key), fmt::format("is empty: write for example '{}'", sample));
+    fail(*node, path(), fmt::format("is empty: write for example '{}'", sample()));
 }
 
 void FieldReader::texts(const char* key, std::vector<std::string>& values, Need need, const char* about) {
-  const std::string sample = example(key, "[name, name]");
+  const auto sample = [&] { return example(key, "[name, name]"); };
   values.clear();
   const YamlNode* node = find(key, need == Need::required, sample, about);
   if (!node) return;
@@ -261,11 +270,11 @@ void FieldReader::texts(const char* key, std::vector<std::string>& values, Need 
   if (node->kind != Kind::list) return values.push_back(scalar(*node, path, sample));
   for (std::size_t i = 0; i < node->children.size(); ++i)
     values.push_back(scalar(node->children[i], joined(path, std::to_string(i)), sample));
-  if (values.empty()) fail(*node, path, fmt::format("is empty: write for example '{}'", sample));
+  if (values.empty()) fail(*node, path, fmt::format("is empty: write for example '{}'", sample()));
 }
 
 void FieldReader::word(const char* key, std::string& value, const Words& w, const char* about) {
-  const std::string sample = fmt::format("{}: {}", key, w.allowed.empty() ? "name" : w.allowed.front());
+  const auto sample = [&] { return fmt::format("{}: {}", key, w.allowed.empty() ? "name" : w.allowed.front()); };
   const YamlNode* node = find(key, !w.otherwise, sample, about);
   if (!node && w.decides) {  // the other keys cannot be judged without it
     refuse_misspelt({key});
@@ -301,11 +310,13 @@ void FieldReader::element(const YamlNode& node, const std::string& path, Element
   note(node, path);
   const std::string outer = std::exchange(path_, path);
   if (all.plain()) {
-    YamlNode map;
+    YamlNode map;  // of the one value under the key ""
     map.kind = Kind::map;
     map.line = map.key_line = node.key_line;
-    map.add("", node);
-    read(map, [&] { all.describe_element(*this, i); });
+    read(map, [&] {
+      level_.only = &node;
+      all.describe_element(*this, i);
+    });
   } else {
     read(node, [&] { all.describe_element(*this, i); });
   }
@@ -354,7 +365,7 @@ void FieldReader::list(const char* key, Elements& all, const char* about) {
 }
 
 void FieldReader::one_or_list(const char* key, Elements& all, const char* about) {
-  const YamlNode* node = level_.map->child(key);
+  const YamlNode* node = child(key);
   if (!node || node->kind == Kind::list) return list(key, all, about);
   level_.asked.emplace_back(key);
   all.add("");
@@ -381,7 +392,7 @@ void FieldReader::require(bool holds, const char* key, const std::string& what) 
   if (holds || !level_.broken.empty()) return;
   YamlNode at;  // the field, or the key of the map that lacks it
   at.line = level_.map->key_line > 0 ? level_.map->key_line : level_.map->line;
-  const YamlNode* node = level_.map->child(key);
+  const YamlNode* node = child(key);
   level_.broken = message(node ? *node : at, joined(path_, key), what);
 }
 

@@ -4,11 +4,31 @@
 
 #include <set>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "msa/mechanism/fields.h"
 #include "msa/mechanism/yaml_tree.h"
 
 namespace deflect {
+
+/// A text that is made when an error needs it: refers to a callable that outlives it. Or a text that is there.
+class LaterText {
+ public:
+  template <class Make, class = std::enable_if_t<!std::is_same_v<std::decay_t<Make>, LaterText>>>
+  LaterText(const Make& make)  // NOLINT: for arguments
+      : from_(&make), make_([](const void* from) -> std::string {
+          if constexpr (std::is_invocable_v<const Make&>)
+            return (*static_cast<const Make*>(from))();
+          else
+            return *static_cast<const Make*>(from);
+        }) {}
+  std::string operator()() const { return make_(from_); }
+
+ private:
+  const void* from_;
+  std::string (*make_)(const void*);
+};
 
 class FieldReader final : public FieldVisitor {
  public:
@@ -46,7 +66,8 @@ class FieldReader final : public FieldVisitor {
   /// The map whose fields are being asked for.
   struct Level {
     const YamlNode* map = nullptr;
-    std::vector<std::string> asked;
+    const YamlNode* only = nullptr;  ///< the one value of an entry that is no map, under the key ""
+    std::vector<const char*> asked;
     std::string missing, broken;  ///< complete messages, the first of each kind
   };
 
@@ -54,9 +75,10 @@ class FieldReader final : public FieldVisitor {
   [[noreturn]] void fail(const YamlNode&, const std::string& path, const std::string& what) const;
   [[noreturn]] void refuse_key(std::size_t i, const std::vector<std::string>& known) const;
   void refuse_misspelt(const std::vector<std::string>& keys) const;
-  const YamlNode* find(const char* key, bool needed, const std::string& example, const char* about);
-  std::string scalar(const YamlNode&, const std::string& path, const std::string& example) const;
-  double number(const YamlNode&, const std::string& path, const Quantity&, const std::string& example) const;
+  const YamlNode* child(std::string_view key) const;
+  const YamlNode* find(const char* key, bool needed, LaterText example, const char* about);
+  const std::string& scalar(const YamlNode&, LaterText path, LaterText example) const;
+  double number(const YamlNode&, LaterText path, const Quantity&, LaterText example) const;
   void elements(const YamlNode& list, Elements&);
   void element(const YamlNode&, const std::string& path, Elements&, std::size_t);
   void note(const YamlNode&, const std::string& path);

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "msa/base/error.h"
+#include "msa/mechanism/plain_yaml.h"
 #include "msa/mechanism/yaml_tree.h"
 
 namespace deflect {
@@ -162,7 +163,7 @@ void check_characters(std::string_view text, const std::string& origin) {
     const auto c = static_cast<unsigned char>(text[i]);
     if ((c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7f)
       throw InputError(fmt::format("{}:{}: control character 0x{:02x}: the file must be text", origin, line, c));
-    const std::size_t n = utf8_length(text.substr(i));
+    const std::size_t n = c < 0x80 ? 1 : utf8_length(text.substr(i));
     if (n == 0)
       throw InputError(fmt::format("{}:{}: byte 0x{:02x} is not UTF-8: save the file as UTF-8", origin, line, c));
     if (c == '\n') ++line;
@@ -195,6 +196,11 @@ void check_syntax(const std::string& text, const std::string& end, const std::st
 
 YamlNode parse_yaml(std::string_view text, const std::string& origin) {
   check_characters(text, origin);
+  if (std::optional<YamlNode> plain = parse_plain_yaml(text)) return std::move(*plain);
+  return parse_any_yaml(text, origin);
+}
+
+YamlNode parse_any_yaml(std::string_view text, const std::string& origin) {
   check_syntax(std::string(text), "", origin);
   // yaml-cpp closes a quotation by itself at the end of the text, but not at the end of a document.
   check_syntax(std::string(text), "\n...\n", origin);

@@ -74,6 +74,8 @@ TEST(Includes, ThirdPartyLibrariesKeepTheirPlace) {
   EXPECT_EQ(judge("msa/frame/sparse.cpp", "<cholmod.h>"), "");
   EXPECT_NE(judge("msa/frame/sparse.h", "<cholmod.h>"), "");
   EXPECT_NE(judge("analytic/x.cpp", "<cholmod.h>"), "");
+  EXPECT_EQ(judge("tests/benchmark/frames/bare_cholmod.cpp", "<cholmod.h>"), "");
+  EXPECT_NE(judge("tests/benchmark/frames/x.cpp", "<cholmod.h>"), "");
   EXPECT_NE(judge("analytic/x.cpp", "<Eigen/CholmodSupport>"), "");
   EXPECT_EQ(judge("msa/frame/rank.cpp", "<SuiteSparseQR.hpp>"), "");
   EXPECT_NE(judge("tests/frame/x.cpp", "<SuiteSparseQR.hpp>"), "");

@@ -46,6 +46,31 @@ std::string written(const Folder& folder, const std::string& text) {
   return "'" + path + "'";
 }
 
+TEST(FrameProgram, SaysWhatSolvedTheEquations) {
+  const Folder folder;
+  const std::string frame = written(folder, file), to = " --json '" + (folder / "r.json").string() + "'";
+  const auto direct = deflect("frame " + frame + to);
+  ASSERT_EQ(direct.code, 0) << direct.out;
+  EXPECT_NE(direct.out.find("solver: direct (18 freedoms, fewer than 20000)\n"), std::string::npos) << direct.out;
+  json solver = json::parse(contents(folder / "r.json"))["solver"];
+  EXPECT_EQ(solver["name"], "direct");
+  EXPECT_EQ(solver["why"], "18 freedoms, fewer than 20000");
+  EXPECT_FALSE(solver.contains("error_bound"));
+
+  const auto iterative = deflect("frame " + frame + to + " --solver iterative");
+  ASSERT_EQ(iterative.code, 0) << iterative.out;
+  EXPECT_NE(iterative.out.find("solver: iterative (as asked for), "), std::string::npos) << iterative.out;
+  solver = json::parse(contents(folder / "r.json"))["solver"];
+  EXPECT_EQ(solver["name"], "iterative");
+  EXPECT_EQ(solver["freedoms"], 11);
+  EXPECT_GT(solver["iterations"], 0);
+  EXPECT_LE(solver["error_bound"], 1e-8);
+
+  const auto wrong = deflect("frame " + frame + " --solver fast");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.out.find("--solver: 'fast' is none of auto, direct, iterative"), std::string::npos) << wrong.out;
+}
+
 TEST(FrameProgram, WritesJsonTablesAndDeflectedShapes) {
   const Folder folder;
   const auto run = deflect("frame " + written(folder, file) + " --json '" + (folder / "r.json").string() + "' --out '" +

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Arguments {
-  std::string file, element_size, json, out;
+  std::string file, element_size, solver = "auto", json, out;
 };
 
 /// A path, or the name of a published case that comes with the program.
@@ -50,6 +50,17 @@ frame::FrameDivision divide_members(const frame::FrameDescription& f, const std:
   return gmsh::subdivide(lengths, size);
 }
 
+frame::Equations solver_of(const std::string& name, const frame::FrameDescription& f) {
+  const std::vector<std::string> names(std::begin(frame::equations_names), std::end(frame::equations_names));
+  const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+  if (at == std::ssize(names))
+    throw InputError(fmt::format("--solver: '{}' is none of {}", name, fmt::join(names, ", ")));
+  const auto solver = static_cast<frame::Equations>(at);
+  if (solver == frame::Equations::iterative && f.geometry != Geometry::linear)
+    throw InputError("--solver iterative goes with 'geometry: linear'");
+  return solver;
+}
+
 void write_results(const fs::path& folder, const frame::FrameDescription& f, const frame::FrameResult& r) {
   const FrameTables tables = frame_tables(f, r);
   write_file(folder / "displacements.csv", tables.displacements);
@@ -67,8 +78,9 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
 void run(const Arguments& a) {
   const frame::FrameDescription f = frame::read_frame(frame_file(a.file));
   tell("frame {}: {}, {} nodes, {} members", f.name, frame_file(a.file).string(), f.nodes.size(), f.members.size());
-  const frame::FrameResult r = timed("frame: sparse Cholesky, every load case",
-                                     [&] { return frame::analyse(f, {divide_members(f, a.element_size)}); });
+  const frame::FrameResult r = timed("frame: every load case", [&] {
+    return frame::analyse(f, {divide_members(f, a.element_size), {solver_of(a.solver, f)}});
+  });
   if (const std::string failure = frame::failed_check(r); !failure.empty())
     throw NumericalError(fmt::format("{}: {}", f.name, failure));
   if (!a.out.empty()) write_results(a.out, f, r);
@@ -91,6 +103,10 @@ Command frame_command() {
            {"--element-size", "LENGTH",
             "divide members, with unit (default: as the file says, or one element, exact at its nodes if linear)",
             &a->element_size},
+           {"--solver", "NAME",
+            "auto (default: by size and conditioning), direct (factorisation) or iterative (conjugate gradients; falls "
+            "back to direct where it cannot vouch for its answer)",
+            &a->solver},
            {"--json", "FILE", "write the result", &a->json},
            {"--out", "DIR", "write displacements, reactions, members, shares (.csv) and each case as .msh and .vtu",
             &a->out}},

@@ -100,6 +100,13 @@ std::string shares(const frame::CaseResult& c) {
   return fmt::format("strain energy {:.6g} Nmm\n", 1e3 * c.energy) + aligned(rows);
 }
 
+std::string equations(const frame::EquationSummary& e) {
+  std::string text = fmt::format("solver: {} ({})", e.solver, e.why);
+  if (e.error_bound)
+    text += fmt::format(", {} iterations, error bound {:.1e} of the energy norm", e.iterations, *e.error_bound);
+  return text + "\n";
+}
+
 std::string path(const frame::PathSummary& p) {
   std::string text = fmt::format("{} step{}, {} iterations\n", p.steps, p.steps == 1 ? "" : "s", p.iterations);
   if (!p.message.empty()) text += fmt::format("at {:.4g} of the load; {}\n", p.load_factor, p.message);
@@ -113,6 +120,7 @@ std::string frame_report(const frame::FrameDescription& f, const frame::FrameRes
                                  f.members.size(), result.cases.size(), result.cases.size() == 1 ? "" : "s");
   const bool linear = result.geometry == Geometry::linear;
   if (!linear) text += fmt::format("geometry: {}\n", geometry_names[static_cast<std::size_t>(result.geometry)]);
+  if (linear) text += equations(result.equations);
   for (const std::string& note : result.notes) text += "note: " + note + "\n";
   const double size = 1e3 * frame::characteristic_length(result.structure.model);
   for (const frame::CaseResult& c : result.cases) {

@@ -77,6 +77,18 @@ Json json_path(const frame::PathSummary& p, const std::string& what) {
   return json;
 }
 
+Json json_equations(const frame::EquationSummary& e) {
+  Json json;
+  json["name"] = e.solver;
+  json["why"] = e.why;
+  json["freedoms"] = e.freedoms;
+  if (e.error_bound) {
+    json["iterations"] = e.iterations;
+    json["error_bound"] = json_number(*e.error_bound, "error bound");
+  }
+  return json;
+}
+
 Json json_case(const FrameDescription& f, const CaseResult& c, bool linear) {
   const std::string what = "case " + c.name;
   const auto row = [&](const char* kind, const std::string& name, const Vector6& values, const Names& names,
@@ -153,6 +165,7 @@ std::string frame_json(const FrameDescription& f, const FrameResult& result) {
   const bool linear = result.geometry == Geometry::linear;
   for (const CaseResult& c : result.cases) json["cases"][c.name] = json_case(f, c, linear);
   if (linear) json["reciprocity"] = json_number(result.reciprocity, "reciprocity");
+  if (linear) json["solver"] = json_equations(result.equations);
   json["notes"] = result.notes;
   return json_text(json);
 }

@@ -11,9 +11,10 @@ namespace deflect {
 /// {"frame", "geometry", "cases": {name: {"displacements": [{"node", "ux_mm", …, "rz_rad"}], "reactions": [{"node",
 /// "fx_N", …} held freedoms only], "springs": [{"spring", "fx_N", …}], "constraints": [{"constraint", "force_N" or
 /// "moment_Nmm"}], "members": [{"member", "start": {"N_N", …}, "end": {the same}, "largest_My_Nmm", "at_mm", …,
-/// "energy_Nmm"}], "energy_Nmm", "shares": [{"part", "share"}], "checks": {…}}}, "reciprocity", "notes"}; where the
-/// geometry is not linear, cases have a "path" {"converged", "stable", "load_factor", "steps", "iterations", "message"}
-/// and there is neither reciprocity nor a check of energy. Throws NumericalError naming a number that is not finite.
+/// "energy_Nmm"}], "energy_Nmm", "shares": [{"part", "share"}], "checks": {…}}}, "reciprocity", "solver": {"name",
+/// "why", "freedoms", and where it is iterative "iterations", "error_bound"}, "notes"}; where the geometry is not
+/// linear, cases have a "path" {"converged", "stable", "load_factor", "steps", "iterations", "message"} and there is
+/// neither reciprocity nor a check of energy nor a solver. Throws NumericalError naming a number that is not finite.
 std::string frame_json(const frame::FrameDescription&, const frame::FrameResult&);
 
 /// One row per case and node, support or spring, member, energy group. Cells of free freedoms are empty.

@@ -1,0 +1,77 @@
+#include "msa/frame/standing.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numeric>
+
+#include "msa/frame/elimination.h"
+
+namespace deflect::frame {
+namespace {
+
+constexpr double held = 1e-10;  // of a body's largest hold, squared: any less is no hold
+
+bool rigidities_positive(const BeamRigidity& r) { return std::min({r.EA, r.EIy, r.EIz, r.GJ, r.GAs_y, r.GAs_z}) > 0; }
+
+/// By node, the first node of its body.
+std::vector<int> bodies_of(const Model& m) {
+  std::vector<int> parent(m.nodes.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&parent](int i) {
+    while (parent[static_cast<std::size_t>(i)] != i) {
+      int& up = parent[static_cast<std::size_t>(i)];
+      i = up = parent[static_cast<std::size_t>(up)];
+    }
+    return i;
+  };
+  const auto join = [&](int a, int b) {
+    const int low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
+    parent[static_cast<std::size_t>(high)] = low;
+  };
+  for (const Beam& beam : m.beams)
+    if (rigidities_positive(beam.rigidity)) join(beam.a, beam.b);
+  for (const auto& [a, b] : m.welds) join(a, b);
+  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root(static_cast<int>(i));
+  return parent;
+}
+
+}  // namespace
+
+std::string not_proved_standing(const Model& m) {
+  const std::vector<int> body = bodies_of(m);
+  const double length = characteristic_length(m);
+  const auto nodal = static_cast<int>(6 * m.nodes.size());
+  std::vector<Matrix6> hold(m.nodes.size(), Matrix6::Zero());  // by body, Σ row · rowᵀ over its six numbers
+  for (const Constraint& c : m.constraints) {
+    int only = -1;
+    Vector6 row = Vector6::Zero();
+    for (const Term& t : c.form) {
+      const auto node = static_cast<std::size_t>(t.dof / 6);
+      if (t.dof >= nodal || (only >= 0 && body[node] != only)) {
+        only = -1;
+        break;
+      }
+      only = body[node];
+      const Vector3 arm = (m.nodes[node].position - m.nodes[static_cast<std::size_t>(only)].position) / length;
+      const Vector3 axis = Vector3::Unit(t.dof % 3);
+      if (t.dof % 6 < 3) {  // u = v + w × r, rotations times the structure's size
+        row.head<3>() += t.coefficient * axis;
+        row.tail<3>() += t.coefficient * arm.cross(axis);
+      } else {
+        row.tail<3>() += t.coefficient / length * axis;
+      }
+    }
+    if (only >= 0 && !row.isZero(0)) hold[static_cast<std::size_t>(only)] += row * row.transpose() / row.squaredNorm();
+  }
+  for (std::size_t i = 0; i < m.nodes.size(); ++i) {
+    if (body[i] != static_cast<int>(i)) continue;
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(hold[i], Eigen::EigenvaluesOnly);
+    if (!(eigen.eigenvalues()(0) > held * std::max(1.0, eigen.eigenvalues()(5))))
+      return fmt::format("the body of node '{}' is not held by supports of its own", m.nodes[i].name);
+  }
+  return "";
+}
+
+}  // namespace deflect::frame

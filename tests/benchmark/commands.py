@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Whole commands, each run several times: median wall and processor time, seconds, and peak memory, MB.
+
+  tests/benchmark/commands.py --program build/deflect [--repeats 5] [--json FILE]
+"""
+import argparse
+import json
+import os
+import pathlib
+import platform
+import statistics
+import subprocess
+import tempfile
+import time
+
+DEVICE = "haptic-6psu-ideal-joints"
+
+
+def cases(folder):
+    """(name, arguments, runs before it that are not timed)"""
+    data = str(folder / "hidden.csv")
+    hidden = ["simulate", DEVICE, "--with", "guide_root_compliance,stiffness_Nmm_per_rad=5e6", "--seed", "7", "-o", data]
+    page = str(folder / "page.html")
+    return [
+        ("solve", ["solve", "haptic-6psu", "--pose", "25,25,198.9", "--load", "50,0,0"], []),
+        ("validate", ["validate", "haptic-6psu"], []),
+        ("map, 9261 poses, both theories, one thread", ["map", "haptic-6psu", "--n", "21,21,21", "--threads", "1"], []),
+        ("map, 9261 poses, both theories, two threads", ["map", "haptic-6psu", "--n", "21,21,21", "--threads", "2"], []),
+        ("simulate, 720 readings", hidden, []),
+        ("compare, 720 readings", ["compare", DEVICE, data], [hidden]),
+        ("diagnose, 720 readings, whole catalogue", ["diagnose", DEVICE, data], [hidden]),
+        ("diagnose with its page", ["diagnose", DEVICE, data, "--report", page], [hidden]),
+    ]
+
+
+def run(words):
+    """Wall and processor time in s, peak memory in MB."""
+    begun = time.perf_counter()
+    child = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    errors = child.stderr.read()
+    _, status, used = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode:
+        raise SystemExit(f"{' '.join(words)} ended with {child.returncode}: {errors.decode()}")
+    return time.perf_counter() - begun, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--json")
+    asked = parser.parse_args()
+    results = []
+    print(f"{'command':46} {'wall s':>8} {'cpu s':>8} {'MB':>7}")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, arguments, before in cases(pathlib.Path(folder)):
+            for words in before:
+                run([asked.program] + words)
+            runs = [run([asked.program] + arguments) for _ in range(asked.repeats)]
+            wall, cpu, memory = (statistics.median(column) for column in zip(*runs))
+            results.append({"command": name, "arguments": arguments, "wall_s": wall, "cpu_s": cpu, "peak_MB": memory})
+            print(f"{name:46} {wall:8.3f} {cpu:8.3f} {memory:7.0f}", flush=True)
+    if asked.json:
+        machine = {"system": platform.platform(), "processors": os.cpu_count(), "processor": processor()}
+        pathlib.Path(asked.json).write_text(
+            json.dumps({"machine": machine, "repeats": asked.repeats, "results": results}, indent=1) + "\n")
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+if __name__ == "__main__":
+    main()
