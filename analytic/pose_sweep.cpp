@@ -22,37 +22,42 @@ bool rigid(const PlacedJoint& j) {
 /// The wrenches that do no work on the twists, as many columns as come out: Gauss and Jordan with full pivoting on the
 /// rows twistᵀ, rotations weighed by the length.
 template <class Columns>
-void carried_by(std::array<Vector6, most_passive>& rows, std::size_t count, double length, Columns& N) {
-  std::array<Eigen::Index, 6> column = {0, 1, 2, 3, 4, 5};
-  Eigen::Index rank = 0;
+void carried_by(const std::array<Vector6, most_passive>& twists, std::size_t count, double length, Columns& N) {
+  double row[most_passive][6];
+  std::array<Eigen::Index, 6> freedom = {0, 1, 2, 3, 4, 5};  // by column
   double largest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    rows[i].tail<3>() *= length;
-    largest = std::max(largest, rows[i].cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < count; ++i)
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      row[i][k] = twists[i](k) * (k < 3 ? 1 : length);
+      largest = std::max(largest, std::abs(row[i][k]));
+    }
+  std::size_t rank = 0;
+  for (; rank < std::min<std::size_t>(6, count); ++rank) {
+    std::size_t pivot_row = rank, pivot = rank;
+    double most = 0;
+    for (std::size_t i = rank; i < count; ++i)
+      for (std::size_t k = rank; k < 6; ++k)
+        if (const double size = std::abs(row[i][k]); size > most) most = size, pivot_row = i, pivot = k;
+    if (!(most > dependent * largest)) break;
+    if (pivot_row != rank) std::swap(row[rank], row[pivot_row]);
+    if (pivot != rank) {
+      for (std::size_t i = 0; i < count; ++i) std::swap(row[i][rank], row[i][pivot]);
+      std::swap(freedom[rank], freedom[pivot]);
+    }
+    const double own = 1 / row[rank][rank];
+    for (std::size_t k = rank + 1; k < 6; ++k) row[rank][k] *= own;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i == rank) continue;
+      const double factor = row[i][rank];
+      for (std::size_t k = rank + 1; k < 6; ++k) row[i][k] -= factor * row[rank][k];
+    }
   }
-  for (; rank < 6 && static_cast<std::size_t>(rank) < count; ++rank) {
-    std::size_t pivot_row = 0;
-    Eigen::Index pivot = 0;
-    double most = dependent * largest;
-    for (std::size_t i = static_cast<std::size_t>(rank); i < count; ++i)
-      for (Eigen::Index k = rank; k < 6; ++k)
-        if (const double size = std::abs(rows[i](column[static_cast<std::size_t>(k)])); size > most)
-          most = size, pivot_row = i, pivot = k + 1;
-    if (pivot == 0) break;
-    std::swap(rows[static_cast<std::size_t>(rank)], rows[pivot_row]);
-    std::swap(column[static_cast<std::size_t>(rank)], column[static_cast<std::size_t>(pivot - 1)]);
-    Vector6& own = rows[static_cast<std::size_t>(rank)];
-    own /= own(column[static_cast<std::size_t>(rank)]);
-    for (std::size_t i = 0; i < count; ++i)
-      if (i != static_cast<std::size_t>(rank)) rows[i] -= rows[i](column[static_cast<std::size_t>(rank)]) * own;
-  }
-  N.setZero(6, 6 - rank);
-  for (Eigen::Index k = rank; k < 6; ++k) {
-    const Eigen::Index free = column[static_cast<std::size_t>(k)];
-    N(free, k - rank) = 1;
-    for (Eigen::Index r = 0; r < rank; ++r)
-      N(column[static_cast<std::size_t>(r)], k - rank) = -rows[static_cast<std::size_t>(r)](free);
-    N.col(k - rank).normalize();
+  N.setZero(6, static_cast<Eigen::Index>(6 - rank));
+  for (std::size_t k = rank; k < 6; ++k) {
+    auto column = N.col(static_cast<Eigen::Index>(k - rank));
+    column(freedom[k]) = 1;
+    for (std::size_t r = 0; r < rank; ++r) column(freedom[r]) = -row[r][k];
+    column.normalize();
   }
   N.template bottomRows<3>() *= length;
 }

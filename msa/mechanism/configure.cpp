@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "msa/base/error.h"
@@ -14,14 +15,14 @@ constexpr double standard_gravity = 9.80665;  // m/s², CGPM 1901
 
 /// Distance of the farthest joint or member's end from p.
 double extent(const std::vector<PlacedLeg>& legs, const Vector3& p) {
-  double size = 0;
+  double square = 0;
   for_each_part(legs, [&](const auto& part) {
     if constexpr (requires { part.p_W; })
-      size = std::max(size, (part.p_W - p).norm());
+      square = std::max(square, (part.p_W - p).squaredNorm());
     else
-      size = std::max({size, (part.p_W_start - p).norm(), (part.p_W_end - p).norm()});
+      square = std::max({square, (part.p_W_start - p).squaredNorm(), (part.p_W_end - p).squaredNorm()});
   });
-  return size;
+  return std::sqrt(square);
 }
 
 /// How far a rigid body moves at T when its frame at p is displaced as the placement says, in axes R.
