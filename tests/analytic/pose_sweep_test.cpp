@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic/model.h"
-#include "tests/analytic/allocation_count.h"
+#include "tests/support/allocation_count.h"
 #include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "msa/frame/msa.h"
+#include "tests/support/allocation_count.h"
 #include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
 
@@ -69,6 +70,19 @@ TEST(MsaSweep, JointsAndSpringsAnywhere) {
   std::mt19937 random(5);
   for (int i = 0; i < 5; ++i) expect_the_model(sweep, c, {}, test::random_wrench(random), 1e-9);
   EXPECT_GT(sweep.iterations(), 1);
+}
+
+TEST(MsaSweep, AllocatesNothingFromPoseToPose) {
+  const Mechanism m = test::device("haptic-6psu");
+  const std::vector<Pose> poses = test::random_poses(m, 5);
+  Posing posing(m);
+  const Configuration& first = posing.at(poses[0]);
+  MsaSweep sweep(first, equal_division(first, 4));
+  const Vector6 F = 50 * Vector6::Unit(1);
+  sweep.solve(posing.at(poses[1]), F);
+  const std::size_t before = test::allocation_count();
+  for (const Pose& pose : poses) ASSERT_TRUE(sweep.solve(posing.at(pose), F));
+  EXPECT_EQ(test::allocation_count(), before);
 }
 
 TEST(MsaSweep, LeavesToTheModelWhatItDoesNotKnow) {

@@ -1,5 +1,5 @@
 // malloc of the C library, counted: operator new and Eigen both end there.
-#include "tests/analytic/allocation_count.h"
+#include "tests/support/allocation_count.h"
 
 #include <atomic>
 
