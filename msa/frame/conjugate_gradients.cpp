@@ -88,6 +88,7 @@ GradientSummary conjugate_gradients(const IncompleteCholesky& M, const VectorX& 
     s.size = std::sqrt(energy);
     s.error = 2 * s.residual / std::sqrt(s.smallest) / relative_to;
     s.converged = s.error <= o.error;
+    if (o.progress) o.progress(std::clamp(std::log(s.error) / std::log(o.error), 0.0, 1.0));
     if (!std::isfinite(s.error)) break;
   }
   return s;

@@ -8,6 +8,8 @@
 // Σ α ‖r̂‖² (Hestenes and Stiefel, 1952, theorem 6:1).
 #pragma once
 
+#include <functional>
+
 #include "msa/frame/incomplete_cholesky.h"
 
 namespace deflect::frame {
@@ -18,6 +20,8 @@ struct GradientOptions {
   double smallest = 0;   ///< eigenvalue where it is known better, from another right-hand side; 0: not
   int most_iterations = 1500;
   int threads = 0;  ///< 0: as many as there are; more than two are not used
+  /// Told how far it has come, 0 … 1, by the digits gained.
+  std::function<void(double)> progress = {};
 };
 
 struct GradientSummary {

@@ -128,6 +128,10 @@ class Iterative {
     GradientOptions options;
     options.error = options_.error / 2;
     options.threads = options_.threads;
+    if (options_.progress)
+      options.progress = [&](double share) {
+        options_.progress((static_cast<double>(column) + share) / static_cast<double>(s.u.cols()));
+      };
     double bound = 0, rounding = 0;
     for (int pass = 0; pass < 2; ++pass) {
       const GradientSummary g = conjugate_gradients(factor, r, options);
@@ -137,7 +141,7 @@ class Iterative {
       if (!g.converged) return fmt::format("an error of {:.1e} after {} iterations", g.error, g.iterations);
       q += factor.motion_outside(g.x);
       u = e.expand(q, values);
-      if (pass == 0) options.size = g.size, options.smallest = g.smallest;
+      if (pass == 0) options.size = g.size, options.smallest = g.smallest, options.progress = {};
       if (pass == 1) {  // of the correction: what is left of it, and the last places that it rounded
         bound = g.error + rounding + energy_norm(last_places(u), tangents) / options.size;
         break;

@@ -12,6 +12,7 @@
 // nodes (narrow structures are factorised at little cost) and up to four load cases.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "msa/frame/solver.h"
@@ -25,6 +26,8 @@ struct EquationOptions {
   Equations solver = Equations::automatic;
   double error = 1e-10;  ///< of the iterative way: what the bound below must reach, rounding aside
   int threads = 0;       ///< 0: as many as the machine has. Results are the same bits for any number
+  /// Told how far the iterative way has come, 0 … 1.
+  std::function<void(double)> progress = {};
 };
 
 struct EquationSummary {

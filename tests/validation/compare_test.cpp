@@ -115,6 +115,21 @@ TEST(Compare, FindsNothingWhereNothingIsMissing) {
   EXPECT_LE(alarms, 1);  // chance: below one in 10⁴ each
 }
 
+TEST(Compare, TellsHowFarItHasCome) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const Measurements data = made(m, "paper", [](int, double, const Leg&) { return 0.0; });
+  double last = 0;
+  ComparisonOptions o;
+  o.threads = 1;
+  o.progress = [&](double share) {
+    EXPECT_GE(share, last);
+    EXPECT_LE(share, 1);
+    last = share;
+  };
+  compare(m, data, o);
+  EXPECT_GE(last, 0.9);
+}
+
 TEST(Compare, SaysWhatTheDeformedShapeExplains) {
   const Comparison c = compared(made(ideal(), "rich", nothing));
   ASSERT_TRUE(c.deformed_shape_fit.has_value());

@@ -98,7 +98,7 @@ TEST_F(DiagnoseProgram, IsSilentAboutItsProgressInAPipe) {
   const test::Run run = diagnose();
   EXPECT_EQ(run.code, 0);
   EXPECT_EQ(run.out.find('\r'), std::string::npos);
-  EXPECT_EQ(run.out.find("percent"), std::string::npos);
+  EXPECT_EQ(run.out.find(" s left"), std::string::npos);
 }
 
 }  // namespace

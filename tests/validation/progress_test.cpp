@@ -39,6 +39,14 @@ TEST(Progress, SaysHowFarAndHowLong) {
   EXPECT_TRUE(line.out.str().ends_with("\r\x1b[K")) << "the line is wiped away";
 }
 
+TEST(Progress, PiecesWithoutANameAreNotCountedOut) {
+  Line line;
+  Progress p(100, "", &line.out, line.clock);
+  line.now += 2;
+  p.update(50);
+  EXPECT_TRUE(line.out.str().ends_with("]  50 %  2 s left")) << line.out.str();
+}
+
 TEST(Progress, DrawsAtMostTenTimesASecondAndNeverBackwards) {
   Line line;
   Progress p(1000, "poses", &line.out, line.clock);

@@ -31,7 +31,11 @@ void run(const Arguments& a) {
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   o.threads = parse_threads(a.threads);
   const Comparison c =
-      timed("compare: closed form at every reading, tolerances, patterns", [&] { return compare(m, data, o); });
+      timed_with_progress("compare: closed form at every reading, tolerances, patterns", [&](const auto& told) {
+        ComparisonOptions shown = o;
+        shown.progress = told;
+        return compare(m, data, shown);
+      });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
     draw(compare_figures(c, style), folder);

@@ -8,7 +8,6 @@
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/report/diagnosis_results.h"
-#include "validation/report/progress.h"
 
 namespace deflect::cli {
 namespace {
@@ -29,13 +28,11 @@ void run(const Arguments& a) {
   o.comparison.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.comparison.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   o.threads = o.comparison.threads = parse_threads(a.threads);
-  Diagnosis d;
-  {
-    const Step step("diagnose: every effect fitted and weighed");
-    Progress progress(100, "percent", progress_stream());
-    o.progress = [&progress](double share) { progress.update(static_cast<std::size_t>(100 * share)); };
-    d = diagnose(m, data, effects, o);
-  }
+  const Diagnosis d = timed_with_progress("diagnose: every effect fitted and weighed", [&](const auto& told) {
+    DiagnosisOptions shown = o;
+    shown.progress = told;
+    return diagnose(m, data, effects, shown);
+  });
   for (const PlacedEffect& found : d.missing) tell("found: {}", name_of(found));
   if (!a.json.empty()) write_file(a.json, diagnosis_json(d));
   fmt::print("{}", diagnosis_report(d, m.name, data.origin));

@@ -30,9 +30,17 @@ void run(const Arguments& a) {
   o.threads = parse_threads(a.threads);
   std::vector<Mechanism> devices;
   for (const std::string& name : a.devices) devices.push_back(read_device(name));
-  std::vector<Comparison> all;
-  for (const Mechanism& m : devices)
-    all.push_back(timed("compare with " + m.name, [&] { return compare(m, data, o); }));
+  const std::vector<Comparison> all = timed_with_progress("compare with each", [&](const auto& told) {
+    std::vector<Comparison> out;
+    const auto versions = static_cast<double>(devices.size());
+    for (const Mechanism& m : devices) {
+      const auto before = static_cast<double>(out.size());
+      ComparisonOptions shown = o;
+      shown.progress = part_of(told, before / versions, (before + 1) / versions);
+      out.push_back(timed("compare with " + m.name, [&] { return compare(m, data, shown); }));
+    }
+    return out;
+  });
   const History h = timed("placebos", [&] { return history(all); });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {

@@ -134,7 +134,10 @@ void run(const Arguments& a) {
   o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));
   tell("campaign {}: {} readings; {} elements a member, geometry {}", a.campaign, plan.readings.size(), a.elements,
        a.geometry);
-  const Measurements data = timed("simulate: MSA at every reading", [&] { return simulate(m, std::move(plan), o); });
+  const Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
+    o.progress = told;
+    return simulate(m, std::move(plan), o);
+  });
   write_measurements(a.out, data);
   fmt::print("{}: {} readings at {} poses of {}{}, seed {}\n", a.out, data.readings.size(), data.poses.size(), m.name,
              hidden.empty() ? ", nothing hidden" : " with " + hidden, o.seed);

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "validation/report/progress.h"
+
 namespace deflect::cli {
 
 enum class Talk { quiet, usual, verbose };
@@ -45,6 +47,14 @@ template <class Work>
 auto timed(std::string what, const Work& work) {
   const Step step(std::move(what));
   return work();
+}
+
+/// The same for work that tells how far it has come: shown on progress_stream() in percent, with the time left.
+template <class Work>
+auto timed_with_progress(std::string what, const Work& work) {
+  const Step step(std::move(what));
+  Progress progress(100, "", progress_stream());
+  return work([&progress](double share) { progress.update(static_cast<std::size_t>(100 * share)); });
 }
 
 }  // namespace deflect::cli

@@ -98,7 +98,7 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   c.data = data.origin;
   c.readings = data.readings.size();
   c.poses = data.poses.size();
-  c.study = residual_study(m, data, o.threads);
+  c.study = residual_study(m, data, o.threads, part_of(o.progress, 0, 0.5));
   const ResidualStudy& s = c.study;
   c.numbers = s.values.size();
   c.pure_error = rotations_alone(s.values) ? pure_error(data).th : pure_error(data).u;
@@ -108,7 +108,7 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   add_errors(c);
   c.looks_like = what_data_look_like(s);
 
-  c.tolerances = tolerance_model(m, s.machines, data, s.values, o.threads);
+  c.tolerances = tolerance_model(m, s.machines, data, s.values, o.threads, part_of(o.progress, 0.5, 0.95));
   const std::vector<Pattern> patterns = patterns_of(s);
   std::vector<MatrixX> columns;
   for (const Pattern& p : patterns) columns.push_back(rows_of(s.values, p.by_reading));

@@ -85,6 +85,7 @@ struct Comparison {
 struct ComparisonOptions {
   std::optional<double> sigma_u, sigma_th;  ///< m, rad: where the file has none
   int threads = 0;
+  Told progress = {};
 };
 
 /// Throws InputError where the data are too few, ModelError, NumericalError as predict() does.

@@ -40,4 +40,9 @@ void for_each_case(std::size_t n, std::size_t chunk, int threads, const std::fun
   if (error) std::rethrow_exception(error);
 }
 
+Told part_of(const Told& whole, double from, double to) {
+  if (!whole) return {};
+  return [whole, from, to](double share) { whole(from + (to - from) * share); };
+}
+
 }  // namespace deflect

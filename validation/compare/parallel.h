@@ -12,4 +12,10 @@ namespace deflect {
 void for_each_case(std::size_t n, std::size_t chunk, int threads, const std::function<void(std::size_t)>& work,
                    const std::function<void(std::size_t)>& done = {});
 
+/// Told how far a piece of work has come, 0 … 1, from any thread; may be empty.
+using Told = std::function<void(double share)>;
+
+/// What tells of a part of the work, from … to of the whole.
+Told part_of(const Told&, double from, double to);
+
 }  // namespace deflect

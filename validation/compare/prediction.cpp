@@ -197,10 +197,18 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
       out[i] = recorded_displacement(m.sensor, r.displacement);
     }
   };
-  if (beside)
-    for (const std::size_t p : poses_in_sequence(data)) at_pose(p);
-  else
-    for_each_case(machines.size(), 1, o.threads, at_pose);
+  const auto all = static_cast<double>(machines.size());
+  if (beside) {
+    double done = 0;
+    for (const std::size_t p : poses_in_sequence(data)) {
+      at_pose(p);
+      if (o.progress) o.progress(++done / all);
+    }
+  } else {
+    const auto told = [&](std::size_t done) { o.progress(static_cast<double>(done) / all); };
+    for_each_case(machines.size(), 1, o.threads, at_pose,
+                  o.progress ? std::function<void(std::size_t)>(told) : nullptr);
+  }
   if (!m.sensor.drift.isZero(0)) {
     const std::vector<double> rank = ranks(data, "drift");
     for (std::size_t i = 0; i < out.size(); ++i)

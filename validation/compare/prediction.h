@@ -13,6 +13,7 @@
 #include "msa/base/geometry.h"
 #include "msa/frame/build.h"
 #include "msa/mechanism/configuration.h"
+#include "validation/compare/parallel.h"
 #include "validation/measurement/measurements.h"
 
 namespace deflect {
@@ -24,6 +25,7 @@ struct PredictionOptions {
   std::optional<Geometry> geometry;  ///< absent: the device's
   frame::MemberDivision division;    ///< of members in the MSA
   int threads = 0;                   ///< 0: all; the numbers do not depend on it
+  Told progress = {};
 };
 
 /// d_T_W as recorded, per reading, all six components (m, rad). `machines`: where the device stands, one per pose of

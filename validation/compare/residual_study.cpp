@@ -45,7 +45,7 @@ void add_forces(ResidualStudy& s) {
 
 }  // namespace
 
-ResidualStudy residual_study(const Mechanism& m, const Measurements& data, int threads) {
+ResidualStudy residual_study(const Mechanism& m, const Measurements& data, int threads, const Told& told) {
   ResidualStudy s;
   s.mechanism = &m;
   s.data = &data;
@@ -55,10 +55,12 @@ ResidualStudy residual_study(const Mechanism& m, const Measurements& data, int t
       std::all_of(data.readings.begin(), data.readings.end(), [](const Reading& r) { return r.sequence.has_value(); });
   PredictionOptions o;
   o.threads = threads;
+  o.progress = part_of(told, 0, 0.1);
   s.predicted = predict(m, s.machines, data, o);
   if (m.geometry == Geometry::linear) try {
       Mechanism true_axes = m;  // the difference is small: what the rig does to it does not count
       o.geometry = Geometry::finite;
+      o.progress = part_of(told, 0.1, 1);
       s.deformed_shape = predict(true_axes, s.machines, data, o);
       for (std::size_t i = 0; i < s.deformed_shape.size(); ++i) s.deformed_shape[i] -= s.predicted[i];
     } catch (const NumericalError&) {

@@ -1,11 +1,12 @@
 // The ground of a comparison: machines, predictions, forces at sites.
 #pragma once
 
+#include "validation/compare/parallel.h"
 #include "validation/compare/patterns.h"
 
 namespace deflect {
 
 /// Predicts and looks inside: the mechanism and the data must outlive the study.
-ResidualStudy residual_study(const Mechanism&, const Measurements&, int threads);
+ResidualStudy residual_study(const Mechanism&, const Measurements&, int threads, const Told& = {});
 
 }  // namespace deflect

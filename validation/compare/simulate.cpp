@@ -66,6 +66,7 @@ Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOpt
   p.geometry = o.geometry;
   p.division = o.division;
   p.threads = o.threads;
+  p.progress = o.progress;
   const std::vector<Vector6> exact = predict(m, machines, loaded, p);
 
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {

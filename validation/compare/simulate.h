@@ -7,6 +7,7 @@
 
 #include "msa/base/geometry.h"
 #include "msa/frame/build.h"
+#include "validation/compare/parallel.h"
 #include "validation/measurement/measurements.h"
 
 namespace deflect {
@@ -21,6 +22,7 @@ struct SimulationOptions {
   Geometry geometry = Geometry::finite;  ///< equilibrium in which shape
   frame::MemberDivision division;
   int threads = 0;
+  Told progress = {};
 };
 
 /// The plan with displacements. One machine is drawn by lot within the device's tolerances (as_built.h), its actuators

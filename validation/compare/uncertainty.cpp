@@ -79,7 +79,8 @@ VectorX rows_of(const std::vector<MeasuredValue>& values, const std::vector<Vect
 }
 
 ToleranceModel tolerance_model(const Mechanism& device, const std::vector<Configuration>& drawn,
-                               const Measurements& data, const std::vector<MeasuredValue>& values, int threads) {
+                               const Measurements& data, const std::vector<MeasuredValue>& values, int threads,
+                               const Told& told) {
   const Mechanism m = simplified(device);
   PredictionOptions o;
   o.threads = 1;
@@ -100,7 +101,7 @@ ToleranceModel tolerance_model(const Mechanism& device, const std::vector<Config
   ToleranceModel out;
   out.A = MatrixX::Zero(nominal.size(), static_cast<Eigen::Index>(moves.size()));
   for (const Move& move : moves) out.nuisances.push_back(move.nuisance);
-  for_each_case(moves.size(), 1, threads, [&](std::size_t k) {
+  const auto move_one = [&](std::size_t k) {
     const Move& move = moves[k];
     const Mechanism geometry = with_geometry(m, move.built);
     if (k < shared) {
@@ -124,7 +125,9 @@ ToleranceModel tolerance_model(const Mechanism& device, const std::vector<Config
         out.A(row, static_cast<Eigen::Index>(k)) =
             d[static_cast<std::size_t>(at)](static_cast<Eigen::Index>(values[i].component)) - nominal(row);
     }
-  });
+  };
+  const auto count = [&](std::size_t done) { told(static_cast<double>(done) / static_cast<double>(moves.size())); };
+  for_each_case(moves.size(), 1, threads, move_one, told ? std::function<void(std::size_t)>(count) : nullptr);
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "msa/mechanism/configuration.h"
+#include "validation/compare/parallel.h"
 #include "validation/measurement/replicates.h"
 
 namespace deflect {
@@ -35,7 +36,7 @@ struct ToleranceModel {
   MatrixX A;  ///< measured numbers × nuisances, per standard deviation; m, rad
 };
 ToleranceModel tolerance_model(const Mechanism&, const std::vector<Configuration>& drawn, const Measurements&,
-                               const std::vector<MeasuredValue>&, int threads = 0);
+                               const std::vector<MeasuredValue>&, int threads = 0, const Told& = {});
 
 class Uncertainty {
  public:

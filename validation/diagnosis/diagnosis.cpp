@@ -137,8 +137,9 @@ void sort_candidates(Diagnosis& d, const Observations& o) {
 
 Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vector<Effect>& effects,
                    const DiagnosisOptions& options) {
-  Observations o(m, data, options.comparison);
-  if (options.progress) options.progress(0.2);
+  ComparisonOptions comparison = options.comparison;
+  comparison.progress = part_of(options.progress, 0, 0.2);
+  Observations o(m, data, comparison);
   Diagnosis d;
   const std::vector<Signature> all = signatures(o, effects, options.threads, &d.left_out);
   Rounds rounds(options.progress, 0.3);

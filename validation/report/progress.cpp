@@ -36,10 +36,10 @@ void Progress::update(std::size_t done) {
   visible_ = true;
   const double share = static_cast<double>(done_) / static_cast<double>(total_);
   const auto filled = static_cast<std::size_t>(share * static_cast<double>(width));
+  const std::string count = what_.empty() ? "" : fmt::format("{} of {} {}, ", done_, total_, what_);
   *out_ << wipe
-        << fmt::format("[{}{}] {:3.0f} %  {} of {} {}, {} left", std::string(filled, '#'),
-                       std::string(width - filled, '.'), std::floor(100 * share), done_, total_, what_,
-                       duration_text(elapsed * (1 - share) / share))
+        << fmt::format("[{}{}] {:3.0f} %  {}{} left", std::string(filled, '#'), std::string(width - filled, '.'),
+                       std::floor(100 * share), count, duration_text(elapsed * (1 - share) / share))
         << std::flush;
 }
 

@@ -15,7 +15,8 @@ class Progress {
  public:
   using Clock = std::function<double()>;  ///< seconds from any beginning
 
-  /// `what` names the pieces: "poses". The stream must outlive the object; nullptr shows nothing.
+  /// `what` names the pieces: "poses"; empty: they are not counted out. The stream must outlive the object; nullptr
+  /// shows nothing.
   Progress(std::size_t total, std::string what, std::ostream* out, Clock clock = steady_seconds);
   ~Progress();
   Progress(const Progress&) = delete;
