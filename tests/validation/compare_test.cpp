@@ -116,8 +116,7 @@ TEST(Compare, FindsNothingWhereNothingIsMissing) {
 }
 
 TEST(Compare, TellsHowFarItHasCome) {
-  const Mechanism m = test::device("haptic-6psu-ideal-joints");
-  const Measurements data = made(m, "paper", [](int, double, const Leg&) { return 0.0; });
+  const Measurements data = made(ideal(), "paper", nothing);
   double last = 0;
   ComparisonOptions o;
   o.threads = 1;
@@ -126,7 +125,7 @@ TEST(Compare, TellsHowFarItHasCome) {
     EXPECT_LE(share, 1);
     last = share;
   };
-  compare(m, data, o);
+  compare(ideal(), data, o);
   EXPECT_GE(last, 0.9);
 }
 
