@@ -11,7 +11,8 @@ namespace {
 
 constexpr double settled = 1e-13;  // change of the springs' forces, of the largest
 constexpr int most_iterations = 40;
-constexpr double idle = 1e-12;  // of a freedom's own stiffness, what is rounding
+constexpr double too_stiff = 1e5;  // beside the whole
+constexpr double idle = 1e-12;     // of a freedom's own stiffness, what is rounding
 
 bool rigid(const PlacedJoint& j) {
   for (std::size_t i = 0; i < 6; ++i)
@@ -187,6 +188,7 @@ bool MsaSweep::condense(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, 
       Element& element = step.elements[e];
       if (element.share != share) k = local_stiffness(r, element.share * length);
       share = element.share;
+      stiffest_ = std::max(stiffest_, k.diagonal().head<3>().maxCoeff());
       if (first && e == 0) {
         if (!start(leg, member, k, element, K, p)) return false;
         continue;
@@ -321,6 +323,7 @@ bool MsaSweep::solve(const Configuration& c, const Vector6& F_T_W) {
     spring.k = tangent_at_force(spring.law, size);
     if (!(spring.k > 0)) return false;
   }
+  stiffest_ = 0;
   for (iterations_ = 1; iterations_ <= most_iterations; ++iterations_) {
     stiffness_.setZero();
     Vector6 left = F;
@@ -333,6 +336,7 @@ bool MsaSweep::solve(const Configuration& c, const Vector6& F_T_W) {
       stiffness_ += leg.end.K;
       left -= leg.end.p;
     }
+    if (stiffest_ > too_stiff * stiffness_.diagonal().head<3>().maxCoeff()) return false;
     const Matrix6 weighed = weight.asDiagonal() * stiffness_ * weight.asDiagonal();
     const Eigen::LLT<Matrix6> llt(weighed);
     const Vector6 pivots = llt.matrixLLT().diagonal();

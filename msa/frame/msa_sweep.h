@@ -28,8 +28,9 @@ class MsaSweep {
   bool applies() const { return applies_; }
 
   /// Response to the wrench F at T and the weight, base axes, SI: displacement [δ; θ] of T and the tangent stiffness.
-  /// False, and no result, where nothing holds T in some direction, a contact carries nothing, or the springs' forces
-  /// do not settle.
+  /// False, and no result, where nothing holds T in some direction, a contact carries nothing, the springs' forces do
+  /// not settle, or a member is so stiff beside the whole (10⁵ times) that condensation would lose digits (relative.h
+  /// keeps them).
   bool solve(const Configuration&, const Vector6& F_T_W);
 
   const Vector6& displacement() const { return displacement_; }
@@ -97,7 +98,7 @@ class MsaSweep {
   int iterations_ = 0;
   std::vector<Leg> legs_;
   std::vector<Spring> springs_;
-  double energy_ = 0;
+  double energy_ = 0, stiffest_ = 0;  // of elements, N/m
   Vector6 displacement_ = Vector6::Zero(), reaction_ = Vector6::Zero();
   Matrix6 stiffness_ = Matrix6::Zero();
 };

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Whole commands, each run several times: median wall and processor time, seconds, and peak memory, MB.
+"""Whole commands, each run several times: median wall and processor time, seconds, and peak memory, MB; and, where
+chromium-headless-shell is installed, when the page of a diagnosis is ready for use, counted from its opening.
 
   tests/benchmark/commands.py --program build/deflect [--repeats 5] [--json FILE]
 """
@@ -8,6 +9,8 @@ import json
 import os
 import pathlib
 import platform
+import re
+import shutil
 import statistics
 import subprocess
 import tempfile
@@ -45,6 +48,20 @@ def run(words):
     return time.perf_counter() - begun, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
 
 
+def page_ready(folder):
+    """Seconds from opening the page to its first drawn frame, as the page itself counts; None without a browser."""
+    browser = shutil.which("chromium-headless-shell")
+    if not browser:
+        return None
+    options = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+               "--timeout=10000", "--dump-dom"]
+    shown = subprocess.run([browser, *options, f"file://{folder}/page.html"], capture_output=True, text=True, check=True)
+    found = re.search('data-ready="([0-9]+)"', shown.stdout)
+    if not found:
+        raise SystemExit("the page was not ready within 10 s")
+    return int(found[1]) / 1e3
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True)
@@ -61,6 +78,10 @@ def main():
             wall, cpu, memory = (statistics.median(column) for column in zip(*runs))
             results.append({"command": name, "arguments": arguments, "wall_s": wall, "cpu_s": cpu, "peak_MB": memory})
             print(f"{name:46} {wall:8.3f} {cpu:8.3f} {memory:7.0f}", flush=True)
+        ready = [r for r in (page_ready(folder) for _ in range(asked.repeats)) if r is not None]
+        if ready:
+            results.append({"command": "page ready in a browser", "wall_s": statistics.median(ready)})
+            print(f"{'page ready in a browser':46} {statistics.median(ready):8.3f}")
     if asked.json:
         machine = {"system": platform.platform(), "processors": os.cpu_count(), "processor": processor()}
         pathlib.Path(asked.json).write_text(

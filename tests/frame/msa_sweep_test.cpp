@@ -96,6 +96,24 @@ TEST(MsaSweep, LeavesToTheModelWhatItDoesNotKnow) {
   EXPECT_FALSE(contacts.solve(c, Vector6::Zero())) << "contacts without load have no stiffness";
 }
 
+TEST(MsaSweep, LeavesToTheModelMembersSoStiffThatDigitsWouldBeLost) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  Configuration c = configure(m, home_pose(m));
+  const Vector6 F = 50 * Vector6::Unit(0);
+  MsaSweep sweep(c);
+  EXPECT_TRUE(sweep.solve(c, F));
+  const auto stiffen = [&](double factor) {
+    for_each_part(c.legs, [&](auto& part) {
+      if constexpr (requires { part.E; })
+        if (part.part == "link") part.E *= factor, part.G *= factor;
+    });
+  };
+  stiffen(100);
+  expect_the_model(sweep, c, {}, F, 1e-9);
+  stiffen(1e6);
+  EXPECT_FALSE(sweep.solve(c, F));
+}
+
 // Five bars on ball joints leave the platform one motion.
 TEST(MsaSweep, RefusesWhatNothingHolds) {
   std::mt19937 random(1);
