@@ -1,0 +1,62 @@
+// Theories from pose to pose against those made for one pose, with every effect of the catalogue in the device: laws of
+// all kinds, joints anywhere, legs of their own.
+#include "validation/compare/swept.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+
+namespace deflect {
+namespace {
+
+double apart(const Answer& a, const Answer& b, double length) {
+  Vector6 rotations = Vector6::Ones();
+  rotations.tail<3>().setConstant(length);
+  const Vector6 d = rotations.cwiseProduct(b.displacement);
+  const Matrix6 K = rotations.cwiseInverse().asDiagonal() * b.stiffness * rotations.cwiseInverse().asDiagonal();
+  const Matrix6 more =
+      rotations.cwiseInverse().asDiagonal() * (a.stiffness - b.stiffness) * rotations.cwiseInverse().asDiagonal();
+  return std::max((rotations.cwiseProduct(a.displacement) - d).norm() / d.norm(), more.norm() / K.norm());
+}
+
+void expect_equal(const Mechanism& m) {
+  SweptTheories swept(m);
+  const Vector6 F = (Vector6() << 30, -20, 35, 0.4, 0.3, -0.5).finished();
+  for (const Vector3& step : {Vector3(0, 0, 0), Vector3(0.012, -0.007, 0.009)}) {
+    Pose pose = home_pose(m);
+    pose.p_WT += step;
+    const Configuration c = configure(m, pose);
+    swept.at(pose);
+    EXPECT_LT(apart(swept.analytic(F), AnalyticAtPose(c, m.name).solve(F), c.size), 1e-9);
+    EXPECT_LT(apart(swept.msa(F), MsaAtPose(c, {}, m.name).solve(F), c.size), 1e-9);
+  }
+}
+
+class SweptWithEffect : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SweptWithEffect, EqualsTheTheoriesOfOnePose) {
+  const Effect& e = test::effect(GetParam());
+  for (const char* name : {"haptic-6psu-ideal-joints", "haptic-6psu"}) {
+    const Mechanism m = test::device(name);
+    const std::vector<PlacedEffect> places = places_of(e, m);
+    if (!places.empty()) expect_equal(with_effect(m, e, start_values(e), places.back().leg));
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Catalogue, SweptWithEffect, ::testing::ValuesIn([] {
+                           std::vector<std::string> names;
+                           for (const Effect& e : test::all_effects())
+                             if (e.name != "geometric_nonlinearity") names.push_back(e.name);
+                           return names;
+                         }()),
+                         [](const auto& named) { return named.param; });
+
+TEST(Swept, EveryDeviceEqualsTheTheoriesOfOnePose) {
+  for (const char* name : {"stewart-6ups", "tripteron", "delta", "hybrid"}) {
+    SCOPED_TRACE(name);
+    expect_equal(test::device(name));
+  }
+}
+
+}  // namespace
+}  // namespace deflect
