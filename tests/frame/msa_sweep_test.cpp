@@ -5,23 +5,14 @@
 
 #include "msa/frame/msa.h"
 #include "tests/support/allocation_count.h"
+#include "tests/support/apart.h"
 #include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
 
 namespace deflect::frame {
 namespace {
 
-double apart(const Matrix6& a, const Matrix6& b, double length) {
-  Vector6 w = Vector6::Ones();
-  w.tail<3>().setConstant(1 / length);
-  return (w.asDiagonal() * (a - b) * w.asDiagonal()).norm() / (w.asDiagonal() * b * w.asDiagonal()).norm();
-}
-
-double apart(const Vector6& a, const Vector6& b, double length) {
-  Vector6 w = Vector6::Ones();
-  w.tail<3>().setConstant(length);
-  return w.cwiseProduct(a - b).norm() / w.cwiseProduct(b).norm();
-}
+using test::apart;
 
 void expect_the_model(MsaSweep& sweep, const Configuration& c, const MemberDivision& division, const Vector6& F,
                       double bound) {

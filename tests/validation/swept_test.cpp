@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/apart.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 
@@ -11,13 +12,7 @@ namespace deflect {
 namespace {
 
 double apart(const Answer& a, const Answer& b, double length) {
-  Vector6 rotations = Vector6::Ones();
-  rotations.tail<3>().setConstant(length);
-  const Vector6 d = rotations.cwiseProduct(b.displacement);
-  const Matrix6 K = rotations.cwiseInverse().asDiagonal() * b.stiffness * rotations.cwiseInverse().asDiagonal();
-  const Matrix6 more =
-      rotations.cwiseInverse().asDiagonal() * (a.stiffness - b.stiffness) * rotations.cwiseInverse().asDiagonal();
-  return std::max((rotations.cwiseProduct(a.displacement) - d).norm() / d.norm(), more.norm() / K.norm());
+  return std::max(test::apart(a.displacement, b.displacement, length), test::apart(a.stiffness, b.stiffness, length));
 }
 
 void expect_equal(const Mechanism& m) {
