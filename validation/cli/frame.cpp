@@ -78,8 +78,12 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
 void run(const Arguments& a) {
   const frame::FrameDescription f = frame::read_frame(frame_file(a.file));
   tell("frame {}: {}, {} nodes, {} members", f.name, frame_file(a.file).string(), f.nodes.size(), f.members.size());
+  frame::FrameOptions options;
+  options.division = divide_members(f, a.element_size);
+  options.equations.solver = solver_of(a.solver, f);
   const frame::FrameResult r = timed_with_progress("frame: every load case", [&](const auto& told) {
-    return frame::analyse(f, {divide_members(f, a.element_size), {solver_of(a.solver, f), 1e-10, 0, told}});
+    options.equations.progress = told;
+    return frame::analyse(f, options);
   });
   if (const std::string failure = frame::failed_check(r); !failure.empty())
     throw NumericalError(fmt::format("{}: {}", f.name, failure));
