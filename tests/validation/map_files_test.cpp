@@ -120,6 +120,13 @@ TEST(MapProgram, WritesFiguresAndTablesAndNoBarIntoAPipe) {
   EXPECT_LT(j["reached"].get<int>(), 125);
 }
 
+TEST(MapProgram, DrawsSlicesThatAreOutOfReachAsAWhole) {
+  const Folder folder;
+  const auto run = test::deflect("map haptic-6psu --n 9,8,9 --z 120,300 --out '" + (folder / "out").string() + "'");
+  ASSERT_EQ(run.code, 0) << run.out;
+  EXPECT_NE(contents(folder / "out" / "fig11.svg").find("z = 300 mm: out of reach"), std::string::npos);
+}
+
 TEST(MapProgram, LoadTiltLengthAndTheoryAreTaken) {
   const Folder folder;
   const auto run = test::deflect(

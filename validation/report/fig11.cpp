@@ -68,7 +68,7 @@ const MapPose& at(const StiffnessMap& map, const Slice& s, int i, int j) {
 }
 
 /// Interpolated bilinearly in the logarithm, with some steps between poses; NaN outside the cells whose four corners
-/// are reached. Lines of gnuplot's grid format, x fastest.
+/// are reached. Lines of gnuplot's grid format, x fastest; empty where no cell is whole.
 std::string surface(const StiffnessMap& map, const Slice& s, int axis) {
   const MapGrid& g = map.options.grid;
   const int n = g.counts[static_cast<std::size_t>(s.across)], m = g.counts[static_cast<std::size_t>(s.up)];
@@ -84,6 +84,7 @@ std::string surface(const StiffnessMap& map, const Slice& s, int axis) {
            v * ((1 - u) * log_value(i, j + 1) + u * log_value(i + 1, j + 1));
   };
   std::string text;
+  bool whole = false;
   for (int y = 0; y <= (m - 1) * fine_y; ++y) {
     const int j = y / fine_y;
     const double v = static_cast<double>(y % fine_y) / fine_y;
@@ -99,10 +100,11 @@ std::string surface(const StiffnessMap& map, const Slice& s, int axis) {
         return t == 0 ? from : from + t * (g.coordinate(where, low + 1) - from);
       };
       text += fmt::format("{:.6g} {:.6g} {:.5g}\n", place(s.across, i, u), place(s.up, j, v), std::exp(value));
+      whole = whole || !std::isnan(value);
     }
     text += "\n";
   }
-  return text;
+  return whole ? text : "";
 }
 
 /// Tics of an axis of so many mm: whole steps, none of them so near to an end that its label would touch the next
@@ -193,15 +195,20 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
     return std::clamp(panel * extent(s.up) / extent(s.across), 0.5 * panel, 1.4 * panel);
   };
 
+  std::vector<bool> has_surface(slices.size());
   for (std::size_t r = 0; r < slices.size(); ++r)
-    for (int axis = 0; axis < 3; ++axis) script.put("$s{}{} << EOD\n{}EOD", r, axis, surface(map, slices[r], axis));
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string points = surface(map, slices[r], axis);
+      has_surface[r] = !points.empty();
+      if (has_surface[r]) script.put("$s{}{} << EOD\n{}EOD", r, axis, points);
+    }
   // Iso-curves as tables, made before there is a plot to disturb.
   const std::vector<double> iso = levels(e, below ? 8 : 14), index = levels(e, 4);
   if (!iso.empty()) {
     script.put("set contour base\nunset surface\nset cntrparam linear\nset cntrparam levels discrete {:g}",
                fmt::join(iso, ","));
     for (std::size_t r = 0; r < slices.size(); ++r)
-      for (int axis = 0; axis < 3; ++axis)
+      for (int axis = 0; has_surface[r] && axis < 3; ++axis)
         script.put("set table $c{0}{1}\nsplot $s{0}{1} using 1:2:3\nunset table", r, axis);
     script.put("unset contour\nset surface");
   }
@@ -271,7 +278,8 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
             "offset 0,0.35 textcolor rgb variable",
             r, axis, ink, is_index, inside, script.font(0.75));
       }
-      script.plot(fmt::format("plot $s{}{} using 1:2:3 with image{}", r, axis, curves));
+      script.plot(has_surface[r] ? fmt::format("plot $s{}{} using 1:2:3 with image{}", r, axis, curves)
+                                 : "plot '+' using 1:(NaN):(1) with points palette");
     }
     y += h + row_foot;
   }
