@@ -14,7 +14,6 @@
 #include <string>
 
 #include "meshes/gmsh_module.h"
-#include "meshes/load_gmsh.h"
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 
@@ -30,7 +29,7 @@ std::string with_module(Call call) {
   static std::mutex mutex;
   static const Module* module = nullptr;
   const std::lock_guard lock(mutex);
-  if (module == nullptr) module = &load_module(module_folders());
+  if (module == nullptr) module = static_cast<const Module*>(&load_module(module_kind));
   return call(*module);
 }
 

@@ -194,11 +194,11 @@ std::string write_msh(const std::string& file, const LineMesh& mesh, const Field
   });
 }
 
-constexpr Module table = {module_interface, DEFLECT_VERSION, subdivide, write_msh};
+constexpr Module table = {{module_kind.interface, DEFLECT_VERSION}, subdivide, write_msh};
 
 }  // namespace
 }  // namespace deflect::gmsh
 
-extern "C" __attribute__((visibility("default"))) const deflect::gmsh::Module* deflect_gmsh_module() {
+extern "C" __attribute__((visibility("default"))) const deflect::ModuleHead* deflect_gmsh_module() {
   return &deflect::gmsh::table;
 }

@@ -1,18 +1,15 @@
-// The border between deflect and the module deflect_gmsh, which alone is linked with Gmsh. Both sides come from one
-// build, which `interface` and `version` prove, so C++ types may cross; exceptions may not: failures come back as text.
+// The border between deflect and the module deflect_gmsh, which alone is linked with Gmsh. Failures come back as text.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "meshes/line_mesh.h"
+#include "msa/base/module.h"
 
 namespace deflect::gmsh {
 
-struct Module {
-  int interface;        ///< module_interface; first, so that it can be read whatever follows
-  const char* version;  ///< of deflect
-
+struct Module : ModuleHead {
   /// Node positions as fractions of the lengths, which are given in element sizes; unchecked. Returns Gmsh's message,
   /// empty on success.
   std::string (*subdivide)(const std::vector<double>& lengths, std::vector<std::vector<double>>& positions) noexcept;
@@ -21,8 +18,7 @@ struct Module {
   std::string (*write_msh)(const std::string& file, const LineMesh&, const FieldData&) noexcept;
 };
 
-inline constexpr const char* module_file = "deflect_gmsh.so";
-inline constexpr const char* module_symbol = "deflect_gmsh_module";  ///< const Module* (*)()
-inline constexpr int module_interface = 1;                           ///< to be raised when Module changes
+/// Its interface is to be raised when Module changes.
+inline constexpr ModuleKind module_kind = {"deflect_gmsh.so", "deflect_gmsh_module", 1};
 
 }  // namespace deflect::gmsh

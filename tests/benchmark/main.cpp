@@ -3,7 +3,6 @@
 #include <getopt.h>
 
 #include <algorithm>
-#include <exception>
 #include <iterator>
 
 #include "msa/base/error.h"
@@ -11,8 +10,8 @@
 #include "msa/base/units.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/benchmark/scores.h"
-#include "validation/compare/parallel.h"
 #include "validation/effects/effect_file.h"
+#include "validation/parallel/shared_cases.h"
 #include "validation/report/progress.h"
 
 namespace deflect::benchmark {
@@ -22,9 +21,10 @@ constexpr const char* usage = R"(benchmark_diagnosis [options]
   --group NAME   one group of sets: {}
   --sets N       about N sets, every group thinned alike (default: all)
   --seed N       of everything drawn by lot (default 1)
-  --threads N    sets side by side (default 0: all cores); the scores do not depend on it
+  --threads N    sets side by side in a process (default 0: all cores); the scores do not depend on it
   --json FILE    write every set and the scores
   --out DIR      draw how reliable the probabilities are
+Under mpirun the processes share the sets, and the first one writes.
 )";
 
 struct Arguments {
@@ -79,7 +79,7 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-void run_all(const Arguments& a) {
+void run_all(const Arguments& a, Ranks* ranks) {
   const std::string data = std::string(DEFLECT_SOURCE_DIR) + "/validation";
   const Mechanism device = read_mechanism(data + "/devices/haptic-6psu-ideal-joints.yaml");
   const std::vector<Effect> effects = catalogue(data + "/effects");
@@ -87,11 +87,16 @@ void run_all(const Arguments& a) {
   Plans plans(device, effects, a.seed);
   std::vector<Record> records(orders.size());
   {
-    Progress progress(orders.size(), "sets", terminal_stream());
-    for_each_case(
-        orders.size(), 1, a.threads, [&](std::size_t i) { records[i] = run(orders[i], device, effects, plans); },
-        [&](std::size_t done) { progress.update(done); });
+    Progress progress(orders.size(), "sets", ranks && !ranks->first() ? nullptr : watched_stream());
+    SharedCases sets;
+    sets.count = orders.size();
+    sets.work = [&](std::size_t i) { records[i] = run(orders[i], device, effects, plans); };
+    sets.result = [&](std::size_t i) { return packed(records[i]); };
+    sets.take = [&](std::size_t i, const std::string& bytes) { records[i] = unpacked(bytes, orders[i]); };
+    for_each_case(sets, ranks, ranks && a.threads == 0 ? ranks->threads() : a.threads,
+                  [&](std::size_t done) { progress.update(done); });
   }
+  if (ranks && !ranks->first()) return;
   if (!a.json.empty()) {
     Json json = {{"device", device.name}, {"seed", a.seed}};
     json.update(report_json(records));
@@ -108,17 +113,13 @@ void run_all(const Arguments& a) {
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 int main(int argc, char** argv) {
+  using namespace deflect;
   using namespace deflect::benchmark;
   if (openblas_set_num_threads) openblas_set_num_threads(1);
-  try {
+  const auto work = [&](Ranks* ranks) {
     const Arguments a = parse(argc, argv);
-    if (a.help)
-      fmt::print(usage, fmt::join(group_names, ", "));
-    else
-      run_all(a);
-    return 0;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "benchmark_diagnosis: {}\n", e.what());
-    return 1;
-  }
+    if (!a.help) return run_all(a, ranks);
+    if (!ranks || ranks->first()) fmt::print(usage, fmt::join(group_names, ", "));
+  };
+  return run_on_ranks(work, [](const Ending& end) { fmt::print(stderr, "benchmark_diagnosis: {}\n", end.message); });
 }

@@ -8,8 +8,31 @@
 #include "tests/benchmark/baselines.h"
 #include "tests/benchmark/gaussian_process.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/parallel/pack.h"
 
 namespace deflect::benchmark {
+
+template <class Archive>
+void serialize(Archive& a, Truth& t) {
+  a(t.effects, t.unknown, t.tied);
+}
+
+template <class Archive>
+void serialize(Archive& a, HiddenEffect& h) {
+  a(h.effect, h.site, h.values);
+}
+
+template <class Archive>
+void serialize(Archive& a, Answer& x) {
+  a(x.verdict, x.missing, x.groups, x.first, x.probability);
+}
+
+template <class Archive>
+void serialize(Archive& a, Record& r) {
+  a(r.truth, r.hidden, r.lambda, r.separation, r.lambda_left, r.skipped, r.answers, r.new_poses, r.intervals,
+    r.covering, r.seconds);
+}
+
 namespace {
 
 constexpr const char* everywhere = "geometric_nonlinearity";  // in all data: neither right nor wrong
@@ -31,10 +54,10 @@ Answer answer_of(const Diagnosis& d) {
 }
 
 /// Intervals of effects that are hidden and found, in the same place.
-void count_intervals(const Diagnosis& d, Record& record) {
+void count_intervals(const Diagnosis& d, const std::vector<EffectInstance>& all, Record& record) {
   std::size_t at = 0;
   for (const PlacedEffect& found : d.missing) {
-    for (const EffectInstance& hidden : record.hidden) {
+    for (const EffectInstance& hidden : all) {
       if (hidden.effect->name != found.effect->name || hidden.leg != found.leg) continue;
       for (std::size_t i = 0; i < found.effect->parameters.size(); ++i) {
         const auto [low, high] = interval95(d.missing, d.fit, at + i);
@@ -60,6 +83,13 @@ VectorX predicted_by(const Diagnosis& d, const Mechanism& m, const Plan& plan) {
   }
 }
 
+HiddenEffect names_of(const EffectInstance& e) {
+  HiddenEffect out{e.effect->name, site_of(e), {}};
+  for (std::size_t i = 0; i < e.effect->parameters.size(); ++i)
+    out.values.emplace_back(e.effect->parameters[i].name, e.values(static_cast<Eigen::Index>(i)));
+  return out;
+}
+
 void diagnose_all(const MeasuredSet& set, const Mechanism& m, Record& record) {
   const Plan& plan = *set.plan;
   const auto start = std::chrono::steady_clock::now();
@@ -68,7 +98,7 @@ void diagnose_all(const MeasuredSet& set, const Mechanism& m, Record& record) {
   const Diagnosis d = diagnose(m, set.data, set.known, o);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.answers.push_back(answer_of(d));
-  count_intervals(d, record);
+  count_intervals(d, set.hidden, record);
 
   const VectorX residual = plan.residual(set.data);
   const std::string left_out = record.order.group == "left-out" ? record.order.effect : "";
@@ -89,13 +119,21 @@ void diagnose_all(const MeasuredSet& set, const Mechanism& m, Record& record) {
 
 }  // namespace
 
+std::string packed(const Record& r) { return pack(r); }
+
+Record unpacked(const std::string& bytes, const Case& order) {
+  Record out = unpack<Record>(bytes);
+  out.order = order;
+  return out;
+}
+
 Record run(const Case& c, const Mechanism& m, const std::vector<Effect>& effects, Plans& plans) {
   Record out;
   out.order = c;
   try {
     const MeasuredSet set = measured_set(c, m, effects, plans);
     out.truth = set.truth;
-    for (const EffectInstance& hidden : set.hidden) out.hidden.push_back(hidden);
+    for (const EffectInstance& hidden : set.hidden) out.hidden.push_back(names_of(hidden));
     out.lambda = set.lambda;
     out.separation = set.separation;
     out.lambda_left = set.lambda_left;

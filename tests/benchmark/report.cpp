@@ -36,10 +36,9 @@ Json set_json(const Record& r) {
   out["unknown"] = r.truth.unknown;
   if (!r.truth.tied.empty()) out["tied_with"] = r.truth.tied;
   out["hidden"] = Json::array();
-  for (const EffectInstance& e : r.hidden) {
-    Json hidden = {{"effect", e.effect->name}, {"site", site_of(e)}};
-    for (std::size_t i = 0; i < e.effect->parameters.size(); ++i)
-      hidden[e.effect->parameters[i].name] = e.values(static_cast<Eigen::Index>(i));
+  for (const HiddenEffect& e : r.hidden) {
+    Json hidden = {{"effect", e.effect}, {"site", e.site}};
+    for (const auto& [name, value] : e.values) hidden[name] = value;
     out["hidden"].push_back(hidden);
   }
   out["lambda"] = r.lambda;

@@ -46,6 +46,8 @@ const Confinement confinements[] = {
     {"SPQR", "(suitesparse/)?(SuiteSparseQR.*|spqr.*)|Eigen/SPQRSupport", "msa/frame/[^/]+\\.cpp",
      "one .cpp file of msa/frame", 1},
     {"Gmsh", "gmsh\\.h.*", "meshes/gmsh_[^/]+\\.cpp", "meshes/gmsh_*.cpp", any_number},
+    {"MPI", "mpi\\.h", "validation/parallel/mpi_[^/]+\\.cpp", "validation/parallel/mpi_*.cpp", any_number},
+    {"cereal", "cereal/.*", "validation/parallel/pack\\.h", "validation/parallel/pack.h", 1},
     {"yaml-cpp", "yaml-cpp/.*", "msa/mechanism/[^/]*(reader|writer)[^/]*\\.cpp",
      "the reader and the writer of msa/mechanism", any_number},
     {"CLI11", "CLI/.*", "validation/cli/[^/]+\\.cpp", "one .cpp file of validation/cli", 1},

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "meshes/gmsh.h"
-#include "meshes/load_gmsh.h"
+#include "meshes/gmsh_module.h"
 #include "msa/base/error.h"
 #include "tests/meshes/scratch.h"
 
@@ -95,7 +95,7 @@ TEST(Subdivide, WorksAfterFailures) {
   EXPECT_EQ(subdivide({1}, 0.1), before);
 
   // Past the checks, into Gmsh itself.
-  const Module& module = load_module(module_folders());
+  const auto& module = static_cast<const Module&>(load_module(module_kind));
   const Scratch scratch;
   EXPECT_NE(module.write_msh(scratch / "no such folder/a.msh", small_mesh(), {}), "");
   EXPECT_EQ(subdivide({1}, 0.1), before);
@@ -127,7 +127,7 @@ TEST(GmshModule, IsNotFoundClearly) {
   const Scratch scratch;
   write_text(scratch / "broken/deflect_gmsh.so", "no library");
   try {
-    load_module({scratch / "empty", scratch / "broken"});
+    load_module(module_kind, {scratch / "empty", scratch / "broken"});
     FAIL() << "loaded";
   } catch (const ModelError& error) {
     const std::string text = error.what();

@@ -17,14 +17,18 @@ struct Run {
   std::string out;  ///< standard output and error together
 };
 
-inline Run deflect(const std::string& arguments) {
+inline Run command(const std::string& line) {
   Run run;
-  FILE* pipe = ::popen((std::string("'") + DEFLECT_PROGRAM + "' " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = ::popen((line + " 2>&1").c_str(), "r");
   std::array<char, 4096> buffer;
   for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) run.out.append(buffer.data(), n);
   const int status = ::pclose(pipe);
   run.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return run;
+}
+
+inline Run deflect(const std::string& arguments) {
+  return command(std::string("'") + DEFLECT_PROGRAM + "' " + arguments);
 }
 
 inline std::string contents(const std::filesystem::path& path) {

@@ -70,7 +70,7 @@ TEST_F(DiagnoseProgram, RefusesWhatItCannotUse) {
   EXPECT_EQ(run.code, 2);
   EXPECT_NE(run.out.find("data.csv:1"), std::string::npos) << run.out;
   ASSERT_EQ(simulated("--campaign paper --seed 1").code, 0);
-  for (const char* wrong : {"--sigma 0", "--sigma nan", "--threads -1", "--effects nowhere.yaml"})
+  for (const char* wrong : {"--sigma 0", "--sigma nan", "--threads -1", "--bootstrap 5", "--effects nowhere.yaml"})
     EXPECT_EQ(diagnose(wrong).code, 2) << wrong;
   EXPECT_FALSE(std::filesystem::exists(folder / "d.json"));
 }

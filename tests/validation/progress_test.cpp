@@ -27,6 +27,18 @@ TEST(Progress, KeepsSilentForASecond) {
   EXPECT_EQ(line.out.str(), "");
 }
 
+TEST(Progress, WritesLinesThatStayWhereTheyCannotBeDrawnOver) {
+  Line line;
+  {
+    Progress p(200, "poses", {&line.out, true}, line.clock);
+    for (const std::size_t done : {1u, 50u, 60u, 100u, 101u}) {
+      line.now += 6;
+      p.update(done);
+    }
+  }
+  EXPECT_EQ(line.out.str(), " 25 %  50 of 200 poses, 36 s left\n 50 %  100 of 200 poses, 24 s left\n");
+}
+
 TEST(Progress, SaysHowFarAndHowLong) {
   Line line;
   {

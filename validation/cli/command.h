@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "validation/parallel/ranks.h"
+
 namespace deflect::cli {
 
 struct Option {
@@ -17,11 +19,16 @@ struct Option {
   bool required = false;
 };
 
-/// run() prints the report for a person on standard output and throws InputError, ModelError or NumericalError.
+/// What a command does: print the report for a person on standard output, write files; throws InputError, ModelError or
+/// NumericalError. One that can share its work takes the ranks of the run, nullptr where this process is the only one,
+/// and prints and writes on the first rank only; another one is run there alone.
+using Run = std::function<void()>;
+using SharedRun = std::function<void(Ranks*)>;
+
 struct Command {
   std::string name, help, example;
   std::vector<Option> options;
-  std::function<void()> run;
+  std::variant<Run, SharedRun> run;
 };
 
 Command solve_command();

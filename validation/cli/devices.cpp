@@ -66,8 +66,9 @@ Measurements read_data(const std::string& file) {
   return data;
 }
 
-int parse_threads(double value) {
-  const int threads = whole("--threads", value, 0, 1024);
+int parse_threads(double value, const Ranks* ranks) {
+  int threads = whole("--threads", value, 0, 1024);
+  if (ranks && threads == 0) threads = ranks->threads();
   tell("threads: {}", threads > 0 ? std::to_string(threads)
                                   : fmt::format("all {} of the machine", std::thread::hardware_concurrency()));
   return threads;

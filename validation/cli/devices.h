@@ -10,6 +10,7 @@
 #include "msa/mechanism/description.h"
 #include "validation/compare/theories.h"
 #include "validation/measurement/measurements.h"
+#include "validation/parallel/ranks.h"
 
 namespace deflect::cli {
 
@@ -28,8 +29,8 @@ Mechanism read_device(const std::string& name_or_path);
 /// As read_measurements(), told where verbose.
 Measurements read_data(const std::string& file);
 
-/// The number of --threads; 0: all.
-int parse_threads(double);
+/// The number of --threads of this process; 0: all of the machine, with ranks all that this rank has.
+int parse_threads(double, const Ranks* = nullptr);
 
 /// As write_text(), told where verbose.
 void write_file(const std::filesystem::path&, const std::string& text);

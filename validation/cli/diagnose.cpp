@@ -16,10 +16,10 @@ struct Arguments {
   std::string device, data, json, report;
   std::vector<std::string> files;
   std::string sigma_mm, sigma_rad;
-  double threads = 0;
+  double bootstrap = 1999, threads = 0;
 };
 
-void run(const Arguments& a) {
+void run(const Arguments& a, Ranks* ranks) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
   const Measurements data = read_data(a.data);
@@ -27,12 +27,15 @@ void run(const Arguments& a) {
   DiagnosisOptions o;
   o.comparison.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.comparison.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
-  o.threads = o.comparison.threads = parse_threads(a.threads);
+  o.bootstrap_sets = whole("--bootstrap", a.bootstrap, 99, 1e9);
+  o.ranks = ranks;
+  o.threads = o.comparison.threads = parse_threads(a.threads, ranks);
   const Diagnosis d = timed_with_progress("diagnose: every effect fitted and weighed", [&](const auto& told) {
     DiagnosisOptions shown = o;
     shown.progress = told;
     return diagnose(m, data, effects, shown);
   });
+  if (ranks && !ranks->first()) return;
   for (const PlacedEffect& found : d.missing) tell("found: {}", name_of(found));
   if (!a.json.empty()) write_file(a.json, diagnosis_json(d));
   fmt::print("{}", diagnosis_report(d, m.name, data.origin));
@@ -44,20 +47,26 @@ void run(const Arguments& a) {
 
 Command diagnose_command() {
   auto a = std::make_shared<Arguments>();
-  return {"diagnose",
-          "Which physical effect is missing: every effect of the catalogue at every place it has in the device, fitted "
-          "with all tolerances free under their priors, weighed by the evidence; ties, unknown effects and what the "
-          "campaign cannot see are said. Verdict first; exit code 0 whatever it is",
-          "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
-          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-           {"data", "DATA", "measurements (CSV)", &a->data, true},
-           {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
-           {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
-           {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
-           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
-           {"--json", "FILE", "write the result", &a->json},
-           report_option(&a->report)},
-          [a] { run(*a); }};
+  return {
+      "diagnose",
+      "Which physical effect is missing: every effect of the catalogue at every place it has in the device, fitted "
+      "with all tolerances free under their priors, weighed by the evidence; ties, unknown effects and what the "
+      "campaign cannot see are said. Verdict first; exit code 0 whatever it is. Under mpirun the processes share the "
+      "sets of --bootstrap, and the first one writes; the result is the same",
+      "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
+      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+       {"data", "DATA", "measurements (CSV)", &a->data, true},
+       {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
+       {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
+       {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
+       {"--bootstrap", "N",
+        "data sets with nothing missing that are drawn to find how often chance looks like an effect (default "
+        "1999, at least 99); it is known to 1/(N+1)",
+        &a->bootstrap},
+       {"--threads", "N", "threads of a process (default 0: all cores); the result does not depend on it", &a->threads},
+       {"--json", "FILE", "write the result", &a->json},
+       report_option(&a->report)},
+      [a](Ranks* ranks) { run(*a, ranks); }};
 }
 
 }  // namespace deflect::cli

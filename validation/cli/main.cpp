@@ -3,16 +3,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <exception>
-#include <new>
+#include <sstream>
 #include <thread>
 
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"
+#include "validation/parallel/ranks.h"
 
 namespace {
 
+using deflect::Ranks;
 using deflect::cli::Command;
 using deflect::cli::Option;
 
@@ -31,9 +32,30 @@ void declare(CLI::App& app, const Option& option) {
   o->required(option.required);
 }
 
-int fail(int code, const char* what, const char* message) {
-  fmt::print(stderr, "deflect: {}{}\n", what, message);
-  return code;
+/// False where the arguments ask for help or the version only, which is said.
+bool parse(CLI::App& app, int argc, char** argv, bool say) try {
+  app.parse(argc, argv);
+  return true;
+} catch (const CLI::ParseError& e) {
+  std::ostringstream asked, wrong;
+  app.exit(e, asked, wrong);
+  if (say) fmt::print("{}", asked.str());
+  if (e.get_exit_code() == 0) return false;
+  std::string text = wrong.str();
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  throw deflect::InputError(text);
+}
+
+void run(const Command& command, Ranks* ranks) {
+  const deflect::cli::Step step(command.name);
+  if (const auto* shared = std::get_if<deflect::cli::SharedRun>(&command.run)) {
+    (*shared)(ranks);
+  } else if (!ranks || ranks->first()) {
+    if (ranks)
+      fmt::print(stderr, "deflect: {} is no work to share: one process of {} does it\n", command.name, ranks->size());
+    std::get<deflect::cli::Run>(command.run)();
+  }
+  if (std::fflush(stdout) != 0) throw deflect::InputError("standard output cannot be written");
 }
 
 }  // namespace
@@ -60,29 +82,17 @@ int main(int argc, char** argv) {
     sub->add_flag("--verbose", loud, "tell every step with its time and choices on standard error")->excludes(q);
     parsers.push_back(sub);
   }
-  try {
-    app.parse(argc, argv);
-    set_talk(quiet ? Talk::quiet : loud ? Talk::verbose : Talk::usual);
+  const bool first = deflect::launched().rank == 0;
+  const auto work = [&](Ranks* ranks) {
+    if (!parse(app, argc, argv, first)) return;
+    set_talk(quiet || !first ? Talk::quiet : loud ? Talk::verbose : Talk::usual);
     tell("version {}, {} threads in this machine, BLAS {}", DEFLECT_VERSION, std::thread::hardware_concurrency(),
          openblas_set_num_threads ? "OpenBLAS, one thread" : "of the system");
+    if (ranks) tell("{} processes, {} threads in each", ranks->size(), ranks->threads());
     for (std::size_t i = 0; i < commands.size(); ++i)
-      if (parsers[i]->parsed()) {
-        const Step step(commands[i].name);
-        commands[i].run();
-      }
-    if (std::fflush(stdout) != 0) return fail(2, "", "standard output cannot be written");
-    return 0;
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  } catch (const deflect::InputError& e) {
-    return fail(2, "", e.what());
-  } catch (const deflect::ModelError& e) {
-    return fail(3, "", e.what());
-  } catch (const deflect::NumericalError& e) {
-    return fail(4, "", e.what());
-  } catch (const std::bad_alloc&) {
-    return fail(4, "", "out of memory");
-  } catch (const std::exception& e) {
-    return fail(70, "a bug, please report it: ", e.what());
-  }
+      if (parsers[i]->parsed()) run(commands[i], ranks);
+  };
+  return deflect::run_on_ranks(work, [](const deflect::Ending& end) {
+    fmt::print(stderr, "deflect: {}{}\n", end.code == 70 ? "a bug, please report it: " : "", end.message);
+  });
 }

@@ -56,7 +56,7 @@ double length_mm(const Mechanism& m, const std::string& text) {
   return 1e3 * parse_length("--length", text);
 }
 
-MapOptions options_of(const Mechanism& m, const Arguments& a) {
+MapOptions options_of(const Mechanism& m, const Arguments& a, Ranks* ranks) {
   MapOptions o;
   o.grid = grid_of(m, a);
   o.force_N = a.force_N;
@@ -72,15 +72,16 @@ MapOptions options_of(const Mechanism& m, const Arguments& a) {
   o.analytic = a.theory != "msa";
   o.msa = a.theory != "analytic";
   o.length_mm = length_mm(m, a.length);
-  o.threads = parse_threads(a.threads);
+  o.ranks = ranks;
+  o.threads = parse_threads(a.threads, ranks);
   return o;
 }
 
-void run(const Arguments& a) {
+void run(const Arguments& a, Ranks* ranks) {
   require_pages(a.report);
   const FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
-  MapOptions o = options_of(m, a);
+  MapOptions o = options_of(m, a, ranks);
   StiffnessMap map;
   {
     const Step step(fmt::format("map: {} poses, theory {}", o.grid.size(), a.theory));
@@ -89,6 +90,7 @@ void run(const Arguments& a) {
     map = map_stiffness(m, o);
     map.options.progress = nullptr;
   }
+  if (ranks && !ranks->first()) return;
   const std::filesystem::path folder = a.out;
   std::string figures;
   if (!a.out.empty()) {
@@ -121,7 +123,8 @@ Command map_command() {
       "With --force (the default) every pose is loaded along x, y and z in turn: the compliance C = u/F is secant, "
       "from no load to the force, and the 6x6 stiffness K (its diagonal, smallest, largest, isotropy) is tangent at "
       "the force. With --load both are tangent under that wrench. They differ where contacts carry load. The MSA takes "
-      "one element per member, which is exact at its nodes.",
+      "one element per member, which is exact at its nodes. Under mpirun the processes share the poses, and the first "
+      "one writes; the result is the same.",
       "deflect map haptic-6psu --n 21,21,21 --x -40,40 --y -40,40 --z 124,224 --out map --json map.json",
       with_figures(
           {{"device", "DEVICE", "built-in device or device file", &a->device, true},
@@ -139,13 +142,14 @@ Command map_command() {
             "(default: "
             "the platform's radius, or the machine's extent)",
             &a->length},
-           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+           {"--threads", "N", "threads of a process (default 0: all cores); the result does not depend on it",
+            &a->threads},
            {"--json", "FILE", "write summary and arrays", &a->json},
            report_option(&a->report),
            {"--out", "DIR",
             "write fig11 and stiffness-vs-length as SVG, PDF, PNG with their captions, and map.csv, map.vtu", &a->out}},
           &a->figures),
-      [a] { run(*a); }};
+      [a](Ranks* ranks) { run(*a, ranks); }};
 }
 
 }  // namespace deflect::cli

@@ -28,7 +28,7 @@ void set_talk(Talk wanted) {
 
 bool verbose() { return talk == Talk::verbose; }
 
-std::ostream* progress_stream() { return talk == Talk::quiet ? nullptr : terminal_stream(); }
+ProgressStream progress_stream() { return talk == Talk::quiet ? nullptr : watched_stream(); }
 
 void tell_line(const std::string& text) {
   fmt::print(stderr, "deflect {:.2f} s: {}\n", seconds(), text);

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <ostream>
 #include <string>
 #include <utility>
 
@@ -17,8 +16,8 @@ enum class Talk { quiet, usual, verbose };
 void set_talk(Talk);
 bool verbose();
 
-/// Where progress of long work is drawn: standard error where it is a terminal, nullptr otherwise and when quiet.
-std::ostream* progress_stream();
+/// Where progress of long work is shown: watched_stream(), nowhere when quiet.
+ProgressStream progress_stream();
 
 /// One line on standard error where verbose, with the seconds since the program began: "deflect 0.12 s: …".
 void tell_line(const std::string&);

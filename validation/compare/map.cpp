@@ -6,14 +6,28 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "msa/base/error.h"
 #include "msa/mechanism/configuration.h"
-#include "validation/compare/parallel.h"
 #include "validation/compare/swept.h"
 #include "validation/compare/theories.h"
+#include "validation/parallel/pack.h"
+#include "validation/parallel/shared_cases.h"
 
 namespace deflect {
+
+template <class Archive>
+void serialize(Archive& a, MapValues& v) {
+  a(v.compliance_mm_N, v.stiffness_N_mm, v.K_ii, v.smallest_N_mm, v.largest_N_mm, v.isotropy);
+}
+
+template <class Archive>
+void serialize(Archive& a, MapPose& p) {
+  a(p.pose_mm_deg, p.out_of_reach, p.slide_min_mm, p.slide_mean_mm, p.slide_max_mm, p.analytic, p.msa,
+    p.relative_difference);
+}
+
 namespace {
 
 /// Poses that a thread takes at a time.
@@ -204,12 +218,23 @@ StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options) {
   const std::vector<Vector6> loads = loads_of(options);
   const std::size_t poses = map.poses.size(), chunk = chunk_of(poses);
   const auto progress = [&](std::size_t chunks) { options.progress(std::min(poses, chunks * chunk)); };
-  for_each_case((poses + chunk - 1) / chunk, 1, options.threads,
-                [&](std::size_t k) {
-                  SweptTheories theories(m);
-                  for (std::size_t i = k * chunk; i < std::min(poses, (k + 1) * chunk); ++i)
-                    map.poses[i] = map_pose(theories, m, options, loads, i);
-                },
+  const auto of_chunk = [&](std::size_t k) {
+    return std::span(map.poses).subspan(k * chunk, std::min(chunk, poses - k * chunk));
+  };
+  SharedCases chunks;
+  chunks.count = (poses + chunk - 1) / chunk;
+  chunks.work = [&](std::size_t k) {
+    SweptTheories theories(m);
+    for (std::size_t i = k * chunk; MapPose & pose : of_chunk(k)) pose = map_pose(theories, m, options, loads, i++);
+  };
+  chunks.result = [&](std::size_t k) {
+    const auto done = of_chunk(k);
+    return pack(std::vector<MapPose>(done.begin(), done.end()));
+  };
+  chunks.take = [&](std::size_t k, const std::string& bytes) {
+    std::ranges::move(unpack<std::vector<MapPose>>(bytes), of_chunk(k).begin());
+  };
+  for_each_case(chunks, options.ranks, options.threads,
                 options.progress ? std::function<void(std::size_t)>(progress) : nullptr);
   return map;
 }

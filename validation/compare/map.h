@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "msa/mechanism/description.h"
+#include "validation/parallel/ranks.h"
 
 namespace deflect {
 
@@ -40,6 +41,7 @@ struct MapOptions {
   bool analytic = true, msa = true;                ///< theories asked for
   double length_mm = 0;                            ///< L_c > 0 that weighs rotations in `isotropy`
   int threads = 0;                                 ///< 0: as many as the machine has
+  Ranks* ranks = nullptr;                          ///< that share the poses; none: this process alone
   std::function<void(std::size_t done)> progress;  ///< poses done so far; called from all threads
 };
 
@@ -86,7 +88,8 @@ struct StiffnessMap {
 double weighing_length_mm(const Mechanism&);
 
 /// Members are one element each, which is exact at its nodes. At every pose, under every load and by each theory asked
-/// for the checks of at_pose.h apply. The result has the same bits for any number of threads. A pose that the
+/// for the checks of at_pose.h apply. The result has the same bits for any number of threads and ranks; of these the
+/// first has it whole, the others their own poses. A pose that the
 /// kinematics refuse is kept with the reason; every other failure ends the map with the error of the first pose in the
 /// grid's order that has one: ModelError, NumericalError. InputError on options that no map can have.
 StiffnessMap map_stiffness(const Mechanism&, const MapOptions&);

@@ -10,7 +10,7 @@
 #include "analytic/pose_sweep.h"
 #include "msa/base/error.h"
 #include "msa/frame/msa.h"
-#include "validation/compare/parallel.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 namespace {

@@ -13,8 +13,8 @@
 #include "msa/base/geometry.h"
 #include "msa/frame/build.h"
 #include "msa/mechanism/configuration.h"
-#include "validation/compare/parallel.h"
 #include "validation/measurement/measurements.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 

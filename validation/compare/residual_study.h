@@ -1,8 +1,8 @@
 // The ground of a comparison: machines, predictions, forces at sites.
 #pragma once
 
-#include "validation/compare/parallel.h"
 #include "validation/compare/patterns.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 

@@ -10,9 +10,9 @@
 
 #include "validation/compare/as_built.h"
 #include "validation/compare/columns.h"
-#include "validation/compare/parallel.h"
 #include "validation/compare/prediction.h"
 #include "validation/compare/tail.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 namespace {

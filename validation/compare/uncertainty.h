@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "msa/mechanism/configuration.h"
-#include "validation/compare/parallel.h"
 #include "validation/measurement/replicates.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "validation/compare/columns.h"
-#include "validation/compare/parallel.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "validation/compare/columns.h"
 #include "validation/compare/findings.h"
+#include "validation/diagnosis/bootstrap.h"
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/selection.h"
@@ -158,7 +159,10 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   double least_p = 1;
   for (std::size_t i = 0; i < all.size(); ++i)
     least_p = std::min(least_p, single_p_value(all[i], d.candidates[i].gain));
-  d.chance = chance_of_any(all, least_p);
+  d.bootstrap_sets = options.bootstrap_sets;
+  d.chance = chance_of_any(all, least_p,
+                           {options.bootstrap_sets, options.threads, options.ranks,
+                            [&](std::size_t done, std::size_t of) { rounds(done, of); }});
   const bool missing = (d.chance < alarm && d.probability_nothing < 0.6) ||
                        (d.probability_unknown > sure && discrepancy.p_value(null.residual) < left_over_p);
   const std::vector<Candidate> first = d.candidates;

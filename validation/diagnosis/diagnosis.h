@@ -14,6 +14,7 @@
 #include "validation/diagnosis/candidates.h"
 #include "validation/diagnosis/detectable.h"
 #include "validation/diagnosis/scan.h"
+#include "validation/parallel/ranks.h"
 
 namespace deflect {
 
@@ -30,6 +31,7 @@ struct Diagnosis {
   /// Of "nothing" beside the candidates of the first step, and of something unknown: beside what was found, if any.
   double probability_nothing = 0, probability_unknown = 0;
   double chance = 1;                  ///< of any effect looking as good with nothing missing
+  int bootstrap_sets = 0;             ///< drawn to find it
   std::vector<Candidate> candidates;  ///< of the first step, best first
   Hypothesis missing;                 ///< in the order in which they were added
   Fit fit;                            ///< of all of them
@@ -52,7 +54,9 @@ struct Diagnosis {
 
 struct DiagnosisOptions {
   ComparisonOptions comparison;
+  int bootstrap_sets = 1999;  ///< bootstrap.h
   int threads = 0;
+  Ranks* ranks = nullptr;                      ///< that share the bootstrap; all have the result
   std::function<void(double share)> progress;  ///< of the work, as far as it can be told; from any thread
 };
 

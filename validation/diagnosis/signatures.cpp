@@ -1,6 +1,5 @@
 #include "validation/diagnosis/signatures.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -8,9 +7,8 @@
 
 #include "msa/base/error.h"
 #include "validation/compare/columns.h"
-#include "validation/compare/parallel.h"
 #include "validation/compare/tail.h"
-#include "validation/measurement/random.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 namespace {
@@ -170,42 +168,9 @@ double cosine(const Signature& a, const Signature& b) {
 
 double single_p_value(const Signature& s, double gain) { return tail(s.amplitudes(), s.one_sided, gain); }
 
-double chance_of_any(const std::vector<Signature>& all, double least_p, int draws) {
-  if (all.empty()) return 1;
-  Eigen::Index columns = 0;
-  for (const Signature& s : all) columns += s.basis.cols();
-  MatrixX B(all.front().basis.rows(), columns);
-  columns = 0;
-  for (const Signature& s : all) {
-    B.middleCols(columns, s.basis.cols()) = s.basis;
-    columns += s.basis.cols();
-  }
-  // z = Bᵀr of r ~ N(0, 1) has the covariance BᵀB.
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(B.transpose() * B);
-  const MatrixX root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-  Random random(20110101);
-  int as_good = 0;
-  for (int draw = 0; draw < draws; ++draw) {
-    VectorX xi(columns);
-    for (double& x : xi) x = random.normal();
-    const VectorX z = root * xi;
-    Eigen::Index at = 0;
-    bool found = false;
-    for (const Signature& s : all) {
-      const auto own = z.segment(at, s.basis.cols());
-      at += s.basis.cols();
-      double gain = 0;
-      if (s.shaped) {
-        for (const double along : own)
-          if (!(s.one_sided && along > 0)) gain = std::max(gain, along * along);
-      } else if (!(s.one_sided && own(0) * s.basis.col(0).dot(s.at_start) > 0)) {
-        gain = own.squaredNorm();
-      }
-      found = found || tail(s.amplitudes(), s.one_sided, gain) <= least_p;
-    }
-    as_good += found;
-  }
-  return (as_good + 1.0) / (draws + 1.0);
+double gain_at_p_value(const Signature& s, double p) {
+  const double own = s.one_sided ? 2 * p : p;
+  return own < 1 ? chi_squared_at_tail(s.amplitudes(), own) : 0;
 }
 
 }  // namespace deflect

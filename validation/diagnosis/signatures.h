@@ -50,8 +50,7 @@ double cosine(const Signature&, const Signature&);
 /// p-value of a gain in χ² by the effect alone, as if it were the only one looked at.
 double single_p_value(const Signature&, double gain);
 
-/// Chance that in data with nothing missing some effect looks at least as good (as improbable) as `least_p`: a
-/// parametric bootstrap of the null, in the space of the signatures. Deterministic.
-double chance_of_any(const std::vector<Signature>&, double least_p, int draws = 1999);
+/// The gain that has this p-value; 0 where every gain has a smaller one.
+double gain_at_p_value(const Signature&, double p);
 
 }  // namespace deflect

@@ -1,4 +1,4 @@
-#include "validation/compare/parallel.h"
+#include "validation/parallel/cases.h"
 
 #include <algorithm>
 #include <atomic>

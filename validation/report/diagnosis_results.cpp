@@ -99,7 +99,8 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
   std::string out = fmt::format("{} against {}\n\n{}\n\n", device, data, verdict_words(d));
   if (!d.missing.empty()) out += "fitted: " + values_words(d.missing, d.fit) + "\n\n";
   out += candidates_table(d);
-  out += fmt::format("\nchance that some effect looks as good in data with nothing missing: {:.2g}\n", d.chance);
+  out += fmt::format("\nchance that some effect looks as good in data with nothing missing: {:.2g} ({} sets drawn)\n",
+                     d.chance, d.bootstrap_sets);
   if (d.unexplained) {
     out += fmt::format("left unexplained: {:.0f} % of the misfit; of that", 100 * d.share_unexplained);
     for (const Localised& l : d.localised) out += fmt::format(" {:.0f} % by {};", 100 * l.share, l.what);
@@ -167,6 +168,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["probability_nothing"] = d.probability_nothing;
   j["probability_unknown"] = d.probability_unknown;
   j["chance_of_any"] = d.chance;
+  j["bootstrap_sets"] = d.bootstrap_sets;
   j["tolerance_scale"] = d.tolerance_scale;
   j["set_aside"] = d.set_aside;
   j["strained_tolerances"] = Json::array();

@@ -1,0 +1,77 @@
+#include "validation/diagnosis/bootstrap.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "validation/measurement/random.h"
+#include "validation/parallel/pack.h"
+#include "validation/parallel/shared_cases.h"
+
+namespace deflect {
+namespace {
+
+constexpr std::size_t block = 256;  // sets with one stream of random numbers
+constexpr std::uint64_t seed = 20110101;
+
+/// What the effect gains in χ² from the components of a set along its directions.
+template <class Components>
+double gain(const Signature& s, const Components& z) {
+  if (s.shaped) {
+    double most = 0;
+    for (const double along : z)
+      if (!(s.one_sided && along > 0)) most = std::max(most, along * along);
+    return most;
+  }
+  const bool wrong_way = s.one_sided && z(0) * s.basis.col(0).dot(s.at_start) > 0;
+  return wrong_way ? 0 : z.squaredNorm();
+}
+
+}  // namespace
+
+double chance_of_any(const std::vector<Signature>& all, double least_p, const Bootstrap& o) {
+  if (all.empty() || !(least_p < 1)) return 1;
+  Eigen::Index columns = 0;
+  for (const Signature& s : all) columns += s.basis.cols();
+  MatrixX B(all.front().basis.rows(), columns);
+  std::vector<double> wanted;
+  columns = 0;
+  for (const Signature& s : all) {
+    B.middleCols(columns, s.basis.cols()) = s.basis;
+    columns += s.basis.cols();
+    wanted.push_back(std::max(gain_at_p_value(s, least_p), std::numeric_limits<double>::min()));
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(B.transpose() * B);
+  const MatrixX root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+
+  const auto sets = static_cast<std::size_t>(o.sets);
+  std::vector<int> as_good((sets + block - 1) / block);
+  SharedCases blocks;
+  blocks.count = as_good.size();
+  blocks.work = [&](std::size_t k) {
+    Random random(seed + k);
+    MatrixX xi(columns, static_cast<Eigen::Index>(std::min(block, sets - k * block)));
+    for (double& x : xi.reshaped()) x = random.normal();
+    const MatrixX z = root * xi;
+    as_good[k] = 0;
+    for (const auto set : z.colwise()) {
+      Eigen::Index at = 0;
+      bool found = false;
+      for (std::size_t i = 0; i < all.size() && !found; ++i) {
+        found = gain(all[i], set.segment(at, all[i].basis.cols())) >= wanted[i];
+        at += all[i].basis.cols();
+      }
+      as_good[k] += found;
+    }
+  };
+  blocks.result = [&](std::size_t k) { return pack(as_good[k]); };
+  blocks.take = [&](std::size_t k, const std::string& bytes) { as_good[k] = unpack<int>(bytes); };
+  const auto told = [&](std::size_t done) { o.told(done, as_good.size()); };
+  for_each_case(blocks, o.ranks, o.threads, o.told ? std::function<void(std::size_t)>(told) : nullptr);
+  double chance = (std::accumulate(as_good.begin(), as_good.end(), 0.0) + 1) / (o.sets + 1.0);
+  if (o.ranks) chance = unpack<double>(o.ranks->meet("", pack(chance)).said);
+  return chance;
+}
+
+}  // namespace deflect
