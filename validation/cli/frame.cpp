@@ -76,7 +76,7 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
 }
 
 void run(const Arguments& a) {
-  const frame::FrameDescription f = frame::read_frame(frame_file(a.file));
+  const frame::FrameDescription f = timed("frame: reading", [&] { return frame::read_frame(frame_file(a.file)); });
   tell("frame {}: {}, {} nodes, {} members", f.name, frame_file(a.file).string(), f.nodes.size(), f.members.size());
   frame::FrameOptions options;
   options.division = divide_members(f, a.element_size);
