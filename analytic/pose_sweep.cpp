@@ -13,12 +13,6 @@ namespace {
 constexpr double dependent = 1e-9;  // of twists, as in complement()
 constexpr std::size_t most_passive = 12;
 
-bool rigid(const PlacedJoint& j) {
-  for (std::size_t i = 0; i < 6; ++i)
-    if (j.elastic(i) || j.free(i)) return false;
-  return true;
-}
-
 /// The wrenches that do no work on the twists, as many columns as come out: Gauss and Jordan with full pivoting on the
 /// rows twistᵀ, rotations weighed by the length.
 template <class Columns>
@@ -65,7 +59,7 @@ void carried_by(const std::array<Vector6, most_passive>& twists, std::size_t cou
 }  // namespace
 
 PoseSweep::PoseSweep(const Configuration& c) {
-  applies_ = rigid(c.base) && rigid(c.tool);
+  applies_ = c.base.rigid() && c.tool.rigid();
   for (std::size_t l = 0; applies_ && l < c.legs.size(); ++l) {
     const PlacedLeg& placed = c.legs[l];
     Leg leg;

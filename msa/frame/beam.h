@@ -14,6 +14,7 @@ using Matrix12 = Eigen::Matrix<double, 12, 12>;
 /// y, bending about z) and GAs_z; infinite for an Euler–Bernoulli beam.
 struct BeamRigidity {
   double EA, EIy, EIz, GJ, GAs_y, GAs_z;
+  bool operator==(const BeamRigidity&) const = default;
 };
 
 struct Beam {

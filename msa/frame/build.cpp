@@ -13,12 +13,6 @@
 namespace deflect::frame {
 namespace {
 
-bool rigid(const PlacedJoint& j) {
-  for (std::size_t i = 0; i < 6; ++i)
-    if (j.elastic(i) || j.free(i)) return false;
-  return true;
-}
-
 std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
   std::array<ConnectionFreedom, 6> out;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -115,7 +109,7 @@ class Builder {
     };
     for (const PlacedPart& part : leg.parts) {
       if (const auto* j = std::get_if<PlacedJoint>(&part)) {
-        if (rigid(*j)) continue;
+        if (j->rigid()) continue;
         if (waiting) attach(body(fmt::format("{} {} / {}", leg.name, waiting->part, j->part), j->p_W), j->p_W);
         waiting = j;
       } else if (const auto* group = std::get_if<PlacedParallel>(&part)) {
@@ -178,9 +172,9 @@ MechanismModel build(const Configuration& c, const MemberDivision& division) {
   Builder b(division);
   MechanismModel out;
   out.ground = b.body("ground", c.base.p_W);
-  out.base = rigid(c.base) ? out.ground : b.body("base", c.base.p_W);
+  out.base = c.base.rigid() ? out.ground : b.body("base", c.base.p_W);
   out.platform = b.body("platform", c.pose.p_WT);
-  out.tool = rigid(c.tool) ? out.platform : b.body("tool", c.tool.p_W);
+  out.tool = c.tool.rigid() ? out.platform : b.body("tool", c.tool.p_W);
   if (out.base != out.ground) b.joint(out.ground, out.base, c.base, "base");
   if (out.tool != out.platform) b.joint(out.platform, out.tool, c.tool, "tool");
   for (const PlacedLeg& leg : c.legs) b.mounted_leg(leg, out.base, out.platform, c.pose.p_WT);

@@ -29,6 +29,11 @@ struct PlacedJoint {
 
   bool elastic(std::size_t i) const { return stiffness || !laws[i].empty(); }
   bool free(std::size_t i) const { return freedoms[i] == Freedom::free && !elastic(i); }
+  bool rigid() const {
+    for (std::size_t i = 0; i < 6; ++i)
+      if (elastic(i) || free(i)) return false;
+    return true;
+  }
 };
 
 /// A straight member from p_W_start to p_W_end with axes R_WM, x along it.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "msa/base/error.h"
 
 namespace deflect {
@@ -12,6 +14,7 @@ const Configuration& SweptTheories::at(const Pose& pose) {
   const bool first = !configuration_;
   analytic_.reset();
   msa_.reset();
+  msa_is_there_ = false;
   const Configuration& c = posing_.at(pose);
   configuration_ = &c;
   if (first) {
@@ -62,8 +65,8 @@ Answer SweptTheories::analytic(const Vector6& F) {
 }
 
 Answer SweptTheories::msa(const Vector6& F) {
-  if (msa_sweep_ && msa_sweep_->solve(*configuration_, F))
-    return checked(*msa_sweep_, msa_legs_, F, msa_sweep_->reaction(), "MSA");
+  if (msa_sweep_ && !std::exchange(msa_is_there_, true)) msa_sweep_->at(*configuration_);
+  if (msa_sweep_ && msa_sweep_->solve(F)) return checked(*msa_sweep_, msa_legs_, F, msa_sweep_->reaction(), "MSA");
   if (!msa_) msa_.emplace(*configuration_, frame::MemberDivision(), where());
   return msa_->solve(F);
 }

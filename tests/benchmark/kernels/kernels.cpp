@@ -90,12 +90,30 @@ void msa_sweep(benchmark::State& state, const char* name) {
   const Configuration& first = posing.at(c.next());
   frame::MsaSweep sweep(first, frame::equal_division(first, static_cast<int>(state.range(0))));
   for (auto _ : state) {
-    if (!sweep.solve(posing.at(c.next()), c.F)) state.SkipWithError("no solution");
+    sweep.at(posing.at(c.next()));
+    if (!sweep.solve(c.F)) state.SkipWithError("no solution");
     benchmark::DoNotOptimize(sweep.stiffness());
   }
 }
 BENCHMARK_CAPTURE(msa_sweep, haptic_6psu, "haptic-6psu")->Arg(1)->Arg(4);
 BENCHMARK_CAPTURE(msa_sweep, ideal_joints, "haptic-6psu-ideal-joints")->Arg(1)->Arg(4);
+
+/// Forces along x, y and z at each pose, as for a map.
+void msa_sweep_three_loads(benchmark::State& state, const char* name) {
+  Case c(name);
+  Posing posing(c.mechanism);
+  const Configuration& first = posing.at(c.next());
+  frame::MsaSweep sweep(first, frame::equal_division(first, static_cast<int>(state.range(0))));
+  for (auto _ : state) {
+    sweep.at(posing.at(c.next()));
+    for (int i = 0; i < 3; ++i) {
+      if (!sweep.solve(50 * Vector6::Unit(i))) state.SkipWithError("no solution");
+      benchmark::DoNotOptimize(sweep.stiffness());
+    }
+  }
+}
+BENCHMARK_CAPTURE(msa_sweep_three_loads, haptic_6psu, "haptic-6psu")->Arg(1)->Arg(4);
+BENCHMARK_CAPTURE(msa_sweep_three_loads, ideal_joints, "haptic-6psu-ideal-joints")->Arg(1)->Arg(4);
 
 }  // namespace
 
