@@ -99,7 +99,7 @@ void PoseSweep::carry(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, do
     twists[k] = freedom_twist(std::get<PlacedJoint>(placed.parts[leg.passive[k].first]), leg.passive[k].second, p_WT);
   carried_by(twists, leg.passive.size(), length, leg.N);
   const Eigen::Index n = leg.N.cols();
-  leg.A.setZero(n, n);
+  leg.members_A.setZero(n, n);
   leg.expansion.setZero();
   for (Flexible& f : leg.members) {
     const auto& member = std::get<PlacedMember>(placed.parts[f.part]);
@@ -112,7 +112,7 @@ void PoseSweep::carry(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, do
       w.col(k).tail<3>() = member.R_WM.transpose() * (leg.N.col(k).tail<3>() + arm.cross(force));
     }
     f.A.noalias() = w.transpose().lazyProduct(Columns(C.lazyProduct(w)));
-    leg.A += f.A;
+    leg.members_A += f.A;
     leg.expansion += member.expansion * (member.p_W_end - member.p_W_start);
   }
   for (Freedom& f : leg.springs) {
@@ -123,12 +123,11 @@ void PoseSweep::carry(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, do
   }
 }
 
-/// λ of all legs, one after the other.
-bool PoseSweep::determine_forces(const Vector6& F) {
+/// Whether statics alone gives λ of all legs; false where what depends on a force must know it and does not.
+bool PoseSweep::determine() {
   Eigen::Index carried = 0;
   for (const Leg& leg : legs_) carried += leg.N.cols();
   determinate_ = carried == 6;
-  lambda_.setZero();
   if (!determinate_) return linear_;
   Matrix6 all;
   Eigen::Index at = 0;
@@ -136,33 +135,28 @@ bool PoseSweep::determine_forces(const Vector6& F) {
     for (Eigen::Index k = 0; k < leg.N.cols(); ++k) all.col(at++) = leg.N.col(k);
   statics_.compute(all);
   const Vector6 pivots = statics_.matrixLU().diagonal().cwiseAbs();
-  if (!(pivots.minCoeff() > 1e-12 * pivots.maxCoeff())) return false;
-  lambda_ = statics_.solve(F);
-  return true;
+  return pivots.minCoeff() > 1e-12 * pivots.maxCoeff();
 }
 
-bool PoseSweep::solve(const Configuration& c, const Vector6& F_T_W, double warmer) {
-  Vector6 F = F_T_W;
-  F.head<3>() += c.weight;
-  for (std::size_t l = 0; l < legs_.size(); ++l) carry(legs_[l], c.legs[l], c.pose.p_WT, c.size);
-  if (!determine_forces(F) || (warmer != 0 && !determinate_)) return false;
+void PoseSweep::at(const Configuration& c) {
+  weight_ = c.weight;
+  size_ = c.size;
+  for (std::size_t l = 0; l < legs_.size(); ++l) carry(legs_[l], c.legs[l], c.pose.p_WT, size_);
+  held_ = determine() && (!linear_ || assemble());
+}
+
+/// The legs' compliance and the stiffness of all, at the forces of the laws.
+bool PoseSweep::assemble() {
   stiffness_.setZero();
-  Vector6 moved = Vector6::Zero();  // e
-  Eigen::Index at = 0;
   for (Leg& leg : legs_) {
     const Eigen::Index n = leg.N.cols();
     if (n == 0) continue;
-    leg.lambda = lambda_.segment(determinate_ ? at : 0, n);
-    const auto& lambda = leg.lambda;
-    if (determinate_)
-      moved.segment(at, n) = leg.A.lazyProduct(lambda) + warmer * leg.N.topRows<3>().transpose() * leg.expansion;
+    leg.A = leg.members_A;
     for (Freedom& f : leg.springs) {
-      const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>> w(f.twist.data(), n);
-      f.force = determinate_ ? w.dot(lambda) : 0;
       f.yields = compliance(f.spring, f.force);
       if (!std::isfinite(f.yields)) return false;
+      const Eigen::Map<const Numbers> w(f.twist.data(), n);
       leg.A += f.yields * w.lazyProduct(w.transpose());
-      if (determinate_) moved.segment(at, n) += w * deflection(f.spring, f.force);
     }
     if (n == 1) {
       if (!(leg.A(0, 0) > 0)) return false;
@@ -175,22 +169,58 @@ bool PoseSweep::solve(const Configuration& c, const Vector6& F_T_W, double warme
       leg.inverse = llt.solve(Small::Identity(n, n));
       stiffness_ += leg.N * leg.inverse * leg.N.transpose();
     }
-    at += determinate_ ? n : 0;
   }
+  if (determinate_) return true;
+  Matrix6 weighed = stiffness_;
+  weighed.rightCols<3>() /= size_;
+  weighed.bottomRows<3>() /= size_;
+  factor_.compute(weighed);
+  return factor_.isPositive() && factor_.vectorD().minCoeff() > 1e-10 * factor_.vectorD().maxCoeff();
+}
+
+/// The laws', from λ of their leg.
+void PoseSweep::tell_forces(Leg& leg) {
+  for (Freedom& f : leg.springs) f.force = Eigen::Map<const Numbers>(f.twist.data(), leg.N.cols()).dot(leg.lambda);
+}
+
+/// Of determinate legs: t from N_iᵀ t = e_i.
+Vector6 PoseSweep::moved_by_deflections(double warmer) const {
+  Vector6 e = Vector6::Zero();
+  Eigen::Index at = 0;
+  for (const Leg& leg : legs_) {
+    const Eigen::Index n = leg.N.cols();
+    auto own = e.segment(at, n);
+    own = leg.members_A.lazyProduct(leg.lambda);
+    if (warmer != 0) own += warmer * leg.N.topRows<3>().transpose() * leg.expansion;
+    for (const Freedom& f : leg.springs)
+      own += Eigen::Map<const Numbers>(f.twist.data(), n) * deflection(f.spring, f.force);
+    at += n;
+  }
+  return statics_.transpose().solve(e);
+}
+
+bool PoseSweep::solve(const Vector6& F_T_W, double warmer) {
+  if (!held_ || (warmer != 0 && !determinate_)) return false;
+  Vector6 F = F_T_W;
+  F.head<3>() += weight_;
   if (determinate_) {
-    displacement_ = statics_.transpose().solve(moved);
+    const Vector6 lambda = statics_.solve(F);
+    Eigen::Index at = 0;
+    for (Leg& leg : legs_) {
+      leg.lambda = lambda.segment(at, leg.N.cols());
+      tell_forces(leg);
+      at += leg.N.cols();
+    }
+    if (!linear_ && !assemble()) return false;
+    displacement_ = moved_by_deflections(warmer);
     return true;
   }
-  Vector6 weight = Vector6::Ones();
-  weight.tail<3>().setConstant(1 / c.size);
-  const Eigen::LDLT<Matrix6> held(weight.asDiagonal() * stiffness_ * weight.asDiagonal());
-  if (!held.isPositive() || !(held.vectorD().minCoeff() > 1e-10 * held.vectorD().maxCoeff())) return false;
-  displacement_ = weight.cwiseProduct(held.solve(weight.cwiseProduct(F)));
+  F.tail<3>() /= size_;
+  displacement_ = factor_.solve(F);
+  displacement_.tail<3>() /= size_;
   for (Leg& leg : legs_) {
     leg.lambda = leg.inverse * (leg.N.transpose() * displacement_);
-    for (Freedom& f : leg.springs)
-      f.force = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>>(f.twist.data(), leg.N.cols())
-                    .dot(leg.lambda);
+    tell_forces(leg);
   }
   return true;
 }
@@ -227,7 +257,7 @@ const std::vector<Matrix6>& PoseSweep::derivatives() {
     const Columns line = leg.N.lazyProduct(leg.inverse);
     for (const Flexible& f : leg.members) derivatives_[f.shared] += line * f.A * line.transpose();
     for (const Freedom& f : leg.springs) {
-      const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>> w(f.twist.data(), n);
+      const Eigen::Map<const Numbers> w(f.twist.data(), n);
       const Vector6 along = line.lazyProduct(w);
       derivatives_[f.shared] += (f.yields * along) * along.transpose();
     }

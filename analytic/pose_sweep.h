@@ -1,5 +1,6 @@
-// The closed form for one device at many poses and loads: what no pose changes is worked out once, and nothing is
-// allocated afterwards. The same equations as those of a Group of Chains (chain.h), for what sweeps are made of:
+// The closed form for one device at many poses and loads: what no pose changes is worked out once, what no load changes
+// once per pose, and nothing is allocated afterwards. The same equations as those of a Group of Chains (chain.h), for
+// what sweeps are made of:
 //
 //   A_i = N_iᵀ C_i N_i,   K = Σ N_i A_i⁻¹ N_iᵀ                       (45), (46), passive joints released
 //
@@ -8,6 +9,7 @@
 // legs' own deflections, gives the displacement t.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <array>
 #include <string>
@@ -27,11 +29,14 @@ class PoseSweep {
   /// joints of given 6×6 stiffness, legs beside, misfits, base or tool that move or yield.
   bool applies() const { return applies_; }
 
-  /// Response to the wrench F at T, the weight and so many K above 20 °C, base axes, SI: displacement [δ; θ] of T from
-  /// the assembled state and the tangent stiffness. False, and no result, where a pose or load asks for more: a leg
-  /// that yields nowhere along what it carries, a law of no stiffness at its force, legs that do not hold T, heat or
-  /// laws that depend on their force and legs that are not statically determinate.
-  bool solve(const Configuration&, const Vector6& F_T_W, double warmer = 0);
+  /// Moves on, for any number of solve(); the configuration may go afterwards.
+  void at(const Configuration&);
+
+  /// Response there to the wrench F at T, the weight and so many K above 20 °C, base axes, SI: displacement [δ; θ] of T
+  /// from the assembled state and the tangent stiffness. False, and no result, where a pose or load asks for more: a
+  /// leg that yields nowhere along what it carries, a law of no stiffness at its force, legs that do not hold T, heat
+  /// or laws that depend on their force and legs that are not statically determinate.
+  bool solve(const Vector6& F_T_W, double warmer = 0);
 
   const Vector6& displacement() const { return displacement_; }
   const Matrix6& stiffness() const { return stiffness_; }
@@ -58,6 +63,7 @@ class PoseSweep {
  private:
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
   struct Freedom {
     std::size_t part, index;  // of the leg; tx … rz
     std::size_t shared;       // in parts_
@@ -76,19 +82,25 @@ class PoseSweep {
     std::vector<std::pair<std::size_t, std::size_t>> passive;
     Vector3 expansion = Vector3::Zero();  // per kelvin, of the end against the start
     Columns N;
-    Small A, inverse;
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> lambda;
+    Small members_A, A, inverse;  // of the members; of all
+    Numbers lambda;
   };
 
   static void carry(Leg&, const PlacedLeg&, const Vector3& p_WT, double length);
-  bool determine_forces(const Vector6& F);
+  bool determine();
+  bool assemble();
+  static void tell_forces(Leg&);
+  Vector6 moved_by_deflections(double warmer) const;
 
-  bool applies_ = true, linear_ = true, determinate_ = false;
+  bool applies_ = true, linear_ = true, determinate_ = false, held_ = false;
   std::vector<Leg> legs_;
   std::vector<Part> parts_;
   std::vector<Matrix6> derivatives_;
-  Eigen::PartialPivLU<Matrix6> statics_;
-  Vector6 lambda_ = Vector6::Zero(), displacement_ = Vector6::Zero();
+  Vector3 weight_ = Vector3::Zero();
+  double size_ = 0;
+  Eigen::PartialPivLU<Matrix6> statics_;  // of determinate legs
+  Eigen::LDLT<Matrix6> factor_;           // of the stiffness of others, rotations weighed by the size
+  Vector6 displacement_ = Vector6::Zero();
   Matrix6 stiffness_ = Matrix6::Zero();
 };
 

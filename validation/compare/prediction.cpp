@@ -23,7 +23,7 @@ class Predictor {
     if (o.theory != Theory::analytic)
       msa_.emplace(c, o.division);
     else if (analytic::PoseSweep sweep(c); sweep.applies())
-      sweep_.emplace(std::move(sweep));
+      sweep_.emplace(std::move(sweep)).at(c);
   }
 
   /// Answers are affine in load and temperature: a few of them give all.
@@ -50,7 +50,7 @@ class Predictor {
   Response solve(const Vector6& F, const Conditions& conditions) {
     if (affine_ && conditions.geometry == Geometry::linear)
       return {affine_->rest + affine_->C * F + conditions.warmer * affine_->per_kelvin, affine_->converged, {}};
-    if (sweep_ && conditions.geometry == Geometry::linear && sweep_->solve(*configuration_, F, conditions.warmer))
+    if (sweep_ && conditions.geometry == Geometry::linear && sweep_->solve(F, conditions.warmer))
       return {sweep_->displacement(), true, {}};
     if (msa_) {
       const frame::MsaSolution s = msa_->solve(F, conditions);

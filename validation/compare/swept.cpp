@@ -14,7 +14,7 @@ const Configuration& SweptTheories::at(const Pose& pose) {
   const bool first = !configuration_;
   analytic_.reset();
   msa_.reset();
-  msa_is_there_ = false;
+  analytic_is_there_ = msa_is_there_ = false;
   const Configuration& c = posing_.at(pose);
   configuration_ = &c;
   if (first) {
@@ -55,7 +55,8 @@ Answer SweptTheories::checked(const Sweep& sweep, std::vector<LegStiffness>& leg
 }
 
 Answer SweptTheories::analytic(const Vector6& F) {
-  if (analytic_sweep_ && analytic_sweep_->solve(*configuration_, F)) {
+  if (analytic_sweep_ && !std::exchange(analytic_is_there_, true)) analytic_sweep_->at(*configuration_);
+  if (analytic_sweep_ && analytic_sweep_->solve(F)) {
     Vector6 reaction = Vector6::Zero();
     for (std::size_t i = 0; i < configuration_->legs.size(); ++i) reaction -= analytic_sweep_->leg_wrench(i);
     return checked(*analytic_sweep_, analytic_legs_, F, reaction, "analytic");

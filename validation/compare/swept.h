@@ -33,9 +33,9 @@ class SweptTheories {
   const Configuration* configuration_ = nullptr;
   std::optional<analytic::PoseSweep> analytic_sweep_;
   std::optional<frame::MsaSweep> msa_sweep_;
-  bool msa_is_there_ = false;                           // legs are condensed where the MSA is first asked at a pose
-  std::vector<LegStiffness> analytic_legs_, msa_legs_;  // passive twists of the pose
-  std::optional<AnalyticAtPose> analytic_;              // made where the sweep does not reach
+  bool analytic_is_there_ = false, msa_is_there_ = false;  // sweeps move on where they are first asked at a pose
+  std::vector<LegStiffness> analytic_legs_, msa_legs_;     // passive twists of the pose
+  std::optional<AnalyticAtPose> analytic_;                 // made where the sweep does not reach
   std::optional<MsaAtPose> msa_;
 };
 
