@@ -89,5 +89,16 @@ TEST_F(MpiProgram, ProcessesThatCannotFindEachOtherAreRefused) {
   EXPECT_NE(run.out.find("mpirun of that MPI"), std::string::npos) << run.out;
 }
 
+TEST_F(MpiProgram, AProgramWithoutTheModuleIsRefusedWithTheRemedy) {
+  std::filesystem::copy_file(DEFLECT_PROGRAM, folder / "deflect");
+  const test::Run run = test::command("PMI_SIZE=2 PMI_RANK=0 DEFLECT_PLUGIN_DIR= " + path("deflect") + " devices");
+  EXPECT_EQ(run.code, 2);
+  for (const char* words : {"started as one of 2", "libopenmpi-dev", "without mpirun", "deflect_mpi.so: no such file"})
+    EXPECT_NE(run.out.find(words), std::string::npos) << words << " is not in " << run.out;
+  const test::Run other = test::command("PMI_SIZE=2 PMI_RANK=1 DEFLECT_PLUGIN_DIR= " + path("deflect") + " devices");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_EQ(other.out, "") << "one of them says it";
+}
+
 }  // namespace
 }  // namespace deflect
