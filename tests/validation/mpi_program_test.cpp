@@ -81,6 +81,16 @@ TEST_F(MpiProgram, WorkThatIsNotSharedIsDoneOnce) {
   EXPECT_TRUE(nlohmann::json::parse(contents(folder / "s.json")).contains("msa"));
 }
 
+TEST_F(MpiProgram, EachRunsForItselfWhereItIsAskedTo) {
+  ASSERT_EQ(::setenv("DEFLECT_ALONE", "1", 1), 0);
+  const test::Run run = on(2, "devices");
+  ::unsetenv("DEFLECT_ALONE");
+  EXPECT_EQ(run.code, 0) << run.out;
+  const std::size_t at = run.out.find("stewart-6ups ");
+  ASSERT_NE(at, std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("stewart-6ups ", at + 1), std::string::npos) << "two lists";
+}
+
 TEST_F(MpiProgram, ProcessesThatCannotFindEachOtherAreRefused) {
   const test::Run run = test::command(std::string("OMPI_ALLOW_RUN_AS_ROOT=1 PMI_SIZE=4 PMI_RANK=0 '") +
                                       DEFLECT_PROGRAM + "' map haptic-6psu --n 3");

@@ -153,6 +153,7 @@ TEST(Launched, IsReadFromTheEnvironmentOfTheLauncher) {
   EXPECT_EQ(with({{"OMPI_COMM_WORLD_SIZE", "4"}, {"OMPI_COMM_WORLD_RANK", "3"}, {"PMIX_RANK", "3"}}), std::pair(3, 4));
   EXPECT_EQ(with({{"PMI_SIZE", "2"}, {"PMI_RANK", "1"}}), std::pair(1, 2));
   EXPECT_EQ(with({{"PMIX_RANK", "5"}}), std::pair(5, 0));
+  EXPECT_EQ(with({{"PMI_SIZE", "2"}, {"PMI_RANK", "1"}, {"DEFLECT_ALONE", "1"}}), std::pair(0, 1));
 }
 
 }  // namespace

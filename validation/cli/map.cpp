@@ -88,7 +88,6 @@ void run(const Arguments& a, Ranks* ranks) {
     Progress progress(o.grid.size(), "poses", progress_stream());
     o.progress = [&progress](std::size_t done) { progress.update(done); };
     map = map_stiffness(m, o);
-    map.options.progress = nullptr;
   }
   if (ranks && !ranks->first()) return;
   const std::filesystem::path folder = a.out;

@@ -215,9 +215,11 @@ SlideWords slide_words(const Mechanism& m) {
 StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options) {
   check(options);
   StiffnessMap map{m.name, slide_words(m), options, std::vector<MapPose>(options.grid.size())};
+  map.options.ranks = nullptr;  // of the work, not of the map
+  map.options.progress = nullptr;
   const std::vector<Vector6> loads = loads_of(options);
   const std::size_t poses = map.poses.size(), chunk = chunk_of(poses);
-  const auto progress = [&](std::size_t chunks) { options.progress(std::min(poses, chunks * chunk)); };
+  const auto progress = [&](std::size_t done) { options.progress(std::min(poses, done * chunk)); };
   const auto of_chunk = [&](std::size_t k) {
     return std::span(map.poses).subspan(k * chunk, std::min(chunk, poses - k * chunk));
   };

@@ -58,6 +58,7 @@ Launched launched() {
     const char* const text = std::getenv(name);
     return text ? std::max(0, std::atoi(text)) : otherwise;
   };
+  if (const char* const alone = std::getenv("DEFLECT_ALONE"); alone && *alone) return {};
   for (const std::string by : {"OMPI_COMM_WORLD", "PMI"})  // Open MPI; MPICH and its kin
     if (const int size = number((by + "_SIZE").c_str(), 0)) return {number((by + "_RANK").c_str(), 0), size};
   if (const int rank = number("PMIX_RANK", -1); rank >= 0) return {rank, 0};

@@ -57,7 +57,8 @@ class Ranks {
   bool parted_ = false;
 };
 
-/// What the launcher says in the environment; of size 0 where it does not tell how many there are.
+/// What the launcher says in the environment; of size 0 where it does not tell how many there are. One alone where
+/// DEFLECT_ALONE is set: for a program that mpirun has started and that runs deflect for itself.
 struct Launched {
   int rank = 0, size = 1;
 };

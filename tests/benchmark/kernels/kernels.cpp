@@ -45,34 +45,23 @@ void analytic_model(benchmark::State& state, const char* name) {
 }
 BENCHMARK_CAPTURE(analytic_model, haptic_6psu, "haptic-6psu");
 
-void analytic_sweep(benchmark::State& state, const char* name) {
+/// From pose to pose, at each under forces along x, y, z, as many as asked for.
+void analytic_sweep(benchmark::State& state, const char* name, int loads) {
   Case c(name);
   Posing posing(c.mechanism);
   analytic::PoseSweep sweep(posing.at(c.next()));
   for (auto _ : state) {
     sweep.at(posing.at(c.next()));
-    if (!sweep.solve(c.F)) state.SkipWithError("no solution");
-    benchmark::DoNotOptimize(sweep.stiffness());
-  }
-}
-BENCHMARK_CAPTURE(analytic_sweep, haptic_6psu, "haptic-6psu");
-BENCHMARK_CAPTURE(analytic_sweep, ideal_joints, "haptic-6psu-ideal-joints");
-
-/// Under forces along x, y and z.
-void analytic_sweep_three_loads(benchmark::State& state, const char* name) {
-  Case c(name);
-  Posing posing(c.mechanism);
-  analytic::PoseSweep sweep(posing.at(c.next()));
-  for (auto _ : state) {
-    sweep.at(posing.at(c.next()));
-    for (Eigen::Index i = 0; i < 3; ++i) {
+    for (int i = 0; i < loads; ++i) {
       if (!sweep.solve(50 * Vector6::Unit(i))) state.SkipWithError("no solution");
       benchmark::DoNotOptimize(sweep.stiffness());
     }
   }
 }
-BENCHMARK_CAPTURE(analytic_sweep_three_loads, haptic_6psu, "haptic-6psu");
-BENCHMARK_CAPTURE(analytic_sweep_three_loads, ideal_joints, "haptic-6psu-ideal-joints");
+BENCHMARK_CAPTURE(analytic_sweep, haptic_6psu, "haptic-6psu", 1);
+BENCHMARK_CAPTURE(analytic_sweep, ideal_joints, "haptic-6psu-ideal-joints", 1);
+BENCHMARK_CAPTURE(analytic_sweep, haptic_6psu_three_loads, "haptic-6psu", 3);
+BENCHMARK_CAPTURE(analytic_sweep, ideal_joints_three_loads, "haptic-6psu-ideal-joints", 3);
 
 /// With the derivatives to the stiffness of every part of every leg: 24.
 void analytic_sweep_with_derivatives(benchmark::State& state, const char* name) {
@@ -101,37 +90,24 @@ void msa_model(benchmark::State& state, const char* name) {
 BENCHMARK_CAPTURE(msa_model, haptic_6psu, "haptic-6psu")->Arg(1)->Arg(4);
 BENCHMARK_CAPTURE(msa_model, ideal_joints, "haptic-6psu-ideal-joints")->Arg(1)->Arg(4);
 
-/// The same from pose to pose, legs condensed.
-void msa_sweep(benchmark::State& state, const char* name) {
+/// The same from pose to pose, legs condensed, under as many forces as asked for.
+void msa_sweep(benchmark::State& state, const char* name, int loads) {
   Case c(name);
   Posing posing(c.mechanism);
   const Configuration& first = posing.at(c.next());
   frame::MsaSweep sweep(first, frame::equal_division(first, static_cast<int>(state.range(0))));
   for (auto _ : state) {
     sweep.at(posing.at(c.next()));
-    if (!sweep.solve(c.F)) state.SkipWithError("no solution");
-    benchmark::DoNotOptimize(sweep.stiffness());
-  }
-}
-BENCHMARK_CAPTURE(msa_sweep, haptic_6psu, "haptic-6psu")->Arg(1)->Arg(4);
-BENCHMARK_CAPTURE(msa_sweep, ideal_joints, "haptic-6psu-ideal-joints")->Arg(1)->Arg(4);
-
-/// Forces along x, y and z at each pose, as for a map.
-void msa_sweep_three_loads(benchmark::State& state, const char* name) {
-  Case c(name);
-  Posing posing(c.mechanism);
-  const Configuration& first = posing.at(c.next());
-  frame::MsaSweep sweep(first, frame::equal_division(first, static_cast<int>(state.range(0))));
-  for (auto _ : state) {
-    sweep.at(posing.at(c.next()));
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < loads; ++i) {
       if (!sweep.solve(50 * Vector6::Unit(i))) state.SkipWithError("no solution");
       benchmark::DoNotOptimize(sweep.stiffness());
     }
   }
 }
-BENCHMARK_CAPTURE(msa_sweep_three_loads, haptic_6psu, "haptic-6psu")->Arg(1)->Arg(4);
-BENCHMARK_CAPTURE(msa_sweep_three_loads, ideal_joints, "haptic-6psu-ideal-joints")->Arg(1)->Arg(4);
+BENCHMARK_CAPTURE(msa_sweep, haptic_6psu, "haptic-6psu", 1)->Arg(1)->Arg(4);
+BENCHMARK_CAPTURE(msa_sweep, ideal_joints, "haptic-6psu-ideal-joints", 1)->Arg(1)->Arg(4);
+BENCHMARK_CAPTURE(msa_sweep, haptic_6psu_three_loads, "haptic-6psu", 3)->Arg(1)->Arg(4);
+BENCHMARK_CAPTURE(msa_sweep, ideal_joints_three_loads, "haptic-6psu-ideal-joints", 3)->Arg(1)->Arg(4);
 
 }  // namespace
 
