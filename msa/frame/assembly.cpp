@@ -112,7 +112,8 @@ ReducedBeam placed(ReducedBeam beam, const SparsePattern& p) {
   return beam;
 }
 
-VectorX beam_forces(const Model& m, const VectorX& u) {
+template <class Vector>
+VectorX beam_forces(const Model& m, const Vector& u) {
   VectorX f = VectorX::Zero(m.dofs());
   for (const Beam& beam : m.beams) {
     const Vector12 pulls = pull(beam, end_displacements(beam, u));
@@ -124,6 +125,23 @@ VectorX beam_forces(const Model& m, const VectorX& u) {
     }
   }
   return f;
+}
+
+VectorX with_springs(const Model& m, VectorX f, const VectorX& spring_forces) {
+  for (std::size_t s = 0; s < m.springs.size(); ++s)
+    for (const Term& t : m.springs[s].elongation)
+      f(t.dof) += t.coefficient * spring_forces(static_cast<Eigen::Index>(s));
+  return f;
+}
+
+template <class Vector>
+VectorX forces_at(const Model& m, const Vector& u, const VectorX& spring_tangents) {
+  VectorX pulls(spring_tangents.size());
+  for (std::size_t s = 0; s < m.springs.size(); ++s) {
+    const auto i = static_cast<Eigen::Index>(s);
+    pulls(i) = spring_tangents(i) * evaluate(m.springs[s].elongation, u);
+  }
+  return with_springs(m, beam_forces(m, u), pulls);
 }
 
 }  // namespace
@@ -186,6 +204,12 @@ double evaluate(const LinearForm& form, const VectorX& u) {
   return sum;
 }
 
+double evaluate(const LinearForm& form, const ExtendedVector& u) {
+  long double sum = 0;
+  for (const Term& t : form) sum += t.coefficient * u(t.dof);
+  return static_cast<double>(sum);
+}
+
 VectorX internal_forces(const Model& m, const VectorX& u, VectorX& spring_tangents) {
   VectorX f = beam_forces(m, u);
   spring_tangents.resize(static_cast<Eigen::Index>(m.springs.size()));
@@ -198,22 +222,27 @@ VectorX internal_forces(const Model& m, const VectorX& u, VectorX& spring_tangen
   return f;
 }
 
-VectorX forces_with(const Model& m, const VectorX& u, const VectorX& spring_forces) {
-  VectorX f = beam_forces(m, u);
+VectorX spring_forces(const Model& m, const ExtendedVector& u) {
+  VectorX forces(static_cast<Eigen::Index>(m.springs.size()));
   for (std::size_t s = 0; s < m.springs.size(); ++s)
-    for (const Term& t : m.springs[s].elongation)
-      f(t.dof) += t.coefficient * spring_forces(static_cast<Eigen::Index>(s));
-  return f;
+    forces(static_cast<Eigen::Index>(s)) = force(m.springs[s].law, evaluate(m.springs[s].elongation, u));
+  return forces;
+}
+
+VectorX forces_with(const Model& m, const VectorX& u, const VectorX& spring_forces) {
+  return with_springs(m, beam_forces(m, u), spring_forces);
+}
+
+VectorX forces_with(const Model& m, const ExtendedVector& u, const VectorX& spring_forces) {
+  return with_springs(m, beam_forces(m, u), spring_forces);
 }
 
 VectorX tangent_forces(const Model& m, const VectorX& u, const VectorX& spring_tangents) {
-  VectorX f = beam_forces(m, u);
-  for (std::size_t s = 0; s < m.springs.size(); ++s) {
-    const LinearForm& form = m.springs[s].elongation;
-    const double pull = spring_tangents(static_cast<Eigen::Index>(s)) * evaluate(form, u);
-    for (const Term& t : form) f(t.dof) += t.coefficient * pull;
-  }
-  return f;
+  return forces_at(m, u, spring_tangents);
+}
+
+VectorX tangent_forces(const Model& m, const ExtendedVector& u, const VectorX& spring_tangents) {
+  return forces_at(m, u, spring_tangents);
 }
 
 }  // namespace deflect::frame

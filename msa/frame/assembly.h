@@ -30,16 +30,22 @@ class Assembly {
 /// Σ over beams and springs of what they pull at the freedoms: f_int(u), and the springs' tangents at u.
 VectorX internal_forces(const Model&, const VectorX& u, VectorX& spring_tangents);
 
-/// The same for given forces of the springs.
+/// By spring, the forces of their laws.
+VectorX spring_forces(const Model&, const ExtendedVector& u);
+
+/// f_int(u) for given forces of the springs.
 VectorX forces_with(const Model&, const VectorX& u, const VectorX& spring_forces);
+VectorX forces_with(const Model&, const ExtendedVector& u, const VectorX& spring_forces);
 
 /// The same for the tangent structure, in which spring i is linear with stiffness spring_tangents(i).
 VectorX tangent_forces(const Model&, const VectorX& u, const VectorX& spring_tangents);
+VectorX tangent_forces(const Model&, const ExtendedVector& u, const VectorX& spring_tangents);
 
 /// The vector with zeros behind it, where the solver's model has grown.
 VectorX padded(const VectorX&, Eigen::Index size);
 
 /// form(u).
 double evaluate(const LinearForm&, const VectorX& u);
+double evaluate(const LinearForm&, const ExtendedVector& u);
 
 }  // namespace deflect::frame

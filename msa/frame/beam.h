@@ -7,6 +7,10 @@
 
 namespace deflect::frame {
 
+/// Displacements with the digits that their differences need.
+using ExtendedVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+using ExtendedMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
@@ -42,6 +46,9 @@ Vector12 pull(const Beam&, const Vector12& d_W);
 /// [u_a; θ_a; u_b; θ_b] of a structure's displacements u; where the beam has its own relative motion, that motion with
 /// a at rest, which strains it alike.
 Vector12 end_displacements(const Beam&, const VectorX& u);
+
+/// The same with the rigid motion of end a taken off before anything is rounded, so that stiff beams keep their digits.
+Vector12 end_displacements(const Beam&, const ExtendedVector& u);
 
 /// End forces in local axes, [f_a; m_a; f_b; m_b] acting on the beam, for nodal displacements in base axes.
 Vector12 end_forces(const Beam&, const Vector12& d_W);

@@ -179,6 +179,7 @@ MechanismModel build(const Configuration& c, const MemberDivision& division) {
   if (out.tool != out.platform) b.joint(out.platform, out.tool, c.tool, "tool");
   for (const PlacedLeg& leg : c.legs) b.mounted_leg(leg, out.base, out.platform, c.pose.p_WT);
   b.model.fix(out.ground, "ground");
+  b.model.watched = out.tool;
   b.finish(out);
   return out;
 }
@@ -190,6 +191,7 @@ MechanismModel build_leg(const Configuration& c, std::size_t leg, const MemberDi
   out.platform = out.tool = b.body("platform", c.pose.p_WT);
   b.mounted_leg(c.legs[leg], out.ground, out.platform, c.pose.p_WT);
   b.model.fix(out.ground, "ground");
+  b.model.watched = out.tool;
   b.finish(out);
   return out;
 }

@@ -69,6 +69,18 @@ Term pivot_of(const LinearForm& form, int wanted, int n, double largest, const W
   return best;
 }
 
+template <class Vector>
+Vector expanded(const Elimination& e, const Vector& q, const VectorX& values) {
+  Vector u(static_cast<Eigen::Index>(e.T.size()));
+  for (std::size_t dof = 0; dof < e.T.size(); ++dof) {
+    typename Vector::Scalar sum = 0;
+    for (const Term& t : e.T[dof]) sum += t.coefficient * q(t.dof);
+    for (const Term& t : e.G[dof]) sum += t.coefficient * values(t.dof);
+    u(static_cast<Eigen::Index>(dof)) = sum;
+  }
+  return u;
+}
+
 }  // namespace
 
 double characteristic_length(const Model& m) {
@@ -180,6 +192,7 @@ void check_consistent(const Model& m, const Elimination& e, const VectorX& value
 std::vector<std::string> redundancies(const Model& m, const Elimination& e) {
   std::vector<std::string> notes;
   for (const Redundancy& r : e.redundant) {
+    if (m.constraints[static_cast<std::size_t>(r.constraint)].may_repeat) continue;
     std::string names;
     for (std::size_t i = 0; i < std::min<std::size_t>(r.implied_by.size(), 6); ++i)
       names += fmt::format("{}'{}'", i ? ", " : "", m.constraints[static_cast<std::size_t>(r.implied_by[i].dof)].name);
@@ -189,15 +202,10 @@ std::vector<std::string> redundancies(const Model& m, const Elimination& e) {
   return notes;
 }
 
-VectorX Elimination::expand(const VectorX& q, const VectorX& values) const {
-  VectorX u(static_cast<Eigen::Index>(T.size()));
-  for (std::size_t dof = 0; dof < T.size(); ++dof) {
-    double sum = 0;
-    for (const Term& t : T[dof]) sum += t.coefficient * q(t.dof);
-    for (const Term& t : G[dof]) sum += t.coefficient * values(t.dof);
-    u(static_cast<Eigen::Index>(dof)) = sum;
-  }
-  return u;
+VectorX Elimination::expand(const VectorX& q, const VectorX& values) const { return expanded(*this, q, values); }
+
+ExtendedVector Elimination::expand_fine(const ExtendedVector& q, const VectorX& values) const {
+  return expanded(*this, q, values);
 }
 
 VectorX Elimination::reduce(const VectorX& f) const {

@@ -25,6 +25,7 @@ struct Elimination {
 
   /// u for given q and constraint values.
   VectorX expand(const VectorX& q, const VectorX& values) const;
+  ExtendedVector expand_fine(const ExtendedVector& q, const VectorX& values) const;
   /// Tᵀ f.
   VectorX reduce(const VectorX& f) const;
 };

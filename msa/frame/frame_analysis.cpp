@@ -29,6 +29,7 @@ struct Gross {
 /// A case between its solution and its checks.
 struct Work {
   CaseLoad load;
+  ExtendedVector fine;  // u, for differences
   VectorX lambda;
   Gross gross;
   double heat = 0, clamped = 0;  // Σ N ε L; what line loads store in clamped elements
@@ -42,7 +43,7 @@ void find_member_forces(CaseResult& r, const FrameModel& m, Work& work) {
       const auto k = static_cast<std::size_t>(e);
       const Beam& beam = m.model.beams[k];
       const ElementLoad& load = work.load.elements[k];
-      const Vector12 d = end_displacements(beam, r.u), f = end_forces(beam, d, load);
+      const Vector12 d = end_displacements(beam, work.fine), f = end_forces(beam, d, load);
       r.end_forces.push_back(f);
       work.gross.add(beam, d, load.strain);
       work.heat += (f(6) - f(0)) / 2 * load.strain * beam.length;  // the mean of N
@@ -63,7 +64,8 @@ void find_member_forces(CaseResult& r, const FrameModel& m, Work& work) {
   }
 }
 
-void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& m, const VectorX& lambda) {
+void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& m, const Work& work) {
+  const VectorX& lambda = work.lambda;
   for (const std::array<int, 6>& constraints : m.support_constraint) {
     r.reactions.push_back(Vector6::Zero());
     for (std::size_t i = 0; i < 6; ++i)
@@ -75,13 +77,13 @@ void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& 
     for (std::size_t i = 0; i < 6; ++i) {
       if (m.spring[k][i] < 0) continue;
       const Spring& spring = m.model.springs[static_cast<std::size_t>(m.spring[k][i])];
-      r.springs.back()(static_cast<Eigen::Index>(i)) = -force(spring.law, evaluate(spring.elongation, r.u));
+      r.springs.back()(static_cast<Eigen::Index>(i)) = -force(spring.law, evaluate(spring.elongation, work.fine));
     }
   }
 }
 
 /// Resultant about the first node of loads, constraints and springs; those between nodes have none.
-double equilibrium(const CaseResult& r, const FrameModel& m, const Work& work) {
+double equilibrium(const FrameModel& m, const Work& work) {
   VectorX external = padded(work.load.forces, m.model.dofs()), unsigned_sum = external.cwiseAbs();
   const auto add = [&](const LinearForm& form, double along) {
     for (const Term& t : form) {
@@ -92,7 +94,7 @@ double equilibrium(const CaseResult& r, const FrameModel& m, const Work& work) {
   for (std::size_t k = 0; k < m.model.constraints.size(); ++k)
     add(m.model.constraints[k].form, work.lambda(static_cast<Eigen::Index>(k)));
   for (const Spring& spring : m.model.springs)
-    add(spring.elongation, -force(spring.law, evaluate(spring.elongation, r.u)));
+    add(spring.elongation, -force(spring.law, evaluate(spring.elongation, work.fine)));
   Vector3 resultant = Vector3::Zero(), moment = Vector3::Zero();
   double forces = cancelling * work.gross.force, moments = 0;
   for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
@@ -108,12 +110,11 @@ double equilibrium(const CaseResult& r, const FrameModel& m, const Work& work) {
 }
 
 void check(CaseResult& r, const FrameModel& m, const Elimination& e, const Work& work) {
-  VectorX tangents;
   const VectorX load = padded(work.load.forces, m.model.dofs());
-  const VectorX pulls = internal_forces(m.model, r.u, tangents);
+  const VectorX pulls = forces_with(m.model, work.fine, spring_forces(m.model, work.fine));
   const VectorX free = e.reduce(load), held = e.reduce(pulls);
   r.checks.residual = ratio(largest(free - held), largest(load) + largest(pulls) + cancelling * work.gross.force);
-  r.checks.equilibrium = equilibrium(r, m, work);
+  r.checks.equilibrium = equilibrium(m, work);
 
   const VectorX forces = work.load.forces - work.load.thermal;
   const double loads = forces.dot(r.u.head(forces.size())),
@@ -142,7 +143,7 @@ double reciprocity(const std::vector<CaseResult>& cases, const std::vector<Work>
   return worst;
 }
 
-VectorX elongations(const Model& m, const VectorX& u) {
+VectorX elongations(const Model& m, const ExtendedVector& u) {
   VectorX out(static_cast<Eigen::Index>(m.springs.size()));
   for (std::size_t i = 0; i < m.springs.size(); ++i)
     out(static_cast<Eigen::Index>(i)) = evaluate(m.springs[i].elongation, u);
@@ -152,7 +153,7 @@ VectorX elongations(const Model& m, const VectorX& u) {
 void analyse_linear(const FrameDescription& f, const EquationOptions& options, FrameResult& out) {
   FrameModel& m = out.structure;
   std::vector<Work> work;
-  for (const auto& [name, load] : f.loads) work.push_back({load_of(f, m, load), {}, {}, 0, 0});
+  for (const auto& [name, load] : f.loads) work.push_back({load_of(f, m, name, load), {}, {}, {}, 0, 0});
   const auto columns = static_cast<Eigen::Index>(work.size());
   MatrixX loads(m.model.dofs(), columns), values(static_cast<Eigen::Index>(m.model.constraints.size()), columns);
   for (Eigen::Index c = 0; c < columns; ++c) {
@@ -172,10 +173,11 @@ void analyse_linear(const FrameDescription& f, const EquationOptions& options, F
     r.u = solution.u.col(static_cast<Eigen::Index>(c));
     for (std::size_t i = 0; i < f.nodes.size(); ++i)
       r.displacements.push_back(r.u.segment<6>(static_cast<Eigen::Index>(6 * i)));
-    work[c].lambda = constraint_forces(m.model, elimination, r.u, padded(work[c].load.forces, m.model.dofs()));
-    find_reactions(r, f, m, work[c].lambda);
+    work[c].fine = solution.fine.col(static_cast<Eigen::Index>(c));
+    work[c].lambda = constraint_forces(m.model, elimination, work[c].fine, padded(work[c].load.forces, m.model.dofs()));
+    find_reactions(r, f, m, work[c]);
     find_member_forces(r, m, work[c]);
-    find_energies(r, f, m, elongations(m.model, r.u));
+    find_energies(r, f, m, elongations(m.model, work[c].fine));
     check(r, m, elimination, work[c]);
     r.loads = work[c].load.elements;
     out.cases.push_back(std::move(r));

@@ -76,8 +76,11 @@ void add_member(FrameModel& out, const std::string& name, const FrameMember& mem
   const Vector3 start = m.nodes[static_cast<std::size_t>(a)].position,
                 end = m.nodes[static_cast<std::size_t>(b)].position;
   const Matrix3 R_WM = member_axes(end - start, member.y_axis);
-  int previous = end_node(m, a, member.release_from, R_WM, fmt::format("{} at {}", name, member.from));
-  const int last = end_node(m, b, member.release_to, R_WM, fmt::format("{} at {}", name, member.to));
+  constexpr Freedoms hinged{false, false, false, true, true, true};
+  int previous =
+      end_node(m, a, member.truss ? hinged : member.release_from, R_WM, fmt::format("{} at {}", name, member.from));
+  const int last =
+      end_node(m, b, member.truss ? hinged : member.release_to, R_WM, fmt::format("{} at {}", name, member.to));
   for (std::size_t i = 1; i + 1 < fractions.size(); ++i) {
     const int next = m.add_node(fmt::format("{} {:.4g}", name, fractions[i]), start + fractions[i] * (end - start));
     m.add_beam(previous, next, R_WM, rigidity, fmt::format("{} [{}]", name, i), member.section);
@@ -170,6 +173,35 @@ void add_springs(FrameModel& out, const FrameDescription& f) {
   }
 }
 
+bool out_of_plane(Plane plane, int freedom) {
+  return plane != Plane::none && (freedom % 3 == static_cast<int>(plane)) == (freedom < 3);
+}
+
+/// Last, so that what supports and links hold already is not told of them.
+void hold_plane(Model& m, Plane plane) {
+  for (std::size_t node = 0; plane != Plane::none && node < m.nodes.size(); ++node)
+    for (int i = 0; i < 6; ++i) {
+      if (!out_of_plane(plane, i)) continue;
+      Constraint c;
+      c.form = {{6 * static_cast<int>(node) + i, 1}};
+      c.name = fmt::format("plane {} at {}", plane_names[static_cast<std::size_t>(plane)], m.nodes[node].name);
+      c.may_repeat = true;
+      m.constraints.push_back(std::move(c));
+    }
+}
+
+/// A plane frame cannot carry what acts across its plane.
+void refuse_across_plane(const FrameDescription& f, const FrameModel& m, const std::string& name,
+                         const VectorX& forces) {
+  const double most = forces.cwiseAbs().maxCoeff();
+  for (Eigen::Index dof = 0; f.plane != Plane::none && dof < static_cast<Eigen::Index>(6 * m.model.nodes.size()); ++dof)
+    if (out_of_plane(f.plane, static_cast<int>(dof % 6)) && std::abs(forces(dof)) > 1e-9 * most)
+      throw InputError(fmt::format(
+          "load case '{}' acts at node '{}' along or about a direction that leaves the plane {}: "
+          "take it away, or leave 'plane' away",
+          name, m.model.nodes[static_cast<std::size_t>(dof / 6)].name, plane_names[static_cast<std::size_t>(f.plane)]));
+}
+
 }  // namespace
 
 FrameModel build_frame(const FrameDescription& f, const FrameDivision& division) {
@@ -182,10 +214,11 @@ FrameModel build_frame(const FrameDescription& f, const FrameDivision& division)
   add_links(out, f);
   add_constraints(out, f);
   add_springs(out, f);
+  hold_plane(out.model, f.plane);
   return out;
 }
 
-CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const LoadCase& c) {
+CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::string& case_name, const LoadCase& c) {
   CaseLoad out;
   out.forces = out.thermal = VectorX::Zero(m.model.dofs());
   out.values = VectorX::Zero(static_cast<Eigen::Index>(m.model.constraints.size()));
@@ -223,6 +256,7 @@ CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const LoadCase&
   }
   for (const auto& [name, wrench] : c.nodes)
     out.forces.segment<6>(6 * static_cast<Eigen::Index>(at(m.nodes, "node", name))) += wrench;
+  refuse_across_plane(f, m, case_name, out.forces);
 
   const NameIndex supports(f.supports);
   for (const auto& [name, values] : c.displacements) {

@@ -40,6 +40,7 @@ struct CaseLoad {
   std::vector<ElementLoad> elements;  ///< by beam
 };
 
-CaseLoad load_of(const FrameDescription&, const FrameModel&, const LoadCase&);
+/// Throws InputError naming the case where it acts across the plane of a plane frame, or moves what is not supported.
+CaseLoad load_of(const FrameDescription&, const FrameModel&, const std::string& name, const LoadCase&);
 
 }  // namespace deflect::frame

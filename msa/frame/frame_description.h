@@ -32,12 +32,14 @@ struct FrameMaterial {
   std::optional<double> expansion;  ///< 1/K, for temperature
 };
 
-/// bending_factor multiplies EIy and EIz. A released freedom of an end is not passed on to the node.
+/// bending_factor multiplies EIy and EIz. A released freedom of an end is not passed on to the node. A truss member
+/// passes on no rotation at either end.
 struct FrameMember {
   std::string from, to, section, material;
   BeamTheory beam = BeamTheory::euler_bernoulli;
   Vector3 y_axis = Vector3::Zero();  ///< zero: the rule above
   Freedoms release_from{}, release_to{};
+  bool truss = false;
   double bending_factor = 1;
   int elements = 1;  ///< equal ones, one behind the other
 };
@@ -81,8 +83,14 @@ struct LoadCase {
   Named<FreedomValues> displacements;  ///< of supported freedoms, by node; m, rad
 };
 
+/// A plane frame moves in its plane: the displacement along the normal and the rotations about the plane's axes are
+/// held at every node. The value is the normal's axis.
+enum class Plane { yz = 0, xz = 1, xy = 2, none = 3 };
+inline constexpr std::array<const char*, 4> plane_names = {"yz", "xz", "xy", "none"};
+
 struct FrameDescription {
   std::string name, about, source;
+  Plane plane = Plane::none;
   Geometry geometry = Geometry::linear;
   int load_steps = 1;  ///< at least, where the geometry is finite
   Named<FrameMaterial> materials;

@@ -109,6 +109,11 @@ void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
                     "freedoms that are not passed on at 'from', member axes");
   describe_freedoms(v, "release_to", m.release_to, member_freedoms, Need::optional, false,
                     "freedoms that are not passed on at 'to', member axes");
+  std::string truss = m.truss ? "true" : "false";
+  v.word("truss", truss, {"truth value", {"false", "true"}, "false"}, "hinged at both ends: passes on no rotation");
+  m.truss = truss == "true";
+  v.require(!m.truss || (m.release_from == Freedoms{} && m.release_to == Freedoms{}), "truss",
+            "releases the rotations of both ends: leave release_from and release_to away");
   v.quantity("bending_factor", m.bending_factor, {Dimension::ratio, positive, 1}, "multiplies the bending stiffness");
   describe_count(v, "elements", m.elements, "elements of equal length");
   if (a < 0 || b < 0) return;
@@ -204,12 +209,15 @@ void describe_freedom_values(FieldVisitor& v, FreedomValues& values, Dimension t
 }
 
 void describe(FieldVisitor& v, FrameDescription& f) {
-  v.keys({"name", "about", "source", "geometry", "load_steps", "materials", "sections", "nodes", "members", "supports",
-          "springs", "rigid_links", "constraints", "loads"});
+  v.keys({"name", "about", "source", "geometry", "load_steps", "plane", "materials", "sections", "nodes", "members",
+          "supports", "springs", "rigid_links", "constraints", "loads"});
   v.text("name", f.name, Need::required, "name of the frame");
   v.text("about", f.about, Need::optional, "one line about the frame");
   v.text("source", f.source, Need::optional, "where the numbers are from");
   describe_geometry(v, f);
+  std::string plane = plane_names[static_cast<std::size_t>(f.plane)];
+  v.word("plane", plane, {"plane", {"xy", "xz", "yz", "none"}, "none"}, "the frame moves in this plane only");
+  f.plane = static_cast<Plane>(std::find(plane_names.begin(), plane_names.end(), plane) - plane_names.begin());
   FrameNames names{f, {}, {}, {}, {}, {}, 0};
 
   FrameEntries<FrameMaterial> materials(f.materials, [](auto& w, auto&, auto& m) { describe_material(w, m); });

@@ -111,7 +111,7 @@ void analyse_geometric(const FrameDescription& f, FrameResult& out) {
   options.geometry = f.geometry;
   options.load_steps = f.load_steps;
   for (const auto& [name, load] : f.loads) {
-    const CaseLoad full = load_of(f, m, load);
+    const CaseLoad full = load_of(f, m, name, load);
     GeometricLoad given{full.forces - full.thermal, full.values, {}};  // heat strains the members instead
     for (const ElementLoad& element : full.elements) given.strains.push_back(element.strain);
     const GeometricState state = solver.solve(given, options);

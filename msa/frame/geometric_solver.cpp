@@ -103,8 +103,8 @@ GeometricSolver::GeometricSolver(Model given)
   for (const Redundancy& r : linear_->elimination().redundant)
     if (const auto k = static_cast<std::size_t>(r.constraint); k < redundant.size()) redundant[k] = 1;
   const std::vector<Constraint>& solved = linear_->model().constraints;
-  model_.constraints.insert(model_.constraints.end(), solved.end() - static_cast<std::ptrdiff_t>(linear_->held_spins()),
-                            solved.end());
+  model_.constraints.insert(model_.constraints.end(),
+                            solved.end() - static_cast<std::ptrdiff_t>(linear_->idle_motions()), solved.end());
   redundant.resize(model_.constraints.size(), 0);
   for (std::size_t k = 0; k < redundant.size(); ++k)
     if (!redundant[k]) active_.push_back(k);
@@ -247,7 +247,7 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
 
 GeometricState GeometricSolver::solve(const GeometricLoad& load, const GeometricOptions& options) {
   const auto constraints = static_cast<Eigen::Index>(model_.constraints.size());
-  const auto held = static_cast<Eigen::Index>(linear_->held_spins());
+  const auto held = static_cast<Eigen::Index>(linear_->idle_motions());
   Work work(model_);
   work.loads = padded(load.forces, model_.dofs());
   work.values = load.values.size() ? padded(load.values, constraints) : constraint_values(model_);

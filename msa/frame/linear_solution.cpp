@@ -169,7 +169,8 @@ class Iterative {
 LinearSolution direct(Model model, const MatrixX& loads, const MatrixX& values) {
   LinearSolution s;
   Solver solver(std::move(model));
-  s.u = solver.linear(spring_tangents(solver.model()), loads, values);
+  s.fine = solver.linear(spring_tangents(solver.model()), loads, values);
+  s.u = s.fine.cast<double>();
   s.notes = solver.notes();
   s.summary.solver = "direct";
   s.summary.freedoms = solver.elimination().independent;
@@ -185,6 +186,7 @@ LinearSolution solve_linear(Model model, const MatrixX& loads, const MatrixX& va
     Attempt attempt = Iterative(model, options)(loads, values);
     if (attempt.answered) {
       LinearSolution& s = attempt.solution;
+      s.fine = s.u.cast<long double>();
       s.model = std::move(model);
       s.summary.solver = "iterative";
       if (options.solver == Equations::automatic)

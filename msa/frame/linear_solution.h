@@ -47,6 +47,7 @@ struct LinearSolution {
   Model model;
   Elimination elimination;
   MatrixX u;
+  ExtendedMatrix fine;  ///< the same, for differences
   std::vector<std::string> notes;
   EquationSummary summary;
 };

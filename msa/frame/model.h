@@ -39,6 +39,7 @@ struct Constraint {
   double value = 0;
   std::string name;
   int eliminates = -1;  ///< the freedom to eliminate with it, where it may; −1 leaves the choice to the elimination
+  bool may_repeat = false;  ///< others may imply it: that is no news
 };
 
 /// A freedom that a connection leaves free: nothing resists form(u).
@@ -72,6 +73,7 @@ struct Model {
   std::vector<Release> releases;           ///< for words about motions; they take no part in equilibrium
   std::vector<std::pair<int, int>> welds;  ///< nodes of one rigid body
   std::vector<Connection> connections;     ///< what they became stands in the lists above
+  int watched = -1;  ///< the node that is read and loaded; −1: all nodes. Motions that it does not see do no harm.
 
   int dofs() const { return static_cast<int>(6 * nodes.size() + scalars.size()); }
   /// "node 'leg 1 B' uz".

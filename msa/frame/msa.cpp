@@ -38,7 +38,7 @@ Matrix6 above_rounding(const Matrix6& K, const Model& m) {
   Vector6 per_length = Vector6::Ones();
   per_length.tail<3>().setConstant(1 / characteristic_length(m));
   const double size = (per_length.asDiagonal() * K * per_length.asDiagonal()).cwiseAbs().maxCoeff();
-  return size < 1e-13 * stiffest ? Matrix6(Matrix6::Zero()) : K;
+  return size < 1e-17 * stiffest ? Matrix6(Matrix6::Zero()) : K;
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ struct MsaModel::Held {
     values.middleRows<6>(first).setIdentity();
     U = solver.linear(tangents, MatrixX::Zero(m.dofs(), 6), values);
     MatrixX pulls(m.dofs(), 6);
-    for (int i = 0; i < 6; ++i) pulls.col(i) = tangent_forces(m, U.col(i), tangents);
+    for (int i = 0; i < 6; ++i) pulls.col(i) = tangent_forces(m, ExtendedVector(U.col(i)), tangents);
     forces = supports.forces(pulls);
   }
 
@@ -85,7 +85,7 @@ struct MsaModel::Held {
         continue;
       }
       Eigen::RowVectorXd elongation(6);
-      for (int i = 0; i < 6; ++i) elongation(i) = evaluate(spring.elongation, U.col(i));
+      for (int i = 0; i < 6; ++i) elongation(i) = evaluate(spring.elongation, ExtendedVector(U.col(i)));
       add(spring.elongation, tangents(static_cast<Eigen::Index>(s)) * elongation);
     }
     return above_rounding(K, m);
@@ -97,7 +97,8 @@ struct MsaModel::Held {
   Eigen::Index first;  // of the six constraints that hold the node
   Reactions supports;
   VectorX tangents;
-  MatrixX U, forces;
+  ExtendedMatrix U;
+  MatrixX forces;
 };
 
 MsaModel::MsaModel(const Configuration& c, const MemberDivision& division)
@@ -110,6 +111,10 @@ MsaModel::MsaModel(const Configuration& c, const MemberDivision& division)
 
 MsaModel::~MsaModel() = default;
 
+double MsaModel::rounding() const {
+  return std::max(solver_.rounding(), tool_held_ ? tool_held_->solver.rounding() : 0);
+}
+
 MsaSolution MsaModel::solve(const Vector6& F_T_W, const Conditions& conditions) {
   if (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_)
     throw InputError(
@@ -121,26 +126,26 @@ MsaSolution MsaModel::solve(const Vector6& F_T_W, const Conditions& conditions) 
   load.segment<6>(6 * built_.tool) = out.load;
   const Solution& rest = assembled();
   const bool strained = !rest.u.isZero(0), warm = conditions.warmer != 0;
-  VectorX u0 = rest.u;
+  ExtendedVector u0 = rest.fine;
   std::vector<std::pair<std::string, double>> energies0;
   if (conditions.geometry == Geometry::linear || (out.load.isZero(0) && !strained && !warm)) {
     if (strained && (warm || !linear())) energies0 = rest_energies_;
     out.state = solve_linear(load, conditions);
     // Where everything is linear, what the load adds has an energy of its own.
     const bool added = linear() && !warm;
-    out.energies =
-        frame::energies(solver_.model(), added ? VectorX(out.state.u - u0) : out.state.u, strains(conditions.warmer));
+    out.energies = frame::energies(solver_.model(), added ? ExtendedVector(out.state.fine - u0) : out.state.fine,
+                                   strains(conditions.warmer));
   } else {
     if (strained) {
       const Solution at_rest = solve_geometric(VectorX::Zero(load.size()), conditions.geometry);
-      u0 = at_rest.u;
+      u0 = at_rest.fine;
       energies0 = frame::energies(geometric_->model(), *at_rest.geometric);
     }
     out.state = solve_geometric(load, conditions);
     out.energies = frame::energies(geometric_->model(), *out.state.geometric);
   }
   for (std::size_t i = 0; i < energies0.size(); ++i) out.energies[i].second -= energies0[i].second;
-  out.displacement = (out.state.u - u0).segment<6>(6 * built_.tool);
+  out.displacement = (out.state.fine - u0).segment<6>(6 * built_.tool).cast<double>();
   out.slips = out.state.slips;
   std::stable_sort(out.energies.begin(), out.energies.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -150,7 +155,7 @@ MsaSolution MsaModel::solve(const Vector6& F_T_W, const Conditions& conditions) 
 const Solution& MsaModel::assembled() {
   if (!assembled_) {
     assembled_ = std::make_unique<Solution>(solve_linear(VectorX::Zero(built_.model.dofs()), Conditions()));
-    rest_energies_ = frame::energies(solver_.model(), assembled_->u);
+    rest_energies_ = frame::energies(solver_.model(), assembled_->fine);
   }
   return *assembled_;
 }
@@ -196,6 +201,7 @@ Solution MsaModel::solve_geometric(const VectorX& load, const Conditions& condit
   Solution out;
   out.u = VectorX::Zero(built_.model.dofs());  // the coordinates of very stiff parts, which come last, are not used
   out.u.head(state->u.size()) = state->u;
+  out.fine = out.u.cast<long double>();
   out.spring_tangents = state->spring_tangents;
   out.spring_forces = state->spring_forces;
   out.slips = state->slips;
@@ -266,7 +272,7 @@ Matrix6X MsaModel::passive_twists(std::size_t leg) const {
 Vector6 MsaModel::base_reaction(const Vector6& load_T_W, const Solution& state) {
   if (state.geometric) return state.geometric->constraint_forces.head<6>();  // the ground's six come first
   if (!supports_) supports_ = std::make_unique<Reactions>(solver_.model(), solver_.elimination());
-  VectorX unbalanced = forces_with(solver_.model(), state.u, state.spring_forces) - state.heat;
+  VectorX unbalanced = forces_with(solver_.model(), state.fine, state.spring_forces) - state.heat;
   unbalanced.segment<6>(6 * built_.tool) -= load_T_W;
   return supports_->forces(unbalanced).topRows<6>();  // the ground's six constraints come first
 }

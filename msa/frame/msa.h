@@ -38,6 +38,8 @@ class MsaModel {
   /// Idle spins that were held, redundant constraints, poor conditioning.
   const std::vector<std::string>& notes() const { return solver_.notes(); }
   const MechanismModel& mechanism() const { return built_; }
+  /// Solver::rounding() of the answers so far.
+  double rounding() const;
 
   bool linear() const { return solver_.linear_springs(); }
 

@@ -196,6 +196,7 @@ bool Solver::update_known_forces(const Work& w) {
 
 void Solver::conclude(const Work& w, Solution& s) const {
   s.u = w.u;
+  s.fine = w.u.cast<long double>();
   const std::vector<Spring>& springs = model_->springs;
   s.spring_tangents.resize(static_cast<Eigen::Index>(springs.size()));
   s.spring_forces = s.spring_tangents;
@@ -224,6 +225,7 @@ Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, c
   Work w;
   w.load = padded(given_load, model_->dofs());
   w.values = padded(given_values, static_cast<Eigen::Index>(model_->constraints.size()));
+  if (linear_springs()) return solve_linear(w.load, w.values);
   check(w.load, w.values);
   w.length = characteristic_length(*model_);
   w.f = elimination_->reduce(w.load);

@@ -52,9 +52,8 @@ MatrixX Reactions::forces(const MatrixX& unbalanced) const {
   return forces;
 }
 
-VectorX constraint_forces(const Model& m, const Elimination& e, const VectorX& u, const VectorX& load) {
-  VectorX tangents;
-  return Reactions(m, e).forces(internal_forces(m, u, tangents) - load);
+VectorX constraint_forces(const Model& m, const Elimination& e, const ExtendedVector& u, const VectorX& load) {
+  return Reactions(m, e).forces(forces_with(m, u, spring_forces(m, u)) - load);
 }
 
 }  // namespace deflect::frame

@@ -25,6 +25,6 @@ class Reactions {
 };
 
 /// The same for one state of a structure under one load.
-VectorX constraint_forces(const Model&, const Elimination&, const VectorX& u, const VectorX& load);
+VectorX constraint_forces(const Model&, const Elimination&, const ExtendedVector& u, const VectorX& load);
 
 }  // namespace deflect::frame

@@ -18,7 +18,7 @@ struct Sums {
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> energies(const Model& m, const VectorX& u,
+std::vector<std::pair<std::string, double>> energies(const Model& m, const ExtendedVector& u,
                                                      const std::vector<double>& strains) {
   Sums sums;
   for (std::size_t e = 0; e < m.beams.size(); ++e) {

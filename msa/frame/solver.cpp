@@ -9,12 +9,18 @@
 #include "msa/base/error.h"
 #include "msa/frame/relative.h"
 #include "msa/frame/stability.h"
+#include "msa/frame/standing.h"
 
 namespace deflect::frame {
 namespace {
 
-// Below this reciprocal condition of the scaled matrix a structure is looked at for motions that nothing holds.
-constexpr double suspicious = 1e-12;
+// A smallest eigenvalue of the scaled matrix above this is no rounding of 0, of any matrix that fits into memory.
+constexpr double sound = 1e-8;
+constexpr double poor = 1e-12;        // of which a user is told
+constexpr double nearly_free = 1e-6;  // strain of a motion, see mobility.h
+
+constexpr int most_corrections = 20;
+constexpr double extended_rounding = 1e-19, no_digits = 1e-6;  // of a solution
 
 double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
 
@@ -29,8 +35,11 @@ MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
 Solver::Solver(Model m) : model_(std::make_unique<Model>(std::move(m))) {
   give_contacts_stiffness(*model_);
   use_relative_motion(*model_);
+  hold(loose_pieces(*model_, resisting(starting_tangents(1))));
   prepare();
-  if (held_idle_spins()) prepare();
+  if (hold_idle_motions()) prepare();
+  note_condition();
+  for (std::string& note : idle_notes(*model_, idle_)) notes_.push_back(std::move(note));
   for (std::string& note : redundancies(*model_, *elimination_)) notes_.push_back(std::move(note));
 }
 
@@ -48,55 +57,76 @@ void Solver::prepare() {
   factored_ = false;
 }
 
-/// Looks for motions that nothing resists, springs as at 1 N; throws unless all are idle spins, which it holds.
-bool Solver::held_idle_spins() {
-  if (elimination_->independent == 0) return false;
-  const VectorX tangents = starting_tangents(1);
-  const std::vector<double> values = assembly_->values(tangents);
-  const double condition = cholesky_->factor(values);
-  if (condition >= suspicious) {
-    factored_tangents_ = tangents;
-    factored_ = true;
-    return false;
-  }
-  const std::vector<FreeMotion> motions = free_motions_of(*model_, *elimination_, assembly_->pattern(), values);
-  if (motions.empty()) {
-    notes_.push_back(explain_condition(*model_, *elimination_, assembly_->pattern(), values, condition));
-    return false;
-  }
-  std::string list;
-  std::vector<FreeMotion> refused;
-  for (const FreeMotion& motion : motions)
-    if (!motion.idle) {
-      refused.push_back(motion);
-      list += fmt::format("\n  {}: {}", refused.size(), describe(*model_, motion));
-    }
-  if (!refused.empty()) {
-    const std::string what = fmt::format("the structure cannot stand: {} motion{} that nothing resists{}",
-                                         refused.size(), refused.size() == 1 ? "" : "s", list);
-    throw CannotStand(what, *model_, std::move(refused));
-  }
-  for (const FreeMotion& motion : motions) {
-    hold(*model_, motion);
-    idle_.emplace_back(motion.bodies.front().name, motion.u);
-    notes_.push_back(fmt::format("{} spins idly about its own axis: harmless, held", motion.bodies.front().name));
-  }
-  return true;
+std::vector<char> Solver::resisting(const VectorX& tangents) const {
+  std::vector<char> out;
+  for (const double k : tangents) out.push_back(k > 0);
+  return out;
 }
 
-/// An idle spin is harmless only as long as nothing drives it: the constraint that holds it must carry nothing.
-void Solver::refuse_driven_spins(const VectorX& load) const {
-  for (const auto& [name, motion] : idle_)  // normalised to 1: what else moves with it is rounding
-    if (std::abs(load.dot(motion)) > 1e-7 * largest(load))
+void Solver::hold(std::vector<IdleMotion> motions) {
+  for (IdleMotion& motion : motions) {
+    model_->constraints.push_back({motion.hold, 0, "idle motion"});
+    idle_.push_back(std::move(motion));
+  }
+}
+
+/// Looks for motions that nothing resists, springs as at 1 N; throws unless all are idle, which it holds: then the
+/// structure has changed. A structure that its connections prove to stand has none. The stiffness matrix is not asked:
+/// what resists a free motion in it is rounding, of whatever size.
+bool Solver::hold_idle_motions() {
+  if (elimination_->independent == 0 || not_proved_standing(*model_).empty()) return false;
+  Mobility mobility = mobility_of(*model_, resisting(starting_tangents(1)));
+  if (const auto n = mobility.free.cols(); n > 0)
+    throw CannotStand(fmt::format("the structure cannot stand: {} motion{} that nothing resists", n, n == 1 ? "" : "s"),
+                      *model_, mobility.free);
+  if (mobility.smallest_held < nearly_free && mobility.softest.size() > 0)
+    notes_.push_back(fmt::format("the structure is nearly a mechanism: {} with a strain of {:.0e} of its size",
+                                 describe(*model_, free_motions_of(*model_, mobility.softest).front()),
+                                 mobility.smallest_held));
+  const bool held = !mobility.idle.empty();
+  hold(std::move(mobility.idle));
+  return held;
+}
+
+/// What a user should know of stiffnesses that leave few digits.
+void Solver::note_condition() {
+  if (elimination_->independent == 0) return;
+  factored_tangents_ = starting_tangents(1);
+  std::vector<double> values = assembly_->values(factored_tangents_);
+  const double condition = cholesky_->factor(values);
+  factored_ = condition > 0;
+  if (condition > poor) return;
+  if (!factored_) {  // what is softest shows beside a little of the diagonal
+    const SparsePattern& p = assembly_->pattern();
+    for (int j = 0; j < p.n; ++j)
+      values[static_cast<std::size_t>(p.column_start[static_cast<std::size_t>(j)])] *= 1 + 1e-13;
+    if (cholesky_->factor(values) == 0) return;
+  }
+  const SparseCholesky::Softest softest = cholesky_->softest();
+  notes_.push_back(explain_condition(
+      *model_, elimination_->expand(softest.motion, VectorX::Zero(std::ssize(model_->constraints))), condition));
+}
+
+/// An idle motion is harmless only as long as nothing drives it: the constraint that holds it must carry nothing.
+void Solver::refuse_driven_motions(const VectorX& load) const {
+  const double most = largest(load);
+  for (const IdleMotion& motion : idle_) {
+    double work = 0, size = 0;
+    for (const Term& t : motion.u) {
+      work += t.coefficient * load(t.dof);
+      size = std::max(size, std::abs(t.coefficient));
+    }
+    if (std::abs(work) > 1e-7 * most * size)
       throw ModelError(
-          fmt::format("{} can spin about its own axis, and the load turns it: take the moment about that axis "
-                      "away, or hold the spin at one end",
-                      name));
+          fmt::format("{}, and the load drives this motion, which nothing resists: take that part of the load away, "
+                      "or hold the motion",
+                      name_of(*model_, motion)));
+  }
 }
 
 void Solver::check(const VectorX& load, const VectorX& values) const {
   check_consistent(*model_, *elimination_, padded(values, static_cast<Eigen::Index>(model_->constraints.size())));
-  refuse_driven_spins(padded(load, model_->dofs()));
+  refuse_driven_motions(padded(load, model_->dofs()));
 }
 
 void Solver::factor(const VectorX& tangents) {
@@ -105,10 +135,11 @@ void Solver::factor(const VectorX& tangents) {
   if (elimination_->independent > 0) {
     const std::vector<double> values = assembly_->values(tangents);
     if (cholesky_->factor(values) == 0) {
-      std::vector<FreeMotion> motions = free_motions_of(*model_, *elimination_, assembly_->pattern(), values);
-      std::string list;
-      for (const FreeMotion& motion : motions) list += "\n  " + describe(*model_, motion);
-      throw CannotStand("in this state of its springs the structure cannot stand" + list, *model_, std::move(motions));
+      const Mobility mobility = mobility_of(*model_, resisting(tangents));
+      if (mobility.free.cols() > 0)
+        throw CannotStand("in this state of its springs the structure cannot stand", *model_, mobility.free);
+      throw NumericalError(
+          "the stiffness matrix cannot be factored: the stiffnesses of its parts, or its geometry, leave no digits");
     }
   }
   factored_tangents_ = tangents;
@@ -122,25 +153,56 @@ VectorX Solver::starting_tangents(double force) const {
   return k;
 }
 
-MatrixX Solver::linear(const VectorX& tangents, const MatrixX& given_loads, const MatrixX& given_values) {
+ExtendedMatrix Solver::linear(const VectorX& tangents, const MatrixX& given_loads, const MatrixX& given_values) {
   const MatrixX loads = padded_rows(given_loads, static_cast<std::size_t>(model_->dofs()));
   const MatrixX values = padded_rows(given_values, model_->constraints.size());
   for (Eigen::Index c = 0; c < values.cols(); ++c) check_consistent(*model_, *elimination_, values.col(c));
-  for (Eigen::Index c = 0; c < loads.cols(); ++c) refuse_driven_spins(loads.col(c));
+  for (Eigen::Index c = 0; c < loads.cols(); ++c) refuse_driven_motions(loads.col(c));
   factor(tangents);
-  // One step of refinement: the first solution's residual is formed from the elements, not from the assembled matrix.
-  MatrixX q = MatrixX::Zero(elimination_->independent, loads.cols());
-  for (int pass = 0; pass < 2; ++pass) {
-    MatrixX R(elimination_->independent, loads.cols());
-    for (Eigen::Index c = 0; c < loads.cols(); ++c) {
-      const VectorX u = elimination_->expand(q.col(c), values.col(c));
-      R.col(c) = elimination_->reduce(loads.col(c) - tangent_forces(*model_, u, tangents));
-    }
-    q += cholesky_->solve(R);
-  }
-  MatrixX U(model_->dofs(), loads.cols());
-  for (Eigen::Index c = 0; c < loads.cols(); ++c) U.col(c) = elimination_->expand(q.col(c), values.col(c));
+  ExtendedMatrix U(model_->dofs(), loads.cols());
+  for (Eigen::Index c = 0; c < loads.cols(); ++c) U.col(c) = refined(tangents, loads.col(c), values.col(c));
   return U;
+}
+
+ExtendedVector Solver::refined(const VectorX& tangents, const VectorX& load, const VectorX& values) {
+  ExtendedVector q = ExtendedVector::Zero(elimination_->independent), u = elimination_->expand_fine(q, values);
+  double before = 1;
+  for (int pass = 0; pass < most_corrections; ++pass) {
+    const VectorX correction = cholesky_->solve(elimination_->reduce(load - tangent_forces(*model_, u, tangents)));
+    q += correction.cast<long double>();
+    u = elimination_->expand_fine(q, values);
+    if (pass == 0) continue;
+    const double size = cholesky_->size_of(q.cast<double>());
+    const double change = size > 0 ? cholesky_->size_of(correction) / size : 0;
+    if (pass == 1) rounding_ = std::max(rounding_, change);
+    const double shrinks = change / before;
+    before = change;
+    if (change * shrinks < extended_rounding) return u;
+    if (pass > 1 && shrinks > 0.5) break;  // the residual's own rounding is left, or the factor is worth nothing
+  }
+  if (!(before < no_digits))
+    throw NumericalError(fmt::format(
+        "no digits are left: corrections to the solution stay at {:.1e} of it. Stiffnesses differ by too much, or the "
+        "structure is nearly a mechanism",
+        before));
+  return u;
+}
+
+/// Where no spring's stiffness depends on its load.
+Solution Solver::solve_linear(const VectorX& load, const VectorX& values) {
+  const VectorX tangents = starting_tangents(1);
+  Solution s;
+  s.fine = linear(tangents, load, values);
+  s.u = s.fine.cast<double>();
+  s.iterations = 1;
+  s.converged = true;
+  s.spring_tangents = tangents;
+  s.spring_forces.resize(tangents.size());
+  for (std::size_t i = 0; i < model_->springs.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    s.spring_forces(k) = tangents(k) * evaluate(model_->springs[i].elongation, s.fine);
+  }
+  return s;
 }
 
 }  // namespace deflect::frame

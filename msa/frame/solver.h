@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "msa/frame/assembly.h"
+#include "msa/frame/mobility.h"
 #include "msa/frame/reactions.h"
 
 namespace deflect::frame {
@@ -20,6 +21,7 @@ struct GeometricState;  // geometric_solver.h
 
 struct Solution {
   VectorX u;                  ///< by freedom of Solver::model(), the given ones first: m, rad, and the scalars' unit
+  ExtendedVector fine;        ///< the same, for differences; with u's own digits where springs are not linear
   VectorX spring_tangents;    ///< N/m or Nm/rad at u; infinite where a law is rigid
   VectorX spring_forces;      ///< N or Nm, beside preloads
   VectorX heat;               ///< among the loads, what members that are warmer push (MsaModel); by freedom
@@ -36,8 +38,8 @@ struct Solution {
 class Solver {
  public:
   /// Refuses before any load: ModelError for constraints that contradict each other, and for a structure that cannot
-  /// stand, naming every body that moves, how, and what would hold it. A straight member that only spins about its own
-  /// axis is held and noted. Very stiff members get relative coordinates (relative.h).
+  /// stand (mobility.h), naming every body that moves, how, and what would hold it. Idle motions are held and noted.
+  /// Very stiff members get relative coordinates (relative.h).
   explicit Solver(Model);
 
   /// The structure that is solved: the given one, with the constraints and coordinates that were added behind its own.
@@ -45,8 +47,8 @@ class Solver {
   const Elimination& elimination() const { return *elimination_; }
   /// Both of these, from a solver that is done.
   std::pair<Model, Elimination> structure() &&;
-  /// How many of the model's constraints, the last ones, hold idle spins.
-  std::size_t held_spins() const { return idle_.size(); }
+  /// How many of the model's constraints, the last ones, hold idle motions.
+  std::size_t idle_motions() const { return idle_.size(); }
 
   /// No spring's stiffness depends on its load.
   bool linear_springs() const;
@@ -70,13 +72,24 @@ class Solver {
   Solution solve(const VectorX& load, const VectorX& values, const NewtonOptions& options = {});
 
   /// Linear response of the tangent structure (springs at `spring_tangents`) to columns of loads and of constraint
-  /// values; the columns of the result are u.
-  MatrixX linear(const VectorX& spring_tangents, const MatrixX& loads, const MatrixX& values);
+  /// values; the columns of the result are u. Residuals are formed with extended digits until what a correction would
+  /// leave lies below them: the answers' error is that of the structure's own numbers. Throws NumericalError where the
+  /// corrections do not shrink: then the factor has no digits.
+  ExtendedMatrix linear(const VectorX& spring_tangents, const MatrixX& loads, const MatrixX& values);
+
+  /// Of the answers of linear() so far the largest first correction, relative: what rounding costs a plain solution,
+  /// and so the share that the rounding of the structure's numbers may cost any.
+  double rounding() const { return rounding_; }
 
  private:
   void prepare();
-  bool held_idle_spins();
-  void refuse_driven_spins(const VectorX& load) const;
+  std::vector<char> resisting(const VectorX& spring_tangents) const;
+  void hold(std::vector<IdleMotion>);
+  bool hold_idle_motions();
+  void note_condition();
+  void refuse_driven_motions(const VectorX& load) const;
+  ExtendedVector refined(const VectorX& tangents, const VectorX& load, const VectorX& values);
+  Solution solve_linear(const VectorX& load, const VectorX& values);
   struct Work;
   void begin_by_forces(Work&);
   double line_search(const Work&, const VectorX& step) const;
@@ -91,14 +104,15 @@ class Solver {
   std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<SparseCholesky> cholesky_;
   std::vector<std::string> notes_;
-  std::vector<std::pair<std::string, VectorX>> idle_;  // members that are held, and their motions
+  std::vector<IdleMotion> idle_;  // held by the last constraints
+  double rounding_ = 0;
   bool factored_ = false;
   VectorX factored_tangents_;  // the state that the factor belongs to
 };
 
 /// Stored energies by part: beams ½ (d − d0)ᵀ K (d − d0), d0 the free strains' (by beam; none: 0), springs ∫ F dδ,
 /// frictions and what else jumps by their laws; in order of first appearance. J.
-std::vector<std::pair<std::string, double>> energies(const Model&, const VectorX& u,
+std::vector<std::pair<std::string, double>> energies(const Model&, const ExtendedVector& u,
                                                      const std::vector<double>& strains = {});
 
 }  // namespace deflect::frame

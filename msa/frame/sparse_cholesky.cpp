@@ -37,6 +37,8 @@ struct SparseCholesky::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
+  MatrixX solve_scaled(MatrixX B);
+
   int* columns() const { return static_cast<int*>(A->p); }
   int* rows() const { return static_cast<int*>(A->i); }
   double* values() const { return static_cast<double*>(A->x); }
@@ -161,19 +163,44 @@ double SparseCholesky::factor(const std::vector<double>& values) {
   return cholmod_rcond(s.L, &s.common);
 }
 
-MatrixX SparseCholesky::solve(const MatrixX& B) const {
-  Impl& s = *impl_;
-  if (!s.A) return B;
+/// S K S X = B.
+MatrixX SparseCholesky::Impl::solve_scaled(MatrixX B) {
   const auto rows = static_cast<std::size_t>(B.rows()), columns = static_cast<std::size_t>(B.cols());
-  const BlasThreads threads(s.A->nrow);
-  MatrixX scaled = s.scale.asDiagonal() * B;
-  cholmod_dense b{rows, columns, rows * columns, rows, scaled.data(), nullptr, CHOLMOD_REAL, CHOLMOD_DOUBLE};
-  cholmod_dense* x = cholmod_solve(CHOLMOD_A, s.L, &b, &s.common);
+  const BlasThreads threads(A->nrow);
+  cholmod_dense b{rows, columns, rows * columns, rows, B.data(), nullptr, CHOLMOD_REAL, CHOLMOD_DOUBLE};
+  cholmod_dense* x = cholmod_solve(CHOLMOD_A, L, &b, &common);
   if (!x) throw std::bad_alloc();
-  MatrixX X(B.rows(), B.cols());
-  std::memcpy(X.data(), x->x, sizeof(double) * rows * columns);
-  cholmod_free_dense(&x, &s.common);
-  return s.scale.asDiagonal() * X;
+  std::memcpy(B.data(), x->x, sizeof(double) * rows * columns);
+  cholmod_free_dense(&x, &common);
+  return B;
+}
+
+SparseCholesky::Softest SparseCholesky::softest() const {
+  Impl& s = *impl_;
+  if (!s.A) return {1, {}};
+  const auto n = static_cast<Eigen::Index>(s.A->nrow);
+  MatrixX X(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i)
+    X.row(i) << std::sin(12.9898 * static_cast<double>(i + 1)), std::cos(78.233 * static_cast<double>(i + 1));
+  Softest out;
+  for (int pass = 0; pass < 3; ++pass) {
+    X.colwise().normalize();
+    X = s.solve_scaled(std::move(X));
+  }
+  Eigen::Index softer = 0;
+  const double size = X.colwise().norm().maxCoeff(&softer);
+  out.eigenvalue = std::isfinite(size) ? 1 / size : 0;
+  out.motion = s.scale.cwiseProduct(X.col(softer) / size);
+  return out;
+}
+
+double SparseCholesky::size_of(const VectorX& x) const {
+  return impl_->A ? x.cwiseQuotient(impl_->scale).norm() : x.norm();
+}
+
+MatrixX SparseCholesky::solve(const MatrixX& B) const {
+  if (!impl_->A) return B;
+  return impl_->scale.asDiagonal() * impl_->solve_scaled(impl_->scale.asDiagonal() * B);
 }
 
 }  // namespace deflect::frame

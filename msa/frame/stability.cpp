@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "msa/frame/assembly.h"
+#include "msa/frame/elimination.h"
 
 namespace deflect::frame {
 namespace {
@@ -67,19 +68,8 @@ MatrixX taken_apart(MatrixX U) {
   return U;
 }
 
-/// One straight member that turns about its own axis and takes nothing else along.
-bool is_idle(const Model& m, const FreeMotion& motion, double length) {
-  if (motion.bodies.size() != 1 || motion.bodies[0].screw.translation) return false;
-  const MovingBody& body = motion.bodies[0];
-  if (body.nodes.size() < 2 || std::abs(body.screw.pitch) > 1e-9 * length) return false;
-  for (const int node : body.nodes) {
-    const Vector3 r = m.nodes[static_cast<std::size_t>(node)].position - body.screw.point;
-    if (r.cross(body.screw.axis).norm() > 1e-7 * length) return false;
-  }
-  return true;
-}
-
-FreeMotion motion_of(const Model& m, const VectorX& u, const std::vector<int>& body_of, double length) {
+FreeMotion motion_of(const Model& m, const VectorX& u, const std::vector<int>& body_of) {
+  const double length = characteristic_length(m);
   FreeMotion motion;
   motion.u = u;
   for (std::size_t first = 0; first < m.nodes.size(); ++first) {
@@ -102,8 +92,23 @@ FreeMotion motion_of(const Model& m, const VectorX& u, const std::vector<int>& b
   }
   for (const Release& r : m.releases)
     if (std::abs(evaluate(r.form, u)) > at_rest) motion.joints.push_back(r.name);
-  motion.idle = is_idle(m, motion, length);
   return motion;
+}
+
+enum class Moved { node, member, other };
+
+/// One node that turns, one straight member that turns about its own axis, or anything else.
+Moved moved_by(const Model& m, const IdleMotion& idle) {
+  const auto nodal = static_cast<int>(6 * m.nodes.size());
+  int first = -1;
+  bool several = false, displaced = false;
+  for (const Term& t : idle.u) {
+    if (t.dof >= nodal) return Moved::other;
+    displaced = displaced || t.dof % 6 < 3;
+    if (first < 0) first = t.dof / 6;
+    several = several || t.dof / 6 != first;
+  }
+  return displaced ? Moved::other : several ? Moved::member : Moved::node;
 }
 
 std::string words(const Screw& s) {
@@ -116,6 +121,13 @@ std::string words(const Screw& s) {
   const std::string advance =
       std::abs(s.pitch) > 1e-9 ? fmt::format(", advancing {:.4g} mm per rad", 1e3 * s.pitch) : "";
   return fmt::format("turns about {} {}{}", axis, through, advance);
+}
+
+/// One line for each.
+std::string listed(const Model& m, const std::vector<FreeMotion>& motions) {
+  std::string list;
+  for (std::size_t i = 0; i < motions.size(); ++i) list += fmt::format("\n  {}: {}", i + 1, describe(m, motions[i]));
+  return list;
 }
 
 }  // namespace
@@ -137,16 +149,26 @@ Screw screw_of(const Vector3& p, const Vector3& v, const Vector3& w) {
   return s;
 }
 
-CannotStand::CannotStand(const std::string& what, const Model& m, std::vector<FreeMotion> free)
-    : ModelError(what), model(std::make_shared<const Model>(m)), motions(std::move(free)) {}
+CannotStand::CannotStand(const std::string& head, const Model& m, const MatrixX& free)
+    : CannotStand(head, m, free_motions_of(m, free)) {}
 
-std::vector<FreeMotion> free_motions_of(const Model& m, const Elimination& e, const SparsePattern& p,
-                                        const std::vector<double>& values) {
-  const MatrixX U = taken_apart(unstrained(m, soft_motions(m, e, p, values)));
+CannotStand::CannotStand(const std::string& head, const Model& m, std::vector<FreeMotion> free)
+    : ModelError(head + listed(m, free)), model(std::make_shared<const Model>(m)), motions(std::move(free)) {}
+
+VectorX normalised(const Model& m, VectorX u) {
+  const double length = characteristic_length(m);
+  const auto nodal = static_cast<Eigen::Index>(6 * m.nodes.size());
+  double size = 0;
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    size = std::max(size, std::abs(u(i)) * (i < nodal && i % 6 >= 3 ? length : 1));
+  return u / size;
+}
+
+std::vector<FreeMotion> free_motions_of(const Model& m, const MatrixX& free) {
+  const MatrixX U = taken_apart(free);
   const std::vector<int> body_of = bodies(m);
   std::vector<FreeMotion> motions;
-  for (Eigen::Index j = 0; j < U.cols(); ++j)
-    motions.push_back(motion_of(m, normalised(m, U.col(j)), body_of, characteristic_length(m)));
+  for (Eigen::Index j = 0; j < U.cols(); ++j) motions.push_back(motion_of(m, normalised(m, U.col(j)), body_of));
   return motions;
 }
 
@@ -168,29 +190,54 @@ std::string describe(const Model& m, const FreeMotion& motion) {
   return text;
 }
 
-void hold(Model& m, const FreeMotion& idle) {
-  const MovingBody& body = idle.bodies.front();
-  m.constraints.push_back({rotation_of(body.nodes.front(), body.screw.axis), 0, "idle spin of " + body.name});
+std::string name_of(const Model& m, const IdleMotion& idle) {
+  const Moved moved = moved_by(m, idle);
+  VectorX u = VectorX::Zero(m.dofs());
+  for (const Term& t : idle.u) u(t.dof) = t.coefficient;
+  const FreeMotion motion = motion_of(m, u, bodies(m));
+  if (motion.bodies.empty()) return m.dof_name(idle.u.front().dof) + " moves idly";
+  const MovingBody& body = motion.bodies.front();
+  if (moved == Moved::member) return body.name + " spins idly about its own axis";
+  const std::string more =
+      motion.bodies.size() > 1 ? fmt::format(" with {} more", motion.bodies.size() - 1) : std::string();
+  return fmt::format("{}{} idly {}", body.name, more, words(body.screw));
 }
 
-std::string explain_condition(const Model& m, const Elimination& e, const SparsePattern& p,
-                              const std::vector<double>& values, double reciprocal_condition) {
-  const MatrixX motions = soft_motions(m, e, p, values);
+std::vector<std::string> idle_notes(const Model& m, const std::vector<IdleMotion>& idle) {
+  constexpr std::size_t few = 8;
+  std::vector<std::string> notes;
+  if (idle.size() <= few) {
+    for (const IdleMotion& motion : idle) notes.push_back(name_of(m, motion) + ": harmless, held");
+    return notes;
+  }
+  std::array<std::size_t, 3> count{};
+  for (const IdleMotion& motion : idle) ++count[static_cast<std::size_t>(moved_by(m, motion))];
+  constexpr std::array<const char*, 3> what = {"rotations of hinged nodes", "spins of members about their own axes",
+                                               "motions of inner bodies"};
+  for (std::size_t i = 0; i < count.size(); ++i)
+    if (count[i] > 0)
+      notes.push_back(fmt::format("{} {} that nothing holds and nothing drives: harmless, held", count[i], what[i]));
+  return notes;
+}
+
+std::string explain_condition(const Model& m, const VectorX& soft, double reciprocal_condition) {
+  double most = -1, stiffest = 0;
+  std::string soft_part, stiff_part;
+  for (const Beam& beam : m.beams) {
+    const Vector12 d = end_displacements(beam, soft);
+    if (const double energy = d.dot(pull(beam, d)); energy > most) most = energy, soft_part = beam.name;
+    if (const double k = beam.rigidity.EA / beam.length; k > stiffest) stiffest = k, stiff_part = beam.name;
+  }
+  for (const Spring& spring : m.springs) {
+    const double d = evaluate(spring.elongation, soft);
+    if (const double energy = tangent_at_force(spring.law, 1) * d * d; energy > most)
+      most = energy, soft_part = spring.name;
+  }
   const std::string head =
       fmt::format("the stiffness is ill-conditioned (reciprocal condition {:.1e})", reciprocal_condition);
-  if (motions.cols() == 0) return head;
-  const VectorX strain = strain_of(m, motions.col(0));
-  Eigen::Index soft = 0;
-  strain.maxCoeff(&soft);
-  const auto name = [&m](Eigen::Index i) {
-    const auto k = static_cast<std::size_t>(i);
-    return k < m.beams.size() ? m.beams[k].name : m.springs[k - m.beams.size()].name;
-  };
-  double stiffest = 0;
-  std::string stiff;
-  for (const Beam& b : m.beams)
-    if (const double k = b.rigidity.EA / b.length; k > stiffest) stiffest = k, stiff = b.name;
-  return fmt::format("{}: '{}' is too soft beside '{}'; check its section, material or units", head, name(soft), stiff);
+  if (stiff_part.empty() || stiff_part == soft_part) return head;
+  return fmt::format("{}: '{}' is too soft beside '{}'; check its section, material or units", head, soft_part,
+                     stiff_part);
 }
 
 }  // namespace deflect::frame

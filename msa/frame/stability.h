@@ -1,5 +1,4 @@
-// Why a structure cannot stand: which bodies move, and how, with nothing to resist; and which of such motions are
-// harmless.
+// Words about motions that nothing resists (mobility.h): which bodies move, how, and what would hold them.
 #pragma once
 
 #include <memory>
@@ -7,7 +6,7 @@
 #include <vector>
 
 #include "msa/base/error.h"
-#include "msa/frame/free_motions.h"
+#include "msa/frame/mobility.h"
 
 namespace deflect::frame {
 
@@ -31,33 +30,40 @@ struct FreeMotion {
   VectorX u;  ///< by freedom; largest translation or rotation times the structure's size is 1
   std::vector<MovingBody> bodies;
   std::vector<std::string> joints;  ///< free freedoms of joints that move: locking any one of them would hold it
-  bool idle = false;                ///< one straight member turning about its own axis: it moves nothing else
 };
 
 /// A structure that cannot stand: what() says which bodies move and what would hold them; the rest is for drawing it.
 struct CannotStand : ModelError {
-  CannotStand(const std::string& what, const Model&, std::vector<FreeMotion>);
+  /// `head` begins the message; then each motion.
+  CannotStand(const std::string& head, const Model&, const MatrixX& free);
 
   std::shared_ptr<const Model> model;
   std::vector<FreeMotion> motions;
+
+ private:
+  CannotStand(const std::string& head, const Model&, std::vector<FreeMotion>);
 };
 
-/// Motions that no element resists, taken apart so that each moves as little as possible. Independent of any load.
-std::vector<FreeMotion> free_motions_of(const Model&, const Elimination&, const SparsePattern&,
-                                        const std::vector<double>& values);
+/// Free motions (columns) taken apart so that each moves as little as possible.
+std::vector<FreeMotion> free_motions_of(const Model&, const MatrixX& free);
 
 /// "leg 1 link turns about the axis (0, 0.6, 0.8) through (…) mm; held by locking … or by a support at node …".
 std::string describe(const Model&, const FreeMotion&);
 
+/// What moves idly: "leg 1 link spins idly about its own axis", "node 'a' idly turns about (1, 0, 0) through …".
+std::string name_of(const Model&, const IdleMotion&);
+
+/// A sentence for each idle motion that is held, or for all of a kind together where they are many.
+std::vector<std::string> idle_notes(const Model&, const std::vector<IdleMotion>&);
+
 /// The screw of a body whose point p moves by v (m) while it turns by w (rad).
 Screw screw_of(const Vector3& p, const Vector3& v, const Vector3& w);
 
-/// Constraints that hold idle motions, one each: the rotation of one node about the member's axis.
-void hold(Model&, const FreeMotion& idle);
+/// u divided by its size: the largest translation, or rotation times the structure's size, becomes 1.
+VectorX normalised(const Model&, VectorX u);
 
-/// Of a structure without free motion but with a condition too poor for its digits: the softest and the stiffest part
-/// along the worst motion, as a sentence.
-std::string explain_condition(const Model&, const Elimination&, const SparsePattern&, const std::vector<double>& values,
-                              double reciprocal_condition);
+/// Of a structure that stands but with a condition too poor for its digits: the part that its softest motion strains
+/// most, against the stiffest, as a sentence.
+std::string explain_condition(const Model&, const VectorX& softest, double reciprocal_condition);
 
 }  // namespace deflect::frame

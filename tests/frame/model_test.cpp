@@ -241,7 +241,7 @@ TEST(Solver, PrescribedDisplacementsAndReactions) {
   const VectorX no_load = VectorX::Zero(m.dofs());
   const Solution s = Solver(m).solve(no_load);
   EXPECT_NEAR(s.u(6), 1e-3, 1e-18);
-  const VectorX f = constraint_forces(m, eliminate(m), s.u, no_load);
+  const VectorX f = constraint_forces(m, eliminate(m), s.fine, no_load);
   EXPECT_NEAR(f(6), 5000, 1e-9);
   EXPECT_NEAR(f(0), -5000, 1e-9);
 }

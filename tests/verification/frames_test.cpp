@@ -63,7 +63,8 @@ TEST(Frames, Frame3ddExampleBWithItsSelfWeight) {
   EXPECT_NEAR(apex(3), 3.59e-5, 0.51e-7);
   EXPECT_NEAR(apex(4), 8.1e-6, 0.51e-7);
   // Printed: equivalent nodal loads in N and Nmm to three decimals.
-  const frame::CaseLoad load = frame::load_of(s.frame, s.result.structure, s.frame.loads[0].second);
+  const frame::CaseLoad load =
+      frame::load_of(s.frame, s.result.structure, s.frame.loads[0].first, s.frame.loads[0].second);
   const double signs[][2] = {{-1, 1}, {-1, -1}, {1, -1}, {1, 1}};  // of the moments about x and y at the feet
   EXPECT_NEAR(load.forces(2), -109.992, 0.51e-3);
   for (int foot = 0; foot < 4; ++foot) {

@@ -164,6 +164,7 @@ double parse_length(const std::string& option, const std::string& text) {
 }
 
 frame::MemberDivision divide(const Mechanism& m, const std::string& element_size) {
+  if (element_size.empty()) return {};
   return divide_members(configure(m, home_pose(m)), parse_length("--element-size", element_size));
 }
 

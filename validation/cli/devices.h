@@ -53,7 +53,7 @@ Vector6 parse_load(const std::string& load);
 /// A positive length with unit ("25 mm"), in m; InputError naming the option.
 double parse_length(const std::string& option, const std::string& text);
 
-/// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose.
+/// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose. Empty: one element each.
 frame::MemberDivision divide(const Mechanism&, const std::string& element_size);
 
 /// The standard deviation that an option gave in a unit of which `per_SI` make one in SI; none where it is empty.

@@ -16,7 +16,7 @@ namespace deflect::cli {
 namespace {
 
 struct Arguments {
-  std::string device, pose, joints, load, json, out, report, element_size = "25 mm", geometry = "linear";
+  std::string device, pose, joints, load, json, out, report, element_size, geometry = "linear";
 };
 
 void write_structure(const std::filesystem::path& folder, const SolveResult& r) {
@@ -30,16 +30,20 @@ Geometry parse_geometry(const std::string& text) {
   throw InputError(fmt::format("--geometry: '{}' is none of {}", text, fmt::join(geometry_names, ", ")));
 }
 
+/// As asked for; else one element a member, which is exact at its ends, or as many as a drawing wants.
+frame::MemberDivision division(const Mechanism& m, const Stand& at, const Arguments& a) {
+  if (!a.element_size.empty() || a.out.empty()) return divide(m, a.element_size);
+  return frame::equal_division(at.configuration, 20);
+}
+
 void run(const Arguments& a) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
   const Geometry geometry = parse_geometry(a.geometry);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
-  const SolveResult r = timed(fmt::format("both theories, geometry {}: closed form; MSA with elements of {}, sparse "
-                                          "Cholesky",
-                                          a.geometry, a.element_size),
-                              [&] { return solve(m, at, load, divide(m, a.element_size), geometry); });
+  const SolveResult r = timed(fmt::format("both theories, geometry {}: closed form; MSA, sparse Cholesky", a.geometry),
+                              [&] { return solve(m, at, load, division(m, at, a), geometry); });
   if (!a.out.empty()) write_structure(a.out, r);
   if (!a.json.empty()) write_file(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));
@@ -70,7 +74,8 @@ Command solve_command() {
         "rotations of any size, K is the tangent there; a load past buckling is refused",
         &a->geometry},
        {"--element-size", "LENGTH",
-        "size of the MSA's elements, with unit (default '25 mm'; in the deformed shape at least 8 in a member)",
+        "size of the MSA's elements, with unit (default: one element a member, which is exact at its ends; with --out "
+        "twenty, for the drawing; in the deformed shape at least eight)",
         &a->element_size},
        {"--json", "FILE", "write the result", &a->json},
        report_option(&a->report),

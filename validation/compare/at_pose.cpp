@@ -36,11 +36,18 @@ Answer deformed_answer(Answer answer, const Vector6& F, const Vector3& reaction,
 
 std::string because(const std::string& reason) { return reason.empty() ? "" : ": " + reason; }
 
+constexpr double checked_to = 1e-9;  // of each theory's answer by itself
+
 bool from_rest(const Conditions& c) {
   return c.warmer == 0 && std::all_of(c.slips.begin(), c.slips.end(), [](double slip) { return slip == 0; });
 }
 
 }  // namespace
+
+double bound_with(double least, double rounding) {
+  constexpr double roundings = 100;
+  return std::max(least, roundings * rounding);
+}
 
 AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : model_(c), where_(std::move(where)) {
   weight_ << c.weight, Vector3::Zero();
@@ -105,7 +112,7 @@ Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
     const frame::MsaModel::Stiffness stiffness = model_.stiffness(last_.state);
     std::vector<LegStiffness> legs;
     for (std::size_t i = 0; i < legs_.size(); ++i) legs.push_back({legs_[i], stiffness.legs[i], passive_twists_[i]});
-    checks_ = check_stiffness(stiffness.K, legs);
+    checks_ = check_stiffness(stiffness.K, legs, bound_with(checked_to, model_.rounding()));
     enforce(checks_.failure, "MSA stiffness", where_);
     stiffness_ = stiffness.K;
     tangents_ = last_.state.spring_tangents;
@@ -113,8 +120,9 @@ Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
   }
   // The reaction acts at the base origin; about T its moment changes by the arm.
   const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_.base_reaction(last_.load, last_.state);
-  enforce(response_failure({last_.load, last_.displacement, reaction, total(last_.energies), model_.linear(),
-                            from_rest(conditions)}),
+  enforce(response_failure(
+              {last_.load, last_.displacement, reaction, total(last_.energies), model_.linear(), from_rest(conditions)},
+              bound_with(checked_to, model_.rounding())),
           "MSA response", where_);
   return {last_.displacement, stiffness_, last_.energies, checks_, last_.slips};
 }

@@ -22,6 +22,10 @@ struct Answer {
   std::vector<double> slips;                             ///< of the frictions after the load, as in Conditions
 };
 
+/// The bound of a check that demands `least`, relative: more where the structure amplifies the rounding of its own
+/// numbers by `rounding` (Solver::rounding()), some dozens of which meet in an answer.
+double bound_with(double least, double rounding);
+
 /// Checked: K = Kᵀ, K ⪰ 0, K_c J_q = 0, sign, equilibrium, energy. Throws NumericalError naming theory, pose and check,
 /// or where equilibrium is not found. `where` begins the messages. In the deformed shape (Geometry) legs carry forces
 /// that resist their passive joints, and the stored energy is not ½Fᵀd: there K = Kᵀ of what is left without −½[m]× of
@@ -48,6 +52,8 @@ class MsaAtPose {
   Vector6 offset() { return model_.assembled().u.segment<6>(6 * mechanism().tool); }
 
   const frame::MechanismModel& mechanism() const { return model_.mechanism(); }
+  /// MsaModel::rounding() of the answers so far.
+  double rounding() const { return model_.rounding(); }
   const std::vector<std::string>& notes() const { return model_.notes(); }
   const frame::GeometricState* deformed() const {
     return last_.state.geometric.get();

@@ -10,6 +10,7 @@
 
 #include "msa/base/error.h"
 #include "msa/mechanism/configuration.h"
+#include "validation/compare/agreement.h"
 #include "validation/compare/swept.h"
 #include "validation/compare/theories.h"
 #include "validation/parallel/pack.h"
@@ -129,10 +130,13 @@ MapPose map_pose(SweptTheories& theories, const Mechanism& m, const MapOptions& 
     check_finite(*out.msa, where, "MSA");
   }
   if (o.analytic && o.msa)
-    for (std::size_t i = 0; i < loads.size(); ++i)
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      if (const double bound = theories.bound(); difference(analytic[i], msa[i], c->size).largest() > bound)
+        require_agreement(analytic[i], msa[i], c->size, bound, where());
       out.relative_difference = std::max(
           out.relative_difference,
           deflect::relative_difference(twist_in_mm(analytic[i].displacement), twist_in_mm(msa[i].displacement)));
+    }
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "msa/base/error.h"
+#include "validation/compare/agreement.h"
 
 namespace deflect {
 
@@ -30,6 +31,11 @@ const Configuration& SweptTheories::at(const Pose& pose) {
     if (msa_sweep_) msa_legs_[i].passive_twists = msa_sweep_->passive_twists(c, i);
   }
   return c;
+}
+
+double SweptTheories::bound() const {
+  const bool linear = analytic_ ? analytic_->model().linear() : analytic_sweep_->linear();
+  return agreement_bound(linear, msa_ ? msa_->rounding() : 0);
 }
 
 std::string SweptTheories::where() const {

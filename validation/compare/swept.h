@@ -22,6 +22,9 @@ class SweptTheories {
   Answer analytic(const Vector6& F_T_W);
   Answer msa(const Vector6& F_T_W);
 
+  /// How far the two answers there may be apart (agreement.h).
+  double bound() const;
+
  private:
   std::string where() const;
   template <class Sweep>

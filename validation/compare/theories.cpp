@@ -13,6 +13,7 @@
 #include "msa/base/error.h"
 #include "msa/base/stiffness_checks.h"
 #include "msa/mechanism/configuration.h"
+#include "validation/compare/agreement.h"
 #include "validation/compare/at_pose.h"
 #include "validation/compare/solve_result.h"
 
@@ -27,6 +28,9 @@ struct Pair {
   static std::string where(const Mechanism& m, const Stand& at) {
     return fmt::format("{} at ({:.6g})", m.name, fmt::join(at.pose_mm_deg, ", "));
   }
+
+  /// How far the theories may be apart in linear geometry.
+  double bound() const { return agreement_bound(analytic.model().linear(), msa.rounding()); }
 
   AnalyticAtPose analytic;
   MsaAtPose msa;
@@ -147,6 +151,7 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
     linear_f = pair.msa.solve(F);
   }
   const Answer a = pair.analytic.solve(F, geometry), f = pair.msa.solve(F, geometry);
+  if (linear) require_agreement(a, f, at.configuration.size, pair.bound(), Pair::where(m, at));
   if (!linear) {
     r.analytic_from_linear = from_linear(a, *linear_a);
     r.msa_from_linear = from_linear(f, *linear_f);
@@ -188,8 +193,10 @@ Validation validate(const Mechanism& m, const std::vector<ValidationPoint>& poin
       row.point = point;
       row.axis = axis;
       row.load_N = load_N;
-      row.analytic = twist_in_mm(pair.analytic.solve(F).displacement);
-      row.msa = twist_in_mm(pair.msa.solve(F).displacement);
+      const Answer a = pair.analytic.solve(F), f = pair.msa.solve(F);
+      require_agreement(a, f, at.configuration.size, pair.bound(), Pair::where(m, at));
+      row.analytic = twist_in_mm(a.displacement);
+      row.msa = twist_in_mm(f.displacement);
       if (!as_printed.empty())
         row.as_printed = twist_in_mm(solved(analytic::AnalyticModel(at.configuration, as_printed), F).displacement);
       row.relative_difference = relative_difference(row.analytic, row.msa);

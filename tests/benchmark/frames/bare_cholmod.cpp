@@ -41,7 +41,7 @@ void write_matrix(const char* frame_file, const char* matrix_file) {
   const frame::Assembly assembly(m.model, e);
   const frame::SparsePattern& p = assembly.pattern();
   const std::vector<double> values = assembly.values(VectorX::Zero(0));
-  const VectorX load = e.reduce(frame::load_of(f, m, f.loads.front().second).forces);
+  const VectorX load = e.reduce(frame::load_of(f, m, f.loads.front().first, f.loads.front().second).forces);
   std::ofstream out(matrix_file, std::ios::binary);
   const int sizes[] = {p.n, static_cast<int>(p.row.size())};
   write(out, sizes, 2);

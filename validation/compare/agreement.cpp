@@ -1,0 +1,61 @@
+#include "validation/compare/agreement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "msa/base/error.h"
+
+namespace deflect {
+namespace {
+
+constexpr double linear_bound = 1e-9, contact_bound = 1e-7;
+
+Vector6 in_metres(const Vector6& d, double length) {
+  Vector6 out = d;
+  out.tail<3>() *= length;
+  return out;
+}
+
+Matrix6 per_metre(const Matrix6& K, double length) {
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(1 / length);
+  return weight.asDiagonal() * K * weight.asDiagonal();
+}
+
+/// |a − b| against |b|, or against |a| where b vanishes.
+double relative(double apart, double size_a, double size_b) {
+  const double size = size_b > 0 ? size_b : size_a;
+  return apart > 0 ? apart / size : 0;
+}
+
+}  // namespace
+
+double Difference::largest() const { return std::max(displacement, stiffness); }
+
+Difference difference(const Answer& a, const Answer& b, double length) {
+  const Vector6 d_a = in_metres(a.displacement, length), d_b = in_metres(b.displacement, length);
+  const Matrix6 K_a = per_metre(a.stiffness, length), K_b = per_metre(b.stiffness, length);
+  return {relative((d_a - d_b).norm(), d_a.norm(), d_b.norm()),
+          relative((K_a - K_b).cwiseAbs().maxCoeff(), K_a.cwiseAbs().maxCoeff(), K_b.cwiseAbs().maxCoeff())};
+}
+
+double agreement_bound(bool linear, double rounding) {
+  return bound_with(linear ? linear_bound : contact_bound, rounding);
+}
+
+void require_agreement(const Answer& analytic, const Answer& msa, double length, double bound,
+                       const std::string& where) {
+  const Difference apart = difference(analytic, msa, length);
+  if (apart.largest() <= bound) return;
+  const auto words = [](const Vector6& SI) {
+    const Vector6 d = twist_in_mm(SI);
+    return fmt::format("({:.6g}, {:.6g}, {:.6g}) mm, ({:.6g}, {:.6g}, {:.6g}) rad", d(0), d(1), d(2), d(3), d(4), d(5));
+  };
+  throw NumericalError(fmt::format(
+      "{}: the two theories disagree: displacements differ by {:.1e}, stiffnesses by {:.1e}, bound {:.0e}. Closed form "
+      "{}; MSA {}. One of the two is wrong here: no answer is given",
+      where, apart.displacement, apart.stiffness, bound, words(analytic.displacement), words(msa.displacement)));
+}
+
+}  // namespace deflect
