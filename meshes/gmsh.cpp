@@ -1,13 +1,9 @@
 #include "meshes/gmsh.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <functional>
 #include <mutex>
 #include <sstream>
@@ -74,18 +70,6 @@ bool is_complete(const std::string& text, const LineMesh& mesh, const FieldData&
          element_data == (mesh.cells.empty() ? 0 : fields.cells.size());
 }
 
-/// Removes the file when it goes out of scope; after a rename there is none to remove.
-struct Neighbour {
-  fs::path path;
-  explicit Neighbour(fs::path p) : path(std::move(p)) {}
-  ~Neighbour() {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-  }
-  Neighbour(const Neighbour&) = delete;
-  Neighbour& operator=(const Neighbour&) = delete;
-};
-
 }  // namespace
 
 std::vector<std::vector<double>> subdivide(const std::vector<double>& lengths, double element_size) {
@@ -105,19 +89,14 @@ std::vector<std::vector<double>> subdivide(const std::vector<double>& lengths, d
 
 void write_msh(const fs::path& path, const LineMesh& mesh, const FieldData& fields) {
   check(mesh, fields);
-  std::error_code error;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-  fs::path part = path;
-  part += fmt::format(".part{}.msh", ::getpid());  // Gmsh takes the format from the extension
-  const Neighbour neighbour(part);
-  errno = 0;
-  if (!std::ofstream(part)) refuse_file(path, std::strerror(errno));
-  const std::string message =
-      with_module([&](const Module& module) { return module.write_msh(part.string(), mesh, fields); });
-  if (!message.empty()) refuse_file(path, "Gmsh: " + message);
-  if (!is_complete(read_text(part), mesh, fields)) refuse_file(path, "Gmsh's file is cut short: is the disk full?");
-  fs::rename(part, path, error);
-  if (error) refuse_file(path, error.message());
+  // Gmsh takes the format from the extension.
+  const std::string text = text_written_by(path, ".msh", [&](const fs::path& part) {
+    const std::string message =
+        with_module([&](const Module& module) { return module.write_msh(part.string(), mesh, fields); });
+    if (!message.empty()) refuse_file(path, "Gmsh: " + message);
+  });
+  if (!is_complete(text, mesh, fields)) refuse_file(path, "Gmsh's file is cut short: is the disk full?");
+  write_text(path, text);
 }
 
 }  // namespace deflect::gmsh

@@ -1,20 +1,145 @@
 #include "msa/base/files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <charconv>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <sstream>
+#include <system_error>
 
 #include "msa/base/error.h"
+#include "msa/base/part_file.h"
 
 namespace deflect {
+namespace {
+namespace fs = std::filesystem;
 
-std::string read_text(const std::filesystem::path& path) {
+[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
+  throw InputError(fmt::format("{}: cannot be written ({})", path.string(), reason));
+}
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+/// An open file that is closed in the end.
+class Opened {
+ public:
+  Opened(const fs::path& path, int flags) : descriptor_(::open(path.c_str(), flags | O_CLOEXEC)) {
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category());
+  }
+  ~Opened() { ::close(descriptor_); }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+void write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t n = ::write(descriptor, text.data(), text.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw std::system_error(errno, std::generic_category());
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+/// What a path leads to, links followed.
+struct Target {
+  fs::path path;
+  std::optional<struct stat> there;  ///< none: there is no file yet
+  std::optional<int> own;            ///< a descriptor that this process holds, as /dev/stdout is
+
+  bool regular() const { return !own && (!there || S_ISREG(there->st_mode)); }
+};
+
+/// 1 for /proc/self/fd/1 and its like, whose links lead to what no path names.
+std::optional<int> own_descriptor(const fs::path& path) {
+  std::error_code error;
+  const std::string folder = fs::canonical(folder_of(path), error).string();
+  if (error || !folder.starts_with(fmt::format("/proc/{}/", ::getpid())) || !folder.ends_with("/fd")) return {};
+  const std::string name = path.filename().string();
+  int number = 0;
+  const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (wrong != std::errc() || end != name.data() + name.size()) return {};
+  return number;
+}
+
+Target target_of(const fs::path& path) {
+  Target t{path, {}, {}};
+  for (int links = 0; links < 40; ++links) {
+    if ((t.own = own_descriptor(t.path))) return t;
+    struct stat status {};
+    if (::lstat(t.path.c_str(), &status) != 0) {
+      if (errno == ENOENT) return t;
+      throw std::system_error(errno, std::generic_category());
+    }
+    t.there = status;
+    if (!S_ISLNK(status.st_mode)) return t;
+    t.there.reset();
+    t.path = folder_of(t.path) / fs::read_symlink(t.path);  // an absolute one stands for itself
+  }
+  throw std::system_error(ELOOP, std::generic_category());
+}
+
+void require_writable(const fs::path& path, const Target& t) {
+  if (!t.there) return;
+  if (S_ISDIR(t.there->st_mode)) refuse(path, "it is a folder, a file is wanted");
+  if (S_ISREG(t.there->st_mode) && ((t.there->st_mode & 0222) == 0 || ::access(t.path.c_str(), W_OK) != 0))
+    refuse(path, "it is read-only: make it writable with chmod u+w, or name another file");
+}
+
+void write_to_descriptor(int descriptor, const std::string& text) {
+  std::fflush(nullptr);  // what was printed before stands before
+  write_all(descriptor, text);
+}
+
+void write_in_place(const Target& t, const std::string& text) {
+  const Opened file(t.path, O_WRONLY | (t.regular() ? O_TRUNC : 0) | O_NOCTTY);
+  if (t.regular())
+    write_all(file.descriptor(), text);
+  else
+    write_to_descriptor(file.descriptor(), text);
+}
+
+bool same_owner(const struct stat& a, const struct stat& b) { return a.st_uid == b.st_uid && a.st_gid == b.st_gid; }
+
+/// The new file as the old one: mode, owner and group. False where it cannot be.
+bool take_after(int descriptor, const struct stat& old) {
+  struct stat fresh {};
+  if (::fstat(descriptor, &fresh) != 0) return false;
+  if (!same_owner(fresh, old) && ::fchown(descriptor, old.st_uid, old.st_gid) != 0) return false;
+  return ::fchmod(descriptor, old.st_mode & 07777) == 0;
+}
+
+/// False where no file can be put in the place of this one.
+bool replace(const Target& t, const std::string& text) try {
+  if (t.there && t.there->st_nlink > 1) return false;
+  PartFile part(t.path, "", t.there ? 0600 : 0666);
+  if (t.there && !take_after(part.descriptor(), *t.there)) return false;
+  write_all(part.descriptor(), text);
+  part.rename_to(t.path);
+  return true;
+} catch (const std::system_error& e) {
+  const int reason = e.code().value();
+  if (t.there && (reason == EACCES || reason == EPERM || reason == EROFS || reason == EBUSY)) return false;
+  throw;
+}
+
+}  // namespace
+
+std::string read_text(const fs::path& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
+  if (fs::is_directory(path, ignored))
     throw InputError(fmt::format("{}: is a folder, a file is wanted", path.string()));
   errno = 0;
   std::ifstream in(path, std::ios::binary);
@@ -24,27 +149,43 @@ std::string read_text(const std::filesystem::path& path) {
   return text.str();
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::error_code error;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
-  std::filesystem::path part = path;
-  part += fmt::format(".part{}", ::getpid());
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    out << text;
-    out.close();
-    if (!out) {
-      const std::string reason = std::strerror(errno);
-      std::filesystem::remove(part, error);
-      throw InputError(fmt::format("{}: cannot be written ({})", path.string(), reason));
-    }
-  }
-  std::filesystem::rename(part, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    std::filesystem::remove(part, error);
-    throw InputError(fmt::format("{}: cannot be written ({})", path.string(), reason));
-  }
+void write_text(const fs::path& path, const std::string& text) try {
+  const Target t = target_of(path);
+  require_writable(path, t);
+  if (t.own) return write_to_descriptor(*t.own, text);
+  std::error_code ignored;  // a folder that is missing is told where the file is opened
+  if (!t.there) fs::create_directories(folder_of(t.path), ignored);
+  if (!t.regular() || !replace(t, text)) write_in_place(t, text);
+} catch (const std::system_error& e) {
+  refuse(path, std::strerror(e.code().value()));
+}
+
+std::string text_written_by(const fs::path& path, const std::string& suffix,
+                            const std::function<void(const fs::path&)>& write) try {
+  const Target t = target_of(path);
+  require_writable(path, t);
+  std::error_code ignored;
+  if (!t.there && !t.own) fs::create_directories(folder_of(t.path), ignored);
+  const bool beside = t.regular() && ::access(folder_of(t.path).c_str(), W_OK) == 0;
+  const PartFile part(beside ? t.path : fs::temp_directory_path() / ("deflect-" + t.path.filename().string()), suffix);
+  write(part.path());
+  return read_text(part.path());
+} catch (const std::system_error& e) {
+  refuse(path, std::strerror(e.code().value()));
+}
+
+std::string safe_file_name(std::string_view name) {
+  std::string out(name.substr(0, 200));
+  while (out.size() < name.size() && !out.empty() && (static_cast<unsigned char>(name[out.size()]) & 0xC0) == 0x80)
+    out.pop_back();  // not inside a letter
+  const auto kept = [](unsigned char c) {
+    return std::isalnum(c) || c >= 0x80 || c == '-' || c == '_' || c == '.' || c == ' ';
+  };
+  std::replace_if(
+      out.begin(), out.end(), [&](char c) { return !kept(static_cast<unsigned char>(c)); }, '_');
+  if (out.empty()) return "_";
+  if (out.front() == '.') out.front() = '_';
+  return out;
 }
 
 }  // namespace deflect

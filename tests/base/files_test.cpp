@@ -1,10 +1,16 @@
 #include "msa/base/files.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <thread>
+#include <vector>
 
 #include "msa/base/error.h"
+#include "msa/base/part_file.h"
 
 namespace deflect {
 namespace {
@@ -74,6 +80,145 @@ TEST_F(Files, WhatCannotBeWrittenIsNamedAndChangesNothing) {
   EXPECT_NE(over_a_folder.find("taken: cannot be written"), over_a_folder.npos) << over_a_folder;
   EXPECT_EQ(read_text(folder / "x"), "text");
   EXPECT_EQ(names(), 2u);
+}
+
+mode_t mode_of(const fs::path& path) {
+  struct stat status {};
+  EXPECT_EQ(::stat(path.c_str(), &status), 0);
+  return status.st_mode & 07777;
+}
+
+TEST_F(Files, AFileKeepsItsModeAndANewOneHasWhatTheUmaskLeaves) {
+  const mode_t before = ::umask(027);
+  for (const mode_t mode : {0600, 0640, 0755}) {
+    write_text(folder / "x", "old");
+    ASSERT_EQ(::chmod((folder / "x").c_str(), mode), 0);
+    write_text(folder / "x", "new");
+    EXPECT_EQ(mode_of(folder / "x"), mode);
+  }
+  write_text(folder / "fresh", "text");
+  ::umask(before);
+  EXPECT_EQ(mode_of(folder / "fresh"), 0640u);
+}
+
+TEST_F(Files, AReadOnlyFileIsRefusedAndStays) {
+  write_text(folder / "x", "old");
+  ASSERT_EQ(::chmod((folder / "x").c_str(), 0444), 0);
+  const std::string message = refusal([&] { write_text(folder / "x", "new"); });
+  EXPECT_NE(message.find("x: cannot be written (it is read-only: make it writable"), message.npos) << message;
+  EXPECT_EQ(read_text(folder / "x"), "old");
+  EXPECT_EQ(names(), 1u);
+}
+
+TEST_F(Files, LinksAreFollowed) {
+  fs::create_directories(folder / "far");
+  write_text(folder / "far" / "x", "old");
+  fs::create_symlink("far/x", folder / "near");
+  fs::create_symlink(folder / "near", folder / "nearer");
+  write_text(folder / "nearer", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "near"));
+  EXPECT_TRUE(fs::is_symlink(folder / "nearer"));
+  EXPECT_EQ(read_text(folder / "far" / "x"), "new");
+  fs::create_symlink("far/none", folder / "dangling");
+  write_text(folder / "dangling", "made");
+  EXPECT_TRUE(fs::is_symlink(folder / "dangling"));
+  EXPECT_EQ(read_text(folder / "far" / "none"), "made");
+  fs::create_symlink("round", folder / "round");
+  const std::string message = refusal([&] { write_text(folder / "round", "x"); });
+  EXPECT_NE(message.find("round: cannot be written (Too many levels"), message.npos) << message;
+}
+
+TEST_F(Files, AllNamesOfAFileSeeTheNewText) {
+  write_text(folder / "x", "old");
+  fs::create_hard_link(folder / "x", folder / "y");
+  write_text(folder / "x", "new");
+  EXPECT_EQ(read_text(folder / "y"), "new");
+  EXPECT_EQ(fs::hard_link_count(folder / "x"), 2u);
+}
+
+TEST_F(Files, WhatIsNoRegularFileIsWrittenTo) {
+  const fs::path fifo = folder / "fifo";
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  std::string seen;
+  std::thread reader([&] { seen = read_text(fifo); });
+  write_text(fifo, "through");
+  reader.join();
+  EXPECT_EQ(seen, "through");
+  EXPECT_TRUE(fs::is_fifo(fifo));
+  EXPECT_EQ(names(), 1u);
+
+  fs::create_symlink("/dev/null", folder / "null");
+  write_text(folder / "null", "gone");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  EXPECT_TRUE(fs::is_symlink(folder / "null"));
+  const std::string full = refusal([] { write_text("/dev/full", "x"); });
+  EXPECT_NE(full.find("/dev/full: cannot be written (No space left"), full.npos) << full;
+}
+
+TEST_F(Files, ATextThatALibraryWritesComesFromAFileBesideOrOfItsOwn) {
+  for (const fs::path& target : {folder / "x.msh", fs::path("/dev/null")}) {
+    fs::path used;
+    const std::string text = text_written_by(target, ".msh", [&](const fs::path& part) {
+      EXPECT_EQ(part.extension(), ".msh");
+      std::ofstream(used = part) << "mesh";
+    });
+    EXPECT_EQ(text, "mesh");
+    EXPECT_EQ(used.parent_path() == folder, target.parent_path() == folder);
+    EXPECT_FALSE(fs::exists(used));
+  }
+  EXPECT_EQ(names(), 0u);
+}
+
+/// A process that has ended and been waited for: its number is free.
+pid_t ended_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST_F(Files, PartFilesOfKilledRunsGoAndThoseOfLivingOnesStay) {
+  const auto part = [&](const std::string& of, pid_t process, const std::string& suffix = "") {
+    const fs::path path = folder / (of + ".part" + std::to_string(process) + suffix);
+    std::ofstream(path) << "half";
+    return path;
+  };
+  const pid_t dead = ended_process();
+  const std::vector<fs::path> left = {part("x.csv", dead), part("x.csv", dead, ".msh"), part("x.csv", ::getpid())};
+  const std::vector<fs::path> kept = {part("x.csv", ::getppid()), part("y.csv", dead), part("x.csv", dead, ".old.tar"),
+                                      folder / "x.csv.party"};
+  std::ofstream(kept.back()) << "somebody's";
+  const PartFile locked(folder / "x.csv");
+  write_text(folder / "x.csv", "whole");
+  EXPECT_EQ(read_text(folder / "x.csv"), "whole");
+  for (const fs::path& path : left) EXPECT_TRUE(!fs::exists(path) || path == locked.path()) << path;
+  for (const fs::path& path : kept) EXPECT_TRUE(fs::exists(path)) << path;
+  EXPECT_TRUE(fs::exists(locked.path())) << "a lock says that its run is alive";
+}
+
+TEST_F(Files, ManyThreadsWriteOneFileAndOneOfTheirTextsIsThere) {
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i)
+    threads.emplace_back([&, i] {
+      for (int k = 0; k < 20; ++k) write_text(folder / "x", std::string(5000, static_cast<char>('a' + i)));
+    });
+  for (std::thread& t : threads) t.join();
+  const std::string text = read_text(folder / "x");
+  EXPECT_EQ(text, std::string(5000, text.front()));
+  EXPECT_EQ(names(), 1u);
+}
+
+TEST(SafeFileName, LeadsOutOfNoFolder) {
+  EXPECT_EQ(safe_file_name("my arm-2_b.c"), "my arm-2_b.c");
+  EXPECT_EQ(safe_file_name("Prüfstand"), "Prüfstand");
+  for (const char* bad : {"../../x", "/etc/passwd", "..", ".", "", "a/b", "a\nb", "a\\b", ".hidden"}) {
+    const std::string name = safe_file_name(bad);
+    EXPECT_FALSE(name.empty());
+    EXPECT_NE(name.front(), '.') << bad;
+    EXPECT_EQ(name.find_first_of("/\\\n"), name.npos) << bad;
+  }
+  const std::string cut = safe_file_name(std::string(199, 'a') + "üb");
+  EXPECT_EQ(cut, std::string(199, 'a')) << "cut before the letter of two bytes";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "meshes/structure.h"
 #include "meshes/vtu.h"
 #include "msa/base/error.h"
+#include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
@@ -115,7 +116,7 @@ std::string gmsh_options(const FieldData& fields, double scale) {
 
 std::filesystem::path path_of(const Mechanism& m, const Format& format, const Arguments& a) {
   if (a.file.empty() == a.out.empty()) throw InputError("give either -o FILE or --out DIR");
-  if (a.file.empty()) return std::filesystem::path(a.out) / (m.name + format.suffix);
+  if (a.file.empty()) return std::filesystem::path(a.out) / (safe_file_name(m.name) + format.suffix);
   if (std::filesystem::path(a.file).extension() != format.suffix)
     throw InputError(fmt::format("-o {}: --to {} writes a file that ends in {}", a.file, format.name, format.suffix));
   return a.file;

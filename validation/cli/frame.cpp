@@ -8,6 +8,7 @@
 #include "meshes/gmsh.h"
 #include "meshes/vtu.h"
 #include "msa/base/error.h"
+#include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/frame/frame_file.h"
 #include "validation/cli/command.h"
@@ -70,8 +71,8 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
   const LineMesh mesh = lines_of(r.structure);
   for (const frame::CaseResult& c : r.cases) {
     const FieldData fields = fields_of(r.structure, c);
-    gmsh::write_msh(folder / (c.name + ".msh"), mesh, fields);
-    write_vtu(folder / (c.name + ".vtu"), mesh, fields);
+    gmsh::write_msh(folder / (safe_file_name(c.name) + ".msh"), mesh, fields);
+    write_vtu(folder / (safe_file_name(c.name) + ".vtu"), mesh, fields);
   }
 }
 

@@ -22,8 +22,11 @@ double seconds() {
 void set_talk(Talk wanted) {
   talk = wanted;
   seconds();
-  if (talk == Talk::quiet && !std::freopen("/dev/null", "w", stdout))
-    throw InputError("--quiet: standard output cannot be closed");
+  if (talk != Talk::quiet) return;
+  // The descriptor stays: results may be written to /dev/stdout.
+  std::FILE* const nowhere = std::fopen("/dev/null", "w");
+  if (!nowhere) throw InputError("--quiet: /dev/null cannot be opened");
+  stdout = nowhere;
 }
 
 bool verbose() { return talk == Talk::verbose; }

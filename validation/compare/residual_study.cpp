@@ -33,7 +33,8 @@ void add_forces(ResidualStudy& s) {
     for (const std::size_t i : order) {
       VectorX f(sites);
       for (Eigen::Index k = 0; k < sites; ++k) f(k) = s.sites[p][static_cast<std::size_t>(k)].g.dot(readings[i].load);
-      const double small = 1e-9 * (f.cwiseAbs().maxCoeff() + before.cwiseAbs().maxCoeff());
+      // Nothing is driven in a flexure or a load cell: there are no sites.
+      const double small = sites > 0 ? 1e-9 * (f.cwiseAbs().maxCoeff() + before.cwiseAbs().maxCoeff()) : 0;
       for (Eigen::Index k = 0; k < sites; ++k)
         if (const double change = f(k) - before(k); std::abs(change) > small) heading(k) = change > 0 ? 1 : -1;
       s.force[i] = f;
@@ -65,6 +66,8 @@ ResidualStudy residual_study(const Mechanism& m, const Measurements& data, int t
       for (std::size_t i = 0; i < s.deformed_shape.size(); ++i) s.deformed_shape[i] -= s.predicted[i];
     } catch (const NumericalError&) {
       s.deformed_shape.clear();  // a load beyond what the deformed shape carries
+    } catch (const ModelError&) {
+      s.deformed_shape.clear();  // it does not stand there
     }
   s.sites.resize(s.machines.size());
   s.compliance.resize(s.machines.size());

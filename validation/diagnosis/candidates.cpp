@@ -100,6 +100,17 @@ void Candidates::add_up_classes(std::vector<Candidate>& all) const {
     all[i].class_log_odds = all[i].fit.found ? most[classes_[i]] + std::log(sum[classes_[i]]) : out_of_question;
 }
 
+void Candidates::note_left_out(const std::vector<Candidate>& all) const {
+  for (const Candidate& c : all) {
+    if (c.fit.found || c.fit.why.empty()) continue;
+    std::string name = name_of(c.added());
+    for (std::size_t i = 0; i + 1 < c.hypothesis.size(); ++i)
+      name += (i == 0 ? " beside " : " and ") + name_of(c.hypothesis[i]);
+    if (std::none_of(left_out_.begin(), left_out_.end(), [&](const LeftOut& l) { return l.effect == name; }))
+      left_out_.push_back({name, c.fit.why});
+  }
+}
+
 std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& so_far, double least) const {
   std::vector<Candidate> out(signatures_.size());
   std::vector<char> allowed(out.size(), 1);
@@ -129,6 +140,7 @@ std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& s
     if (progress_) progress_(++done, out.size());
   });
   add_up_classes(out);
+  note_left_out(out);
   return out;
 }
 

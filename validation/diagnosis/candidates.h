@@ -34,6 +34,9 @@ class Candidates {
   /// near the best and whose log_odds can reach `least`; of two that do all but the same only one can be there.
   std::vector<Candidate> beside(const Hypothesis&, const Fit&, double least) const;
 
+  /// Those so far that could not be fitted beside what was there, and why: each once.
+  const std::vector<LeftOut>& left_out() const { return left_out_; }
+
   /// ln(prior · evidence) of all that do the same as one of the effects, against their absence.
   double class_log_odds_of(const PlacedEffect&, double gain) const;
 
@@ -42,6 +45,7 @@ class Candidates {
  private:
   double log_odds(std::size_t i, double gain, double prior) const;
   void add_up_classes(std::vector<Candidate>&) const;
+  void note_left_out(const std::vector<Candidate>&) const;
 
   const Observations& observations_;
   const std::vector<Signature>& signatures_;
@@ -50,6 +54,7 @@ class Candidates {
   std::vector<std::size_t> classes_;  ///< per signature the first one that does the same to these data
   /// Places of an entry share what the entry has; those of one class have one share together.
   std::vector<double> priors_, class_priors_;
+  mutable std::vector<LeftOut> left_out_;
 };
 
 }  // namespace deflect

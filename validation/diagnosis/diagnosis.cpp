@@ -71,6 +71,7 @@ Selection beside_unknown(const Observations& o, const Candidates& candidates, Se
   for (std::size_t i = s.effects.size(); i-- > 0;) {
     auto [others, values] = without(s.effects, s.fit.values, i);
     Fit rest = fit_of_all(o, others, values);
+    if (!rest.found) continue;  // the others need it
     const double gain =
         all.whitened(rest.residual, size).squaredNorm() - all.whitened(s.fit.residual, size).squaredNorm();
     if (candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
@@ -182,6 +183,7 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   }
   d.missing = found.effects;
   d.fit = found.fit;
+  d.left_out.insert(d.left_out.end(), candidates.left_out().begin(), candidates.left_out().end());
   for (const std::vector<std::string>& tie : found.ties)
     if (!tie.empty()) d.indistinguishable.push_back(tie);
   d.verdict = d.unexplained                 ? Verdict::unknown_effect

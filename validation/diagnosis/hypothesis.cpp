@@ -13,8 +13,6 @@
 namespace deflect {
 namespace {
 
-constexpr double huge = 1e6;  // a whitened residual where the device cannot be predicted
-
 /// Coordinates of the search: ln p, or p over half the range, so that steps of size 1 are large.
 double coordinate(const EffectParameter& p, double value) {
   return p.log ? std::log(value) : value / (0.5 * (p.high - p.low));
@@ -28,7 +26,10 @@ double value_at(const EffectParameter& p, double x) {
 class Problem {
  public:
   Problem(const Observations& o, const Hypothesis& h)
-      : observations_(o), parameters_(parameters_of(h)), prepared_(o.device(), h) {}
+      : observations_(o),
+        parameters_(parameters_of(h)),
+        prepared_(o.device(), h),
+        wall_(VectorX::Constant(o.null_residual().size(), 1e6 * std::max(1.0, o.null_residual().norm()))) {}
 
   VectorX values(const VectorX& x) const {
     VectorX out(x.size());
@@ -41,20 +42,36 @@ class Problem {
       out(i) = coordinate(*parameters_[static_cast<std::size_t>(i)], values(i));
     return out;
   }
-  VectorX residual(const VectorX& x) const {
+
+  /// Nothing where the device cannot have these values or cannot be predicted with them.
+  std::optional<VectorX> residual(const VectorX& x) const {
+    std::string reason = "the prediction is no number";
     try {
-      return observations_.whitened_residual(prepared_(values(x)));
-    } catch (const ModelError&) {
-    } catch (const NumericalError&) {
+      VectorX r = observations_.whitened_residual(prepared_(values(x)));
+      if (r.allFinite()) return r;
+    } catch (const ModelError& e) {
+      reason = e.what();
+    } catch (const NumericalError& e) {
+      reason = e.what();
+    } catch (const InputError& e) {
+      reason = e.what();
     }
-    return VectorX::Constant(observations_.null_residual().size(), huge);
+    if (first_failure_.empty()) first_failure_ = reason;
+    return std::nullopt;
   }
+
+  /// For a search: what cannot be predicted is far worse than anything that can.
+  VectorX residual_or_wall(const VectorX& x) const { return residual(x).value_or(wall_); }
+
   const std::vector<const EffectParameter*>& parameters() const { return parameters_; }
+  const std::string& first_failure() const { return first_failure_; }
 
  private:
   const Observations& observations_;
   std::vector<const EffectParameter*> parameters_;
   PreparedEffects prepared_;
+  VectorX wall_;
+  mutable std::string first_failure_;
 };
 
 /// As MINPACK's port in Eigen wants it.
@@ -71,20 +88,25 @@ struct Functor {
   int inputs() const { return static_cast<int>(columns); }
   int values() const { return static_cast<int>(rows); }
   int operator()(const VectorX& x, VectorX& r) const {
-    r = problem->residual(x);
+    r = problem->residual_or_wall(x);
     return 0;
   }
   int df(const VectorX& x, MatrixX& J) const {
-    const VectorX here = problem->residual(x);
-    J.resize(rows, columns);
+    const VectorX here = problem->residual_or_wall(x);
+    J = MatrixX::Zero(rows, columns);
     for (Eigen::Index i = 0; i < columns; ++i) {
-      // Towards the inside where a bound is near.
+      // Towards the inside where a bound is near, else away from what cannot be predicted.
       const EffectParameter& p = *problem->parameters()[static_cast<std::size_t>(i)];
       double step = 1e-5 * std::max(1.0, std::abs(x(i)));
       if (!(value_at(p, x(i) + step) < p.high)) step = -step;
-      VectorX moved = x;
-      moved(i) += step;
-      J.col(i) = (problem->residual(moved) - here) / step;
+      for (const double each : {step, -step}) {
+        VectorX moved = x;
+        moved(i) += each;
+        const std::optional<VectorX> there = problem->residual(moved);
+        if (!there) continue;
+        J.col(i) = (*there - here) / each;
+        break;
+      }
     }
     return 0;
   }
@@ -141,40 +163,71 @@ bool one_sided(const PlacedEffect& e) {
   return p.vanishes && (*p.vanishes <= p.low || *p.vanishes >= p.high);
 }
 
-Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess) {
-  Fit out;
-  const Problem problem(o, h);
-  const std::size_t own = h.back().effect->parameters.size();
-  VectorX best;
-  double least = INFINITY;
-  for (const VectorX& tail : guess ? std::vector<VectorX>{*guess} : starts(h.back())) {
-    VectorX values(from.size() + static_cast<Eigen::Index>(own));
+namespace {
+
+struct Start {
+  VectorX x;
+  double chi2 = INFINITY;
+};
+
+/// The best of the last effect's values, behind those of the effects before.
+std::optional<Start> best_start(const Problem& problem, const std::vector<VectorX>& tails, const VectorX& from) {
+  std::optional<Start> best;
+  for (const VectorX& tail : tails) {
+    VectorX values(from.size() + tail.size());
     values << from, tail;
     const VectorX x = problem.coordinates(values);
-    const double chi2 = problem.residual(x).squaredNorm();
-    if (chi2 < least) least = chi2, best = x;
+    const std::optional<VectorX> r = problem.residual(x);
+    if (r && !(best && r->squaredNorm() >= best->chi2)) best = Start{x, r->squaredNorm()};
   }
-  const Eigen::Index rows = o.null_residual().size();
-  if (!(least < huge * huge)) return out;
+  return best;
+}
+
+Fit search_from(const Problem& problem, const Start& start, Eigen::Index rows) {
+  Fit out;
+  VectorX best = start.x;
+  std::optional<VectorX> residual;
+  Functor functor{&problem, rows, best.size()};
   if (best.size() > 0) {
-    Functor functor{&problem, rows, best.size()};
     Eigen::LevenbergMarquardt<Functor> search(functor);
     search.parameters.maxfev = 40;
     search.parameters.ftol = 1e-5;  // of χ²: far below what one unit of it means
     search.parameters.xtol = 1e-5;
     VectorX x = best;
     search.minimize(x);
-    if (problem.residual(x).squaredNorm() <= least) best = x;
-    best = problem.coordinates(problem.values(best));  // inside the bounds
+    if (x.allFinite() && problem.residual_or_wall(x).squaredNorm() <= start.chi2) best = x;
+    const VectorX inside = problem.coordinates(problem.values(best));  // the bounds
+    if ((residual = problem.residual(inside))) best = inside;
     functor.df(best, out.signature);
     const MatrixX information = out.signature.transpose() * out.signature;
     out.covariance = information.completeOrthogonalDecomposition().pseudoInverse();
   }
   out.values = problem.values(best);
-  out.residual = problem.residual(best);
+  out.residual = residual ? *residual : problem.residual_or_wall(best);
   out.chi2 = out.residual.squaredNorm();
   out.found = true;
   return out;
+}
+
+Fit not_found(std::string why) {
+  Fit out;
+  out.why = std::move(why);
+  return out;
+}
+
+}  // namespace
+
+Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess) try {
+  const Problem problem(o, h);
+  std::optional<Start> start;
+  if (guess) start = best_start(problem, {*guess}, from);
+  if (!start) start = best_start(problem, starts(h.back()), from);
+  if (start) return search_from(problem, *start, o.null_residual().size());
+  return not_found(problem.first_failure());
+} catch (const InputError& e) {  // the effects do not go together in this device
+  return not_found(e.what());
+} catch (const ModelError& e) {
+  return not_found(e.what());
 }
 
 Fit fit_of_all(const Observations& o, const Hypothesis& h, const VectorX& values) {

@@ -24,6 +24,7 @@ struct Fit {
   VectorX residual;    ///< whitened, at the values
   double chi2 = 0;
   bool found = false;  ///< false: the device cannot be predicted with it anywhere
+  std::string why;     ///< not found: what the first value that was tried met with
 };
 /// `from`: values of the effects that were fitted before, the first ones. The last effect starts from the guess (its
 /// values), else from the best of a few.

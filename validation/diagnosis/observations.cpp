@@ -109,6 +109,7 @@ void Observations::take_for_granted(const Mechanism& m) {
     shape_ = rows_of(s.values, predict(m, machines, *s.data, finite)) -
              rows_of(s.values, predict(m, machines, *s.data, linear));
   } catch (const NumericalError&) {  // beyond what the deformed shape carries: the one known stays
+  } catch (const ModelError&) {      // it does not stand in the deformed shape
   }
   count_shape();
   const std::vector<bool> aside = gross_outliers(s, A_, comparison_.sigma, residual(m), {});

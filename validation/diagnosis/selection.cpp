@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "validation/diagnosis/evidence.h"
 
@@ -36,6 +37,7 @@ class Search {
     for (std::size_t i = 0; i < s_.effects.size(); ++i) {
       const auto [others, values] = without(s_.effects, s_.fit.values, i);
       const Fit rest = fit_of_all(o_, others, values);
+      if (!rest.found) continue;  // the others need it
       const std::vector<Candidate> all = candidates_.beside(others, rest, never);
       const auto own = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
         return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
@@ -45,6 +47,7 @@ class Search {
         grant(others, rest.values);
         return true;
       }
+      if (!best->fit.found) continue;
       const double more = best->class_log_odds - own->class_log_odds;
       if (more > better || (more == 0 && best->log_odds > own->log_odds + better)) {
         grant(best->hypothesis, best->fit.values);
@@ -66,8 +69,10 @@ class Search {
 
   void grant(const Hypothesis& h, const VectorX& values) {
     o_.take_for_granted(device_with(o_, h, values));
+    Fit again = fit_of_all(o_, h, values);
+    if (!again.found) throw std::logic_error("a fit that was found is not found again");
     s_.effects = h;
-    s_.fit = fit_of_all(o_, h, values);
+    s_.fit = std::move(again);
   }
 
   static std::vector<std::string> tie(const std::vector<Candidate>& all) {

@@ -105,7 +105,9 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
       s.at_start =
           !s.shaped && columns.cols() == start.size() ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0));
       s.one_sided = s.shaped ? amplitude_from_nothing(*places[i].effect) : one_sided(places[i]);
-      if (columns.norm() > unseen)
+      if (!columns.allFinite())
+        why[i] = "the prediction with it is no number";
+      else if (columns.norm() > unseen)
         s.basis = s.shaped ? unit_columns(columns) : orthonormal(columns);
       else
         why[i] = "changes nothing that was measured";

@@ -59,12 +59,29 @@ std::vector<Drive> drives_of(const Mechanism& m, std::optional<int> leg) {
   return found;
 }
 
+/// "materials.*.<moduli>" as E of each material and G of those that give it.
+std::vector<std::string> moduli(const std::string& path, const Mechanism& m) {
+  const std::vector<std::string> at = segments_of(path);
+  if (at.size() != 3 || at[0] != "materials")
+    throw InputError(
+        fmt::format("{}: '{}' stands behind a material, as in 'materials.*.{}'", path, at.back(), at.back()));
+  std::vector<std::string> out;
+  for (const auto& [name, material] : m.materials) {
+    if (at[1] != "*" && at[1] != name) continue;
+    out.push_back(fmt::format("materials.{}.E", name));
+    if (material.G) out.push_back(fmt::format("materials.{}.G", name));
+  }
+  if (out.empty()) throw InputError(fmt::format("{}: there is no such material", path));
+  return out;
+}
+
 /// "leg.<actuated>.<slide>" as the paths of the drives.
 std::vector<std::string> selected(const std::string& path, const Mechanism& m, std::optional<int> leg) {
   if (path.find('<') == path.npos) {
     if (!leg) return {path};
     return {fmt::format("leg[{}]{}", *leg, path.substr(3))};  // "leg.…", as the reader has seen to
   }
+  if (path.ends_with(".<moduli>")) return moduli(path, m);
   const std::string head = fmt::format("leg.{}.", actuated);
   std::string rest = path.starts_with(head) ? path.substr(head.size()) : path;
   const Selector* motion = nullptr;

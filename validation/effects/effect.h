@@ -20,9 +20,11 @@ struct EffectParameter {
 };
 
 /// What is done to the description. `paths` are alternatives for devices of different make: the first that the device
-/// has is taken. Beside the paths of edited() they know, after "leg",
-///   <actuated>  every part with a driven freedom, where it stands (in the legs, in mounts of their own, in branches);
-///   <motion>    after it: each of its driven freedoms; <slide> those along, <turn> those about an axis.
+/// has is taken. Paths of edited(), and with selectors:
+///   leg.<actuated>  every part with a driven freedom, where it stands (in the legs, in mounts of their own, in
+///                   branches);
+///   …<motion>       after it: each of its driven freedoms; <slide> those along, <turn> those about an axis;
+///   materials.*.<moduli>  E of the material and, where it is given, G.
 /// `value` is YAML in flow style, in which "$name" is a parameter with its unit, "$name unit" one with another unit.
 struct EffectEdit {
   enum class Action {

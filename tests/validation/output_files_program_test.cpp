@@ -1,0 +1,116 @@
+// What the program does to the files it is told to write.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "tests/support/program.h"
+
+namespace deflect {
+namespace {
+
+namespace fs = std::filesystem;
+using test::contents;
+
+const std::string solve = "solve haptic-6psu --pose 0,0,173.9 --load 50,0,0 ";
+
+class OutputFiles : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return "'" + (folder / name).string() + "'"; }
+  std::size_t names(const fs::path& in) const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(in), fs::directory_iterator()));
+  }
+
+  test::Folder folder;
+};
+
+TEST_F(OutputFiles, ResultsCanGoToStandardOutput) {
+  const test::Run quiet = test::deflect(solve + "--quiet --json /dev/stdout");
+  ASSERT_EQ(quiet.code, 0) << quiet.out;
+  ASSERT_EQ(test::deflect(solve + "--json " + path("x.json")).code, 0);
+  EXPECT_EQ(quiet.out, contents(folder / "x.json"));
+  // Into a file, behind what was printed before and before what is printed after.
+  ASSERT_EQ(test::command("'" DEFLECT_PROGRAM "' simulate haptic-6psu --campaign paper --seed 1 -o /dev/stdout > " +
+                          path("x.csv"))
+                .code,
+            0);
+  const std::string csv = contents(folder / "x.csv");
+  EXPECT_TRUE(csv.starts_with("pose,")) << csv.substr(0, 80);
+  EXPECT_NE(csv.find("27 readings"), std::string::npos) << "what is printed after is not lost";
+}
+
+TEST_F(OutputFiles, DevicesAndFifosAreWrittenTo) {
+  fs::create_symlink("/dev/null", folder / "null.vtu");
+  EXPECT_EQ(test::deflect("export haptic-6psu --to vtk -o " + path("null.vtu")).code, 0);
+  EXPECT_TRUE(fs::is_symlink(folder / "null.vtu"));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  for (const char* kind : {"vtk -o pipe.vtu", "msh -o pipe.msh"}) {
+    const std::string file = std::string(kind).substr(7);
+    const test::Run run =
+        test::command("cd " + path("") + " && mkfifo " + file + " && { cat " + file +
+                      " > seen & '" DEFLECT_PROGRAM "' export haptic-6psu --to " + kind + " && wait; }");
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_TRUE(fs::is_fifo(folder / file));
+    EXPECT_GT(contents(folder / "seen").size(), 1000u);
+  }
+}
+
+TEST_F(OutputFiles, LinksAndModesStayAndReadOnlyFilesAreRefused) {
+  std::ofstream(folder / "real.json") << "old";
+  fs::create_symlink("real.json", folder / "link.json");
+  ASSERT_EQ(::chmod((folder / "real.json").c_str(), 0600), 0);
+  ASSERT_EQ(test::deflect(solve + "--json " + path("link.json")).code, 0);
+  EXPECT_TRUE(fs::is_symlink(folder / "link.json"));
+  EXPECT_TRUE(contents(folder / "real.json").starts_with("{"));
+  EXPECT_EQ(fs::status(folder / "real.json").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+
+  for (const char* file : {"x.vtu", "x.msh"}) {
+    std::ofstream(folder / file) << "old";
+    ASSERT_EQ(::chmod((folder / file).c_str(), 0444), 0);
+    const test::Run run =
+        test::deflect(std::string("export haptic-6psu --to ") + (file[2] == 'v' ? "vtk" : "msh") + " -o " + path(file));
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.out.find("it is read-only: make it writable"), std::string::npos) << run.out;
+    EXPECT_EQ(contents(folder / file), "old");
+  }
+}
+
+TEST_F(OutputFiles, ANameInADeviceLeadsOutOfNoFolder) {
+  std::ofstream(folder / "device.yaml") << R"(
+name: ../../far/x
+kinematics: {family: chains}
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {rod: {shape: round, diameter: 20 mm}}
+leg: {rod: {member: rod, material: steel, along: [0 mm, 0 mm, 300 mm]}}
+workspace: {cube_edge: 50 mm}
+)";
+  fs::create_directories(folder / "a" / "b" / "out");
+  for (const char* format : {"vtk", "msh"})
+    ASSERT_EQ(
+        test::deflect(std::string("export --to ") + format + " --out " + path("a/b/out") + " " + path("device.yaml"))
+            .code,
+        0);
+  EXPECT_EQ(names(folder / "a" / "b" / "out"), 5u) << "two of each and Gmsh's options";
+  EXPECT_EQ(names(folder / "a"), 1u);
+  EXPECT_FALSE(fs::exists(folder / "a" / "far"));
+}
+
+TEST_F(OutputFiles, PartFilesOfKilledRunsGo) {
+  const auto left = [&](const std::string& name) {
+    const fs::path part = folder / name;
+    std::ofstream(part) << "half";
+    return part;
+  };
+  const std::string dead = test::command("sh -c 'echo $$'").out;  // ended by now
+  const std::string number = dead.substr(0, dead.find('\n'));
+  const fs::path csv = left("x.csv.part" + number), msh = left("x.msh.part" + number + ".msh"),
+                 alive = left("x.csv.part" + std::to_string(::getpid()));
+  ASSERT_EQ(test::deflect("simulate haptic-6psu --campaign paper --seed 1 -o " + path("x.csv")).code, 0);
+  ASSERT_EQ(test::deflect("export haptic-6psu --to msh -o " + path("x.msh")).code, 0);
+  EXPECT_FALSE(fs::exists(csv));
+  EXPECT_FALSE(fs::exists(msh));
+  EXPECT_TRUE(fs::exists(alive));
+}
+
+}  // namespace
+}  // namespace deflect
