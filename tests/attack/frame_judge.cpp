@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 
 #include "msa/base/error.h"
 #include "msa/frame/frame_analysis.h"
 #include "msa/frame/frame_file.h"
+#include "tests/attack/count.h"
 #include "tests/attack/frame_forms.h"
 
 namespace deflect::attack {
@@ -60,6 +60,8 @@ double allowed_error(double condition, bool warned) {
   return std::min(1e-12 + rounding * condition, warned ? 1e-1 : 1e-6);
 }
 
+bool digits_left(double condition) { return rounding * condition < 1e-3; }
+
 double field_difference(const std::vector<Vector6>& left, const std::vector<Vector6>& right, double size,
                         const std::vector<bool>& turns, double least) {
   double difference = 0, largest = least;
@@ -82,8 +84,9 @@ Judgement judge(const RandomFrame& random) {
   if (stands) {
     right = solve_dense(random.ideal, verdict.to_hold);
     out.condition = right.condition;
+    out.largest_response = right.largest_response;
   }
-  const bool digits = rounding * out.condition < 1e-3;
+  const bool digits = digits_left(out.condition);
   try {
     const frame::FrameResult result = frame::analyse(scaled(random.ideal, random.unit));
     out.warned = std::any_of(result.notes.begin(), result.notes.end(), warns);
@@ -115,9 +118,7 @@ Judgement judge(const RandomFrame& random) {
 }
 
 std::string reproduction(const RandomFrame& random, const Judgement& j) {
-  const std::filesystem::path folder = std::filesystem::current_path() / "attack";
-  std::filesystem::create_directories(folder);
-  const std::filesystem::path file = folder / fmt::format("frame-{}.yaml", random.seed);
+  const std::filesystem::path file = failures_folder() / fmt::format("frame-{}.yaml", random.seed);
   std::ofstream(file) << frame::write_frame(scaled(random.ideal, random.unit));
   return fmt::format("seed {} ({}), which {}: {}: {}\n  deflect frame {}", random.seed,
                      frame_kind_names[static_cast<int>(random.kind)], standing_names[static_cast<int>(j.standing)],

@@ -25,8 +25,9 @@ inline bool is_wrong(Outcome o) { return o >= Outcome::answered_wrongly; }
 struct Judgement {
   Outcome outcome = Outcome::answered;
   Standing standing = Standing::stands;
-  double condition = 1;  ///< of the frame, where it was solved
-  double error = 0;      ///< largest difference of displacements from the independent solution, relative
+  double condition = 1;         ///< of the frame, where it was solved
+  double largest_response = 0;  ///< DenseSolution's
+  double error = 0;             ///< largest difference of displacements from the independent solution, relative
   double force_error = 0;
   bool warned = false;  ///< the program says that digits are lost
   std::string words;    ///< what the program said, or how far off it is
@@ -35,6 +36,9 @@ struct Judgement {
 /// The relative error that an answer may have: each entry of the assembled stiffness is off by a few units of its last
 /// place, which the condition enlarges. Never more than 1e-6, unless the program warns of lost digits itself.
 double allowed_error(double condition, bool warned);
+
+/// Whether rounding leaves three digits. Where it does not, a refusal is right as well.
+bool digits_left(double condition);
 
 /// The program's answer to the frame in its own size, judged by the oracles on the ideal one.
 Judgement judge(const RandomFrame&);

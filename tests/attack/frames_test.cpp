@@ -3,19 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
 
+#include "tests/attack/count.h"
 #include "tests/attack/frame_judge.h"
 
 namespace deflect::attack {
 namespace {
-
-unsigned count_from_environment(unsigned usual) {
-  const char* text = std::getenv("DEFLECT_ATTACK");
-  return text ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : usual;
-}
-
-constexpr unsigned shards = 10;
 
 class RandomFrames : public ::testing::TestWithParam<unsigned> {};
 
