@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "msa/frame/name_index.h"
-#include "tests/attack/full_pivot.h"
+#include "tests/attack/member_flexibility.h"
 
 namespace deflect::attack {
 namespace {
@@ -20,26 +20,6 @@ Vector cross(const Vector& a, const Vector& b) {
 }
 Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Vector times(const Real& s, const Vector& a) { return {s * a[0], s * a[1], s * a[2]}; }
-
-struct Rigidity {
-  Real EA, EIy, EIz, GJ, per_GAy = 0, per_GAz = 0;
-};
-
-/// ∫ over the length of the products of the sections' forces under unit q: polynomials of the distance r = L − x to the
-/// end b.
-RealMatrix flexibility(const Rigidity& k, const Real& L) {
-  RealMatrix C(6, 6);
-  const Real L2 = L * L / 2, L3 = L * L * L / 3;
-  C(0, 0) = L / k.EA;
-  C(1, 1) = L3 / k.EIz + L * k.per_GAy;  // Vy: Mz = r
-  C(1, 5) = C(5, 1) = L2 / k.EIz;
-  C(2, 2) = L3 / k.EIy + L * k.per_GAz;  // Vz: My = −r
-  C(2, 4) = C(4, 2) = -L2 / k.EIy;
-  C(3, 3) = L / k.GJ;
-  C(4, 4) = L / k.EIy;
-  C(5, 5) = L / k.EIz;
-  return C;
-}
 
 /// Columns that span what the rows leave: reduced echelon form with the largest pivot of each row.
 std::vector<Row6> null_space(std::vector<Row6> rows) {
@@ -183,11 +163,11 @@ class DenseFrame {
     return largest;
   }
 
-  Rigidity rigidity(const frame::FrameMember& member) const {
+  MemberRigidity rigidity(const frame::FrameMember& member) const {
     const Material& material = find(f_.materials, member.material)->elastic;
     const SectionProperties s = properties(*find(f_.sections, member.section), material.poisson());
     const Real E(material.E), G(material.shear_modulus()), c(member.bending_factor);
-    Rigidity k{E * s.A, c * E * s.Iy, c * E * s.Iz, G * s.J};
+    MemberRigidity k{E * s.A, c * E * s.Iy, c * E * s.Iz, G * s.J};
     if (member.beam == BeamTheory::timoshenko) k.per_GAy = 1 / (G * s.As_y), k.per_GAz = 1 / (G * s.As_z);
     return k;
   }
@@ -218,7 +198,7 @@ class DenseFrame {
       }
       out.QtB.push_back(row);
     }
-    const RealMatrix C = flexibility(rigidity(member), L);
+    const RealMatrix C = member_flexibility(rigidity(member), L);
     RealMatrix reduced(out.Q.size(), out.Q.size());
     for (std::size_t i = 0; i < out.Q.size(); ++i)
       for (std::size_t j = 0; j < out.Q.size(); ++j)

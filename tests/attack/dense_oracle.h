@@ -1,11 +1,9 @@
 // The displacements of a frame by another way than the program's, in 50 digits.
 //
-// Members by the force method. A member in its own axes carries at its end b the forces q = [N Vy Vz T My Mz]; all its
-// sections follow from them: N, Vy, Vz, T, My − (L − x) Vz, Mz + (L − x) Vy. The works of unit loads,
-//   C_ij = ∫ (N_i N_j / EA + T_i T_j / GJ + My_i My_j / EIy + Mz_i Mz_j / EIz + Vy_i Vy_j / GAy + Vz_i Vz_j / GAz) dx,
-// are the flexibility of the clamped member. Releases leave those q that do not carry a released component at either
-// end, q = Q s; the member's stiffness at its nodes is Bᵀ Q (Qᵀ C Q)⁻¹ Qᵀ B, where B u is the motion of end b seen from
-// the body of end a, in member axes.
+// Members by the force method: member_flexibility.h gives the flexibility C of the clamped member for the forces q at
+// its end b. Releases leave those q that do not carry a released component at either end, q = Q s; the member's
+// stiffness at its nodes is Bᵀ Q (Qᵀ C Q)⁻¹ Qᵀ B, where B u is the motion of end b seen from the body of end a, in
+// member axes.
 //
 // Constraints and links by Lagrange's multipliers λ:
 //   | K  Gᵀ | |u|   |f|

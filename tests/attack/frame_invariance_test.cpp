@@ -81,7 +81,8 @@ TEST_P(FrameInvariance, TheSameFrameInOtherWordsGetsTheSameAnswer) {
   for (unsigned seed = GetParam(); seed < count_from_environment(500); seed += shards) {
     const RandomFrame random = random_frame(seed);
     const Judgement first = judge(random);
-    if (is_wrong(first.outcome) || !digits_left(first.condition)) continue;  // judged elsewhere
+    if (is_wrong(first.outcome) || (random.kind == FrameKind::nearly_singular && !digits_left(first.condition)))
+      continue;  // judged elsewhere
     const FrameDescription f = scaled(random.ideal, random.unit);
     const Said right = say(f, f, [](const Vector6& d) { return d; });
     const StandingVerdict verdict = can_stand(random.ideal);

@@ -86,7 +86,7 @@ Judgement judge(const RandomFrame& random) {
     out.condition = right.condition;
     out.largest_response = right.largest_response;
   }
-  const bool digits = digits_left(out.condition);
+  const bool digits = random.kind != FrameKind::nearly_singular || digits_left(out.condition);
   try {
     const frame::FrameResult result = frame::analyse(scaled(random.ideal, random.unit));
     out.warned = std::any_of(result.notes.begin(), result.notes.end(), warns);
