@@ -113,6 +113,7 @@ DeviceJudgement judge(const RandomDevice& random) {
     compare(out, r, truth, random, at.configuration.size);
     const double allowed = allowed_error(out.condition, false);
     if (!(out.error <= allowed && out.stiffness_error <= 1e-9 + 10 * allowed)) out.outcome = Outcome::answered_wrongly;
+    if (out.kind == DeviceClass::idle && !tells_of_holding(r.notes)) out.outcome = Outcome::answered_wrongly;
     out.words = fmt::format("displacement {:.1e}, stiffness {:.1e}, theories {:.1e} off, condition {:.1e}, {}",
                             out.error, out.stiffness_error, out.between, out.condition, r.notes);
   } catch (const ModelError& e) {

@@ -56,6 +56,11 @@ void compare(Judgement& out, const frame::FrameResult& result, const DenseSoluti
 
 }  // namespace
 
+bool tells_of_holding(const std::vector<std::string>& notes) {
+  return std::any_of(notes.begin(), notes.end(),
+                     [](const std::string& note) { return note.find("held") != note.npos; });
+}
+
 double allowed_error(double condition, bool warned) {
   return std::min(1e-12 + rounding * condition, warned ? 1e-1 : 1e-6);
 }
@@ -100,7 +105,7 @@ Judgement judge(const RandomFrame& random) {
     const double worst = std::max(out.error, out.force_error), allowed = allowed_error(out.condition, out.warned);
     if (!out.words.empty())
       out.outcome = digits ? Outcome::refused_wrongly : Outcome::digits_gone;
-    else if (!(worst <= allowed))
+    else if (!(worst <= allowed) || (verdict.standing == Standing::idle && !tells_of_holding(result.notes)))
       out.outcome = Outcome::answered_wrongly;
     out.words += fmt::format(" error {:.1e}, of forces {:.1e}, condition {:.1e}{}", out.error, out.force_error,
                              out.condition, result.notes.empty() ? "" : ", noted: " + result.notes.front());

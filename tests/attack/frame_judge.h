@@ -37,6 +37,9 @@ struct Judgement {
 /// place, which the condition enlarges. Never more than 1e-6, unless the program warns of lost digits itself.
 double allowed_error(double condition, bool warned);
 
+/// Whether a note says that an idle motion was held.
+bool tells_of_holding(const std::vector<std::string>& notes);
+
 /// Whether rounding leaves three digits. Where it does not, a refusal is right as well.
 bool digits_left(double condition);
 

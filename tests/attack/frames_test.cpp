@@ -1,38 +1,39 @@
-// Random frames against the oracles. DEFLECT_ATTACK=10000 makes each shard judge its share of as many.
-#include <fmt/format.h>
+// Random frames against the oracles. DEFLECT_ATTACK=10000 test_attack --gtest_filter='*OnDemand*' prints the table of
+// as many.
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "tests/attack/count.h"
-#include "tests/attack/frame_judge.h"
+#include "tests/attack/table.h"
 
 namespace deflect::attack {
 namespace {
 
+Table judged(unsigned first, unsigned last, unsigned step) {
+  Table table;
+  for (unsigned seed = first; seed < last; seed += step) {
+    const RandomFrame random = random_frame(seed);
+    const Judgement j = judge(random);
+    table.add(standing_names[static_cast<int>(j.standing)], j.outcome, j.error, j.condition);
+    if (is_wrong(j.outcome)) table.failures += reproduction(random, j) + "\n";
+  }
+  return table;
+}
+
 class RandomFrames : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomFrames, AreAnsweredRightOrRefusedRightly) {
-  std::array<int, std::size(outcome_names)> counts{};
-  std::array<int, std::size(standing_names)> kinds{};
-  double worst = 0, worst_of_condition = 0;
-  for (unsigned seed = GetParam(); seed < count_from_environment(500); seed += shards) {
-    const RandomFrame random = random_frame(seed);
-    const Judgement j = judge(random);
-    ++counts[static_cast<std::size_t>(j.outcome)];
-    ++kinds[static_cast<std::size_t>(j.standing)];
-    if (is_wrong(j.outcome)) ADD_FAILURE() << reproduction(random, j);
-    if (j.outcome != Outcome::answered) continue;
-    worst = std::max(worst, j.error);
-    worst_of_condition = std::max(worst_of_condition, j.error / j.condition);
-  }
-  std::string table;
-  for (std::size_t i = 0; i < counts.size(); ++i) table += fmt::format("{} {}, ", outcome_names[i], counts[i]);
-  for (std::size_t i = 0; i < kinds.size(); ++i) table += fmt::format("{} {}, ", standing_names[i], kinds[i]);
-  fmt::print("{}largest error {:.1e}, over the condition {:.1e}\n", table, worst, worst_of_condition);
+  const Table table = judged(GetParam(), usual_count, shards);
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
 }
 
 INSTANTIATE_TEST_SUITE_P(Shard, RandomFrames, ::testing::Range(0u, shards));
+
+TEST(RandomFramesOnDemand, AreAnsweredRightOrRefusedRightly) {
+  if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of frames";
+  const Table table = judged(0, count_on_demand(), 1);
+  fmt::print("{}", table.text("frames"));
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
 
 }  // namespace
 }  // namespace deflect::attack
