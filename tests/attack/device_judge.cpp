@@ -127,13 +127,39 @@ DeviceJudgement judge(const RandomDevice& random) {
   return out;
 }
 
-DeviceJudgement judge_apart(const RandomDevice& random) {
+DeviceJudgement judge_agreement(const RandomDevice& random) {
+  DeviceJudgement out;
+  out.kind = DeviceClass::unclear;
+  try {
+    const Stand at = stand(random.mechanism, mm_deg_from(home_pose(random.mechanism)));
+    Vector6 load = random.load;
+    load.tail<3>() *= 1e3;
+    const SolveResult r = solve(random.mechanism, at, load, {});
+    out.between = test::apart(in_m(r.analytic.displacement_mm_rad), in_m(r.msa.displacement_mm_rad), random.unit);
+    if (!(out.between <= 1e-6)) out.outcome = Outcome::answered_wrongly;
+    out.words = fmt::format("theories {:.1e} apart", out.between);
+  } catch (const ModelError& e) {
+    out.outcome = Outcome::refused_rightly;
+    out.words = e.what();
+  } catch (const NumericalError& e) {
+    out.words = e.what();
+    out.outcome = Outcome::refused_rightly;
+    for (const char* excuse : {"did not converge", "not solved", "fails a check"})
+      if (out.words.find(excuse) != std::string::npos) out.outcome = Outcome::refused_wrongly;
+  } catch (const std::exception& e) {
+    out.words = e.what();
+    out.outcome = Outcome::crashed;
+  }
+  return out;
+}
+
+DeviceJudgement judge_apart(const RandomDevice& random, DeviceJudgement (*how)(const RandomDevice&)) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
   const pid_t child = ::fork();
   if (child == 0) {
     ::alarm(20);
-    const DeviceJudgement j = judge(random);
+    const DeviceJudgement j = how(random);
     const Sent sent = without_words(j);
     const bool written = ::write(ends[1], &sent, sizeof sent) == sizeof sent &&
                          ::write(ends[1], j.words.data(), j.words.size()) == std::ssize(j.words);

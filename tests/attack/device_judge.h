@@ -29,8 +29,12 @@ struct DeviceJudgement {
 /// `solve` of validation/compare/theories.h at home under the device's load.
 DeviceJudgement judge(const RandomDevice&);
 
-/// The same in a process of its own, so that a signal (also that of 20 s without an end) is an outcome: crashed.
-DeviceJudgement judge_apart(const RandomDevice&);
+/// Where laws are not linear: both theories must agree, or the program must name the cause; that it did not converge is
+/// none.
+DeviceJudgement judge_agreement(const RandomDevice&);
+
+/// One of these in a process of its own, so that a signal (also that of 20 s without an end) is an outcome: crashed.
+DeviceJudgement judge_apart(const RandomDevice&, DeviceJudgement (*)(const RandomDevice&) = judge);
 
 std::string reproduction(const RandomDevice&, const DeviceJudgement&);
 

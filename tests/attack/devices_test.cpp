@@ -36,5 +36,34 @@ TEST(RandomDevicesOnDemand, AreAnsweredRightByBothTheoriesOrRefusedRightly) {
   EXPECT_TRUE(table.failures.empty()) << table.failures;
 }
 
+// Devices of extreme ratios are left to the linear ones.
+Table judged_nonlinear(unsigned first, unsigned last, unsigned step) {
+  Table table;
+  for (unsigned seed = first; seed < last; seed += step) {
+    const RandomDevice random = with_nonlinear_laws(random_device(seed));
+    if (random.kind == DeviceKind::stiff_and_soft) continue;
+    const DeviceJudgement j = judge_apart(random, judge_agreement);
+    table.add(device_kind_names[static_cast<int>(random.kind)], j.outcome, 0, 1, j.between);
+    if (is_wrong(j.outcome)) table.failures += reproduction(random, j) + "\n";
+  }
+  return table;
+}
+
+class NonlinearDevices : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(NonlinearDevices, AreAnsweredAlikeByBothTheoriesOrRefusedWithTheCause) {
+  const Table table = judged_nonlinear(GetParam(), usual_count, shards);
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shard, NonlinearDevices, ::testing::Range(0u, shards));
+
+TEST(NonlinearDevicesOnDemand, AreAnsweredAlikeByBothTheoriesOrRefusedWithTheCause) {
+  if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of devices";
+  const Table table = judged_nonlinear(0, count_on_demand(), 1);
+  fmt::print("{}", table.text("devices of nonlinear laws"));
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
 }  // namespace
 }  // namespace deflect::attack

@@ -232,9 +232,46 @@ void harden(Named<Part>& parts, double c) {
   }
 }
 
+/// `level`: the force or moment to be expected; k: the linear stiffness.
+std::vector<Law> nonlinear(double k, double level, Dice& dice) {
+  const double deflection = level / k;
+  switch (dice.whole(0, 4)) {
+    case 0:
+      return {PowerLaw{deflection, level, dice.real(0.3, 1)}};
+    case 1:
+      return {HardeningLaw{k, deflection * dice.power_of_ten(-1, 1)}};
+    case 2:
+      return {OneSidedLaw{1 / k, dice.chance(0.5) ? std::optional(dice.real(0, 1) / k) : std::nullopt}};
+    case 3:
+      return {LinearLaw{k}, ClearanceLaw{deflection * dice.power_of_ten(-2, 2)}};
+    default:
+      return {LinearLaw{k}, FrictionLaw{level * dice.power_of_ten(0, 2), k}};
+  }
+}
+
+void make_nonlinear(Named<Part>& parts, double force, double unit, Dice& dice) {
+  for (auto& [name, part] : parts) {
+    if (auto* group = std::get_if<Parallel>(&part))
+      for (Mount& mount : group->mounts) make_nonlinear(mount.leg, force, unit, dice);
+    auto* joint = std::get_if<Joint>(&part);
+    if (!joint) continue;
+    for (std::size_t i = 0; i < 6; ++i)
+      if (!joint->laws[i].empty() && dice.chance(0.5))
+        joint->laws[i] =
+            nonlinear(std::get<LinearLaw>(joint->laws[i][0]).stiffness, i < 3 ? force : force * unit, dice);
+  }
+}
+
 }  // namespace
 
 RandomDevice random_device(unsigned seed) { return DeviceDice(seed).roll(); }
+
+RandomDevice with_nonlinear_laws(RandomDevice d) {
+  Dice dice(d.seed + 99);
+  const double force = std::max(d.load.head<3>().norm(), d.load.tail<3>().norm() / d.unit);
+  for (Mount& mount : d.mechanism.mounts) make_nonlinear(mount.leg, force, d.unit, dice);
+  return d;
+}
 
 RandomDevice scaled(RandomDevice d, double s) {
   Mechanism& m = d.mechanism;

@@ -21,6 +21,10 @@ struct RandomDevice {
 
 RandomDevice random_device(unsigned seed);
 
+/// About half of its elastic freedoms follow power, hardening or one-sided laws, or have play or friction in series; so
+/// strong that the load is felt by them.
+RandomDevice with_nonlinear_laws(RandomDevice);
+
 /// All lengths times s, moduli the same; the load to match. Displacements become s times what they were, rotations
 /// stay.
 RandomDevice scaled(RandomDevice, double s);
