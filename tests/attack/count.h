@@ -1,0 +1,24 @@
+// How many random models the tests judge, and where they write the ones that fail.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace deflect::attack {
+
+/// Models in the daily tests, which run side by side, each on every tenth seed.
+inline constexpr unsigned usual_count = 500, shards = 10;
+
+/// DEFLECT_ATTACK=10000 judges as many in one go and prints the table of outcomes; 0: not asked for.
+inline unsigned count_on_demand() {
+  const char* text = std::getenv("DEFLECT_ATTACK");
+  return text ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : 0;
+}
+
+inline std::filesystem::path failures_folder() {
+  const std::filesystem::path folder = std::filesystem::current_path() / "attack";
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+}  // namespace deflect::attack

@@ -1,0 +1,194 @@
+#include "tests/attack/device_judge.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "msa/base/error.h"
+#include "msa/mechanism/device_file.h"
+#include "tests/attack/count.h"
+#include "tests/support/apart.h"
+#include "validation/compare/solve_result.h"
+#include "validation/compare/theories.h"
+
+namespace deflect::attack {
+namespace {
+
+DeviceClass class_of(const DeviceTruth& truth) {
+  if (!truth.clear) return DeviceClass::unclear;
+  if (!truth.held) return DeviceClass::moves;
+  if (truth.rigid_directions == 6) return DeviceClass::rigid;
+  if (truth.rigid_directions > 0) return DeviceClass::partly_rigid;
+  return truth.idle > 0 ? DeviceClass::idle : DeviceClass::stands;
+}
+
+bool must_answer(DeviceClass c) { return c == DeviceClass::stands || c == DeviceClass::idle; }
+bool may_answer(DeviceClass c) { return must_answer(c) || c == DeviceClass::partly_rigid || c == DeviceClass::unclear; }
+
+Vector6 in_m(Vector6 mm_rad) {
+  mm_rad.head<3>() /= 1e3;
+  return mm_rad;
+}
+
+/// Relative; where the right displacement is zero, to what the load could make of the softest direction.
+double displacement_error(const Vector6& d, const Vector6& right, const Matrix6& D, const Vector6& load, double size) {
+  Vector6 w = Vector6::Ones();
+  w.tail<3>().setConstant(size);
+  const Matrix6 weighed = w.asDiagonal() * D * w.asDiagonal();
+  const double least = 1e-6 * weighed.norm() * load.cwiseQuotient(w).norm();
+  const double difference = w.cwiseProduct(d - right).norm(), length = std::max(w.cwiseProduct(right).norm(), least);
+  return difference == 0 ? 0 : difference / length;
+}
+
+void compare(DeviceJudgement& out, const SolveResult& r, const DeviceTruth& truth, const RandomDevice& random,
+             double size) {
+  const Vector6 right = truth.flexibility * random.load;
+  for (const TheorySolution* theory : {&r.analytic, &r.msa}) {
+    const double error =
+        displacement_error(in_m(theory->displacement_mm_rad), right, truth.flexibility, random.load, size);
+    out.error = std::isfinite(error) ? std::max(out.error, error) : 1e300;
+    if (out.kind == DeviceClass::partly_rigid) continue;
+    const Matrix6 K = stiffness_from_mm(theory->stiffness_mm);
+    out.stiffness_error = std::max(out.stiffness_error, test::apart(K, truth.stiffness, size));
+  }
+  out.displacement = in_m(r.msa.displacement_mm_rad);
+  out.between = test::apart(in_m(r.analytic.displacement_mm_rad), out.displacement, size);
+}
+
+void refused(DeviceJudgement& out, const std::string& words, bool by_model) {
+  out.words = words;
+  if (out.kind == DeviceClass::unclear || (!must_answer(out.kind) && by_model))
+    out.outcome = Outcome::refused_rightly;
+  else
+    out.outcome = Outcome::refused_wrongly;
+}
+
+/// What can be sent as bytes.
+struct Sent {
+  Outcome outcome;
+  DeviceClass kind;
+  double condition, error, stiffness_error, between;
+  std::array<double, 6> displacement;
+};
+
+Sent without_words(const DeviceJudgement& j) {
+  Sent s{j.outcome, j.kind, j.condition, j.error, j.stiffness_error, j.between, {}};
+  std::copy(j.displacement.begin(), j.displacement.end(), s.displacement.begin());
+  return s;
+}
+
+DeviceJudgement with_words(const std::string& bytes) {
+  Sent s{};
+  std::memcpy(&s, bytes.data(), sizeof s);
+  DeviceJudgement j{s.outcome, s.kind, s.condition, s.error, s.stiffness_error, s.between, {}, bytes.substr(sizeof s)};
+  std::copy(s.displacement.begin(), s.displacement.end(), j.displacement.begin());
+  return j;
+}
+
+}  // namespace
+
+DeviceJudgement judge(const RandomDevice& random) {
+  DeviceJudgement out;
+  try {
+    const Stand at = stand(random.mechanism, mm_deg_from(home_pose(random.mechanism)));
+    const DeviceTruth truth = solve_by_forces(at.configuration);
+    out.kind = class_of(truth);
+    out.condition = truth.condition;
+    Vector6 load = random.load;
+    load.tail<3>() *= 1e3;
+    const SolveResult r = solve(random.mechanism, at, load, {});
+    if (!may_answer(out.kind)) {
+      out.outcome = Outcome::answered_wrongly;
+      out.words = fmt::format("idle {}, rigid directions {}", truth.idle, truth.rigid_directions);
+      return out;
+    }
+    if (out.kind == DeviceClass::unclear) return out;
+    compare(out, r, truth, random, at.configuration.size);
+    const double allowed = allowed_error(out.condition, false);
+    if (!(out.error <= allowed && out.stiffness_error <= 1e-9 + 10 * allowed)) out.outcome = Outcome::answered_wrongly;
+    if (out.kind == DeviceClass::idle && !tells_of_holding(r.notes)) out.outcome = Outcome::answered_wrongly;
+    out.words = fmt::format("displacement {:.1e}, stiffness {:.1e}, theories {:.1e} off, condition {:.1e}, {}",
+                            out.error, out.stiffness_error, out.between, out.condition, r.notes);
+  } catch (const ModelError& e) {
+    refused(out, e.what(), true);
+  } catch (const NumericalError& e) {
+    refused(out, e.what(), false);
+  } catch (const std::exception& e) {
+    out.words = e.what();
+    out.outcome = Outcome::crashed;
+  }
+  return out;
+}
+
+DeviceJudgement judge_agreement(const RandomDevice& random) {
+  DeviceJudgement out;
+  out.kind = DeviceClass::unclear;
+  try {
+    const Stand at = stand(random.mechanism, mm_deg_from(home_pose(random.mechanism)));
+    Vector6 load = random.load;
+    load.tail<3>() *= 1e3;
+    const SolveResult r = solve(random.mechanism, at, load, {});
+    out.between = test::apart(in_m(r.analytic.displacement_mm_rad), in_m(r.msa.displacement_mm_rad), random.unit);
+    if (!(out.between <= 1e-6)) out.outcome = Outcome::answered_wrongly;
+    out.words = fmt::format("theories {:.1e} apart", out.between);
+  } catch (const ModelError& e) {
+    out.outcome = Outcome::refused_rightly;
+    out.words = e.what();
+  } catch (const NumericalError& e) {
+    out.words = e.what();
+    out.outcome = Outcome::refused_rightly;
+    for (const char* excuse : {"did not converge", "not solved", "fails a check"})
+      if (out.words.find(excuse) != std::string::npos) out.outcome = Outcome::refused_wrongly;
+  } catch (const std::exception& e) {
+    out.words = e.what();
+    out.outcome = Outcome::crashed;
+  }
+  return out;
+}
+
+DeviceJudgement judge_apart(const RandomDevice& random, DeviceJudgement (*how)(const RandomDevice&)) {
+  std::array<int, 2> ends{};
+  if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(20);
+    const DeviceJudgement j = how(random);
+    const Sent sent = without_words(j);
+    const bool written = ::write(ends[1], &sent, sizeof sent) == sizeof sent &&
+                         ::write(ends[1], j.words.data(), j.words.size()) == std::ssize(j.words);
+    ::_exit(written ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string received;
+  std::array<char, 4096> buffer;
+  for (ssize_t n; (n = ::read(ends[0], buffer.data(), buffer.size())) > 0;)
+    received.append(buffer.data(), static_cast<std::size_t>(n));
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return with_words(received);
+  DeviceJudgement out;
+  out.outcome = Outcome::crashed;
+  out.words = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status)) : "no answer";
+  return out;
+}
+
+std::string reproduction(const RandomDevice& random, const DeviceJudgement& j) {
+  const std::filesystem::path file = failures_folder() / fmt::format("device-{}.yaml", random.seed);
+  std::ofstream(file) << write_mechanism(random.mechanism);
+  Vector6 load = random.load;
+  load.tail<3>() *= 1e3;
+  return fmt::format("device {} ({}), which {}: {}: {}\n  deflect solve {} --pose={:.17g} --load={:.17g}", random.seed,
+                     device_kind_names[static_cast<int>(random.kind)], device_class_names[static_cast<int>(j.kind)],
+                     outcome_names[static_cast<int>(j.outcome)], j.words, file.string(),
+                     fmt::join(mm_deg_from(home_pose(random.mechanism)), ","), fmt::join(load, ","));
+}
+
+}  // namespace deflect::attack

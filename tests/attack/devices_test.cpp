@@ -1,0 +1,69 @@
+// Random devices against the force method. DEFLECT_ATTACK=10000 test_attack --gtest_filter='*OnDemand*' prints the
+// table of as many.
+#include <gtest/gtest.h>
+
+#include "tests/attack/count.h"
+#include "tests/attack/device_judge.h"
+#include "tests/attack/table.h"
+
+namespace deflect::attack {
+namespace {
+
+Table judged(unsigned first, unsigned last, unsigned step) {
+  Table table;
+  for (unsigned seed = first; seed < last; seed += step) {
+    const RandomDevice random = random_device(seed);
+    const DeviceJudgement j = judge_apart(random);
+    table.add(device_class_names[static_cast<int>(j.kind)], j.outcome, j.error, j.condition, j.between);
+    if (is_wrong(j.outcome)) table.failures += reproduction(random, j) + "\n";
+  }
+  return table;
+}
+
+class RandomDevices : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomDevices, AreAnsweredRightByBothTheoriesOrRefusedRightly) {
+  const Table table = judged(GetParam(), usual_count, shards);
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shard, RandomDevices, ::testing::Range(0u, shards));
+
+TEST(RandomDevicesOnDemand, AreAnsweredRightByBothTheoriesOrRefusedRightly) {
+  if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of devices";
+  const Table table = judged(0, count_on_demand(), 1);
+  fmt::print("{}", table.text("devices"));
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+// Devices of extreme ratios are left to the linear ones.
+Table judged_nonlinear(unsigned first, unsigned last, unsigned step) {
+  Table table;
+  for (unsigned seed = first; seed < last; seed += step) {
+    const RandomDevice random = with_nonlinear_laws(random_device(seed));
+    if (random.kind == DeviceKind::stiff_and_soft) continue;
+    const DeviceJudgement j = judge_apart(random, judge_agreement);
+    table.add(device_kind_names[static_cast<int>(random.kind)], j.outcome, 0, 1, j.between);
+    if (is_wrong(j.outcome)) table.failures += reproduction(random, j) + "\n";
+  }
+  return table;
+}
+
+class NonlinearDevices : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(NonlinearDevices, AreAnsweredAlikeByBothTheoriesOrRefusedWithTheCause) {
+  const Table table = judged_nonlinear(GetParam(), usual_count, shards);
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shard, NonlinearDevices, ::testing::Range(0u, shards));
+
+TEST(NonlinearDevicesOnDemand, AreAnsweredAlikeByBothTheoriesOrRefusedWithTheCause) {
+  if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of devices";
+  const Table table = judged_nonlinear(0, count_on_demand(), 1);
+  fmt::print("{}", table.text("devices of nonlinear laws"));
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+}  // namespace
+}  // namespace deflect::attack

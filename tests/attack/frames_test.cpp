@@ -1,0 +1,39 @@
+// Random frames against the oracles. DEFLECT_ATTACK=10000 test_attack --gtest_filter='*OnDemand*' prints the table of
+// as many.
+#include <gtest/gtest.h>
+
+#include "tests/attack/count.h"
+#include "tests/attack/table.h"
+
+namespace deflect::attack {
+namespace {
+
+Table judged(unsigned first, unsigned last, unsigned step) {
+  Table table;
+  for (unsigned seed = first; seed < last; seed += step) {
+    const RandomFrame random = random_frame(seed);
+    const Judgement j = judge(random);
+    table.add(standing_names[static_cast<int>(j.standing)], j.outcome, j.error, j.condition);
+    if (is_wrong(j.outcome)) table.failures += reproduction(random, j) + "\n";
+  }
+  return table;
+}
+
+class RandomFrames : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomFrames, AreAnsweredRightOrRefusedRightly) {
+  const Table table = judged(GetParam(), usual_count, shards);
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shard, RandomFrames, ::testing::Range(0u, shards));
+
+TEST(RandomFramesOnDemand, AreAnsweredRightOrRefusedRightly) {
+  if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of frames";
+  const Table table = judged(0, count_on_demand(), 1);
+  fmt::print("{}", table.text("frames"));
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+}  // namespace
+}  // namespace deflect::attack
