@@ -25,9 +25,15 @@ void add_compliance(Chain& chain, const Matrix6& C, const std::string& part) {
   chain.C += C;
 }
 
+/// C = root rootᵀ.
+void add_root(Chain& chain, const Matrix6& root, const std::string& part) {
+  add_compliance(chain, root * root.transpose(), part);
+  append(chain.roots, root);
+}
+
 void add_member(Chain& chain, const PlacedMember& m, const Vector3& p_W, bool first, const AsPrinted& p) {
   Matrix3 R = m.R_WM;
-  Matrix6 C_tip;
+  Matrix6 C_tip = Matrix6::Zero();  // as printed
   if (first && p.count(Erratum::guideway_matrix)) {
     C_tip = tip_compliance_guideway_as_printed(m);
   } else if (!first && p.count(Erratum::link_matrix)) {
@@ -35,9 +41,13 @@ void add_member(Chain& chain, const PlacedMember& m, const Vector3& p_W, bool fi
     C_tip = tip_compliance_link_as_printed(m);
   } else {
     if (!first && p.count(Erratum::link_frame)) link_axes_as_printed(m);  // a round link feels only where it is refused
-    C_tip = tip_compliance(m);
+    const Matrix6 root = tip_compliance(m).llt().matrixL();
+    add_root(chain, shift_twist(p_W - m.p_W_end) * rotate_twist(R) * root, m.part);
   }
-  add_compliance(chain, moved_to(p_W, m, R, C_tip), m.part);
+  if (!C_tip.isZero(0)) {
+    add_compliance(chain, moved_to(p_W, m, R, C_tip), m.part);
+    chain.rooted = false;
+  }
   chain.expansion.head<3>() += m.expansion * (m.p_W_end - m.p_W_start);
 }
 
@@ -45,7 +55,8 @@ void add_joint(Chain& chain, const PlacedJoint& j, const Vector3& p_W, const AsP
   if (j.stiffness) {
     Matrix6 J;
     for (std::size_t i = 0; i < 6; ++i) J.col(static_cast<Eigen::Index>(i)) = freedom_twist(j, i, p_W);
-    add_compliance(chain, J * j.stiffness->llt().solve(J.transpose()), j.part);
+    const Eigen::LLT<Matrix6> L(*j.stiffness);  // K = L Lᵀ
+    add_root(chain, L.matrixL().solve(J.transpose()).transpose(), j.part);
     return;
   }
   for (std::size_t i = 0; i < 6; ++i) {
@@ -66,6 +77,11 @@ void add_joint(Chain& chain, const PlacedJoint& j, const Vector3& p_W, const AsP
       chain.freedoms.push_back(freedom);
     }
   }
+}
+
+void add_yielding(Flexibility& f, const Vector6& twist, double compliance) {
+  f.C += twist * compliance * twist.transpose();
+  if (compliance > 0) append(f.roots, twist * std::sqrt(compliance));
 }
 
 void add_parallel(Chain& chain, const PlacedParallel& parallel, const Vector3& p_W, const AsPrinted& p) {
@@ -109,7 +125,7 @@ Chain chain_of(const PlacedLeg& leg, const Vector3& p_W, double length, const As
 Response Chain::respond(const Vector6& F, double least, const Circumstances& c) const {
   Response r;
   r.d = misfit + c.warmer * expansion + C * F;
-  r.tangent = {C, c.printed.count(Erratum::passive_joints) ? Matrix6X(6, 0) : J_q, N};
+  r.tangent = {C, roots, rooted, c.printed.count(Erratum::passive_joints) ? Matrix6X(6, 0) : J_q, N};
   const Eigen::Index passive = r.tangent.J.cols();
   for (const ElasticFreedom& f : freedoms) {
     const double force = f.twist.dot(F);
@@ -125,7 +141,7 @@ Response Chain::respond(const Vector6& F, double least, const Circumstances& c) 
     if (lets_go)
       append(r.tangent.J, f.twist);
     else
-      r.tangent.C += f.twist * yields * f.twist.transpose();
+      add_yielding(r.tangent, f.twist, yields);
   }
   for (const Group& g : groups) {
     const Group::State state = g.solve(F, c);
@@ -133,6 +149,8 @@ Response Chain::respond(const Vector6& F, double least, const Circumstances& c) 
     r.d += state.t;
     r.converged = r.converged && state.converged;
     r.tangent.C += tangent.C;
+    r.tangent.rooted = r.tangent.rooted && tangent.rooted;
+    append(r.tangent.roots, tangent.roots);
     if (tangent.J.cols() > g.J.cols()) append(r.tangent.J, tangent.J);
   }
   if (r.tangent.J.cols() > passive) r.tangent.N = carried_wrenches(r.tangent.J, length);

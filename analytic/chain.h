@@ -62,6 +62,8 @@ struct Chain {
   std::vector<Group> groups;
   Vector6 expansion = Vector6::Zero();  ///< of the members, per kelvin
   Matrix6 C = Matrix6::Zero();          ///< sum of the members'
+  Matrix6X roots = Matrix6X(6, 0);      ///< of C (flexibility.h), each member's behind the other
+  bool rooted = true;                   ///< no member's C is as printed
   Matrix6X J_q = Matrix6X(6, 0);        ///< twists at T of the passive joints, whether released or not
   Matrix6X N = Matrix6X(6, 0);          ///< wrenches carried; all of them where passive joints are not released
 

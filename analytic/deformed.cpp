@@ -173,8 +173,9 @@ Matrix6 stiffness(const Deformed& d) {
     }
   }
   const Matrix6 C = tangent.J * tangent.solve(tangent.J.transpose());
-  return stiffness(Flexibility{C, Matrix6X(6, 0), carried_wrenches(Matrix6X(6, 0), whole.length)}, whole.length,
-                   whole.name);
+  return stiffness(
+      Flexibility{C, Matrix6X(6, 0), false, Matrix6X(6, 0), carried_wrenches(Matrix6X(6, 0), whole.length)},
+      whole.length, whole.name);
 }
 
 Matrix6 compliance(const Deformed& d) {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <cmath>
 #include <vector>
 
@@ -11,6 +13,8 @@
 
 namespace deflect::analytic {
 namespace {
+
+constexpr double lost = 1e-13;  // of the largest root: rounding of the wrenches that are carried
 
 /// Weighs moments by 1/length or rotations by length.
 Vector6 weights(double rotation) {
@@ -68,23 +72,52 @@ Matrix6X free_twists(const Matrix6X& N, double length) {
   return weights(1 / length).asDiagonal() * complement(weights(1 / length).asDiagonal() * N);
 }
 
+Matrix6X roots_of(const Matrix6& C, double length) {
+  const Matrix6 weighed = weights(length).asDiagonal() * C * weights(length).asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen((weighed + weighed.transpose()) / 2);
+  const Vector6 root = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
+  return weights(1 / length).asDiagonal() * (eigen.eigenvectors() * root.asDiagonal());
+}
+
+Principal principal(const Flexibility& f, double length) {
+  if (f.roots.cols() == 0) return {MatrixX::Identity(f.N.cols(), f.N.cols()), VectorX::Zero(f.N.cols())};
+  const MatrixX yields = f.roots.transpose() * f.N;  // moments of N are forces times the length
+  const Eigen::JacobiSVD<MatrixX> svd(yields, Eigen::ComputeFullV);
+  Principal out{svd.matrixV(), VectorX::Zero(f.N.cols())};
+  const double largest = (weights(length).asDiagonal() * f.roots).norm();
+  for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i)
+    if (const double root = svd.singularValues()(i); root > lost * largest) out.g(i) = root * root;
+  return out;
+}
+
 Matrix6 stiffness(const Flexibility& f, double length, const std::string& name) {
   if (f.N.cols() == 0) return Matrix6::Zero();
-  const MatrixX G = f.N.transpose() * f.C * f.N;
-  Eigen::FullPivLU<MatrixX> lu;
-  lu.setThreshold(1e-13);
-  lu.compute(G);
-  if (!lu.isInvertible()) {
-    const MatrixX rigid = reduced(weights(1 / length).asDiagonal() * (f.N * lu.kernel()));
-    std::vector<std::string> motions;
-    for (Eigen::Index i = 0; i < rigid.cols(); ++i)
-      motions.push_back(resisted_motion(weights(length).cwiseProduct(rigid.col(i)), length));
-    throw ModelError(fmt::format(
-        "{}: infinite stiffness: nothing yields in {}; the pose is singular, or a member, joint or actuator "
-        "must be given some compliance",
-        name, fmt::join(motions, "; in ")));
+  MatrixX rigid;  // wrenches under which nothing yields
+  Matrix6 K = Matrix6::Zero();
+  if (f.rooted) {
+    const Principal p = principal(f, length);
+    const Eigen::Index yielding = (p.g.array() > 0).count();
+    rigid = f.N * p.V.rightCols(f.N.cols() - yielding);
+    const MatrixX N = f.N * p.V.leftCols(yielding);
+    K = N * p.g.head(yielding).cwiseInverse().asDiagonal() * N.transpose();
+  } else {
+    Eigen::FullPivLU<MatrixX> lu;
+    lu.setThreshold(1e-13);
+    lu.compute(f.N.transpose() * f.C * f.N);
+    if (lu.isInvertible())
+      K = f.N * lu.solve(f.N.transpose());
+    else
+      rigid = f.N * lu.kernel();
   }
-  return f.N * lu.solve(f.N.transpose());
+  if (rigid.cols() == 0) return K;
+  const MatrixX along = reduced(weights(1 / length).asDiagonal() * rigid);
+  std::vector<std::string> motions;
+  for (Eigen::Index i = 0; i < along.cols(); ++i)
+    motions.push_back(resisted_motion(weights(length).cwiseProduct(along.col(i)), length));
+  throw ModelError(
+      fmt::format("{}: infinite stiffness: nothing yields in {}; the pose is singular, or a member, joint or actuator "
+                  "must be given some compliance",
+                  name, fmt::join(motions, "; in ")));
 }
 
 }  // namespace deflect::analytic

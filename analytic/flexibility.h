@@ -10,8 +10,14 @@ namespace deflect::analytic {
 
 /// Under a wrench F = N λ the far end moves against the near one by C F + J q, q arbitrary; JᵀN = 0. C is symmetric and
 /// has a meaning on the wrenches carried only.
+///
+/// `roots` are columns s with C = Σ s sᵀ, one or more of each part. NᵀCN is formed as (rootsᵀN)ᵀ(rootsᵀN), so that
+/// compliances of parts 1e12 apart keep their digits, and what yields only where passive joints yield anyway costs
+/// none. An equation as printed may have a C that is not symmetric: it has no roots, and C itself is taken.
 struct Flexibility {
   Matrix6 C = Matrix6::Zero();
+  Matrix6X roots = Matrix6X(6, 0);
+  bool rooted = true;
   Matrix6X J = Matrix6X(6, 0);  ///< twists that nothing resists
   Matrix6X N = Matrix6X(6, 0);  ///< wrenches carried
 };
@@ -25,8 +31,19 @@ Matrix6X carried_wrenches(const Matrix6X& J, double length);
 /// The same of the twists t with Nᵀt = 0.
 Matrix6X free_twists(const Matrix6X& N, double length);
 
+/// Principal compliances of what is carried: wrenches N V, of which each yields by itself, NᵀCN = V diag(g) Vᵀ, g
+/// falling. A g whose root is lost in the rounding of the largest root is 0: there nothing yields.
+struct Principal {
+  MatrixX V;
+  VectorX g;
+};
+Principal principal(const Flexibility&, double length);
+
+/// Roots of a symmetric C ⪰ 0, rotations weighed by the length (m).
+Matrix6X roots_of(const Matrix6& C, double length);
+
 /// K = N (NᵀCN)⁻¹Nᵀ, which is C⁻¹ − C⁻¹J(JᵀC⁻¹J)⁻¹JᵀC⁻¹ where C⁻¹ exists; 0 where nothing is carried. Throws ModelError
-/// saying of `name` where nothing yields when NᵀCN is singular to 1e-13.
+/// saying of `name` where nothing yields.
 Matrix6 stiffness(const Flexibility&, double length, const std::string& name);
 
 }  // namespace deflect::analytic

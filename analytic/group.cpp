@@ -23,8 +23,15 @@ Vector6 weighed(const Vector6& F, double length) {
 /// branch is ahead of it; M = N but for signs where C is symmetric. A g that is lost in the rounding of the largest is
 /// 0: there the branch is rigid.
 struct Linearised {
-  Linearised(const Flexibility& f, const Vector6& d) : N(f.N), M(f.N) {
+  Linearised(const Flexibility& f, double length, const Vector6& d) : N(f.N), M(f.N) {
     if (N.cols() == 0) return;
+    if (f.rooted) {
+      const Principal p = principal(f, length);
+      M = N *= p.V;
+      g = p.g;
+      e = M.transpose() * d;
+      return;
+    }
     const Eigen::JacobiSVD<MatrixX> principal(f.N.transpose() * f.C * f.N, Eigen::ComputeFullU | Eigen::ComputeFullV);
     N *= principal.matrixV();
     M *= principal.matrixU();
@@ -249,7 +256,7 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c, bool open) c
     Vector6 missing = F, moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
       const Response r = response(i, s.wrenches[i], least);
-      linearised.emplace_back(r.tangent, r.d - s.t);
+      linearised.emplace_back(r.tangent, length, r.d - s.t);
       missing -= s.wrenches[i];
       const Linearised& b = linearised.back();
       for (Eigen::Index j = 0; j < b.g.size(); ++j)
@@ -313,8 +320,10 @@ Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double leas
   if (others.cols() == 0) return f;
   f.N = carried_wrenches(f.J, length);
   std::vector<Linearised> linearised;
-  for (const Flexibility& t : tangents) linearised.emplace_back(t, Vector6::Zero());
+  for (const Flexibility& t : tangents) linearised.emplace_back(t, length, Vector6::Zero());
   f.C = Parallel(std::move(linearised), others).compliance();
+  f.rooted = std::all_of(tangents.begin(), tangents.end(), [](const Flexibility& t) { return t.rooted; });
+  if (f.rooted) f.roots = roots_of(f.C, length);
   return f;
 }
 

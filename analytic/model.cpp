@@ -194,6 +194,9 @@ Flexibility AnalyticModel::flexibility(const AnalyticSolution& s) const {
   Flexibility whole = legs_.flexibility(s.leg_wrenches, 0, s.under);
   const Flexibility through = through_.respond(s.load + weight_, 0, drawn(s.under)).tangent;
   whole.C += through.C;
+  whole.rooted = whole.rooted && through.rooted;
+  whole.roots.conservativeResize(6, whole.roots.cols() + through.roots.cols());
+  whole.roots.rightCols(through.roots.cols()) = through.roots;
   if (through.J.cols() > 0) {
     whole.J.conservativeResize(6, whole.J.cols() + through.J.cols());
     whole.J.rightCols(through.J.cols()) = through.J;

@@ -57,6 +57,7 @@ AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : mode
 
 Answer AnalyticAtPose::solve(const Vector6& F, const Conditions& conditions) const {
   const analytic::AnalyticSolution s = model_.solve(F, conditions);
+  if (!s.converged && model_.linear()) (void)model_.stiffness(s);  // throws where nothing yields
   if (!s.converged)
     throw NumericalError(s.message.empty()
                              ? fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})",
