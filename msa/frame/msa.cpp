@@ -38,7 +38,7 @@ Matrix6 above_rounding(const Matrix6& K, const Model& m) {
   Vector6 per_length = Vector6::Ones();
   per_length.tail<3>().setConstant(1 / characteristic_length(m));
   const double size = (per_length.asDiagonal() * K * per_length.asDiagonal()).cwiseAbs().maxCoeff();
-  return size < 1e-17 * stiffest ? Matrix6(Matrix6::Zero()) : K;
+  return size < 1e-15 * stiffest ? Matrix6(Matrix6::Zero()) : K;
 }
 
 }  // namespace

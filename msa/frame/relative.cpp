@@ -10,9 +10,14 @@
 namespace deflect::frame {
 namespace {
 
+/// Nm/rad; of a linear spring along a line its stiffness times the squared length of the structure.
 double softest(const Model& m) {
   double least = std::numeric_limits<double>::infinity();
+  const double length = characteristic_length(m);
   for (const Beam& b : m.beams) least = std::min({least, b.rigidity.EIy / b.length, b.rigidity.EIz / b.length});
+  for (const Spring& s : m.springs)
+    if (const auto* linear = std::get_if<LinearSpring>(&s.law); linear && linear->k > 0)
+      least = std::min(least, linear->k * (s.law.rotation ? 1 : length * length));
   return least;
 }
 

@@ -15,9 +15,9 @@ void give_contacts_stiffness(Model&);
 /// Whether the next function would find a beam or a spring to change.
 bool wants_relative_motion(const Model&, double ratio = 1e5);
 
-/// Gives relative coordinates to springs that jump, to beams whose bending stiffness EI/L exceeds `ratio` times the
-/// softest beam's, and to linear springs whose stiffness times the squared length of the structure exceeds 1e4 times
-/// that limit (a translational spring; a rotational one counts alike). Returns the names of those parts.
+/// Gives relative coordinates to springs that jump, to beams whose bending stiffness EI/L exceeds `ratio` times that of
+/// the softest beam or spring, and to linear springs whose stiffness times the squared length of the structure exceeds
+/// 1e4 times that limit (a translational spring; a rotational one counts alike). Returns the names of those parts.
 std::vector<std::string> use_relative_motion(Model&, double ratio = 1e5);
 
 }  // namespace deflect::frame

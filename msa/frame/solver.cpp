@@ -30,6 +30,28 @@ MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
   return out;
 }
 
+/// Whether Tᵀf is what rounding leaves where every force is taken by constraints.
+bool is_rounding(const VectorX& reduced, const Elimination& e, const VectorX& f) {
+  VectorX unsigned_sum = VectorX::Zero(e.independent);
+  for (std::size_t dof = 0; dof < e.T.size(); ++dof)
+    for (const Term& t : e.T[dof]) unsigned_sum(t.dof) += std::abs(t.coefficient * f(static_cast<Eigen::Index>(dof)));
+  return (reduced.array().abs() <= 1e-14 * unsigned_sum.array()).all();
+}
+
+/// u K u, by elements.
+double twice_energy(const Model& m, const ExtendedVector& u, const VectorX& tangents) {
+  double sum = 0;
+  for (const Beam& beam : m.beams) {
+    const Vector12 d = end_displacements(beam, u);
+    sum += d.dot(pull(beam, d));
+  }
+  for (std::size_t s = 0; s < m.springs.size(); ++s) {
+    const double elongation = evaluate(m.springs[s].elongation, u);
+    sum += tangents(static_cast<Eigen::Index>(s)) * elongation * elongation;
+  }
+  return sum;
+}
+
 }  // namespace
 
 Solver::Solver(Model m) : model_(std::make_unique<Model>(std::move(m))) {
@@ -164,16 +186,20 @@ ExtendedMatrix Solver::linear(const VectorX& tangents, const MatrixX& given_load
   return U;
 }
 
+/// Corrections are measured in energy, |dq|² = dq·r for the residual r, against that of the answer.
 ExtendedVector Solver::refined(const VectorX& tangents, const VectorX& load, const VectorX& values) {
   ExtendedVector q = ExtendedVector::Zero(elimination_->independent), u = elimination_->expand_fine(q, values);
   double before = 1;
   for (int pass = 0; pass < most_corrections; ++pass) {
-    const VectorX correction = cholesky_->solve(elimination_->reduce(load - tangent_forces(*model_, u, tangents)));
+    const VectorX unbalanced = load - tangent_forces(*model_, u, tangents);
+    const VectorX residual = elimination_->reduce(unbalanced);
+    if (pass == 0 && is_rounding(residual, *elimination_, unbalanced)) return u;
+    const VectorX correction = cholesky_->solve(residual);
     q += correction.cast<long double>();
     u = elimination_->expand_fine(q, values);
     if (pass == 0) continue;
-    const double size = cholesky_->size_of(q.cast<double>());
-    const double change = size > 0 ? cholesky_->size_of(correction) / size : 0;
+    const double energy = twice_energy(*model_, u, tangents);
+    const double change = energy > 0 ? std::sqrt(std::abs(correction.dot(residual)) / energy) : 0;
     if (pass == 1) rounding_ = std::max(rounding_, change);
     const double shrinks = change / before;
     before = change;

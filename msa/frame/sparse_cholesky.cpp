@@ -194,10 +194,6 @@ SparseCholesky::Softest SparseCholesky::softest() const {
   return out;
 }
 
-double SparseCholesky::size_of(const VectorX& x) const {
-  return impl_->A ? x.cwiseQuotient(impl_->scale).norm() : x.norm();
-}
-
 MatrixX SparseCholesky::solve(const MatrixX& B) const {
   if (!impl_->A) return B;
   return impl_->scale.asDiagonal() * impl_->solve_scaled(impl_->scale.asDiagonal() * B);

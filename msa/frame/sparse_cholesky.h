@@ -37,9 +37,6 @@ class SparseCholesky {
   };
   Softest softest() const;
 
-  /// √(Σ K_jj x_j²): motions of all freedoms in one unit.
-  double size_of(const VectorX& x) const;
-
   /// K X = B.
   MatrixX solve(const MatrixX& B) const;
 

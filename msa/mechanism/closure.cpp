@@ -136,7 +136,7 @@ Reach reach(const Trace& t, std::size_t leg, const Vector3& p_W, double length) 
       end.col(column[c]) *= length;
       if (inner.rows() > 0) inner.col(column[c]) *= length;
     }
-  if (inner.rows() > 0) {
+  if (inner.rows() > 0 && count > 0) {  // branches side by side in which nothing moves close by themselves
     Eigen::JacobiSVD<MatrixX> loops(inner, Eigen::ComputeFullV);
     loops.setThreshold(rank_tolerance);
     end = end * loops.matrixV().rightCols(count - loops.rank());

@@ -169,6 +169,10 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
   if (total > 0)
     for (const auto& [part, energy] : f.energies) r.shares.emplace_back(part, energy / total);
   r.notes = pair.msa.notes();
+  if (const double known = bound_with(0, pair.msa.rounding()); linear && known > 1e-9)
+    r.notes.push_back(fmt::format(
+        "the device amplifies the rounding of its own numbers: the answer is known to about {:.0e} of its size",
+        known));
   for (const Actuator& joint : at.configuration.actuators)
     r.joints.push_back({joint.name, joint.rotation ? joint.value : 1e3 * joint.value, joint.rotation});
   r.redundant_constraints = analytic::redundant_constraints(at.configuration);
