@@ -10,8 +10,11 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <optional>
 
+#include "analytic/model.h"
 #include "msa/base/error.h"
+#include "msa/frame/msa.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/attack/count.h"
 #include "tests/support/apart.h"
@@ -62,6 +65,30 @@ void compare(DeviceJudgement& out, const SolveResult& r, const DeviceTruth& trut
   out.between = test::apart(in_m(r.analytic.displacement_mm_rad), out.displacement, size);
 }
 
+/// Where the program refuses because theories differ or fail a check: how far each is off.
+std::string by_theory(const Configuration& c, const Vector6& F, const DeviceTruth& truth) {
+  if (!truth.held || truth.rigid_directions > 0) return "";
+  const Vector6 right = truth.flexibility * F;
+  const auto off = [&](const char* name, const Vector6& d, const Matrix6& K) {
+    return fmt::format(" [{}: displacement {:.1e}, stiffness {:.1e} off]", name, test::apart(d, right, c.size),
+                       test::apart(K, truth.stiffness, c.size));
+  };
+  std::string out;
+  try {
+    const analytic::AnalyticModel analytic(c);
+    const analytic::AnalyticSolution a = analytic.solve(F);
+    out += off("closed form", a.displacement, analytic.stiffness(a));
+  } catch (const std::runtime_error&) {  // said by the program already
+  }
+  try {
+    frame::MsaModel msa(c);
+    const frame::MsaSolution m = msa.solve(F);
+    out += off("MSA", m.displacement, msa.stiffness(m.state).K);
+  } catch (const std::runtime_error&) {
+  }
+  return out;
+}
+
 void refused(DeviceJudgement& out, const std::string& words, bool by_model) {
   out.words = words;
   if (out.kind == DeviceClass::unclear || (!must_answer(out.kind) && by_model))
@@ -96,9 +123,11 @@ DeviceJudgement with_words(const std::string& bytes) {
 
 DeviceJudgement judge(const RandomDevice& random) {
   DeviceJudgement out;
+  std::optional<Stand> placed;
+  DeviceTruth truth;
   try {
-    const Stand at = stand(random.mechanism, mm_deg_from(home_pose(random.mechanism)));
-    const DeviceTruth truth = solve_by_forces(at.configuration);
+    const Stand& at = placed.emplace(stand(random.mechanism, mm_deg_from(home_pose(random.mechanism))));
+    truth = solve_by_forces(at.configuration);
     out.kind = class_of(truth);
     out.condition = truth.condition;
     Vector6 load = random.load;
@@ -119,7 +148,7 @@ DeviceJudgement judge(const RandomDevice& random) {
   } catch (const ModelError& e) {
     refused(out, e.what(), true);
   } catch (const NumericalError& e) {
-    refused(out, e.what(), false);
+    refused(out, e.what() + by_theory(placed->configuration, random.load, truth), false);
   } catch (const std::exception& e) {
     out.words = e.what();
     out.outcome = Outcome::crashed;
