@@ -122,6 +122,14 @@ std::string unit_list(const Row& r) {
 
 }  // namespace
 
+void require_digits_of_angle(double rad, std::string_view text) {
+  if (!(std::abs(rad) <= largest_angle))
+    throw InputError(
+        fmt::format("'{}' is an angle of {:.3g} turns, so large that too few of its digits are left: write the same "
+                    "angle within one turn",
+                    text, rad / (2 * pi)));
+}
+
 std::vector<std::string> units_of(Dimension d) {
   std::vector<std::string> names;
   for (const Unit& u : row(d).units) names.emplace_back(u.name);
@@ -154,6 +162,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     if (unit == u.name) {
       const double si = in_si(value, u);
       if (!std::isfinite(si)) throw InputError(fmt::format("'{}' is too large for {}", text, r.words));
+      if (dimension == Dimension::angle) require_digits_of_angle(si, text);
       return si;
     }
   if (r.units.empty()) throw InputError(fmt::format("'{}' must be a plain number without a unit", text));

@@ -39,6 +39,12 @@ std::string describe(Dimension);
 /// or misplaced unit, on a number that is not finite, on trailing text.
 double parse_quantity(std::string_view text, Dimension);
 
+/// Above it the last binary digit of an angle in rad is worth more than 1e-10 rad: too few digits are left.
+inline constexpr double largest_angle = 1e6;
+
+/// Throws InputError saying so where the angle, written as `text`, is larger; parse_quantity does it by itself.
+void require_digits_of_angle(double rad, std::string_view text);
+
 /// The shortest text in the preferred unit that parse_quantity turns back into exactly `value`.
 std::string format_quantity(double value, Dimension);
 

@@ -15,6 +15,18 @@ namespace deflect {
 namespace {
 
 constexpr double path_step = 0.25;  // of the mechanism's length, or rad
+constexpr int most_steps = 10000;   // beyond, steps are longer
+constexpr double farthest = 1e6;    // mechanism's lengths: beyond, its own measures lose their digits
+
+int steps_along(double way) {
+  return way / path_step < most_steps ? 1 + static_cast<int>(way / path_step) : most_steps;
+}
+
+/// From here to there, less whole turns on the way.
+double way_to(double wanted, double from, bool rotation) {
+  const double way = wanted - from;
+  return rotation ? std::fmod(way, 2 * pi) : way;
+}
 
 std::string leg_name(const Assembly& a, std::size_t leg) {
   return a.legs.size() == 1 ? "" : fmt::format("leg {}: ", leg + 1);
@@ -76,6 +88,20 @@ void check_limits(const Assembly& a) {
       }
     }
   }
+}
+
+/// Refuses a coordinate of which no digits are left that matter.
+void require_reachable(double q, bool rotation, double length, const std::string& name) {
+  if (rotation && !(std::abs(q) <= largest_angle))
+    throw InputError(
+        fmt::format("joint {}: {:.6g} rad is so large an angle that too few of its digits are left: write "
+                    "it within one turn",
+                    name, q));
+  if (!rotation && !(std::abs(q) <= farthest * length))
+    throw InputError(
+        fmt::format("joint {}: {:.6g} mm is {:.3g} times the mechanism's size of {:.4g} mm, which loses its "
+                    "digits beside it: check the unit",
+                    name, 1e3 * q, std::abs(q) / length, 1e3 * length));
 }
 
 /// Refuses a pose in which a leg's end can move in fewer directions than it can at home.
@@ -142,7 +168,11 @@ void move_to(Assembly& a, const Pose& pose) {
   const Assembly home = a;
   const Eigen::AngleAxisd turn(home.pose.R_WT.transpose() * pose.R_WT);
   const Vector3 shift = pose.p_WT - home.pose.p_WT;
-  const int steps = 1 + static_cast<int>(std::max(shift.norm() / a.length, std::abs(turn.angle())) / path_step);
+  if (!(shift.norm() <= farthest * a.length))
+    throw ModelError(
+        fmt::format("the tool point would be {:.3g} times the mechanism's size of {:.4g} mm away from home",
+                    shift.norm() / a.length, 1e3 * a.length));
+  const int steps = steps_along(std::max(shift.norm() / a.length, std::abs(turn.angle())));
   for (int i = 1; i <= steps; ++i) {
     const double s = static_cast<double>(i) / steps;
     a.pose = i == steps ? pose
@@ -161,13 +191,18 @@ void move_to(Assembly& a, const Pose& pose) {
 void move_to_coordinates(Assembly& a, const VectorX& wanted) {
   const ActuatedCoordinates home = actuated(a);
   const VectorX from = home.values;
+  VectorX way(from.size());
   double largest = 0;
-  for (Eigen::Index i = 0; i < from.size(); ++i)
-    largest =
-        std::max(largest, std::abs(wanted(i) - from(i)) / (home.rotation[static_cast<std::size_t>(i)] ? 1 : a.length));
-  const int steps = 1 + static_cast<int>(largest / path_step);
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double size = home.rotation[at] ? 1 : a.length;
+    require_reachable(wanted(i), home.rotation[at], a.length, home.names[at]);
+    way(i) = way_to(wanted(i), from(i), home.rotation[at]);
+    largest = std::max(largest, std::abs(way(i)) / size);
+  }
+  const int steps = steps_along(largest);
   for (int i = 1; i <= steps; ++i) {
-    const VectorX q = i == steps ? wanted : VectorX(from + static_cast<double>(i) / steps * (wanted - from));
+    const VectorX q = i == steps ? wanted : VectorX(from + static_cast<double>(i) / steps * way);
     Eigen::Index n = 0;
     for (std::size_t leg = 0; leg < a.legs.size(); ++leg)
       for (const Coordinate& c : walk(one(a.legs[leg]), a.states[leg]).coordinates)

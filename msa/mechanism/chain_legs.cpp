@@ -96,8 +96,15 @@ class Placer {
   }
 
   void place(const Member& member, const Step& step, const std::string&, double, std::vector<PlacedPart>& out) const {
-    out.emplace_back(
-        placed(member, *step.name, step.start, step.after.p, step.before.R.col(1), step.before.R.col(2), m_));
+    if (member.y_axis.isZero(0)) {
+      out.emplace_back(
+          placed(member, *step.name, step.start, step.after.p, step.before.R.col(1), step.before.R.col(2), m_));
+      return;
+    }
+    const Vector3 y_W = step.before.R * member.y_axis, along = step.after.p - step.start;
+    if (along.norm() > 0 && along.cross(y_W).norm() <= 1e-6 * along.norm() * y_W.norm())
+      throw ModelError(fmt::format("{}: y_axis is parallel to the member here: name another direction", *step.name));
+    out.emplace_back(placed(member, *step.name, step.start, step.after.p, y_W, y_W, m_));
   }
 
   void place(const Offset&, const Step&, const std::string&, double, std::vector<PlacedPart>&) const {}

@@ -81,15 +81,24 @@ struct Joint {
 enum class BeamTheory { euler_bernoulli, timoshenko };
 inline constexpr const char* beam_theory_names[] = {"euler-bernoulli", "timoshenko"};
 
-/// A straight flexible member, local x along it. Named places: runs from `from` to `to`, local y in the plane of x and
-/// the radial direction at A. Chains: runs along `along` (axes of the chain, m), or from where part `from` stands to
-/// where the chain is, which lengthens it with the joints between; local y in the plane of x and the chain's y (its z,
-/// where x is along y). bending_factor multiplies EIy and EIz (1 = sound).
+/// Which point of a part of a chain. Start: where the chain comes to it, of a joint its place before it moves; end:
+/// where the chain leaves it. Usual: where a joint stands (its start), the end of anything else.
+enum class PartPoint { usual, start, end };
+inline constexpr const char* part_point_names[] = {"usual", "start", "end"};
+
+/// A straight flexible member, local x along it.
+/// Named places: runs from `from` to `to`; local y in the plane of x and the radial direction at A.
+/// Chains: runs along `along` (axes of the chain, m), or from a point of part `from` to where the chain is, which
+/// lengthens it with the joints between. Local y lies in the plane of x and `y_axis` (axes of the chain where the
+/// member stands in it, on its side); zero: the chain's y, and its z where x is within 2.6 deg of the chain's y. z = x
+/// × y. bending_factor multiplies EIy and EIz (1 = sound).
 struct Member {
   std::string section, material, from, to;
   std::optional<Vector3> along;
   BeamTheory beam = BeamTheory::euler_bernoulli;
   double bending_factor = 1;
+  PartPoint from_point = PartPoint::usual;
+  Vector3 y_axis = Vector3::Zero();
 };
 
 /// A rigid piece of a chain.

@@ -97,6 +97,14 @@ void FieldWriter::word(const char* key, std::string& value, const Words& w, cons
   add(key, scalar(value), w.otherwise == value);
 }
 
+void FieldWriter::word_or_object(const char* key, std::string& value, const Words& w, bool more,
+                                 const std::function<void()>& fields, const char* about) {
+  if (more)
+    object(key, Need::required, false, fields, about);
+  else
+    word(key, value, w, about);
+}
+
 void FieldWriter::mark(YamlNode& node, const std::string& path) const {
   node.ours = ours_.contains(path);
   for (std::size_t i = 0; i < node.children.size(); ++i)

@@ -29,6 +29,8 @@ class FieldWriter final : public FieldVisitor {
   void texts(const char*, std::vector<std::string>&, Need, const char*) override;
   void word(const char*, std::string&, const Words&, const char*) override;
   void any(const char*, std::string&, const char*) override;
+  void word_or_object(const char*, std::string&, const Words&, bool, const std::function<void()>&,
+                      const char*) override;
   void object(const char*, Need, bool absent, const std::function<void()>&, const char*) override;
   void entries(const char*, Elements&, Need, const char*) override;
   void list(const char*, Elements&, const char*) override;

@@ -80,6 +80,9 @@ class FieldVisitor {
   virtual void texts(const char* key, std::vector<std::string>&, Need, const char* about) = 0;  ///< one or a list
   virtual void word(const char* key, std::string&, const Words&, const char* about) = 0;
   virtual void any(const char* key, std::string& yaml, const char* about) = 0;  ///< YAML, kept in flow style
+  /// A word, or where more is to be said (`more`, when it is written) fields one level down, the word among them.
+  virtual void word_or_object(const char* key, std::string&, const Words&, bool more,
+                              const std::function<void()>& fields, const char* about) = 0;
 
   /// Fields one level down. `absent`: the struct holds what it holds when the file says nothing.
   virtual void object(const char* key, Need, bool absent, const std::function<void()>& fields, const char* about) = 0;

@@ -33,6 +33,35 @@ void fields(FieldVisitor& v, GivenSection& s) {
   v.quantity_if_given("As_z", s.As_z, area(), "shear area along local z");
 }
 
+void fields(FieldVisitor& v, BoxSection& s) {
+  v.quantity("width_y", s.width_y, length(), "outer side along local y");
+  v.quantity("height_z", s.height_z, length(), "outer side along local z");
+  v.quantity("wall", s.wall, length(), "thickness of the walls");
+  v.require(2 * s.wall < std::min(s.width_y, s.height_z), "wall",
+            "two walls fill the box: it must be below half of width_y and of height_z");
+}
+
+/// Of an I or a channel.
+template <class Flanged>
+void fields_of_flanged(FieldVisitor& v, Flanged& s) {
+  v.quantity("width_y", s.width_y, length(), "width of the flanges, along local y");
+  v.quantity("height_z", s.height_z, length(), "outer height, along local z");
+  v.quantity("web", s.web, length(), "thickness of the web");
+  v.quantity("flange", s.flange, length(), "thickness of the flanges");
+  v.require(s.web < s.width_y, "web", "must be below width_y");
+  v.require(2 * s.flange < s.height_z, "flange", "two flanges fill the height: it must be below half of height_z");
+}
+void fields(FieldVisitor& v, ISection& s) { fields_of_flanged(v, s); }
+void fields(FieldVisitor& v, ChannelSection& s) { fields_of_flanged(v, s); }
+
+void fields(FieldVisitor& v, AngleSection& s) {
+  v.quantity("long_leg", s.long_leg, length(), "outer length of the longer leg");
+  v.quantity("short_leg", s.short_leg, length(), "outer length of the shorter leg, or of both");
+  v.quantity("wall", s.wall, length(), "thickness of the legs");
+  v.require(s.short_leg <= s.long_leg, "short_leg", "must not be above long_leg");
+  v.require(s.wall < s.short_leg, "wall", "must be below short_leg");
+}
+
 // Parts of a leg
 
 void fields(FieldVisitor& v, DhRow& row) {
@@ -193,17 +222,38 @@ void fields(FieldVisitor& v, Joint& joint) {
   describe_stiffness(v, joint);
 }
 
+/// `from: PART`, or `from: {part: PART, at: start}`.
+void describe_from(FieldVisitor& v, Member& member) {
+  const char* about = "earlier part of the leg where the member begins";
+  const Words parts{"earlier part of the leg", v.surroundings.earlier_parts, std::nullopt};
+  const bool more = member.from_point != PartPoint::usual;
+  std::string at = part_point_names[static_cast<std::size_t>(member.from_point)];
+  member.from_point = PartPoint::usual;
+  const auto fields = [&] {
+    v.word("part", member.from, parts, about);
+    v.word("at", at, {"point of a part", {"start", "end"}, std::nullopt}, "which point of the part");
+    member.from_point = static_cast<PartPoint>(index_of(part_point_names, at));
+  };
+  v.word_or_object("from", member.from, parts, more, fields, about);
+}
+
 void describe_ends(FieldVisitor& v, Member& member) {
   if (v.surroundings.chains) {
     const std::size_t index = v.alternative({"along", "from"}, member.along ? 0 : 1);
     Vector3 along = member.along.value_or(Vector3::Zero());
     member.along.reset();
-    if (index == 1)
-      return v.word("from", member.from, {"earlier part of the leg", v.surroundings.earlier_parts, std::nullopt},
-                    "earlier part of the leg where the member begins");
-    v.vector3("along", along, Dimension::length, "from the start to the end, in the axes of the chain");
-    member.along = along;
-    return v.require(along.norm() > 0, "along", "the member has no length");
+    if (index == 1) {
+      describe_from(v, member);
+    } else {
+      v.vector3("along", along, Dimension::length, "from the start to the end, in the axes of the chain");
+      member.along = along;
+      v.require(along.norm() > 0, "along", "the member has no length");
+    }
+    v.vector3("y_axis", member.y_axis, Dimension::none,
+              "local y lies in the plane of the member and this vector, axes of the chain");
+    const double across = along.cross(member.y_axis).norm(), most = along.norm() * member.y_axis.norm();
+    return v.require(index == 1 || member.y_axis.isZero(0) || across > 1e-6 * most, "y_axis",
+                     "is parallel to the member: name another direction");
   }
   v.word("from", member.from, {"point", v.surroundings.points, std::nullopt}, "point where the member begins");
   v.word("to", member.to, {"point", v.surroundings.points, std::nullopt}, "point where the member ends");

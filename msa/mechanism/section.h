@@ -1,4 +1,11 @@
 // Cross-sections and their geometry.
+//
+// A section lies in the member's local y and z, which are principal axes of every shape; its centroid is on the
+// member's line. Bending about local y (moment of Iy) moves the member along z. How local y is turned about the member
+// is said by the member (y_axis, see description.h and frame_description.h).
+//
+// Forces pass through the member's line: of a channel and an angle, whose shear centre is beside the centroid, the
+// twist that this causes is left out, as is warping.
 #pragma once
 
 #include <iterator>
@@ -22,18 +29,44 @@ struct GivenSection {
   double A = 0, Iy = 0, Iz = 0, J = 0;
   std::optional<double> As_y, As_z;
 };
+/// Outer sides along local y and z, walls of one thickness, sharp corners.
+struct BoxSection {
+  double width_y = 0, height_z = 0, wall = 0;
+};
+/// Web along local z, flanges along local y; outer sizes, thickness of web and flange; no fillets.
+struct ISection {
+  double width_y = 0, height_z = 0, web = 0, flange = 0;
+};
+/// The same with flanges that leave the web towards one side, local +y.
+struct ChannelSection {
+  double width_y = 0, height_z = 0, web = 0, flange = 0;
+};
+/// Two legs at a right angle, outer lengths. Local y and z are the principal axes (u and v of section tables): y, about
+/// which the second moment is the larger, leaves the heel between the legs, at the tables' angle α from the short leg;
+/// with equal legs it halves their angle.
+struct AngleSection {
+  double long_leg = 0, short_leg = 0, wall = 0;
+};
 
-using Shape = std::variant<RoundSection, TubeSection, RectangleSection, GivenSection>;
-inline constexpr const char* shape_names[] = {"round", "tube", "rectangle", "given"};
+using Shape = std::variant<RoundSection, TubeSection, RectangleSection, GivenSection, BoxSection, ISection,
+                           ChannelSection, AngleSection>;
+inline constexpr const char* shape_names[] = {"round", "tube", "rectangle", "given", "box", "I", "channel", "angle"};
 static_assert(std::size(shape_names) == std::variant_size_v<Shape>);
 
 struct Section {
   Shape shape;
 };
 
-/// A in m²; Iy, Iz (second moments about local y and z) and the torsion constant J in m⁴; shear areas in m².
-/// Shear coefficients: round 9/10, rectangle 5/6, tube after Cowper (1966) for the given ν; J of a rectangle by
-/// Saint-Venant's series (Timoshenko and Goodier, Theory of Elasticity, §109). As_y, As_z are 0 where not given.
+/// A in m²; Iy, Iz (second moments about local y and z) and the torsion constant J in m⁴; shear areas in m², 0 where
+/// not given. A, Iy and Iz are exact for the shapes with sharp corners.
+///
+/// J: rectangle by Saint-Venant's series (Timoshenko and Goodier, Theory of Elasticity, §109); box after Bredt with the
+/// torsion of the walls, J = 4 A_m² t/s_m + s_m t³/3, A_m and s_m the area within the midline and its length (EN
+/// 10210-2, annex A); open shapes Σ b t³/3 of their plates, which fillets raise by a third in rolled profiles: give J
+/// then.
+///
+/// Shear areas: round 9/10 A, rectangle 5/6 A, tube after Cowper (1966) for the given ν; the thin-walled shapes by the
+/// energy of the shear flow (thin_walls.h).
 struct SectionProperties {
   double A, Iy, Iz, J, As_y, As_z;
 };

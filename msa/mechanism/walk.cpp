@@ -47,6 +47,19 @@ class Walker {
   }
 
  private:
+  /// Where a member can begin.
+  struct Points {
+    Vector3 usual, start, end;
+
+    const Vector3& at(PartPoint p) const { return p == PartPoint::usual ? usual : p == PartPoint::start ? start : end; }
+  };
+
+  static Points points_of(const Step& step) {
+    if (std::holds_alternative<Joint>(*step.part)) return {step.joint.p, step.joint.p, step.after.p};
+    const bool member = std::holds_alternative<Member>(*step.part);
+    return {step.after.p, member ? step.start : step.before.p, step.after.p};
+  }
+
   std::vector<Step> parts(const Named<Part>& list) {
     std::vector<Step> steps;
     steps.reserve(list.size());
@@ -57,7 +70,7 @@ class Walker {
       step.before = at_;
       std::visit([&](const auto& p) { pass(p, step); }, part);
       step.after = at_;
-      passed_[name] = std::holds_alternative<Joint>(part) ? step.joint.p : step.before.p;
+      passed_[name] = points_of(step);
       steps.push_back(std::move(step));
     }
     return steps;
@@ -123,7 +136,7 @@ class Walker {
     if (found == passed_.end())
       throw InputError(
           fmt::format("{}: the member begins at '{}', which is no earlier part of this leg", *step.name, m.from));
-    step.start = found->second;
+    step.start = found->second.at(m.from_point);
   }
 
   void pass(const Offset& o, Step&) { at_ = at_ * frame_of(o); }
@@ -131,7 +144,7 @@ class Walker {
   void pass(const Parallel& group, Step& step) {
     const Frame start = at_;
     const std::vector<std::size_t> path = path_;
-    const std::map<std::string, Vector3> passed = passed_;
+    const std::map<std::string, Points> passed = passed_;
     Frame end;
     std::vector<std::size_t> path_to_end;
     for (std::size_t b = 0; b < group.mounts.size(); ++b) {
@@ -157,7 +170,7 @@ class Walker {
   std::size_t next_ = 0;
   Frame at_;
   std::vector<std::size_t> path_;
-  std::map<std::string, Vector3> passed_;
+  std::map<std::string, Points> passed_;
 };
 
 void collect_home(const Named<Part>& parts, std::vector<JointState>& states) {

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "msa/mechanism/device_file.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/same_mechanism.h"
@@ -254,10 +255,31 @@ TEST(PreparedEffects, HoldSeveralEffectsAtOnce) {
 }
 
 TEST(PreparedEffects, GoTheLongWayWhereTheDescriptionCannotHoldAllValues) {
-  const Mechanism m = device("tripteron");  // E and G are given: a modulus of 1.2 E would make Poisson's ratio 0.65
-  const PreparedEffects prepared(m, {{&effect("modulus"), {}}});
-  expect_equal(prepared(values({0.9})), resolved(with_effect(m, effect("modulus"), values({0.9}))), "modulus");
+  const Mechanism m = device("tripteron");  // E and G are given: 1.2 E alone would make Poisson's ratio 0.65
+  const Effect young = parse_effect(R"(
+name: young_alone
+title: E without G
+scope: machine
+parameters:
+  factor: {start: 0.95, low: 0.3, high: 3, scale: log, vanishes: 1, about: true over stated}
+edits:
+  - {at: materials.*.E, multiply: $factor}
+pages: {machine: a, data: b, bench: c, cure: d}
+)",
+                                    "young.yaml");
+  const PreparedEffects prepared(m, {{&young, {}}});
+  expect_equal(prepared(values({0.9})), resolved(with_effect(m, young, values({0.9}))), "young");
   EXPECT_THROW(prepared(values({1.2})), InputError);
+}
+
+TEST(Catalogue, TheModulusIsBothModuliWhereBothAreGiven) {
+  const Mechanism m = device("tripteron"), twice = with_effect(m, effect("modulus"), values({2}));
+  for (std::size_t i = 0; i < m.materials.size(); ++i) {
+    const Material &was = m.materials[i].second, &is = twice.materials[i].second;
+    EXPECT_EQ(is.E, 2 * was.E);
+    EXPECT_EQ(is.shear_modulus(), 2 * was.shear_modulus());
+    EXPECT_EQ(is.poisson(), was.poisson());
+  }
 }
 
 TEST(PreparedEffects, AreForModelsAndStandAtEveryPose) {
@@ -269,6 +291,25 @@ TEST(PreparedEffects, AreForModelsAndStandAtEveryPose) {
     EXPECT_EQ(std::get<PlacedMember>(quick.legs[leg].parts[1]).section.Iy,
               std::get<PlacedMember>(slow.legs[leg].parts[1]).section.Iy);
   EXPECT_THROW(write_mechanism(with), std::logic_error);
+}
+
+/// A walk over the numbers of a description changes nothing else in it: not where a member begins.
+TEST(NumberWalk, LeavesEverythingElse) {
+  Mechanism m = parse_mechanism(R"(
+name: arm
+kinematics: {family: chains}
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {rod: {shape: round, diameter: 10 mm}}
+leg:
+  column: {member: rod, material: steel, along: [0 mm, 0 mm, 1 m], y_axis: [1, 0, 0]}
+  head: {offset: [1 m, 0 mm, 0 mm]}
+  strut: {member: rod, material: steel, from: {part: column, at: start}}
+workspace: {cube_edge: 1 mm}
+)",
+                                "arm");
+  const std::string before = write_mechanism(m);
+  for_each_number(m, [](std::size_t, double&) {});
+  EXPECT_EQ(write_mechanism(m), before);
 }
 
 }  // namespace

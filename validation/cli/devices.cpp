@@ -126,6 +126,7 @@ VectorX parse_joints(const Mechanism& m, const std::string& text) {
       const bool unit = items[i].find_first_of("dmr") != std::string::npos;
       const double value = unit ? parse_quantity(items[i], actuators[i].rotation ? Dimension::angle : Dimension::length)
                                 : parse_number(items[i]) / (actuators[i].rotation ? 1 : 1e3);
+      if (actuators[i].rotation) require_digits_of_angle(value, items[i]);
       q(static_cast<Eigen::Index>(i)) = value;
     } catch (const InputError& e) {
       throw InputError(fmt::format("--joints '{}': {}: {}", text, names[i], e.what()));
@@ -140,8 +141,15 @@ Stand parse_stand(const Mechanism& m, const std::string& pose, const std::string
   if (pose.empty() == joints.empty())
     throw InputError(
         "give either --pose x,y,z,roll,pitch,yaw (mm, deg) or --joints q1,...,qn (slides in mm, turns in rad)");
-  if (!pose.empty())
-    return stand(m, parse_six("--pose", pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg"));
+  if (!pose.empty()) {
+    const Vector6 mm_deg = parse_six("--pose", pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg");
+    for (const double deg : mm_deg.tail<3>()) try {
+        require_digits_of_angle(deg * pi / 180, fmt::format("{:g} deg", deg));
+      } catch (const InputError& e) {
+        throw InputError(fmt::format("--pose '{}': {}", pose, e.what()));
+      }
+    return stand(m, mm_deg);
+  }
   Configuration c = configure_joints(m, parse_joints(m, joints));
   const Vector6 reached = mm_deg_from(c.pose);
   return {reached, std::move(c)};
@@ -170,18 +178,23 @@ frame::MemberDivision divide(const Mechanism& m, const std::string& element_size
 
 Command devices_command() {
   auto name = std::make_shared<std::string>();
-  return {"devices",
-          "List the built-in devices, or print one as a file to start one's own from",
-          "deflect devices haptic-6psu > my-device.yaml",
-          {{"name", "NAME", "device to print; without it all are listed", name.get(), false}},
-          [name] {
-            if (!name->empty()) {
-              fmt::print("{}", read_text(device_file(*name)));
-              return;
-            }
-            for (const std::string& each : device_names())
-              fmt::print("{:<26} {}\n", each, read_mechanism(device_file(each)).about);
-          }};
+  return {
+      "devices",
+      "List the built-in devices, or print one as a file to start one's own from.\n"
+      "Sections lie in a member's local y and z, x along it. In a chain local y is the chain's y, less its part along "
+      "x, or the chain's z where x is within 2.6 deg of the chain's y; 'y_axis: [x, y, z]' names another direction, in "
+      "the axes of the chain at that line. z = x cross y. 'from: PART' begins at the end of a member or offset and "
+      "where a joint stands; 'from: {part: PART, at: start}' or 'at: end' says which",
+      "deflect devices haptic-6psu > my-device.yaml",
+      {{"name", "NAME", "device to print; without it all are listed", name.get(), false}},
+      [name] {
+        if (!name->empty()) {
+          fmt::print("{}", read_text(device_file(*name)));
+          return;
+        }
+        for (const std::string& each : device_names())
+          fmt::print("{:<26} {}\n", each, read_mechanism(device_file(each)).about);
+      }};
 }
 
 std::optional<double> parse_sigma(const std::string& option, const std::string& text, const std::string& unit,

@@ -24,6 +24,10 @@ class NumberWalk final : public FieldVisitor {
   void texts(const char*, std::vector<std::string>&, Need, const char*) override {}
   void word(const char*, std::string&, const Words&, const char*) override {}
   void any(const char*, std::string&, const char*) override {}
+  void word_or_object(const char*, std::string&, const Words&, bool more, const std::function<void()>& fields,
+                      const char*) override {
+    if (more) fields();
+  }
   void object(const char*, Need, bool absent, const std::function<void()>& fields, const char*) override {
     if (!absent) fields();
   }

@@ -10,6 +10,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/units.h"
 #include "validation/measurement/column_names.h"
 
 namespace deflect {
@@ -239,6 +240,16 @@ std::optional<std::size_t> CsvTable::column(std::string_view name) const {
 std::string_view CsvTable::text(std::size_t row, std::size_t column) const {
   const Cell& cell = cells_[row * header_.size() + column];
   return std::string_view(bytes_).substr(cell.begin, cell.size);
+}
+
+double CsvTable::angle(std::size_t row, std::size_t column, double rad) const {
+  const double value = rad * number(row, column);
+  try {
+    require_digits_of_angle(value, excerpt(text(row, column)));
+  } catch (const InputError& e) {
+    refuse(row, column, e.what());
+  }
+  return value;
 }
 
 double CsvTable::number(std::size_t row, std::size_t column) const {

@@ -30,6 +30,10 @@ class CsvTable {
   /// The cell as a finite number; InputError for anything else, an empty cell included.
   double number(std::size_t row, std::size_t column) const;
 
+  /// The number in rad, of cells in units of which one is `rad`; InputError also where it is so large an angle that its
+  /// digits are lost.
+  double angle(std::size_t row, std::size_t column, double rad) const;
+
   /// Line of the file on which the row begins, counted from 1.
   std::size_t line(std::size_t row) const { return lines_[row]; }
 

@@ -9,6 +9,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/spatial.h"
 #include "validation/measurement/csv.h"
 #include "validation/measurement/measurement_columns.h"
 
@@ -75,6 +76,8 @@ class Reader {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const double value = table_.number(row, columns[i]);
+      const bool turns = m_.by_joints() ? m_.joint_rotates[i] : i >= 3;
+      if (turns) table_.angle(row, columns[i], m_.by_joints() ? 1 : pi / 180);
       if (m_.by_joints())
         group.joints(at) = m_.joint_rotates[i] ? value : value / 1e3;
       else

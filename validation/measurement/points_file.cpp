@@ -39,8 +39,10 @@ std::vector<ValidationPoint> read_points(const std::filesystem::path& path) {
     if (!is_new)
       table.refuse(row, *label, fmt::format("'{}' is already the label of line {}", point.label, same->second));
     for (std::size_t i = 0; i < pose_columns.size(); ++i)
-      if (const auto column = table.column(pose_columns[i]))
+      if (const auto column = table.column(pose_columns[i])) {
+        if (i >= 3) table.angle(row, *column, pi / 180);
         point.pose_mm_deg[static_cast<Eigen::Index>(i)] = table.number(row, *column);
+      }
   }
   return points;
 }

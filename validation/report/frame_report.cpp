@@ -121,7 +121,7 @@ std::string frame_report(const frame::FrameDescription& f, const frame::FrameRes
   const bool linear = result.geometry == Geometry::linear;
   if (!linear) text += fmt::format("geometry: {}\n", geometry_names[static_cast<std::size_t>(result.geometry)]);
   if (linear) text += equations(result.equations);
-  for (const std::string& note : result.notes) text += "note: " + note + "\n";
+  for (const std::string& note : notes_of(f, result)) text += "note: " + note + "\n";
   const double size = 1e3 * frame::characteristic_length(result.structure.model);
   for (const frame::CaseResult& c : result.cases) {
     std::vector<Vector6> u;

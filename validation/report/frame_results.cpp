@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/frame/name_index.h"
 #include "validation/report/json_text.h"
+#include "validation/report/large_displacements.h"
 
 namespace deflect {
 namespace {
@@ -166,8 +168,28 @@ std::string frame_json(const FrameDescription& f, const FrameResult& result) {
   for (const CaseResult& c : result.cases) json["cases"][c.name] = json_case(f, c, linear);
   if (linear) json["reciprocity"] = json_number(result.reciprocity, "reciprocity");
   if (linear) json["solver"] = json_equations(result.equations);
-  json["notes"] = result.notes;
+  json["notes"] = notes_of(f, result);
   return json_text(json);
+}
+
+std::vector<std::string> notes_of(const FrameDescription& f, const FrameResult& result) {
+  std::vector<std::string> notes = result.notes;
+  Displacements d;
+  for (const auto& [name, p] : f.nodes) d.points.push_back(p);
+  const frame::NameIndex nodes(f.nodes);
+  for (const auto& [name, m] : f.members)
+    d.lines.emplace_back(static_cast<std::size_t>(nodes.find(m.from)), static_cast<std::size_t>(nodes.find(m.to)));
+  for (const CaseResult& c : result.cases) {
+    d.moved.clear();
+    d.turned.clear();
+    for (const Vector6& u : c.displacements) {
+      d.moved.push_back(u.head<3>());
+      d.turned.push_back(u.tail<3>());
+    }
+    if (const auto note = large_displacement_note(d, result.geometry, "write 'geometry: finite' in the file"))
+      notes.push_back(fmt::format("load case '{}': {}", c.name, *note));
+  }
+  return notes;
 }
 
 FrameTables frame_tables(const FrameDescription& f, const FrameResult& result) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "msa/frame/frame_analysis.h"
 
@@ -16,6 +17,9 @@ namespace deflect {
 /// linear, cases have a "path" {"converged", "stable", "load_factor", "steps", "iterations", "message"} and there is
 /// neither reciprocity nor a check of energy nor a solver. Throws NumericalError naming a number that is not finite.
 std::string frame_json(const frame::FrameDescription&, const frame::FrameResult&);
+
+/// The result's notes, and of each case whether its displacements are small enough for the geometry.
+std::vector<std::string> notes_of(const frame::FrameDescription&, const frame::FrameResult&);
 
 /// One row per case and node, support or spring, member, energy group. Cells of free freedoms are empty.
 struct FrameTables {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "validation/report/json_text.h"
+#include "validation/report/large_displacements.h"
 #include "validation/report/text.h"
 
 namespace deflect {
@@ -108,6 +109,24 @@ std::string assembly_table(const Assembly& assembly) {
          "                                  MSA " + offset(assembly.msa_mm_rad) + "\n";
 }
 
+/// The result's own, and whether its geometry will do.
+std::vector<std::string> notes_of(const SolveResult& result) {
+  std::vector<std::string> notes = result.notes;
+  Displacements d;
+  d.points = result.mesh.points;
+  for (const LineCell& cell : result.mesh.cells)
+    d.lines.emplace_back(static_cast<std::size_t>(cell.a), static_cast<std::size_t>(cell.b));
+  for (const PointField& field : result.fields.points) {
+    if (field.name == "rotation_rad") d.turned = field.values;
+    if (field.name != "displacement_mm") continue;
+    for (const Vector3& u : field.values) d.moved.push_back(u / 1e3);
+  }
+  if (d.moved.size() != d.points.size()) return notes;  // a result without its structure
+  if (const auto note = large_displacement_note(d, result.geometry, "solve with --geometry finite"))
+    notes.push_back(*note);
+  return notes;
+}
+
 }  // namespace
 
 std::string solve_json(const SolveResult& result) {
@@ -144,7 +163,7 @@ std::string solve_json(const SolveResult& result) {
     for (const auto& [leg, wrench] : result.assembly->leg_wrenches_N_Nmm)
       assembly["leg_wrenches_N_Nmm"][leg] = json_numbers(wrench, "assembly wrench of " + leg);
   }
-  if (!result.notes.empty()) json["notes"] = result.notes;
+  if (const auto notes = notes_of(result); !notes.empty()) json["notes"] = notes;
   return json_text(json);
 }
 
@@ -172,7 +191,7 @@ std::string solve_report(const SolveResult& result) {
     text +=
         fmt::format("note: over-constrained: {} more constraint{} than hold it; parts yield, so that it is solved\n",
                     result.redundant_constraints, result.redundant_constraints == 1 ? "" : "s");
-  for (const std::string& note : result.notes) text += "note: " + note + "\n";
+  for (const std::string& note : notes_of(result)) text += "note: " + note + "\n";
   return text;
 }
 
