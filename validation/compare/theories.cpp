@@ -75,6 +75,15 @@ double from_linear(const Answer& deformed, const Answer& linear) {
   return relative_difference(twist_in_mm(deformed.displacement), twist_in_mm(linear.displacement));
 }
 
+/// What dividing members leaves of relative_difference(a, f), f in mm and rad.
+double left_by_division(const Answer& a, const Answer& f, const Vector6& displacement) {
+  const Eigen::Vector2d left = a.discretisation + f.discretisation;
+  Vector6 moved = displacement;
+  moved.head<3>() += 1e3 * left(0) * Vector3::UnitX();
+  moved.tail<3>() += left(1) * Vector3::UnitX();
+  return relative_difference(moved, displacement);
+}
+
 /// No member in fewer than eight elements.
 frame::MemberDivision refined(const Configuration& c, frame::MemberDivision division) {
   for_each_part(c.legs, [&](const auto& part) {
@@ -150,6 +159,7 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
   if (!linear) {
     r.analytic_from_linear = from_linear(a, *linear_a);
     r.msa_from_linear = from_linear(f, *linear_f);
+    r.discretisation = left_by_division(a, f, twist_in_mm(f.displacement));
   }
   r.pose_mm_deg = at.pose_mm_deg;
   r.load_N_Nmm = load;
