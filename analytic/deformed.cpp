@@ -7,11 +7,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analytic/beam_column.h"
 #include "analytic/flexibility.h"
 #include "analytic/rotation_vector.h"
 
 namespace deflect::analytic {
 namespace {
+
+constexpr double small_error = 1e-6;  // relative: is divided no further
+constexpr int most_pieces = 64;
+constexpr double follows = 0.4;      // a step of Newton's method beside the one before, on the path of equilibria
+constexpr double least_step = 1e-6;  // of the load
 
 std::size_t legs_step(const VirtualChain& whole) {
   return static_cast<std::size_t>(
@@ -52,10 +58,16 @@ struct Tangent {
   MatrixX solve(const MatrixX& right) const { return A.size() == 0 ? right : MatrixX(A.partialPivLu().solve(right)); }
   /// Without moment.
   bool positive() const {
-    if (A.size() == 0) return true;
+    return A.size() == 0 ||
+           Eigen::SelfAdjointEigenSolver<MatrixX>(scaled(), Eigen::EigenvaluesOnly).eigenvalues()(0) > 1e-13;
+  }
+  /// With a moment, which makes it unsymmetric: that is no question of definiteness. A positive determinant stands for
+  /// it: no critical load was passed, or two.
+  bool regains() const { return A.size() == 0 || scaled().partialPivLu().determinant() > 0; }
+
+  MatrixX scaled() const {
     const VectorX s = A.diagonal().cwiseAbs().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-    const MatrixX scaled = s.asDiagonal() * A * s.asDiagonal();
-    return Eigen::SelfAdjointEigenSolver<MatrixX>(scaled, Eigen::EigenvaluesOnly).eigenvalues()(0) > 1e-13;
+    return s.asDiagonal() * A * s.asDiagonal();
   }
 
   MatrixX J, A;
@@ -72,7 +84,8 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit) {
   VirtualChain& whole = d.whole;
   whole.F = F;
   c.misfit = misfit;
-  double largest = largest_wrench(whole), previous = 1;
+  double largest = largest_wrench(whole), previous = 1, step = 0;
+  const bool finite = c.geometry == Geometry::finite;
   // Contacts have no stiffness at rest: where nothing is strained yet they are taken as under the whole load.
   const bool at_rest = largest_wrench(std::get<VirtualGroup>(whole.steps[legs_step(whole)])) == 0;
   c.least = !at_rest ? 1e-9 * largest : largest > 0 ? largest : 1;
@@ -90,6 +103,9 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit) {
     c.least = 1e-9 * (largest > 0 ? largest : 1);
     // Shapes are known to rounding, 1e-16 of their size, at best.
     d.residual = progress.step / (progress.reach + 1e-3 * whole.length);
+    // A first step from rest takes contacts for what they will be.
+    if (finite && i > (at_rest ? 1 : 0) && d.residual > 1e-7 && progress.step > follows * step) return false;
+    step = progress.step;
     if (d.residual <= 1e-12 || (d.residual <= 1e-9 && d.residual > 0.3 * previous)) return true;
     previous = d.residual;
   }
@@ -108,7 +124,8 @@ bool conclude(Deformed& d) {
   const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), geometry));
   d.leg_wrenches.clear();
   for (const VirtualChain& leg : legs_of(d.whole).branches) d.leg_wrenches.push_back(axes * leg.F);
-  return l.stable && Tangent(l, Vector3::Zero()).positive();
+  const Vector3 moment = d.whole.F.tail<3>();
+  return l.stable && (Tangent(l, Vector3::Zero()).positive() || (!moment.isZero(0) && Tangent(l, moment).regains()));
 }
 
 bool all_fit(const std::vector<PlacedLeg>& legs) {
@@ -123,42 +140,113 @@ bool all_fit(const std::vector<PlacedLeg>& legs) {
 /// From the state as it is to all of the misfits under F, where F is given to a state that has them already.
 void approach(Deformed& d, const Vector6& F, bool fitting) {
   d.load_factor = 0;
-  bool unstable = false;
   for (double step = 1; d.load_factor < 1;) {
     Deformed next = d;
     const double factor = std::min(1.0, d.load_factor + step);
-    next.converged = equilibrium(next, fitting ? Vector6::Zero() : Vector6(factor * F), fitting ? factor : 1);
-    const bool stable = next.converged && conclude(next);
+    const bool settles = equilibrium(next, fitting ? Vector6::Zero() : Vector6(factor * F), fitting ? factor : 1);
+    const bool stable = settles && conclude(next);
+    d.iterations = next.iterations;
     if (stable) {
       d = std::move(next);
+      d.converged = true;
       d.load_factor = factor;
+      step *= 2;
       continue;
     }
-    unstable = next.converged || unstable;
-    d.iterations = next.iterations;
     d.residual = next.residual;
     step /= 2;
-    if (step > 1e-4) continue;
+    if (step > least_step) continue;
     d.converged = false;
-    d.message =
-        fmt::format("{}: the last {} that was found carries {:.4g} of the {}",
-                    unstable ? "beyond the first buckling load" : "Newton's method does not converge",
-                    unstable ? "stable equilibrium" : "equilibrium", d.load_factor, fitting ? "misfits" : "load");
+    d.message = fmt::format(
+        "it gives way at {:.4g} of the {}, a buckling or limit load: that is what the last stable "
+        "equilibrium on the way carries",
+        d.load_factor, fitting ? "misfits" : "load");
     return;
   }
+}
+
+void find_bends(const VirtualChain& chain, Geometry geometry, std::vector<double>& bends) {
+  for (const VirtualStep& step : chain.steps)
+    if (const auto* m = std::get_if<VirtualMember>(&step))
+      bends[m->number] = std::max(bends[m->number], left_out(m->member, m->tip.x, geometry));
+    else if (const auto* group = std::get_if<VirtualGroup>(&step))
+      for (const VirtualChain& branch : group->branches) find_bends(branch, geometry, bends);
+}
+
+/// By member, what the law of its pieces leaves out under the whole load; from the load that the state carries.
+std::vector<double> bends_of(const Deformed& d) {
+  std::vector<double> bends(d.pieces.size(), 0.0);
+  find_bends(d.whole, d.outlook.geometry, bends);
+  for (double& bend : bends) bend /= d.load_factor > 0 ? std::pow(d.load_factor, 4) : 1;
+  return bends;
+}
+
+/// Twice as many, to begin with so many that little is left out of each.
+std::vector<int> divided(std::vector<int> pieces, const std::vector<double>& bends) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (bends[i] <= small_error / 10) continue;
+    const bool whole = pieces[i] == 1;
+    pieces[i] = std::min(2 * pieces[i], most_pieces);
+    while (whole && bends[i] > 0.005 * std::pow(pieces[i], 4) && 2 * pieces[i] < most_pieces) pieces[i] *= 2;
+  }
+  return pieces;
+}
+
+/// The estimate is small beside the displacement, rotations weighed by a length.
+double relative(const Eigen::Vector2d& e, const Deformed& d, double length) {
+  const double moved = std::max(d.translation.norm(), length * d.rotation_vector.norm());
+  return moved > 0 ? std::max(e(0), length * e(1)) / moved : 0;
+}
+
+/// `coarser`: with fewer pieces, whose state is taken for the beginning where it is one.
+Deformed with_pieces(const Configuration& c, Geometry geometry, const Vector6& F, std::vector<int> pieces,
+                     const Deformed* coarser) {
+  Deformed d;
+  d.pieces = std::move(pieces);
+  Pieces of_members{d.pieces};
+  const PlacedParallel legs{"legs", Vector3::Zero(), c.pose.p_WT, c.legs};
+  d.whole = virtual_chain_of({"the mechanism", {c.base, legs, c.tool}}, c.pose.p_WT, c.pose.p_WT, c.size, of_members);
+  d.outlook.geometry = geometry;
+  d.leg_wrenches.assign(c.legs.size(), Vector6::Zero());
+  if (coarser && coarser->converged) {
+    Deformed same = d;
+    take_state(same.whole, coarser->whole);
+    same.converged = equilibrium(same, F, 1) && conclude(same);
+    same.load_factor = 1;
+    if (same.converged) return same;
+  }
+  const bool fits = all_fit(c.legs);
+  if (!fits || F.isZero(0)) approach(d, F, true);
+  if ((fits || d.converged) && !F.isZero(0)) approach(d, F, false);
+  return d;
 }
 
 }  // namespace
 
 Deformed deform(const Configuration& c, Geometry geometry, const Vector6& F) {
-  Deformed d;
-  const PlacedParallel legs{"legs", Vector3::Zero(), c.pose.p_WT, c.legs};
-  d.whole = virtual_chain_of({"the mechanism", {c.base, legs, c.tool}}, c.pose.p_WT, c.pose.p_WT, c.size);
-  d.outlook.geometry = geometry;
-  d.leg_wrenches.assign(c.legs.size(), Vector6::Zero());
-  const bool fits = all_fit(c.legs);
-  if (!fits || F.isZero(0)) approach(d, F, true);
-  if ((fits || d.converged) && !F.isZero(0)) approach(d, F, false);
+  std::size_t members = 0;
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (requires { part.section; }) ++members;
+  });
+  Deformed d = with_pieces(c, geometry, F, std::vector<int>(members, 1), nullptr);
+  const std::vector<double> bends = bends_of(d);
+  const double most = bends.empty() ? 0 : *std::max_element(bends.begin(), bends.end());
+  d.discretisation = {most * d.translation.norm(), most * d.rotation_vector.norm()};
+  if (most <= small_error || geometry != Geometry::finite) return d;  // what one piece leaves is known by its order
+  for (double left = 1; left > small_error;) {
+    std::vector<int> pieces = divided(d.pieces, bends);
+    if (pieces == d.pieces) {
+      if (!d.converged || left <= 1e-4) break;
+      d.converged = false;
+      d.message = fmt::format("members bend so far that {} pieces each leave an error of {:.1e}", most_pieces, left);
+      break;
+    }
+    Deformed finer = with_pieces(c, geometry, F, std::move(pieces), &d);
+    finer.discretisation = {(finer.translation - d.translation).norm() / 3,
+                            rotation_vector(combined(finer.turning, d.turning.transpose())).norm() / 3};
+    left = d.converged && finer.converged ? relative(finer.discretisation, finer, c.size) : 1;
+    d = std::move(finer);
+  }
   return d;
 }
 

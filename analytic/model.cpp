@@ -150,6 +150,7 @@ AnalyticSolution AnalyticModel::deformed_equilibrium(const Vector6& F, Geometry 
   s.iterations = d.iterations;
   s.misfit = d.residual;
   s.message = d.message;
+  s.discretisation = d.discretisation;
   return s;
 }
 
@@ -165,6 +166,7 @@ AnalyticSolution AnalyticModel::solve_in_part(const Vector6& F, const Conditions
   const AnalyticModel smooth(without_steps(configuration_));
   const AnalyticSolution deformed = smooth.solve(F, conditions.geometry), straight = smooth.solve(F);
   s.displacement += deformed.displacement - straight.displacement;
+  s.discretisation = deformed.discretisation;
   s.converged = s.converged && deformed.converged && straight.converged;
   if (s.message.empty()) s.message = deformed.message;
   return s;
@@ -185,6 +187,7 @@ AnalyticSolution AnalyticModel::solve(const Vector6& F, const Conditions& condit
   const AnalyticSolution reference = assembled(geometry);
   s.converged = s.converged && reference.converged;
   s.displacement -= reference.displacement;
+  s.discretisation = s.discretisation + reference.discretisation;
   if (geometry == Geometry::finite)
     s.displacement.tail<3>() = rotation_vector(combined(s.deformed->turning, reference.deformed->turning.transpose()));
   return s;

@@ -33,6 +33,7 @@ struct AnalyticSolution {
   bool open = false;          ///< open steps were released, not imposed
   Circumstances under;        ///< warmth, and the phases of laws that jump (steps.h)
   std::string message;        ///< where not converged: why, when a law that jumps or the geometry is to blame
+  Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();  ///< of T, m and rad: about what dividing members leaves
   std::shared_ptr<const Deformed> deformed;  ///< the state in a geometry that is not linear (deformed.h)
 };
 

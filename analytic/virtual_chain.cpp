@@ -117,6 +117,35 @@ void hold_idle(Linearised& l, const std::vector<int>& step, double length) {
   l.Z << rest, moving;
 }
 
+void add_pieces(const PlacedMember& member, Pieces& pieces, std::vector<VirtualStep>& steps) {
+  const int n = pieces.next < pieces.of.size() ? pieces.of[pieces.next] : 1;
+  const Vector3 line = member.p_W_end - member.p_W_start;
+  for (int i = 0; i < n; ++i) {
+    PlacedMember piece = member;
+    piece.p_W_start = member.p_W_start + i * line / n;
+    if (i + 1 < n) piece.p_W_end = member.p_W_start + (i + 1) * line / n;
+    steps.push_back(VirtualMember{piece, {piece.p_W_end, piece.R_WM}, pieces.next});
+  }
+  ++pieces.next;
+}
+
+/// n pieces that turn alike, each by R: their ends lie Σ Rⁱ r_1 = r apart.
+void take_pieces(VirtualChain& chain, std::size_t& next, const VirtualMember& whole) {
+  const double length = std::get<VirtualMember>(chain.steps[next]).member.length();
+  const auto n = static_cast<int>(std::lround(whole.member.length() / length));
+  const Vector3 rotation = whole.tip.x.tail<3>() / n;
+  const Matrix3 D = n == 1 ? whole.tip.D : turning(rotation);
+  Matrix3 sum = Matrix3::Identity();
+  for (int i = 1; i < n; ++i) sum = Matrix3::Identity() + sum + D * sum;
+  const Vector3 whole_line = whole.tip.x.head<3>() + whole.member.length() * Vector3::UnitX();
+  const Vector3 line = sum.partialPivLu().solve(whole_line);
+  for (int i = 0; i < n; ++i) {
+    Tip& tip = std::get<VirtualMember>(chain.steps[next++]).tip;
+    tip.D = D;
+    tip.x << (n == 1 ? Vector3(whole.tip.x.head<3>()) : Vector3(line - length * Vector3::UnitX())), rotation;
+  }
+}
+
 }  // namespace
 
 RigidMotion Tip::motion() const { return shift(A * x.head<3>()) * turn(A * D * A.transpose(), p); }
@@ -131,7 +160,8 @@ void Tip::move(const Vector6& increment, Geometry geometry) {
   }
 }
 
-VirtualChain virtual_chain_of(const PlacedLeg& leg, const Vector3& p_E, const Vector3& p_WT, double length) {
+VirtualChain virtual_chain_of(const PlacedLeg& leg, const Vector3& p_E, const Vector3& p_WT, double length,
+                              Pieces& pieces) {
   VirtualChain chain;
   chain.name = leg.name;
   chain.length = length;
@@ -144,12 +174,12 @@ VirtualChain virtual_chain_of(const PlacedLeg& leg, const Vector3& p_E, const Ve
         if (joint->free(i) || joint->elastic(i)) v.freedoms.push_back(i);
       if (!v.freedoms.empty()) chain.steps.push_back(std::move(v));
     } else if (const auto* member = std::get_if<PlacedMember>(&part)) {
-      chain.steps.push_back(VirtualMember{*member, {member->p_W_end, member->R_WM}});
+      add_pieces(*member, pieces, chain.steps);
     } else {
       const auto& parallel = std::get<PlacedParallel>(part);
       VirtualGroup group{parallel.part, {parallel.p_W_end}, {}};
       for (const PlacedLeg& branch : parallel.branches)
-        group.branches.push_back(virtual_chain_of(branch, parallel.p_W_end, p_WT, length));
+        group.branches.push_back(virtual_chain_of(branch, parallel.p_W_end, p_WT, length, pieces));
       chain.steps.push_back(std::move(group));
     }
   return chain;
@@ -220,7 +250,7 @@ Linearised VirtualChain::linearise(const Outlook& c) {
       add_laws(*joint, c, out.s.segment(at, size), out.K.block(at, at, size, size), out.kept);
       for (Eigen::Index i = 0; i < size; ++i) allowed.push_back(at + i);
     } else if (auto* member = std::get_if<VirtualMember>(&steps[k])) {
-      const TipLaw law = tip_law(member->member, member->tip.x, along(at), c.geometry);
+      const TipLaw law = tip_law(member->member, member->tip.x, along.segment<3>(at), c.geometry);
       out.s.segment<6>(at) = law.s;
       out.K.block<6, 6>(at, at) = law.K;
       out.stable = out.stable && law.stable;
@@ -274,7 +304,7 @@ void VirtualChain::add_energies(const Outlook& c, std::map<std::string, double>&
         ++next;
       }
     } else if (const auto* member = std::get_if<VirtualMember>(&step)) {
-      sums[member->member.part] += tip_law(member->member, member->tip.x, s(next), c.geometry).energy;
+      sums[member->member.part] += tip_law(member->member, member->tip.x, s.segment<3>(next), c.geometry).energy;
       next += 6;
     } else {
       for (const VirtualChain& branch : std::get<VirtualGroup>(step).branches) branch.add_energies(c, sums);
@@ -307,6 +337,22 @@ Progress VirtualChain::advance(const Linearised& at, const VectorX& delta, const
       next += 6;
     }
   return progress;
+}
+
+void take_state(VirtualChain& chain, const VirtualChain& coarser) {
+  chain.F = coarser.F;
+  std::size_t next = 0;
+  for (const VirtualStep& step : coarser.steps) {
+    if (const auto* joint = std::get_if<VirtualJoint>(&step)) {
+      std::get<VirtualJoint>(chain.steps[next++]).x = joint->x;
+    } else if (const auto* group = std::get_if<VirtualGroup>(&step)) {
+      auto& same = std::get<VirtualGroup>(chain.steps[next++]);
+      same.tip = group->tip;
+      for (std::size_t i = 0; i < group->branches.size(); ++i) take_state(same.branches[i], group->branches[i]);
+    } else {
+      take_pieces(chain, next, std::get<VirtualMember>(step));
+    }
+  }
 }
 
 }  // namespace deflect::analytic

@@ -4,7 +4,7 @@
 //
 // A chain is the product of the motions of its steps, each in the axes of what stands before it:
 //   joint    tx ty tz, then Rx Ry Rz about its point, as far as they are free or elastic;
-//   member   its tip moves by [u; φ], by its law (beam_column.h);
+//   member   its tip moves by [u; φ], by its law (beam_column.h); a bent one is several of them in series;
 //   group    its far body moves by [u; φ], by the law of its branches, which are chains.
 // With J the twists at its end E of unit motions of the freedoms x and H the second derivative of the work of its end
 // wrench F = [f; m] by them, of freedom i before j and between rotations of one tip
@@ -98,6 +98,7 @@ struct VirtualJoint {
 struct VirtualMember {
   PlacedMember member;
   Tip tip;
+  std::size_t number = 0;  ///< of the member that this is (a piece of), in the order of for_each_part
 };
 
 struct VirtualChain;
@@ -160,7 +161,17 @@ struct VirtualChain {
   MatrixX response_;  // z by [t + c; 1]
 };
 
+/// How many equal pieces in series stand for each member, in the order of for_each_part; one where that ends.
+struct Pieces {
+  std::vector<int> of;
+  std::size_t next = 0;  ///< member that virtual_chain_of will come to
+};
+
 /// The chain of a leg whose end is the point p_E, misfits given at p_W. Axes: those of the configuration.
-VirtualChain virtual_chain_of(const PlacedLeg&, const Vector3& p_E, const Vector3& p_WT, double length);
+VirtualChain virtual_chain_of(const PlacedLeg&, const Vector3& p_E, const Vector3& p_WT, double length, Pieces&);
+
+/// Puts a chain into the state of one whose members are in fewer pieces: each piece of that is bent as evenly as its
+/// ends allow.
+void take_state(VirtualChain&, const VirtualChain& coarser);
 
 }  // namespace deflect::analytic

@@ -205,7 +205,7 @@ double evaluate(const LinearForm& form, const VectorX& u) {
 }
 
 double evaluate(const LinearForm& form, const ExtendedVector& u) {
-  long double sum = 0;
+  Extended sum = 0;
   for (const Term& t : form) sum += t.coefficient * u(t.dof);
   return static_cast<double>(sum);
 }

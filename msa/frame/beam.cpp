@@ -82,13 +82,13 @@ Vector12 end_displacements(const Beam& beam, const VectorX& u) {
 }
 
 Vector12 end_displacements(const Beam& beam, const ExtendedVector& u) {
-  using Extended3 = Eigen::Matrix<long double, 3, 1>;
+  using Extended3 = Eigen::Matrix<Extended, 3, 1>;
   Vector12 d = Vector12::Zero();
   if (beam.relative >= 0) {
     d.tail<6>() = u.segment<6>(beam.relative).cast<double>();
     return d;
   }
-  const Extended3 x = beam.length * beam.R_WM.col(0).cast<long double>(), turned = u.segment<3>(6 * beam.a + 3);
+  const Extended3 x = beam.length * beam.R_WM.col(0).cast<Extended>(), turned = u.segment<3>(6 * beam.a + 3);
   const Extended3 moved = u.segment<3>(6 * beam.b) - u.segment<3>(6 * beam.a) - turned.cross(x);
   d.segment<3>(6) = moved.cast<double>();
   d.segment<3>(9) = (u.segment<3>(6 * beam.b + 3) - turned).cast<double>();

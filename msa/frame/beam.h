@@ -7,9 +7,15 @@
 
 namespace deflect::frame {
 
-/// Displacements with the digits that their differences need.
-using ExtendedVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
-using ExtendedMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+/// Displacements with the digits that their differences need: beside a part 1e12 times softer a stiff part's
+/// deformation is a difference of numbers that agree to twelve digits.
+#ifdef __SIZEOF_FLOAT128__
+__extension__ typedef __float128 Extended;
+#else
+using Extended = long double;
+#endif
+using ExtendedVector = Eigen::Matrix<Extended, Eigen::Dynamic, 1>;
+using ExtendedMatrix = Eigen::Matrix<Extended, Eigen::Dynamic, Eigen::Dynamic>;
 
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;

@@ -168,6 +168,20 @@ MemberDivision equal_division(const Configuration& c, int elements) {
   return out;
 }
 
+MemberDivision halved(const Configuration& c, const MemberDivision& division) {
+  MemberDivision out = division;
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, PlacedMember>) {
+      const auto given = division.find(part.part);
+      const std::vector<double> at = given == division.end() ? std::vector<double>{0, 1} : given->second;
+      std::vector<double> finer{at.front()};
+      for (std::size_t i = 1; i < at.size(); ++i) finer.insert(finer.end(), {(at[i - 1] + at[i]) / 2, at[i]});
+      out[part.part] = std::move(finer);
+    }
+  });
+  return out;
+}
+
 MechanismModel build(const Configuration& c, const MemberDivision& division) {
   Builder b(division);
   MechanismModel out;

@@ -21,6 +21,9 @@ BeamRigidity rigidity(const PlacedMember&);
 /// Every member in that many equal elements.
 MemberDivision equal_division(const Configuration&, int elements);
 
+/// Every element of every member halved.
+MemberDivision halved(const Configuration&, const MemberDivision&);
+
 struct MechanismModel {
   Model model;
   int ground = 0;    ///< fixed

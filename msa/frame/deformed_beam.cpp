@@ -1,5 +1,9 @@
 #include "msa/frame/deformed_beam.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 namespace deflect::frame {
 namespace {
 
@@ -128,6 +132,16 @@ DeformedBeam deformed(const Beam& beam, const BodyMotion& a, const BodyMotion& b
   const Ends ends = ends_of(r, psi, p);
   return {turned(M, ends.forces), turned(M, ends.K), a.Q.toRotationMatrix() * beam.R_WM,
           b.Q.toRotationMatrix() * beam.R_WM, p.energy};
+}
+
+LeftOut left_out(const Beam& beam, const Vector12& f, const Vector3& axis) {
+  std::array<double, 3> k = {beam.rigidity.GJ, beam.rigidity.EIy, beam.rigidity.EIz};
+  std::sort(k.begin(), k.end());
+  const double L = beam.length, size = std::sqrt(k[0] * k[1]);
+  const Vector3 force = f.segment<3>(6);
+  const double moment = std::max(f.segment<3>(3).norm(), f.tail<3>().norm());
+  const double bent = L * (moment + L * force.norm()) / size, across = L * L * force.cross(axis).norm() / size;
+  return {bent * bent / 12, bent * across / 12};
 }
 
 Matrix12 geometric_stiffness(const Beam& beam, const Vector12& ends) {

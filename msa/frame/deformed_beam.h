@@ -37,6 +37,16 @@ struct DeformedBeam {
 /// `strain`: ε₀, what the unloaded member would stretch by (heat).
 DeformedBeam deformed(const Beam&, const BodyMotion& a, const BodyMotion& b, double strain);
 
+/// No less, by and large, than what an element leaves out under its end forces: with λ = L |m|/k + L² |f|/k, μ = L²
+/// |q|/k, k² the product of the two smaller ones of GJ, EIy and EIz, m the larger moment at an end, f the force and q
+/// its part across the element, λ²/12 relative, and of twist the λμ/12 that bending and a force across it make
+/// together.
+struct LeftOut {
+  double relative = 0;
+  double twist = 0;  ///< rad
+};
+LeftOut left_out(const Beam&, const Vector12& forces, const Vector3& axis);
+
 /// K_G in base axes: what the end forces [f_a; m_a; f_b; m_b] (local axes; their differences over two count) add to the
 /// stiffness at zero displacement. Stretch is left out of it, as in the theory of beam-columns: that arms get longer by
 /// N/EA changes nothing, and N is the force along the undeformed axis.

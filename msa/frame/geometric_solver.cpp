@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "msa/base/error.h"
+#include "msa/frame/geometric_work.h"
 #include "msa/frame/relative.h"
 
 namespace deflect::frame {
@@ -14,60 +15,7 @@ namespace {
 
 double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
 
-VectorX stiffness_at(const Model& m, double force) {
-  VectorX k(static_cast<Eigen::Index>(m.springs.size()));
-  for (std::size_t i = 0; i < m.springs.size(); ++i)
-    k(static_cast<Eigen::Index>(i)) = tangent_at_force(m.springs[i].law, force);
-  return k;
-}
-
-/// Lengths, and rotations times the size of the structure.
-double size_of(const VectorX& u, std::size_t nodes, double length) {
-  double size = 0;
-  for (Eigen::Index i = 0; i < u.size(); ++i)
-    size = std::max(size, std::abs(u(i)) * (i < static_cast<Eigen::Index>(6 * nodes) && i % 6 >= 3 ? length : 1));
-  return size;
-}
-
-double largest_spin(const VectorX& u, std::size_t nodes) {
-  double spin = 0;
-  for (std::size_t i = 0; i < nodes; ++i)
-    spin = std::max(spin, u.segment<3>(static_cast<Eigen::Index>(6 * i + 3)).norm());
-  return spin;
-}
-
 }  // namespace
-
-/// A load on its way.
-struct GeometricSolver::Work {
-  explicit Work(const Model& m)
-      : structure(m),
-        jump(std::any_of(m.springs.begin(), m.springs.end(), [](const Spring& s) { return jumps(s.law); })),
-        shape(m),
-        lambda(VectorX::Zero(static_cast<Eigen::Index>(m.constraints.size()))),
-        length(characteristic_length(m)) {}
-
-  Model structure;  // with what its springs that jump know of their state
-  bool jump = false;
-  VectorX loads, values;  // in full
-  std::vector<double> strains;
-  Circumstances with;
-  double force = 0;  // the largest that springs may see
-  VectorX least_tangents;
-  Shape shape;
-  VectorX lambda;
-  double length;
-  std::string why;  // the last step failed
-
-  /// Heat comes with the load.
-  void strain(double factor) {
-    for (std::size_t e = 0; e < strains.size(); ++e) with.strains[e] = factor * strains[e];
-  }
-  Linearisation linearise(Geometry geometry) const {
-    return geometry == Geometry::finite ? linearise_finite(structure, shape, with)
-                                        : linearise_second_order(structure, shape, lambda, with);
-  }
-};
 
 /// Springs that jump begin where the linear theory has them under this part of the load, and the shape with them.
 void GeometricSolver::begin_jumps(Work& work, double factor) const {
@@ -141,56 +89,6 @@ VectorX GeometricSolver::update_forces(Work& work, const Linearisation& at, cons
   return gaps;
 }
 
-/// Newton at a part of the load; false leaves the reason in work.why.
-bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions& options, GeometricState& state) const {
-  const VectorX loads = factor * work.loads;
-  work.strain(factor);
-  if (work.jump && state.load_factor == 0) begin_jumps(work, factor);
-  double previous = std::numeric_limits<double>::infinity();
-  for (int i = 1; i <= options.max_iterations; ++i) {
-    ++state.iterations;
-    // At rest a spring has the stiffness that it will have under the load, later no less than a small part of it.
-    const bool at_rest = i == 1 && state.load_factor == 0 && !work.jump;
-    work.with.least_tangents = at_rest ? stiffness_at(model_, factor * work.force) : work.least_tangents;
-    const Linearisation at = work.linearise(options.geometry);
-    const Model constraints = constrained(at.forms);
-    const Elimination e = eliminate(constraints);
-    const VectorX gaps = update_forces(work, at, e, constraints, factor);
-    const Tangent tangent(e, tangent_stiffness(at, work.lambda, loads));
-    if (!tangent.regular()) {
-      work.why = "the tangent stiffness is singular";
-      return false;
-    }
-    const VectorX step = tangent.solve(loads - at.forces, gaps);
-    if (!step.allFinite() ||
-        (options.geometry == Geometry::finite && largest_spin(step, model_.nodes.size()) > pi / 2)) {
-      work.why = "a node would turn by more than a right angle at once";
-      return false;
-    }
-    work.shape.move(step);
-    if (work.jump) {  // λ of stepped_spring.h
-      work.with.least_tangents.setZero();
-      const Linearisation moved = work.linearise(options.geometry);
-      for (std::size_t s = 0; s < work.structure.springs.size(); ++s)
-        know_force(work.structure.springs[s].law, moved.spring_forces(static_cast<Eigen::Index>(s)));
-    }
-    const double change = size_of(step, model_.nodes.size(), work.length);
-    const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
-    const bool stalled = change < 1e-6 * size && change > 0.5 * previous;  // rounding is all that is left
-    // Second order takes the forces of constraints from the shape before: that too has to have settled.
-    const bool settled = options.geometry == Geometry::finite || previous <= options.tolerance * size;
-    if ((change <= options.tolerance * size && settled) || stalled) {
-      // Across a buckling or limit load Newton finds equilibria that nothing would stay in.
-      const bool stable = options.geometry == Geometry::second_order || tangent.stable();
-      if (!stable) work.why = "the equilibrium is unstable there, a buckling or limit load was passed";
-      return stable;
-    }
-    previous = change;
-  }
-  work.why = fmt::format("Newton did not converge in {} iterations", options.max_iterations);
-  return false;
-}
-
 /// What is known of the shape that was reached.
 void GeometricSolver::conclude(Work& work, GeometricState& state) const {
   const VectorX loads = state.load_factor * work.loads;
@@ -223,6 +121,11 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
       state.slips.resize(std::max(state.slips.size(), n + 1));
       state.slips[n] = friction->slip(at.elongations(static_cast<Eigen::Index>(i)));
     }
+  }
+  for (std::size_t i = 0; i < at.beams.size() && state.geometry == Geometry::finite; ++i) {
+    const LeftOut left = left_out(model_.beams[i], at.beams[i].forces, at.beams[i].A.col(0));
+    state.left_out.relative = std::max(state.left_out.relative, left.relative);
+    state.left_out.twist += left.twist;
   }
   state.beams = std::move(at.beams);
   state.forms = std::move(at.forms);
@@ -275,32 +178,11 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
     if (jumps(model_.springs[i].law)) work.least_tangents(static_cast<Eigen::Index>(i)) *= 1e-4;
 
   const bool driven = force > 0 || largest(work.values) > 0;
-  const double largest_step = options.geometry == Geometry::finite ? 1.0 / std::max(1, options.load_steps) : 1;
-  double step = largest_step;
-  int halved = 0;
   state.converged = true;
-  while (driven && state.load_factor < 1) {
-    const Shape before = work.shape;
-    const VectorX lambda = work.lambda;
-    const double factor = state.load_factor + step > 1 - 1e-9 ? 1 : state.load_factor + step;
-    if (iterate(work, factor, options, state)) {
-      state.load_factor = factor;
-      ++state.steps;
-      step = std::min(2 * step, largest_step);
-      halved = std::max(0, halved - 1);
-      continue;
-    }
-    work.shape = before;
-    work.lambda = lambda;
-    step /= 2;
-    if (options.geometry != Geometry::finite || ++halved > options.halvings) {
-      state.converged = false;
-      state.message =
-          fmt::format("no equilibrium was found beyond {:.4g} of the load: {}", state.load_factor, work.why);
-      break;
-    }
-  }
-  if (!driven) state.load_factor = 1;
+  if (driven)
+    follow(work, options, state);
+  else
+    state.load_factor = 1;
   conclude(work, state);
   if (state.message.empty() && !state.stable)
     state.message = options.geometry == Geometry::finite

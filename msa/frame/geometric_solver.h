@@ -8,12 +8,18 @@
 //
 // Finite: members, arms and joints turn by any amount (deformed_beam.h, joint_motion.h), springs follow their laws,
 // constraints that are not of a connection keep their linear forms (model.h). Load, heat and prescribed values grow
-// together in steps; Newton with the consistent tangent in each. A step is halved where Newton fails, and where it ends
-// in an equilibrium that is unstable: then a buckling or limit load was passed, and the last stable state is the
-// answer. A stable equilibrium beyond a limit load, to which the structure snaps through, is taken where Newton meets
-// it.
-// Second order: K_E + K_G at the forces of the state, iterated until forces and displacements agree (linearisation.h);
-// for rotations up to some tenths of a radian.
+// together in steps; Newton with the consistent tangent in each. A step is halved where Newton fails, where it ends in
+// an equilibrium that is unstable, and where it may have left the path of equilibria that begins at rest. Newton's
+// steps tell, which shrink by a factor of ten each where no other equilibrium is near; else the energy does, where
+// loads are all that acts: along the path it grows by their work, of which the trapezium ½ (f_0 + f_1)·Δu is right to a
+// quarter in a short enough step (a spring δ^{3/2} from rest: a fifth), while a jump loses energy in a step of any
+// length. Springs that jump are taken as they come. Where steps get no further, a buckling or limit load is there. At a
+// buckling load the motion for which K vanishes is none that the load drives: the last stable state is the answer. At a
+// limit load it is; then the structure snaps through. The state behind the jump is looked for under the whole load by
+// steps (K + μ M)⁻¹ r downhill from the last stable state, as of a slow damped fall (implicit steps of M u̇ = r; C. T.
+// Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508), and given with a message; where there is none the last
+// stable state is the answer. Second order: K_E + K_G at the forces of the state, iterated until forces and
+// displacements agree (linearisation.h); for rotations up to some tenths of a radian.
 //
 // Both begin from the undeformed shape, in which the linear Solver has refused mechanisms, those that forces would hold
 // among them, and held idle spins. Very stiff members keep their nodes' coordinates here: digits are lost in proportion
@@ -36,7 +42,7 @@ struct GeometricOptions {
   int load_steps = 1;        ///< at least; second order takes the load at once
   int max_iterations = 30;   ///< in a step
   double tolerance = 1e-12;  ///< of the last change of shape, relative
-  int halvings = 12;         ///< of a step, before it is given up
+  int halvings = 20;         ///< of a step, before it is given up
   /// Of the frictions before the load, by their numbers; empty: zero. However many steps the load takes, a friction
   /// goes from there to where it ends at once.
   std::vector<double> slips;
@@ -48,7 +54,8 @@ struct GeometricLoad {
   std::vector<double> strains;  ///< by beam, free strain; empty: none
 };
 
-/// Not converged, or not stable: message says why. Then the state is the last one that was found, at load_factor.
+/// Not converged, or not stable: message says why. Then the state is the last one that was found, at load_factor. A
+/// state behind a jump is converged and has a message too.
 struct GeometricState {
   Geometry geometry = Geometry::finite;
   bool converged = false;
@@ -56,6 +63,7 @@ struct GeometricState {
   bool stable = false;
   std::string message;
   double load_factor = 0;  ///< of the load that is carried
+  double snaps_at = 0;     ///< of the load, where the structure snaps through on the way to this state; 0: it does not
   int steps = 0, iterations = 0;
   double residual = 0;        ///< what Newton would still change, relative to the displacement
   VectorX u;                  ///< by freedom of GeometricSolver::model(): m, rotation vector, the scalars' unit
@@ -68,6 +76,8 @@ struct GeometricState {
   std::vector<LinearForm> forms, spring_forms;
   Eigen::SparseMatrix<double> K;  ///< tangent by freedom, constraints apart
   double energy = 0;              ///< J, beams and springs
+  /// Finite: no less, by and large, than what the elements leave out; the largest relative one, all twists.
+  LeftOut left_out;
 
   const SpringLaw& law(const Model& m, std::size_t i) const { return jumping.empty() ? m.springs[i].law : jumping[i]; }
 };
@@ -100,7 +110,13 @@ class GeometricSolver {
   Model constrained(const std::vector<LinearForm>& forms) const;
   double driving_force(const Linearisation& rest, const VectorX& values) const;
   VectorX update_forces(Work&, const Linearisation&, const Elimination&, const Model& constraints, double factor) const;
+  struct Step;
+  Step newton(Work&, double factor, Geometry) const;
   bool iterate(Work&, double factor, const GeometricOptions&, GeometricState&) const;
+  bool arrived(Work&, const VectorX& before, double factor, const GeometricState&, bool doubtful) const;
+  bool drives(Work&, double factor, const VectorX& towards) const;
+  bool fall(Work&, const GeometricOptions&, GeometricState&) const;
+  void follow(Work&, const GeometricOptions&, GeometricState&) const;
   void conclude(Work&, GeometricState&) const;
 
   void begin_jumps(Work&, double factor) const;

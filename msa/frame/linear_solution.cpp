@@ -186,7 +186,7 @@ LinearSolution solve_linear(Model model, const MatrixX& loads, const MatrixX& va
     Attempt attempt = Iterative(model, options)(loads, values);
     if (attempt.answered) {
       LinearSolution& s = attempt.solution;
-      s.fine = s.u.cast<long double>();
+      s.fine = s.u.cast<Extended>();
       s.model = std::move(model);
       s.summary.solver = "iterative";
       if (options.solver == Equations::automatic)

@@ -201,7 +201,7 @@ Solution MsaModel::solve_geometric(const VectorX& load, const Conditions& condit
   Solution out;
   out.u = VectorX::Zero(built_.model.dofs());  // the coordinates of very stiff parts, which come last, are not used
   out.u.head(state->u.size()) = state->u;
-  out.fine = out.u.cast<long double>();
+  out.fine = out.u.cast<Extended>();
   out.spring_tangents = state->spring_tangents;
   out.spring_forces = state->spring_forces;
   out.slips = state->slips;

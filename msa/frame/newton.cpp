@@ -196,7 +196,7 @@ bool Solver::update_known_forces(const Work& w) {
 
 void Solver::conclude(const Work& w, Solution& s) const {
   s.u = w.u;
-  s.fine = w.u.cast<long double>();
+  s.fine = w.u.cast<Extended>();
   const std::vector<Spring>& springs = model_->springs;
   s.spring_tangents.resize(static_cast<Eigen::Index>(springs.size()));
   s.spring_forces = s.spring_tangents;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "msa/base/error.h"
+#include "msa/frame/extended_factor.h"
 #include "msa/frame/relative.h"
 #include "msa/frame/stability.h"
 #include "msa/frame/standing.h"
@@ -20,7 +21,7 @@ constexpr double poor = 1e-12;        // of which a user is told
 constexpr double nearly_free = 1e-6;  // strain of a motion, see mobility.h
 
 constexpr int most_corrections = 20;
-constexpr double extended_rounding = 1e-19, no_digits = 1e-6;  // of a solution
+constexpr double extended_rounding = 1e-19, no_digits = 1e-9;  // of a solution
 
 double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
 
@@ -151,21 +152,22 @@ void Solver::check(const VectorX& load, const VectorX& values) const {
   refuse_driven_motions(padded(load, model_->dofs()));
 }
 
-void Solver::factor(const VectorX& tangents) {
+/// For linear(), which can do without: factored_ says whether the sparse factor exists.
+void Solver::try_to_factor(const VectorX& tangents) {
   if (factored_ && factored_tangents_ == tangents) return;
-  factored_ = false;
-  if (elimination_->independent > 0) {
-    const std::vector<double> values = assembly_->values(tangents);
-    if (cholesky_->factor(values) == 0) {
-      const Mobility mobility = mobility_of(*model_, resisting(tangents));
-      if (mobility.free.cols() > 0)
-        throw CannotStand("in this state of its springs the structure cannot stand", *model_, mobility.free);
-      throw NumericalError(
-          "the stiffness matrix cannot be factored: the stiffnesses of its parts, or its geometry, leave no digits");
-    }
-  }
   factored_tangents_ = tangents;
-  factored_ = true;
+  factored_ = elimination_->independent == 0 || cholesky_->factor(assembly_->values(tangents)) > 0;
+  if (factored_) return;
+  const Mobility mobility = mobility_of(*model_, resisting(tangents));
+  if (mobility.free.cols() > 0)
+    throw CannotStand("in this state of its springs the structure cannot stand", *model_, mobility.free);
+}
+
+void Solver::factor(const VectorX& tangents) {
+  try_to_factor(tangents);
+  if (!factored_)
+    throw NumericalError(
+        "the stiffness matrix cannot be factored: the stiffnesses of its parts, or its geometry, leave no digits");
 }
 
 VectorX Solver::starting_tangents(double force) const {
@@ -180,38 +182,55 @@ ExtendedMatrix Solver::linear(const VectorX& tangents, const MatrixX& given_load
   const MatrixX values = padded_rows(given_values, model_->constraints.size());
   for (Eigen::Index c = 0; c < values.cols(); ++c) check_consistent(*model_, *elimination_, values.col(c));
   for (Eigen::Index c = 0; c < loads.cols(); ++c) refuse_driven_motions(loads.col(c));
-  factor(tangents);
+  try_to_factor(tangents);
   ExtendedMatrix U(model_->dofs(), loads.cols());
   for (Eigen::Index c = 0; c < loads.cols(); ++c) U.col(c) = refined(tangents, loads.col(c), values.col(c));
   return U;
 }
 
-/// Corrections are measured in energy, |dq|² = dq·r for the residual r, against that of the answer.
+/// Corrections are measured in energy, |dq|² = dq·r for the residual r, against that of the answer. Where those of the
+/// sparse factor do not shrink, one with extended digits takes its place.
 ExtendedVector Solver::refined(const VectorX& tangents, const VectorX& load, const VectorX& values) {
-  ExtendedVector q = ExtendedVector::Zero(elimination_->independent), u = elimination_->expand_fine(q, values);
+  ExtendedVector u;
+  double left = 1;
+  if (factored_ && corrected(
+                       tangents, load, values, [&](const VectorX& r) { return VectorX(cholesky_->solve(r)); }, u, left))
+    return u;
+  if (elimination_->independent <= ExtendedFactor::most_freedoms) {
+    const ExtendedFactor factor(*model_, *elimination_, tangents);
+    if (!factor.failed() && corrected(
+                                tangents, load, values, [&](const VectorX& r) { return factor.solve(r); }, u, left))
+      return u;
+  }
+  throw NumericalError(fmt::format(
+      "no digits are left: corrections to the solution stay at {:.1e} of it. Stiffnesses differ by too much, or the "
+      "structure is nearly a mechanism",
+      left));
+}
+
+/// u by a factor and corrections; false where `left`, the last of them, says that it is worth nothing.
+bool Solver::corrected(const VectorX& tangents, const VectorX& load, const VectorX& values,
+                       const std::function<VectorX(const VectorX&)>& solve, ExtendedVector& u, double& left) {
+  ExtendedVector q = ExtendedVector::Zero(elimination_->independent);
+  u = elimination_->expand_fine(q, values);
   double before = 1;
   for (int pass = 0; pass < most_corrections; ++pass) {
     const VectorX unbalanced = load - tangent_forces(*model_, u, tangents);
     const VectorX residual = elimination_->reduce(unbalanced);
-    if (pass == 0 && is_rounding(residual, *elimination_, unbalanced)) return u;
-    const VectorX correction = cholesky_->solve(residual);
-    q += correction.cast<long double>();
+    if (pass == 0 && is_rounding(residual, *elimination_, unbalanced)) return true;
+    const VectorX correction = solve(residual);
+    q += correction.cast<Extended>();
     u = elimination_->expand_fine(q, values);
     if (pass == 0) continue;
     const double energy = twice_energy(*model_, u, tangents);
     const double change = energy > 0 ? std::sqrt(std::abs(correction.dot(residual)) / energy) : 0;
-    if (pass == 1) rounding_ = std::max(rounding_, change);
+    if (pass == 1) rounding_ = std::max(rounding_, std::min(change, 1.0));
     const double shrinks = change / before;
-    before = change;
-    if (change * shrinks < extended_rounding) return u;
-    if (pass > 1 && shrinks > 0.5) break;  // the residual's own rounding is left, or the factor is worth nothing
+    left = before = change;
+    if (change * shrinks < extended_rounding) return true;
+    if (pass > 1 && !(shrinks < 0.5)) break;  // the residual's own rounding is left, or the factor is worth nothing
   }
-  if (!(before < no_digits))
-    throw NumericalError(fmt::format(
-        "no digits are left: corrections to the solution stay at {:.1e} of it. Stiffnesses differ by too much, or the "
-        "structure is nearly a mechanism",
-        before));
-  return u;
+  return left < no_digits;
 }
 
 /// Where no spring's stiffness depends on its load.

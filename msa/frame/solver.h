@@ -1,6 +1,7 @@
 // Static equilibrium of a structure: f_int(u) = f under u = T q + G b.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -89,6 +90,8 @@ class Solver {
   void note_condition();
   void refuse_driven_motions(const VectorX& load) const;
   ExtendedVector refined(const VectorX& tangents, const VectorX& load, const VectorX& values);
+  bool corrected(const VectorX& tangents, const VectorX& load, const VectorX& values,
+                 const std::function<VectorX(const VectorX&)>& solve, ExtendedVector& u, double& left);
   Solution solve_linear(const VectorX& load, const VectorX& values);
   struct Work;
   void begin_by_forces(Work&);
@@ -96,6 +99,7 @@ class Solver {
   bool newton(Work&, const NewtonOptions&, Solution&);
   bool update_known_forces(const Work&);
   void conclude(const Work&, Solution&) const;
+  void try_to_factor(const VectorX& spring_tangents);
   void factor(const VectorX& spring_tangents);
   VectorX starting_tangents(double force) const;
 

@@ -63,6 +63,11 @@ Tangent::~Tangent() = default;
 
 bool Tangent::regular() const { return impl_->regular; }
 
+double Tangent::largest_entry() const {
+  const Sparse& K = impl_->reduced;
+  return K.nonZeros() > 0 ? Eigen::Map<const VectorX>(K.valuePtr(), K.nonZeros()).cwiseAbs().maxCoeff() : 0;
+}
+
 bool Tangent::stable() const {
   const Sparse symmetric = Sparse(impl_->reduced.transpose()) + impl_->reduced;  // twice the part
   SparsePattern pattern{static_cast<int>(symmetric.cols()), {0}, {}};

@@ -26,6 +26,7 @@ class Tangent {
   /// Equilibrium is stable: K is positive definite on the free motions. Where applied moments make K unsymmetric, which
   /// is no question of definiteness, a positive determinant stands for it: no such load was passed, or two.
   bool stable() const;
+  double largest_entry() const;  ///< of K on the free motions, by magnitude
   /// u̇ for columns of load increments and of increments of constraint values.
   MatrixX solve(const MatrixX& loads, const MatrixX& values) const;
 

@@ -8,6 +8,7 @@
 
 #include "msa/base/error.h"
 #include "tests/support/columns.h"
+#include "tests/support/elastica.h"
 #include "tests/support/finite_motion.h"
 
 namespace deflect::frame {
@@ -103,7 +104,7 @@ Model two_bars(double b, double h, double EA) {
 }
 
 // R. von Mises, 1923: with l² = b² + (h − w)² and l = L at w = 0, P = 2 EA (L − l)/L · (h − w)/l.
-TEST(GeometricSolver, TwoBarTrussFollowsTheClosedFormBeforeItsLimitLoadAndSaysWhereThatIs) {
+TEST(GeometricSolver, TwoBarTrussFollowsTheClosedFormBeforeItsLimitLoad) {
   const double b = 1, h = 0.2, EA = 1e4, L = std::hypot(b, h);
   const Model m = two_bars(b, h, EA);
   const auto P = [&](double w) {
@@ -119,9 +120,47 @@ TEST(GeometricSolver, TwoBarTrussFollowsTheClosedFormBeforeItsLimitLoadAndSaysWh
     EXPECT_NEAR(P(-s.u(13)), part * limit, 1e-9 * limit);
     EXPECT_LT(-s.u(13), h * (1 - 1 / std::sqrt(3.0)) * 1.01);  // shallow arches: the limit is near there
   }
-  const GeometricState beyond = solve(m, load_at(m, 2, {0, -1.1 * limit, 0}), Geometry::finite);
-  EXPECT_NEAR(P(-beyond.u(13)), 1.1 * limit * beyond.load_factor, 1e-9 * limit);  // snapped through, or stopped before
-  EXPECT_TRUE(beyond.converged ? -beyond.u(13) > h : beyond.load_factor < 1 / 1.1);
+}
+
+// Up to the limit load the state is the one on the way there, whatever other there is; beyond, at every factor, the one
+// behind the jump, and it says so with the factor of the limit.
+TEST(GeometricSolver, AShallowTrussSnapsThroughAtItsLimitLoadWhateverTheLoad) {
+  for (const double h : {0.02, 0.2}) {
+    const double b = 1, EA = 1e4, L = std::hypot(b, h);
+    const Model m = two_bars(b, h, EA);
+    const auto P = [&](double w) {
+      const double l = std::hypot(b, h - w);
+      return 2 * EA * (L - l) / L * (h - w) / l;
+    };
+    double limit = 0;
+    for (double w = 0; w < h; w += 1e-5 * h) limit = std::max(limit, P(w));
+    for (const double part : {0.8, 0.99, 0.9999, 1.0001, 1.01, 1.5, 3.0, 10.0, 40.0}) {
+      const GeometricState s = solve(m, load_at(m, 2, {0, -part * limit, 0}), Geometry::finite);
+      ASSERT_TRUE(s.converged && s.stable) << part << ": " << s.message;
+      EXPECT_EQ(s.load_factor, 1);
+      EXPECT_NEAR(P(-s.u(13)), part * limit, 1e-9 * part * limit) << part;
+      EXPECT_EQ(-s.u(13) > h, part > 1) << part;
+      EXPECT_EQ(s.message.find("snaps through at") != std::string::npos, part > 1) << s.message;
+      EXPECT_NEAR(s.snaps_at * part, part > 1 ? 1 : 0, 1e-4) << part;  // of the step that is given up: 2e-5 of the load
+    }
+  }
+}
+
+// A column that the load would bend to neither side buckles and does not snap; a side load of a thousandth takes it
+// along the elastica, however far beyond.
+TEST(GeometricSolver, ABuckledColumnIsRefusedUnlessALoadSaysToWhichSide) {
+  const Model m = column(8, 1, {1e6, 2, 1, 1, rigid_in_shear, rigid_in_shear});
+  for (const double part : {1.1, 1.5}) {
+    const double P = part * pi * pi / 4;
+    const GeometricState straight = solve(m, load_at(m, 8, {-P, 0, 0}), Geometry::finite);
+    EXPECT_FALSE(straight.converged);
+    EXPECT_NEAR(straight.load_factor * part, 1, 1e-4) << straight.message;
+    const GeometricState bent = solve(m, load_at(m, 8, {-P, 1e-3 * P, 0}), Geometry::finite);
+    ASSERT_TRUE(bent.converged && bent.stable) << bent.message;
+    EXPECT_EQ(bent.message, "");
+    const test::Elastica exact = test::elastica(P * std::hypot(1, 1e-3), std::atan(1e-3));
+    EXPECT_NEAR(bent.u(49), exact.y, 2e-4);  // eight elements
+  }
 }
 
 // A string of two halves, each b long, pulled taut by cooling: 2N/b across, beside a soft spring that makes it stand

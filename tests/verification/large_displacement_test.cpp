@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/support/columns.h"
+#include "tests/support/elastica.h"
 #include "tests/support/frames.h"
 
 namespace deflect {
@@ -16,6 +17,8 @@ using frame::GeometricState;
 using frame::Model;
 using test::buckling_factor;
 using test::column;
+using test::Elastica;
+using test::elastica;
 using test::inch;
 using test::kip;
 using test::lbf;
@@ -116,27 +119,6 @@ TEST(BeamColumnAiscDesignGuide25, ConvergesToTipAndMoment) {
 }
 
 // --- finite
-
-/// A cantilever of EI = 1 and length 1 along x under a force of the size P that pushes it back, turned by δ to +y. The
-/// tangent's angle to the line of the force is φ: φ'' + P sin φ = 0, φ(0) = δ, φ' = 0 and φ = α at the tip. With
-/// p = sin α/2 and sin χ = sin(δ/2)/p: √P = K(p) − F(χ, p) (S. Timoshenko, J. M. Gere, Theory of Elastic Stability,
-/// 2nd ed., art. 2.7, for δ = 0).
-struct Elastica {
-  double angle, x, y;  // of the tip, in the axes of the cantilever
-};
-
-Elastica elastica(double P, double delta) {
-  const auto excess = [&](double alpha) {
-    const double p = std::sin(alpha / 2);
-    return std::comp_ellint_1(p) - std::ellint_1(p, std::asin(std::min(1.0, std::sin(delta / 2) / p))) - std::sqrt(P);
-  };
-  double low = std::max(delta, 1e-9), high = pi - 1e-9;
-  for (int i = 0; i < 200; ++i) (excess((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
-  const double p = std::sin(low / 2), chi = std::asin(std::sin(delta / 2) / p), k = std::sqrt(P);
-  const double along = 2 * (std::comp_ellint_2(p) - std::ellint_2(p, chi)) / k - 1, across = 2 * p * std::cos(chi) / k;
-  return {low - delta, std::cos(delta) * along + std::sin(delta) * across,
-          std::cos(delta) * across - std::sin(delta) * along};
-}
 
 struct Printed {
   double ratio, degrees, x, y;  // tip displacements on L = 100: y across, x along, as the manual prints them

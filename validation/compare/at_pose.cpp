@@ -9,6 +9,8 @@
 namespace deflect {
 namespace {
 
+constexpr double small_error = 1e-6;  // relative: is divided no further
+
 void enforce(const std::string& failure, const char* theory, const std::string& where) {
   if (!failure.empty()) throw NumericalError(fmt::format("{}: the {} fails a check: {}", where, theory, failure));
 }
@@ -71,6 +73,7 @@ Answer AnalyticAtPose::solve(const Vector6& F, const Conditions& conditions) con
     answer.stiffness = model_.stiffness(s);
     answer.energies = model_.energies(s);
     answer.slips = s.slips;
+    answer.discretisation = s.discretisation;
     return deformed_answer(std::move(answer), F + weight_, -carried.head<3>(), "analytic", where_);
   }
   std::vector<LegStiffness> legs;
@@ -86,15 +89,62 @@ Answer AnalyticAtPose::solve(const Vector6& F, const Conditions& conditions) con
 }
 
 MsaAtPose::MsaAtPose(const Configuration& c, const frame::MemberDivision& division, std::string where)
-    : p_WB_(c.base.p_W), p_WT_(c.pose.p_WT), model_(c, division), where_(std::move(where)) {
+    : p_WB_(c.base.p_W),
+      p_WT_(c.pose.p_WT),
+      configuration_(c),
+      division_(division),
+      model_(std::make_unique<frame::MsaModel>(c, division)),
+      where_(std::move(where)) {
   for (std::size_t i = 0; i < c.legs.size(); ++i) {
-    passive_twists_.push_back(model_.passive_twists(i));
+    passive_twists_.push_back(model_->passive_twists(i));
     legs_.push_back(c.legs[i].name);
   }
 }
 
+void MsaAtPose::halve() {
+  division_ = frame::halved(configuration_, division_);
+  before_ = std::move(model_);
+  model_ = std::make_unique<frame::MsaModel>(configuration_, division_);
+  has_stiffness_ = false;
+  ++halvings_;
+}
+
+/// last_ again by smaller elements where its own leave too much.
+void MsaAtPose::refine(const Vector6& F, const Conditions& conditions) {
+  constexpr int most = 3;
+  const auto norms = [](const Vector6& d) { return Eigen::Vector2d(d.head<3>().norm(), d.tail<3>().norm()); };
+  const Eigen::Array2d weights(1, configuration_.size);
+  const auto relative = [&] {
+    const double size = (weights * norms(last_.displacement).array()).maxCoeff();
+    return size > 0 ? (weights * discretisation_.array()).maxCoeff() / size : 0;
+  };
+  const frame::LeftOut known = last_.state.geometric->left_out;
+  discretisation_ = known.relative * norms(last_.displacement);
+  discretisation_ += known.twist * Eigen::Vector2d(configuration_.size, 1);
+  if (!last_.state.converged || relative() <= small_error) return;
+  frame::MsaSolution coarse = before_ ? before_->solve(F, conditions) : last_;
+  if (!before_) {
+    halve();
+    last_ = model_->solve(F, conditions);
+  }
+  for (;;) {
+    if (!coarse.state.converged || !last_.state.converged) return;
+    discretisation_ = norms(last_.displacement - coarse.displacement) / 3;
+    const double left = relative();
+    if (left <= small_error) return;
+    if (halvings_ == most && left > 1e-4)
+      throw NumericalError(
+          fmt::format("{}: the MSA: members bend so far that its elements leave an error of {:.1e}", where_, left));
+    if (halvings_ == most) return;
+    coarse = std::move(last_);
+    halve();
+    last_ = model_->solve(F, conditions);
+  }
+}
+
 Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
-  last_ = model_.solve(F, conditions);
+  last_ = model_->solve(F, conditions);
+  if (last_.state.geometric && conditions.geometry == Geometry::finite) refine(F, conditions);
   if (!last_.state.converged && last_.state.geometric)
     throw NumericalError(fmt::format("{}: the MSA: {}", where_, last_.state.geometric->message));
   if (!last_.state.converged)
@@ -103,27 +153,28 @@ Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
   if (last_.state.geometric) {
     Answer answer;
     answer.displacement = last_.displacement;
-    answer.stiffness = model_.stiffness(last_.state).K;
+    answer.stiffness = model_->stiffness(last_.state).K;
     answer.energies = last_.energies;
     answer.slips = last_.slips;
-    const Vector3 reaction = model_.base_reaction(last_.load, last_.state).head<3>();
+    answer.discretisation = discretisation_;
+    const Vector3 reaction = model_->base_reaction(last_.load, last_.state).head<3>();
     return deformed_answer(std::move(answer), last_.load, reaction, "MSA", where_);
   }
   if (!has_stiffness_ || tangents_ != last_.state.spring_tangents) {
-    const frame::MsaModel::Stiffness stiffness = model_.stiffness(last_.state);
+    const frame::MsaModel::Stiffness stiffness = model_->stiffness(last_.state);
     std::vector<LegStiffness> legs;
     for (std::size_t i = 0; i < legs_.size(); ++i) legs.push_back({legs_[i], stiffness.legs[i], passive_twists_[i]});
-    checks_ = check_stiffness(stiffness.K, legs, bound_with(checked_to, model_.rounding()));
+    checks_ = check_stiffness(stiffness.K, legs, bound_with(checked_to, model_->rounding()));
     enforce(checks_.failure, "MSA stiffness", where_);
     stiffness_ = stiffness.K;
     tangents_ = last_.state.spring_tangents;
     has_stiffness_ = true;
   }
   // The reaction acts at the base origin; about T its moment changes by the arm.
-  const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_.base_reaction(last_.load, last_.state);
-  enforce(response_failure(
-              {last_.load, last_.displacement, reaction, total(last_.energies), model_.linear(), from_rest(conditions)},
-              bound_with(checked_to, model_.rounding())),
+  const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_->base_reaction(last_.load, last_.state);
+  enforce(response_failure({last_.load, last_.displacement, reaction, total(last_.energies), model_->linear(),
+                            from_rest(conditions)},
+                           bound_with(checked_to, model_->rounding())),
           "MSA response", where_);
   return {last_.displacement, stiffness_, last_.energies, checks_, last_.slips};
 }

@@ -39,6 +39,8 @@ struct SolveResult {
   /// theories.h.
   double analytic_from_linear = 0, msa_from_linear = 0;
   double relative_difference = 0;  ///< of the displacements, see relative_difference() in theories.h
+  /// Finite: about what dividing members leaves of relative_difference, of both theories together.
+  double discretisation = 0;
   /// Checks of the stiffness; the last one of linear geometry only.
   bool symmetric = false, positive = false, passive_joints_free = false;
   std::vector<std::pair<std::string, double>> shares;  ///< part, its share of the strain energy
