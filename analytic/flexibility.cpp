@@ -115,7 +115,8 @@ Matrix6 stiffness(const Flexibility& f, double length, const std::string& name) 
   for (Eigen::Index i = 0; i < along.cols(); ++i)
     motions.push_back(resisted_motion(weights(length).cwiseProduct(along.col(i)), length));
   throw ModelError(
-      fmt::format("{}: infinite stiffness: nothing yields in {}; the pose is singular, or a member, joint or actuator "
+      fmt::format("{}: infinite stiffness: held rigidly, nothing yields in {}; the pose is singular, or a member, "
+                  "joint or actuator "
                   "must be given some compliance",
                   name, fmt::join(motions, "; in ")));
 }

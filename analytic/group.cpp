@@ -250,6 +250,7 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c, bool open) c
   double least = load > 0 ? load : 1;
   double change = std::numeric_limits<double>::infinity(), size_of_forces = 0;
   double held = 0;  // what free deflections would bring, were the far body to stay
+  const bool straight = linear();
   while (!s.converged && s.iterations < 100) {
     ++s.iterations;
     std::vector<Linearised> linearised;
@@ -280,6 +281,8 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c, bool open) c
     const bool stalled = s.iterations > 5 && change <= 1e-8 * largest && change > 0.5 * before;
     s.converged = change <= 1e-13 * largest || (s.iterations > 3 && change <= 1e-11 * largest) || stalled ||
                   change <= 1e-15 * held;
+    // Where nothing depends on its load the first step is the answer, and the second takes its rounding off.
+    s.converged = s.converged || (straight && s.iterations > 2);
     // Of a contact that is hardly loaded, forces that settle may leave the deflection open.
     if (s.converged) settle(s, least, c);
   }
@@ -300,6 +303,9 @@ void Group::settle(State& s, double least, const Circumstances& c) const {
     const VectorX d = r.tangent.N.transpose() * r.d, moved = r.tangent.N.transpose() * s.t;
     s.misfit = std::max(s.misfit, (moved - d).cwiseAbs().maxCoeff());
     size = std::max({size, moved.cwiseAbs().maxCoeff(), d.cwiseAbs().maxCoeff()});
+    // Deflections that cancel are known to the rounding of what cancels.
+    const MatrixX yields = r.tangent.roots.transpose() * r.tangent.N;
+    size = std::max(size, 1e-6 * yields.norm() * (r.tangent.roots.transpose() * s.wrenches[i]).norm());
   }
   if (size > 0) s.misfit /= size;
   s.converged = s.converged && s.misfit < 1e-9;

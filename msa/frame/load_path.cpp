@@ -1,6 +1,7 @@
 // The way of a structure under a growing load (geometric_solver.h).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "msa/frame/geometric_work.h"
@@ -54,7 +55,10 @@ GeometricSolver::Step GeometricSolver::newton(Work& work, double factor, Geometr
 /// An equilibrium was found: whether the path led there, which its energy tells where Newton's method does not.
 bool GeometricSolver::arrived(Work& work, const VectorX& before, double factor, const GeometricState& state,
                               bool doubtful) const {
-  if (work.jump || work.falling || !work.by_loads_alone()) return true;
+  // A law that is not linear shares work otherwise than in halves.
+  const bool linear = std::all_of(model_.springs.begin(), model_.springs.end(),
+                                  [](const Spring& spring) { return is_linear(spring.law); });
+  if (work.jump || work.falling || !linear || !work.by_loads_alone()) return true;
   const double energy = work.stored(work.linearise(Geometry::finite));
   const double done = (state.load_factor + factor) / 2 * work.loads.dot(work.shape.path - before);
   const double gained = energy - work.energy;

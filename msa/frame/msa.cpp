@@ -206,7 +206,8 @@ Solution MsaModel::solve_geometric(const VectorX& load, const Conditions& condit
   out.spring_forces = state->spring_forces;
   out.slips = state->slips;
   out.message = state->message;
-  out.converged = state->converged && state->stable;
+  // A mechanism that has snapped through is not at the pose that was asked for.
+  out.converged = state->converged && state->stable && state->snaps_at == 0;
   out.iterations = state->iterations;
   out.residual = state->residual;
   out.geometric = std::move(state);
@@ -223,16 +224,21 @@ MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
   tool_held_->displace(state.spring_tangents);
   Stiffness out{tool_held_->reactions(), {}};
   const bool legs_stand_alone = built_.base == built_.ground && built_.tool == built_.platform;
+  Vector6 per_length = Vector6::Ones();
+  per_length.tail<3>().setConstant(1 / characteristic_length(built_.model));
+  const auto size = [&](const Matrix6& K) { return (per_length.asDiagonal() * K * per_length.asDiagonal()).norm(); };
+  const auto alone = [&](std::size_t leg) {
+    const MechanismModel one = build_leg(configuration_, leg, division_);
+    const VectorX tangents = tangents_of(one.model, state);
+    Held leg_held(one, one.tool, tangents);
+    leg_held.displace(tangents);
+    return leg_held.reactions();
+  };
   for (std::size_t leg = 0; leg < configuration_.legs.size(); ++leg) {
-    if (legs_stand_alone) {  // nothing between the ground and the tool but the legs, side by side
-      out.legs.push_back(tool_held_->reactions(built_.attachments[leg]));
-    } else {
-      const MechanismModel one = build_leg(configuration_, leg, division_);
-      const VectorX tangents = tangents_of(one.model, state);
-      Held leg_held(one, one.tool, tangents);
-      leg_held.displace(tangents);
-      out.legs.push_back(leg_held.reactions());
-    }
+    // Where nothing but the legs, side by side, is between the ground and the tool, each has its part of the reactions.
+    // The part of a leg far softer than the others would drown in the rounding of theirs.
+    const Matrix6 part = legs_stand_alone ? tool_held_->reactions(built_.attachments[leg]) : Matrix6::Zero();
+    out.legs.push_back(size(part) > 1e-3 * size(out.K) ? part : alone(leg));
   }
   return out;
 }

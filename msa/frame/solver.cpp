@@ -21,7 +21,8 @@ constexpr double poor = 1e-12;        // of which a user is told
 constexpr double nearly_free = 1e-6;  // strain of a motion, see mobility.h
 
 constexpr int most_corrections = 20;
-constexpr double extended_rounding = 1e-19, no_digits = 1e-9;  // of a solution
+constexpr double extended_rounding = 1e-19, no_digits = 1e-9;
+constexpr double strains_nothing = 1e-24;  // of the energy that nothing would cancel  // of a solution
 
 double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
 
@@ -48,6 +49,20 @@ double twice_energy(const Model& m, const ExtendedVector& u, const VectorX& tang
   }
   for (std::size_t s = 0; s < m.springs.size(); ++s) {
     const double elongation = evaluate(m.springs[s].elongation, u);
+    sum += tangents(static_cast<Eigen::Index>(s)) * elongation * elongation;
+  }
+  return sum;
+}
+
+/// What u K u would be, were nothing to cancel: an answer that strains the structure by less than the rounding of this
+/// strains nothing.
+double unsigned_energy(const Model& m, const ExtendedVector& u, const VectorX& tangents) {
+  const VectorX size = u.cast<double>().cwiseAbs();
+  double sum = 0;
+  for (const Beam& beam : m.beams) sum += stiffness(beam).diagonal().dot(end_displacements(beam, size).cwiseAbs2());
+  for (std::size_t s = 0; s < m.springs.size(); ++s) {
+    double elongation = 0;
+    for (const Term& t : m.springs[s].elongation) elongation += std::abs(t.coefficient) * size(t.dof);
     sum += tangents(static_cast<Eigen::Index>(s)) * elongation * elongation;
   }
   return sum;
@@ -202,6 +217,15 @@ ExtendedVector Solver::refined(const VectorX& tangents, const VectorX& load, con
                                 tangents, load, values, [&](const VectorX& r) { return factor.solve(r); }, u, left))
       return u;
   }
+  if (factored_ && (tangents.array() == 0).any()) {
+    // Springs that let go leave motions that nothing resists. They take no part: what the first step and its correction
+    // say of them is as good as anything.
+    VectorX q = VectorX::Zero(elimination_->independent);
+    for (int pass = 0; pass < 2; ++pass)
+      q += cholesky_->solve(
+          elimination_->reduce(load - tangent_forces(*model_, elimination_->expand(q, values), tangents)));
+    return elimination_->expand(q, values).cast<Extended>();
+  }
   throw NumericalError(fmt::format(
       "no digits are left: corrections to the solution stay at {:.1e} of it. Stiffnesses differ by too much, or the "
       "structure is nearly a mechanism",
@@ -222,13 +246,16 @@ bool Solver::corrected(const VectorX& tangents, const VectorX& load, const Vecto
     q += correction.cast<Extended>();
     u = elimination_->expand_fine(q, values);
     if (pass == 0) continue;
-    const double energy = twice_energy(*model_, u, tangents);
-    const double change = energy > 0 ? std::sqrt(std::abs(correction.dot(residual)) / energy) : 0;
-    if (pass == 1) rounding_ = std::max(rounding_, std::min(change, 1.0));
+    const double energy = twice_energy(*model_, u, tangents), corrects = std::abs(correction.dot(residual));
+    const double change = energy > 0 ? std::sqrt(corrects / energy) : 0;
+    if (pass == 1 && corrects > strains_nothing * unsigned_energy(*model_, u, tangents))
+      rounding_ = std::max(rounding_, std::min(change, 1.0));
     const double shrinks = change / before;
     left = before = change;
     if (change * shrinks < extended_rounding) return true;
-    if (pass > 1 && !(shrinks < 0.5)) break;  // the residual's own rounding is left, or the factor is worth nothing
+    if (pass == 1 || shrinks < 0.5) continue;
+    // The residual's own rounding is left, or the factor is worth nothing.
+    return left < no_digits || corrects < strains_nothing * unsigned_energy(*model_, u, tangents);
   }
   return left < no_digits;
 }

@@ -153,7 +153,7 @@ TEST(RigidBranch, IsTheLimitOfAStiffOne) {
     rigid.stiffness(s);
     FAIL();
   } catch (const ModelError& e) {
-    EXPECT_NE(std::string(e.what()).find("leg: infinite stiffness: nothing yields in translation along"),
+    EXPECT_NE(std::string(e.what()).find("leg: infinite stiffness: held rigidly, nothing yields in translation along"),
               std::string::npos)
         << e.what();
   }

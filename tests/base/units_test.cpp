@@ -109,6 +109,10 @@ TEST(Units, FormatAndParseAreInverseToTheLastBit) {
       const double mantissa = 1 + static_cast<double>(random() >> 12) * 0x1p-52;
       const double value = std::ldexp(random() % 2 ? mantissa : -mantissa, static_cast<int>(random() % 160) - 80);
       const std::string text = format_quantity(value, d);
+      if (d == Dimension::angle && std::abs(value) > largest_angle) {  // too few digits are left in it
+        ASSERT_THROW((void)parse_quantity(text, d), InputError) << text;
+        continue;
+      }
       ASSERT_TRUE(same_bits(parse_quantity(text, d), value)) << text << " for " << value << ", " << describe(d);
     }
 }
@@ -119,6 +123,7 @@ TEST(Units, FormatAndParseAreInverseAtTheEdgesOfDouble) {
     for (const double value : {0.0, -0.0, 1.0, -1.0, limits::denorm_min(), limits::min(), limits::max(),
                                limits::lowest(), limits::epsilon(), 1e300, 1e-300}) {
       const std::string text = format_quantity(value, d);
+      if (d == Dimension::angle && std::abs(value) > largest_angle) continue;
       EXPECT_TRUE(same_bits(parse_quantity(text, d), value)) << text << " for " << value << ", " << describe(d);
     }
 }

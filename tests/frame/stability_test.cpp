@@ -189,7 +189,8 @@ TEST(Stability, ScrewOfAMotion) {
   EXPECT_TRUE(screw_of(Vector3::Zero(), {0, 3, 0}, Vector3::Zero()).translation);
 }
 
-TEST(Stability, ATooSoftSpringIsNamedBesideTheStiffestPart) {
+/// A rod of 0.1 m on a hinge whose spring is somebody's units, k Nm/rad.
+Model rod_on_a_soft_hinge(double k) {
   Model m;
   m.add_node("ground", Vector3::Zero());
   m.add_node("root", Vector3::Zero());
@@ -197,12 +198,28 @@ TEST(Stability, ATooSoftSpringIsNamedBesideTheStiffestPart) {
   m.add_beam(1, 2, Matrix3::Identity(), {1e6, 40, 40, 30, none, none}, "rod", "rod");
   m.fix(0, "ground");
   std::array<ConnectionFreedom, 6> hinge;
-  hinge[5] = {false, {LinearSpring{1e-12}}};  // Nm/rad: somebody's units
+  hinge[5] = {false, {LinearSpring{k}}};
+  hinge[5].laws[0].rotation = true;
   m.connect(0, 1, Vector3::Zero(), Matrix3::Identity(), hinge, "hinge", "hinge");
-  const Solver solver(m);
-  ASSERT_EQ(solver.notes().size(), 1u);
-  EXPECT_NE(solver.notes()[0].find("ill-conditioned"), std::string::npos) << solver.notes()[0];
-  EXPECT_NE(solver.notes()[0].find("'hinge rz' is too soft beside 'rod'"), std::string::npos) << solver.notes()[0];
+  return m;
+}
+
+TEST(Stability, ATooSoftSpringCostsNoDigits) {
+  for (const double k : {1e3, 1e-3, 1e-12, 1e-15}) {
+    Solver solver(rod_on_a_soft_hinge(k));
+    VectorX load = VectorX::Zero(18);
+    load(13) = 1e-15;  // N across the tip: the hinge turns by F L/k, the rod bends by F L³/3EI
+    EXPECT_NEAR(solver.solve(load).u(13) / (1e-15 * (0.01 / k + 1e-3 / 120)), 1, 1e-12) << k;
+  }
+}
+
+TEST(Stability, TheSoftestPartIsNamedBesideTheStiffest) {
+  const Model m = rod_on_a_soft_hinge(1e-12);
+  VectorX turned = VectorX::Zero(18);  // about the hinge
+  turned(11) = turned(17) = 1, turned(13) = 0.1;
+  const std::string text = explain_condition(m, turned, 1e-14);
+  EXPECT_NE(text.find("ill-conditioned"), std::string::npos) << text;
+  EXPECT_NE(text.find("'hinge rz' is too soft beside 'rod'"), std::string::npos) << text;
 }
 
 TEST(Stability, NothingIsSupported) {
