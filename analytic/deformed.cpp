@@ -16,6 +16,7 @@ namespace {
 
 constexpr double small_error = 1e-6;  // relative: is divided no further
 constexpr int most_pieces = 64;
+constexpr double known_to = 0.01;    // of the load at which it gives way
 constexpr double follows = 0.4;      // a step of Newton's method beside the one before, on the path of equilibria
 constexpr double least_step = 1e-6;  // of the load
 
@@ -181,11 +182,11 @@ std::vector<double> bends_of(const Deformed& d) {
   return bends;
 }
 
-/// Twice as many, to begin with so many that little is left out of each.
-std::vector<int> divided(std::vector<int> pieces, const std::vector<double>& bends) {
+/// Twice as many; of a state under the whole load so many to begin with that little is left out of each.
+std::vector<int> divided(std::vector<int> pieces, const std::vector<double>& bends, bool whole_load) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (bends[i] <= small_error / 10) continue;
-    const bool whole = pieces[i] == 1;
+    const bool whole = pieces[i] == 1 && whole_load;
     pieces[i] = std::min(2 * pieces[i], most_pieces);
     while (whole && bends[i] > 0.005 * std::pow(pieces[i], 4) && 2 * pieces[i] < most_pieces) pieces[i] *= 2;
   }
@@ -234,7 +235,7 @@ Deformed deform(const Configuration& c, Geometry geometry, const Vector6& F) {
   d.discretisation = {most * d.translation.norm(), most * d.rotation_vector.norm()};
   if (most <= small_error || geometry != Geometry::finite) return d;  // what one piece leaves is known by its order
   for (double left = 1; left > small_error;) {
-    std::vector<int> pieces = divided(d.pieces, bends);
+    std::vector<int> pieces = divided(d.pieces, bends, d.converged);
     if (pieces == d.pieces) {
       if (!d.converged || left <= 1e-4) break;
       d.converged = false;
@@ -245,7 +246,10 @@ Deformed deform(const Configuration& c, Geometry geometry, const Vector6& F) {
     finer.discretisation = {(finer.translation - d.translation).norm() / 3,
                             rotation_vector(combined(finer.turning, d.turning.transpose())).norm() / 3};
     left = d.converged && finer.converged ? relative(finer.discretisation, finer, c.size) : 1;
+    const bool gives_way =
+        !d.converged && !finer.converged && std::abs(finer.load_factor - d.load_factor) <= known_to * finer.load_factor;
     d = std::move(finer);
+    if (gives_way) break;
   }
   return d;
 }
