@@ -292,7 +292,8 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c, bool open) c
 
 /// Whether the branches' ends are where the far body is.
 void Group::settle(State& s, double least, const Circumstances& c) const {
-  double size = 0;
+  double size = 0, largest = 0;
+  for (const Vector6& wrench : s.wrenches) largest = std::max(largest, weighed(wrench, length).norm());
   s.misfit = 0;
   for (std::size_t i = 0; i < branches.size(); ++i) {
     if (branches[i].N.cols() == 0) continue;
@@ -303,9 +304,10 @@ void Group::settle(State& s, double least, const Circumstances& c) const {
     const VectorX d = r.tangent.N.transpose() * r.d, moved = r.tangent.N.transpose() * s.t;
     s.misfit = std::max(s.misfit, (moved - d).cwiseAbs().maxCoeff());
     size = std::max({size, moved.cwiseAbs().maxCoeff(), d.cwiseAbs().maxCoeff()});
-    // Deflections that cancel are known to the rounding of what cancels.
-    const MatrixX yields = r.tangent.roots.transpose() * r.tangent.N;
-    size = std::max(size, 1e-6 * yields.norm() * (r.tangent.roots.transpose() * s.wrenches[i]).norm());
+    // Forces are known to the rounding of the largest: beside a rigid branch the others carry as much by chance, which
+    // no further step takes off.
+    if (s.iterations > 10)
+      size = std::max(size, 1e-6 * (r.tangent.roots.transpose() * r.tangent.N).squaredNorm() * largest);
   }
   if (size > 0) s.misfit /= size;
   s.converged = s.converged && s.misfit < 1e-9;
