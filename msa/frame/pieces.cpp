@@ -15,28 +15,6 @@ constexpr double unseen = 1e-10;  // of the strongest hold of a piece: rounding 
 
 bool resists_everything(const BeamRigidity& r) { return std::min({r.EA, r.EIy, r.EIz, r.GJ, r.GAs_y, r.GAs_z}) > 0; }
 
-/// By node, the first node of its piece.
-std::vector<int> first_nodes(const Model& m) {
-  std::vector<int> parent(m.nodes.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](int i) {
-    while (parent[static_cast<std::size_t>(i)] != i) {
-      int& up = parent[static_cast<std::size_t>(i)];
-      i = up = parent[static_cast<std::size_t>(up)];
-    }
-    return i;
-  };
-  const auto join = [&](int a, int b) {
-    const int low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
-    parent[static_cast<std::size_t>(high)] = low;
-  };
-  for (const Beam& beam : m.beams)
-    if (resists_everything(beam.rigidity)) join(beam.a, beam.b);
-  for (const auto& [a, b] : m.welds) join(a, b);
-  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root(static_cast<int>(i));
-  return parent;
-}
-
 /// What a beam resists that lacks some rigidity: elongation, torsion and the bending of both ends in each plane.
 void append_deformations(std::vector<LinearForm>& forms, const Beam& beam) {
   const Vector3 x = beam.R_WM.col(0), y = beam.R_WM.col(1), z = beam.R_WM.col(2);
@@ -150,6 +128,27 @@ void set_coordinates(Piece& piece, std::vector<Hold> holds) {
 }
 
 }  // namespace
+
+std::vector<int> first_nodes(const Model& m) {
+  std::vector<int> parent(m.nodes.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&parent](int i) {
+    while (parent[static_cast<std::size_t>(i)] != i) {
+      int& up = parent[static_cast<std::size_t>(i)];
+      i = up = parent[static_cast<std::size_t>(up)];
+    }
+    return i;
+  };
+  const auto join = [&](int a, int b) {
+    const int low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
+    parent[static_cast<std::size_t>(high)] = low;
+  };
+  for (const Beam& beam : m.beams)
+    if (resists_everything(beam.rigidity)) join(beam.a, beam.b);
+  for (const auto& [a, b] : m.welds) join(a, b);
+  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root(static_cast<int>(i));
+  return parent;
+}
 
 Pieces pieces_of(const Model& m, const std::vector<char>& resists) {
   Pieces out;

@@ -32,6 +32,9 @@ struct Pieces {
   int coordinates = 0;  ///< number of y
 };
 
+/// By node, the first node of its piece: beams whose rigidities are all positive, and welds, hold pieces together.
+std::vector<int> first_nodes(const Model&);
+
 /// Directions that no connection sees to 1e-10 of the strongest are loose. `resists`, by spring: whether it counts.
 Pieces pieces_of(const Model&, const std::vector<char>& resists);
 

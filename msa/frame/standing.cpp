@@ -4,43 +4,19 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <numeric>
 
 #include "msa/frame/elimination.h"
+#include "msa/frame/pieces.h"
 
 namespace deflect::frame {
 namespace {
 
 constexpr double held = 1e-10;  // of a body's largest hold, squared: any less is no hold
 
-bool rigidities_positive(const BeamRigidity& r) { return std::min({r.EA, r.EIy, r.EIz, r.GJ, r.GAs_y, r.GAs_z}) > 0; }
-
-/// By node, the first node of its body.
-std::vector<int> bodies_of(const Model& m) {
-  std::vector<int> parent(m.nodes.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](int i) {
-    while (parent[static_cast<std::size_t>(i)] != i) {
-      int& up = parent[static_cast<std::size_t>(i)];
-      i = up = parent[static_cast<std::size_t>(up)];
-    }
-    return i;
-  };
-  const auto join = [&](int a, int b) {
-    const int low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
-    parent[static_cast<std::size_t>(high)] = low;
-  };
-  for (const Beam& beam : m.beams)
-    if (rigidities_positive(beam.rigidity)) join(beam.a, beam.b);
-  for (const auto& [a, b] : m.welds) join(a, b);
-  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root(static_cast<int>(i));
-  return parent;
-}
-
 }  // namespace
 
 std::string not_proved_standing(const Model& m) {
-  const std::vector<int> body = bodies_of(m);
+  const std::vector<int> body = first_nodes(m);
   const double length = characteristic_length(m);
   const auto nodal = static_cast<int>(6 * m.nodes.size());
   std::vector<Matrix6> hold(m.nodes.size(), Matrix6::Zero());  // by body, Σ row · rowᵀ over its six numbers
