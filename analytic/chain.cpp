@@ -62,10 +62,10 @@ void add_joint(Chain& chain, const PlacedJoint& j, const Vector3& p_W, const AsP
   for (std::size_t i = 0; i < 6; ++i) {
     if (j.free(i)) append(chain.J_q, freedom_twist(j, i, p_W));
     if (!j.elastic(i)) continue;
-    ElasticFreedom freedom{freedom_twist(j, i, p_W), {{}, j.preload[i]}, j.part, {}};
+    ElasticFreedom freedom{freedom_twist(j, i, p_W), {{}, j.preload[i]}, j.part, {}, i >= 3};
     for (const Law& law : j.laws[i])
       if (is_stepped(law))
-        freedom.stepped.push_back({law, j.preload[i], i >= 3});
+        freedom.stepped.push_back({law, j.preload[i], i >= 3, j.part});
       else
         freedom.spring.laws.push_back(law);
     if (!p.count(Erratum::scalar_direction)) {
@@ -171,43 +171,12 @@ Vector6 Chain::deflection(const Vector6& F, const Circumstances& c) const {
   return d;
 }
 
-bool Chain::has_open(const Circumstances& c) const {
-  for (const ElasticFreedom& f : freedoms)
-    for (const SteppedLaw& law : f.stepped)
-      if (step_of(law, 0, c).open) return true;
-  return false;
-}
-
-Response Chain::respond_open(const Vector6& F, double least, const Circumstances& c) const {
-  Response r = respond(F, least, c);
-  const Eigen::Index before = r.tangent.J.cols();
-  for (const ElasticFreedom& f : freedoms)
-    for (const SteppedLaw& law : f.stepped)
-      if (step_of(law, 0, c).open) append(r.tangent.J, f.twist);
-  if (r.tangent.J.cols() > before) r.tangent.N = carried_wrenches(r.tangent.J, length);
-  return r;
-}
-
-void Chain::add_open_motions(const Vector6& t, const Vector6& F, const Circumstances& c, VectorX& motions) const {
-  if (!has_open(c)) return;
-  Matrix6X J = J_q;
-  std::vector<const SteppedLaw*> open;
-  for (const ElasticFreedom& f : freedoms)
-    for (const SteppedLaw& law : f.stepped)
-      if (step_of(law, 0, c).open) {
-        append(J, f.twist);
-        open.push_back(&law);
-      }
-  Vector6 weight = Vector6::Ones();
-  weight.tail<3>().setConstant(length);
-  Eigen::CompleteOrthogonalDecomposition<MatrixX> solver(weight.asDiagonal() * J);
-  const VectorX free = solver.solve(weight.cwiseProduct(t - respond(F, 0, c).d));
-  for (std::size_t i = 0; i < open.size(); ++i)
-    motions(open[i]->number) = step_of(*open[i], 0, c).offset + free(J_q.cols() + static_cast<Eigen::Index>(i));
-}
-
 Matrix6 Chain::stiffness(const Vector6& F, const Circumstances& c) const {
   return analytic::stiffness(respond(F, 0, c).tangent, length, name);
+}
+
+Resistance Chain::resistance(const Vector6& F, const Circumstances& c) const {
+  return analytic::resistance(respond(F, 0, c).tangent, length);
 }
 
 bool Chain::linear() const {
@@ -233,6 +202,17 @@ void Chain::add_energies(const Vector6& F, const Circumstances& c, std::map<std:
     const Group::State state = g.solve(F, c);
     for (std::size_t i = 0; i < g.branches.size(); ++i) g.branches[i].add_energies(state.wrenches[i], c, sums);
   }
+}
+
+void Chain::bent_laws_to_steps() {
+  for (ElasticFreedom& f : freedoms) {
+    const auto linear = std::stable_partition(f.spring.laws.begin(), f.spring.laws.end(), is_linear);
+    for (auto law = linear; law != f.spring.laws.end(); ++law)
+      f.stepped.push_back({*law, f.spring.preload, f.rotation, f.part});
+    f.spring.laws.erase(linear, f.spring.laws.end());
+  }
+  for (Group& g : groups)
+    for (Chain& branch : g.branches) branch.bent_laws_to_steps();
 }
 
 void Chain::number_steps(std::vector<SteppedLaw>& all) {

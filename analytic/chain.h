@@ -23,6 +23,7 @@ struct ElasticFreedom {
   Spring spring;
   std::string part;
   std::vector<SteppedLaw> stepped;
+  bool rotation = false;
 };
 
 /// What a mechanism is asked under, beside its load.
@@ -73,17 +74,14 @@ struct Chain {
   Vector6 deflection(const Vector6& F, const Circumstances&) const;
   /// Tangent stiffness K_c. Contacts without load do not resist. Throws ModelError where it is infinite.
   Matrix6 stiffness(const Vector6& F, const Circumstances&) const;
+  Resistance resistance(const Vector6& F, const Circumstances&) const;
   /// No law's stiffness depends on its load.
   bool linear() const;
   bool fits() const;  ///< neither the chain nor a branch of it has a misfit
   /// Adds the strain energy of each part, J.
   void add_energies(const Vector6& F, const Circumstances&, std::map<std::string, double>&) const;
-  /// The chain where open steps of its own freedoms are released: it carries what does no work on them. Of `d` the part
-  /// on what is released is arbitrary.
-  Response respond_open(const Vector6& F, double least, const Circumstances&) const;
-  /// Motions of the open steps of its own freedoms where its far end is moved by t.
-  void add_open_motions(const Vector6& t, const Vector6& F, const Circumstances&, VectorX&) const;
-  bool has_open(const Circumstances&) const;
+  /// Laws that bend become steps too, so that what is left between the steps is linear.
+  void bent_laws_to_steps();
   /// Adds its laws that jump, and those of its groups, to the list and numbers them by it.
   void number_steps(std::vector<SteppedLaw>&);
   bool has_steps() const;
@@ -109,7 +107,6 @@ struct Group {
     bool converged = false;
     int iterations = 0;
     double misfit = 0;  ///< how far branches' ends and the body disagree, relative to t
-    bool open = false;  ///< open steps were released, not imposed
   };
 
   /// Newton on the branches' forces. F is one that the branches together carry, JᵀF = 0. Throws ModelError where rigid
@@ -120,11 +117,11 @@ struct Group {
   Flexibility flexibility(const std::vector<Vector6>& wrenches, double least, const Circumstances&) const;
   /// Σ K_c. Throws ModelError naming the branch that is rigid.
   Matrix6 stiffness(const std::vector<Vector6>& wrenches, const Circumstances&) const;
+  Resistance resistance(const std::vector<Vector6>& wrenches, const Circumstances&) const;
   bool linear() const;  ///< of every branch
   bool fits() const;
 
  private:
-  State solve(const Vector6& F, const Circumstances&, bool open) const;
   void settle(State&, double least, const Circumstances&) const;
 };
 

@@ -75,7 +75,8 @@ Matrix6X free_twists(const Matrix6X& N, double length) {
 Matrix6X roots_of(const Matrix6& C, double length) {
   const Matrix6 weighed = weights(length).asDiagonal() * C * weights(length).asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen((weighed + weighed.transpose()) / 2);
-  const Vector6 root = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
+  const double rounding = 1e-15 * std::max(eigen.eigenvalues()(5), 0.0);
+  const Vector6 root = eigen.eigenvalues().unaryExpr([&](double g) { return g > rounding ? std::sqrt(g) : 0; });
   return weights(1 / length).asDiagonal() * (eigen.eigenvectors() * root.asDiagonal());
 }
 
@@ -90,35 +91,60 @@ Principal principal(const Flexibility& f, double length) {
   return out;
 }
 
-Matrix6 stiffness(const Flexibility& f, double length, const std::string& name) {
-  if (f.N.cols() == 0) return Matrix6::Zero();
-  MatrixX rigid;  // wrenches under which nothing yields
-  Matrix6 K = Matrix6::Zero();
+Resistance resistance(const Flexibility& f, double length) {
+  Resistance out;
+  if (f.N.cols() == 0) return out;
   if (f.rooted) {
     const Principal p = principal(f, length);
     const Eigen::Index yielding = (p.g.array() > 0).count();
-    rigid = f.N * p.V.rightCols(f.N.cols() - yielding);
+    out.rigid = f.N * p.V.rightCols(f.N.cols() - yielding);
     const MatrixX N = f.N * p.V.leftCols(yielding);
-    K = N * p.g.head(yielding).cwiseInverse().asDiagonal() * N.transpose();
-  } else {
-    Eigen::FullPivLU<MatrixX> lu;
-    lu.setThreshold(1e-13);
-    lu.compute(f.N.transpose() * f.C * f.N);
-    if (lu.isInvertible())
-      K = f.N * lu.solve(f.N.transpose());
-    else
-      rigid = f.N * lu.kernel();
+    out.K = N * p.g.head(yielding).cwiseInverse().asDiagonal() * N.transpose();
+    return out;
   }
-  if (rigid.cols() == 0) return K;
-  const MatrixX along = reduced(weights(1 / length).asDiagonal() * rigid);
+  Eigen::FullPivLU<MatrixX> lu;
+  lu.setThreshold(1e-13);
+  lu.compute(f.N.transpose() * f.C * f.N);
+  if (lu.isInvertible())
+    out.K = f.N * lu.solve(f.N.transpose());
+  else
+    out.rigid = f.N * lu.kernel();
+  return out;
+}
+
+Resistance side_by_side(const std::vector<Resistance>& parts, double length) {
+  Resistance out;
+  for (const Resistance& part : parts) {
+    out.K += part.K;
+    out.rigid.conservativeResize(6, out.rigid.cols() + part.rigid.cols());
+    out.rigid.rightCols(part.rigid.cols()) = part.rigid;
+  }
+  if (out.rigid.cols() == 0) return out;
+  const MatrixX free = complement(weights(1 / length).asDiagonal() * out.rigid);
+  const MatrixX moved = weights(1 / length).asDiagonal() * free, resisted = weights(length).asDiagonal() * free;
+  out.K = resisted * (moved.transpose() * out.K * moved) * resisted.transpose();
+  out.rigid = weights(length).asDiagonal() * complement(free);
+  return out;
+}
+
+std::vector<std::string> motions_resisted_by(const Matrix6X& wrenches, double length) {
+  const MatrixX along = reduced(weights(1 / length).asDiagonal() * wrenches);
   std::vector<std::string> motions;
   for (Eigen::Index i = 0; i < along.cols(); ++i)
     motions.push_back(resisted_motion(weights(length).cwiseProduct(along.col(i)), length));
+  return motions;
+}
+
+Matrix6 finite(const Resistance& r, double length, const std::string& name) {
+  if (r.rigid.cols() == 0) return r.K;
   throw ModelError(
       fmt::format("{}: infinite stiffness: held rigidly, nothing yields in {}; the pose is singular, or a member, "
-                  "joint or actuator "
-                  "must be given some compliance",
-                  name, fmt::join(motions, "; in ")));
+                  "joint or actuator must be given some compliance",
+                  name, fmt::join(motions_resisted_by(r.rigid, length), "; in ")));
+}
+
+Matrix6 stiffness(const Flexibility& f, double length, const std::string& name) {
+  return finite(resistance(f, length), length, name);
 }
 
 }  // namespace deflect::analytic

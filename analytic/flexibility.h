@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "msa/base/spatial.h"
 
@@ -42,8 +43,26 @@ Principal principal(const Flexibility&, double length);
 /// Roots of a symmetric C ⪰ 0, rotations weighed by the length (m).
 Matrix6X roots_of(const Matrix6& C, double length);
 
+/// A stiffness that is infinite along some motions: nothing yields under the wrenches `rigid` (columns), so that only
+/// twists t with rigidᵀt = 0 are possible. On these K t is the wrench, up to rigid ones; rotations weighed by a length,
+/// K takes the one perpendicular to them.
+struct Resistance {
+  Matrix6 K = Matrix6::Zero();
+  Matrix6X rigid = Matrix6X(6, 0);
+};
+Resistance resistance(const Flexibility&, double length);
+
+/// The sum of resistances side by side, its K on the motions that all of them leave.
+Resistance side_by_side(const std::vector<Resistance>&, double length);
+
+/// "rotation about (0, 0, 1)", for each motion on which the wrenches do work.
+std::vector<std::string> motions_resisted_by(const Matrix6X& wrenches, double length);
+
 /// K = N (NᵀCN)⁻¹Nᵀ, which is C⁻¹ − C⁻¹J(JᵀC⁻¹J)⁻¹JᵀC⁻¹ where C⁻¹ exists; 0 where nothing is carried. Throws ModelError
 /// saying of `name` where nothing yields.
 Matrix6 stiffness(const Flexibility&, double length, const std::string& name);
+
+/// The same of what is known already.
+Matrix6 finite(const Resistance&, double length, const std::string& name);
 
 }  // namespace deflect::analytic

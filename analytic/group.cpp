@@ -22,8 +22,8 @@ Vector6 weighed(const Vector6& F, double length) {
 /// not be symmetric): it carries N λ more when Mᵀt = g λ + e, t what the far body moves more and `d` by how much the
 /// branch is ahead of it; M = N but for signs where C is symmetric. A g that is lost in the rounding of the largest is
 /// 0: there the branch is rigid.
-struct Linearised {
-  Linearised(const Flexibility& f, double length, const Vector6& d) : N(f.N), M(f.N) {
+struct LinearisedBranch {
+  LinearisedBranch(const Flexibility& f, double length, const Vector6& d) : N(f.N), M(f.N) {
     if (N.cols() == 0) return;
     if (f.rooted) {
       const Principal p = principal(f, length);
@@ -53,8 +53,8 @@ struct Linearised {
 /// Z spans the forces of rigid branches that cancel each other, none of which act when the branches fit, Yᵀe = 0.
 class Parallel {
  public:
-  Parallel(std::vector<Linearised> branches, const Matrix6X& R) : branches_(std::move(branches)), R_(R) {
-    for (const Linearised& b : branches_)
+  Parallel(std::vector<LinearisedBranch> branches, const Matrix6X& R) : branches_(std::move(branches)), R_(R) {
+    for (const LinearisedBranch& b : branches_)
       if (b.g.size() > 0) c_ = std::max(c_, b.g(0));
     if (c_ == 0) c_ = 1;
     const Eigen::Index r = R.cols();
@@ -63,7 +63,7 @@ class Parallel {
       columns.conservativeResize(column.size(), columns.cols() + 1);
       columns.rightCols<1>() = column;
     };
-    for (const Linearised& b : branches_)
+    for (const LinearisedBranch& b : branches_)
       for (Eigen::Index j = 0; j < b.g.size(); ++j) {
         const VectorX n = R.transpose() * b.N.col(j), m = R.transpose() * b.M.col(j);
         if (eliminated(b, j)) {
@@ -102,12 +102,12 @@ class Parallel {
     const Eigen::Index r = R_.cols(), k = lu_.cols() - r;
     VectorX right(r + k);
     right.head(r) = R_.transpose() * F;
-    for (const Linearised& b : branches_)
+    for (const LinearisedBranch& b : branches_)
       for (Eigen::Index j = 0; j < b.g.size(); ++j)
         if (eliminated(b, j)) right.head(r) += R_.transpose() * b.N.col(j) * (b.e(j) / b.g(j));
     for (Eigen::Index i = 0; i < k; ++i) right(r + i) = kept_[static_cast<std::size_t>(i)].e;
     size = std::max(size, F.norm());
-    for (const Linearised& b : branches_) size = std::max(size, b.e.norm() / c_);
+    for (const LinearisedBranch& b : branches_) size = std::max(size, b.e.norm() / c_);
     if (k > 0 && (Y_.transpose() * right.tail(k)).norm() > 1e-9 * size)
       throw ModelError(
           fmt::format("{} cannot be assembled: the misfits contradict each other by {:.3g} mm and nothing yields", name,
@@ -116,7 +116,7 @@ class Parallel {
     t = c_ * (R_ * solution.head(r));
     Eigen::Index next = r;
     for (std::size_t i = 0; i < branches_.size(); ++i) {
-      const Linearised& b = branches_[i];
+      const LinearisedBranch& b = branches_[i];
       wrenches[i].setZero();
       for (Eigen::Index j = 0; j < b.g.size(); ++j)
         wrenches[i] += b.N.col(j) * (eliminated(b, j) ? (b.M.col(j).dot(t) - b.e(j)) / b.g(j) : solution(next++));
@@ -134,9 +134,9 @@ class Parallel {
     double g, e;
   };
 
-  bool eliminated(const Linearised& b, Eigen::Index j) const { return b.g(j) > 1e-6 * c_; }
+  bool eliminated(const LinearisedBranch& b, Eigen::Index j) const { return b.g(j) > 1e-6 * c_; }
 
-  std::vector<Linearised> branches_;
+  std::vector<LinearisedBranch> branches_;
   const Matrix6X& R_;
   double c_ = 0;  // largest compliance
   std::vector<Kept> kept_;
@@ -214,37 +214,17 @@ std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const Circ
 }
 
 Group::State Group::solve(const Vector6& F, const Circumstances& c) const {
-  const bool open = branches.size() > 1 && std::any_of(branches.begin(), branches.end(),
-                                                       [&](const Chain& chain) { return chain.has_open(c); });
-  return solve(F, c, open);
-}
-
-Group::State Group::solve(const Vector6& F, const Circumstances& c, bool open) const {
   // A chain alone is asked directly: stiffness is needed to share forces only.
   if (branches.size() == 1) {
     const Response r = branches[0].respond(F, 0, c);
     return {r.d, {F}, r.converged, 1, 0};
   }
-  if (determinate && !open)
+  if (determinate)
     if (std::optional<State> s = solve_by_statics(F, c)) return *s;
-  const auto response = [&](std::size_t i, const Vector6& wrench, double least) {
-    return open ? branches[i].respond_open(wrench, least, c) : branches[i].respond(wrench, least, c);
-  };
   const double load = weighed(F, length).norm();
-  Matrix6X resisted = R;
-  if (open) {
-    std::vector<Flexibility> tangents;
-    for (std::size_t i = 0; i < branches.size(); ++i) tangents.push_back(response(i, Vector6::Zero(), 1).tangent);
-    Matrix6X free;
-    split(tangents, length, free, resisted);
-    // What is open cannot stay so where the load moves it: then its offset is what the caller says.
-    const double driven = free.cols() > J.cols() ? (free.transpose() * F).norm() : 0;
-    if (driven > 1e-9 * load) return solve(F, c, false);
-  }
   State s;
-  s.open = open;
   s.wrenches.assign(branches.size(), Vector6::Zero());
-  s.converged = resisted.cols() == 0;  // carries nothing
+  s.converged = R.cols() == 0;  // carries nothing
   // Contacts have no stiffness at rest: the first step takes them as under the whole load (where there is none, 1 N),
   // the others at a force far below the largest for rest.
   double least = load > 0 ? load : 1;
@@ -253,18 +233,18 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c, bool open) c
   const bool straight = linear();
   while (!s.converged && s.iterations < 100) {
     ++s.iterations;
-    std::vector<Linearised> linearised;
+    std::vector<LinearisedBranch> linearised;
     Vector6 missing = F, moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
-      const Response r = response(i, s.wrenches[i], least);
+      const Response r = branches[i].respond(s.wrenches[i], least, c);
       linearised.emplace_back(r.tangent, length, r.d - s.t);
       missing -= s.wrenches[i];
-      const Linearised& b = linearised.back();
+      const LinearisedBranch& b = linearised.back();
       for (Eigen::Index j = 0; j < b.g.size(); ++j)
         if (b.g(j) > 1e-6 * b.g(0)) held = std::max(held, std::abs(b.e(j)) / b.g(j));
     }
     std::vector<Vector6> more(branches.size());
-    Parallel(std::move(linearised), resisted).solve(missing, moved, more, size_of_forces, name);
+    Parallel(std::move(linearised), R).solve(missing, moved, more, size_of_forces, name);
     const double before = change;
     double largest = 0;
     change = 0;
@@ -286,7 +266,7 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c, bool open) c
     // Of a contact that is hardly loaded, forces that settle may leave the deflection open.
     if (s.converged) settle(s, least, c);
   }
-  if (resisted.cols() == 0) settle(s, least, c);
+  if (R.cols() == 0) settle(s, least, c);
   return s;
 }
 
@@ -297,8 +277,7 @@ void Group::settle(State& s, double least, const Circumstances& c) const {
   s.misfit = 0;
   for (std::size_t i = 0; i < branches.size(); ++i) {
     if (branches[i].N.cols() == 0) continue;
-    const Response r =
-        s.open ? branches[i].respond_open(s.wrenches[i], least, c) : branches[i].respond(s.wrenches[i], least, c);
+    const Response r = branches[i].respond(s.wrenches[i], least, c);
     s.converged = s.converged && r.converged;
     if (r.tangent.N.cols() == 0) continue;
     const VectorX d = r.tangent.N.transpose() * r.d, moved = r.tangent.N.transpose() * s.t;
@@ -327,7 +306,7 @@ Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double leas
   if (released) split(tangents, length, f.J, others);
   if (others.cols() == 0) return f;
   f.N = carried_wrenches(f.J, length);
-  std::vector<Linearised> linearised;
+  std::vector<LinearisedBranch> linearised;
   for (const Flexibility& t : tangents) linearised.emplace_back(t, length, Vector6::Zero());
   f.C = Parallel(std::move(linearised), others).compliance();
   f.rooted = std::all_of(tangents.begin(), tangents.end(), [](const Flexibility& t) { return t.rooted; });
@@ -339,6 +318,12 @@ Matrix6 Group::stiffness(const std::vector<Vector6>& wrenches, const Circumstanc
   Matrix6 K = Matrix6::Zero();
   for (std::size_t i = 0; i < branches.size(); ++i) K += branches[i].stiffness(wrenches[i], c);
   return K;
+}
+
+Resistance Group::resistance(const std::vector<Vector6>& wrenches, const Circumstances& c) const {
+  std::vector<Resistance> parts;
+  for (std::size_t i = 0; i < branches.size(); ++i) parts.push_back(branches[i].resistance(wrenches[i], c));
+  return side_by_side(parts, length);
 }
 
 bool Group::linear() const {

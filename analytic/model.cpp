@@ -60,8 +60,16 @@ AnalyticModel::AnalyticModel(const Configuration& given, const AsPrinted& as_pri
   legs_ = legs_of(c, as_printed);
   through_ = chain_of({"base and tool", {c.base, c.tool}}, c.pose.p_WT, c.size);
   weight_ << c.weight, Vector3::Zero();
+  const bool jumps = through_.has_steps() || std::any_of(legs_.branches.begin(), legs_.branches.end(),
+                                                         [](const Chain& leg) { return leg.has_steps(); });
   for (Chain& leg : legs_.branches) leg.number_steps(stepped_);
   if (!through_.has_steps() && as_printed.empty()) lines_ = Lines::of(legs_);
+  if (jumps && !lines_ && as_printed.empty()) {
+    stepped_.clear();
+    for (Chain& leg : legs_.branches) leg.bent_laws_to_steps();
+    through_.bent_laws_to_steps();
+    for (Chain& leg : legs_.branches) leg.number_steps(stepped_);
+  }
   through_.number_steps(stepped_);
   double stiffest = 0, beside = 0;
   for_each_part(c.legs, [&](const auto& part) {
@@ -89,7 +97,6 @@ AnalyticSolution AnalyticModel::solution(const Group::State& state, const Vector
   s.converged = state.converged;
   s.iterations = state.iterations;
   s.misfit = state.misfit;
-  s.open = state.open;
   s.under = under;
   return s;
 }
@@ -116,26 +123,29 @@ AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& 
   const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
   // Where heat or misfits are all that drives it, forces that should vanish are the rounding of those that they held.
   const double held = 1e-3 * (heat_force_ * std::abs(conditions.warmer) + misfit_force_);
-  const BalancedSteps found = balance(stepped_, conditions.slips, [&](const std::vector<Step>& steps) {
-    under.steps = steps;
-    const AnalyticSolution s = equilibrium_under(F, under);
-    const auto n = static_cast<Eigen::Index>(stepped_.size());
-    SteppedForces out{VectorX::Zero(n), VectorX::Constant(n, std::numeric_limits<double>::quiet_NaN()),
-                      std::max(size(F), held), length, s.converged};
-    const Vector6 t = s.displacement - through_.deflection(F, drawn(under));
-    for (std::size_t i = 0; i < s.leg_wrenches.size(); ++i) {
-      legs_.branches[i].add_step_forces(s.leg_wrenches[i], under, out.forces);
-      out.largest = std::max(out.largest, size(s.leg_wrenches[i]));
-      if (s.open) legs_.branches[i].add_open_motions(t, s.leg_wrenches[i], under, out.motions);
-    }
-    through_.add_step_forces(F, under, out.forces);
-    return out;
-  });
+  if (!imposed_) imposed_ = std::make_shared<Imposed>();
+  const BalancedSteps found = balance(
+      stepped_, conditions.slips,
+      [&](const std::vector<Step>& steps) {
+        under.steps = steps;
+        const AnalyticSolution s = equilibrium_under(F, under);
+        const auto n = static_cast<Eigen::Index>(stepped_.size());
+        SteppedForces out{VectorX::Zero(n), s.displacement, std::max(size(F), held), length, s.converged};
+        for (std::size_t i = 0; i < s.leg_wrenches.size(); ++i) {
+          legs_.branches[i].add_step_forces(s.leg_wrenches[i], under, out.forces);
+          out.largest = std::max(out.largest, size(s.leg_wrenches[i]));
+        }
+        through_.add_step_forces(F, under, out.forces);
+        return out;
+      },
+      *imposed_);
   under.steps = found.steps;
   AnalyticSolution s = equilibrium_under(F, under);
   s.slips = found.slips;
   s.converged = s.converged && found.converged;
   s.message = found.reason;
+  s.loose = found.loose;
+  s.free = found.twists, s.least = found.least, s.most = found.most;
   return s;
 }
 
@@ -210,14 +220,20 @@ Flexibility AnalyticModel::flexibility(const AnalyticSolution& s) const {
 
 Matrix6 AnalyticModel::leg_stiffness(std::size_t leg, const AnalyticSolution& s) const {
   if (s.deformed) return analytic::leg_stiffness(*s.deformed, leg);
-  return legs_.branches[leg].stiffness(s.leg_wrenches[leg], s.under);
+  return legs_.branches[leg].resistance(s.leg_wrenches[leg], s.under).K;
+}
+
+Resistance AnalyticModel::resistance(const AnalyticSolution& s) const {
+  if (s.deformed) return {analytic::stiffness(*s.deformed), Matrix6X(6, 0)};
+  // Between a rigid base and a rigid tool the legs' stiffnesses add up without a digit lost.
+  if (through_.members.empty() && through_.freedoms.empty()) return legs_.resistance(s.leg_wrenches, s.under);
+  return analytic::resistance(flexibility(s), legs_.length);
 }
 
 Matrix6 AnalyticModel::stiffness(const AnalyticSolution& s) const {
   if (s.deformed) return analytic::stiffness(*s.deformed);
-  // Between a rigid base and a rigid tool the legs' stiffnesses add up without a digit lost.
   if (through_.members.empty() && through_.freedoms.empty()) return legs_.stiffness(s.leg_wrenches, s.under);
-  return analytic::stiffness(flexibility(s), legs_.length, legs_.name);
+  return finite(resistance(s), legs_.length, legs_.name);
 }
 
 Matrix6 AnalyticModel::compliance(const AnalyticSolution& s) const {

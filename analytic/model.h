@@ -30,9 +30,13 @@ struct AnalyticSolution {
   int iterations = 0;
   double misfit = 0;          ///< how far the legs' ends and the platform disagree, relative to the displacement
   std::vector<double> slips;  ///< of the frictions after the load, as in Conditions
-  bool open = false;          ///< open steps were released, not imposed
-  Circumstances under;        ///< warmth, and the phases of laws that jump (steps.h)
-  std::string message;        ///< where not converged: why, when a law that jumps or the geometry is to blame
+  /// Where the mechanism floats in its play, which nothing loads: the parts that have it, the twists by which T may
+  /// move (columns), by between least and most along each axis from the displacement, which is the middle (steps.h).
+  std::vector<std::string> loose;
+  Matrix6X free = Matrix6X(6, 0);
+  Vector6 least = Vector6::Zero(), most = Vector6::Zero();
+  Circumstances under;  ///< warmth, and the phases of laws that jump (steps.h)
+  std::string message;  ///< where not converged: why, when a law that jumps or the geometry is to blame
   Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();  ///< of T, m and rad: about what dividing members leaves
   std::shared_ptr<const Deformed> deformed;  ///< the state in a geometry that is not linear (deformed.h)
 };
@@ -63,6 +67,8 @@ class AnalyticModel {
   /// Tangent stiffness at T in the solution's state, and of one leg alone. Throws ModelError naming the leg and where
   /// nothing yields when it is infinite, as in a singular pose of a serial arm. Contacts without load let go.
   Matrix6 stiffness(const AnalyticSolution&) const;
+  /// The same where it is infinite along some motions; never throws for that. A leg's is that of the motions it leaves.
+  Resistance resistance(const AnalyticSolution&) const;
   Matrix6 leg_stiffness(std::size_t leg, const AnalyticSolution&) const;
 
   /// Tangent compliance at T, also where the stiffness is infinite. Throws ModelError naming the motion where contacts
@@ -89,6 +95,7 @@ class AnalyticModel {
   std::vector<SteppedLaw> stepped_;
   std::optional<Lines> lines_;  ///< where frictions beside the legs are all that jumps
   int frictions_ = 0;
+  mutable std::shared_ptr<Imposed> imposed_;  // made when first needed: a model is for one thread at a time
 };
 
 }  // namespace deflect::analytic

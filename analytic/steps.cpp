@@ -2,43 +2,45 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+
+#include "analytic/deflection.h"
+#include "msa/base/set_valued_laws.h"
 
 namespace deflect::analytic {
 namespace {
 
-enum class Phase { start, plus, minus, open, sticks };  // of one-sided laws, plus pulls and minus pushes
+enum class Phase { start, plus, minus, open, sticks, bends };  // of one-sided laws, plus pulls and minus pushes
 
-// Of the largest force: a law that carries less is not loaded. Signs and limits are judged to a hundredth of it.
-constexpr double unloaded = 1e-9, tolerance = 1e-11;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double sign(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
 
 double compliance(const OneSidedLaw& l, double f) { return (f < 0 ? l.push : l.pull).value_or(0); }
 
-/// A law with its phase, in terms of the transmitted force f.
+/// A law in a phase.
 struct Member {
   const SteppedLaw* stepped;
   double slip = 0;
   Phase phase = Phase::start;
   double imposed = 0;  // offset while released
-  int flips = 0;       // of a clearance, from side to side
-  bool idle = false;   // open since it was never loaded: it stays in the middle if nothing asks for more
+  double force = 0;    // of a law that bends
 
   const Law& law() const { return stepped->law; }
   bool released() const {
     return phase == Phase::open || (std::holds_alternative<FrictionLaw>(law()) && phase != Phase::sticks);
   }
-  double known_force() const {
-    const auto* friction = std::get_if<FrictionLaw>(&law());
-    const double own = !friction ? 0 : phase == Phase::plus ? friction->force : -friction->force;
-    return own - stepped->preload;
-  }
   Step step() const {
-    if (released()) return {imposed, 0, true, phase == Phase::open && !idle && stepped->preload == 0};
+    if (released()) return {imposed, 0, true};
     const double P = stepped->preload;
+    if (phase == Phase::bends) {
+      const double d = analytic::deflection(law(), force + P) - analytic::deflection(law(), P);
+      const double c = analytic::compliance(law(), force + P);
+      return std::isfinite(c) ? Step{d - c * force, c, false} : Step{d, 0, true};
+    }
     if (const auto* l = std::get_if<OneSidedLaw>(&law())) {
       const double c = compliance(*l, phase == Phase::minus ? -1 : 1);
       return {c * P - compliance(*l, P) * P, c, false};
@@ -49,235 +51,276 @@ struct Member {
     }
     return {slip, 1 / std::get<FrictionLaw>(law()).stiffness, false};
   }
-
-  /// The phase that the force (and the offset, of a released law) speaks for; `stuck`: no offset changes the force.
-  Phase judged(double f, double scale, bool stuck) const {
-    const double own = f + stepped->preload, little = tolerance * scale;
-    if (std::holds_alternative<OneSidedLaw>(law())) {
-      if (phase == Phase::plus) return own < -little ? Phase::minus : phase;
-      if (phase == Phase::minus) return own > little ? Phase::plus : phase;
-      return own < 0 ? Phase::minus : Phase::plus;
-    }
-    if (const auto* l = std::get_if<ClearanceLaw>(&law())) {
-      const Phase closed = own > 0 ? Phase::plus : Phase::minus;
-      const bool loaded = std::abs(own) > unloaded * scale;
-      if (phase == Phase::start) return loaded ? closed : Phase::open;
-      if (phase != Phase::open) {
-        if (own * (phase == Phase::plus ? 1 : -1) > -little) return phase;
-        return flips < 3 ? closed : Phase::open;  // across at first, into the middle where that does not settle
-      }
-      if (stuck) return loaded ? closed : phase;
-      const double at = imposed + l->gap * sign(stepped->preload);
-      return at > l->gap ? Phase::plus : at < -l->gap ? Phase::minus : phase;
-    }
-    const auto& l = std::get<FrictionLaw>(law());
-    if (phase == Phase::sticks || phase == Phase::start)
-      return own > l.force + little ? Phase::plus : own < -l.force - little ? Phase::minus : Phase::sticks;
-    if (stuck) return Phase::sticks;
-    const double moved = imposed - known_force() / l.stiffness - slip, least = tolerance * std::abs(imposed);
-    return phase == Phase::plus ? (moved < -least ? Phase::sticks : phase) : moved > least ? Phase::sticks : phase;
-  }
 };
+
+/// The force at which a law that bends has a deflection.
+double force_at(const Law& law, double deflection) {
+  const double size = std::abs(deflection);
+  if (size == 0) return 0;
+  if (const auto* l = std::get_if<PowerLaw>(&law))
+    return std::copysign(l->force * std::pow(size / l->deflection, 1 / l->exponent), deflection);
+  if (const auto* l = std::get_if<HardeningLaw>(&law))
+    return l->stiffness * deflection * (1 + deflection * deflection / (l->reference * l->reference));
+  if (std::holds_alternative<HertzPointLaw>(law))
+    return std::copysign(std::pow(size / analytic::deflection(law, 1), 1.5), deflection);
+  double low = 0, high = 1;
+  while (analytic::deflection(law, high) < size) low = high, high *= 4;
+  for (int i = 0; i < 200 && high - low > 1e-16 * high; ++i) {
+    const double middle = low + (high - low) / 2;
+    (analytic::deflection(law, middle) < size ? low : high) = middle;
+  }
+  return std::copysign(low + (high - low) / 2, deflection);
+}
+
+ScalarLaw bent(const Law& law, double P) {
+  const double rest = analytic::deflection(law, P);
+  return {-infinite, infinite, [&law, P, rest](double d) { return force_at(law, d + rest) - P; },
+          [&law, rest](double d) { return 1 / analytic::compliance(law, force_at(law, d + rest)); }};
+}
+
+/// f by δ, both from the preloaded state. A friction's slip counts from there too.
+ScalarLaw scalar_law(const SteppedLaw& stepped, double slip) {
+  const double P = stepped.preload;
+  if (const auto* l = std::get_if<ClearanceLaw>(&stepped.law)) {
+    const double rest = l->gap * sign(P);
+    return {-l->gap - rest, l->gap - rest, [P](double) { return -P; }, [](double) { return 0.0; }, -rest, l->gap};
+  }
+  if (const auto* l = std::get_if<FrictionLaw>(&stepped.law)) {
+    const double k = l->stiffness, F = l->force;
+    return {-infinite,
+            infinite,
+            [=](double d) { return std::clamp(k * (d - slip) + P, -F, F) - P; },
+            [=](double d) { return std::abs(k * (d - slip) + P) > F ? 0.0 : k; },
+            slip - P / k,
+            std::max(F / k, 1e-15)};
+  }
+  if (!is_stepped(stepped.law)) return bent(stepped.law, P);
+  const OneSidedLaw one = std::get<OneSidedLaw>(stepped.law);
+  const double rest = compliance(one, P) * P;
+  const auto slope = [one, rest](double d) {
+    const double c = compliance(one, d + rest);
+    return c > 0 ? 1 / c : 0;
+  };
+  return {compliance(one, -1) > 0 ? -infinite : -rest, compliance(one, 1) > 0 ? infinite : -rest,
+          [=](double d) { return slope(d) * (d + rest) - P; }, slope};
+}
+
+/// δ of a law where δ + c f = p.
+double at_sum(const ScalarLaw& law, double c, double p) {
+  const auto lacks = [&](double d) { return p - d - c * law.force(d); };  // falls with d
+  if (std::isfinite(law.low) && lacks(law.low) <= 0) return law.low;
+  if (std::isfinite(law.high) && lacks(law.high) >= 0) return law.high;
+  double low = law.low, high = law.high;
+  for (double width = std::abs(p) + 1e-12; !std::isfinite(low) || !std::isfinite(high); width *= 4) {
+    if (!std::isfinite(low) && lacks(-width) > 0) low = -width;
+    if (!std::isfinite(high) && lacks(width) < 0) high = width;
+  }
+  for (int i = 0; i < 200 && high - low > 1e-16 * (std::abs(low) + std::abs(high)); ++i) {
+    const double middle = low + (high - low) / 2;
+    (lacks(middle) > 0 ? low : high) = middle;
+  }
+  return low + (high - low) / 2;
+}
+
+Phase phase_at_rest(const Law& law) {
+  if (!is_stepped(law)) return Phase::bends;
+  return std::holds_alternative<FrictionLaw>(law) ? Phase::sticks : Phase::plus;
+}
 
 class Balance {
  public:
-  Balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips,
-          const std::function<SteppedForces(const std::vector<Step>&)>& ask)
-      : ask_(ask) {
+  Balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask, Imposed& imposed)
+      : ask_(ask), imposed_(imposed), n_(static_cast<Eigen::Index>(laws.size())) {
     for (const SteppedLaw& l : laws) {
       members_.push_back({&l});
       if (const auto* friction = std::get_if<FrictionLaw>(&l.law)) {
         const auto n = static_cast<std::size_t>(friction->number);
         if (friction->number >= 0 && n < slips.size()) members_.back().slip = slips[n];
-        members_.back().phase = Phase::sticks;
       }
+      laws_.push_back(scalar_law(l, members_.back().slip));
     }
   }
 
   BalancedSteps search() {
-    const std::size_t n = members_.size(), together = 5 + n, rounds = 50 + 20 * n;
-    for (std::size_t round = 0; round < rounds; ++round) {
-      release();
-      if (answer_.forces.isZero(0) && answer_.largest == 0) return result("");
-      const bool one_by_one = round >= together;
-      const std::size_t first = one_by_one ? 7 * round % n : 0;
-      bool changed = close_pushed(first, one_by_one);
-      const bool closed = changed;
-      for (std::size_t k = 0; k < n && !(changed && one_by_one); ++k) {
-        const std::size_t i = (first + k) % n;
-        Member& m = members_[i];
-        const Phase next = m.judged(force(i), scale(i), stuck_[i]);
-        if (next == m.phase || (closed && stuck_[i])) continue;
-        // Where an offset begins: at the side that opens, at the slip so far.
-        const Step now = m.step();
-        m.imposed = m.phase == Phase::start ? 0 : now.offset + now.compliance * force(i);
-        if (m.phase != Phase::start && next != Phase::open) ++m.flips;
-        m.idle = m.phase == Phase::start && next == Phase::open;
-        m.phase = next;
-        changed = true;
+    if (imposed_.c.size() == 0) stiff();
+    SteppedForces at = answer(VectorX::Zero(n_));
+    const bool relaxed = std::all_of(members_.begin(), members_.end(), [](const Member& m) { return m.slip == 0; });
+    if (relaxed && at.forces.isZero(0) && at.largest == 0) return at_rest();
+    if (imposed_.S.size() == 0) linearise(VectorX::Zero(n_), at, 1e3);
+    VectorX o = VectorX::Zero(n_), p;
+    SetValuedSolution found;
+    double before = infinite;
+    for (int round = 0; round < 200; ++round) {
+      const VectorX f0 = at.forces + imposed_.S * o;
+      const MatrixX P = MatrixX::Identity(n_, n_) - MatrixX(imposed_.c.asDiagonal() * imposed_.S);
+      sizes_ = VectorX::Constant(n_, at.largest);
+      for (Eigen::Index i = 0; i < n_; ++i)
+        if (members_[static_cast<std::size_t>(i)].stepped->rotation) sizes_(i) *= at.length;
+      found = solve({imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_}, laws_, imposed_.T);
+      if (found.outcome != SetValuedSolution::Outcome::solved) return failed(found);
+      // Where other laws bend, no further than brings the forces nearer, along p = δ + c f, of which every law has one.
+      const VectorX target = found.d + imposed_.c.cwiseProduct(found.s);
+      VectorX s = found.s;
+      o = found.o;
+      double lacking = 0;
+      for (double part = 1;; part /= 2) {
+        at = answer(o);
+        const double size = std::max({largest(at.forces), largest(found.s), at.largest});
+        lacking = largest(at.forces - s) / size;
+        if (lacking <= 1e-11 || (lacking <= 1e-8 && lacking > 0.5 * before)) return result(found);
+        if ((at.converged && lacking < (1 - 1e-4 * part) * before) || part < 1e-4 || p.size() == 0) break;
+        for (Eigen::Index i = 0; i < n_; ++i) {
+          const double c = imposed_.c(i), here = p(i) + part / 2 * (target(i) - p(i));
+          const double d = at_sum(laws_[static_cast<std::size_t>(i)], c, here);
+          s(i) = (here - d) / c;
+          o(i) = d - c * s(i);
+        }
       }
-      if (!changed) return result(answer_.converged ? overcome() : "the laws between the jumps were not solved");
+      p = o + 2 * imposed_.c.cwiseProduct(s);
+      before = lacking;
+      own_ = imposed_;
+      linearise(o, at, 1e-7);
     }
-    if (const std::string reason = overcome(); !reason.empty()) return result(reason);
-    return result(
-        fmt::format("no state of the clearances and frictions was found that agrees with itself in {} rounds", rounds));
+    BalancedSteps out = result(found);
+    out.converged = false;
+    out.reason = "the laws that bend (contacts, power laws) were not solved beside those that jump";
+    return out;
   }
 
  private:
-  double force(std::size_t i) const { return answer_.forces(static_cast<Eigen::Index>(i)); }
-  double scale(std::size_t i) const { return answer_.largest * (members_[i].stepped->rotation ? answer_.length : 1); }
+  SteppedForces answer(const VectorX& o) const {
+    std::vector<Step> steps;
+    for (Eigen::Index i = 0; i < n_; ++i) steps.push_back({o(i), imposed_.c(i), false});
+    return ask_(steps);
+  }
 
-  std::vector<Step> steps() const {
-    std::vector<Step> out;
-    for (const Member& m : members_) out.push_back(m.step());
+  /// The compliances: first less than all else, then as much as the mechanism itself yields along each law.
+  void stiff() {
+    imposed_.c.resize(n_);
+    const double length = ask_({}).length;
+    for (Eigen::Index i = 0; i < n_; ++i)
+      imposed_.c(i) = members_[static_cast<std::size_t>(i)].stepped->rotation ? 1e-10 / (length * length) : 1e-10;
+    linearise(VectorX::Zero(n_), answer(VectorX::Zero(n_)), 1e3);
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (imposed_.S(i, i) * imposed_.c(i) > 1e-12) imposed_.c(i) = 1 / imposed_.S(i, i);
+    imposed_.S.resize(0, 0);
+  }
+
+  /// S and T by offsets that change forces by so much of the largest.
+  void linearise(const VectorX& o, const SteppedForces& at, double change) {
+    MatrixX S(n_, n_);
+    imposed_.T.resize(6, n_);
+    const double force = at.largest > 0 ? at.largest : 1;
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      const bool rotation = members_[static_cast<std::size_t>(i)].stepped->rotation;
+      VectorX moved = o;
+      const double h = change * force * (rotation ? at.length : 1) * imposed_.c(i);
+      moved(i) += h;
+      const SteppedForces next = answer(moved);
+      S.col(i) = (at.forces - next.forces) / h;
+      imposed_.T.col(i) = (next.displacement - at.displacement) / h;
+    }
+    imposed_.S = S;
+  }
+
+  BalancedSteps at_rest() {
+    for (Member& m : members_) m.phase = phase_at_rest(m.law());
+    for (Member& m : members_)
+      if (std::holds_alternative<ClearanceLaw>(m.law()) && m.stepped->preload == 0) m.phase = Phase::open;
+    return conclude();
+  }
+
+  BalancedSteps result(const SetValuedSolution& found) {
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      Member& m = members_[at];
+      m.imposed = found.d(i);
+      m.force = found.s(i);
+      if (std::holds_alternative<ClearanceLaw>(m.law()))
+        m.phase = found.end[at] > 0 ? Phase::plus : found.end[at] < 0 ? Phase::minus : Phase::open;
+      else if (std::holds_alternative<FrictionLaw>(m.law()))
+        m.phase = found.end[at] > 0 ? Phase::plus : found.end[at] < 0 ? Phase::minus : Phase::sticks;
+      else if (!is_stepped(m.law()))
+        m.phase = std::abs(found.s(i) + m.stepped->preload) <= 1e-11 * sizes_(i) ? Phase::open : Phase::bends;
+      else
+        m.phase = found.s(i) + m.stepped->preload < 0 ? Phase::minus : Phase::plus;
+    }
+    BalancedSteps out = conclude();
+    for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)
+      if (found.loose.row(i).cwiseAbs().maxCoeff() > 0)
+        out.loose.push_back(members_[static_cast<std::size_t>(i)].stepped->part);
+    out.twists = imposed_.T * found.loose;
+    out.least = found.least, out.most = found.most;
+    if (own_) imposed_ = Imposed();  // belongs to this load alone
     return out;
   }
 
-  BalancedSteps result(const std::string& reason) const {
-    BalancedSteps out{steps(), {}, reason.empty(), reason};
-    for (std::size_t i = 0; i < members_.size(); ++i)
-      if (const auto* friction = std::get_if<FrictionLaw>(&members_[i].law())) {
-        const auto n = static_cast<std::size_t>(std::max(friction->number, 0));
-        out.slips.resize(std::max(out.slips.size(), n + 1));
-        const Member& m = members_[i];
-        out.slips[n] = m.released() ? m.imposed - m.known_force() / friction->stiffness : m.slip;
-      }
+  BalancedSteps conclude() const {
+    BalancedSteps out;
+    out.converged = true;
+    for (const Member& m : members_) {
+      out.steps.push_back(m.step());
+      const auto* friction = std::get_if<FrictionLaw>(&m.law());
+      if (!friction) continue;
+      const auto n = static_cast<std::size_t>(std::max(friction->number, 0));
+      out.slips.resize(std::max(out.slips.size(), n + 1));
+      const double known = (m.phase == Phase::plus ? friction->force : -friction->force) - m.stepped->preload;
+      out.slips[n] = m.released() ? m.imposed - known / friction->stiffness : m.slip;
+    }
     return out;
   }
 
-  /// A friction that would have to carry more than it can, whatever it slides.
-  std::string overcome() const {
-    for (std::size_t i = 0; i < members_.size(); ++i)
-      if (const auto* l = std::get_if<FrictionLaw>(&members_[i].law()))
-        if (std::abs(force(i)) > l->force + unloaded * scale(i))
-          return fmt::format("equilibrium wants {:.6g} N of a friction that slips at {:.6g} N", std::abs(force(i)),
-                             l->force);
-    return "";
+  /// Why there is no equilibrium.
+  BalancedSteps failed(const SetValuedSolution& found) {
+    for (Member& m : members_) m.phase = phase_at_rest(m.law());
+    BalancedSteps out = conclude();
+    out.converged = false;
+    out.reason = "no state of the clearances and frictions was found that agrees with itself";
+    if (found.outcome == SetValuedSolution::Outcome::no_fit)
+      out.reason = "the parts cannot be assembled: their misfits are larger than the play, and nothing yields";
+    for (Eigen::Index i = 0; i < found.along.size(); ++i)
+      if (const auto* l = std::get_if<FrictionLaw>(&members_[static_cast<std::size_t>(i)].law());
+          l && std::abs(found.along(i)) > 1e-3 * largest(found.along))
+        out.reason = fmt::format("a friction slips at {:.6g} {} and nothing else holds what it lets go", l->force,
+                                 members_[static_cast<std::size_t>(i)].stepped->rotation ? "Nm" : "N");
+    if (own_) imposed_ = Imposed();
+    return out;
   }
 
-  /// How the released forces fall with their offsets, by differences that change forces by a thousandth of the largest.
-  MatrixX falls(const std::vector<std::size_t>& free, std::vector<double>& change) {
-    const auto n = static_cast<Eigen::Index>(free.size());
-    MatrixX S(n, n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const std::size_t at = free[static_cast<std::size_t>(j)];
-      double& h = change[at];
-      for (int pass = 0; pass < 4; ++pass) {
-        members_[at].imposed += h;
-        const SteppedForces beside = ask_(steps());
-        const VectorX& moved = beside.forces;
-        members_[at].imposed -= h;
-        follow_.col(static_cast<Eigen::Index>(at)) = (beside.motions - answer_.motions) / h;
-        for (Eigen::Index i = 0; i < n; ++i) {
-          const auto k = static_cast<Eigen::Index>(free[static_cast<std::size_t>(i)]);
-          S(i, j) = (answer_.forces(k) - moved(k)) / h;
-        }
-        const double seen = std::abs(S(j, j)) * h, wanted = 1e-3 * scale(at);
-        if (seen < 1e-9 * scale(at) || (seen > 0.1 * wanted && seen < 10 * wanted)) break;
-        h *= wanted / seen;
-      }
-    }
-    return S;
-  }
-
-  /// A friction slides in vain where an open clearance hands it the load: the side that it pushes to closes.
-  bool close_pushed(std::size_t first, bool only_one) {
-    bool any = false;
-    for (std::size_t k = 0; k < members_.size() && !(any && only_one); ++k)
-      if (const std::size_t i = (first + k) % members_.size(); pushed_[i] != 0 && members_[i].phase == Phase::open) {
-        members_[i].phase = pushed_[i] > 0 ? Phase::plus : Phase::minus;
-        any = true;
-      }
-    return any;
-  }
-
-  void ask() {
-    answer_ = ask_(steps());
-    for (std::size_t i = 0; i < members_.size(); ++i)
-      if (const double d = answer_.motions(static_cast<Eigen::Index>(i)); std::isfinite(d)) members_[i].imposed = d;
-  }
-
-  /// Solves with the present phases: answer_, the offsets imposed, and whose forces they do not change.
-  void release() {
-    const std::size_t n = members_.size();
-    stuck_.assign(n, 0);
-    pushed_.assign(n, 0);
-    follow_ = MatrixX::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
-    ask();
-    std::vector<std::size_t> free;
-    for (std::size_t i = 0; i < n; ++i)
-      if (members_[i].released() && !std::isfinite(answer_.motions(static_cast<Eigen::Index>(i)))) free.push_back(i);
-    if (free.empty() || answer_.largest == 0) return;
-    std::vector<double> change(n, 1e-6);
-    MatrixX S = falls(free, change);
-    const auto size = static_cast<Eigen::Index>(free.size());
-    VectorX weight(size);  // unit diagonal; 0 of those that nothing changes
-    for (Eigen::Index j = 0; j < size; ++j) {
-      const std::size_t at = free[static_cast<std::size_t>(j)];
-      const bool changes = std::abs(S(j, j)) * change[at] > 1e-8 * scale(at);
-      stuck_[at] = !changes;
-      weight(j) = changes ? 1 / std::sqrt(std::abs(S(j, j))) : 0;
-    }
-    double before = std::numeric_limits<double>::infinity();
-    int idle = 0;
-    for (int iteration = 0; iteration < 60; ++iteration) {
-      VectorX excess(size);
-      double largest = 0;
-      for (Eigen::Index j = 0; j < size; ++j) {
-        const std::size_t at = free[static_cast<std::size_t>(j)];
-        excess(j) = stuck_[at] ? 0 : force(at) - members_[at].known_force();
-        largest = std::max(largest, std::abs(excess(j)) / scale(at));
-      }
-      if (largest <= 1e-15 || (largest < 1e-12 && largest > 0.5 * before)) break;
-      if (largest > 0.9 * before && ++idle == 2) break;  // they contradict each other: what stays stuck is told below
-      if (iteration > 0 && largest > 0.1 * before) S = falls(free, change);
-      before = largest;
-      Eigen::JacobiSVD<MatrixX> svd(weight.asDiagonal() * S * weight.asDiagonal(),
-                                    Eigen::ComputeThinU | Eigen::ComputeThinV);
-      svd.setThreshold(1e-9);
-      const VectorX step = weight.cwiseProduct(svd.solve(weight.cwiseProduct(excess)));
-      for (Eigen::Index j = 0; j < size; ++j) members_[free[static_cast<std::size_t>(j)]].imposed += step(j);
-      ask();
-    }
-    for (const std::size_t at : free)
-      if (std::abs(force(at) - members_[at].known_force()) > unloaded * scale(at)) {
-        stuck_[at] = 1;
-        const double way = force(at) - members_[at].known_force();
-        for (std::size_t i = 0; i < n; ++i)
-          if (const double moves = follow_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(at));
-              std::isfinite(moves) && std::abs(moves) > 1e-3)
-            pushed_[i] = way * moves > 0 ? 1 : -1;
-      }
-  }
-
-  const std::function<SteppedForces(const std::vector<Step>&)>& ask_;
+  const AskSteps& ask_;
+  Imposed& imposed_;
+  std::optional<Imposed> own_;  // where S belongs to a load
+  Eigen::Index n_;
   std::vector<Member> members_;
-  SteppedForces answer_;
-  std::vector<char> stuck_;   // no offset brings the force to what is known
-  std::vector<char> pushed_;  // open: to which side such a friction would move it
-  MatrixX follow_;            // motions of what is open by the offsets of others
+  std::vector<ScalarLaw> laws_;
+  VectorX sizes_;  // of forces, by law
 };
 
 }  // namespace
 
 Step SteppedLaw::at_force(double f) const {
   Member m{this};
-  m.phase = std::holds_alternative<FrictionLaw>(law) ? Phase::sticks : f + preload < 0 ? Phase::minus : Phase::plus;
+  m.force = f;
+  m.phase = !is_stepped(law)                           ? Phase::bends
+            : std::holds_alternative<FrictionLaw>(law) ? Phase::sticks
+            : f + preload < 0                          ? Phase::minus
+                                                       : Phase::plus;
   if (std::holds_alternative<ClearanceLaw>(law) && f + preload == 0) m.phase = Phase::start;
   return m.step();
 }
 
 double SteppedLaw::stored_energy(double f, const Step& s) const {
   const double own = f + preload, d = s.offset + s.compliance * f;
+  if (!is_stepped(law)) return analytic::stored_energy(law, own) - analytic::stored_energy(law, preload) - preload * d;
   if (const auto* l = std::get_if<FrictionLaw>(&law)) return own * own / (2 * l->stiffness);
   const auto* l = std::get_if<OneSidedLaw>(&law);
   const auto stored = [&](double force) { return l ? compliance(*l, force) * force * force / 2 : 0; };
   return stored(own) - stored(preload) - preload * d;
 }
 
-BalancedSteps balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips,
-                      const std::function<SteppedForces(const std::vector<Step>&)>& ask) {
-  return Balance(laws, slips, ask).search();
+BalancedSteps balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask,
+                      Imposed& imposed) {
+  return Balance(laws, slips, ask, imposed).search();
 }
 
 }  // namespace deflect::analytic

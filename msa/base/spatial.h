@@ -19,6 +19,9 @@ using MatrixX = Eigen::MatrixXd;
 
 inline constexpr double pi = std::numbers::pi;
 
+/// max |v_i|, 0 where there are none.
+inline double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
+
 /// [p]×, so that skew(p) y = p × y.
 inline Matrix3 skew(const Vector3& p) {
   Matrix3 s;

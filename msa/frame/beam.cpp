@@ -31,12 +31,6 @@ void bend(Vector12& f, const Vector12& d, double EI, double GAs, double L, int v
   f(tb) = couple + c * L * L * ((2 - phi) * d(ta) + (4 + phi) * d(tb));
 }
 
-Vector12 turned(const Matrix3& R, const Vector12& d) {
-  Vector12 out;
-  for (int i = 0; i < 12; i += 3) out.segment<3>(i).noalias() = R * d.segment<3>(i);
-  return out;
-}
-
 Vector12 local_pull(const BeamRigidity& r, double L, const Vector12& d) {
   Vector12 f;
   f(0) = r.EA / L * (d(0) - d(6));
@@ -49,6 +43,12 @@ Vector12 local_pull(const BeamRigidity& r, double L, const Vector12& d) {
 }
 
 }  // namespace
+
+Vector12 turned(const Matrix3& R, const Vector12& d) {
+  Vector12 out;
+  for (int i = 0; i < 12; i += 3) out.segment<3>(i).noalias() = R * d.segment<3>(i);
+  return out;
+}
 
 Matrix12 local_stiffness(const BeamRigidity& r, double L) {
   Matrix12 K = Matrix12::Zero();

@@ -48,6 +48,8 @@ Matrix12 stiffness(const Beam&);
 
 /// stiffness(beam) · d without forming the matrix: forces on the ends in base axes for displacements in base axes.
 Vector12 pull(const Beam&, const Vector12& d_W);
+/// Each of the four vectors of the ends' displacements or forces, R v.
+Vector12 turned(const Matrix3& R, const Vector12&);
 
 /// [u_a; θ_a; u_b; θ_b] of a structure's displacements u; where the beam has its own relative motion, that motion with
 /// a at rest, which strains it alike.

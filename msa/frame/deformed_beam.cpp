@@ -103,12 +103,6 @@ Ends ends_of(const Vector3& r, const Vector3& psi, const Potential& p) {
   return out;
 }
 
-Vector12 turned(const Matrix3& R, const Vector12& f) {
-  Vector12 out;
-  for (int i = 0; i < 12; i += 3) out.segment<3>(i) = R * f.segment<3>(i);
-  return out;
-}
-
 Matrix12 turned(const Matrix3& R, const Matrix12& K) {
   Matrix12 out;
   for (int j = 0; j < 12; j += 3)

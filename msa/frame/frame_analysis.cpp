@@ -12,8 +12,6 @@ namespace {
 
 constexpr double cancelling = 1e-7;  // see FrameChecks
 
-double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
-
 /// Unsigned sums of a beam's stiffness times its displacements, local axes: the size of what may cancel.
 struct Gross {
   double force = 0, energy = 0;

@@ -11,11 +11,7 @@
 #include "msa/frame/relative.h"
 
 namespace deflect::frame {
-namespace {
-
-double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
-
-}  // namespace
+namespace {}  // namespace
 
 /// Springs that jump begin where the linear theory has them under this part of the load, and the shape with them.
 void GeometricSolver::begin_jumps(Work& work, double factor) const {
@@ -29,10 +25,62 @@ void GeometricSolver::begin_jumps(Work& work, double factor) const {
   }
   const Solution s =
       linear_->solve(loads, VectorX(factor * padded(work.values, static_cast<Eigen::Index>(m.constraints.size()))));
-  if (!s.u.allFinite()) return;
-  for (std::size_t i = 0; i < work.structure.springs.size(); ++i) work.structure.springs[i].law = m.springs[i].law;
+  work.jumping.o.setZero();
   work.shape = Shape(model_);
-  work.shape.move(s.u.head(model_.dofs()));
+  if (s.converged) {
+    work.shape.move(s.u.head(model_.dofs()));
+    for (std::size_t j = 0; j < work.jumping.springs.size(); ++j) {
+      const std::size_t spring = work.jumping.springs[j];
+      const auto i = static_cast<Eigen::Index>(j);
+      work.jumping.o(i) = evaluate(m.springs[spring].elongation, s.fine) -
+                          s.spring_forces(static_cast<Eigen::Index>(spring)) / work.jumping.k(i);
+    }
+  }
+  work.set_offsets();
+}
+
+/// The springs that jump with the slips of the linear model, at rest.
+void GeometricSolver::take_jumps(Work& work) const {
+  if (!work.jump) return;
+  const double contact = contact_stiffness(model_);
+  std::vector<double> k;
+  for (std::size_t i = 0; i < model_.springs.size(); ++i) {
+    const SpringLaw& law = linear_->model().springs[i].law;
+    if (!jumps(law)) continue;
+    work.jumping.springs.push_back(i);
+    work.jumping.laws.push_back(scalar_law(law));
+    k.push_back(contact * (law.rotation ? work.length * work.length : 1));
+  }
+  const auto n = static_cast<Eigen::Index>(k.size());
+  work.jumping.k = Eigen::Map<const VectorX>(k.data(), n);
+  work.jumping.o = work.jumping.d = work.jumping.s = VectorX::Zero(n);
+  work.jumping.end.assign(k.size(), 0);
+  work.set_offsets();
+}
+
+/// Springs that jump by the stiffness that they have in the state, at its forces; rigid ones keep that of the steps.
+void GeometricSolver::release_jumps(Work& work, GeometricState& state) const {
+  state.jumping.clear();
+  for (const Spring& spring : model_.springs) state.jumping.push_back(spring.law);
+  for (std::size_t j = 0; j < work.jumping.springs.size(); ++j) {
+    const std::size_t spring = work.jumping.springs[j];
+    const auto i = static_cast<Eigen::Index>(j);
+    const SpringLaw& law = linear_->model().springs[spring].law;
+    const double d = work.jumping.d(i), s = work.jumping.s(i);
+    const int end = work.jumping.end[j];
+    const double k = tangent_at(law, d, s, end);
+    state.jumping[spring] = law;
+    know_force(state.jumping[spring], s);
+    work.jumping.k(i) = std::isinf(k) ? work.jumping.k(i) : k;
+    SpringLaw& linear = work.structure.springs[spring].law;
+    linear = LinearSpring{work.jumping.k(i)};
+    linear.preload = work.jumping.k(i) * d - s;
+    if (const auto* friction = std::get_if<FrictionSpring>(&law); friction && friction->number >= 0) {
+      const auto number = static_cast<std::size_t>(friction->number);
+      state.slips.resize(std::max(state.slips.size(), number + 1));
+      state.slips[number] = slip_at(*friction, law.at_rest, d, end);
+    }
+  }
 }
 
 /// The nodes in a state, where nothing but what is held or rigid moves them: closed gaps are constraints.
@@ -103,7 +151,8 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
   state.stable = tangent.stable();
   if (const double size = size_of(work.shape.path, model_.nodes.size(), work.length); size > 0 && tangent.regular())
     state.residual = size_of(tangent.solve(loads - at.forces, gaps), model_.nodes.size(), work.length) / size;
-  if ((at.spring_tangents.array() <= work.least_tangents.array()).any()) {  // springs at rest: without the floor
+  if (work.jump) release_jumps(work, state);
+  if (work.jump || (at.spring_tangents.array() <= work.least_tangents.array()).any()) {  // without the floor
     work.with.least_tangents.setZero();
     at = work.linearise(state.geometry);
     state.K = tangent_stiffness(at, work.lambda, loads);
@@ -113,15 +162,6 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
   state.elongations = at.elongations;
   state.spring_forces = at.spring_forces;
   state.spring_tangents = at.spring_tangents;
-  for (std::size_t i = 0; work.jump && i < work.structure.springs.size(); ++i) {
-    const SpringLaw& law = work.structure.springs[i].law;
-    state.jumping.push_back(law);
-    if (const auto* friction = std::get_if<FrictionSpring>(&law); friction && friction->number >= 0) {
-      const auto n = static_cast<std::size_t>(friction->number);
-      state.slips.resize(std::max(state.slips.size(), n + 1));
-      state.slips[n] = friction->slip(at.elongations(static_cast<Eigen::Index>(i)));
-    }
-  }
   for (std::size_t i = 0; i < at.beams.size() && state.geometry == Geometry::finite; ++i) {
     const LeftOut left = left_out(model_.beams[i], at.beams[i].forces, at.beams[i].A.col(0));
     state.left_out.relative = std::max(state.left_out.relative, left.relative);
@@ -165,17 +205,13 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
 
   // The forces that springs will see set where their stiffness begins and how little of it a step takes (solver.cpp).
   linear_->begin_slips(options.slips);
-  for (std::size_t i = 0; work.jump && i < model_.springs.size(); ++i) {
-    work.structure.springs[i].law = linear_->model().springs[i].law;
-    know_force(work.structure.springs[i].law, 0);
-  }
+  take_jumps(work);
   const Linearisation rest = work.linearise(options.geometry);
   double force = std::max(largest(work.loads), largest(rest.forces));
   if (force == 0 && largest(work.values) > 0) force = driving_force(rest, work.values);
   work.force = force;
   work.least_tangents = 1e-8 * stiffness_at(model_, force);
-  for (std::size_t i = 0; i < model_.springs.size(); ++i)
-    if (jumps(model_.springs[i].law)) work.least_tangents(static_cast<Eigen::Index>(i)) *= 1e-4;
+  for (const std::size_t i : work.jumping.springs) work.least_tangents(static_cast<Eigen::Index>(i)) = 0;
 
   const bool driven = force > 0 || largest(work.values) > 0;
   state.converged = true;

@@ -112,6 +112,7 @@ class GeometricSolver {
   VectorX update_forces(Work&, const Linearisation&, const Elimination&, const Model& constraints, double factor) const;
   struct Step;
   Step newton(Work&, double factor, Geometry) const;
+  void keep_laws(Work&, const Linearisation&, const VectorX& loads, Step&) const;
   bool iterate(Work&, double factor, const GeometricOptions&, GeometricState&) const;
   bool arrived(Work&, const VectorX& before, double factor, const GeometricState&, bool doubtful) const;
   bool drives(Work&, double factor, const VectorX& towards) const;
@@ -119,7 +120,9 @@ class GeometricSolver {
   void follow(Work&, const GeometricOptions&, GeometricState&) const;
   void conclude(Work&, GeometricState&) const;
 
+  void take_jumps(Work&) const;
   void begin_jumps(Work&, double factor) const;
+  void release_jumps(Work&, GeometricState&) const;
   Model held(const GeometricState&) const;
 
   std::unique_ptr<Solver> linear_;

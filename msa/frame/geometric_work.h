@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "msa/frame/geometric_solver.h"
+#include "msa/frame/jumping_springs.h"
 
 namespace deflect::frame {
 
@@ -35,8 +36,15 @@ struct GeometricSolver::Work {
         lambda(VectorX::Zero(static_cast<Eigen::Index>(m.constraints.size()))),
         length(characteristic_length(m)) {}
 
-  Model structure;  // with what its springs that jump know of their state
+  Model structure;  // springs that jump are linear in it: s = k (δ − o)
   bool jump = false;
+  struct Jumping {
+    std::vector<std::size_t> springs;  // those
+    std::vector<ScalarLaw> laws;       // their own
+    VectorX k, o;
+    VectorX d, s;          // as the last step left them
+    std::vector<int> end;  // as in SetValuedSolution
+  } jumping;
   VectorX loads, values;  // in full
   std::vector<double> strains;
   Circumstances with;
@@ -61,6 +69,17 @@ struct GeometricSolver::Work {
     for (std::size_t i = 0; i < structure.springs.size(); ++i)
       sum += stored_energy(structure.springs[i].law, at.elongations(static_cast<Eigen::Index>(i)));
     return sum;
+  }
+  /// s = k (δ − o) to the structure's springs.
+  void set_offsets() {
+    for (std::size_t j = 0; j < jumping.springs.size(); ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      SpringLaw& law = structure.springs[jumping.springs[j]].law;
+      const bool rotation = law.rotation;
+      law = LinearSpring{jumping.k(i)};
+      law.rotation = rotation;
+      law.preload = jumping.k(i) * jumping.o(i);
+    }
   }
   /// Heat comes with the load.
   void strain(double factor) {

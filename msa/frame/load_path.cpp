@@ -13,6 +13,13 @@ namespace {
 constexpr double follows = 0.1;   // Newton's steps, each beside the one before: nothing else can be near
 constexpr double balance = 0.25;  // of work and energy in a step
 
+/// N; moments over the length.
+double size_of_forces(const VectorX& loads, double length) {
+  double size = 0;
+  for (Eigen::Index i = 0; i < loads.size(); ++i) size = std::max(size, std::abs(loads(i)) / (i % 6 > 2 ? length : 1));
+  return size;
+}
+
 double largest_spin(const VectorX& u, std::size_t nodes) {
   double spin = 0;
   for (std::size_t i = 0; i < nodes; ++i)
@@ -48,8 +55,42 @@ GeometricSolver::Step GeometricSolver::newton(Work& work, double factor, Geometr
   Eigen::SparseMatrix<double> K = tangent_stiffness(at, work.lambda, loads);
   if (work.damping > 0) K += damped(model_, work.damping, work.length);
   Step step{std::make_unique<Tangent>(e, K), {}};
-  if (step.tangent->regular()) step.u = step.tangent->solve(loads - at.forces, gaps);
+  if (!step.tangent->regular()) return step;
+  step.u = step.tangent->solve(loads - at.forces, gaps);
+  if (work.jump) keep_laws(work, at, loads, step);
   return step;
+}
+
+/// Springs that jump keep their laws at the end of the step: with the offsets o as unknowns its elongations are
+/// δ = δ0 + P o, P = Eᵀ K⁻¹ E k, E the forms of these springs and k their stiffness in K.
+void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const VectorX& loads, Step& step) const {
+  Work::Jumping& j = work.jumping;
+  const auto n = static_cast<Eigen::Index>(j.springs.size());
+  MatrixX pushes = MatrixX::Zero(model_.dofs(), n);
+  const auto elongation = [&](Eigen::Index i, const VectorX& u) {
+    return evaluate(at.spring_forms[j.springs[static_cast<std::size_t>(i)]], u);
+  };
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (const Term& t : at.spring_forms[j.springs[static_cast<std::size_t>(i)]])
+      pushes(t.dof, i) += t.coefficient * j.k(i);
+  const MatrixX moved = step.tangent->solve(pushes, MatrixX::Zero(static_cast<Eigen::Index>(active_.size()), n));
+  LinearRelation relation{j.k.cwiseInverse(), VectorX(n), MatrixX(n, n), VectorX(n)};
+  const double driving = size_of_forces(loads, work.length);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t spring = j.springs[static_cast<std::size_t>(i)];
+    for (Eigen::Index other = 0; other < n; ++other) relation.P(i, other) = elongation(i, moved.col(other));
+    relation.d0(i) = at.elongations(static_cast<Eigen::Index>(spring)) + elongation(i, step.u);
+    relation.size(i) = driving * (model_.springs[spring].law.rotation ? work.length : 1);
+  }
+  relation.d0 -= relation.P * j.o;
+  const SetValuedSolution found = deflect::solve(relation, j.laws, MatrixX(0, n));
+  if (found.outcome != SetValuedSolution::Outcome::solved) {
+    step.u.resize(0);
+    return;
+  }
+  step.u += moved * (found.o - j.o);
+  j.o = found.o, j.d = found.d, j.s = found.s, j.end = found.end;
+  work.set_offsets();
 }
 
 /// An equilibrium was found: whether the path led there, which its energy tells where Newton's method does not.
@@ -84,7 +125,7 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     work.with.least_tangents = at_rest ? stiffness_at(model_, factor * work.force) : work.least_tangents;
     const Step step = newton(work, factor, options.geometry);
     if (step.u.size() == 0) {
-      work.why = "the tangent stiffness is singular";
+      work.why = work.jump ? "the laws that jump have no state there" : "the tangent stiffness is singular";
       return false;
     }
     if (!step.u.allFinite() || (finite && largest_spin(step.u, model_.nodes.size()) > pi / 2)) {
@@ -92,12 +133,6 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
       return false;
     }
     work.shape.move(step.u);
-    if (work.jump) {  // λ of stepped_spring.h
-      work.with.least_tangents.setZero();
-      const Linearisation moved = work.linearise(options.geometry);
-      for (std::size_t s = 0; s < work.structure.springs.size(); ++s)
-        know_force(work.structure.springs[s].law, moved.spring_forces(static_cast<Eigen::Index>(s)));
-    }
     const double change = size_of(step.u, model_.nodes.size(), work.length);
     const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
     const bool stalled = change < 1e-6 * size && change > 0.5 * previous;  // rounding is all that is left
@@ -172,7 +207,7 @@ void GeometricSolver::follow(Work& work, const GeometricOptions& options, Geomet
   double step = largest_step;
   for (int halved = 0; state.load_factor < 1;) {
     const Shape before = work.shape;
-    const VectorX lambda = work.lambda;
+    const VectorX lambda = work.lambda, offsets = work.jumping.o;
     const double factor = state.load_factor + step > 1 - 1e-9 ? 1 : state.load_factor + step;
     if (iterate(work, factor, options, state)) {
       state.load_factor = factor;
@@ -183,6 +218,8 @@ void GeometricSolver::follow(Work& work, const GeometricOptions& options, Geomet
     }
     work.shape = before;
     work.lambda = lambda;
+    work.jumping.o = offsets;
+    work.set_offsets();
     step /= 2;
     if (finite && ++halved <= options.halvings) continue;
     const double reached = state.load_factor;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <stdexcept>
 
@@ -11,13 +13,62 @@
 namespace deflect::frame {
 namespace {
 
-/// With the node held, and springs that are rigid in a state.
-Model held(Model m, int node, const VectorX& tangents) {
-  m.fix(node, "tool");
-  for (std::size_t i = 0; i < m.springs.size(); ++i)
-    if (std::isinf(tangents(static_cast<Eigen::Index>(i))))
-      m.constraints.push_back({m.springs[i].elongation, 0, m.springs[i].name});
+/// Springs linear at their tangents: rigid ones are constraints, those that have let go are none, and the solver
+/// decides anew what stands.
+Model at_tangents(Model m, const VectorX& tangents) {
+  for (std::size_t i = 0; i < m.springs.size(); ++i) {
+    const double k = tangents(static_cast<Eigen::Index>(i));
+    Spring& spring = m.springs[i];
+    if (is_linear(spring.law)) continue;
+    if (std::isinf(k)) m.constraints.push_back({spring.elongation, 0, spring.name});
+    SpringLaw linear = LinearSpring{std::isinf(k) ? 0 : k};
+    linear.rotation = spring.law.rotation;
+    spring.law = linear;
+  }
   return m;
+}
+
+Vector6 weights(double length) {
+  Vector6 w = Vector6::Ones();
+  w.tail<3>().setConstant(length);
+  return w;
+}
+
+/// Orthonormal motions of a node, rotations times `length`, that connections and rigid parts leave it.
+MatrixX motions_of(const Model& m, int node, double length) {
+  const Elimination e = eliminate(m);
+  MatrixX rows = MatrixX::Zero(std::max(e.independent, 6), 6);  // a motion in each
+  for (int i = 0; i < 6; ++i)
+    for (const Term& t : e.T[static_cast<std::size_t>(6 * node + i)]) rows(t.dof, i) += t.coefficient;
+  rows = (rows * weights(length).asDiagonal()).eval();
+  const Eigen::HouseholderQR<MatrixX> qr(rows);
+  const MatrixX R = qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<MatrixX> svd(R, Eigen::ComputeFullV);
+  const double least = 1e-9 * svd.singularValues()(0);
+  Eigen::Index rank = 0;
+  while (rank < 6 && svd.singularValues()(rank) > least) ++rank;
+  return rank == 6 ? MatrixX(MatrixX::Identity(6, 6)) : MatrixX(svd.matrixV().leftCols(rank));
+}
+
+/// With the node held: in all its freedoms, or, where it has fewer motions, in these.
+Model held(Model m, int node, const MatrixX& motions, double length) {
+  if (motions.cols() == 6) {
+    m.fix(node, "tool");
+    return m;
+  }
+  for (const auto& motion : motions.colwise()) {
+    Constraint hold{{}, 0, "tool"};
+    for (int i = 0; i < 6; ++i) hold.form.push_back({6 * node + i, weights(length)(i) * motion(i)});
+    m.constraints.push_back(std::move(hold));
+  }
+  return m;
+}
+
+/// Of tangents: what makes a structure of its own.
+std::vector<int> kinds(const VectorX& tangents) {
+  std::vector<int> out;
+  for (const double k : tangents) out.push_back(std::isinf(k) ? 1 : k == 0 ? -1 : 0);
+  return out;
 }
 
 VectorX where_finite(const VectorX& tangents) {
@@ -41,33 +92,57 @@ Matrix6 above_rounding(const Matrix6& K, const Model& m) {
   return size < 1e-15 * stiffest ? Matrix6(Matrix6::Zero()) : K;
 }
 
+/// K where it resists nothing along twists, which it does but for rounding.
+Matrix6 without(const MatrixX& twists, double length, const Matrix6& K) {
+  const Vector6 weight = weights(length);
+  Eigen::ColPivHouseholderQR<MatrixX> qr;
+  qr.setThreshold(1e-9);
+  qr.compute(weight.asDiagonal() * twists);
+  const MatrixX Q = qr.householderQ();
+  const MatrixX others = Q.rightCols(6 - qr.rank()).unaryExpr([](double x) { return std::abs(x) < 1e-12 ? 0 : x; });
+  const MatrixX moved = weight.cwiseInverse().asDiagonal() * others, resisting = weight.asDiagonal() * others;
+  return resisting * (moved.transpose() * K * moved) * resisting.transpose();
+}
+
 }  // namespace
 
-/// A node held at unit displacements of its six freedoms in turn, springs linear at their tangents.
+/// A node held at unit displacements of its motions in turn, springs linear at their tangents.
 struct MsaModel::Held {
-  Held(const MechanismModel& mechanism, int held_node, const VectorX& spring_tangents)
+  Held(const MechanismModel& mechanism, int held_node, const VectorX& spring_tangents, double size)
+      : Held(at_tangents(mechanism.model, spring_tangents), held_node, spring_tangents, size) {}
+
+  Held(const Model& model, int held_node, const VectorX& spring_tangents, double size)
       : node(held_node),
-        rigid(spring_tangents.array().isInf()),
-        solver(held(mechanism.model, held_node, spring_tangents)),
-        first(static_cast<Eigen::Index>(mechanism.model.constraints.size())),
+        kind(kinds(spring_tangents)),
+        length(size),
+        motions(motions_of(model, held_node, size)),
+        solver(held(model, held_node, motions, size)),
+        first(static_cast<Eigen::Index>(model.constraints.size())),
         supports(solver.model(), solver.elimination()) {}
 
-  /// For these tangents, with the same springs rigid; then the reactions below are known.
+  /// For these tangents, of the same kinds; then the reactions below are known.
   void displace(const VectorX& spring_tangents) {
     const Model& m = solver.model();
     tangents = where_finite(spring_tangents);
-    MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(m.constraints.size()), 6);
-    values.middleRows<6>(first).setIdentity();
-    U = solver.linear(tangents, MatrixX::Zero(m.dofs(), 6), values);
-    MatrixX pulls(m.dofs(), 6);
-    for (int i = 0; i < 6; ++i) pulls.col(i) = tangent_forces(m, ExtendedVector(U.col(i)), tangents);
+    const Eigen::Index n = motions.cols();
+    MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(m.constraints.size()), n);
+    values.middleRows(first, n).setIdentity();
+    U = solver.linear(tangents, MatrixX::Zero(m.dofs(), n), values);
+    MatrixX pulls(m.dofs(), n);
+    for (Eigen::Index i = 0; i < n; ++i) pulls.col(i) = tangent_forces(m, ExtendedVector(U.col(i)), tangents);
     forces = supports.forces(pulls);
   }
 
   /// What the held node needs: its stiffness.
-  Matrix6 reactions() const { return above_rounding(forces.middleRows<6>(first), solver.model()); }
+  Matrix6 reactions() const {
+    const MatrixX by_motion = forces.middleRows(first, motions.cols());
+    if (motions.cols() == 6) return above_rounding(by_motion, solver.model());
+    const MatrixX wrenches = weights(length).asDiagonal() * motions;
+    return above_rounding(wrenches * by_motion * wrenches.transpose(), solver.model());
+  }
 
-  /// Its part by way of one attachment to the body of the node: spring forces less constraint forces, Cᵀλ = f_int.
+  /// Of a node with six motions the part by way of one attachment to its body: spring forces less constraint forces,
+  /// Cᵀλ = f_int.
   Matrix6 reactions(const MechanismModel::Attachment& a) const {
     const Model& m = solver.model();
     Matrix6 K = Matrix6::Zero();
@@ -92,9 +167,11 @@ struct MsaModel::Held {
   }
 
   int node;
-  Eigen::Array<bool, Eigen::Dynamic, 1> rigid;  // springs
+  std::vector<int> kind;  // of springs
+  double length;
+  MatrixX motions;  // orthonormal, rotations times the length
   Solver solver;
-  Eigen::Index first;  // of the six constraints that hold the node
+  Eigen::Index first;  // of the constraints that hold the node
   Reactions supports;
   VectorX tangents;
   ExtendedMatrix U;
@@ -184,7 +261,9 @@ Solution MsaModel::solve_linear(const VectorX& load, const Conditions& condition
   solver_.begin_slips(conditions.slips);
   VectorX all = heat;
   all.head(load.size()) += load;
-  Solution out = solver_.solve(all);
+  NewtonOptions options;
+  for (int i = 0; i < 6; ++i) options.watched.push_back(6 * built_.tool + i);
+  Solution out = solver_.solve(all, options);
   out.heat = heat;
   return out;
 }
@@ -219,18 +298,21 @@ MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
     if (!geometric_) throw std::logic_error("a state of another mechanism");
     return {above_rounding(geometric_->stiffness(*state.geometric, built_.tool), geometric_->model()), {}};
   }
-  if (!tool_held_ || (tool_held_->rigid != state.spring_tangents.array().isInf()).any())
-    tool_held_ = std::make_unique<Held>(built_, built_.tool, state.spring_tangents);
+  if (!tool_held_ || tool_held_->kind != kinds(state.spring_tangents))
+    tool_held_ = std::make_unique<Held>(built_, built_.tool, state.spring_tangents, configuration_.size);
   tool_held_->displace(state.spring_tangents);
-  Stiffness out{tool_held_->reactions(), {}};
-  const bool legs_stand_alone = built_.base == built_.ground && built_.tool == built_.platform;
+  Stiffness out{tool_held_->reactions(), {}, tool_held_->motions};
+  if (state.free.cols() > 0)
+    out.K = without(state.free.middleRows<6>(6 * built_.tool), characteristic_length(built_.model), out.K);
+  const bool legs_stand_alone =
+      built_.base == built_.ground && built_.tool == built_.platform && out.motions.cols() == 6;
   Vector6 per_length = Vector6::Ones();
   per_length.tail<3>().setConstant(1 / characteristic_length(built_.model));
   const auto size = [&](const Matrix6& K) { return (per_length.asDiagonal() * K * per_length.asDiagonal()).norm(); };
   const auto alone = [&](std::size_t leg) {
     const MechanismModel one = build_leg(configuration_, leg, division_);
     const VectorX tangents = tangents_of(one.model, state);
-    Held leg_held(one, one.tool, tangents);
+    Held leg_held(one, one.tool, tangents, configuration_.size);
     leg_held.displace(tangents);
     return leg_held.reactions();
   };

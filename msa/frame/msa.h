@@ -51,12 +51,15 @@ class MsaModel {
   const Solution& assembled();
 
   /// Tangent stiffness at T of the structure in a state, as computed, not symmetrised, and of each leg alone at the
-  /// platform's T: reactions to unit displacements. A direction in which nothing holds T has zero stiffness. Of a state
-  /// that is not linear the tool's stiffness has its geometric part, per spin (geometric_solver.h), symmetric where no
-  /// moment is applied, and the legs are left empty: forces between them are no leg's own.
+  /// platform's T: reactions to unit displacements. A direction in which nothing holds T has zero stiffness. Where
+  /// parts are rigid T may move in `motions` alone (orthonormal columns, rotations times the configuration's size):
+  /// fewer than six; K is then that of these motions and resists no other. A leg's K likewise. Of a state that is not
+  /// linear the tool's stiffness has its geometric part, per spin (geometric_solver.h), symmetric where no moment is
+  /// applied, and the legs are left empty: forces between them are no leg's own.
   struct Stiffness {
     Matrix6 K;
     std::vector<Matrix6> legs;
+    MatrixX motions = MatrixX::Identity(6, 6);
   };
   Stiffness stiffness(const Solution& state);
 

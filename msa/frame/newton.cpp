@@ -10,12 +10,7 @@
 namespace deflect::frame {
 namespace {
 
-// Of the largest force: a gap that carries less is not loaded.
-constexpr double unloaded = 1e-9;
-
-double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
-
-/// Potential energy −fᵀu + stored; what equilibrium makes stationary. A friction's has what sliding costs.
+/// Potential energy −fᵀu + stored; what equilibrium makes stationary.
 double potential(const Model& m, const VectorX& u, const VectorX& load) {
   double sum = -load.dot(u);
   for (const Beam& beam : m.beams) {
@@ -29,7 +24,7 @@ double potential(const Model& m, const VectorX& u, const VectorX& load) {
 /// Whether Newton finds such a spring's force better from its force than from its elongation.
 bool steep(const SpringLaw& law) {
   const auto* power = std::get_if<PowerSpring>(&law);
-  return jumps(law) || (power && power->n > 1.6);
+  return power && power->n > 1.6;
 }
 
 }  // namespace
@@ -53,18 +48,14 @@ void Solver::begin_slips(const std::vector<double>& slips) {
     }
 }
 
-/// A first state. Each spring is linearised where the force that it got last stands on its law, which meets a gap on
-/// the side that closes and a steep law at its load in two steps, however far away that is. Frictions, which have no
-/// elongation of their own at the force that they slip at, are linearised where they are.
+/// A first state. Each spring is linearised where the force that it got last stands on its law, which meets a steep law
+/// at its load in two steps, however far away that is.
 void Solver::begin_by_forces(Work& w) {
-  std::vector<Spring>& springs = model_->springs;
+  const std::vector<Spring>& springs = model_->springs;
   const auto n = static_cast<Eigen::Index>(springs.size());
   VectorX at = VectorX::Zero(n), force(n), k = w.loaded;
   for (Eigen::Index i = 0; i < n; ++i) {
-    SpringLaw& law = springs[static_cast<std::size_t>(i)].law;
-    know_force(law, 0);
-    if (auto* gap = std::get_if<GapSpring>(&law)) gap->idle = false;
-    force(i) = frame::force(law, 0);
+    force(i) = frame::force(springs[static_cast<std::size_t>(i)].law, 0);
   }
   for (int pass = 0; pass < 20; ++pass) {
     VectorX pulls(n), elongations(n);
@@ -84,23 +75,11 @@ void Solver::begin_by_forces(Work& w) {
     for (Eigen::Index i = 0; i < n; ++i) w.scale = std::max(w.scale, std::abs(pulls(i)) * per_length(i));
     double change = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      SpringLaw& law = springs[static_cast<std::size_t>(i)].law;
-      if (auto* gap = std::get_if<GapSpring>(&law)) {
-        const bool little = std::abs(pulls(i) + law.preload) * per_length(i) <= unloaded * w.scale;
-        if (pass == 0 || !little) gap->idle = little;
-      }
-      double next = pulls(i);
-      if (std::holds_alternative<FrictionSpring>(law)) {
-        at(i) = elongations(i);
-        next = frame::force(law, at(i));
-        k(i) = std::max(tangent(law, at(i)), w.floor(i));
-      } else {
-        at(i) = elongation(law, next);
-        k(i) = std::max(std::visit([&](const auto& l) { return l.at_force(next + law.preload); }, law), w.floor(i));
-      }
-      change = std::max(change, std::abs(next - force(i)) * per_length(i) / w.scale);
-      force(i) = next;
-      know_force(law, next);
+      const SpringLaw& law = springs[static_cast<std::size_t>(i)].law;
+      at(i) = elongation(law, pulls(i));
+      k(i) = std::max(std::visit([&](const auto& l) { return l.at_force(pulls(i) + law.preload); }, law), w.floor(i));
+      change = std::max(change, std::abs(pulls(i) - force(i)) * per_length(i) / w.scale);
+      force(i) = pulls(i);
     }
     if (change < 1e-12) break;
   }
@@ -108,46 +87,19 @@ void Solver::begin_by_forces(Work& w) {
   w.u = elimination_->expand(w.q, w.values);
 }
 
-/// How far to go along a step. Smooth springs: backtrack until the potential falls; where what is to be gained drowns
-/// in its rounding, the full step is right. Springs that jump: to where the potential, which is convex, has its
-/// minimum.
+/// How far to go along a step: backtrack until the potential falls; where what is to be gained drowns in its rounding,
+/// the full step is right.
 double Solver::line_search(const Work& w, const VectorX& step) const {
   VectorX ignored;
   const auto at = [&](double length) { return elimination_->expand(w.q + length * step, w.values); };
-  const auto slope = [&](double length) {
-    return -step.dot(w.f - elimination_->reduce(internal_forces(*model_, at(length), ignored)));
-  };
-  const double before = potential(*model_, w.u, w.load), falls = slope(0);
+  const double before = potential(*model_, w.u, w.load);
+  const double falls = -step.dot(w.f - elimination_->reduce(internal_forces(*model_, at(0), ignored)));
   const double rounding = 1e-13 * (std::abs(w.load.dot(w.u)) + std::abs(before));
   double length = 1;
-  const bool jump =
-      std::any_of(model_->springs.begin(), model_->springs.end(), [](const Spring& s) { return jumps(s.law); });
-  if (!jump) {
-    while (length > 1e-6 && std::abs(falls) > rounding) {
-      const double after = potential(*model_, at(length), w.load);
-      if (after <= before + 1e-4 * length * falls + rounding) break;
-      length /= 2;
-    }
-    return length;
-  }
-  if (std::abs(falls) <= rounding) return 1;
-  double low = 0, high = 1, at_low = falls, at_high = slope(1);
-  const double enough = 1e-3 * std::abs(falls);
-  if (at_high <= enough) return 1;
-  for (int i = 0; i < 100; ++i) {
-    // Regula falsi (Illinois) once the minimum is known to within a factor.
-    length = low == 0 ? high / 16 : (low * at_high - high * at_low) / (at_high - at_low);
-    const double here = slope(length);
-    if (std::abs(here) <= enough) break;
-    if (here > 0) {
-      if (high > length && low > 0) at_low /= 2;
-      high = length;
-      at_high = here;
-    } else {
-      if (low > 0) at_high /= 2;
-      low = length;
-      at_low = here;
-    }
+  while (length > 1e-6 && std::abs(falls) > rounding) {
+    const double after = potential(*model_, at(length), w.load);
+    if (after <= before + 1e-4 * length * falls + rounding) break;
+    length /= 2;
   }
   return length;
 }
@@ -176,24 +128,6 @@ bool Solver::newton(Work& w, const NewtonOptions& options, Solution& s) {
   return false;
 }
 
-/// λ = f for springs that jump; false where that was so already.
-bool Solver::update_known_forces(const Work& w) {
-  double lacking = 0;
-  for (Spring& s : model_->springs) {
-    if (!jumps(s.law)) continue;
-    const double d = evaluate(s.elongation, w.u), per_length = s.law.rotation ? 1 / w.length : 1;
-    lacking = std::max(lacking, std::abs(unknown_force(s.law, d)) * per_length);
-    const double f = force(s.law, d);
-    if (auto* gap = std::get_if<GapSpring>(&s.law); gap && gap->idle) {
-      if (std::abs(f + s.law.preload) * per_length <= unloaded * w.scale) continue;
-      gap->idle = false;
-      lacking = w.scale;
-    }
-    know_force(s.law, f);
-  }
-  return lacking > 1e-12 * w.scale;  // over the contact stiffness, of no account
-}
-
 void Solver::conclude(const Work& w, Solution& s) const {
   s.u = w.u;
   s.fine = w.u.cast<Extended>();
@@ -203,17 +137,9 @@ void Solver::conclude(const Work& w, Solution& s) const {
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const SpringLaw& law = springs[i].law;
     const auto k = static_cast<Eigen::Index>(i);
-    const double d = evaluate(springs[i].elongation, w.u), t = true_tangent(law, d);
+    const double d = evaluate(springs[i].elongation, w.u);
     s.spring_forces(k) = force(law, d);
-    s.spring_tangents(k) = t;
-    if (const auto* friction = std::get_if<FrictionSpring>(&law); friction && friction->number >= 0) {
-      const auto n = static_cast<std::size_t>(friction->number);
-      s.slips.resize(std::max(s.slips.size(), n + 1));
-      s.slips[n] = friction->slip(d);
-      if (!s.converged && friction->slides(d))
-        s.message = fmt::format("{} slips at {:.6g} {} and nothing else holds what it lets go", springs[i].name,
-                                friction->most, law.rotation ? "Nm" : "N");
-    }
+    s.spring_tangents(k) = tangent(law, d);
   }
 }
 
@@ -231,10 +157,9 @@ Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, c
   w.f = elimination_->reduce(w.load);
   w.q = VectorX::Zero(elimination_->independent);
   w.u = elimination_->expand(w.q, w.values);
-  for (Spring& s : model_->springs) {
-    know_force(s.law, 0);
-    if (auto* gap = std::get_if<GapSpring>(&s.law)) gap->idle = false;
-  }
+  const std::vector<Spring>& springs = model_->springs;
+  if (std::any_of(springs.begin(), springs.end(), [](const Spring& s) { return jumps(s.law); }))
+    return solve_condensed(w.load, w.values, options.watched);
   const VectorX first = internal_forces(*model_, w.u, w.tangents);
   w.force = w.scale = std::max(largest(w.load), largest(first));
   Solution s;
@@ -247,20 +172,13 @@ Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, c
   // stiffness at full load, which slows nothing that carries load and keeps an idle spring from blocking the step.
   w.loaded = starting_tangents(w.force);
   w.floor = 1e-8 * w.loaded;
-  bool any_steep = false, any_jump = false;
-  for (std::size_t i = 0; i < model_->springs.size(); ++i) {
-    const SpringLaw& law = model_->springs[i].law;
-    any_steep = any_steep || steep(law);
-    if (!jumps(law)) continue;
-    any_jump = true;
-    w.floor(static_cast<Eigen::Index>(i)) *= 1e-4;
+  if (std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return steep(spring.law); })) {
+    begin_by_forces(w);
+    w.begun = true;
   }
-  if (any_steep) begin_by_forces(w);
-  w.begun = any_steep;
   s.converged = newton(w, options, s);
-  for (int round = 0; any_jump && s.converged && round < 60 && update_known_forces(w); ++round)
-    s.converged = newton(w, options, s);
   s.converged = s.converged && std::isfinite(s.residual) && s.residual < 1e-7;
+  if (!s.converged && !linear_springs()) return solve_condensed(w.load, w.values, options.watched);
   conclude(w, s);
   return s;
 }

@@ -107,7 +107,8 @@ void set_coordinates(Piece& piece, std::vector<Hold> holds) {
   double arm = 0;
   for (Hold& h : holds) {
     h.m -= to_centre.cross(h.f);
-    if (h.f.norm() > 0) arm = std::max(arm, h.m.norm() / h.f.norm());
+    if (h.f.norm() * piece.size > 1e-9 * h.m.norm())  // else a moment, with the rounding of a force
+      arm = std::max(arm, h.m.norm() / h.f.norm());
   }
   if (arm > 1e-9 * piece.size) piece.size = arm;  // else all act at one point, but for rounding
   MatrixX A = MatrixX::Zero(std::max<Eigen::Index>(6, static_cast<Eigen::Index>(holds.size())), 6);

@@ -73,9 +73,11 @@ double stiffest(const Model& m) {
 
 }  // namespace
 
+double contact_stiffness(const Model& m) { return 10 * stiffest(m); }
+
 void give_contacts_stiffness(Model& m) {
   if (std::none_of(m.springs.begin(), m.springs.end(), [](const Spring& s) { return jumps(s.law); })) return;
-  const double length = characteristic_length(m), contact = 10 * stiffest(m);
+  const double length = characteristic_length(m), contact = contact_stiffness(m);
   for (Spring& s : m.springs) {
     const double stiffness = s.law.rotation ? contact * length * length : contact;
     if (auto* gap = std::get_if<GapSpring>(&s.law)) gap->contact = stiffness;

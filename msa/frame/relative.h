@@ -8,6 +8,9 @@
 
 namespace deflect::frame {
 
+/// Ten times the stiffest part, N/m.
+double contact_stiffness(const Model&);
+
 /// Gives gaps and rigid sides of springs (stepped_spring.h) their contact stiffness: ten times the stiffest part, so
 /// that each step of λ leaves at most a tenth of what it lacks.
 void give_contacts_stiffness(Model&);

@@ -24,8 +24,6 @@ constexpr int most_corrections = 20;
 constexpr double extended_rounding = 1e-19, no_digits = 1e-9;
 constexpr double strains_nothing = 1e-24;  // of the energy that nothing would cancel  // of a solution
 
-double largest(const VectorX& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
-
 MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
   MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(rows), m.cols());
   out.topRows(m.rows()) = m;

@@ -11,11 +11,18 @@
 #include "msa/frame/mobility.h"
 #include "msa/frame/reactions.h"
 
+namespace deflect {
+struct ScalarLaw;  // set_valued_laws.h
+struct LinearRelation;
+struct SetValuedSolution;
+}  // namespace deflect
+
 namespace deflect::frame {
 
 struct NewtonOptions {
   int max_iterations = 100;
   double tolerance = 1e-12;  ///< of the last step and of the residual, relative; rounding may stop a little above
+  std::vector<int> watched;  ///< freedoms of which Solution says how far play lets them move
 };
 
 struct GeometricState;  // geometric_solver.h
@@ -27,7 +34,12 @@ struct Solution {
   VectorX spring_forces;      ///< N or Nm, beside preloads
   VectorX heat;               ///< among the loads, what members that are warmer push (MsaModel); by freedom
   std::vector<double> slips;  ///< of frictions after the load, by their numbers
-  std::string message;        ///< where it did not converge, why, if that is known
+  /// Springs whose play nothing loads, where the structure floats in it. u is the middle: of all displacements that are
+  /// in equilibrium the one with the least Σ (δ/gap)² over such springs (set_valued_laws.h).
+  std::vector<std::string> loose;
+  MatrixX free;         ///< columns: how u changes within that play, which changes no force
+  VectorX least, most;  ///< by NewtonOptions::watched: how far it may move from u
+  std::string message;  ///< where it did not converge, why, if that is known
   bool converged = false;
   int iterations = 0;
   double residual = 0;  ///< |Tᵀ(f − f_int)| relative to |Tᵀf| + |Tᵀ f_int|, largest entry
@@ -61,9 +73,10 @@ class Solver {
   void begin_slips(const std::vector<double>&);
 
   /// One load by freedom (of the given model, or of model()), constraint values as in the model. Newton with a line
-  /// search on the potential where a spring is nonlinear; springs that jump (stepped_spring.h) keep their laws to
-  /// rounding. Throws ModelError when the load drives an idle spin, and when a state loses the stiffness that keeps the
-  /// structure standing.
+  /// search on the potential where a spring is nonlinear; where one jumps (stepped_spring.h), or Newton does not
+  /// converge, the potential condensed to the elongations of these springs (set_valued.cpp), to rounding. Throws
+  /// ModelError when the load drives an idle spin, and when a state loses the stiffness that keeps the structure
+  /// standing.
   Solution solve(const VectorX& load, const NewtonOptions& options = {});
 
   /// What solve refuses before it begins: values that contradict each other, a load that drives an idle spin.
@@ -97,9 +110,14 @@ class Solver {
   void begin_by_forces(Work&);
   double line_search(const Work&, const VectorX& step) const;
   bool newton(Work&, const NewtonOptions&, Solution&);
-  bool update_known_forces(const Work&);
   void conclude(const Work&, Solution&) const;
   void try_to_factor(const VectorX& spring_tangents);
+  struct Condensed;
+  const Condensed& condensed();
+  Solution solve_condensed(const VectorX& load, const VectorX& values, const std::vector<int>& watched);
+  ExtendedVector refined(const std::vector<ScalarLaw>&, SetValuedSolution&, const LinearRelation&,
+                         const ExtendedVector& u0);
+  std::string reason(const SetValuedSolution&) const;
   void factor(const VectorX& spring_tangents);
   VectorX starting_tangents(double force) const;
 
@@ -111,7 +129,9 @@ class Solver {
   std::vector<IdleMotion> idle_;  // held by the last constraints
   double rounding_ = 0;
   bool factored_ = false;
-  VectorX factored_tangents_;  // the state that the factor belongs to
+  VectorX factored_tangents_;                   // the state that the factor belongs to
+  std::shared_ptr<const Condensed> condensed_;  // made when first needed
+  bool frictions_soft_ = true;                  // the stiffness that stands in for them there
 };
 
 /// Stored energies by part: beams ½ (d − d0)ᵀ K (d − d0), d0 the free strains' (by beam; none: 0), springs ∫ F dδ,

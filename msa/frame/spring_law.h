@@ -135,15 +135,6 @@ inline void know_force(SpringLaw& law, double f) {
   if (auto* gap = std::get_if<GapSpring>(&law)) gap->known = f + law.preload;
   if (auto* one = std::get_if<OneSidedSpring>(&law)) one->known = f + law.preload;
 }
-/// What it lacks of it: the difference to the force at an elongation.
-inline double unknown_force(const SpringLaw& law, double d) {
-  if (const auto* gap = std::get_if<GapSpring>(&law)) return gap->force(law.at_rest + d) - gap->known;
-  if (const auto* one = std::get_if<OneSidedSpring>(&law)) {
-    const double f = one->force(law.at_rest + d);
-    return one->soft(f) && one->soft(one->known) ? 0 : f - one->known;
-  }
-  return 0;
-}
 /// What is stored at an elongation, against the state at rest.
 inline double stored_energy(const SpringLaw& law, double d) {
   return std::visit(

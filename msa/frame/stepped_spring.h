@@ -1,7 +1,7 @@
-// Springs that jump. A gap or a rigid side has no force that a displacement would say: there the spring has a contact
-// stiffness K and the force λ that it is known to carry, so that it obeys its law at λ + K · (what it lacks of it):
-//   w = δ + λ/K,   f(w),   and δ keeps its law exactly once λ = f.
-// The solver sets λ = f until that holds (augmented Lagrangian): the contact stiffness is no error of the result.
+// Springs that jump. A gap or a rigid side has no force that a displacement would say. Solvers find it by the law
+// itself (set_valued.cpp); what else asks the spring gets the force λ that it is known to carry and a contact stiffness
+// K:
+//   w = δ + λ/K,   f(w),   which is λ where δ keeps its law.
 #pragma once
 
 #include <algorithm>
@@ -14,21 +14,20 @@ struct GapSpring {
   double gap = 0;
   double contact = 0;  ///< K
   double known = 0;    ///< λ
-  bool idle = false;   ///< carries nothing and is held in the middle
 
   double beyond(double d) const {
     const double w = d + known / contact;
-    return idle ? w : w - std::clamp(w, -gap, gap);
+    return w - std::clamp(w, -gap, gap);
   }
   double force(double d) const { return contact * beyond(d); }
-  double tangent(double d) const { return idle || beyond(d) != 0 ? contact : 0; }
+  double tangent(double d) const { return beyond(d) != 0 ? contact : 0; }
   double energy(double d) const { return contact * beyond(d) * beyond(d) / 2; }
   double at_force(double) const { return contact; }
-  double elongation(double f) const { return idle || f == 0 ? 0 : std::copysign(gap, f); }
+  double elongation(double f) const { return f == 0 ? 0 : std::copysign(gap, f); }
   double stored(double) const { return 0; }
   double slip(double) const { return 0; }
   /// Of the law without its contact stiffness; infinite where it is rigid.
-  double true_tangent(double d) const { return !idle && beyond(d) != 0 ? HUGE_VAL : 0; }
+  double true_tangent(double d) const { return beyond(d) != 0 ? HUGE_VAL : 0; }
 };
 
 /// Compliances under forces of either sign, m/N or rad/Nm; zero is rigid. A side that is softer than the contact

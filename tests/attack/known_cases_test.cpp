@@ -136,12 +136,13 @@ TEST(KnownCases, ADeviceThatIsHeldRigidlyIsRefused) {
                  {"rigid"});
 }
 
-TEST(KnownCases, DISABLED_ABeamBesideAUniversalJointIsSolved) {
+// The platform yields in four ways.
+TEST(KnownCases, ABeamBesideAUniversalJointIsSolved) {
   expect_right("beam-beside-universal.yaml", six(297.12826933000827, -271.7442135448348, -156.4907491588563, 0, 0, 0),
                six(0, 0, 0, 0, 0, 11550.996117250705));
 }
 
-TEST(KnownCases, DISABLED_APowerLawThatCarriesNothingIsSolved) {
+TEST(KnownCases, APowerLawThatCarriesNothingIsSolved) {
   expect_agreement(solve(case_path("power-law-that-carries-nothing.yaml") +
                          " --load=0,0,0,0,0,-583979.6542018397"
                          " --pose=161.3830572238304,-389.8379510827882,-473.06322120947317,0,0,0"));
@@ -154,14 +155,17 @@ TEST(KnownCases, ADeviceWithARigidLegIsRefused) {
       {"rigid"});
 }
 
-// Power laws are solved to the 1e-7 that their tangents leave where they are steep.
-TEST(KnownCases, DISABLED_AOneSidedLawBesideABeamIsSolved) {
-  expect_agreement(
-      solve(case_path("one-sided-beside-beam.yaml") + " --load=0,0,0,0,0,-3247.146829095071 --pose=0,0,0,0,0,0"), 1e-7);
+// An answer, or the cause: the power law δ = c f^0.2 yields without end where its force passes zero, as it does here.
+TEST(KnownCases, AOneSidedLawBesideABeamIsSolvedOrRefusedWithTheCause) {
+  const Answered a =
+      solve(case_path("one-sided-beside-beam.yaml") + " --load=0,0,0,0,0,-3247.146829095071 --pose=0,0,0,0,0,0");
+  if (a.run.code == 0) return expect_agreement(a, 1e-7);
+  EXPECT_EQ(a.run.code, 4) << a.run.out;
+  EXPECT_NE(a.run.out.find("power laws"), std::string::npos) << a.run.out;
 }
 
 // It took 13 s. An answer, or the cause: "did not converge" is none.
-TEST(KnownCases, DISABLED_SevenLegsWithFrictionEndSoonWithAnAnswerOrTheCause) {
+TEST(KnownCases, SevenLegsWithFrictionEndSoonWithAnAnswerOrTheCause) {
   const auto start = std::chrono::steady_clock::now();
   const Answered a = solve(case_path("seven-friction-legs.yaml") +
                            " --load=-3661.8796094296395,4089.313808860787,-326.21914437792344,-818464.249031611,"
@@ -174,7 +178,7 @@ TEST(KnownCases, DISABLED_SevenLegsWithFrictionEndSoonWithAnAnswerOrTheCause) {
 }
 
 // A pure moment loads no drive: the platform stays in the middle of its play, where it is without play.
-TEST(KnownCases, DISABLED_APlatformThatFloatsInItsPlayStaysInTheMiddle) {
+TEST(KnownCases, APlatformThatFloatsInItsPlayStaysInTheMiddle) {
   const std::string at = " --pose 500,500,500 --load=0,0,0,-10000,0,0";
   const Answered a = solve(case_path("tripteron-backlash.yaml") + at), without = solve("tripteron" + at);
   expect_agreement(a);
@@ -182,14 +186,20 @@ TEST(KnownCases, DISABLED_APlatformThatFloatsInItsPlayStaysInTheMiddle) {
   const Vector6 right = without.displacement("analytic");
   for (const char* theory : {"analytic", "msa"})
     EXPECT_LE((a.displacement(theory) - right).norm(), 1e-9 * right.norm()) << theory;
+  EXPECT_NE(a.notes().find("floats within its play by ux ±0.01 mm"), std::string::npos) << a.notes();
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(a.result["floating"]["most"][static_cast<std::size_t>(axis)].get<double>(), 0.01, 1e-12);
 }
 
-TEST(KnownCases, DISABLED_ACampaignOnADeviceWithBacklashIsSimulated) {
-  const Folder folder;
-  const std::string file = (folder / "x.csv").string();
-  const test::Run run = timely("simulate tripteron --with actuator_backlash --seed 1 -o '" + file + "'");
-  ASSERT_EQ(run.code, 0) << run.out;
-  EXPECT_GT(test::contents(file).size(), 1000u);
+TEST(KnownCases, ACampaignOnADeviceWithBacklashIsSimulated) {
+  for (const char* device : {"tripteron", "hybrid", "stewart-6ups"}) {
+    const Folder folder;
+    const std::string file = (folder / "x.csv").string();
+    const test::Run run =
+        timely(fmt::format("simulate {} --with actuator_backlash --campaign paper --seed 1 -o '{}'", device, file));
+    ASSERT_EQ(run.code, 0) << run.out;
+    EXPECT_GT(test::contents(file).size(), 1000u);
+  }
 }
 
 TEST(KnownCases, AHexapodOnATiltingBaseIsSolvedAtEveryPoseAndLoad) {
@@ -219,7 +229,7 @@ TEST(KnownCases, ABladeThatBendsFarFollowsTheElastica) {
 }
 
 // 1e-4 N close the gap of 1 mm and stretch 100 N/mm by 1e-6 mm.
-TEST(KnownCases, DISABLED_ASmallForceClosesALargeGap) {
+TEST(KnownCases, ASmallForceClosesALargeGap) {
   const Answered a = solve(case_path("clearance-small-load.yaml") + " --pose 0,0,0,0,0,0 --load=0,0,1e-4");
   expect_agreement(a);
   for (const char* theory : {"analytic", "msa"}) EXPECT_NEAR(a.displacement(theory)(2), 1.000001, 1e-12) << theory;

@@ -104,6 +104,18 @@ FrameDescription with(std::string text, const std::string& from, const std::stri
   return parse_frame(text, "tripod.yaml");
 }
 
+// A rotation is held by a condition that has the rounding of a force in it.
+TEST(Mobility, TheRoundingOfAForceIsNoLeverArm) {
+  Model m;
+  m.add_node("a", Vector3::Zero());
+  for (int i = 0; i < 6; ++i) {
+    LinearForm form = {{i, 1}};
+    if (i >= 3) form.push_back({i - 3, 1e-17});
+    m.constraints.push_back({form, 0, "hold"});
+  }
+  EXPECT_EQ(mobility_of(m, {}).free.cols(), 0);
+}
+
 TEST(Mobility, ATrussWorks) {
   const double L = std::sqrt(1.25), EA = 200e9 * pi * 1e-4, down = 1e3 * L / (3 * EA * (1 / 1.25));
   for (const std::string hinged : {"truss: true", "release_from: [rx, ry, rz], release_to: [rx, ry, rz]",

@@ -80,10 +80,17 @@ inline std::map<std::string, Spoil> spoilt() {
          return k;
        }},
       {"coupling_sign", [](const Matrix6& K, R) { return Matrix6(halves_scaled(1, -1) * K * halves_scaled(1, -1)); }},
+      {"moment_sign", [](const Matrix6& K, R) { return Matrix6(halves_scaled(1, -1) * K); }},
       {"moments_in_Nm", [](const Matrix6& K, R) { return Matrix6(halves_scaled(1, 1e-3) * K); }},
       {"moments_in_Nmm", [](const Matrix6& K, R) { return Matrix6(K * halves_scaled(1e3, 1)); }},
       {"degrees", [](const Matrix6& K, R) { return Matrix6(K * halves_scaled(1, pi / 180)); }},
       {"mixed_order", [](const Matrix6& K, R) { return Matrix6(halves_exchanged() * K); }},
+      {"two_exchanged",
+       [](const Matrix6& K, R) {
+         Matrix6 k = K;
+         k.row(1).swap(k.row(3));
+         return k;
+       }},
       {"rotation_first", [](const Matrix6& K, R) { return Matrix6(halves_exchanged() * K * halves_exchanged()); }},
       {"metres", [=](const Matrix6& K, R) { return with_block(K, 1e3, 1, 1e-3); }},
       {"millimetres", [=](const Matrix6& K, R) { return with_block(K, 1e-3, 1, 1e3); }},

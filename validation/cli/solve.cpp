@@ -62,7 +62,8 @@ Command solve_command() {
   return {
       "solve",
       "One pose, one load: displacement and 6x6 stiffness of the tool point by both theories, the share of each part "
-      "in the compliance, the checks",
+      "in the compliance, the checks. Where nothing loads a play, how far the device floats in it; the displacement is "
+      "then the middle of the play",
       "deflect solve haptic-6psu --pose 25,25,198.9,0,0,0 --load 50,0,0,0,0,0 --json result.json --out result",
       {{"device", "DEVICE", "built-in device or device file", &a->device, true},
        {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in the base frame, mm and deg", &a->pose},

@@ -9,9 +9,10 @@ namespace deflect {
 
 /// How far two answers to one wrench are apart, each measured by the size of the whole: displacements
 /// |(δ, ℓθ)_a − (δ, ℓθ)_b| / |(δ, ℓθ)_b| with the structure's length ℓ (m), stiffnesses by their largest entry, moments
-/// over ℓ. 0 where both vanish.
+/// over ℓ. 0 where both vanish. `play`: the ends of play that nothing loads, by the size of the play and the
+/// displacement; infinite where but one of them is.
 struct Difference {
-  double displacement = 0, stiffness = 0;
+  double displacement = 0, stiffness = 0, play = 0;
   double largest() const;
 };
 Difference difference(const Answer& a, const Answer& b, double length);

@@ -51,7 +51,8 @@ double bound_with(double least, double rounding) {
   return std::max(least, roundings * rounding);
 }
 
-AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : model_(c), where_(std::move(where)) {
+AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where)
+    : model_(c), where_(std::move(where)), length_(c.size) {
   weight_ << c.weight, Vector3::Zero();
   const bool fits = std::all_of(c.legs.begin(), c.legs.end(), [](const PlacedLeg& l) { return l.misfit.isZero(0); });
   if (!fits) energy_at_rest_ = total(model_.energies(model_.assembled()));
@@ -59,7 +60,7 @@ AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where) : mode
 
 Answer AnalyticAtPose::solve(const Vector6& F, const Conditions& conditions) const {
   const analytic::AnalyticSolution s = model_.solve(F, conditions);
-  if (!s.converged && model_.linear()) (void)model_.stiffness(s);  // throws where nothing yields
+  if (!s.converged && s.message.empty()) (void)model_.stiffness(s);  // throws where nothing yields
   if (!s.converged)
     throw NumericalError(s.message.empty()
                              ? fmt::format("{}: the analytic theory did not converge in {} steps (misfit {:.3g})",
@@ -79,12 +80,19 @@ Answer AnalyticAtPose::solve(const Vector6& F, const Conditions& conditions) con
   std::vector<LegStiffness> legs;
   for (std::size_t i = 0; i < model_.chains().size(); ++i)
     legs.push_back({model_.chains()[i].name, model_.leg_stiffness(i, s), model_.chains()[i].J_q});
-  const Answer answer{s.displacement, model_.stiffness(s), model_.energies(s),
-                      check_stiffness(model_.stiffness(s), legs), s.slips};
+  const analytic::Resistance r = model_.resistance(s);
+  if (r.rigid.cols() == 6) (void)model_.stiffness(s);  // throws: nothing yields at all
+  Answer answer{s.displacement, r.K, model_.energies(s), check_stiffness(r.K, legs), s.slips};
+  answer.floating = {s.loose, s.least, s.most};
+  answer.rigid = static_cast<int>(r.rigid.cols());
+  if (answer.rigid > 0) answer.rigid_motions = analytic::motions_resisted_by(r.rigid, length_);
   enforce(answer.checks.failure, "analytic stiffness", where_);
-  enforce(response_failure({F + weight_, s.displacement, -carried, total(answer.energies) - energy_at_rest_,
-                            model_.linear(), from_rest(conditions)}),
-          "analytic response", where_);
+  const std::string failure =
+      response_failure({F + weight_, s.displacement, -carried, total(answer.energies) - energy_at_rest_,
+                        model_.linear(), from_rest(conditions)});
+  // Beside rigid motions what yields little may have no digits: the rigid ones are the cause to tell.
+  if (!failure.empty() && answer.rigid > 0) (void)model_.stiffness(s);
+  enforce(failure, "analytic response", where_);
   return answer;
 }
 
@@ -167,6 +175,7 @@ Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
     checks_ = check_stiffness(stiffness.K, legs, bound_with(checked_to, model_->rounding()));
     enforce(checks_.failure, "MSA stiffness", where_);
     stiffness_ = stiffness.K;
+    rigid_ = 6 - static_cast<int>(stiffness.motions.cols());
     tangents_ = last_.state.spring_tangents;
     has_stiffness_ = true;
   }
@@ -176,7 +185,11 @@ Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
                             from_rest(conditions)},
                            bound_with(checked_to, model_->rounding())),
           "MSA response", where_);
-  return {last_.displacement, stiffness_, last_.energies, checks_, last_.slips};
+  Answer answer{last_.displacement, stiffness_, last_.energies, checks_, last_.slips};
+  answer.rigid = rigid_;
+  answer.floating = {last_.state.loose, Vector6::Zero(), Vector6::Zero()};
+  if (!last_.state.loose.empty()) answer.floating.least = last_.state.least, answer.floating.most = last_.state.most;
+  return answer;
 }
 
 }  // namespace deflect

@@ -14,6 +14,13 @@
 
 namespace deflect {
 
+/// Where nothing loads a play, the mechanism floats in it: the displacement is the middle (set_valued_laws.h), from
+/// which T may move by between `least` and `most` along each axis (m, rad) without changing any force.
+struct Floating {
+  std::vector<std::string> loose;  ///< the parts with that play; empty: nothing floats
+  Vector6 least = Vector6::Zero(), most = Vector6::Zero();
+};
+
 /// A theory's answer to one wrench at T; SI, base axes.
 struct Answer {
   Vector6 displacement;
@@ -23,6 +30,10 @@ struct Answer {
   std::vector<double> slips;                             ///< of the frictions after the load, as in Conditions
   /// Finite: about what dividing members leaves of the displacement, m and rad.
   Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();
+  Floating floating = {};
+  /// Motions along which the stiffness is infinite; `stiffness` is that of the others.
+  int rigid = 0;
+  std::vector<std::string> rigid_motions = {};  ///< of the closed form, in words
 };
 
 /// The bound of a check that demands `least`, relative: more where the structure amplifies the rounding of its own
@@ -42,6 +53,7 @@ class AnalyticAtPose {
  private:
   analytic::AnalyticModel model_;
   std::string where_;
+  double length_;
   Vector6 weight_;             // at T, acts with every load
   double energy_at_rest_ = 0;  // of the assembled mechanism, whose legs may be strained
 };
@@ -82,6 +94,7 @@ class MsaAtPose {
   bool has_stiffness_ = false;
   VectorX tangents_;  // of stiffness_, which a linear structure needs once
   Matrix6 stiffness_ = Matrix6::Zero();
+  int rigid_ = 0;
   StiffnessChecks checks_;
 };
 

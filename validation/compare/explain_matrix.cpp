@@ -45,9 +45,9 @@ Matrix6 moved_by_rounding(const PrintedMatrix& K, const Matrix6& at, const std::
 }
 
 /// What is left of K − R once mistakes are undone one after the other; nothing where they do not apply.
-class Comparison {
+class MatrixComparison {
  public:
-  Comparison(const PrintedMatrix& K, const PrintedMatrix& R, double unit_m)
+  MatrixComparison(const PrintedMatrix& K, const PrintedMatrix& R, double unit_m)
       : K_(K), R_(R), unit_m_(unit_m), length_(weighing_length(R.values)) {
     scale_ = std::max(weighed(R.values, length_).cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
     difference_ = relative(K.values - R.values).cwiseAbs().maxCoeff();
@@ -94,7 +94,7 @@ class Comparison {
   double unit_m_, length_, scale_ = 1, difference_ = 0;
 };
 
-MatrixDiagnosis described(const Comparison& comparison, const std::vector<Way>& sequence) {
+MatrixDiagnosis described(const MatrixComparison& comparison, const std::vector<Way>& sequence) {
   std::vector<Undone> undone;
   comparison.remaining(sequence, &undone);
   MatrixDiagnosis d = diagnosis(*sequence.front().mistake, undone.front());
@@ -145,7 +145,7 @@ std::vector<MatrixDiagnosis> explain(const PrintedMatrix& K, double unit_m, cons
 }
 
 Explanation explain(const PrintedMatrix& K, const PrintedMatrix& R, double unit_m) {
-  const Comparison comparison(K, R, unit_m);
+  const MatrixComparison comparison(K, R, unit_m);
   Explanation out;
   out.difference = out.remaining = comparison.difference();
   const std::vector<Way> usual = ways(false);

@@ -1,5 +1,7 @@
 #include "validation/compare/mistakes.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 
 #include "validation/compare/mistake_fits.h"
@@ -60,6 +62,35 @@ Matrix6 rows_swapped(const Matrix6& K) {
 Matrix6 columns_swapped(const Matrix6& K) { return rows_swapped(K.transpose()).transpose(); }
 Matrix6 order_swapped(const Matrix6& K) { return rows_swapped(columns_swapped(K)); }
 
+/// Two rows, two columns, or both exchanged, of any two axes; both leave K symmetric, which only a reference tells.
+std::vector<Undo> any_two_exchanged() {
+  constexpr const char *forces[] = {"fx", "fy", "fz", "mx", "my", "mz"},
+                       *motions[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
+  std::vector<Undo> rows, columns, both;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i + 1; j < 6; ++j) {
+      const std::string of_rows = fmt::format(": rows {} and {}", forces[i], forces[j]),
+                        of_columns = fmt::format(": columns {} and {}", motions[i], motions[j]);
+      rows.push_back([=](const Matrix6& K, const MistakeContext&) {
+        Undone out{K, of_rows};
+        out.K.row(i).swap(out.K.row(j));
+        return out;
+      });
+      columns.push_back([=](const Matrix6& K, const MistakeContext&) {
+        Undone out{K, of_columns};
+        out.K.col(i).swap(out.K.col(j));
+        return out;
+      });
+      both.push_back(only_with_reference([=, row = rows.back(), column = columns.back()](
+                                             const Matrix6& K, const MistakeContext& c) -> std::optional<Undone> {
+        return Undone{column(row(K, c)->K, c)->K, of_rows + "," + of_columns.substr(1)};
+      }));
+    }
+  rows.insert(rows.end(), columns.begin(), columns.end());
+  rows.insert(rows.end(), both.begin(), both.end());
+  return rows;
+}
+
 Matrix6 coupling_negated(const Matrix6& K) {
   Matrix6 out = K;
   out.topRightCorner<3, 3>() *= -1;
@@ -108,6 +139,10 @@ std::vector<Mistake> table() {
        "change the sign of the coupling block",
        {below_diagonal(matrix(coupling_negated)), matrix(coupling_negated),
         only_with_reference(scaling(halves(1, -1), halves(1, -1)))}},
+      {"moment_sign",
+       "the sign of its moments is reversed (or, by its columns, that of its rotations), but not that of the other",
+       "change the sign of the rows of the moments, or of the columns of the rotations",
+       {scaling(halves(1, -1), one), scaling(one, halves(1, -1))}},
       {"moments_in_Nm",
        "its moments are in Nm while its displacements are in mm",
        "multiply the rows of the moments by 1000, or divide the columns of the translations by 1000 and use --unit m",
@@ -126,6 +161,8 @@ std::vector<Mistake> table() {
        "the reverse",
        "exchange the upper and lower three rows",
        {matrix(rows_swapped), matrix(columns_swapped)}},
+      {"two_exchanged", "two of its rows, or two of its columns, are exchanged (swapped)", "exchange them again",
+       any_two_exchanged()},
       {"rotation_first",
        "it is ordered rotation first, [θ; δ] and [m; f]",
        "use --order rotation-first",

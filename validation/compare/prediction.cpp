@@ -46,6 +46,7 @@ class Predictor {
     Vector6 displacement;
     bool converged;
     std::vector<double> slips;
+    std::string reason = "";  ///< where not converged, if it is known
   };
   Response solve(const Vector6& F, const Conditions& conditions) {
     if (affine_ && conditions.geometry == Geometry::linear)
@@ -54,10 +55,10 @@ class Predictor {
       return {sweep_->displacement(), true, {}};
     if (msa_) {
       const frame::MsaSolution s = msa_->solve(F, conditions);
-      return {s.displacement, s.state.converged, s.slips};
+      return {s.displacement, s.state.converged, s.slips, s.state.message};
     }
     const analytic::AnalyticSolution s = model().solve(F, conditions);
-    return {s.displacement, s.converged, s.slips};
+    return {s.displacement, s.converged, s.slips, s.message};
   }
 
  private:
@@ -190,8 +191,9 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
       conditions.warmer = reading.temperature_C - 20;
       Predictor::Response r = predictor.solve(true_load(m.load_cell, reading.load), conditions);
       if (!r.converged)
-        throw NumericalError(fmt::format("{}:{}: {} finds no equilibrium under this load", data.origin, reading.line,
-                                         o.theory == Theory::analytic ? "the analytic theory" : "the MSA"));
+        throw NumericalError(fmt::format("{}:{}: {} finds no equilibrium under this load{}{}", data.origin,
+                                         reading.line, o.theory == Theory::analytic ? "the analytic theory" : "the MSA",
+                                         r.reason.empty() ? "" : ": ", r.reason));
       if (beside) carried.leave_with(r.displacement, r.slips);
       conditions.slips = std::move(r.slips);
       out[i] = recorded_displacement(m.sensor, r.displacement);

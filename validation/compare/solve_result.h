@@ -24,6 +24,12 @@ struct Assembly {
   std::vector<std::pair<std::string, Vector6>> leg_wrenches_N_Nmm;  ///< by the closed form: platform on leg, at T
 };
 
+/// Play that nothing loads: the displacement is its middle, from which T may move without force.
+struct FloatingPlay {
+  std::vector<std::string> parts;                                         ///< that have it
+  Vector6 least_mm_rad = Vector6::Zero(), most_mm_rad = Vector6::Zero();  ///< along each axis, from the middle
+};
+
 struct JointValue {
   std::string name;
   double value = 0;
@@ -47,6 +53,8 @@ struct SolveResult {
   std::vector<JointValue> joints;                      ///< commanded coordinates
   int redundant_constraints = 0;                       ///< degree of over-constraint with actuators held
   std::optional<Assembly> assembly;                    ///< where legs stand beside their seats
+  std::optional<FloatingPlay> floating;
+  std::vector<std::string> rigid_motions;  ///< along which the stiffness is infinite; K is that of the others
   std::vector<std::string> notes;  ///< what the MSA held or found poor: idle spins, redundant constraints, conditioning
   LineMesh mesh;                   ///< the MSA's structure
   FieldData fields;                ///< on it: displacements, member forces

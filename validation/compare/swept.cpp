@@ -48,7 +48,13 @@ template <class Sweep>
 Answer SweptTheories::checked(const Sweep& sweep, std::vector<LegStiffness>& legs, const Vector6& F,
                               const Vector6& reaction, const char* theory) const {
   for (std::size_t i = 0; i < legs.size(); ++i) legs[i].K = sweep.leg_stiffness(i);
-  Answer answer{sweep.displacement(), sweep.stiffness(), {}, check_stiffness(sweep.stiffness(), legs), {}};
+  Answer answer{sweep.displacement(),
+                sweep.stiffness(),
+                {},
+                check_stiffness(sweep.stiffness(), legs),
+                {},
+                Eigen::Vector2d::Zero(),
+                {}};
   if (!answer.checks.failure.empty())
     throw NumericalError(fmt::format("{}: the {} stiffness fails a check: {}", where(), theory, answer.checks.failure));
   Vector6 load = F;

@@ -198,6 +198,7 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
   if (total > 0)
     for (const auto& [part, energy] : f.energies) r.shares.emplace_back(part, energy / total);
   r.notes = pair.msa.notes();
+  r.rigid_motions = a.rigid_motions;
   if (const double known = bound_with(0, pair.msa.rounding()); linear && known > 1e-9)
     r.notes.push_back(fmt::format(
         "the device amplifies the rounding of its own numbers: the answer is known to about {:.0e} of its size",
@@ -206,6 +207,8 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
     r.joints.push_back({joint.name, joint.rotation ? joint.value : 1e3 * joint.value, joint.rotation});
   r.redundant_constraints = analytic::redundant_constraints(at.configuration);
   r.assembly = assembly_of(at.configuration, pair);
+  if (!f.floating.loose.empty())
+    r.floating = {f.floating.loose, twist_in_mm(f.floating.least), twist_in_mm(f.floating.most)};
   r.mesh = lines_of(pair.msa.mechanism());
   r.fields = fields_of(pair.msa.mechanism(), pair.msa.displacements(), pair.msa.deformed());
   return r;

@@ -12,8 +12,8 @@
 namespace deflect {
 namespace {
 
-constexpr double alike = 0.995;       // cosine from which one place stands for another
-constexpr double beyond_chance = 30;  // in χ², of a few hundred that are looked at
+constexpr double alike_place = 0.995;  // cosine from which one place stands for another
+constexpr double beyond_chance = 30;   // in χ², of a few hundred that are looked at
 
 /// A law as it is written into the description, with a small size.
 struct ScannedLaw {
@@ -103,7 +103,8 @@ std::vector<Localised> scan(const Observations& o, const Fit& fit, int threads, 
   std::vector<std::size_t> taken;
   for (const std::size_t i : order) {
     if (out.size() == most || gain[i] < beyond_chance) break;
-    if (std::any_of(taken.begin(), taken.end(), [&](std::size_t k) { return cosine(found[i], found[k]) > alike; }))
+    if (std::any_of(taken.begin(), taken.end(),
+                    [&](std::size_t k) { return cosine(found[i], found[k]) > alike_place; }))
       continue;
     taken.push_back(i);
     const PlacedEffect& e = found[i].effect;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
 
-std::string_view trim(std::string_view s) {
+std::string_view stripped(std::string_view s) {
   const auto from = s.find_first_not_of(blanks);
   return from == s.npos ? std::string_view{} : s.substr(from, s.find_last_not_of(blanks) - from + 1);
 }
@@ -40,18 +40,18 @@ std::string without_comments(std::string_view text) {
 }
 
 std::string unquoted(std::string_view cell) {
-  cell = trim(cell);
+  cell = stripped(cell);
   if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
-  return std::string(trim(cell));
+  return std::string(stripped(cell));
 }
 
 std::vector<std::string> split(std::string_view line, char separator) {
   std::vector<std::string> cells;
   if (separator == ' ') {
-    for (line = trim(line); !line.empty();) {
+    for (line = stripped(line); !line.empty();) {
       const std::size_t end = std::min(line.find_first_of(blanks), line.size());
       cells.push_back(unquoted(line.substr(0, end)));
-      line = trim(line.substr(end));
+      line = stripped(line.substr(end));
     }
     return cells;
   }
@@ -73,7 +73,7 @@ class Brackets {
   std::vector<MatrixRow> rows() {
     const std::size_t open = text_.find('[');
     for (const char c : text_.substr(0, open)) line_ += c == '\n';
-    if (const std::string_view before = trim(text_.substr(0, open)); !before.empty() && number_like(before))
+    if (const std::string_view before = stripped(text_.substr(0, open)); !before.empty() && number_like(before))
       refuse(file_, 1, "there are numbers before the bracket: keep one matrix in the file");
     int depth = 0;
     for (std::size_t i = open; i < text_.size(); ++i) {
@@ -117,7 +117,7 @@ class Brackets {
   }
 
   void check_tail(std::size_t from) const {
-    const std::string_view tail = trim(text_.substr(from));
+    const std::string_view tail = stripped(text_.substr(from));
     if (tail.find_first_not_of(" \t\r\n;)") == tail.npos || tail.starts_with(", dtype")) return;
     refuse(file_, line_, fmt::format("'{}' follows the matrix: keep one matrix in the file", tail.substr(0, 20)));
   }
@@ -162,7 +162,7 @@ MatrixText lines_laid_out(std::string_view text, const std::string& file) {
     // Tabs before the first or behind the last cell separate empty cells; MATLAB ends a row with a semicolon.
     while (!line.empty() && (line.back() == ' ' || line.back() == '\r')) line.remove_suffix(1);
     if (line.ends_with(';')) line.remove_suffix(1);
-    const std::string_view words = trim(line);
+    const std::string_view words = stripped(line);
     if (words.empty() || (words.ends_with('=') && lines.empty())) continue;  // "K ="
     if (words.ends_with('*') && lines.empty()) {
       try {

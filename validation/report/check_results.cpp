@@ -11,8 +11,6 @@
 namespace deflect {
 namespace {
 
-constexpr std::size_t line_length = 110;
-
 std::string bound_text(const Check& c) {
   if (std::isfinite(c.at_least) && std::isfinite(c.at_most))
     return fmt::format("{:.3g} … {:.3g}", c.at_least, c.at_most);

@@ -12,15 +12,12 @@
 namespace deflect {
 namespace {
 
-constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73"};
-constexpr double micro = 1e6;
-
 Figure residuals(const Comparison& c, const FigureStyle& style) {
   const ErrorUnit unit = error_unit(c);
   const std::vector<ReadingCells> cells = cells_of(c);
   Sheet s("residuals", style, 160);
   std::string data = "$data << EOD\n";
-  const double band = 2 * micro * c.noise_and_tolerances;
+  const double band = 2 * um * c.noise_and_tolerances;
   Vector3 low = Vector3::Constant(-band), high = -low;
   std::array<bool, 3> measured = {};
   double last = 0;
@@ -29,7 +26,7 @@ Figure residuals(const Comparison& c, const FigureStyle& style) {
     last = std::max(last, at);
     data += fmt::format("{}", at);
     for (int k = 0; k < 3; ++k) {
-      const double r = micro * cells[i].residual(k);
+      const double r = um * cells[i].residual(k);
       data += fmt::format(" {}", r);
       if (!std::isfinite(r)) continue;
       measured[static_cast<std::size_t>(k)] = true;
@@ -79,15 +76,15 @@ Figure groups(const Comparison& c, const FigureStyle& style) {
   std::string labels, data = "$data << EOD\n";
   int at = 0;
   std::size_t longest = 1;
-  const double floor = micro * c.noise_and_tolerances;
+  const double floor = um * c.noise_and_tolerances;
   double most = floor;
   for (const auto* list : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading}) {
     if (list->empty()) continue;
     for (const Errors& e : *list) {
-      data += fmt::format("{} {:.5g}\n", at, micro * e.rmse);
+      data += fmt::format("{} {:.5g}\n", at, um * e.rmse);
       labels += fmt::format("{}{} {}", labels.empty() ? "" : ", ", gnuplot_tic_label(e.group), at);
       longest = std::max(longest, letters(e.group));
-      most = std::max(most, micro * e.rmse);
+      most = std::max(most, um * e.rmse);
       ++at;
     }
     ++at;
@@ -128,7 +125,7 @@ std::optional<Figure> elongation(const Comparison& c, const FigureStyle& style) 
     there[curve.rotation] = true;
     s.put("$c{} << EOD", k);
     for (std::size_t i = 0; i < curve.force.size(); ++i) {
-      const double e = micro * curve.elongation[i], deviation = micro * curve.deviation[i];
+      const double e = um * curve.elongation[i], deviation = um * curve.deviation[i];
       s.put("{} {} {}", curve.force[i], e, deviation);
       r.low_force = std::min(r.low_force, curve.force[i]), r.high_force = std::max(r.high_force, curve.force[i]);
       r.low = std::min(r.low, e - deviation), r.high = std::max(r.high, e + deviation);

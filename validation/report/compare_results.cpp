@@ -12,7 +12,6 @@
 namespace deflect {
 namespace {
 
-constexpr double um = 1e6, mm = 1e3;  // of rotations: µrad, mrad
 constexpr double significant = 1e-3;
 constexpr std::size_t most_poses = 12, poses_of_many = 10;  // in the report
 

@@ -11,8 +11,6 @@
 namespace deflect {
 namespace {
 
-constexpr double um = 1e6, mm = 1e3;  // of rotations: µrad, mrad
-
 const char* micro(const Diagnosis& d) { return d.rotations ? "µrad" : "µm"; }
 
 std::string site_words(const PlacedEffect& e) { return fmt::format("{} ({})", e.effect->name, site_of(e)); }

@@ -12,7 +12,6 @@
 namespace deflect {
 namespace {
 
-constexpr std::size_t line_length = 110;
 constexpr const char* action_names[] = {"set", "append", "multiply", "add"};
 
 const char* scope_name(const Effect& e) { return scope_names[static_cast<std::size_t>(e.scope)]; }

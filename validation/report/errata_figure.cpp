@@ -10,15 +10,14 @@
 namespace deflect {
 namespace {
 
-constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73"};  // Okabe–Ito, as in Fig. 10
-constexpr int shapes[] = {7, 5, 13};
-constexpr double linear = 1e-3, knee = 2;
+constexpr double linear_to = 1e-3, knee = 2;
 
 /// Signed: the logarithm of the change up to a factor of 2 (0.1 %, 1 %, 10 % take equal steps), beyond it that of the
 /// factor.
 double place(double ratio) {
   const double x = std::abs(std::log(ratio)), most = std::log(knee);
-  const double size = std::log10(1 + std::min(x, most) / linear) + (x > most ? 0.8 * (x - most) / std::log(10.0) : 0);
+  const double size =
+      std::log10(1 + std::min(x, most) / linear_to) + (x > most ? 0.8 * (x - most) / std::log(10.0) : 0);
   return std::copysign(size, std::log(ratio));
 }
 
@@ -93,10 +92,10 @@ Figure errata_figure(const std::vector<ErratumPrice>& prices, const Validation& 
   const auto add_marks = [&](auto chosen) {
     double last = -INFINITY, half = 0;
     for (const Mark& mark : chosen) {
-      const double at = place(mark.ratio), mm = w * std::abs(at) / (high_end - low_end),
+      const double at = place(mark.ratio), offset = w * std::abs(at) / (high_end - low_end),
                    own = s.text_mm(letters(mark.name)) / 2;
-      if (at < low_end || at > high_end || mm - last < half + own + 0.6 * s.line()) continue;
-      last = mm, half = own;
+      if (at < low_end || at > high_end || offset - last < half + own + 0.6 * s.line()) continue;
+      last = offset, half = own;
       tics += fmt::format("{}{} {:.6g}", tics.empty() ? "" : ", ", gnuplot_tic_label(mark.name), at);
     }
   };

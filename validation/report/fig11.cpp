@@ -18,9 +18,6 @@
 namespace deflect {
 namespace {
 
-constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73"};  // Okabe–Ito, as in Fig. 10
-constexpr int shapes[] = {7, 5, 13};
-
 const double none = std::numeric_limits<double>::quiet_NaN();
 
 /// Stiffness along x, y, z at the grid's poses; NaN out of reach. All are positive or the map would have no stiffness.

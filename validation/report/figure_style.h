@@ -5,6 +5,10 @@
 
 namespace deflect {
 
+/// Of the axes x, y and z: colours by Okabe and Ito, which any colour vision tells apart, and gnuplot's filled points.
+inline constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73"};
+inline constexpr int shapes[] = {7, 5, 13};
+
 struct FigureStyle {
   double width_mm = 0;  ///< on paper; 0: each figure's own
   std::string font = "DejaVu Sans";

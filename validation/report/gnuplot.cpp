@@ -23,8 +23,8 @@ constexpr double pango = 72.0 / 96;  // the cairo terminals take a point of text
 /// Sizes are points in all three: the SVG's user unit is a point and its outer size is set in mm afterwards,
 /// because gnuplot scales everything but markers there.
 std::string terminal(const std::string& suffix, const Figure& figure) {
-  const auto in_points = [](double mm) { return std::lround(mm * points_per_mm); };
-  const auto in_pixels = [](double mm) { return std::lround(mm * png_dpi / 25.4); };
+  const auto in_points = [](double length) { return std::lround(length * points_per_mm); };
+  const auto in_pixels = [](double length) { return std::lround(length * png_dpi / 25.4); };
   const double w = figure.width_mm, h = figure.height_mm;
   const std::string font = fmt::format("font '{},{:.4g}'", figure.style.font, figure.style.size_pt);
   if (suffix == "svg") {  // standalone: images inside the file

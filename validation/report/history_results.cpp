@@ -15,7 +15,6 @@
 namespace deflect {
 namespace {
 
-constexpr double um = 1e6, mm = 1e3;  // of rotations: µrad, mrad
 constexpr double significant = 1e-3;
 
 std::vector<std::string> failing(const Comparison& c) {

@@ -1,4 +1,5 @@
 #include "validation/report/load_curves.h"
+#include "validation/report/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,6 @@
 namespace deflect {
 namespace {
 
-constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73"};
 constexpr double micro = 1e6;
 
 /// Lines of load, measured, predicted for one component, blank lines between poses; ranges of both axes.

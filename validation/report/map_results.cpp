@@ -50,12 +50,12 @@ constexpr std::size_t first_ranged = 9, last_ranged = 14;  // what a person is t
 constexpr const char* ranged_names[] = {"along x, 1/Cxx", "along y, 1/Cyy", "along z, 1/Czz",
                                         "smallest",       "largest",        "isotropy"};
 
-struct Theory {
+struct TheoryColumns {
   const char *name, *title;
   std::optional<MapValues> MapPose::*values;
 };
-std::vector<Theory> theories_of(const StiffnessMap& map) {
-  std::vector<Theory> list;
+std::vector<TheoryColumns> theories_of(const StiffnessMap& map) {
+  std::vector<TheoryColumns> list;
   if (map.options.analytic) list.push_back({"analytic", "analytic", &MapPose::analytic});
   if (map.options.msa) list.push_back({"msa", "MSA", &MapPose::msa});
   return list;
@@ -182,9 +182,9 @@ std::string map_report(const StiffnessMap& map) {
     text +=
         fmt::format("out of reach: {} poses: {}\n  first: {}\n", o.poses, o.reason, map.poses[o.example].out_of_reach);
   if (n == 0) return text;
-  std::vector<Theory> told = theories_of(map);
+  std::vector<TheoryColumns> told = theories_of(map);
   if (both(map) && largest_difference(map) < 1e-6) told.pop_back();  // the same digits again
-  for (const Theory& theory : told) {
+  for (const TheoryColumns& theory : told) {
     std::vector<std::vector<std::string>> rows = {{theory.title, "from", "at x, y, z (mm)", "to", "at x, y, z (mm)"}};
     for (std::size_t c = first_ranged; c <= last_ranged; ++c) {
       const Range r = range_of(map, theory.values, columns()[c]);
@@ -219,8 +219,8 @@ std::string map_csv(const StiffnessMap& map) {
   text += map.options.load_N_Nmm ? "fx_N,fy_N,fz_N,mx_Nmm,my_Nmm,mz_Nmm," : "force_N,";
   text += "compliance_kind,length_mm,reached,note_out_of_reach";
   for (const SlideColumn& slide : slide_columns(map)) text += "," + slide.name;
-  const std::vector<Theory> theories = theories_of(map);
-  for (const Theory& theory : theories)
+  const std::vector<TheoryColumns> theories = theories_of(map);
+  for (const TheoryColumns& theory : theories)
     for (const Column& column : columns()) text += fmt::format(",{}_{}", theory.name, column.name);
   text += both(map) ? ",relative_difference\n" : "\n";
   const std::string load = map.options.load_N_Nmm ? fmt::format("{},tangent", fmt::join(*map.options.load_N_Nmm, ","))
@@ -231,7 +231,7 @@ std::string map_csv(const StiffnessMap& map) {
     for (std::size_t at = note.find('"'); at != note.npos; at = note.find('"', at + 2)) note.insert(at, 1, '"');
     if (!note.empty()) text += '"' + note + '"';
     for (const SlideColumn& slide : slide_columns(map)) text += p.reached() ? fmt::format(",{}", p.*slide.of) : ",";
-    for (const Theory& theory : theories)
+    for (const TheoryColumns& theory : theories)
       for (const Column& column : columns())
         text += p.reached() ? fmt::format(",{}", column.of(*(p.*theory.values))) : ",";
     if (both(map)) text += p.reached() ? fmt::format(",{}", p.relative_difference) : ",";
@@ -269,7 +269,7 @@ std::string map_json(const StiffnessMap& map) {
   };
   for (const SlideColumn& slide : slide_columns(map))
     arrays[slide.name] = array(slide.name, [&](const MapPose& p) { return p.*slide.of; });
-  for (const Theory& theory : theories_of(map))
+  for (const TheoryColumns& theory : theories_of(map))
     for (std::size_t c = 0; c < columns().size(); ++c) {
       const Column& column = columns()[c];
       arrays[theory.name][column.name] =
@@ -338,7 +338,7 @@ std::string map_vtu(const StiffnessMap& map) {
                       cells.size());
   for (const SlideColumn& slide : slide_columns(map))
     array("Float64", slide.name, "", points, [&](const MapPose* p) { return number(p->*slide.of); });
-  for (const Theory& theory : theories_of(map))
+  for (const TheoryColumns& theory : theories_of(map))
     for (const Column& column : columns())
       array("Float64", fmt::format("{}_{}", theory.name, column.name), "", points,
             [&](const MapPose* p) { return number(column.of(*(p->*theory.values))); });

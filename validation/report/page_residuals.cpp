@@ -1,4 +1,5 @@
 #include "validation/report/page_residuals.h"
+#include "validation/report/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +9,6 @@
 
 namespace deflect {
 namespace {
-
-constexpr double mm = 1e3;
 
 /// Of each pose, over the kind of numbers that Errors speak of.
 std::vector<double> rmse_by_pose(const Comparison& c, const VectorX& residual, bool rotations) {
@@ -61,10 +60,10 @@ Json poses_json(const Comparison& c, bool rotations) {
   return out;
 }
 
-Json readings_json(const Comparison& c, std::size_t most_readings) {
+Json readings_json(const Comparison& c, std::size_t most) {
   const Measurements& data = *c.study.data;
   Json out = Json::array();
-  for (std::size_t i = 0; i < std::min(most_readings, data.readings.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(most, data.readings.size()); ++i) {
     const Reading& r = data.readings[i];
     Vector6 load = r.load;
     load.tail<3>() *= mm;
@@ -105,14 +104,14 @@ Json curves_json(const Comparison& c) {
 
 }  // namespace
 
-Json residuals_json(const Comparison& c, std::size_t most_readings) {
+Json residuals_json(const Comparison& c, std::size_t most) {
   const bool rotations = rotations_alone(c.study.values);
   Json out;
   out["device"] = c.device;
   out["result"] = Json::parse(compare_json(c));
   out["unit"] = rotations ? "rad" : "mm";
   out["poses"] = poses_json(c, rotations);
-  out["readings"] = readings_json(c, most_readings);
+  out["readings"] = readings_json(c, most);
   out["readings_left_out"] = c.study.data->readings.size() - out["readings"].size();
   out["note_columns"] = c.study.data->note_columns;
   out["curves"] = curves_json(c);

@@ -1,4 +1,5 @@
 #include "validation/report/page_scene.h"
+#include "validation/report/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,6 @@
 namespace deflect {
 namespace {
 
-constexpr double mm = 1e3;
 constexpr int elements = 8;
 
 /// For the eye: positions to 0.1 µm; displacements keep seven digits.

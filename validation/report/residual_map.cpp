@@ -1,4 +1,5 @@
 #include "validation/report/residual_map.h"
+#include "validation/report/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 namespace deflect {
 namespace {
 
-constexpr double micro = 1e6, mm = 1e3;
 constexpr double depth_x = 0.42, depth_z = 0.26;  // of a step along y, into the page
 
 // Blue, white, red of ColorBrewer's RdBu, told apart with any colour vision.
@@ -96,7 +96,7 @@ Figure residual_map(const Comparison& c, const FigureStyle& style) {
         const double x = (kind == 0 ? v.along : v.mean)(k);
         if (!std::isfinite(x)) continue;
         any[kind][k] = true;
-        most = std::max(most, micro * std::abs(x));
+        most = std::max(most, um * std::abs(x));
       }
   most = std::max(most, 1e-3);
   std::vector<int> kinds, components;
@@ -116,7 +116,7 @@ Figure residual_map(const Comparison& c, const FigureStyle& style) {
     const Vector3 at = mm * c.study.machines[p].pose.p_WT, foot(at.x(), at.y(), box.low.z());
     std::string row = fmt::format("{:.5g} {:.5g} {:.5g}", box.across(at), box.up(at), box.up(foot));
     for (const Vector3& v : {values[p].along, values[p].mean})
-      for (int k = 0; k < 3; ++k) row += fmt::format(" {:.5g}", micro * v(k));
+      for (int k = 0; k < 3; ++k) row += fmt::format(" {:.5g}", um * v(k));
     s.put("{}", row);
   }
   s.put("EOD\nset multiplot\nunset key\nunset border\nunset tics\n{}\nset cbrange [{}:{}]", palette, -most, most);

@@ -31,9 +31,9 @@ double Sheet::text_mm(std::size_t letters, double size) const {
   return static_cast<double>(letters) * size * style_.size_pt * mm_per_pt * letter;
 }
 
-std::size_t Sheet::letters_in(double mm, double size, bool bold) const {
+std::size_t Sheet::letters_in(double room_mm, double size, bool bold) const {
   return static_cast<std::size_t>(
-      std::max(8.0, mm / (size * style_.size_pt * mm_per_pt * (bold ? bold_prose : prose))));
+      std::max(8.0, room_mm / (size * style_.size_pt * mm_per_pt * (bold ? bold_prose : prose))));
 }
 
 std::string Sheet::font(double size, bool bold) const {

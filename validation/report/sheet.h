@@ -26,7 +26,7 @@ class Sheet {
   double line() const { return 0.5 * style_.size_pt; }  ///< mm from one line of text to the next
   bool narrow() const { return width_ < 29 * line(); }  ///< one column of a journal rather than two
   double text_mm(std::size_t letters, double size = 1) const;
-  std::size_t letters_in(double mm, double size = 1, bool bold = false) const;
+  std::size_t letters_in(double room_mm, double size = 1, bool bold = false) const;
   std::string font(double size = 1, bool bold = false) const;  ///< "font 'DejaVu Sans:Bold,9'"
 
   /// Round steps over a range on an axis of so many mm, as many as its numbers leave room for: side by side, or, of an

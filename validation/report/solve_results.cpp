@@ -22,6 +22,13 @@ Json json_theory(const TheorySolution& theory, const std::string& name) {
   return json;
 }
 
+/// null where play ends nowhere, as with a friction that slides for ever.
+Json json_limits(const Vector6& values) {
+  Json json = Json::array();
+  for (const double v : values) json.push_back(std::isfinite(v) ? Json(v) : Json());
+  return json;
+}
+
 /// √(K_ii K_jj): the measure of an entry that does not depend on units of length.
 double scale(const Matrix6& K, int i, int j) { return std::sqrt(std::abs(K(i, i) * K(j, j))); }
 
@@ -38,11 +45,15 @@ std::string stiffness_table(const Matrix6& K) {
 }
 
 std::string stiffness_difference(const Matrix6& analytic, const Matrix6& msa) {
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(1e-3);  // rotations at 1 m
+  const double rounding = 1e-15 * (weight.asDiagonal() * msa * weight.asDiagonal()).cwiseAbs().maxCoeff();
   double largest = -1;
   int row = 0, column = 0;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
-      const double difference = std::abs(analytic(i, j) - msa(i, j));
+      double difference = std::abs(analytic(i, j) - msa(i, j));
+      if (weight(i) * weight(j) * difference <= rounding) difference = 0;
       const double relative = difference == 0 ? 0 : difference / scale(msa, i, j);
       if (relative <= largest) continue;
       largest = relative, row = i, column = j;
@@ -109,9 +120,35 @@ std::string assembly_table(const Assembly& assembly) {
          "                                  MSA " + offset(assembly.msa_mm_rad) + "\n";
 }
 
+/// "floats within its play by ux ±0.02 mm, …", the axes along which it does.
+std::string floating_note(const FloatingPlay& play) {
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(1e3);  // rad at 1 m
+  const double size = weight.cwiseProduct(play.most_mm_rad - play.least_mm_rad).maxCoeff();
+  std::vector<std::string> ways;
+  for (int i = 0; i < 6; ++i) {
+    const double least = play.least_mm_rad(i), most = play.most_mm_rad(i);
+    if (!(weight(i) * (most - least) > 1e-9 * std::min(size, 1e3))) continue;
+    const char* unit = i < 3 ? "mm" : "rad";
+    const bool even = std::isfinite(most) && std::abs(most + least) <= 1e-6 * (most - least);
+    ways.push_back(even ? fmt::format("{} ±{:.4g} {}", displacement_names[i], most, unit)
+                        : fmt::format("{} {:.4g} to {:+.4g} {}", displacement_names[i], least, most, unit));
+  }
+  const std::string parts = fmt::format("play of {} that nothing loads", fmt::join(play.parts, ", "));
+  if (ways.empty())
+    return fmt::format("parts between base and platform float within {}; the tool point does not", parts);
+  return fmt::format("floats within its play by {}, without force: {}; the displacement is the middle of it",
+                     fmt::join(ways, ", "), parts);
+}
+
 /// The result's own, and whether its geometry will do.
 std::vector<std::string> notes_of(const SolveResult& result) {
   std::vector<std::string> notes = result.notes;
+  if (!result.rigid_motions.empty())
+    notes.insert(notes.begin(), fmt::format("held rigidly: nothing yields in {}: the stiffness is infinite there, and "
+                                            "shown is that of the other motions",
+                                            fmt::join(result.rigid_motions, "; in ")));
+  if (result.floating) notes.insert(notes.begin(), floating_note(*result.floating));
   Displacements d;
   d.points = result.mesh.points;
   for (const LineCell& cell : result.mesh.cells)
@@ -163,6 +200,11 @@ std::string solve_json(const SolveResult& result) {
     for (const auto& [leg, wrench] : result.assembly->leg_wrenches_N_Nmm)
       assembly["leg_wrenches_N_Nmm"][leg] = json_numbers(wrench, "assembly wrench of " + leg);
   }
+  if (!result.rigid_motions.empty()) json["rigid"] = result.rigid_motions;
+  if (result.floating)
+    json["floating"] = {{"parts", result.floating->parts},
+                        {"least", json_limits(result.floating->least_mm_rad)},
+                        {"most", json_limits(result.floating->most_mm_rad)}};
   if (const auto notes = notes_of(result); !notes.empty()) json["notes"] = notes;
   return json_text(json);
 }

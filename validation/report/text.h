@@ -8,6 +8,12 @@
 
 namespace deflect {
 
+/// Of a line in the terminal.
+inline constexpr std::size_t line_length = 110;
+
+/// In one m, or of mrad and µrad in one rad.
+inline constexpr double mm = 1e3, um = 1e6;
+
 /// Code points of a UTF-8 text.
 std::size_t letters(std::string_view utf8);
 

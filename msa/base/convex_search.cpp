@@ -1,0 +1,232 @@
+#include "msa/base/convex_search.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace deflect {
+namespace {
+
+// Relative: slopes that are rounding, curvatures of a matrix with entries of 1 that are, rates at which a row stays.
+constexpr double no_slope = 1e-13, no_curvature = 1e-13, no_rate = 1e-10;
+
+class Search {
+ public:
+  Search(const ConvexProblem& problem, const VectorX& from) : p_(problem), rows_(problem.B.rows()) {
+    out_.x = from;
+    out_.push = VectorX::Zero(rows_);
+    out_.side.assign(static_cast<std::size_t>(rows_), 0);
+    for (Eigen::Index i = 0; i < rows_; ++i)
+      if (row(i).low == row(i).high) side(i) = 1;
+  }
+
+  ConvexAnswer run() {
+    const Eigen::Index most = 300 + 60 * rows_;
+    for (Eigen::Index round = 0; round < most; ++round) {
+      evaluate();
+      restrict();
+      if (at_rest()) {
+        if (let_go()) continue;
+        out_.outcome = ConvexAnswer::Outcome::least;
+        return out_;
+      }
+      if (!step()) {
+        out_.outcome = ConvexAnswer::Outcome::unbounded;
+        return out_;
+      }
+    }
+    return out_;
+  }
+
+ private:
+  const ConvexRow& row(Eigen::Index i) const { return p_.rows[static_cast<std::size_t>(i)]; }
+  int& side(Eigen::Index i) { return out_.side[static_cast<std::size_t>(i)]; }
+
+  /// y, the gradient of f, and the size of what it is summed from.
+  void evaluate() {
+    out_.y = p_.e + p_.B * out_.x;
+    VectorX slopes(rows_);
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      out_.y(i) = std::clamp(out_.y(i), row(i).low, row(i).high);
+      slopes(i) = row(i).slope(out_.y(i));
+    }
+    const VectorX quadratic = p_.a.cwiseProduct(out_.x);
+    gradient_ = quadratic - p_.b + p_.B.transpose() * slopes;
+    size_ = 0;
+    if (p_.b.size() > 0) size_ = std::max(p_.b.cwiseAbs().maxCoeff(), quadratic.cwiseAbs().maxCoeff());
+    for (Eigen::Index i = 0; i < rows_; ++i) size_ = std::max(size_, std::abs(slopes(i)) * p_.B.row(i).norm());
+  }
+
+  /// A basis of the directions along the active bounds; gradient and curvature there.
+  void restrict() {
+    active_.clear();
+    for (Eigen::Index i = 0; i < rows_; ++i)
+      if (side(i) != 0) active_.push_back(i);
+    const auto k = static_cast<Eigen::Index>(active_.size());
+    normals_.resize(p_.a.size(), k);
+    for (Eigen::Index j = 0; j < k; ++j) normals_.col(j) = p_.B.row(active_[static_cast<std::size_t>(j)]).transpose();
+    Z_ = MatrixX::Identity(p_.a.size(), p_.a.size());
+    if (k > 0 && p_.a.size() > 0) {
+      Eigen::ColPivHouseholderQR<MatrixX> qr;
+      qr.setThreshold(no_rate);
+      qr.compute(normals_);
+      const MatrixX Q = qr.householderQ();
+      Z_ = Q.rightCols(p_.a.size() - qr.rank());
+    }
+    slope_ = Z_.transpose() * gradient_;
+    VectorX curvatures(rows_);
+    noise_ = 0;
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      curvatures(i) = side(i) == 0 ? row(i).curvature(out_.y(i)) : 0;
+      noise_ = std::max(noise_, 1e-15 * curvatures(i) * std::abs(out_.y(i)) * p_.B.row(i).norm());
+    }
+    const MatrixX along = p_.B * Z_;
+    MatrixX H = Z_.transpose() * p_.a.asDiagonal() * Z_ + along.transpose() * curvatures.asDiagonal() * along;
+    if (H.rows() > 0) curvature_.compute((H + H.transpose()) / 2);
+  }
+
+  bool at_rest() {
+    const double now = slope_.size() ? slope_.cwiseAbs().maxCoeff() : 0;
+    if (now <= no_slope * size_ + noise_) return true;
+    // Rounding is all that is left where steps no longer gain anything.
+    stalled_ = now <= 1e-9 * size_ + 100 * noise_ && now > 0.5 * best_ ? stalled_ + 1 : 0;
+    best_ = std::min(best_, now);
+    if (stalled_ < 3) return false;
+    stalled_ = 0;
+    return true;
+  }
+
+  /// The bound that pushes the wrong way hardest is let go; false where none does.
+  bool let_go() {
+    best_ = infinite;
+    out_.push.setZero();
+    if (active_.empty() || p_.a.size() == 0) return false;
+    Eigen::CompleteOrthogonalDecomposition<MatrixX> solver;
+    solver.setThreshold(no_rate);
+    solver.compute(normals_);
+    const VectorX push = solver.solve(-gradient_);
+    Eigen::Index worst = -1;
+    double wrong = 0;
+    for (std::size_t j = 0; j < active_.size(); ++j) {
+      const Eigen::Index i = active_[j];
+      out_.push(i) = push(static_cast<Eigen::Index>(j));
+      if (row(i).low == row(i).high) continue;
+      const double here = -side(i) * out_.push(i) * p_.B.row(i).norm();
+      if (here > 1e-12 * size_ + noise_ && here > wrong) {
+        worst = i;
+        if (still_ > rows_) break;  // Bland
+        wrong = here;
+      }
+    }
+    if (worst < 0) return false;
+    side(worst) = 0;
+    return true;
+  }
+
+  /// Towards where the slope is zero; straight down where there is a slope and no curvature.
+  VectorX direction() const {
+    const MatrixX& U = curvature_.eigenvectors();
+    const VectorX& l = curvature_.eigenvalues();
+    const double least = std::max(no_curvature, 1e-15 * static_cast<double>(l.size()) * l(l.size() - 1));
+    const VectorX g = U.transpose() * slope_;
+    VectorX flat = VectorX::Zero(g.size()), newton = flat;
+    for (Eigen::Index j = 0; j < g.size(); ++j) {
+      if (l(j) > least)
+        newton(j) = -g(j) / l(j);
+      else
+        flat(j) = -g(j);
+    }
+    const double steep = std::sqrt(std::max(g.squaredNorm() - flat.squaredNorm(), 0.0));
+    const bool down = flat.norm() > 0.1 * steep || steep <= no_slope * size_ + noise_;
+    return Z_ * (U * (down ? flat : newton));
+  }
+
+  double rate(const VectorX& d, const VectorX& rates, double t) const {
+    double sum = d.dot(p_.a.cwiseProduct(out_.x + t * d) - p_.b);
+    for (Eigen::Index i = 0; i < rows_; ++i)
+      if (rates(i) != 0) sum += rates(i) * row(i).slope(std::clamp(out_.y(i) + t * rates(i), row(i).low, row(i).high));
+    return sum;
+  }
+
+  /// False where f falls for ever.
+  bool step() {
+    const VectorX d = direction();
+    VectorX rates = p_.B * d;
+    double end = infinite;
+    Eigen::Index first = -1;
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      if (side(i) != 0 || std::abs(rates(i)) <= no_rate * p_.B.row(i).norm() * d.norm()) {
+        if (side(i) != 0) rates(i) = 0;
+        continue;
+      }
+      const double room = rates(i) > 0 ? row(i).high - out_.y(i) : out_.y(i) - row(i).low;
+      const double reach = std::max(room, 0.0) / std::abs(rates(i));
+      if (reach < end) end = reach, first = i;
+    }
+    const double falls = rate(d, rates, 0);
+    if (first >= 0 && rate(d, rates, end) <= 0) {
+      still_ = end == 0 ? still_ + 1 : 0;
+      best_ = infinite;
+      out_.x += end * d;
+      side(first) = rates(first) > 0 ? 1 : -1;
+      return true;
+    }
+    const double length = lowest(d, rates, falls, end);
+    if (!std::isfinite(length)) {
+      out_.along = rates;
+      return false;
+    }
+    still_ = 0;
+    out_.x += length * d;
+    return true;
+  }
+
+  /// Where f is least along d, before `end`; infinite where it falls for ever.
+  double lowest(const VectorX& d, const VectorX& rates, double falls, double end) const {
+    const double enough = 1e-9 * std::abs(falls);
+    double low = 0, high = std::min(1.0, end), at_low = falls, at_high = rate(d, rates, high);
+    // As far as 1e12 times what is known of sizes: nothing turns f there that did not before.
+    const double far = 1e12 * std::max({out_.x.norm(), out_.y.norm(), size_}) / d.norm();
+    while (at_high < -enough && high < end) {
+      if (high > far) return infinite;
+      low = high, at_low = at_high;
+      high = std::min(16 * high, end);
+      at_high = rate(d, rates, high);
+    }
+    if (std::abs(at_high) <= enough) return high;
+    double length = high;
+    for (int i = 0; i < 200; ++i) {  // regula falsi (Illinois), halves where the minimum is far nearer
+      length = i % 4 == 3 ? (low > 0 ? std::sqrt(low * high) : high / 1024)
+                          : (low * at_high - high * at_low) / (at_high - at_low);
+      if (!(length > low && length < high)) length = (low + high) / 2;
+      const double here = rate(d, rates, length);
+      if (std::abs(here) <= enough || high - low <= 1e-15 * high) break;
+      if (here > 0) {
+        high = length, at_high = here;
+        at_low /= low > 0 ? 2 : 1;
+      } else {
+        low = length, at_low = here;
+        at_high /= 2;
+      }
+    }
+    return length;
+  }
+
+  const ConvexProblem& p_;
+  Eigen::Index rows_;
+  ConvexAnswer out_;
+  VectorX gradient_, slope_;                       // of f, and along Z
+  double size_ = 0, noise_ = 0, best_ = infinite;  // best of the slopes with the same bounds
+  std::vector<Eigen::Index> active_;
+  MatrixX normals_, Z_;
+  Eigen::SelfAdjointEigenSolver<MatrixX> curvature_;
+  int stalled_ = 0;
+  Eigen::Index still_ = 0;  // rounds of length zero
+};
+
+}  // namespace
+
+ConvexAnswer least(const ConvexProblem& p, const VectorX& x) { return Search(p, x).run(); }
+
+}  // namespace deflect
