@@ -90,7 +90,7 @@ Command check_command() {
         &a->matrix, true},
        {"--unit", "mm|m", "unit of length of the matrices: N/mm, N, Nmm (default) or N/m, N, Nm; angles in rad",
         &a->unit},
-       {"--order", "ORDER", "translation-first (default), [f; m] = K [d; theta], or rotation-first", &a->order},
+       {"--order", "translation-first|rotation-first", "translation-first (default): [f; m] = K [d; theta]", &a->order},
        {"--passive", "J",
         "twists of the passive joints of the leg whose stiffness K is, at its point, as rows or columns: "
         "K J = 0 is checked",

@@ -186,7 +186,7 @@ Command devices_command() {
       "the axes of the chain at that line. z = x cross y. 'from: PART' begins at the end of a member or offset and "
       "where a joint stands; 'from: {part: PART, at: start}' or 'at: end' says which",
       "deflect devices haptic-6psu > my-device.yaml",
-      {{"name", "NAME", "device to print; without it all are listed", name.get(), false}},
+      {{"name", "DEVICE", "device to print; without it all are listed", name.get(), false}},
       [name] {
         if (!name->empty()) {
           fmt::print("{}", read_text(device_file(*name)));

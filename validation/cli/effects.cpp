@@ -66,7 +66,7 @@ Command effects_command() {
       "what it looks like in the data, how to confirm it on the bench, how to cure it. With --yaml its file, to "
       "start one's own from",
       "deflect effects guide_root_compliance --device haptic-6psu",
-      {{"name", "NAME", "effect to explain; without it all are listed", &a->name},
+      {{"name", "EFFECT", "effect to explain; without it all are listed", &a->name},
        {"--device", "DEVICE", "say which effects the device can have, and why it cannot have the others", &a->device},
        {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
        {"--yaml", "", "print the effect's file", &a->yaml},

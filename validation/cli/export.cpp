@@ -167,7 +167,7 @@ Command export_command() {
       "ParaView.",
       "deflect export haptic-6psu --to vtk --pose 25,25,198.9,0,0,0 --load 50,0,0 -o loaded.vtu",
       {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-       {"--to", "FORMAT", "msh or vtk", &a->to, true},
+       {"--to", "msh|vtk", "format", &a->to, true},
        {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in mm and deg (default: the home pose)", &a->pose},
        {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
         &a->joints},

@@ -104,11 +104,11 @@ Command frame_command() {
           "'second-order' (P-delta, stress stiffening, buckling) or 'finite' (rotations of any size, 'load_steps: n'); "
           "'elements: n' divides a member",
           "deflect frame logan-5-30 --json result.json --out result",
-          {{"file", "FILE", "frame file, or the name of a published case in share/deflect/cases", &a->file, true},
+          {{"file", "FRAME", "frame file, or the name of a published case in share/deflect/cases", &a->file, true},
            {"--element-size", "LENGTH",
             "divide members, with unit (default: as the file says, or one element, exact at its nodes if linear)",
             &a->element_size},
-           {"--solver", "NAME",
+           {"--solver", "auto|direct|iterative",
             "auto (default: by size and conditioning), direct (factorisation) or iterative (conjugate gradients; falls "
             "back to direct where it cannot vouch for its answer)",
             &a->solver},

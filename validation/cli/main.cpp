@@ -8,6 +8,7 @@
 
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
+#include "validation/cli/completion.h"
 #include "validation/cli/talk.h"
 #include "validation/parallel/ranks.h"
 
@@ -65,13 +66,15 @@ int main(int argc, char** argv) {
   CLI::App app("deflect: how far a mechanism's tool point moves under load, by two independent theories", "deflect");
   app.set_version_flag("--version", DEFLECT_VERSION);
   app.require_subcommand(1);
+  app.get_formatter()->column_width(32);  // two blanks at least between "--pose x,y,z,roll,pitch,yaw" and its help
   app.footer("Exit codes: 0 done, 2 bad input or usage, 3 a model that cannot be, 4 a numerical failure, 70 a bug.");
 
   using namespace deflect::cli;
-  const std::vector<Command> commands = {solve_command(),   validate_command(), frame_command(),    map_command(),
-                                         export_command(),  devices_command(),  check_command(),    effects_command(),
-                                         add_command(),     compare_command(),  simulate_command(), diagnose_command(),
-                                         history_command(), report_command()};
+  std::vector<Command> commands = {solve_command(),   validate_command(), frame_command(),    map_command(),
+                                   export_command(),  devices_command(),  check_command(),    effects_command(),
+                                   add_command(),     compare_command(),  simulate_command(), diagnose_command(),
+                                   history_command(), report_command()};
+  commands.push_back(completion_command(commands));
   std::vector<CLI::App*> parsers;
   bool quiet = false, loud = false;
   for (const Command& command : commands) {

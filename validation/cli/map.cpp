@@ -135,7 +135,7 @@ Command map_command() {
            {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default 0,0,0)", &a->tilt},
            {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},
            {"--load", "fx,fy,fz,mx,my,mz", "one wrench in N and Nmm instead of --force", &a->load},
-           {"--theory", "NAME", "analytic, msa or both (default)", &a->theory},
+           {"--theory", "analytic|msa|both", "by which theory (default both)", &a->theory},
            {"--length", "LENGTH",
             "characteristic length, with unit, that makes rotations comparable to displacements in the isotropy "
             "(default: "

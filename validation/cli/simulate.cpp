@@ -162,7 +162,7 @@ Command simulate_command() {
             "for several effects",
             &a->with},
            {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
-           {"--campaign", "NAME|FILE",
+           {"--campaign", "paper|cycle|rich|random|FILE",
             "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280); or a "
             "measurement "
             "file whose poses, loads, sequence and temperatures are taken",
@@ -174,8 +174,7 @@ Command simulate_command() {
            {"--outliers", "SHARE", "share of gross outliers, 10 to 30 standard deviations (default 0)", &a->outliers},
            {"--temperature", "MEAN,SWING", "deg C: a slow wave about the mean over the campaign (default 20)",
             &a->temperature},
-           {"--geometry", "NAME", "equilibrium in which shape: linear, second-order or finite (default finite)",
-            &a->geometry},
+           {"--geometry", "linear|second-order|finite", "equilibrium in which shape (default finite)", &a->geometry},
            {"--elements", "N", "elements per member (default 4)", &a->elements},
            {"--seed", "N", "of everything drawn by lot (default 1)", &a->seed},
            {"--threads", "N", "threads (default 0: all cores); the file does not depend on it", &a->threads},
