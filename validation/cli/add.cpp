@@ -19,7 +19,7 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct AddArguments {
   std::string device, effect, leg, from, out, json;
   std::vector<std::string> set, files;
 };
@@ -92,7 +92,7 @@ FoundEffect look_up(const FoundEffects& all, const std::string& effect, std::opt
                                leg ? fmt::format(" of leg {}", *leg) : "", suggestion(effect, names)));
 }
 
-std::vector<FoundEffect> wanted(const Arguments& a) {
+std::vector<FoundEffect> wanted(const AddArguments& a) {
   const auto values = parse_values(a.set);
   const std::optional<int> leg = parse_leg(a.leg);
   if (a.from.empty()) {
@@ -122,7 +122,7 @@ std::string device_text(Mechanism m, const std::string& device, const std::vecto
 }
 
 /// One after the other into the device; a diagnosis that they do not fit is named.
-std::vector<EffectInstance> add_effects(Mechanism& m, const Arguments& a, const std::vector<Effect>& all) {
+std::vector<EffectInstance> add_effects(Mechanism& m, const AddArguments& a, const std::vector<Effect>& all) {
   const std::vector<FoundEffect> effects = wanted(a);
   std::vector<EffectInstance> added;
   try {
@@ -137,7 +137,7 @@ std::vector<EffectInstance> add_effects(Mechanism& m, const Arguments& a, const 
   return added;
 }
 
-void run(const Arguments& a) {
+void run(const AddArguments& a) {
   Mechanism m = read_device(a.device);
   const std::vector<Effect> all = known_effects(a.files);
   const std::vector<EffectInstance> added = add_effects(m, a, all);
@@ -152,7 +152,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command add_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<AddArguments>();
   return {
       "add",
       "A new device file: the device with an effect in it, with values given by --set or found by a diagnosis. With "

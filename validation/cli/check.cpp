@@ -11,13 +11,13 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct CheckArguments {
   std::string matrix, passive, reference, device, pose, joints, load, size, json, out;
   std::string unit = "mm", order = "translation-first", key = "analytic.stiffness";
   double tolerance = 0;
 };
 
-MatrixConvention convention_of(const Arguments& a) {
+MatrixConvention convention_of(const CheckArguments& a) {
   MatrixConvention c;
   if (a.unit != "mm" && a.unit != "m") throw InputError(fmt::format("--unit '{}': write mm or m", a.unit));
   c.unit_m = a.unit == "m" ? 1 : 1e-3;
@@ -28,7 +28,7 @@ MatrixConvention convention_of(const Arguments& a) {
 }
 
 /// The closed form's stiffness, which has passed its checks, in N and the unit of length.
-PrintedMatrix stiffness_of(const Arguments& a, double unit_m) {
+PrintedMatrix stiffness_of(const CheckArguments& a, double unit_m) {
   const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
@@ -40,7 +40,7 @@ PrintedMatrix stiffness_of(const Arguments& a, double unit_m) {
   return {K, Matrix6::Zero()};
 }
 
-MatrixCheckOptions options_of(const Arguments& a) {
+MatrixCheckOptions options_of(const CheckArguments& a) {
   const MatrixConvention convention = convention_of(a);
   MatrixCheckOptions o;
   o.unit_m = convention.unit_m;
@@ -61,7 +61,7 @@ MatrixCheckOptions options_of(const Arguments& a) {
   return o;
 }
 
-void run(const Arguments& a) {
+void run(const CheckArguments& a) {
   const MatrixCheck m = timed("checks of " + a.matrix, [&] { return check_matrix(options_of(a)); });
   const CheckedFiles files{a.matrix, a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints)};
   const std::string report = check_report(m, files);
@@ -79,7 +79,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command check_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CheckArguments>();
   return {
       "check",
       "The trust checks of your own 6x6 stiffness of a point (MATLAB, Python, Ansys ...): K = K^T, K >= 0, no free "

@@ -15,13 +15,13 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::string device, data, json, out, report, sigma_mm, sigma_rad;
   double threads = 0;
   FigureArguments figures;
 };
 
-void run(const Arguments& a) {
+void run(const CompareArguments& a) {
   require_pages(a.report);
   const FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
@@ -52,7 +52,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command compare_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CompareArguments>();
   return {
       "compare",
       "Measurements against the closed form, nothing fitted: where the model fails, in sentences with numbers; tests "

@@ -12,14 +12,14 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct DiagnoseArguments {
   std::string device, data, json, report;
   std::vector<std::string> files;
   std::string sigma_mm, sigma_rad;
   double bootstrap = 1999, threads = 0;
 };
 
-void run(const Arguments& a, Ranks* ranks) {
+void run(const DiagnoseArguments& a, Ranks* ranks) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
   const Measurements data = read_data(a.data);
@@ -46,7 +46,7 @@ void run(const Arguments& a, Ranks* ranks) {
 }  // namespace
 
 Command diagnose_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<DiagnoseArguments>();
   return {
       "diagnose",
       "Which physical effect is missing: every effect of the catalogue at every place it has in the device, fitted "

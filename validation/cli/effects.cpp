@@ -32,13 +32,13 @@ void require_in_bounds(const std::string& given, const Effect& e, const EffectPa
 
 namespace {
 
-struct Arguments {
+struct EffectsArguments {
   std::string name, device, json;
   std::vector<std::string> files;
   bool yaml = false;
 };
 
-void run(const Arguments& a) {
+void run(const EffectsArguments& a) {
   std::vector<Effect> all = known_effects(a.files);
   if (!a.name.empty()) all = {find_effect(all, a.name)};
   if (a.yaml) {
@@ -59,7 +59,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command effects_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<EffectsArguments>();
   return {
       "effects",
       "What a model can lack: the catalogue of effects, or the pages of one of them: what happens in the machine, "

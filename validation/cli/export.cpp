@@ -19,7 +19,7 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct ExportArguments {
   std::string device, to, pose, joints, load, scale = "auto", file, out, element_size = "5 mm";
 };
 
@@ -49,7 +49,7 @@ double automatic_scale(const LineMesh& mesh, const std::vector<Vector3>& displac
   return (lead >= 5 ? 5 : lead >= 2 ? 2 : 1) * power;
 }
 
-double scale_of(const Arguments& a, const LineMesh& mesh, const FieldData& fields) {
+double scale_of(const ExportArguments& a, const LineMesh& mesh, const FieldData& fields) {
   if (a.scale == "auto") return automatic_scale(mesh, fields.points.front().values);
   const double scale = parse_list("--scale", a.scale, {1}, "auto or a factor").front();
   if (!(scale > 0)) throw InputError(fmt::format("--scale {}: a factor greater than zero is wanted", a.scale));
@@ -114,7 +114,7 @@ std::string gmsh_options(const FieldData& fields, double scale) {
                     scale);
 }
 
-std::filesystem::path path_of(const Mechanism& m, const Format& format, const Arguments& a) {
+std::filesystem::path path_of(const Mechanism& m, const Format& format, const ExportArguments& a) {
   if (a.file.empty() == a.out.empty()) throw InputError("give either -o FILE or --out DIR");
   if (a.file.empty()) return std::filesystem::path(a.out) / (safe_file_name(m.name) + format.suffix);
   if (std::filesystem::path(a.file).extension() != format.suffix)
@@ -122,7 +122,7 @@ std::filesystem::path path_of(const Mechanism& m, const Format& format, const Ar
   return a.file;
 }
 
-void run(const Arguments& a) {
+void run(const ExportArguments& a) {
   const Format& format = format_of(a.to);
   const Mechanism m = read_device(a.device);
   const std::filesystem::path path = path_of(m, format, a);
@@ -158,7 +158,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command export_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ExportArguments>();
   return {
       "export",
       "The mechanism at a pose for other programs: nodes and members in mm, displacements, load, reaction and member "

@@ -21,7 +21,7 @@ namespace deflect::cli {
 namespace fs = std::filesystem;
 namespace {
 
-struct Arguments {
+struct FrameArguments {
   std::string file, element_size, solver = "auto", json, out;
 };
 
@@ -76,7 +76,7 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
   }
 }
 
-void run(const Arguments& a) {
+void run(const FrameArguments& a) {
   const frame::FrameDescription f = timed("frame: reading", [&] { return frame::read_frame(frame_file(a.file)); });
   tell("frame {}: {}, {} nodes, {} members", f.name, frame_file(a.file).string(), f.nodes.size(), f.members.size());
   frame::FrameOptions options;
@@ -97,7 +97,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command frame_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<FrameArguments>();
   return {"frame",
           "A frame of nodes and members under its load cases: displacements, reactions, member forces, shares of the "
           "strain energy, checks. The file says in which shape equilibrium is written: 'geometry: linear', "

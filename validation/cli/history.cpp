@@ -13,14 +13,14 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct HistoryArguments {
   std::string data, json, out, report, sigma_mm, sigma_rad;
   std::vector<std::string> devices;
   double threads = 0;
   FigureArguments figures;
 };
 
-void run(const Arguments& a) {
+void run(const HistoryArguments& a) {
   require_pages(a.report);
   const FigureStyle style = figure_style(a.figures, a.out);
   const Measurements data = read_data(a.data);
@@ -56,7 +56,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command history_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<HistoryArguments>();
   return {"history",
           "The error falling from version to version of a device on one set of measurements: all poses, held-out "
           "poses, tests "

@@ -18,13 +18,13 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct MapArguments {
   std::string device, ranges[3], n, tilt, load, theory = "both", length, json, out, report;
   double force_N = 50, threads = 0;
   FigureArguments figures;
 };
 
-MapGrid grid_of(const Mechanism& m, const Arguments& a) {
+MapGrid grid_of(const Mechanism& m, const MapArguments& a) {
   std::array<int, 3> counts = {11, 11, 11};
   if (!a.n.empty()) {
     const std::vector<double> n = parse_list("--n", a.n, {1, 3}, "nx,ny,nz or one number for all");
@@ -56,7 +56,7 @@ double length_mm(const Mechanism& m, const std::string& text) {
   return 1e3 * parse_length("--length", text);
 }
 
-MapOptions options_of(const Mechanism& m, const Arguments& a, Ranks* ranks) {
+MapOptions options_of(const Mechanism& m, const MapArguments& a, Ranks* ranks) {
   MapOptions o;
   o.grid = grid_of(m, a);
   o.force_N = a.force_N;
@@ -77,7 +77,7 @@ MapOptions options_of(const Mechanism& m, const Arguments& a, Ranks* ranks) {
   return o;
 }
 
-void run(const Arguments& a, Ranks* ranks) {
+void run(const MapArguments& a, Ranks* ranks) {
   require_pages(a.report);
   const FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
@@ -115,7 +115,7 @@ void run(const Arguments& a, Ranks* ranks) {
 }  // namespace
 
 Command map_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<MapArguments>();
   return {
       "map",
       "Stiffness of the tool point over the workspace by direction: a grid of poses, both theories, Fig. 11.\n"

@@ -9,13 +9,13 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   std::vector<std::string> results, effects;
   std::string device, data, output, sigma_mm, sigma_rad;
   double threads = 0;
 };
 
-void run(const Arguments& a) {
+void run(const ReportArguments& a) {
   require_pages(a.output);
   if (a.device.empty() != a.data.empty())
     throw InputError("give --device and --data together, or neither: residuals need both");
@@ -36,7 +36,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command report_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ReportArguments>();
   return {"report",
           "One page of several results (--json of diagnose, compare, history, solve, validate, map): pictures with "
           "their numbers, self-contained. With --device and --data the machine is drawn with its residuals, and what a "

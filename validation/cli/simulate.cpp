@@ -23,7 +23,7 @@ namespace {
 
 constexpr double most_noise_mm = 1000, most_tolerances = 1000;
 
-struct Arguments {
+struct SimulateArguments {
   std::string device, out, campaign = "rich", geometry = "finite", temperature, noise_rad;
   std::vector<std::string> with, files;
   double seed = 1, noise_mm = 0.002, tolerances = 1, outliers = 0, force = 50, elements = 4, threads = 0;
@@ -70,14 +70,14 @@ EffectInstance parse_with(const std::string& text, const std::vector<Effect>& al
   return out;
 }
 
-Geometry parse_geometry(const std::string& text) {
+Geometry geometry_of_data(const std::string& text) {
   const auto found = std::find(std::begin(geometry_names), std::end(geometry_names), text);
   if (found == std::end(geometry_names))
     throw InputError(fmt::format("--geometry '{}': write {}", text, fmt::join(geometry_names, ", ")));
   return static_cast<Geometry>(found - std::begin(geometry_names));
 }
 
-SimulationOptions options_of(const Arguments& a) {
+SimulationOptions options_of(const SimulateArguments& a) {
   SimulationOptions o;
   if (!(a.seed >= 0 && a.seed < 9e15) || a.seed != std::floor(a.seed))
     throw InputError(fmt::format("--seed {}: a whole number is wanted", a.seed));
@@ -103,13 +103,13 @@ SimulationOptions options_of(const Arguments& a) {
     if (const double coldest = o.temperature - std::abs(o.swing); coldest < -273.15 || !std::isfinite(coldest))
       throw InputError(fmt::format("--temperature {}: colder than -273.15 deg C", a.temperature));
   }
-  o.geometry = parse_geometry(a.geometry);
+  o.geometry = geometry_of_data(a.geometry);
   o.threads = parse_threads(a.threads);
   return o;
 }
 
 /// Every member in `elements` equal parts.
-Measurements plan_of(const Arguments& a, const Mechanism& m, std::uint64_t seed) {
+Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64_t seed) {
   const bool named = std::any_of(std::begin(campaign_names), std::end(campaign_names),
                                  [&](const char* name) { return a.campaign == name; });
   if (!named && std::filesystem::exists(a.campaign)) return read_plan(a.campaign);
@@ -118,7 +118,7 @@ Measurements plan_of(const Arguments& a, const Mechanism& m, std::uint64_t seed)
   return campaign(a.campaign, m, a.force, seed);
 }
 
-void run(const Arguments& a) {
+void run(const SimulateArguments& a) {
   const std::vector<Effect> all = known_effects(a.files);
   Mechanism m = read_device(a.device);
   SimulationOptions o = options_of(a);
@@ -146,7 +146,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command simulate_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SimulateArguments>();
   return {"simulate",
           "Measurements of a device as a laboratory would hand them over, with effects hidden in it, every part a "
           "little off its "

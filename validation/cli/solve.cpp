@@ -15,7 +15,7 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct SolveArguments {
   std::string device, pose, joints, load, json, out, report, element_size, geometry = "linear";
 };
 
@@ -31,12 +31,12 @@ Geometry parse_geometry(const std::string& text) {
 }
 
 /// As asked for; else one element a member, which is exact at its ends, or as many as a drawing wants.
-frame::MemberDivision division(const Mechanism& m, const Stand& at, const Arguments& a) {
+frame::MemberDivision division(const Mechanism& m, const Stand& at, const SolveArguments& a) {
   if (!a.element_size.empty() || a.out.empty()) return divide(m, a.element_size);
   return frame::equal_division(at.configuration, 20);
 }
 
-void run(const Arguments& a) {
+void run(const SolveArguments& a) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
@@ -58,7 +58,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command solve_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SolveArguments>();
   return {
       "solve",
       "One pose, one load: displacement and 6x6 stiffness of the tool point by both theories, the share of each part "

@@ -20,7 +20,7 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct ValidateArguments {
   std::string device, points, as_printed, json, out, report, element_size;
   double load_N = 50;
   bool errata = false, mesh_study = false;
@@ -39,7 +39,7 @@ void print_mesh_study(const Mechanism& m, const std::vector<ValidationPoint>& po
   }
 }
 
-void run(const Arguments& a) {
+void run(const ValidateArguments& a) {
   require_pages(a.report);
   const FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
@@ -78,7 +78,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command validate_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ValidateArguments>();
   std::string errata_help = "errata of the paper to take as printed, joined by commas, or all:";
   for (const ErratumInfo& e : errata()) errata_help += fmt::format("\n{} {}: {}", e.name, e.equations, e.as_printed);
   return {
