@@ -4,8 +4,8 @@ set(CPACK_PACKAGE_NAME deflect)
 set(CPACK_PACKAGE_VENDOR deflect)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGE_DESCRIPTION "How far does the tool point of a robot, haptic device or other mechanism move under load?
- deflect predicts it by a closed form and by a frame solver, compares both with measurements, and says which physical
- effect a model lacks.")
+deflect predicts it by a closed form and by a frame solver, compares both with measurements, and says which physical
+effect a model lacks.")
 set(CPACK_GENERATOR DEB)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program)

@@ -28,7 +28,7 @@ Words offered(const std::string& line) {
     std::ofstream script(folder / "offer.sh");
     script << "source <('" << DEFLECT_PROGRAM << "' completion bash) || exit 1\n"
            << "COMP_WORDS=(" << line << ") COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n"
-           << "_deflect && printf '%s\\n' \"${COMPREPLY[@]}\"\n";
+           << "_deflect; printf '%s\\n' \"${COMPREPLY[@]}\"\n";
   }
   return words_of(test::command("cd '" + (folder / "empty").string() + "' && bash ../offer.sh").out);
 }
