@@ -75,8 +75,9 @@ check_documents(${prefix})
 
 # As a Debian package: only the program and what belongs to it, with all that it links with as dependencies.
 find_program(SHLIBDEPS dpkg-shlibdeps)
-if(NOT SHLIBDEPS)
-  message(STATUS "No .deb was made: dpkg-shlibdeps is not installed")
+find_program(FILE_TYPE file)
+if(NOT SHLIBDEPS OR NOT FILE_TYPE)
+  message(STATUS "No .deb was made: dpkg-dev and file are not both installed")
   return()
 endif()
 run(${CMAKE_CPACK} -G DEB -C ${CONFIG} --config ${BUILD}/CPackConfig.cmake -B ${SCRATCH}/deb)
