@@ -120,7 +120,9 @@ double motor_shaft_stiffness(const MotorShaftLaw& l) {
 double cable_stiffness(const Material& m, double area, double length) { return area * m.E / length; }
 
 double belt_stiffness(const BeltLaw& l) {
-  return l.width * l.specific_stiffness * (l.tight_length + l.slack_length) / (l.tight_length * l.slack_length);
+  const double k =
+      l.width * l.specific_stiffness * (l.tight_length + l.slack_length) / (l.tight_length * l.slack_length);
+  return l.pulley_radius ? k * *l.pulley_radius * *l.pulley_radius : k;
 }
 
 bool is_linear(const Law& law) {

@@ -34,7 +34,8 @@ double bulk_line_compliance(const HertzLineBulkLaw&, double force);
 /// Pin, simply supported, loaded in the middle: k = 48 E I/L³ (32).
 double pin_bending_stiffness(const Material&, double diameter, double length);
 
-/// Along the slide: motor shaft J G/L (4) through the pulley, k/r² (5); cable EA/L (7), cable pair (8), belt (10). N/m.
+/// Along the slide: motor shaft J G/L (4) through the pulley, k/r² (5); cable EA/L (7), cable pair (8), belt (10). N/m;
+/// of a belt that turns a pulley k r², Nm/rad.
 double motor_shaft_stiffness(const MotorShaftLaw&);
 double cable_stiffness(const Material&, double area, double length);
 double belt_stiffness(const BeltLaw&);

@@ -13,8 +13,8 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <system_error>
+#include <vector>
 
 #include "msa/base/error.h"
 #include "msa/base/part_file.h"
@@ -144,9 +144,17 @@ std::string read_text(const fs::path& path) {
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(fmt::format("{}: cannot be read ({})", path.string(), std::strerror(errno)));
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  const bool ends = fs::is_regular_file(path, ignored);
+  std::string text;
+  if (ends) text.reserve(fs::file_size(path, ignored) + 1);
+  std::vector<char> piece(std::size_t{1} << 16);
+  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())), in.gcount() > 0) {
+    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    if (!ends && text.size() > most_of_a_stream)
+      throw InputError(fmt::format("{}: does not end: {} MB were read, and it is no regular file; name a file",
+                                   path.string(), most_of_a_stream >> 20));
+  }
+  return text;
 }
 
 void write_text(const fs::path& path, const std::string& text) try {

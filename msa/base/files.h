@@ -15,6 +15,9 @@
 
 namespace deflect {
 
+/// What is no regular file (a device, a FIFO) may have no end: more bytes than these are refused.
+inline constexpr std::size_t most_of_a_stream = std::size_t{256} << 20;
+
 /// The file's bytes; InputError "file: cannot be read (reason)".
 std::string read_text(const std::filesystem::path&);
 

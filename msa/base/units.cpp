@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "msa/base/error.h"
@@ -25,6 +26,7 @@ struct Row {
   Dimension dimension;
   const char* words;
   std::vector<Unit> units;  // preferred first
+  double largest = std::numeric_limits<double>::infinity();
 };
 
 // Inch = 0.0254 m, pound-force = 4.4482216152605 N (both exact by definition).
@@ -36,16 +38,19 @@ const std::vector<Row>& table() {
       {Dimension::ratio, "a ratio", {{"%", 1, 100}}},
       {Dimension::length,
        "a length",
-       {{"mm", 1, 1e3}, {"m", 1}, {"cm", 1, 100}, {"um", 1, 1e6}, {"in", inch}, {"ft", 12 * inch}}},
+       {{"mm", 1, 1e3}, {"m", 1}, {"cm", 1, 100}, {"um", 1, 1e6}, {"in", inch}, {"ft", 12 * inch}},
+       largest_length},
       {Dimension::angle, "an angle", {{"deg", pi, 180}, {"rad", 1}, {"mrad", 1, 1e3}}},
-      {Dimension::area, "an area", {{"mm^2", 1, 1e6}, {"m^2", 1}, {"in^2", inch * inch}}},
+      {Dimension::area, "an area", {{"mm^2", 1, 1e6}, {"m^2", 1}, {"in^2", inch * inch}}, 1e12},
       {Dimension::second_moment,
        "a second moment of area",
-       {{"mm^4", 1, 1e12}, {"m^4", 1}, {"cm^4", 1, 1e8}, {"in^4", inch * inch * inch * inch}}},
-      {Dimension::force, "a force", {{"N", 1}, {"kN", 1e3}, {"lbf", lbf}, {"kip", lbf * 1e3}}},
+       {{"mm^4", 1, 1e12}, {"m^4", 1}, {"cm^4", 1, 1e8}, {"in^4", inch * inch * inch * inch}},
+       1e24},
+      {Dimension::force, "a force", {{"N", 1}, {"kN", 1e3}, {"lbf", lbf}, {"kip", lbf * 1e3}}, largest_force},
       {Dimension::moment,
        "a moment",
-       {{"Nmm", 1, 1e3}, {"Nm", 1}, {"kNm", 1e3}, {"lbf*in", lbf * inch}, {"kip*in", lbf * 1e3 * inch}}},
+       {{"Nmm", 1, 1e3}, {"Nm", 1}, {"kNm", 1e3}, {"lbf*in", lbf * inch}, {"kip*in", lbf * 1e3 * inch}},
+       largest_moment},
       {Dimension::stress,
        "a stress or modulus",
        {{"GPa", 1e9},
@@ -77,12 +82,13 @@ const std::vector<Row>& table() {
         {"lbf/in", lbf / inch},
         {"lbf/ft", lbf / (12 * inch)},
         {"kip/in", lbf * 1e3 / inch},
-        {"kip/ft", lbf * 1e3 / (12 * inch)}}},
+        {"kip/ft", lbf * 1e3 / (12 * inch)}},
+       largest_force},
       {Dimension::density, "a density", {{"kg/m^3", 1}, {"kg/mm^3", 1e9}, {"g/cm^3", 1e3}}},
       {Dimension::thermal_expansion, "a thermal expansion", {{"1/K", 1}}},
       {Dimension::temperature, "a temperature difference", {{"K", 1}}},
       {Dimension::acceleration, "an acceleration", {{"m/s^2", 1}, {"mm/s^2", 1, 1e3}, {"in/s^2", inch}}},
-      {Dimension::mass, "a mass", {{"kg", 1}, {"g", 1, 1e3}, {"lb", 0.45359237}}},
+      {Dimension::mass, "a mass", {{"kg", 1}, {"g", 1, 1e3}, {"lb", 0.45359237}}, largest_force},
       {Dimension::compliance,
        "a compliance (length per force)",
        {{"mm/N", 1, 1e3}, {"m/N", 1}, {"um/N", 1, 1e6}, {"in/lbf", inch / lbf}}},
@@ -162,6 +168,9 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     if (unit == u.name) {
       const double si = in_si(value, u);
       if (!std::isfinite(si)) throw InputError(fmt::format("'{}' is too large for {}", text, r.words));
+      if (std::abs(si) > r.largest)
+        throw InputError(
+            fmt::format("'{}' is too large for {}: at most {}", text, r.words, format_quantity(r.largest, dimension)));
       if (dimension == Dimension::angle) require_digits_of_angle(si, text);
       return si;
     }

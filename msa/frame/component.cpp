@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "msa/frame/solver.h"
 
@@ -62,8 +63,8 @@ SpringLaw spring(const MotorShaftLaw& law) {
   return LinearSpring{stiffness_at(m, travel)};
 }
 
-/// Ropes side by side between the ground and one moving end.
-SpringLaw ropes(const std::vector<std::pair<double, double>>& EA_length) {
+/// Ropes side by side between the ground and one moving end, which is, where a radius is given, the rim of a pulley.
+SpringLaw ropes(const std::vector<std::pair<double, double>>& EA_length, std::optional<double> radius = {}) {
   Model m;
   m.add_node("end", Vector3::Zero());
   for (const auto& [EA, length] : EA_length) {
@@ -71,7 +72,11 @@ SpringLaw ropes(const std::vector<std::pair<double, double>>& EA_length) {
     m.add_beam(ground, 0, Matrix3::Identity(), rope(EA), "rope", "rope");
     m.fix(ground, "ground");
   }
-  return LinearSpring{stiffness_at(m, 0)};
+  if (!radius) return LinearSpring{stiffness_at(m, 0)};
+  m.scalars.push_back("turn");
+  const int turn = m.dofs() - 1;
+  m.constraints.push_back({{{0, 1}, {turn, -*radius}}, 0, "pulley"});
+  return LinearSpring{stiffness_at(m, turn)};
 }
 
 SpringLaw spring(const CableLaw& law) { return ropes({{law.EA.value_or(law.solid.E * law.area), *law.length}}); }
@@ -82,7 +87,7 @@ SpringLaw spring(const CablePairLaw& law) {
 
 SpringLaw spring(const BeltLaw& law) {
   const double EA = law.specific_stiffness * law.width;
-  return ropes({{EA, law.tight_length}, {EA, law.slack_length}});
+  return ropes({{EA, law.tight_length}, {EA, law.slack_length}}, law.pulley_radius);
 }
 
 SpringLaw spring(const PowerLaw& law) { return PowerSpring{law.force, 1 / law.exponent, law.deflection}; }

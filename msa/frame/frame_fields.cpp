@@ -211,7 +211,7 @@ void describe_freedom_values(FieldVisitor& v, FreedomValues& values, Dimension t
 void describe(FieldVisitor& v, FrameDescription& f) {
   v.keys({"name", "about", "source", "geometry", "load_steps", "plane", "materials", "sections", "nodes", "members",
           "supports", "springs", "rigid_links", "constraints", "loads"});
-  v.text("name", f.name, Need::required, "name of the frame");
+  describe_name(v, f.name, "name of the frame");
   v.text("about", f.about, Need::optional, "one line about the frame");
   v.text("source", f.source, Need::optional, "where the numbers are from");
   describe_geometry(v, f);

@@ -5,11 +5,13 @@
 #include "msa/frame/frame_fields.h"
 #include "msa/mechanism/field_reader.h"
 #include "msa/mechanism/field_writer.h"
+#include "msa/mechanism/file_kind.h"
 
 namespace deflect::frame {
 
 FrameDescription parse_frame(std::string_view yaml, const std::string& origin) {
   const YamlNode tree = parse_yaml(yaml, origin);
+  require_kind(tree, FileKind::frame, origin);
   if (tree.ours) throw InputError(origin + ": !ours marks single values, not a whole file");
   FrameDescription f;
   FieldReader reader(origin);

@@ -162,10 +162,40 @@ struct Misfit {
   Placement base, platform;
 };
 
-/// Where the device is validated: a cube about its home pose; the 6-psu's is the pose at which every slider of the
-/// untilted device has the nominal length.
+/// Regions of the tool point, m, in axes of the base; boxes, discs and cylinders about the workspace's centre.
+struct CubeSpace {
+  double edge = 0;  ///< 0: the device has no workspace
+};
+struct BoxSpace {
+  Vector3 edges = Vector3::Zero();  ///< along x, y, z; zero along an axis in which it is flat
+};
+struct DiscSpace {
+  double radius = 0;  ///< level
+};
+struct CylinderSpace {
+  double radius = 0, height = 0;  ///< upright
+};
+/// Level, anywhere in the base's x and y.
+struct PolygonSpace {
+  struct Corner {
+    double x = 0, y = 0;
+  };
+  std::vector<Corner> corners;
+  std::optional<double> z;  ///< the centre's where absent
+};
+struct PoseSpace {
+  std::vector<Placement> poses;  ///< of T
+};
+using WorkspaceShape = std::variant<CubeSpace, BoxSpace, DiscSpace, CylinderSpace, PolygonSpace, PoseSpace>;
+inline constexpr const char* workspace_keys[] = {"cube_edge", "box", "disc", "cylinder", "polygon", "poses"};
+static_assert(std::size(workspace_keys) == std::variant_size_v<WorkspaceShape>);
+
+/// Where the device is validated, mapped and measured. The centre is a pose of T; absent: the home pose, which is of a
+/// 6-psu the one at which every slider of the untilted device has the nominal length.
 struct Workspace {
-  double nominal_slider = 0, cube_edge = 0;
+  double nominal_slider = 0;
+  WorkspaceShape shape;
+  std::optional<Placement> centre;
 };
 
 /// How loads and displacements are recorded: true load = gain · R(rotation) · recorded, recorded displacement =

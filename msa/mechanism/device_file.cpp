@@ -8,6 +8,7 @@
 #include "msa/mechanism/chain_kinematics.h"
 #include "msa/mechanism/field_reader.h"
 #include "msa/mechanism/field_writer.h"
+#include "msa/mechanism/file_kind.h"
 #include "msa/mechanism/mechanism_tree.h"
 
 namespace deflect {
@@ -45,7 +46,9 @@ Mechanism mechanism_of(const YamlNode& tree, const std::string& origin) {
 }
 
 Mechanism parse_mechanism(std::string_view yaml, const std::string& origin) {
-  return mechanism_of(parse_yaml(yaml, origin), origin);
+  const YamlNode tree = parse_yaml(yaml, origin);
+  require_kind(tree, FileKind::device, origin);
+  return mechanism_of(tree, origin);
 }
 
 Mechanism read_mechanism(const std::filesystem::path& path) { return parse_mechanism(read_text(path), path.string()); }

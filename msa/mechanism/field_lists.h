@@ -37,11 +37,6 @@ void become(std::variant<Ts...>& variant, std::size_t index) {
   make(std::index_sequence_for<Ts...>());
 }
 
-inline void describe(FieldVisitor& v, Placement& p) {
-  v.vector3("shift", p.shift, Dimension::length, "origin in the axes of the frame before");
-  v.vector3("turn", p.turn, Dimension::angle, "roll, pitch, yaw");
-}
-
 inline void describe_placement(FieldVisitor& v, const char* key, Placement& p, const char* about) {
   v.object(
       key, Need::optional, false, [&] { describe(v, p); }, about);
@@ -74,6 +69,8 @@ void tagged(FieldVisitor& v, V& variant, const char* key, const char* what, std:
 inline void material_of(FieldVisitor& v, std::string& material) {
   v.word("material", material, {"material", names(v.surroundings.materials), std::nullopt}, "name of a material");
 }
+
+void describe_workspace(FieldVisitor&, Workspace&);
 
 /// base and tool: joints whose place is fixed and that hold, except where a law lets them yield.
 void describe_fixture(FieldVisitor&, const char* key, Joint&, const char* at, const char* axes, const char* about);

@@ -83,6 +83,11 @@ void describe(FieldVisitor& v, Material& m) {
             fmt::format("gives Poisson's ratio {}: it must lie between -1 and 0.5", m.poisson()));
 }
 
+void describe(FieldVisitor& v, Placement& p) {
+  v.vector3("shift", p.shift, Dimension::length, "origin in the axes of the frame before");
+  v.vector3("turn", p.turn, Dimension::angle, "roll, pitch, yaw");
+}
+
 void describe(FieldVisitor& v, LegDeviation& d) {
   v.integer("leg", d.leg, 1, 6, "number of the leg");
   v.vector3("base_joint", d.base_joint, Dimension::length, "base joint beside its drawing, base axes");
@@ -102,6 +107,15 @@ void describe(FieldVisitor& v, Misfit& misfit) {
   describe_placement(v, "platform", misfit.platform, "seat on the platform beside its drawing");
 }
 
+void describe_name(FieldVisitor& v, std::string& name, const char* about) {
+  constexpr std::size_t most = 200;  // bytes
+  v.text("name", name, Need::required, about);
+  const bool one_line = std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  v.require(one_line, "name", "has a line break or a tab in it: write one line");
+  v.require(name.size() <= most, "name",
+            fmt::format("is {} characters long: write at most {}, and the rest as 'about'", name.size(), most));
+}
+
 Surroundings surroundings_of(const Mechanism& m) {
   Surroundings s;
   s.materials = &m.materials;
@@ -112,7 +126,7 @@ Surroundings surroundings_of(const Mechanism& m) {
 }
 
 void describe(FieldVisitor& v, Mechanism& m) {
-  v.text("name", m.name, Need::required, "name of the device");
+  describe_name(v, m.name, "name of the device");
   v.text("about", m.about, Need::optional, "one line about the device");
   v.text("source", m.source, Need::optional, "where the numbers are from");
   const auto family = [&] {
@@ -153,13 +167,7 @@ void describe(FieldVisitor& v, Mechanism& m) {
          "shape in which equilibrium is found");
   m.geometry = static_cast<Geometry>(index_of(geometry_names, geometry));
 
-  Workspace& w = m.workspace;
-  const auto cube = [&] {
-    if (!v.surroundings.chains)
-      v.quantity("nominal_slider", w.nominal_slider, length(), "free length of every guideway at the centre");
-    v.quantity("cube_edge", w.cube_edge, length(), "edge of the cube of validation");
-  };
-  v.object("workspace", Need::optional, w.nominal_slider == 0 && w.cube_edge == 0, cube, "where it is validated");
+  describe_workspace(v, m.workspace);
   describe_rig(v, m.load_cell, m.sensor);
   v.object(
       "tolerances", Need::optional, false, [&] { describe_tolerances(v, m.tolerances); },

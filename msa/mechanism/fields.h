@@ -102,6 +102,9 @@ class FieldVisitor {
   Surroundings surroundings;
 };
 
+/// `name`, required: one line that a report, a file's name and a picture can carry.
+void describe_name(FieldVisitor&, std::string& name, const char* about);
+
 void describe(FieldVisitor&, Mechanism&);
 void describe(FieldVisitor&, Material&);
 void describe(FieldVisitor&, Section&);
@@ -115,6 +118,8 @@ void describe(FieldVisitor&, Named<Part>& chain, std::size_t);
 void describe(FieldVisitor&, Mount&);
 void describe(FieldVisitor&, Misfit&);
 void describe(FieldVisitor&, LegDeviation&);
+void describe(FieldVisitor&, Placement&);
+void describe(FieldVisitor&, PolygonSpace::Corner&);
 
 /// Only the field `leg` of a mechanism whose other parts are in `surroundings`.
 void describe_leg(FieldVisitor&, Named<Part>&);

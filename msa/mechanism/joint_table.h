@@ -30,7 +30,7 @@ inline constexpr JointType joint_table[] = {
     {"universal", "rrrffr", "turns about x and y, holds the spin about z"},
     {"ball", "rrrfff", "turns about all axes"},
     {"parallelogram", "frrrrr", "passive circular translation of a bar's end, x along its path"},
-    {"custom", "rrrrrr", "as its field `freedoms` says: six letters"},
+    {"custom", "rrrrrr", "as its field `freedoms` says: six letters; moves in the order tx ty tz rx ry rz"},
 };
 
 /// The row of a type, or nullptr.

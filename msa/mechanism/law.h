@@ -82,9 +82,11 @@ struct CablePairLaw {
 };
 
 /// Timing belt (9)–(10): specific stiffness c_sp (stiffness of a belt of unit width and unit length, N/m), width b,
-/// free lengths L1 and L2 of the tight and slack side (m).
+/// free lengths L1 and L2 of the tight and slack side (m). On a rotation the belt turns a pulley of `pulley_radius` at
+/// the joint.
 struct BeltLaw {
   double specific_stiffness = 0, width = 0, tight_length = 0, slack_length = 0;
+  std::optional<double> pulley_radius = std::nullopt;
 };
 
 // The laws below act on translations and on rotations: m and N, or rad and Nm. f is the force that the joint transmits

@@ -73,6 +73,11 @@ void fields(FieldVisitor& v, BeltLaw& l) {
   v.quantity("width", l.width, length(), "width of the belt");
   v.quantity("tight_length", l.tight_length, length(), "free length of the tight side");
   v.quantity("slack_length", l.slack_length, length(), "free length of the slack side");
+  double radius = l.pulley_radius.value_or(0);
+  l.pulley_radius.reset();
+  if (!v.surroundings.rotation) return;
+  v.quantity("pulley_radius", radius, length(), "radius of the pulley that turns with the joint");
+  l.pulley_radius = radius;
 }
 
 void fields(FieldVisitor& v, PowerLaw& l) {
@@ -107,7 +112,8 @@ bool only_along(const Law& law) {
       [](const auto& l) {
         using L = std::decay_t<decltype(l)>;
         return !(std::is_same_v<L, LinearLaw> || std::is_same_v<L, PowerLaw> || std::is_same_v<L, OneSidedLaw> ||
-                 std::is_same_v<L, HardeningLaw> || std::is_same_v<L, ClearanceLaw> || std::is_same_v<L, FrictionLaw>);
+                 std::is_same_v<L, HardeningLaw> || std::is_same_v<L, ClearanceLaw> || std::is_same_v<L, FrictionLaw> ||
+                 std::is_same_v<L, BeltLaw>);
       },
       law);
 }
@@ -117,8 +123,8 @@ bool only_along(const Law& law) {
 void describe(FieldVisitor& v, Law& law) {
   tagged(v, law, "law", "law", law_names, "force against relative displacement", [&v](auto& l) { fields(v, l); });
   v.require(!v.surroundings.rotation || !only_along(law), "law",
-            fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes 'linear', 'power', 'one_sided', "
-                        "'hardening', 'clearance' or 'friction'",
+            fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes 'linear', 'belt', 'power', "
+                        "'one_sided', 'hardening', 'clearance' or 'friction'",
                         law_names[law.index()]));
 }
 

@@ -180,8 +180,8 @@ void describe_freedoms(FieldVisitor& v, Joint& joint) {
   if (joint.type != "custom") return;
   const bool actuated = !v.surroundings.beside;
   v.text("freedoms", joint.freedoms, Need::required,
-         actuated ? "six letters for tx ty tz rx ry rz: r rigid, f free, a actuated"
-                  : "six letters for tx ty tz rx ry rz: r rigid, f free");
+         actuated ? "six letters for tx ty tz rx ry rz, which move in this order: r rigid, f free, a actuated"
+                  : "six letters for tx ty tz rx ry rz, which move in this order: r rigid, f free");
   v.require(are_freedoms(joint.freedoms) && (actuated || joint.freedoms.find('a') == joint.freedoms.npos), "freedoms",
             fmt::format("'{}' are not six letters {}: write for example 'freedoms: {}'", joint.freedoms,
                         actuated ? "r, f or a" : "r or f", actuated ? "rrfrrf" : "ffrfff"));

@@ -1,6 +1,7 @@
 // yaml-cpp's events into a tree. Events rather than its nodes: only they show doubled keys, tags and aliases as they
 // stand in the file.
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/mark.h>
@@ -158,6 +159,8 @@ std::size_t utf8_length(std::string_view s) {
 
 /// yaml-cpp takes byte 4 for the end of the file and passes invalid UTF-8 on.
 void check_characters(std::string_view text, const std::string& origin) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(fmt::format("{}:1: the file is UTF-16: save it as UTF-8", origin));
   int line = 1;
   for (std::size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -183,6 +186,9 @@ void check_syntax(const std::string& text, const std::string& end, const std::st
   Ignore ignore;
   try {
     parse(text + end, ignore);
+  } catch (const YAML::DeepRecursion& e) {
+    throw InputError(fmt::format("{}:{}: is nested too deeply: hundreds of brackets or indents, one inside the other",
+                                 origin, e.mark.line + 1));
   } catch (const YAML::Exception& e) {
     const bool open = e.msg == YAML::ErrorMsg::DOC_IN_SCALAR || e.msg == YAML::ErrorMsg::EOF_IN_SCALAR;
     const auto lines = static_cast<int>(std::count(text.begin(), text.end(), '\n')) + !text.ends_with('\n');

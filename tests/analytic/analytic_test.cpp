@@ -56,6 +56,7 @@ const Law every_law[] = {
     CableLaw{"", 1e-6, 0.08, {150e9, 0.3, {}}},
     CablePairLaw{"", 1e-6, 0.08, 2e-6, 0.3, {150e9, 0.3, {}}},
     BeltLaw{2e6, 0.01, 0.1, 0.3},
+    BeltLaw{2e6, 0.01, 0.1, 0.3, 0.02},
     HertzLineBulkLaw{"", 0.003, 0.004, 0.01, {210e9, 0.3, {}}},
     PowerLaw{2.5e-6, 1, 2.0 / 3},
     HardeningLaw{5e5, 1e-4},

@@ -21,7 +21,7 @@ class DeviceDice {
 
   RandomDevice roll() {
     m().name = fmt::format("{} {}", device_kind_names[static_cast<int>(out_.kind)], out_.seed);
-    m().workspace.cube_edge = 0.01 * unit_;
+    m().workspace.shape = CubeSpace{0.01 * unit_};
     materials();
     const Placement home{place(), aligned_ ? Vector3::Zero().eval() : turn()};
     m().kinematics = Chains{home, {}};
@@ -279,7 +279,7 @@ RandomDevice scaled(RandomDevice d, double s) {
   scale(m.mounts, s);
   for (auto& [name, section] : m.sections) scale(section, s);
   for (Misfit& misfit : m.misfits) scale(misfit.base, s), scale(misfit.platform, s);
-  m.workspace.cube_edge *= s;
+  std::get<CubeSpace>(m.workspace.shape).edge *= s;
   d.load.head<3>() *= s * s, d.load.tail<3>() *= s * s * s;
   d.unit *= s;
   return d;

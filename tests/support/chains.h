@@ -12,7 +12,17 @@
 
 namespace deflect::test {
 
-/// Poses that the device takes, in the cube of its workspace; where it has six coordinates, tilted by up to `tilt`
+/// Half the edges of the box around the workspace, m; of a list of poses zero.
+inline Vector3 half_extent(const Mechanism& m) {
+  const WorkspaceShape& shape = m.workspace.shape;
+  if (const auto* s = std::get_if<CubeSpace>(&shape)) return Vector3::Constant(s->edge / 2);
+  if (const auto* s = std::get_if<BoxSpace>(&shape)) return s->edges / 2;
+  if (const auto* s = std::get_if<DiscSpace>(&shape)) return {s->radius, s->radius, 0};
+  if (const auto* s = std::get_if<CylinderSpace>(&shape)) return {s->radius, s->radius, s->height / 2};
+  return Vector3::Zero();
+}
+
+/// Poses that the device takes, in the box around its workspace; where it has six coordinates, tilted by up to `tilt`
 /// (rad) about each axis. In a fixed order.
 inline std::vector<Pose> workspace_poses(const Mechanism& m, int count, double tilt = 0.1, unsigned seed = 1) {
   std::mt19937 random(seed);
@@ -21,7 +31,7 @@ inline std::vector<Pose> workspace_poses(const Mechanism& m, int count, double t
   std::vector<Pose> poses;
   for (int tries = 0; static_cast<int>(poses.size()) < count && tries < 20 * count; ++tries) {
     Pose pose = centre;
-    pose.p_WT += random_vector(random, m.workspace.cube_edge / 2);
+    pose.p_WT += half_extent(m).cwiseProduct(random_vector(random, 1));
     if (tilts) pose.R_WT = centre.R_WT * rotation_from_vector(random_vector(random, tilt));
     try {
       configure(m, pose);

@@ -7,7 +7,7 @@ namespace deflect::test {
 
 inline MapOptions cube(const Mechanism& m, int nx, int ny, int nz) {
   MapOptions o;
-  o.grid = cube_grid(m, {nx, ny, nz});
+  o.grid = workspace_grid(m, {nx, ny, nz});
   o.length_mm = weighing_length_mm(m);
   return o;
 }

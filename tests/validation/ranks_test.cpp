@@ -122,7 +122,7 @@ TEST(Ranks, AFailureAfterTheWorkEndsTheRunForAllToo) {
 TEST(Ranks, AMapIsTheSame) {
   const Mechanism m = test::device("haptic-6psu");
   MapOptions o;
-  o.grid = cube_grid(m, {7, 5, 9});
+  o.grid = workspace_grid(m, {7, 5, 9});
   o.grid.high_mm.z() += 150;  // some out of reach
   o.length_mm = weighing_length_mm(m);
   const StiffnessMap alone = map_stiffness(m, o);

@@ -9,6 +9,7 @@
 #include "msa/frame/msa.h"
 #include "tests/support/devices.h"
 #include "validation/compare/solve_result.h"
+#include "validation/compare/workspace.h"
 
 namespace deflect {
 namespace {
@@ -45,7 +46,7 @@ constexpr double closed_form[9][3] = {
 
 TEST(NinePoints, IdealJointsGiveTheClosedFormTableByBothTheories) {
   const Mechanism m = device("haptic-6psu-ideal-joints");
-  const Validation v = validate(m, cube_points(m), 50, {}, four_each);
+  const Validation v = validate(m, workspace_points(m), 50, {}, four_each);
   ASSERT_EQ(v.rows.size(), 27u);
   for (std::size_t i = 0; i < 27; ++i) {
     EXPECT_NEAR(v.rows[i].analytic(v.rows[i].axis), closed_form[i / 3][i % 3], 0.51e-6) << i;
@@ -56,7 +57,7 @@ TEST(NinePoints, IdealJointsGiveTheClosedFormTableByBothTheories) {
 
 TEST(NinePoints, ContactLawsAgreeAndSoftenEveryPoint) {
   const Mechanism m = device("haptic-6psu");
-  const Validation v = validate(m, cube_points(m), 50, {}, four_each);
+  const Validation v = validate(m, workspace_points(m), 50, {}, four_each);
   EXPECT_LT(v.max_relative_difference, 1e-7);
   for (std::size_t i = 0; i < 27; ++i) EXPECT_GT(v.rows[i].analytic(v.rows[i].axis), closed_form[i / 3][i % 3]);
 }
@@ -64,7 +65,7 @@ TEST(NinePoints, ContactLawsAgreeAndSoftenEveryPoint) {
 // The paper: x and y are soft at points 1–4, where the guideways are long; z is several times smaller there.
 TEST(NinePoints, PointsOneToFourAreSoftInXAndY) {
   const Mechanism m = device("haptic-6psu");
-  const Validation v = validate(m, cube_points(m), 50, {}, {});
+  const Validation v = validate(m, workspace_points(m), 50, {}, {});
   for (const std::size_t axis : {0u, 1u})
     for (std::size_t upper = 1; upper <= 4; ++upper) {
       for (const std::size_t other : {0u, 5u, 6u, 7u, 8u})
@@ -123,6 +124,9 @@ INSTANTIATE_TEST_SUITE_P(
         Site{"ShaftAndCableInSeries", "leg.actuator.tz",
              "[{law: motor_shaft, material: steel, diameter: 4 mm, length: 30 mm, pulley_radius: 8 mm}, "
              "{law: cable, material: steel, area: 0.5 mm^2}]"},
+        Site{"BeltOnAPulley", "leg.actuator.rx",
+             "{law: belt, specific_stiffness: 900 N/mm, width: 6 mm, tight_length: 90 mm, slack_length: 200 mm, "
+             "pulley_radius: 20 mm}"},
         Site{"GuideRoot", "leg.actuator.rx", "{law: linear, stiffness: 5e6 Nmm/rad}"},
         Site{"Carriage", "leg.carriage.tx", "{law: linear, stiffness: 800 N/mm}"},
         Site{"BallContact", "leg.ball_joint.tz", "{law: hertz_point, material: steel, radius: 4 mm}", 1e-7},
@@ -279,7 +283,7 @@ TEST(RelativeDifference, TakesTheWorseOfTranslationAndRotation) {
 TEST(Errata, LockedPassiveJointsStiffenEveryPointAndAreSeen) {
   for (const char* name : {"haptic-6psu", "haptic-6psu-ideal-joints"}) {
     const Mechanism m = device(name);
-    const std::vector<ErratumPrice> prices = price_errata(m, cube_points(m), 50);
+    const std::vector<ErratumPrice> prices = price_errata(m, workspace_points(m), 50);
     const auto price = std::find_if(prices.begin(), prices.end(),
                                     [](const ErratumPrice& p) { return p.erratum == Erratum::passive_joints; });
     EXPECT_LT(price->largest.maxCoeff(), 0.7);
@@ -290,8 +294,9 @@ TEST(Errata, LockedPassiveJointsStiffenEveryPointAndAreSeen) {
 
 TEST(Errata, AreEachFeltAndNoneTouchesTheCorrectedTheory) {
   const Mechanism m = device("haptic-6psu");
-  const Validation plain = validate(m, cube_points(m), 50, {}, {});
-  const Validation printed = validate(m, cube_points(m), 50, {Erratum::ujoint_parallel, Erratum::contact_modulus}, {});
+  const Validation plain = validate(m, workspace_points(m), 50, {}, {});
+  const Validation printed =
+      validate(m, workspace_points(m), 50, {Erratum::ujoint_parallel, Erratum::contact_modulus}, {});
   for (std::size_t i = 0; i < plain.rows.size(); ++i) {
     EXPECT_EQ(plain.rows[i].analytic, printed.rows[i].analytic);
     ASSERT_TRUE(printed.rows[i].as_printed);
@@ -305,7 +310,7 @@ TEST(CubePoints, WithoutAWorkspaceThereAreNone) {
       "round, diameter: 8 mm}}, leg: {post: {member: rod, material: steel, along: [0 mm, 0 mm, 100 mm]}}}",
       "post");
   try {
-    cube_points(m);
+    workspace_points(m);
     FAIL() << "nine equal points are no validation";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("workspace: {cube_edge: 50 mm}"), std::string::npos) << e.what();

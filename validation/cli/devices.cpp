@@ -11,6 +11,7 @@
 #include "msa/base/units.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"
 #include "validation/compare/theories.h"
@@ -26,22 +27,58 @@ fs::path data_folder() {
   return program.parent_path() / DEFLECT_INSTALL_DATA;  // the build tree
 }
 
-std::vector<std::string> device_names() {
+namespace {
+
+/// Folders of the program's data by kind of description.
+const std::vector<std::string> device_folders = {"devices"}, frame_folders = {"cases"};
+
+std::vector<std::string> names_in(const std::vector<std::string>& folders) {
   std::vector<std::string> names;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(data_folder() / "devices", error))
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  for (const std::string& folder : folders)
+    for (const fs::directory_entry& entry : fs::directory_iterator(data_folder() / folder, error))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }
 
-fs::path device_file(const std::string& name) {
-  const std::vector<std::string> names = device_names();
-  if (std::find(names.begin(), names.end(), name) != names.end()) return data_folder() / "devices" / (name + ".yaml");
+bool is_among(const std::string& name, const std::vector<std::string>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// What built-in descriptions of one kind are called, where they are, and what a name of the other kind is.
+struct BuiltIn {
+  const char* what;
+  const std::vector<std::string>& folders;
+  std::string other;
+};
+
+fs::path built_in(const std::string& name, const BuiltIn& kind, const std::vector<std::string>& others) {
+  const std::vector<std::string> names = names_in(kind.folders);
+  for (const std::string& folder : kind.folders)
+    if (const fs::path file = data_folder() / folder / (name + ".yaml"); is_among(name, names) && fs::exists(file))
+      return file;
   if (name.find('/') != name.npos || name.ends_with(".yaml") || fs::exists(name)) return name;
+  if (is_among(name, others)) throw InputError(fmt::format("'{}' is {}", name, kind.other));
   const std::string hint = nearest(name, names);
-  throw InputError(fmt::format("there is no device '{}'{}: name a built-in one ({}) or a file", name,
+  throw InputError(fmt::format("there is no {} '{}'{}: name a built-in one ({}) or a file", kind.what, name,
                                hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::vector<std::string> device_names() { return names_in(device_folders); }
+std::vector<std::string> frame_names() { return names_in(frame_folders); }
+
+fs::path device_file(const std::string& name) {
+  const std::string other = fmt::format("a frame, not a device: 'deflect frame {}' solves it", name);
+  return built_in(name, {"device", device_folders, other}, frame_names());
+}
+
+fs::path frame_file(const std::string& name) {
+  const std::string other =
+      fmt::format("a device, not a frame: 'deflect solve {}' and the other commands for devices take it", name);
+  return built_in(name, {"frame", frame_folders, other}, device_names());
 }
 
 Mechanism read_device(const std::string& name) {
@@ -49,6 +86,8 @@ Mechanism read_device(const std::string& name) {
   Mechanism m = read_mechanism(file);
   tell("device {}: {}, {} driven coordinates, geometry {}", m.name, file.string(), actuators_of(m).size(),
        geometry_names[static_cast<std::size_t>(m.geometry)]);
+  for (const auto& [each, material] : m.materials)
+    if (const auto question = question_about(each, material)) remark(fmt::format("{}: {}", file.string(), *question));
   return m;
 }
 
@@ -74,7 +113,14 @@ int parse_threads(double value, const Ranks* ranks) {
   return threads;
 }
 
+void say_new_folder(const fs::path& file) {
+  std::error_code error;
+  const fs::path folder = file.parent_path();
+  if (!folder.empty() && !fs::exists(folder, error)) remark(fmt::format("the folder {} is new", folder.string()));
+}
+
 void write_file(const fs::path& path, const std::string& text) {
+  say_new_folder(path);
   write_text(path, text);
   tell("wrote {}, {} bytes", path.string(), text.size());
 }
@@ -118,6 +164,7 @@ VectorX parse_joints(const Mechanism& m, const std::string& text) {
     items.push_back(text.substr(from, to - from));
     from = to + 1;
   }
+  if (actuators.empty()) throw InputError(fmt::format("{}: nothing is driven there: leave --joints away", m.name));
   if (items.size() != actuators.size())
     throw InputError(fmt::format("--joints '{}': {} coordinate{}; write {}: {}", text, items.size(),
                                  items.size() == 1 ? "" : "s", actuators.size(), fmt::join(names, ", ")));
@@ -137,7 +184,8 @@ VectorX parse_joints(const Mechanism& m, const std::string& text) {
 }  // namespace
 
 Stand parse_stand(const Mechanism& m, const std::string& pose, const std::string& joints, bool or_home) {
-  if (or_home && pose.empty() && joints.empty()) return stand(m, mm_deg_from(home_pose(m)));
+  if (pose.empty() && joints.empty() && (or_home || actuators_of(m).empty()))
+    return stand(m, mm_deg_from(home_pose(m)));
   if (pose.empty() == joints.empty())
     throw InputError(
         "give either --pose x,y,z,roll,pitch,yaw (mm, deg) or --joints q1,...,qn (slides in mm, turns in rad)");
@@ -157,7 +205,12 @@ Stand parse_stand(const Mechanism& m, const std::string& pose, const std::string
 
 Vector6 parse_load(const std::string& load) {
   if (load.empty()) return Vector6::Zero();
-  return parse_six("--load", load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm");
+  const Vector6 F = parse_six("--load", load, {3, 6}, "fx,fy,fz in N, or fx,fy,fz,mx,my,mz in N and Nmm");
+  for (Eigen::Index i = 0; i < 6; ++i)
+    if (const double most = i < 3 ? largest_force : 1e3 * largest_moment; std::abs(F(i)) > most)
+      throw InputError(
+          fmt::format("--load '{}': {:g} {} is too large: at most {:g}", load, F(i), i < 3 ? "N" : "Nmm", most));
+  return F;
 }
 
 double parse_length(const std::string& option, const std::string& text) {

@@ -17,13 +17,17 @@ namespace deflect::cli {
 /// Where the program's devices and effects are: share/deflect beside an installed program, the source tree otherwise.
 std::filesystem::path data_folder();
 
-/// Names of the built-in devices, sorted.
+/// Names of the built-in devices, and of the frames: published cases and examples; sorted.
 std::vector<std::string> device_names();
+std::vector<std::string> frame_names();
 
-/// The file of a built-in device's name, or of a path. Throws InputError with the nearest name.
+/// The file of a built-in name, or of a path. InputError with the nearest name, or, where the name is one of the other
+/// kind, with the command that takes it.
 std::filesystem::path device_file(const std::string& name_or_path);
+std::filesystem::path frame_file(const std::string& name_or_path);
 
-/// The device of that name or path; InputError as device_file() and read_mechanism() have it.
+/// The device of that name or path, with remarks on what can hardly be meant; InputError as device_file() and
+/// read_mechanism() have it.
 Mechanism read_device(const std::string& name_or_path);
 
 /// As read_measurements(), told where verbose.
@@ -32,8 +36,11 @@ Measurements read_data(const std::string& file);
 /// The number of --threads of this process; 0: all of the machine, with ranks all that this rank has.
 int parse_threads(double, const Ranks* = nullptr);
 
-/// As write_text(), told where verbose.
+/// As write_text(), told where verbose; a folder that has to be made for it is said.
 void write_file(const std::filesystem::path&, const std::string& text);
+
+/// Says that the folder of a file that is about to be written is not there yet.
+void say_new_folder(const std::filesystem::path& file);
 
 /// "1,2.5,-3" → numbers; exactly one of `counts` of them, or InputError naming the option and what it wants.
 std::vector<double> parse_list(const std::string& option, const std::string& text,
@@ -43,8 +50,9 @@ std::vector<double> parse_list(const std::string& option, const std::string& tex
 Vector6 parse_six(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts,
                   const std::string& wanted);
 
-/// Where --pose (mm, deg) puts the mechanism, or --joints by forward kinematics; the home pose, where `or_home`,
-/// without either. Throws InputError for both or none, ModelError when the mechanism cannot stand there.
+/// Where --pose (mm, deg) puts the mechanism, or --joints by forward kinematics; the home pose, where `or_home` or
+/// nothing is driven, without either. Throws InputError for both or none, ModelError when the mechanism cannot stand
+/// there.
 Stand parse_stand(const Mechanism&, const std::string& pose, const std::string& joints, bool or_home);
 
 /// The wrench of --load in N and Nmm, zero where it is empty.

@@ -139,6 +139,7 @@ void run(const ExportArguments& a) {
   add_loads(msa.mechanism(), load, fields);
   const double scale = scale_of(a, mesh, fields);
   const LineMesh moved = deflected(mesh, fields, scale);
+  say_new_folder(path);
   if (a.to == "msh") {
     gmsh::write_msh(path, mesh, fields);
     write_file(path.string() + ".opt", gmsh_options(fields, scale));

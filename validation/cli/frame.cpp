@@ -11,6 +11,7 @@
 #include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/frame/frame_file.h"
+#include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/motions.h"
@@ -24,20 +25,6 @@ namespace {
 struct FrameArguments {
   std::string file, element_size, solver = "auto", json, out;
 };
-
-/// A path, or the name of a published case that comes with the program.
-fs::path frame_file(const std::string& name) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(data_folder() / "cases", error))
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  if (std::find(names.begin(), names.end(), name) != names.end()) return data_folder() / "cases" / (name + ".yaml");
-  if (name.find('/') != name.npos || name.ends_with(".yaml") || fs::exists(name)) return name;
-  const std::string hint = nearest(name, names);
-  throw InputError(fmt::format("there is no frame '{}'{}: name a file or a built-in case ({})", name,
-                               hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), fmt::join(names, ", ")));
-}
 
 frame::FrameDivision divide_members(const frame::FrameDescription& f, const std::string& element_size) {
   if (element_size.empty()) return {};
@@ -79,6 +66,9 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
 void run(const FrameArguments& a) {
   const frame::FrameDescription f = timed("frame: reading", [&] { return frame::read_frame(frame_file(a.file)); });
   tell("frame {}: {}, {} nodes, {} members", f.name, frame_file(a.file).string(), f.nodes.size(), f.members.size());
+  for (const auto& [name, material] : f.materials)
+    if (const auto question = question_about(name, material.elastic))
+      remark(fmt::format("{}: {}", frame_file(a.file).string(), *question));
   frame::FrameOptions options;
   options.division = divide_members(f, a.element_size);
   options.equations.solver = solver_of(a.solver, f);

@@ -10,6 +10,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/completion.h"
 #include "validation/cli/talk.h"
+#include "validation/cli/unknown_words.h"
 #include "validation/parallel/ranks.h"
 
 namespace {
@@ -34,7 +35,7 @@ void declare(CLI::App& app, const Option& option) {
 }
 
 /// False where the arguments ask for help or the version only, which is said.
-bool parse(CLI::App& app, int argc, char** argv, bool say) try {
+bool parse(CLI::App& app, const std::vector<Command>& commands, int argc, char** argv, bool say) try {
   app.parse(argc, argv);
   return true;
 } catch (const CLI::ParseError& e) {
@@ -42,7 +43,9 @@ bool parse(CLI::App& app, int argc, char** argv, bool say) try {
   app.exit(e, asked, wrong);
   if (say) fmt::print("{}", asked.str());
   if (e.get_exit_code() == 0) return false;
-  std::string text = wrong.str();
+  std::string text = deflect::cli::unknown_word(commands, {argv + 1, argv + argc});
+  if (!text.empty()) throw deflect::InputError(text);
+  text = wrong.str();
   while (!text.empty() && text.back() == '\n') text.pop_back();
   throw deflect::InputError(text);
 }
@@ -87,7 +90,7 @@ int main(int argc, char** argv) {
   }
   const bool first = deflect::launched().rank == 0;
   const auto work = [&](Ranks* ranks) {
-    if (!parse(app, argc, argv, first)) return;
+    if (!parse(app, commands, argc, argv, first)) return;
     set_talk(quiet || !first ? Talk::quiet : loud ? Talk::verbose : Talk::usual);
     tell("version {}, {} threads in this machine, BLAS {}", DEFLECT_VERSION, std::thread::hardware_concurrency(),
          openblas_set_num_threads ? "OpenBLAS, one thread" : "of the system");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -24,16 +25,18 @@ struct MapArguments {
   FigureArguments figures;
 };
 
-MapGrid grid_of(const Mechanism& m, const MapArguments& a) {
+/// The workspace, or a box where a range is given.
+void set_grid(const Mechanism& m, const MapArguments& a, MapOptions& o) {
   std::array<int, 3> counts = {11, 11, 11};
   if (!a.n.empty()) {
     const std::vector<double> n = parse_list("--n", a.n, {1, 3}, "nx,ny,nz or one number for all");
     for (std::size_t i = 0; i < 3; ++i) counts[i] = whole("--n", n[n.size() == 1 ? 0 : i], 1, 1e6);
   }
   const char* names[] = {"--x", "--y", "--z"};
-  MapGrid grid;
+  MapGrid& grid = o.grid;
   grid.counts = counts;
-  if (a.ranges[0].empty() || a.ranges[1].empty() || a.ranges[2].empty()) grid = cube_grid(m, counts);
+  const bool all = !a.ranges[0].empty() && !a.ranges[1].empty() && !a.ranges[2].empty();
+  if (!all) grid = workspace_grid(m, counts);
   for (int axis = 0; axis < 3; ++axis) {
     const std::string& range = a.ranges[axis];
     if (range.empty()) continue;
@@ -42,13 +45,14 @@ MapGrid grid_of(const Mechanism& m, const MapArguments& a) {
       throw InputError(fmt::format("{} {}: the range is reversed; write the smaller value first", names[axis], range));
     grid.low_mm(axis) = ends.front();
     grid.high_mm(axis) = ends.back();
-    if (ends.front() == ends.back()) grid.counts[static_cast<std::size_t>(axis)] = 1;
+    const auto i = static_cast<std::size_t>(axis);
+    grid.counts[i] = ends.front() == ends.back() ? 1 : counts[i];
   }
+  if (a.ranges[0].empty() && a.ranges[1].empty() && a.ranges[2].empty()) o.region = region_of(m);
   if (!a.tilt.empty()) {
     const std::vector<double> tilt = parse_list("--tilt", a.tilt, {3}, "roll,pitch,yaw in deg");
     grid.tilt_deg = Vector3(tilt[0], tilt[1], tilt[2]);
   }
-  return grid;
 }
 
 double length_mm(const Mechanism& m, const std::string& text) {
@@ -58,7 +62,7 @@ double length_mm(const Mechanism& m, const std::string& text) {
 
 MapOptions options_of(const Mechanism& m, const MapArguments& a, Ranks* ranks) {
   MapOptions o;
-  o.grid = grid_of(m, a);
+  set_grid(m, a, o);
   o.force_N = a.force_N;
   if (!std::isfinite(a.force_N) || a.force_N == 0)
     throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.force_N));
@@ -77,6 +81,14 @@ MapOptions options_of(const Mechanism& m, const MapArguments& a, Ranks* ranks) {
   return o;
 }
 
+/// A map without a pose says nothing of the device.
+void require_reached(const StiffnessMap& map) {
+  if (std::any_of(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); })) return;
+  throw ModelError(fmt::format(
+      "the map has nothing to show: none of its {} poses is reached; give --x, --y, --z or --tilt. The first: {}",
+      map.poses.size(), map.poses.front().out_of_reach));
+}
+
 void run(const MapArguments& a, Ranks* ranks) {
   require_pages(a.report);
   const FigureStyle style = figure_style(a.figures, a.out);
@@ -90,6 +102,7 @@ void run(const MapArguments& a, Ranks* ranks) {
     map = map_stiffness(m, o);
   }
   if (ranks && !ranks->first()) return;
+  require_reached(map);
   const std::filesystem::path folder = a.out;
   std::string figures;
   if (!a.out.empty()) {
@@ -128,11 +141,13 @@ Command map_command() {
       with_figures(
           {{"device", "DEVICE", "built-in device or device file", &a->device, true},
            {"--x", "from,to",
-            "range of the tool point in mm, or one value (default: the cube of the device's workspace)", &a->ranges[0]},
+            "range of the tool point in mm, or one value (default: the device's workspace; with a range a box)",
+            &a->ranges[0]},
            {"--y", "from,to", "likewise", &a->ranges[1]},
            {"--z", "from,to", "likewise", &a->ranges[2]},
            {"--n", "nx,ny,nz", "poses along x, y, z, or one number for all (default 11)", &a->n},
-           {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default 0,0,0)", &a->tilt},
+           {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default: that of the workspace's centre)",
+            &a->tilt},
            {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},
            {"--load", "fx,fy,fz,mx,my,mz", "one wrench in N and Nmm instead of --force", &a->load},
            {"--theory", "analytic|msa|both", "by which theory (default both)", &a->theory},

@@ -138,6 +138,7 @@ void run(const SimulateArguments& a) {
     o.progress = told;
     return simulate(m, std::move(plan), o);
   });
+  say_new_folder(a.out);
   write_measurements(a.out, data);
   fmt::print("{}: {} readings at {} poses of {}{}, seed {}\n", a.out, data.readings.size(), data.poses.size(), m.name,
              hidden.empty() ? ", nothing hidden" : " with " + hidden, o.seed);

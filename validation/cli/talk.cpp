@@ -38,6 +38,10 @@ void tell_line(const std::string& text) {
   std::fflush(stderr);
 }
 
+void remark(const std::string& text) {
+  if (talk != Talk::quiet) fmt::print(stderr, "note: {}\n", text);
+}
+
 Step::Step(std::string what) : what_(std::move(what)), start_(seconds()), failing_(std::uncaught_exceptions()) {
   tell("{} …", what_);
 }

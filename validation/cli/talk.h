@@ -27,6 +27,9 @@ void tell(fmt::format_string<T...> format, T&&... values) {
   if (verbose()) tell_line(fmt::format(format, std::forward<T>(values)...));
 }
 
+/// One line on standard error, "note: …", of what a user should know before the result; nothing when quiet.
+void remark(const std::string&);
+
 /// A step of the work, told when it begins and, unless it fails, when it is done, with its time.
 class Step {
  public:

@@ -98,6 +98,10 @@ MapPose map_pose(SweptTheories& theories, const Mechanism& m, const MapOptions& 
                  std::size_t index) {
   MapPose out;
   out.pose_mm_deg = o.grid.pose_mm_deg(index);
+  if (o.region && !o.region->holds(out.pose_mm_deg.head<3>())) {
+    out.out_of_reach = "outside the workspace, a " + o.region->words;
+    return out;
+  }
   const Configuration* c = nullptr;
   try {
     c = &theories.at(pose_from(out.pose_mm_deg));
@@ -198,10 +202,12 @@ Vector6 MapGrid::pose_mm_deg(std::size_t index) const {
   return pose;
 }
 
-MapGrid cube_grid(const Mechanism& m, const std::array<int, 3>& counts) {
-  const Vector3 centre = 1e3 * home_pose(m).p_WT;
-  const Vector3 half = Vector3::Constant(1e3 * m.workspace.cube_edge / 2);
-  return {centre - half, centre + half, counts, Vector3::Zero()};
+MapGrid workspace_grid(const Mechanism& m, const std::array<int, 3>& counts) {
+  const Region r = region_of(m);
+  MapGrid grid{r.low_mm, r.high_mm, counts, r.centre_mm_deg.tail<3>()};
+  for (Eigen::Index i = 0; i < 3; ++i)
+    if (grid.low_mm(i) == grid.high_mm(i)) grid.counts[static_cast<std::size_t>(i)] = 1;
+  return grid;
 }
 
 double weighing_length_mm(const Mechanism& m) {

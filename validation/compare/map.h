@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "msa/mechanism/description.h"
+#include "validation/compare/workspace.h"
 #include "validation/parallel/ranks.h"
 
 namespace deflect {
@@ -31,11 +32,12 @@ struct MapGrid {
   Vector6 pose_mm_deg(std::size_t index) const;
 };
 
-/// The cube in which the device is validated.
-MapGrid cube_grid(const Mechanism&, const std::array<int, 3>& counts);
+/// The box around the device's workspace; along an axis in which that is flat there is one value.
+MapGrid workspace_grid(const Mechanism&, const std::array<int, 3>& counts);
 
 struct MapOptions {
   MapGrid grid;
+  std::optional<Region> region;                    ///< poses outside of it are left out
   double force_N = 50;                             ///< along x, y, z in turn, without `load`
   std::optional<Vector6> load_N_Nmm;               ///< one wrench on T about T, base axes, instead of the three forces
   bool analytic = true, msa = true;                ///< theories asked for

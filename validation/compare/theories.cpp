@@ -132,24 +132,6 @@ Vector6 mm_deg_from(const Pose& pose) {
   return v;
 }
 
-std::vector<ValidationPoint> cube_points(const Mechanism& m) {
-  const Vector6 centre = mm_deg_from(home_pose(m));
-  if (!(m.workspace.cube_edge > 0))
-    throw InputError(
-        fmt::format("{}: the device has no workspace; add for example 'workspace: {{cube_edge: 50 mm}}' to "
-                    "its file, or name points by --points",
-                    m.name));
-  const double half = 1e3 * m.workspace.cube_edge / 2;
-  std::vector<ValidationPoint> points{{"0", centre}};
-  for (const double z : {+1.0, -1.0})
-    for (const auto& [x, y] : {std::pair{+1, +1}, {-1, +1}, {-1, -1}, {+1, -1}}) {
-      Vector6 p = centre;
-      p.head<3>() += half * Vector3(x, y, z);
-      points.push_back({std::to_string(points.size()), p});
-    }
-  return points;
-}
-
 double relative_difference(const Vector6& a, const Vector6& b) {
   const auto relative = [](double difference, double size) {
     return size > 0 ? difference / size : difference > 0 ? std::numeric_limits<double>::infinity() : 0.0;

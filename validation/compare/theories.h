@@ -41,10 +41,6 @@ struct Validation {
 /// at least |δb| / 1 m, a translation against at least |θb| · 1 mm.
 double relative_difference(const Vector6& a, const Vector6& b);
 
-/// Centre (0) and corners of the cube of the device's workspace: 1…4 upper face, 5…8 lower, each in the order
-/// (+,+), (−,+), (−,−), (+,−) of (x, y).
-std::vector<ValidationPoint> cube_points(const Mechanism&);
-
 /// x y z roll pitch yaw in mm and deg, R = Rz(yaw) Ry(pitch) Rx(roll), and back.
 Pose pose_from(const Vector6& mm_deg);
 Vector6 mm_deg_from(const Pose&);

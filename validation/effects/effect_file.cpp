@@ -9,6 +9,8 @@
 #include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/field_reader.h"
+#include "msa/mechanism/file_kind.h"
+#include "msa/mechanism/joint_table.h"
 #include "validation/effects/effect_value.h"
 #include "validation/effects/parameter_unit.h"
 
@@ -185,7 +187,8 @@ class ValueCheck {
       return std::any_of(paths.begin(), paths.end(), [&](const std::string& path) {
         const std::string end = path.substr(path.rfind('.') + 1);
         if (end == "<slide>" || end == "<turn>") return end[1] == (kind == 't' ? 's' : 't');
-        return end.size() != 2 || end[0] == kind;
+        const bool freedom = std::find(freedom_names.begin(), freedom_names.end(), end) != freedom_names.end();
+        return !freedom || end[0] == kind;
       });
     };
     std::vector<bool> out;
@@ -206,6 +209,7 @@ void trim(std::string& text) {
 
 Effect parse_effect(std::string_view yaml, const std::string& origin) {
   const YamlNode tree = parse_yaml(yaml, origin);
+  require_kind(tree, FileKind::effect, origin);
   Effect e;
   e.origin = origin;
   FieldReader reader(origin);

@@ -7,7 +7,7 @@
 
 #include "msa/base/error.h"
 #include "msa/mechanism/configuration.h"
-#include "validation/compare/theories.h"
+#include "validation/compare/workspace.h"
 #include "validation/measurement/random.h"
 
 namespace deflect {
@@ -29,8 +29,8 @@ class Plan {
     return plan_.poses.size() - 1;
   }
 
-  void add_cube() {
-    for (const ValidationPoint& point : cube_points(mechanism_)) {
+  void add_points() {
+    for (const ValidationPoint& point : workspace_points(mechanism_)) {
       const Vector6 at = as_written(point.pose_mm_deg);
       configure(mechanism_, pose_from(at));
       pose(point.label, at);
@@ -39,13 +39,11 @@ class Plan {
 
   void add_tilted(int count) {
     const bool tilts = actuators_of(mechanism_).size() >= 6;
-    const Vector6 home = mm_deg_from(home_pose(mechanism_));
-    const double half = 1e3 * mechanism_.workspace.cube_edge / 2;
+    const Region region = region_of(mechanism_);
     for (int i = 0; i < count; ++i) {
       const auto label = std::to_string(plan_.poses.size());
       for (int tries = 0;; ++tries) {
-        Vector6 at = home;
-        at.head<3>() += random_.uniform3(-half, half);
+        Vector6 at = draw_pose(region, random_);
         const Vector3 tilt = random_.uniform3(-most_tilt_deg, most_tilt_deg);
         if (tilts) at.tail<3>() += tilt;
         at = as_written(at);
@@ -82,14 +80,14 @@ class Plan {
 };
 
 Measurements paper(Plan plan, double F) {
-  plan.add_cube();
+  plan.add_points();
   for (std::size_t p = 0; p < plan.poses(); ++p)
     for (int axis = 0; axis < 3; ++axis) plan.read(p, F * Vector6::Unit(axis));
   return plan.take();
 }
 
 Measurements cycle(Plan plan, double F) {
-  plan.add_cube();
+  plan.add_points();
   for (std::size_t p = 0; p < plan.poses(); ++p)
     for (int axis = 0; axis < 3; ++axis)
       for (const double step : {1, 2, 3, 4, 3, 2, 1, 0, -1, -2, -3, -4, -3, -2, -1, 0})
@@ -98,7 +96,7 @@ Measurements cycle(Plan plan, double F) {
 }
 
 Measurements rich(Plan plan, double F) {
-  plan.add_cube();
+  plan.add_points();
   plan.add_tilted(6);
   for (int round = 0; round < 2; ++round)
     for (std::size_t p = 0; p < plan.poses(); ++p) {

@@ -1,0 +1,14 @@
+// Values that are read but can hardly be meant.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "msa/mechanism/law.h"
+
+namespace deflect {
+
+/// A sentence where a material is so soft that GPa were probably meant: "materials.al.E: 0.07 GPa is …".
+std::optional<std::string> question_about(const std::string& name, const Material&);
+
+}  // namespace deflect
