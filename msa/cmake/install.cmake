@@ -44,7 +44,7 @@ foreach(header ${headers})
           COMPONENT development)
 endforeach()
 
-foreach(folder devices effects cases)
+foreach(folder devices effects cases frames)
   if(EXISTS ${PROJECT_SOURCE_DIR}/validation/${folder})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/deflect
             COMPONENT program PATTERN "*.h" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)

@@ -45,5 +45,6 @@ Command report_command();
 Command simulate_command();
 Command effects_command();
 Command add_command();
+Command new_command();
 
 }  // namespace deflect::cli

@@ -15,6 +15,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"
 #include "validation/compare/theories.h"
+#include "validation/report/schema_results.h"
 
 namespace deflect::cli {
 namespace fs = std::filesystem;
@@ -30,7 +31,7 @@ fs::path data_folder() {
 namespace {
 
 /// Folders of the program's data by kind of description.
-const std::vector<std::string> device_folders = {"devices"}, frame_folders = {"cases"};
+const std::vector<std::string> device_folders = {"devices"}, frame_folders = {"cases", "frames"};
 
 std::vector<std::string> names_in(const std::vector<std::string>& folders) {
   std::vector<std::string> names;
@@ -229,25 +230,54 @@ frame::MemberDivision divide(const Mechanism& m, const std::string& element_size
   return divide_members(configure(m, home_pose(m)), parse_length("--element-size", element_size));
 }
 
+namespace {
+
+struct DevicesArguments {
+  std::string name, json;
+  bool schema = false;
+};
+
+void list_or_print(const DevicesArguments& a) {
+  if (a.schema && !a.name.empty()) throw InputError("--schema is of all devices: leave the name away");
+  if (!a.json.empty() && !a.schema) throw InputError("--json belongs to --schema");
+  if (a.schema) {
+    std::vector<NamedSchema> all;
+    for (const char* family : family_names)
+      all.push_back({fmt::format("device files, family {}", family), device_schema(family)});
+    if (!a.json.empty()) write_file(a.json, schema_json(all, "deflect device file"));
+    for (const NamedSchema& each : all) fmt::print("{}{}", &each == &all.front() ? "" : "\n", schema_table(each));
+  } else if (!a.name.empty()) {
+    fmt::print("{}", read_text(device_file(a.name)));
+  } else {
+    for (const std::string& each : device_names())
+      fmt::print("{:<26} {}\n", each, read_mechanism(device_file(each)).about);
+  }
+}
+
+}  // namespace
+
 Command devices_command() {
-  auto name = std::make_shared<std::string>();
+  auto a = std::make_shared<DevicesArguments>();
   return {
       "devices",
-      "List the built-in devices, or print one as a file to start one's own from.\n"
+      "List the built-in devices, or print one as a file to start one's own from ('deflect new' writes one with "
+      "comments).\n"
       "Sections lie in a member's local y and z, x along it. In a chain local y is the chain's y, less its part along "
       "x, or the chain's z where x is within 2.6 deg of the chain's y; 'y_axis: [x, y, z]' names another direction, in "
       "the axes of the chain at that line. z = x cross y. 'from: PART' begins at the end of a member or offset and "
-      "where a joint stands; 'from: {part: PART, at: start}' or 'at: end' says which",
+      "where a joint stands; 'from: {part: PART, at: start}' or 'at: end' says which.\n"
+      "The freedoms of a joint are tx ty tz rx ry rz, along and about its axes. Of 'joint: custom' six letters say "
+      "which are r rigid, f free, a actuated; they move in this order: along x, y, z, then about x, about y as that "
+      "has "
+      "turned it, about z as both have. For another order write several joints, one behind the other.\n"
+      "Laws of a freedom, with their fields; several in a list are in series:" +
+          law_lines(),
       "deflect devices haptic-6psu > my-device.yaml",
-      {{"name", "DEVICE", "device to print; without it all are listed", name.get(), false}},
-      [name] {
-        if (!name->empty()) {
-          fmt::print("{}", read_text(device_file(*name)));
-          return;
-        }
-        for (const std::string& each : device_names())
-          fmt::print("{:<26} {}\n", each, read_mechanism(device_file(each)).about);
-      }};
+      {{"name", "DEVICE", "device to print; without it all are listed", &a->name, false},
+       {"--schema", "", "every key of device files: type and unit, default, one line", &a->schema},
+       {"--json", "FILE", "with --schema: write it as JSON Schema, for editors that complete and check files",
+        &a->json}},
+      [a] { list_or_print(*a); }};
 }
 
 std::optional<double> parse_sigma(const std::string& option, const std::string& text, const std::string& unit,

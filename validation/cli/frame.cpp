@@ -11,12 +11,14 @@
 #include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/frame/frame_file.h"
+#include "msa/frame/frame_schema.h"
 #include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/motions.h"
 #include "validation/cli/talk.h"
 #include "validation/report/frame_results.h"
+#include "validation/report/schema_results.h"
 
 namespace deflect::cli {
 namespace fs = std::filesystem;
@@ -24,6 +26,7 @@ namespace {
 
 struct FrameArguments {
   std::string file, element_size, solver = "auto", json, out;
+  bool schema = false;
 };
 
 frame::FrameDivision divide_members(const frame::FrameDescription& f, const std::string& element_size) {
@@ -63,7 +66,15 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
   }
 }
 
+void print_schema(const std::string& json) {
+  const NamedSchema named{"frame files", frame::frame_schema()};
+  if (!json.empty()) write_file(json, schema_json({named}, "deflect frame file"));
+  fmt::print("{}", schema_table(named));
+}
+
 void run(const FrameArguments& a) {
+  if (a.schema) return print_schema(a.json);
+  if (a.file.empty()) throw InputError("name a frame file or a published case, or ask for --schema");
   const frame::FrameDescription f = timed("frame: reading", [&] { return frame::read_frame(frame_file(a.file)); });
   tell("frame {}: {}, {} nodes, {} members", f.name, frame_file(a.file).string(), f.nodes.size(), f.members.size());
   for (const auto& [name, material] : f.materials)
@@ -94,7 +105,7 @@ Command frame_command() {
           "'second-order' (P-delta, stress stiffening, buckling) or 'finite' (rotations of any size, 'load_steps: n'); "
           "'elements: n' divides a member",
           "deflect frame logan-5-30 --json result.json --out result",
-          {{"file", "FRAME", "frame file, or the name of a published case in share/deflect/cases", &a->file, true},
+          {{"file", "FRAME", "frame file, or the name of a built-in one in share/deflect/cases or frames", &a->file},
            {"--element-size", "LENGTH",
             "divide members, with unit (default: as the file says, or one element, exact at its nodes if linear)",
             &a->element_size},
@@ -102,7 +113,8 @@ Command frame_command() {
             "auto (default: by size and conditioning), direct (factorisation) or iterative (conjugate gradients; falls "
             "back to direct where it cannot vouch for its answer)",
             &a->solver},
-           {"--json", "FILE", "write the result", &a->json},
+           {"--schema", "", "every key of frame files: type and unit, default, one line", &a->schema},
+           {"--json", "FILE", "write the result; with --schema the keys as JSON Schema", &a->json},
            {"--out", "DIR", "write displacements, reactions, members, shares (.csv) and each case as .msh and .vtu",
             &a->out}},
           [a] { drawing_motions(a->out, [a] { run(*a); }); }};
