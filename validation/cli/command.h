@@ -46,5 +46,6 @@ Command simulate_command();
 Command effects_command();
 Command add_command();
 Command new_command();
+Command show_command();
 
 }  // namespace deflect::cli

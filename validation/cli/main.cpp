@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
   app.footer("Exit codes: 0 done, 2 bad input or usage, 3 a model that cannot be, 4 a numerical failure, 70 a bug.");
 
   using namespace deflect::cli;
-  std::vector<Command> commands = {new_command(),           solve_command(),   validate_command(),
+  std::vector<Command> commands = {new_command(),      show_command(),     solve_command(),   validate_command(),
                                          frame_command(),    map_command(),      export_command(),  devices_command(),
                                          check_command(),    effects_command(),  add_command(),     compare_command(),
                                          simulate_command(), diagnose_command(), history_command(), report_command()};

@@ -158,6 +158,13 @@ void write_report_of_stands(const std::string& file, const std::string& device, 
   write_page(file, page);
 }
 
+void write_report_of_drawing(const std::string& file, const std::filesystem::path& drawn, PageResult result) {
+  PageContents page = contents("");
+  page.device = source_of(drawn.string());
+  page.results = {std::move(result)};
+  write_page(file, page);
+}
+
 void write_report_of_results(const std::string& file, std::vector<PageResult> results) {
   PageContents page = contents("");
   page.results = std::move(results);

@@ -1,6 +1,7 @@
 // The page that commands write with --report.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
 /// The page of a device where it stands, under loads (N, Nmm).
 void write_report_of_stands(const std::string& file, const std::string& device, const std::vector<SceneStand>&,
                             const std::vector<Vector6>& loads_N_Nmm, PageResult, Geometry = Geometry::linear);
+
+/// The page of a device or frame as its file draws it.
+void write_report_of_drawing(const std::string& file, const std::filesystem::path& drawn, PageResult);
 
 /// The page of results alone, without a machine.
 void write_report_of_results(const std::string& file, std::vector<PageResult>);

@@ -1,5 +1,6 @@
 // The page from its data: what was found in a sentence, then pictures, each with its numbers, then how it was made.
 import {download, el, figure, fileName, micro, num, numbers, table} from './dom.js';
+import {drawingVerdict, drawn} from './drawing.js';
 import {loadWords, machine} from './machine.js';
 import {curves, errorHeat, failureMap, findings, residuals, testHeat} from './measured.js';
 import {candidates, diagnosisVerdict, fall, mapped, solved, strained, unexplained, unseen, validated} from './results.js';
@@ -9,7 +10,7 @@ const page = document.getElementById('page');
 const of = (kind) => data.results.filter((r) => r.kind === kind).map((r) => r.result);
 
 function verdict() {
-  const [diagnosis] = of('diagnosis'), [comparison] = of('comparison'), [history] = of('history'), [solve] = of('solve'), [validation] = of('validation'), [map] = of('map');
+  const [diagnosis] = of('diagnosis'), [comparison] = of('comparison'), [history] = of('history'), [solve] = of('solve'), [validation] = of('validation'), [map] = of('map'), [drawing] = of('drawing');
   if (diagnosis) return diagnosisVerdict(diagnosis);
   if (comparison) return comparison.verdict;
   if (history) {
@@ -17,6 +18,7 @@ function verdict() {
     return `From ${first.device} to ${last.device} the error goes from ${micro(first.rmse_mm)} to ${micro(last.rmse_mm)} rms; noise and tolerances give ${micro(last.noise_floor_mm)}.`;
   }
   if (solve) return `Under ${loadWords(solve.load)} the tool point moves by ${micro(Math.hypot(...solve.msa.displacement.slice(0, 3)))}; both theories agree to ${num(solve.relative_difference, 2)}.`;
+  if (drawing) return drawingVerdict(drawing);
   if (validation) return `Both theories agree to ${num(validation.max_relative_difference, 2)} at ${new Set(validation.points.map((p) => p.point)).size} points.`;
   return map ? `Stiffness at ${map.reached} of ${map.poses} poses.` : '';
 }
@@ -70,7 +72,7 @@ function sections() {
     comparisons.map(findings),
     first ? [curves(versions), testHeat(versions), errorHeat(first), residuals(first, 0), versions.length > 1 ? residuals(last, 1) : null]
           : comparisons.map((c) => [testHeat([{device: c.device, result: c}]), errorHeat({device: c.device, result: c, unit: 'mm'})]),
-    of('solve').map(solved), of('validation').map(validated), of('map').map(mapped),
+    of('drawing').map(drawn), of('solve').map(solved), of('validation').map(validated), of('map').map(mapped),
     diagnosis ? [strained(diagnosis), unseen(diagnosis)] : null,
     source(),
   ].flat(3).filter(Boolean);

@@ -23,6 +23,7 @@ const char* kind_of(const Json& result) {
                             {"history", {"versions", "data"}},
                             {"validation", {"points", "max_relative_difference"}},
                             {"map", {"grid", "arrays"}},
+                            {"drawing", {"drawing", "lines"}},
                             {"solve", {"analytic", "shares"}}};
   for (const Kind& kind : kinds)
     if (result.is_object() && result.contains(kind.members[0]) && result.contains(kind.members[1])) return kind.name;
@@ -51,9 +52,10 @@ Json parsed(const PageResult& result) {
   }
   const char* kind = kind_of(json);
   if (!kind)
-    throw InputError(fmt::format(
-        "{}: not a result of diagnose, compare, history, solve, validate or map: give files that their --json wrote",
-        result.origin));
+    throw InputError(
+        fmt::format("{}: not a result of diagnose, compare, history, solve, validate, map or show: give files that "
+                    "their --json wrote",
+                    result.origin));
   if (kind == std::string_view("map")) keep_what_is_shown(json);
   return {{"kind", kind}, {"origin", result.origin}, {"result", std::move(json)}};
 }
