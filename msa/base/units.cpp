@@ -118,6 +118,13 @@ bool leading_number(std::string_view text, double& value, std::string_view& rest
   return true;
 }
 
+/// "1e+06 m"
+std::string largest_of(const Row& r) {
+  const auto si =
+      std::find_if(r.units.begin(), r.units.end(), [](const Unit& u) { return u.times == 1 && u.over == 1; });
+  return fmt::format("{:g} {}", r.largest, si == r.units.end() ? "" : si->name);
+}
+
 double in_si(double number, const Unit& u) { return number * u.times / u.over; }
 
 std::string unit_list(const Row& r) {
@@ -169,8 +176,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
       const double si = in_si(value, u);
       if (!std::isfinite(si)) throw InputError(fmt::format("'{}' is too large for {}", text, r.words));
       if (std::abs(si) > r.largest)
-        throw InputError(
-            fmt::format("'{}' is too large for {}: at most {}", text, r.words, format_quantity(r.largest, dimension)));
+        throw InputError(fmt::format("'{}' is too large for {}: at most {}", text, r.words, largest_of(r)));
       if (dimension == Dimension::angle) require_digits_of_angle(si, text);
       return si;
     }

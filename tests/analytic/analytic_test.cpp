@@ -62,6 +62,12 @@ const Law every_law[] = {
     HardeningLaw{5e5, 1e-4},
 };
 
+/// A pulley of radius r feels k r² of the belt.
+TEST(Belt, TurnsAPulley) {
+  EXPECT_DOUBLE_EQ(belt_stiffness(BeltLaw{2e6, 0.01, 0.1, 0.3, 0.02}),
+                   0.02 * 0.02 * belt_stiffness(BeltLaw{2e6, 0.01, 0.1, 0.3}));
+}
+
 class EveryLaw : public ::testing::TestWithParam<Law> {};
 
 TEST_P(EveryLaw, ComplianceIsTheDerivativeAndEnergyTheWorkStored) {

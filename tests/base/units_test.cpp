@@ -159,6 +159,8 @@ TEST(Units, WrongTextsAreRefusedWithTheUnitsThatFit) {
       {"inf mm", Dimension::length, {"finite"}},
       {"1e400 mm", Dimension::length, {"finite"}},
       {"1e305 GPa", Dimension::stress, {"too large"}},
+      {"-1e30 m", Dimension::length, {"'-1e30 m' is too large for a length: at most 1e+06 m"}},
+      {"1e300 N", Dimension::force, {"at most 1e+15 N"}},
       {"+-8 mm", Dimension::length, {"finite"}},
       {"++8 mm", Dimension::length, {"finite"}},
       {"0x10 mm", Dimension::length, {"unknown unit 'x10 mm'"}},

@@ -118,6 +118,11 @@ TEST(LawFile, MistakesAreToldWithTheWayOut) {
       refusal(law, "{law: cable, EA: 1000 N, material: steel, area: 1 mm^2}").find("only one of 'EA', 'material'"),
       std::string::npos);
   EXPECT_NE(refusal("leg.mount.rz", "{law: cable, EA: 1000 N}").find("a rotation takes 'linear'"), std::string::npos);
+  const std::string belt =
+      "{law: belt, specific_stiffness: 1 N/mm, width: 1 mm, tight_length: 1 mm, slack_length: 1 mm";
+  EXPECT_NE(refusal("leg.mount.rz", belt + "}").find("'pulley_radius' is missing"), std::string::npos);
+  EXPECT_NE(refusal("leg.mount.tz", belt + ", pulley_radius: 1 mm}").find("pulley_radius: unknown key"),
+            std::string::npos);
   EXPECT_NE(refusal("leg.ball_joint.preload", "{tz: 1 N}").find("friction, which keeps no force"), std::string::npos);
   EXPECT_NE(refusal("geometry", "second_order").find("did you mean 'second-order'"), std::string::npos);
 }

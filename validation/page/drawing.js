@@ -10,7 +10,7 @@ const up = new THREE.Vector3(0, 1, 0);
 const vector = (p) => new THREE.Vector3(...p);
 
 export const drawingVerdict = (d) => {
-  if (d.motions.length) return `${d.name} ${d.trouble}: ${d.motions[0].words}.`;
+  if (d.motions.length) return `${d.name}: ${d.trouble}: ${d.motions[0].words}.`;
   if (d.trouble) return `${d.name}: ${d.trouble}.`;
   const driven = d.driven.length ? `driven: ${d.driven.map((q) => `${q.name} ${num(q.value)} ${q.unit}`).join(', ')}` : 'nothing is driven';
   return d.drawing === 'frame' ? `${d.name} as drawn: ${d.frames.length} nodes, ${d.members.length} members.` : `${d.name} as drawn, unloaded; ${driven}.`;
