@@ -143,6 +143,12 @@ void require_digits_of_angle(double rad, std::string_view text) {
                     text, rad / (2 * pi)));
 }
 
+void require_usable_size(double si, Dimension d, std::string_view text) {
+  const Row& r = row(d);
+  if (std::abs(si) > r.largest)
+    throw InputError(fmt::format("'{}' is too large for {}: at most {}", text, r.words, largest_of(r)));
+}
+
 std::vector<std::string> units_of(Dimension d) {
   std::vector<std::string> names;
   for (const Unit& u : row(d).units) names.emplace_back(u.name);
@@ -175,8 +181,6 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     if (unit == u.name) {
       const double si = in_si(value, u);
       if (!std::isfinite(si)) throw InputError(fmt::format("'{}' is too large for {}", text, r.words));
-      if (std::abs(si) > r.largest)
-        throw InputError(fmt::format("'{}' is too large for {}: at most {}", text, r.words, largest_of(r)));
       if (dimension == Dimension::angle) require_digits_of_angle(si, text);
       return si;
     }

@@ -36,15 +36,18 @@ std::vector<std::string> units_of(Dimension);
 std::string describe(Dimension);
 
 /// The value in SI of "125.5 mm". Throws InputError naming the text and the units that fit: on a missing, unknown
-/// or misplaced unit, on a number that is not finite or too large, on trailing text.
+/// or misplaced unit, on a number that is not finite, on trailing text.
 double parse_quantity(std::string_view text, Dimension);
 
 /// Above it the last binary digit of an angle in rad is worth more than 1e-10 rad: too few digits are left.
 inline constexpr double largest_angle = 1e6;
 
-/// Largest sizes that parse_quantity takes, m, N and Nm: of a length the last binary digit is then worth 0.1 nm. Areas,
-/// second moments of area, line loads and masses have limits of the same kind.
+/// Largest sizes that models take, m, N and Nm: of a length the last binary digit is then worth 0.1 nm. Areas, second
+/// moments of area, line loads and masses have limits of the same kind.
 inline constexpr double largest_length = 1e6, largest_force = 1e15, largest_moment = 1e18;
+
+/// Throws InputError saying so where the value in SI, written as `text`, is larger than models take.
+void require_usable_size(double si, Dimension, std::string_view text);
 
 /// Throws InputError saying so where the angle, written as `text`, is larger; parse_quantity does it by itself.
 void require_digits_of_angle(double rad, std::string_view text);

@@ -125,6 +125,7 @@ double FieldReader::number(const YamlNode& node, LaterText path, const Quantity&
   double value = 0;
   try {
     value = parse_quantity(text, q.dimension);
+    require_usable_size(value, q.dimension, text);
   } catch (const InputError& e) {
     fail(node, path(), e.what());
   }
