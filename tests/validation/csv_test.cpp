@@ -84,6 +84,23 @@ TEST(Csv, SurvivesAMove) {
   EXPECT_EQ(moved.number(0, 0), 1);
 }
 
+TEST(Csv, BlankLinesAndCommentsAreSkipped) {
+  const CsvTable table =
+      parse_csv("\n# bench 3, \"the left one\n\na,b\n# pause\n1,2\n\n ,  \n#1,9\n  # it's late\n3,4\n#", "data.csv");
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.line(0), 6u);
+  EXPECT_EQ(table.line(1), 11u);
+  EXPECT_EQ(table.number(1, 1), 4);
+  EXPECT_EQ(table.comments(), (std::vector<std::size_t>{2, 5, 9, 10, 12}));
+}
+
+TEST(Csv, WhereEveryRowBeginsWithAHashTheyAreRows) {
+  const CsvTable table = parse_csv("pose,b\n#1,2\n#2,3\n", "data.csv");
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.text(1, 0), "#2");
+  EXPECT_TRUE(table.comments().empty());
+}
+
 TEST(Csv, RefusesBadFilesWithLineAndReason) {
   const struct {
     std::string text, line, reason;
@@ -91,20 +108,22 @@ TEST(Csv, RefusesBadFilesWithLineAndReason) {
       {"", "data.csv:1:", "empty"},
       {"\n\n", "data.csv:1:", "empty"},
       {"\xEF\xBB\xBF", "data.csv:1:", "empty"},
-      {"\na,b\n1,2\n", "data.csv:1:", "blank"},
       {"a,b\n", "data.csv:1:", "no row"},
       {"a,b\n\n", "data.csv:1:", "no row"},
       {"a,b,a\n1,2,3\n", "data.csv:1:", "'a' stands twice, as column 1 and column 3"},
       {"a,,c\n1,2,3\n", "data.csv:1:", "column 2 has no name"},
       {"a,b,\n1,2,3\n", "data.csv:1:", "separator at the end"},
       {"a,b;c\n1,2\n", "data.csv:1:", "both commas and semicolons"},
-      {"# bench 3\na,b\n1,2\n", "data.csv:1:", "no comment lines"},
       {"a,b\n1,2\n1,2,3\n", "data.csv:3:", "3 cells where the header has 2"},
       {"a,b\n1,2,\n", "data.csv:2:", "separator at the end"},
       {"a,b\n1\n", "data.csv:2:", "1 cells"},
-      {"a,b\n# pause\n1,2\n", "data.csv:2:", "no comment lines"},
       {"a\tb\n1\t\t2\n", "data.csv:2:", "3 cells"},
-      {"a,b\n1,2\n\n3,4\n", "data.csv:3:", "blank line"},
+      {"1,2\n3,4\n", "data.csv:1:", "there is no header: this line holds numbers"},
+      {"0,0,0.5\n1,2,3\n", "data.csv:1:", "there is no header"},
+      {"0;0,5\n1;2\n", "data.csv:1:", "both commas and semicolons"},
+      {"# a,b\n1,2\n", "data.csv:2:", "without '#' where line 1 has them"},
+      {"# a\n# b\n", "data.csv:1:", "every line is blank or begins with '#'"},
+      {"PK\x03\x04 and more", "data.csv:1:", "save its sheet as CSV"},
       {"a,b\n1,\"2\n3,4\n", "data.csv:2:", "never ends"},
       {"a,b\n1,\"2\"x\n", "data.csv:2:", "closing quote"},
       {"a,b\n1,2\"\n", "data.csv:2:", "quote inside"},

@@ -67,10 +67,12 @@ class CsvParser {
   CsvTable parse() {
     check_encoding();
     if (bytes().substr(at_).find_first_not_of(" \t\r\n") == std::string_view::npos) refuse(1, "the file is empty");
+    skip_to_header();
     find_separator();
     read_header();
     while (read_row()) {
     }
+    settle_comments();
     if (table_.lines_.empty()) refuse(table_.header_line_, "there is a header but no row below it");
     return std::move(table_);
   }
@@ -85,6 +87,8 @@ class CsvParser {
   void check_encoding() {
     if (bytes().size() >= std::numeric_limits<std::uint32_t>::max())
       refuse(1, "the file is larger than 4 GB: split it into several");
+    if (bytes().substr(0, 4) == "PK\x03\x04" || bytes().substr(0, 4) == "\xD0\xCF\x11\xE0")
+      refuse(1, "this is a workbook (XLSX, ODS, XLS) and not text: save its sheet as CSV (UTF-8)");
     if (bytes().substr(0, 2) == "\xFF\xFE" || bytes().substr(0, 2) == "\xFE\xFF")
       refuse(1, "the file is UTF-16: save it as UTF-8");
     if (bytes().substr(0, 3) == "\xEF\xBB\xBF") at_ = 3;
@@ -109,7 +113,7 @@ class CsvParser {
       semicolon = semicolon || (!quoted && c == ';');
       tab = tab || (!quoted && c == '\t');
     }
-    if (comma && semicolon) refuse(1, "the header has both commas and semicolons: separate columns by one of them");
+    if (comma && semicolon) refuse(line_, "the header has both commas and semicolons: separate columns by one of them");
     separator_ = semicolon ? ';' : tab && !comma ? '\t' : ',';
   }
 
@@ -174,17 +178,64 @@ class CsvParser {
   }
 
   std::string_view view(CsvTable::Cell cell) const { return bytes().substr(cell.begin, cell.size); }
-  bool blank() const { return cells_.size() == 1 && cells_.front().size == 0; }
+  bool blank() const {
+    return std::all_of(cells_.begin(), cells_.end(), [](CsvTable::Cell cell) { return cell.size == 0; });
+  }
+
+  /// Past blank lines and lines that begin with '#', before the header; where the separator is looked for.
+  void skip_to_header() {
+    for (std::size_t end; at_ < bytes().size(); at_ = end, ++line_) {
+      end = std::min(bytes().find('\n', at_), bytes().size() - 1) + 1;
+      const std::string_view line = bytes().substr(at_, end - at_);
+      const std::size_t from = line.find_first_not_of(" \t\r\n,;");
+      if (from != line.npos && line[from] != '#') return;
+      if (from != line.npos) table_.comments_.push_back(line_);
+    }
+    refuse(1, "there is no header: every line is blank or begins with '#'");
+  }
+
+  /// The line from here on is a comment, or a row whose first cell begins with '#'.
+  bool at_comment() const {
+    std::size_t i = at_;
+    while (padding(i)) ++i;
+    return i < bytes().size() && bytes()[i] == '#';
+  }
+
+  void skip_line() {
+    const std::size_t end = bytes().find('\n', at_);
+    at_ = end == std::string_view::npos ? bytes().size() : end + 1;
+    ++line_;
+  }
+
+  /// Rows that begin with '#' are rows where no other row is, else comments.
+  void settle_comments() {
+    if (hash_lines_.empty()) return;
+    if (table_.lines_.empty()) {
+      table_.lines_ = std::move(hash_lines_);
+      table_.cells_ = std::move(hash_cells_);
+    } else {
+      table_.comments_.insert(table_.comments_.end(), hash_lines_.begin(), hash_lines_.end());
+      std::sort(table_.comments_.begin(), table_.comments_.end());
+    }
+  }
 
   void read_header() {
     next_record();
     table_.header_line_ = start_;
-    if (blank()) refuse(start_, "the first line is blank, the names of the columns are wanted there");
+    const auto is_a_number = [&](CsvTable::Cell cell) {
+      double ignored = 0;
+      return finite_number(view(cell), ignored) || decimal_comma_number(view(cell), ignored);
+    };
+    if (2 * std::count_if(cells_.begin(), cells_.end(), is_a_number) > static_cast<std::ptrdiff_t>(cells_.size()))
+      refuse(start_, fmt::format("there is no header: this line holds numbers; write the names of the columns above "
+                                 "it{}",
+                                 table_.comments_.empty()
+                                     ? ""
+                                     : fmt::format(", without '#' where line {} has them", table_.comments_.back())));
     std::unordered_map<std::string, std::size_t> seen;
     for (const CsvTable::Cell cell : cells_) {
       const std::string name(view(cell));
       const std::size_t number = table_.header_.size() + 1;
-      if (name.starts_with('#')) refuse(start_, "the header begins with '#': remove it, there are no comment lines");
       if (name.empty())
         refuse(start_, fmt::format("column {} has no name{}", number,
                                    number == cells_.size() ? ": is there a separator at the end?" : ""));
@@ -197,12 +248,24 @@ class CsvParser {
   }
 
   bool read_row() {
+    const bool hash = at_comment();
+    const std::size_t begin = at_, line = line_;
+    if (hash) {  // quotes in a comment mean nothing
+      const std::size_t end = std::min(bytes().find('\n', at_), bytes().size());
+      if (std::count(bytes().begin() + static_cast<std::ptrdiff_t>(at_),
+                     bytes().begin() + static_cast<std::ptrdiff_t>(end), '"') > 0) {
+        table_.comments_.push_back(line_);
+        skip_line();
+        return true;
+      }
+    }
     if (!next_record()) return false;
-    if (blank()) {
-      const std::size_t first = start_;
-      while (next_record())
-        if (!blank()) refuse(first, "a blank line between rows: remove it");
-      return false;
+    if (blank()) return true;
+    if (hash && cells_.size() != table_.header_.size()) {
+      at_ = begin, line_ = line;
+      table_.comments_.push_back(line_);
+      skip_line();
+      return true;
     }
     if (cells_.size() != table_.header_.size())
       refuse(start_, fmt::format("{} cells where the header has {} columns{}", cells_.size(), table_.header_.size(),
@@ -212,13 +275,13 @@ class CsvParser {
       table_.decimal_comma_ = std::any_of(
           cells_.begin(), cells_.end(), [&](CsvTable::Cell cell) { return decimal_comma_number(view(cell), ignored); });
     }
-    table_.lines_.push_back(static_cast<std::uint32_t>(start_));
-    table_.cells_.insert(table_.cells_.end(), cells_.begin(), cells_.end());
+    (hash ? hash_lines_ : table_.lines_).push_back(static_cast<std::uint32_t>(start_));
+    std::vector<CsvTable::Cell>& cells = hash ? hash_cells_ : table_.cells_;
+    cells.insert(cells.end(), cells_.begin(), cells_.end());
     return true;
   }
 
   const char* remedy_of_count() const {
-    if (view(cells_.front()).starts_with('#')) return ": remove the line, there are no comment lines";
     if (cells_.size() < table_.header_.size()) return ": is the line cut short? A cell without a value stays empty";
     if (cells_.size() == table_.header_.size() + 1 && cells_.back().size == 0)
       return ": is there a separator at the end?";
@@ -227,6 +290,8 @@ class CsvParser {
 
   CsvTable table_;
   std::vector<CsvTable::Cell> cells_;
+  std::vector<std::uint32_t> hash_lines_;  // rows that begin with '#', until it is known what they are
+  std::vector<CsvTable::Cell> hash_cells_;
   std::size_t at_ = 0, line_ = 1, start_ = 1;
   char separator_ = ',';
 };
@@ -250,6 +315,12 @@ double CsvTable::angle(std::size_t row, std::size_t column, double rad) const {
     refuse(row, column, e.what());
   }
   return value;
+}
+
+bool CsvTable::is_number(std::size_t row, std::size_t column) const {
+  const std::string_view cell = trim(text(row, column));
+  double value = 0;
+  return finite_number(cell, value) || (decimal_comma_ && decimal_comma_number(cell, value));
 }
 
 double CsvTable::number(std::size_t row, std::size_t column) const {

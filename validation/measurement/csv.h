@@ -2,8 +2,8 @@
 //
 // UTF-8 with or without byte order mark; lines end with LF or CRLF; cells are separated by commas, or by
 // semicolons or tabs where the header is, and then numbers may have decimal commas (one sort per file). Cells may be
-// quoted, "" inside quotes is a quote, spaces around a cell do not count. Blank lines may stand at the end
-// only; there are no comment lines.
+// quoted, "" inside quotes is a quote, spaces around a cell do not count. Blank lines and rows of empty cells are
+// skipped, and so are lines that begin with '#', unless every row does: then '#' is part of the first column.
 //
 // Every refusal is one InputError that begins with "file:line:" and says what to do.
 #pragma once
@@ -21,6 +21,9 @@ class CsvTable {
   const std::vector<std::string>& header() const { return header_; }
   std::size_t rows() const { return lines_.size(); }
 
+  /// Lines that were skipped because they begin with '#'.
+  const std::vector<std::size_t>& comments() const { return comments_; }
+
   /// Column of that name, counted from 0.
   std::optional<std::size_t> column(std::string_view name) const;
 
@@ -37,6 +40,9 @@ class CsvTable {
   /// Line of the file on which the row begins, counted from 1.
   std::size_t line(std::size_t row) const { return lines_[row]; }
 
+  /// Whether the cell's text is a finite number.
+  bool is_number(std::size_t row, std::size_t column) const;
+
   /// InputError "file:line: column 'name': message" for a cell, "file:line: message" for the header.
   [[noreturn]] void refuse(std::size_t row, std::size_t column, std::string_view message) const;
   [[noreturn]] void refuse_header(std::string_view message) const;
@@ -50,6 +56,7 @@ class CsvTable {
   std::vector<std::string> header_;
   std::vector<Cell> cells_;  // row by row
   std::vector<std::uint32_t> lines_;
+  std::vector<std::size_t> comments_;
   std::size_t header_line_ = 1;
   bool decimal_comma_ = false;
 };

@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include "validation/measurement/column_units.h"
+
 namespace deflect {
 namespace {
 
@@ -26,25 +28,90 @@ std::size_t joint_number(std::string_view name) {
   return number;
 }
 
+/// The columns by the names of the contract.
+class ContractColumns {
+ public:
+  explicit ContractColumns(const CsvTable& table) : table_(table), units_(has_units_row()) {
+    const std::vector<std::string> fixed = fixed_columns();
+    for (std::size_t column = 0; column < table.header().size(); ++column) {
+      const std::string& written = table.header()[column];
+      const std::optional<NamedColumn> named = named_column(written, units_ ? table.text(0, column) : "");
+      if (!named) refuse(column, fixed);
+      if (is_note(written) || is_note(named->name)) {
+        notes_.push_back(column);
+        continue;
+      }
+      if (const auto [same, is_new] = columns_.emplace(named->name, ReadColumn{column, named->factor, named->offset});
+          !is_new)
+        table.refuse_header(fmt::format("columns '{}' and '{}' are both {}: keep one",
+                                        excerpt(table.header()[same->second.index]), excerpt(written), named->name));
+      if (!named->as_it_stands())
+        how_read_.push_back(
+            fmt::format("column '{}' is read in {} and becomes {}", excerpt(written), named->unit, named->name));
+      else if (written != named->name)
+        how_read_.push_back(fmt::format("column '{}' is read as {}", excerpt(written), named->name));
+    }
+    if (units_) how_read_.push_back(fmt::format("line {} holds the units of the columns", table.line(0)));
+  }
+
+  bool has_units() const { return units_; }
+  const std::vector<std::size_t>& notes() const { return notes_; }
+  const std::vector<std::string>& how_read() const { return how_read_; }
+  const std::map<std::string, ReadColumn>& all() const { return columns_; }
+
+  std::optional<ReadColumn> find(const std::string& name) const {
+    const auto found = columns_.find(name);
+    return found == columns_.end() ? std::nullopt : std::optional(found->second);
+  }
+  const std::string& written(const ReadColumn& column) const { return table_.header()[column.index]; }
+
+ private:
+  /// A row without numbers whose cells are units, two or more.
+  bool has_units_row() const {
+    if (table_.rows() < 2) return false;
+    std::size_t units = 0;
+    for (std::size_t column = 0; column < table_.header().size(); ++column) {
+      const std::string_view cell = table_.text(0, column);
+      if (cell.empty() || is_note(table_.header()[column])) continue;
+      if (table_.is_number(0, column)) return false;
+      const std::optional<NamedColumn> named = named_column(table_.header()[column]);
+      if (named && (named->name == "pose" || named->name == "sequence")) continue;
+      if (!is_unit(cell)) return false;
+      units += cell != "-";
+    }
+    return units > 1;
+  }
+
+  [[noreturn]] void refuse(std::size_t column, std::vector<std::string> known) const {
+    const std::string& written = table_.header()[column];
+    if (units_ && named_column(written) && !table_.text(0, column).empty())
+      table_.refuse(
+          0, column,
+          fmt::format("the unit below is '{}': name and unit must say the same", excerpt(table_.text(0, column))));
+    const std::size_t number = std::max<std::size_t>(joint_number(written), 1);
+    known.insert(known.end(), {joint_column(number - 1, true), joint_column(number - 1, false)});
+    table_.refuse_header(unknown_column(written, known));
+  }
+
+  const CsvTable& table_;
+  bool units_;
+  std::map<std::string, ReadColumn> columns_;
+  std::vector<std::size_t> notes_;
+  std::vector<std::string> how_read_;
+};
+
 struct JointColumn {
-  std::size_t column;
+  ReadColumn column;
   bool rotates;
 };
 
-/// By number, counted from 1. Refuses every name that the contract does not know.
-std::map<std::size_t, JointColumn> joint_columns(const CsvTable& table) {
-  const std::vector<std::string> fixed = fixed_columns();
+/// By number, counted from 1.
+std::map<std::size_t, JointColumn> joint_columns(const CsvTable& table, const ContractColumns& columns) {
   std::map<std::size_t, JointColumn> joints;
-  for (std::size_t column = 0; column < table.header().size(); ++column) {
-    const std::string& name = table.header()[column];
-    if (is_note(name) || std::find(fixed.begin(), fixed.end(), name) != fixed.end()) continue;
-    const std::size_t number = std::max<std::size_t>(joint_number(name), 1);
+  for (const auto& [name, column] : columns.all()) {
+    const std::size_t number = joint_number(name);
+    if (number == 0) continue;
     const std::string angle = joint_column(number - 1, true), slider = joint_column(number - 1, false);
-    if (name != angle && name != slider) {
-      std::vector<std::string> known = fixed;
-      known.insert(known.end(), {angle, slider});
-      table.refuse_header(unknown_column(name, known));
-    }
     if (!joints.emplace(number, JointColumn{column, name == angle}).second)
       table.refuse_header(fmt::format(
           "columns '{}' and '{}' are one coordinate: an angle has rad, a slider mm, keep one", angle, slider));
@@ -52,41 +119,41 @@ std::map<std::size_t, JointColumn> joint_columns(const CsvTable& table) {
   return joints;
 }
 
-std::string missing_of(const CsvTable& table, const SixNames& names, std::size_t count) {
+std::string missing_of(const ContractColumns& columns, const SixNames& names, std::size_t count) {
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < count; ++i)
-    if (!table.column(names[i])) missing.push_back(names[i]);
+    if (!columns.find(names[i])) missing.push_back(names[i]);
   return fmt::format("{}", fmt::join(missing, ", "));
 }
 
-void command_columns(const CsvTable& table, MeasurementColumns& columns) {
-  const std::map<std::size_t, JointColumn> joints = joint_columns(table);
+void command_columns(const CsvTable& table, const ContractColumns& known, MeasurementColumns& columns) {
+  const std::map<std::size_t, JointColumn> joints = joint_columns(table, known);
   const auto posed = std::find_if(pose_columns.begin(), pose_columns.end(),
-                                  [&](const std::string& name) { return table.column(name).has_value(); });
+                                  [&](const std::string& name) { return known.find(name).has_value(); });
   if (joints.empty()) {
     if (posed == pose_columns.end())
       table.refuse_header(
           "the commanded pose is missing: columns x_mm, y_mm, z_mm, roll_deg, pitch_deg, yaw_deg, or "
           "the joint coordinates q1_rad (q1_mm of a slider) and so on");
-    if (const std::string missing = missing_of(table, pose_columns, 6); !missing.empty())
+    if (const std::string missing = missing_of(known, pose_columns, 6); !missing.empty())
       table.refuse_header(
           fmt::format("columns missing: {}; a commanded pose has all six of x_mm, y_mm, z_mm, "
                       "roll_deg, pitch_deg, yaw_deg (write 0 where an angle is zero)",
                       missing));
-    for (const std::string& name : pose_columns) columns.command.push_back(*table.column(name));
+    for (const std::string& name : pose_columns) columns.command.push_back(*known.find(name));
     return;
   }
   if (posed != pose_columns.end())
     table.refuse_header(
         fmt::format("columns '{}' and '{}': the pose is commanded by six numbers or by joint "
                     "coordinates, keep one of the two",
-                    *posed, table.header()[joints.begin()->second.column]));
+                    known.written(*known.find(*posed)), known.written(joints.begin()->second.column)));
   for (const auto& [number, joint] : joints) {
     if (number != columns.command.size() + 1)
       table.refuse_header(
           fmt::format("column '{}' without a column of joint coordinate {}: they are numbered from 1 "
                       "without gaps",
-                      table.header()[joint.column], columns.command.size() + 1));
+                      known.written(joint.column), columns.command.size() + 1));
     columns.command.push_back(joint.column);
     columns.joint_rotates.push_back(joint.rotates);
   }
@@ -99,28 +166,30 @@ std::string joint_column(std::size_t joint, bool rotates) {
 }
 
 MeasurementColumns measurement_columns(const CsvTable& table, bool plan) {
+  const ContractColumns known(table);
   MeasurementColumns columns;
-  command_columns(table, columns);
-  const auto label = table.column("pose");
+  command_columns(table, known, columns);
+  const auto label = known.find("pose");
   if (!label) table.refuse_header("column 'pose' is missing: a label for every approach of a pose");
-  columns.pose = *label;
-  if (const std::string missing = missing_of(table, load_columns, 3); !missing.empty())
+  columns.pose = label->index;
+  if (const std::string missing = missing_of(known, load_columns, 3); !missing.empty())
     table.refuse_header(
         fmt::format("columns missing: {}; a load has all three forces (write 0 where one is zero)", missing));
   for (std::size_t i = 0; i < 6; ++i) {
-    columns.load[i] = table.column(load_columns[i]);
-    columns.displacement[i] = table.column(displacement_columns[i]);
+    columns.load[i] = known.find(load_columns[i]);
+    columns.displacement[i] = known.find(displacement_columns[i]);
   }
   if (!plan && std::none_of(columns.displacement.begin(), columns.displacement.end(),
                             [](const auto& c) { return c.has_value(); }))
     table.refuse_header(fmt::format("no displacement is measured: at least one of the columns {} is wanted",
                                     fmt::join(displacement_columns, ", ")));
-  columns.sigma_u = table.column("sigma_u_mm");
-  columns.sigma_th = table.column("sigma_th_rad");
-  columns.sequence = table.column("sequence");
-  columns.temperature = table.column("temperature_C");
-  for (std::size_t column = 0; column < table.header().size(); ++column)
-    if (is_note(table.header()[column])) columns.notes.push_back(column);
+  columns.sigma_u = known.find("sigma_u_mm");
+  columns.sigma_th = known.find("sigma_th_rad");
+  if (const auto sequence = known.find("sequence")) columns.sequence = sequence->index;
+  columns.temperature = known.find("temperature_C");
+  columns.notes = known.notes();
+  columns.first_row = known.has_units() ? 1 : 0;
+  columns.how_read = known.how_read();
   return columns;
 }
 

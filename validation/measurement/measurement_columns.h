@@ -10,13 +10,22 @@
 
 namespace deflect {
 
+/// A column and how its numbers become those of the contract: factor · (number + offset).
+struct ReadColumn {
+  std::size_t index = 0;
+  double factor = 1, offset = 0;
+};
+
 struct MeasurementColumns {
   std::size_t pose = 0;
-  std::vector<std::size_t> command;  ///< x y z roll pitch yaw, or the joint coordinates in order
-  std::vector<bool> joint_rotates;   ///< of the joint coordinates; empty for poses
-  std::array<std::optional<std::size_t>, 6> load, displacement;
-  std::optional<std::size_t> sigma_u, sigma_th, sequence, temperature;
+  std::vector<ReadColumn> command;  ///< x y z roll pitch yaw, or the joint coordinates in order
+  std::vector<bool> joint_rotates;  ///< of the joint coordinates; empty for poses
+  std::array<std::optional<ReadColumn>, 6> load, displacement;
+  std::optional<ReadColumn> sigma_u, sigma_th, temperature;
+  std::optional<std::size_t> sequence;
   std::vector<std::size_t> notes;
+  std::size_t first_row = 0;          ///< 1 where the first one holds units
+  std::vector<std::string> how_read;  ///< "column 'ux_in' is read in in and becomes ux_mm"
 };
 
 /// Throws InputError for unknown columns, missing ones and poses commanded in two ways. A plan wants no displacement.

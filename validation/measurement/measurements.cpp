@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <numeric>
 #include <string_view>
 #include <unordered_map>
@@ -18,6 +20,22 @@ namespace {
 
 constexpr double absolute_zero_C = -273.15;
 
+// Far beyond any machine, and far below where squares of it are no numbers.
+constexpr double largest_measured = 1e12;
+constexpr double least_sigma = 1e-30;  // m, rad
+// Of poses with one label, as encoders read them: from the first of them.
+constexpr double scatter_mm = 0.05, scatter_deg = 0.05, scatter_rad = 1e-3;
+
+/// What instruments and spreadsheets write where there is no number.
+bool says_not_measured(std::string_view cell) {
+  static constexpr std::string_view words[] = {"-",  "--",   "–",    "—",    "nan",    "#n/a",    "n/a",
+                                               "na", "n.a.", "null", "none", "#null!", "#value!", "#div/0!"};
+  std::string lower(cell);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return std::find(std::begin(words), std::end(words), lower) != std::end(words);
+}
+
 class Reader {
  public:
   Reader(const CsvTable& table, const std::string& origin, bool plan)
@@ -30,7 +48,8 @@ class Reader {
 
   Measurements read() {
     m_.readings.reserve(table_.rows());
-    for (std::size_t row = 0; row < table_.rows(); ++row) m_.readings.push_back(reading(row));
+    for (std::size_t row = columns_.first_row; row < table_.rows(); ++row) m_.readings.push_back(reading(row));
+    tell_how();
     return std::move(m_);
   }
 
@@ -40,15 +59,15 @@ class Reader {
     r.line = table_.line(row);
     r.pose = group(row);
     for (std::size_t i = 0; i < 6; ++i) {
-      if (const auto column = columns_.load[i])
-        r.load(static_cast<Eigen::Index>(i)) = table_.number(row, *column) / (i < 3 ? 1 : 1e3);
-      if (const auto value = number(row, columns_.displacement[i])) r.displacement[i] = *value / (i < 3 ? 1e3 : 1);
+      if (const auto& column = columns_.load[i])
+        r.load(static_cast<Eigen::Index>(i)) = number(row, *column) / (i < 3 ? 1 : 1e3);
+      if (const auto value = measured(row, columns_.displacement[i])) r.displacement[i] = *value / (i < 3 ? 1e3 : 1);
     }
     r.sigma_u = sigma(row, columns_.sigma_u, 1e3);
     r.sigma_th = sigma(row, columns_.sigma_th, 1);
     if (columns_.sequence) r.sequence = sequence(row, *columns_.sequence);
-    if (const auto t = number(row, columns_.temperature)) {
-      if (*t < absolute_zero_C) table_.refuse(row, *columns_.temperature, "below absolute zero; °C are wanted");
+    if (const auto t = measured(row, columns_.temperature)) {
+      if (*t < absolute_zero_C) table_.refuse(row, columns_.temperature->index, "below absolute zero; °C are wanted");
       r.temperature_C = *t;
     }
     for (const std::size_t column : columns_.notes) r.notes.emplace_back(table_.text(row, column));
@@ -60,24 +79,27 @@ class Reader {
     const std::string_view label = table_.text(row, columns_.pose);
     if (label.empty()) table_.refuse(row, columns_.pose, "the label is empty: give every approach of a pose a label");
     const auto [found, is_new] = group_of_.emplace(label, m_.poses.size());
-    if (is_new)
+    if (is_new) {
       m_.poses.push_back(new_group(row));
-    else
-      check_same_command(row, m_.poses[found->second].readings.front());
-    m_.poses[found->second].readings.push_back(row);
+      beside_first_.emplace_back();
+    } else {
+      check_same_command(row, m_.poses[found->second].readings.front() + columns_.first_row, found->second);
+    }
+    m_.poses[found->second].readings.push_back(row - columns_.first_row);
     return found->second;
   }
+
+  bool turns(std::size_t i) const { return m_.by_joints() ? m_.joint_rotates[i] : i >= 3; }
 
   PoseGroup new_group(std::size_t row) const {
     PoseGroup group;
     group.label = table_.text(row, columns_.pose);
-    const std::vector<std::size_t>& columns = columns_.command;
+    const std::vector<ReadColumn>& columns = columns_.command;
     if (m_.by_joints()) group.joints.resize(static_cast<Eigen::Index>(columns.size()));
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
-      const double value = table_.number(row, columns[i]);
-      const bool turns = m_.by_joints() ? m_.joint_rotates[i] : i >= 3;
-      if (turns) table_.angle(row, columns[i], m_.by_joints() ? 1 : pi / 180);
+      const double value = number(row, columns[i]);
+      if (turns(i)) table_.angle(row, columns[i].index, columns[i].factor * (m_.by_joints() ? 1 : pi / 180));
       if (m_.by_joints())
         group.joints(at) = m_.joint_rotates[i] ? value : value / 1e3;
       else
@@ -86,33 +108,94 @@ class Reader {
     return group;
   }
 
-  void check_same_command(std::size_t row, std::size_t first) const {
-    for (const std::size_t column : columns_.command) {
+  void check_same_command(std::size_t row, std::size_t first, std::size_t group) {
+    const std::vector<ReadColumn>& columns = columns_.command;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::size_t column = columns[i].index;
       if (table_.text(row, column) == table_.text(first, column)) continue;
-      if (table_.number(row, column) != table_.number(first, column))
-        table_.refuse(row, column,
-                      fmt::format("{} here and {} in line {}, both of pose '{}': one label is one approach of one "
-                                  "commanded pose, use another label",
-                                  excerpt(table_.text(row, column)), excerpt(table_.text(first, column)),
-                                  table_.line(first), excerpt(table_.text(row, columns_.pose))));
+      const double beside = number(row, columns[i]) - number(first, columns[i]);
+      if (beside == 0) continue;
+      if (std::abs(beside) > (!turns(i) ? scatter_mm : m_.by_joints() ? scatter_rad : scatter_deg) * (1 + 1e-9))
+        table_.refuse(
+            row, column,
+            fmt::format("{} here and {} in line {}, both of pose '{}': one label is one approach of one "
+                        "commanded pose, which may scatter by {} mm and {} deg; use another label",
+                        excerpt(table_.text(row, column)), excerpt(table_.text(first, column)), table_.line(first),
+                        excerpt(table_.text(row, columns_.pose)), scatter_mm, scatter_deg));
+      VectorX& sum = beside_first_[group];
+      if (sum.size() == 0) sum = VectorX::Zero(static_cast<Eigen::Index>(columns.size()));
+      sum(static_cast<Eigen::Index>(i)) += beside;
+      double& most = turns(i) ? most_turned_ : most_moved_;
+      most = std::max(most, std::abs(beside));
     }
   }
 
-  /// The cell's number; empty where there is neither column nor text.
-  std::optional<double> number(std::size_t row, std::optional<std::size_t> column) const {
-    if (!column || table_.text(row, *column).empty()) return std::nullopt;
-    return table_.number(row, *column);
+  /// The mean of the poses of a label where they scatter.
+  void take_means() {
+    for (std::size_t p = 0; p < m_.poses.size(); ++p) {
+      const VectorX& sum = beside_first_[p];
+      PoseGroup& pose = m_.poses[p];
+      for (Eigen::Index i = 0; i < sum.size(); ++i) {
+        const double mean = sum(i) / static_cast<double>(pose.readings.size());
+        if (m_.by_joints())
+          pose.joints(i) += m_.joint_rotates[static_cast<std::size_t>(i)] ? mean : mean / 1e3;
+        else
+          pose.pose_mm_deg(i) += mean;
+      }
+    }
   }
 
-  std::optional<double> sigma(std::size_t row, std::optional<std::size_t> column, double per_SI) const {
-    std::optional<double> value = number(row, column);
+  void tell_how() {
+    take_means();
+    m_.how_read = columns_.how_read;
+    const auto labels =
+        std::count_if(beside_first_.begin(), beside_first_.end(), [](const VectorX& sum) { return sum.size() > 0; });
+    if (labels > 0)
+      m_.how_read.push_back(fmt::format(
+          "the poses of {} label{} scatter, by {:.3g} mm and {:.3g} {} from the first at most: their mean is taken",
+          labels, labels == 1 ? "" : "s", most_moved_, most_turned_, m_.by_joints() ? "rad" : "deg"));
+    if (not_measured_ > 0)
+      m_.how_read.push_back(fmt::format("{} cell{} such as '{}' in line {} count as not measured", not_measured_,
+                                        not_measured_ == 1 ? "" : "s", excerpt(first_word_), first_word_line_));
+    if (const std::size_t lines = table_.comments().size(); lines > 0)
+      m_.how_read.push_back(fmt::format("{} line{} with '#' are skipped, the first is line {}", lines,
+                                        lines == 1 ? "" : "s that begin", table_.comments().front()));
+  }
+
+  /// In the unit of the contract.
+  double number(std::size_t row, const ReadColumn& column) const {
+    const double written = table_.number(row, column.index);
+    const double value = column.factor == 1 && column.offset == 0 ? written : column.factor * (written + column.offset);
+    if (!(std::abs(value) <= largest_measured))
+      table_.refuse(
+          row, column.index,
+          fmt::format("{} is out of all proportion: numbers up to {:g} are read; correct the cell, or leave it "
+                      "empty where nothing was measured",
+                      excerpt(table_.text(row, column.index)), largest_measured));
+    return value;
+  }
+
+  /// The cell's number; empty where there is neither column nor text, and where the text says so.
+  std::optional<double> measured(std::size_t row, const std::optional<ReadColumn>& column) {
+    if (!column) return std::nullopt;
+    const std::string_view cell = table_.text(row, column->index);
+    if (cell.empty()) return std::nullopt;
+    if (says_not_measured(cell)) {
+      if (++not_measured_ == 1) first_word_ = cell, first_word_line_ = table_.line(row);
+      return std::nullopt;
+    }
+    return number(row, *column);
+  }
+
+  std::optional<double> sigma(std::size_t row, const std::optional<ReadColumn>& column, double per_SI) {
+    std::optional<double> value = measured(row, column);
     if (!value) return value;
     *value /= per_SI;
-    if (!(*value > 0))
-      table_.refuse(row, *column,
+    if (!(*value > least_sigma))
+      table_.refuse(row, column->index,
                     fmt::format("{} is not positive: no reading is exact, leave the cell empty where the standard "
                                 "deviation is not known",
-                                excerpt(table_.text(row, *column))));
+                                excerpt(table_.text(row, column->index))));
     return value;
   }
 
@@ -134,6 +217,10 @@ class Reader {
   Measurements m_;
   std::unordered_map<std::string_view, std::size_t> group_of_;
   std::unordered_map<double, std::size_t> row_of_sequence_;
+  std::vector<VectorX> beside_first_;  // by group: sums of what poses differ by from its first; empty where alike
+  double most_moved_ = 0, most_turned_ = 0;
+  std::size_t not_measured_ = 0, first_word_line_ = 0;
+  std::string_view first_word_;
 };
 
 }  // namespace
@@ -155,7 +242,8 @@ Measurements read_plan(const std::filesystem::path& path) {
 }
 
 Measurements one_pose(const Measurements& m, std::size_t pose) {
-  Measurements out{m.origin, m.joint_rotates, m.note_columns, m.temperature_recorded, {m.poses.at(pose)}, {}};
+  Measurements out{m.origin, m.joint_rotates, m.note_columns, m.temperature_recorded, {m.poses.at(pose)},
+                   {},       m.how_read};
   for (std::size_t& i : out.poses.front().readings) {
     out.readings.push_back(m.readings[i]);
     out.readings.back().pose = 0;

@@ -14,6 +14,11 @@
 //   missing sequence                                    order of the readings: numbers, no two alike; all rows or none
 //   temperature_C                               20 where the column or the cell is missing
 //   note…                                       remarks, kept as text
+//
+// What laboratories write otherwise is read too, and said in `how_read`: names in other cases ("FX_N", "Fx [N]"), other
+// units (column_units.h: fx_kgf, ux_in, yaw_rad, temperature_K), a row of units below the names, NaN, #N/A, "-" for
+// what was not measured, and poses of one label that scatter by up to 0.05 mm and 0.05 deg (0.001 rad), as encoders
+// read them: their mean is the pose.
 #pragma once
 
 #include <array>
@@ -49,9 +54,10 @@ struct Measurements {
   std::string origin;               ///< file, for messages
   std::vector<bool> joint_rotates;  ///< per joint coordinate: rad, else m; empty where poses are commanded
   std::vector<std::string> note_columns;
-  bool temperature_recorded = false;  ///< false: the readings' 20 °C are an assumption
-  std::vector<PoseGroup> poses;       ///< in the order of their first readings
-  std::vector<Reading> readings;      ///< in the file's order
+  bool temperature_recorded = false;       ///< false: the readings' 20 °C are an assumption
+  std::vector<PoseGroup> poses;            ///< in the order of their first readings
+  std::vector<Reading> readings;           ///< in the file's order
+  std::vector<std::string> how_read = {};  ///< sentences about what was converted, skipped or averaged
 
   bool by_joints() const { return !joint_rotates.empty(); }
 };
