@@ -16,6 +16,7 @@ struct DiagnoseArguments {
   std::string device, data, json, report;
   std::vector<std::string> files;
   std::string sigma_mm, sigma_rad;
+  bool as_recorded = false;
   double bootstrap = 1999, threads = 0;
 };
 
@@ -27,6 +28,7 @@ void run(const DiagnoseArguments& a, Ranks* ranks) {
   DiagnosisOptions o;
   o.comparison.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.comparison.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
+  o.comparison.as_recorded = a.as_recorded;
   o.bootstrap_sets = whole("--bootstrap", a.bootstrap, 99, 1e9);
   o.ranks = ranks;
   o.threads = o.comparison.threads = parse_threads(a.threads, ranks);
@@ -49,7 +51,9 @@ Command diagnose_command() {
   auto a = std::make_shared<DiagnoseArguments>();
   return {
       "diagnose",
-      "Which physical effect is missing: every effect of the catalogue at every place it has in the device, fitted "
+      "Which physical effect is missing: first of all whether the file is what it says (units, signs, axes, columns, "
+      "poses; such a mistake is named and no effect is looked for); then every effect of the catalogue at every place "
+      "it has in the device, fitted "
       "with all tolerances free under their priors, weighed by the evidence; ties, unknown effects and what the "
       "campaign cannot see are said. Verdict first; exit code 0 whatever it is. Under mpirun the processes share the "
       "sets of --bootstrap, and the first one writes; the result is the same",
@@ -59,6 +63,7 @@ Command diagnose_command() {
        {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
        {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
        {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
+       {"--as-recorded", "", "take the file as it is: do not look for mistakes of recording first", &a->as_recorded},
        {"--bootstrap", "N",
         "data sets with nothing missing that are drawn to find how often chance looks like an effect (default "
         "1999, at least 99); it is known to 1/(N+1)",

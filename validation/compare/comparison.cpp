@@ -12,7 +12,6 @@
 #include "validation/compare/findings.h"
 #include "validation/compare/held_out.h"
 #include "validation/compare/outliers.h"
-#include "validation/compare/plausibility.h"
 #include "validation/compare/residual_study.h"
 #include "validation/compare/tail.h"
 
@@ -79,6 +78,14 @@ bool rotations_alone(const std::vector<MeasuredValue>& values) {
   return std::all_of(values.begin(), values.end(), [](const MeasuredValue& v) { return v.component >= 3; });
 }
 
+double rms_of_kept(const std::vector<MeasuredValue>& values, const VectorX& x, const std::vector<bool>& set_aside) {
+  std::vector<MeasuredValue> kept;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!set_aside[values[i].reading]) kept.push_back(values[i]), rows.push_back(static_cast<Eigen::Index>(i));
+  return rms_of_errors(kept, x(rows));
+}
+
 double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x) {
   const bool rotations = rotations_alone(values);
   double squares = 0, n = 0;
@@ -90,7 +97,10 @@ double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x)
   return n > 0 ? std::sqrt(squares / n) : 0;
 }
 
-Comparison compare(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) {
+namespace {
+
+/// Everything but the mistakes of recording.
+Comparison compared_as_recorded(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) {
   if (data.readings.size() < 2)
     throw InputError(fmt::format("{}: one reading says nothing of a model: two or more are wanted", data.origin));
   Comparison c;
@@ -106,7 +116,6 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   for (std::size_t i = 0; i < s.values.size(); ++i) measured(static_cast<Eigen::Index>(i)) = s.values[i].value;
   c.residual = measured - rows_of(s.values, s.predicted);
   add_errors(c);
-  c.looks_like = what_data_look_like(s);
 
   c.tolerances = tolerance_model(m, s.machines, data, s.values, o.threads, part_of(o.progress, 0.5, 0.95));
   const std::vector<Pattern> patterns = patterns_of(s);
@@ -130,6 +139,7 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
     if (aside[i]) c.set_aside.push_back(data.readings[i].line);
   const Uncertainty u(c.tolerances.A, s.values, c.sigma, s.predicted, m.tolerances.load, aside);
 
+  c.kept_rmse = rms_of_kept(s.values, c.residual, aside);
   const double chi2 = u.inner(c.residual, c.residual)(0, 0);
   const auto freedoms = static_cast<double>(u.count());
   c.chi2_per_dof = chi2 / freedoms;
@@ -152,6 +162,25 @@ Comparison compare(const Mechanism& m, const Measurements& data, const Compariso
   const VectorX eta = u.nuisances(r);
   for (Eigen::Index i = 0; i < eta.size(); ++i)
     if (std::abs(eta(i)) > 2) c.strained.emplace_back(c.tolerances.nuisances[static_cast<std::size_t>(i)].name, eta(i));
+  return c;
+}
+
+}  // namespace
+
+bool is_mistaken(const Comparison& c) { return !c.mistakes.empty() && c.mistakes.front().certain; }
+
+Comparison compare(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) {
+  Comparison c;
+  try {
+    c = compared_as_recorded(m, data, o);
+  } catch (const ModelError& e) {
+    throw ModelError(e.what() + within_reach_hint(m, data));
+  }
+  if (o.as_recorded) return c;
+  ComparisonOptions quiet = o;
+  quiet.progress = {};
+  c.mistakes = recording_mistakes(
+      m, c, o.threads, [&](const Measurements& other) { return account_of(compared_as_recorded(m, other, quiet)); });
   return c;
 }
 

@@ -9,6 +9,7 @@
 #include "validation/compare/contrasts.h"
 #include "validation/compare/elongation.h"
 #include "validation/compare/patterns.h"
+#include "validation/compare/plausibility.h"
 #include "validation/compare/prediction.h"
 #include "validation/compare/uncertainty.h"
 
@@ -19,6 +20,9 @@ bool rotations_alone(const std::vector<MeasuredValue>&);
 
 /// Root mean square over the numbers that errors speak of: m, or rad of rotations alone; 0 without any.
 double rms_of_errors(const std::vector<MeasuredValue>&, const VectorX&);
+
+/// The same over the readings that are not set aside.
+double rms_of_kept(const std::vector<MeasuredValue>&, const VectorX&, const std::vector<bool>& set_aside);
 
 /// Of residuals measured − predicted: translations in m, or rotations in rad where none were measured.
 struct Errors {
@@ -62,6 +66,7 @@ struct Comparison {
   std::optional<NoiseEstimate> pure_error;
   Errors all;
   std::vector<Errors> by_axis, by_pose, by_direction, by_magnitude, by_heading;
+  double kept_rmse = 0;             ///< of the readings that are not set aside, m or rad
   double chi2_per_dof = 0;          ///< against noise and tolerances
   double p_value = 1;               ///< of such a χ² by chance
   double noise_and_tolerances = 0;  ///< m: root mean square expected of a residual with nothing missing
@@ -74,7 +79,7 @@ struct Comparison {
   double unexplained_chi2_per_dof = 0;
   std::vector<std::size_t> set_aside;                    ///< lines of gross outliers
   std::vector<std::pair<std::string, double>> strained;  ///< tolerances beyond two standard deviations, with them
-  std::vector<std::string> looks_like;                   ///< plausibility.h: set where the data look mistaken
+  std::vector<RecordingMistake> mistakes;                ///< plausibility.h: of recording, the headline first
   std::vector<ElongationCurve> curves;                   ///< of the sites
   ToleranceModel tolerances;
   ResidualStudy study;        ///< residuals, forces, sites: for figures
@@ -84,9 +89,13 @@ struct Comparison {
 
 struct ComparisonOptions {
   std::optional<double> sigma_u, sigma_th;  ///< m, rad: where the file has none
+  bool as_recorded = false;                 ///< no mistakes of recording are looked for
   int threads = 0;
   Told progress = {};
 };
+
+/// Whether the first thing to be said of the data is a mistake of recording: no verdict on the machine has a ground.
+bool is_mistaken(const Comparison&);
 
 /// Throws InputError where the data are too few, ModelError, NumericalError as predict() does.
 Comparison compare(const Mechanism&, const Measurements&, const ComparisonOptions& = {});

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validation/compare/number_words.h"
+
 namespace deflect {
 namespace {
 
 std::string plus_minus(double value, double deviation, double scale, const char* unit) {
-  return fmt::format("{:.3g} ± {:.2g} {}", scale * value, scale * deviation, unit);
+  return fmt::format("{} {}", plus_minus_words(scale * value, scale * deviation), unit);
 }
 
 std::string by_column(const Finding& f, double scale, const char* unit) {
@@ -50,8 +52,9 @@ std::string alike(const Finding& found, const ResidualStudy& s, const Uncertaint
   MatrixX both(r.size(), beside.cols() + found.shape.cols());
   both << beside, found.shape;
   const Regression spread = regress(u, r, own, both);
-  return spread.p_value > 0.01 ? fmt::format("the same at all {} sites (p = {:.2g})", sites.size(), spread.p_value)
-                               : fmt::format("not the same at all sites (p = {:.1g})", spread.p_value);
+  const std::string p = digits_of(spread.p_value, 2);
+  return std::stod(p) > 0.01 ? fmt::format("the same at all {} sites (p = {})", sites.size(), p)
+                             : fmt::format("not the same at all sites (p = {})", p);
 }
 
 std::string elastic(const Finding& f, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
@@ -71,11 +74,12 @@ std::string elastic(const Finding& f, const ResidualStudy& s, const Uncertainty&
     first += ": " + (rotation ? by_column(f, 1e3, "µrad/Nmm") : by_column(f, 1e6, "µm/N"));
   parts.push_back(first);
   const auto weight = [&](const Site& site) { return weight_of(f, s, site); };
-  if (const auto p = force_exponent(s, u, r, weight, beside); p && !f.pattern.starts_with("elastic at "))
-    parts.push_back(
-        fmt::format("odd in the load and {} (it grows as the force to the {:.2f} ± {:.2f})",
-                    std::abs(p->value - 1) < 3 * p->deviation + 0.05 ? "proportional" : "not quite proportional",
-                    p->value, p->deviation));
+  if (const auto p = force_exponent(s, u, r, weight, beside); p && !f.pattern.starts_with("elastic at ")) {
+    const double power = as_printed(p->value, 2), deviation = as_printed(p->deviation, 2);
+    parts.push_back(fmt::format("odd in the load and {} (it grows as the force to the {:.2f} ± {:.2f})",
+                                std::abs(power - 1) < 3 * deviation + 0.05 ? "proportional" : "not quite proportional",
+                                power, deviation));
+  }
   if (!f.pattern.starts_with("elastic at "))
     if (const auto p = extension_exponent(s, u, r, beside); p && f.pattern == "elastic across slides")
       parts.push_back(fmt::format("the excess grows as their length to the {:.1f} ± {:.1f}", p->value, p->deviation));
@@ -124,8 +128,9 @@ Columns elastic_across(const ResidualStudy& s, double power) {
 std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
                         const MatrixX& beside) {
   const bool rotation = !s.sites.front().empty() && s.sites.front().front().rotation;
+  // Its sign is told by the words.
   const auto amplitude = [&](double scale, const char* unit) {
-    return plus_minus(f.amplitude(0), f.deviation(0), scale, unit);
+    return plus_minus(std::abs(f.amplitude(0)), f.deviation(0), scale, unit);
   };
   if (f.pattern.starts_with("elastic")) return elastic(f, s, u, r, beside);
   if (f.pattern == "step")
@@ -137,9 +142,11 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertai
   if (f.pattern == "power") {
     const auto p = force_exponent(
         s, u, r, [](const Site&) { return 1.0; }, beside);
+    const bool less = !p || as_printed(p->value, 2) < 1;
     return fmt::format(
-        "the misfit is odd in the load and grows less than in proportion{}: a contact that stiffens under load",
-        p ? fmt::format(" (as the force to the {:.2f} ± {:.2f})", p->value, p->deviation) : "");
+        "the misfit is odd in the load and grows {} than in proportion{}: {}", less ? "less" : "no less",
+        p ? fmt::format(" (as the force to the {:.2f} ± {:.2f})", p->value, p->deviation) : "",
+        less ? "a contact that stiffens under load" : "near a contact that stiffens under load, but not that alone");
   }
   if (f.pattern == "one-sided")
     return fmt::format("the misfit is even in the load: sites give {} where they are {}, not in the other sense",
@@ -153,23 +160,30 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertai
   if (f.pattern == "tool") return "the point measured moves against the platform: " + by_column(f, 1e6, "µm/N");
   if (f.pattern == "weight")
     return fmt::format(
-        "the misfit does not depend on the load and points where a constant force of {} downwards would push: even",
-        amplitude(1, "N"));
+        "the misfit does not depend on the load and points where a constant force of {} {} would push: even",
+        amplitude(1, "N"), f.amplitude(0) > 0 ? "downwards" : "upwards");
   if (f.pattern == "offset")
     return "every reading is displaced alike, whatever pose and load: " + by_column(f, 1e6, "µm");
   if (f.pattern == "drift") return "readings drift with time, over the sequence by " + by_column(f, 1e6, "µm");
   if (f.pattern == "temperature") return "readings follow the temperature: " + by_column(f, 1e6, "µm/K");
   if (f.pattern == "load gain")
     return fmt::format(
-        "all displacements are larger than predicted by one factor, {:.4f} ± {:.4f}: the modulus of everything, "
-        "or the load cell's gain",
-        1 + f.amplitude(0), f.deviation(0));
+        "all displacements are {} than predicted by one factor, {}: the modulus of everything, or the load cell's gain",
+        f.amplitude(0) > 0 ? "larger" : "smaller", plus_minus_words(1 + f.amplitude(0), f.deviation(0)));
   if (f.pattern == "load axes")
     return "the misfit is perpendicular to the model's answer and not reciprocal: loads are recorded in axes turned "
            "by " +
            by_column(f, 1e3, "mrad") + ": misaligned";
-  return "the misfit is perpendicular to the displacement and not reciprocal: the sensor's axes are turned by " +
-         by_column(f, 1e3, "mrad") + ": misaligned";
+  if (f.pattern == "sensor axes")
+    return "the misfit is perpendicular to the displacement and not reciprocal: the sensor's axes are turned by " +
+           by_column(f, 1e3, "mrad") + ": misaligned";
+  std::string sizes;
+  for (std::size_t i = 0; i < f.columns.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    sizes += fmt::format("{}{} {} {}", i ? ", " : "", f.columns[i], plus_minus_words(f.amplitude(k), f.deviation(k)),
+                         f.unit);
+  }
+  return fmt::format("the misfit has the pattern '{}': {}", f.pattern, sizes);
 }
 
 }  // namespace deflect

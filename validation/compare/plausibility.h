@@ -1,17 +1,51 @@
 // Data that are not what they say: mistakes of recording, which no physics explains.
+//
+// A mistake is looked for where the readings do not fit. Corrections (recording_mistakes.h) are tried on the prediction
+// of some readings; those that take a good part of the misfit away are tried on all of them, by a comparison of the
+// corrected data. One is told when the misfit beyond noise and tolerances falls to less than a ninth in χ² and the
+// corrected data need clearly less to explain them than the recorded ones with the patterns that physics can leave
+// (findings.h); where the misfit is more than a quarter of what was measured, also when the corrected data are right to
+// the noise, or the misfit falls to a third.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "validation/compare/patterns.h"
+#include "validation/measurement/measurements.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 
-/// Sentences "these data look like …", each with its remedy: swapped axes, turned signs, a load in kgf, lengths in m or
-/// µm, moments in Nm, a load about another point, readings that contradict each other. Empty where nothing looks so.
-/// A mistake is told when its correction leaves less than a third of a misfit that is more than a quarter of what was
-/// measured; of several corrections the best is told.
-std::vector<std::string> what_data_look_like(const ResidualStudy&);
+struct Comparison;
+struct Mechanism;
+
+/// Something about a file that comes before what it says of the machine.
+struct RecordingMistake {
+  /// Of the corrections that do equally well, best first; or "nothing_measured", "nothing_loaded", "zero_column",
+  /// "identical_rows", "sigma_unit", "too_few", "contradiction".
+  std::vector<std::string> ids;
+  std::string sentence;  ///< what the data look like, with the remedy
+  bool certain = true;   ///< a verdict on the machine has no ground; false: a remark
+};
+
+/// What is left of a misfit, and what it took to leave no more.
+struct MisfitAccount {
+  double numbers = 0, chi2 = 0;  ///< without the readings set aside
+  double left = 0;               ///< χ² with the findings
+  int columns = 0;               ///< of the findings
+  std::size_t set_aside = 0;     ///< readings
+  double share = 0;              ///< misfit of all readings by what was measured, root mean squares
+  double scatter = 0;            ///< σ by what was measured, where it is estimated from residuals; 0 where given
+};
+MisfitAccount account_of(const Comparison&);
+
+/// The first is the headline where it is certain. `again` compares other data with the same device.
+std::vector<RecordingMistake> recording_mistakes(const Mechanism&, const Comparison&, int threads,
+                                                 const std::function<MisfitAccount(const Measurements&)>& again);
+
+/// What to add to the message about a pose that cannot be reached: which corrections of the poses bring all of them
+/// within reach; empty where none does.
+std::string within_reach_hint(const Mechanism&, const Measurements&);
 
 }  // namespace deflect

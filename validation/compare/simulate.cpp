@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "msa/base/error.h"
 #include "validation/compare/as_built.h"
 #include "validation/compare/prediction.h"
 #include "validation/measurement/configure_all.h"
@@ -83,6 +84,36 @@ Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOpt
     if (o.sigma_th && *o.sigma_th > 0) r.sigma_th = o.sigma_th;
   }
   return plan;
+}
+
+double share_carried(const Mechanism& m, const Measurements& plan, const SimulationOptions& o) {
+  const std::vector<Configuration> machines = configure_all(m, plan);
+  PredictionOptions p;
+  p.theory = Theory::msa;
+  p.geometry = o.geometry;
+  p.division = o.division;
+  p.threads = 1;
+  for (std::size_t pose = 0; pose < machines.size(); ++pose) {
+    const auto carries = [&](double share) {
+      Measurements some = one_pose(plan, pose);
+      for (Reading& r : some.readings) r.load *= share;
+      try {
+        predict(m, {machines[pose]}, some, p);
+        return true;
+      } catch (const NumericalError&) {
+        return false;
+      }
+    };
+    if (carries(1)) continue;
+    double low = 1e-6, high = 1;
+    if (!carries(low)) return 0;
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high);
+      (carries(middle) ? low : high) = middle;
+    }
+    return low;
+  }
+  return 1;
 }
 
 }  // namespace deflect

@@ -30,4 +30,8 @@ struct SimulationOptions {
 /// noise. The same seed gives the same file. Readings are rounded to a thousandth of σ.
 Measurements simulate(const Mechanism&, Measurements plan, const SimulationOptions&);
 
+/// How many times the plan's loads the machine as drawn carries, to a percent, at the first of its poses where it does
+/// not carry all; 1 where it carries all, 0 where it does not carry a millionth.
+double share_carried(const Mechanism&, const Measurements& plan, const SimulationOptions&);
+
 }  // namespace deflect

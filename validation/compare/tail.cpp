@@ -7,6 +7,7 @@
 namespace deflect {
 
 double chi_squared_tail(double freedoms, double chi2) {
+  if (freedoms > 0 && chi2 > std::numeric_limits<double>::max()) return 0;
   return freedoms > 0 ? boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedoms), chi2)) : 1;
 }
 

@@ -135,7 +135,21 @@ void sort_candidates(Diagnosis& d, const Observations& o) {
   }
 }
 
+/// What there is to be said where the file is not what it seems.
+Diagnosis only_mistakes(Diagnosis d, const Observations& o) {
+  d.verdict = Verdict::unknown_effect;
+  d.probability_unknown = 1;
+  d.fit = fit_of_all(o, {}, VectorX(0));
+  d.baseline = d.final = quality(o, {}, d.fit);
+  d.unexplained = true;
+  d.share_unexplained = 1;
+  d.pattern = d.mistakes.front().sentence;
+  return d;
+}
+
 }  // namespace
+
+bool is_mistaken(const Diagnosis& d) { return !d.mistakes.empty() && d.mistakes.front().certain; }
 
 Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vector<Effect>& effects,
                    const DiagnosisOptions& options) {
@@ -143,12 +157,18 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   comparison.progress = part_of(options.progress, 0, 0.2);
   Observations o(m, data, comparison);
   Diagnosis d;
-  const std::vector<Signature> all = signatures(o, effects, options.threads, &d.left_out);
-  Rounds rounds(options.progress, 0.3);
-  const Candidates candidates(o, all, options.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); });
+  d.device = m.name;
+  d.how_read = data.how_read;
+  d.mistakes = o.comparison().mistakes;
+  d.readings = o.comparison().readings;
+  d.set_aside = o.set_aside();
   d.rotations = rotations_alone(o.comparison().study.values);
   d.noise_floor = o.comparison().sigma_u;
   d.tolerance_scale = o.tolerance_scale();
+  if (is_mistaken(d)) return only_mistakes(std::move(d), o);
+  const std::vector<Signature> all = signatures(o, effects, options.threads, &d.left_out);
+  Rounds rounds(options.progress, 0.3);
+  const Candidates candidates(o, all, options.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); });
   d.detectable = detectable_sizes(all);
   const Fit null = fit_of_all(o, {}, VectorX(0));
   d.baseline = quality(o, {}, null);

@@ -5,7 +5,8 @@
 // Selection: prior · evidence (evidence.h), effects that do the same to these data sharing one prior. Further effects
 // are added as long as they are called for (selection.h). What is left is tested against a structured discrepancy made
 // of all patterns of `compare`; where that wins, something is unknown, and only effects that are called for beside the
-// discrepancy are still said to be missing.
+// discrepancy are still said to be missing. Before all of it stand the mistakes of recording (plausibility.h): where
+// one is certain, and the file is not to be taken as it is recorded (ComparisonOptions), no effect is looked for.
 #pragma once
 
 #include <string>
@@ -27,7 +28,12 @@ struct Quality {
 };
 
 struct Diagnosis {
+  std::string device;                 ///< its name
+  std::vector<std::string> how_read;  ///< of the measurements: what was converted, skipped or averaged
   Verdict verdict = Verdict::nothing_missing;
+  /// Of recording (plausibility.h). Where the first is certain nothing else was asked: something unknown is said to be
+  /// missing, without candidates.
+  std::vector<RecordingMistake> mistakes;
   /// Of "nothing" beside the candidates of the first step, and of something unknown: beside what was found, if any.
   double probability_nothing = 0, probability_unknown = 0;
   double chance = 1;                  ///< of any effect looking as good with nothing missing
@@ -40,7 +46,8 @@ struct Diagnosis {
   bool rotations = false;      ///< none but rotations were measured: rad where m is said
   double noise_floor = 0;      ///< m: σ of a reading
   double tolerance_scale = 1;  ///< how many times the declared tolerances those of the machine look
-  std::size_t set_aside = 0;   ///< readings that are gross outliers to what was found
+  std::size_t readings = 0;
+  std::size_t set_aside = 0;  ///< readings that are gross outliers to what was found
   bool unexplained = false;
   double share_unexplained = 0;                          ///< of the misfit beyond noise and tolerances
   std::string pattern;                                   ///< of what is left
@@ -59,6 +66,9 @@ struct DiagnosisOptions {
   Ranks* ranks = nullptr;                      ///< that share the bootstrap; all have the result
   std::function<void(double share)> progress;  ///< of the work, as far as it can be told; from any thread
 };
+
+/// Whether a mistake of recording took the place of a diagnosis.
+bool is_mistaken(const Diagnosis&);
 
 /// The effects must outlive the result.
 Diagnosis diagnose(const Mechanism&, const Measurements&, const std::vector<Effect>&, const DiagnosisOptions& = {});

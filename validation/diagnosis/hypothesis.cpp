@@ -267,4 +267,16 @@ std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::siz
   return {value_at(p, x - half), value_at(p, x + half)};
 }
 
+bool runs_to_a_bound(const Hypothesis& h, const Fit& f) {
+  const std::vector<EffectParameter>& own = h.back().effect->parameters;
+  if (own.size() < 2 || !f.found) return false;
+  const Eigen::Index first = f.values.size() - static_cast<Eigen::Index>(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const double x = coordinate(own[i], f.values(first + static_cast<Eigen::Index>(i)));
+    const double low = coordinate(own[i], own[i].low), high = coordinate(own[i], own[i].high);
+    if (std::min(x - low, high - x) < 1e-3 * (high - low)) return true;
+  }
+  return false;
+}
+
 }  // namespace deflect

@@ -45,6 +45,10 @@ std::pair<double, double> interval95(const Hypothesis&, const Fit&, std::size_t 
 /// The parameters of all effects, one after the other.
 std::vector<const EffectParameter*> parameters_of(const Hypothesis&);
 
+/// Whether the last effect's fit stands at a bound of one of several parameters: it is then another, simpler effect (a
+/// spring that would harden far beyond the data is a linear one).
+bool runs_to_a_bound(const Hypothesis&, const Fit&);
+
 /// Whether an amplitude of the effect has a sign that physics fixes (one parameter, which vanishes at a bound).
 bool one_sided(const PlacedEffect&);
 

@@ -73,15 +73,7 @@ VectorX Observations::residual(const Mechanism& m) const {
 VectorX Observations::whitened_residual(const Mechanism& m) const { return uncertainty_.whitened(residual(m)); }
 
 double Observations::rmse(const Mechanism& m) const {
-  const VectorX r = residual(m);
-  std::vector<MeasuredValue> used;
-  std::vector<Eigen::Index> rows;
-  for (std::size_t i = 0; i < comparison_.study.values.size(); ++i)
-    if (const MeasuredValue& v = comparison_.study.values[i]; !aside_[v.reading]) {
-      used.push_back(v);
-      rows.push_back(static_cast<Eigen::Index>(i));
-    }
-  return rms_of_errors(used, r(rows));
+  return rms_of_kept(comparison_.study.values, residual(m), aside_);
 }
 
 double Observations::held_out_rmse(const Mechanism& m) const { return held_out_->rmse(residual(m)); }

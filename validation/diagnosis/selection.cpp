@@ -75,9 +75,18 @@ class Search {
     s_.fit = std::move(again);
   }
 
+  /// Whether it is a simpler candidate under another name: it stands at a bound of its own, and one with fewer
+  /// parameters does as well.
+  static bool is_another(const Candidate& c, const std::vector<Candidate>& all) {
+    const auto parameters = [](const Candidate& x) { return x.added().effect->parameters.size(); };
+    return runs_to_a_bound(c.hypothesis, c.fit) && std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
+             return other.fit.found && parameters(other) < parameters(c) && other.fit.chi2 < c.fit.chi2 + 1;
+           });
+  }
+
   static std::vector<std::string> tie(const std::vector<Candidate>& all) {
     std::vector<double> log_odds;
-    for (const Candidate& c : all) log_odds.push_back(c.fit.found ? c.log_odds : never);
+    for (const Candidate& c : all) log_odds.push_back(c.fit.found && !is_another(c, all) ? c.log_odds : never);
     const std::vector<double> among = normalised(log_odds);
     std::vector<std::size_t> by(all.size());
     for (std::size_t i = 0; i < by.size(); ++i) by[i] = i;

@@ -6,9 +6,17 @@ import {workspace} from './workspace.js';
 const places = ['ux', 'uy', 'uz', 'thx', 'thy', 'thz'], efforts = ['fx', 'fy', 'fz', 'mx', 'my', 'mz'];
 
 export const siteName = (c) => `${c.effect} (${c.site})`;
-const valueWords = (parameters) => parameters.map((p) => `${p.name} = ${num(p.value)} (${num(p.low95)} … ${num(p.high95)})`).join(', ');
+/** With so many digits that the bounds can be told from each other. */
+const intervalWords = (value, low, high) => {
+  let digits = 4;
+  while (digits < 12 && low !== high && num(low, digits) === num(high, digits)) ++digits;
+  return `${num(value, digits)} (${num(low, digits)} … ${num(high, digits)})`;
+};
+const valueWords = (parameters) => parameters.map((p) => `${p.name} = ${intervalWords(p.value, p.low95, p.high95)}`).join(', ');
 
 export function diagnosisVerdict(d) {
+  if (d.mistakes?.[0]?.certain) return d.sentence + ' No effect was looked for.';
+  if (d.sentence) return d.sentence + ((d.found || []).some((f) => f.parameters.length) ? ' Fitted: ' + d.found.map((f) => `${siteName(f)}: ${valueWords(f.parameters)}`).join('; ') + '.' : '');
   const found = (d.found || []).map((f) => siteName(f) + (f.parameters.length ? ', ' + valueWords(f.parameters) : '')).join(' and ') || d.missing.join(' and ');
   const fall = `the error falls from ${micro(d.baseline.rmse_mm)} to ${micro(d.final.rmse_mm)} rms; the readings’ noise is ${micro(d.noise_floor_mm)}`;
   switch (d.verdict) {
@@ -20,6 +28,7 @@ export function diagnosisVerdict(d) {
 }
 
 export function candidates(d) {
+  if (!d.candidates.length) return null;
   const tied = new Set(d.indistinguishable.flat());
   const isTied = (c) => tied.has(c.effect) || tied.has(siteName(c));
   const entries = [...d.candidates.map((c) => ({name: siteName(c), p: c.probability, tied: isTied(c)})),

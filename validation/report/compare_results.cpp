@@ -8,6 +8,7 @@
 #include "validation/report/compare_words.h"
 #include "validation/report/json_text.h"
 #include "validation/report/text.h"
+#include "validation/report/verdict_words.h"
 
 namespace deflect {
 namespace {
@@ -16,28 +17,6 @@ constexpr double significant = 1e-3;
 constexpr std::size_t most_poses = 12, poses_of_many = 10;  // in the report
 
 std::string p_text(double p) { return p < 1e-16 ? "< 1e-16" : fmt::format("{:.2g}", p); }
-
-std::string verdict(const Comparison& c) {
-  const char* unit = error_unit(c).micro;
-  if (!c.looks_like.empty() && c.looks_like.front().starts_with("these data"))
-    return "Before anything else: " + c.looks_like.front() + ".";
-  const double beyond =
-      std::sqrt(std::max(0.0, c.all.rmse * c.all.rmse - c.noise_and_tolerances * c.noise_and_tolerances));
-  if (c.findings.empty())
-    return c.unexplained_chi2_per_dof < 1.3
-               ? fmt::format(
-                     "Nothing is missing that these readings can show: {:.2f} {} rms are left, noise and tolerances "
-                     "give {:.2f} {}.",
-                     um * c.all.rmse, unit, um * c.noise_and_tolerances, unit)
-               : fmt::format(
-                     "The residual of {:.2f} {} rms is more than noise and tolerances ({:.2f} {}), but none of the "
-                     "patterns looked for describes it.",
-                     um * c.all.rmse, unit, um * c.noise_and_tolerances, unit);
-  return fmt::format(
-      "Something is missing: the model fails by {:.2f} {} rms beyond noise and tolerances ({:.0f} % of what was "
-      "measured).",
-      um * beyond, unit, 100 * beyond / c.all.measured);
-}
 
 std::string findings_text(const Comparison& c) {
   const char* unit = error_unit(c).micro;
@@ -131,11 +110,12 @@ std::vector<double> list_of(const VectorX& x) { return {x.data(), x.data() + x.s
 
 std::string compare_report(const Comparison& c) {
   const char* unit = error_unit(c).micro;
-  std::string out =
-      fmt::format("{} against {}: {} readings at {} poses\n\n{}\n", c.device, c.data, c.readings, c.poses, verdict(c));
+  std::string out = fmt::format("{} against {}: {} readings at {} poses\n\n{}\n", c.device, c.data, c.readings, c.poses,
+                                verdict_words(c));
   const std::string found = findings_text(c);
   if (!found.empty()) out += "\n" + found;
-  for (const std::string& s : c.looks_like) out += fmt::format("\n  {}\n", s);
+  for (const RecordingMistake& mistake : c.mistakes) out += fmt::format("\n  {}\n", mistake.sentence);
+  out += how_read_text(c.study.data->how_read);
   out += fmt::format(
       "\nresidual {:.2f} {} rms (held-out poses {:.2f}), σ of a reading {:.2f} {}{}, noise and tolerances {:.2f} {}, "
       "chi2 per degree of freedom {:.2f}\n",
@@ -175,7 +155,8 @@ std::string compare_json(const Comparison& c) {
   if (c.pure_error)
     j["pure_error"] = {{"sigma_mm", mm * c.pure_error->sigma},
                        {"degrees_of_freedom", c.pure_error->degrees_of_freedom}};
-  j["verdict"] = verdict(c);
+  j["verdict"] = verdict_words(c);
+  j["notes"] = c.study.data->how_read;
   j["findings"] = Json::array();
   for (const Finding& f : c.findings)
     j["findings"].push_back({{"pattern", f.pattern},
@@ -218,7 +199,9 @@ std::string compare_json(const Comparison& c) {
                  {"by_heading", errors_json(c.by_heading)}};
   j["strained_tolerances"] = Json::array();
   for (const auto& [name, eta] : c.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});
-  j["looks_like"] = c.looks_like;
+  j["looks_like"] = Json::array();
+  for (const RecordingMistake& mistake : c.mistakes) j["looks_like"].push_back(mistake.sentence);
+  j["mistakes"] = mistakes_json(c.mistakes);
   j["set_aside_lines"] = c.set_aside;
   return json_text(j);
 }

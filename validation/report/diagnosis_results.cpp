@@ -7,54 +7,15 @@
 
 #include "validation/report/json_text.h"
 #include "validation/report/text.h"
+#include "validation/report/verdict_words.h"
 
 namespace deflect {
 namespace {
 
+constexpr const char* mistakes_remedy =
+    "No effect was looked for: correct the file and diagnose again, or take it as it is with --as-recorded.\n";
+
 const char* micro(const Diagnosis& d) { return d.rotations ? "µrad" : "µm"; }
-
-std::string site_words(const PlacedEffect& e) { return fmt::format("{} ({})", e.effect->name, site_of(e)); }
-
-/// "stiffness_Nmm_per_rad 5.00e+06 (4.9e+06 … 5.1e+06)".
-std::string values_words(const Hypothesis& h, const Fit& f) {
-  const std::vector<const EffectParameter*> all = parameters_of(h);
-  std::string out;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto [low, high] = interval95(h, f, i);
-    out += fmt::format("{}{} = {:.4g} ({:.4g} … {:.4g})", i ? ", " : "", all[i]->name,
-                       f.values(static_cast<Eigen::Index>(i)), low, high);
-  }
-  return out;
-}
-
-std::string verdict_words(const Diagnosis& d) {
-  std::string names;
-  for (const PlacedEffect& e : d.missing)
-    names += (names.empty() ? "" : " and ") + e.effect->title + " (" + site_words(e) + ")";
-  const double explained = d.baseline.rmse > 0 ? 100 * (1 - d.final.rmse / d.baseline.rmse) : 0;
-  switch (d.verdict) {
-    case Verdict::nothing_missing:
-      return fmt::format(
-          "Nothing is missing that these data can show: what is left, {:.2f} {} rms, is noise and tolerances.",
-          um * d.baseline.rmse, micro(d));
-    case Verdict::effect:
-      return fmt::format(
-          "Missing: {}. With it the error falls from {:.2f} to {:.2f} {} rms ({:.0f} %); the readings' noise is {:.2f} "
-          "{}.",
-          names, um * d.baseline.rmse, um * d.final.rmse, micro(d), explained, um * d.noise_floor, micro(d));
-    case Verdict::ambiguous: {
-      std::string group;
-      for (const std::vector<std::string>& g : d.indistinguishable)
-        group += fmt::format("{}{}", group.empty() ? "" : "; and ", fmt::join(g, " or "));
-      return fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}.", group, names);
-    }
-    case Verdict::unknown_effect:
-      return fmt::format(
-          "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
-          names.empty() ? "" : ", not even with " + names, d.pattern);
-  }
-  return "";
-}
 
 std::string candidates_table(const Diagnosis& d) {
   std::vector<std::vector<std::string>> rows = {
@@ -62,9 +23,9 @@ std::string candidates_table(const Diagnosis& d) {
   std::size_t shown = 0;
   for (const Candidate& c : d.candidates) {
     if (shown >= 8 || (c.probability < 1e-6 && shown >= 3)) break;
-    rows.push_back({"  " + site_words(c.added()), fmt::format("{:.3g}", c.probability),
+    rows.push_back({"  " + placed_words(c.added()), fmt::format("{:.3g}", c.probability),
                     fmt::format("{:.2f}", um * c.rmse), fmt::format("{:.2f}", um * c.held_out),
-                    fmt::format("{:.2f}", c.chi2_per_dof), c.fit.found ? values_words(c.hypothesis, c.fit) : "no fit"});
+                    fmt::format("{:.2f}", c.chi2_per_dof), c.fit.found ? fitted_words(c.hypothesis, c.fit) : "no fit"});
     ++shown;
   }
   rows.push_back({"  nothing", fmt::format("{:.3g}", d.probability_nothing),
@@ -95,7 +56,11 @@ Json parameters_json(const Hypothesis& h, const Fit& f, std::size_t from, std::s
 
 std::string diagnosis_report(const Diagnosis& d, const std::string& device, const std::string& data) {
   std::string out = fmt::format("{} against {}\n\n{}\n\n", device, data, verdict_words(d));
-  if (!d.missing.empty()) out += "fitted: " + values_words(d.missing, d.fit) + "\n\n";
+  for (const RecordingMistake& mistake : d.mistakes)
+    if (!mistake.certain) out += mistake.sentence + "\n\n";
+  out += how_read_text(d.how_read);
+  if (is_mistaken(d)) return out + mistakes_remedy;
+  if (!d.missing.empty()) out += "fitted: " + fitted_words(d.missing, d.fit) + "\n\n";
   out += candidates_table(d);
   out += fmt::format("\nchance that some effect looks as good in data with nothing missing: {:.2g} ({} sets drawn)\n",
                      d.chance, d.bootstrap_sets);
@@ -124,7 +89,7 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
   for (const Detectable& e : d.detectable) {
     std::string sizes;
     for (std::size_t i = 0; i < e.smallest.size(); ++i) sizes += fmt::format("{}{:.3g}", i ? ", " : "", e.smallest[i]);
-    rows.push_back({"  " + site_words(e.effect), sizes.empty() ? "none within bounds" : sizes,
+    rows.push_back({"  " + placed_words(e.effect), sizes.empty() ? "none within bounds" : sizes,
                     e.mistaken_for.empty() ? "" : fmt::format("{} (cosine {:.3f})", e.mistaken_for, e.cosine)});
   }
   return out + "\n" + aligned(rows);
@@ -133,6 +98,10 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
 std::string diagnosis_json(const Diagnosis& d) {
   Json j;
   j["verdict"] = verdict_names[static_cast<int>(d.verdict)];
+  j["device"] = d.device;
+  j["notes"] = d.how_read;
+  j["sentence"] = verdict_words(d);
+  j["mistakes"] = mistakes_json(d.mistakes);
   j["missing"] = Json::array();
   for (const PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
   j["candidates"] = Json::array();
@@ -168,6 +137,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["chance_of_any"] = d.chance;
   j["bootstrap_sets"] = d.bootstrap_sets;
   j["tolerance_scale"] = d.tolerance_scale;
+  j["readings"] = d.readings;
   j["set_aside"] = d.set_aside;
   j["strained_tolerances"] = Json::array();
   for (const auto& [name, eta] : d.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});

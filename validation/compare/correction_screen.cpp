@@ -1,0 +1,166 @@
+#include "validation/compare/correction_screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "msa/base/error.h"
+#include "validation/compare/prediction.h"
+#include "validation/compare/recording_mistakes.h"
+#include "validation/measurement/configure_all.h"
+
+namespace deflect {
+namespace {
+
+constexpr std::size_t most_sampled = 1000;  // readings
+constexpr double of_usual = 0.005, of_predicted = 0.01, good_part = 0.4;
+constexpr double least_shift_mm = 0.5, most_shift_mm = 100;
+
+/// Some of the readings, spread evenly over the file, at the poses that they have.
+std::pair<Measurements, std::vector<std::size_t>> sample_of(const Measurements& data) {
+  Measurements out{data.origin, data.joint_rotates, {}, data.temperature_recorded, {}, {}};
+  std::vector<std::size_t> rows;
+  std::vector<std::size_t> pose(data.poses.size(), data.poses.size());
+  const std::size_t n = data.readings.size(), wanted = std::min(n, most_sampled);
+  for (std::size_t k = 0; k < wanted; ++k) {
+    const std::size_t i = k * n / wanted;
+    const Reading& r = data.readings[i];
+    if (pose[r.pose] == data.poses.size()) {
+      pose[r.pose] = out.poses.size();
+      out.poses.push_back(data.poses[r.pose]);
+      out.poses.back().readings.clear();
+    }
+    out.poses[pose[r.pose]].readings.push_back(out.readings.size());
+    out.readings.push_back(r);
+    out.readings.back().pose = pose[r.pose];
+    out.readings.back().notes.clear();
+    rows.push_back(i);
+  }
+  return {std::move(out), std::move(rows)};
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+CorrectionScreen::CorrectionScreen(const Mechanism& m, const Comparison& c, int threads)
+    : mechanism_(&m), study_(&c.study), threads_(threads), size_(c.study.machines.front().size) {
+  std::tie(sample_, rows_) = sample_of(*c.study.data);
+  as_recorded_ = loss(Correction{});
+  // Noise and tolerances alone, of the size that the comparison has for them.
+  std::vector<double> usual;
+  for (const MeasuredValue& v : study_->values) usual.push_back(std::abs(v.value) * (v.component < 3 ? 1 : size_));
+  const double scale = of_usual * quantile(usual, 0.75);
+  double noise = 0;
+  for (std::size_t i = 0; i < study_->values.size(); ++i) {
+    const MeasuredValue& v = study_->values[i];
+    const double weight = v.component < 3 ? 1 : size_;
+    const double predicted = study_->predicted[v.reading](static_cast<Eigen::Index>(v.component));
+    const double variance = (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) +
+                            c.tolerances.A.row(static_cast<Eigen::Index>(i)).squaredNorm();
+    const double e = scale + of_predicted * weight * std::abs(predicted);
+    noise += e > 0 ? std::log1p(weight * weight * variance / (e * e)) : 0;
+  }
+  noise /= static_cast<double>(study_->values.size());
+  promising_ = as_recorded_ - good_part * std::max(0.0, as_recorded_ - noise);
+}
+
+double CorrectionScreen::loss(const Measurements& data, const std::vector<Vector6>& predicted) const {
+  std::vector<double> usual;
+  for (const Reading& r : data.readings)
+    for (std::size_t k = 0; k < 6; ++k)
+      if (r.displacement[k]) usual.push_back(std::abs(*r.displacement[k]) * (k < 3 ? 1 : size_));
+  const double scale = of_usual * quantile(usual, 0.75);
+  double sum = 0;
+  for (std::size_t i = 0; i < data.readings.size(); ++i)
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Reading& r = data.readings[i];
+      if (!r.displacement[k]) continue;
+      const double weight = k < 3 ? 1 : size_, p = weight * predicted[i](static_cast<Eigen::Index>(k));
+      const double e = scale + of_predicted * std::abs(p);
+      const double z = e > 0 ? (weight * *r.displacement[k] - p) / e : 0;
+      sum += std::log1p(z * z);
+    }
+  return usual.empty() ? 0 : sum / static_cast<double>(usual.size());
+}
+
+double CorrectionScreen::loss(const Correction& c) const {
+  const Measurements data = corrected(sample_, c);
+  std::vector<Vector6> predicted(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Reading& recorded = study_->data->readings[rows_[i]];
+    predicted[i] = study_->predicted[rows_[i]];
+    if (!study_->deformed_shape.empty()) predicted[i] += study_->deformed_shape[rows_[i]];
+    predicted[i] += study_->compliance[recorded.pose] * (data.readings[i].load - recorded.load);
+  }
+  return loss(data, predicted);
+}
+
+std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const Correction& c) const {
+  const Measurements data = corrected(sample_, c);
+  PredictionOptions o;
+  o.threads = threads_;
+  try {
+    std::vector<Vector6> predicted = predict(*mechanism_, configure_all(*mechanism_, data), data, o);
+    if (!study_->deformed_shape.empty())
+      for (std::size_t i = 0; i < rows_.size(); ++i) predicted[i] += study_->deformed_shape[rows_[i]];
+    return predicted;
+  } catch (const ModelError&) {      // does not reach it
+  } catch (const NumericalError&) {  // does not stand there
+  }
+  return std::nullopt;
+}
+
+double CorrectionScreen::loss_elsewhere(const Correction& c) const {
+  const auto predicted = predicted_with(c);
+  return predicted ? loss(corrected(sample_, c), *predicted) : std::numeric_limits<double>::infinity();
+}
+
+std::optional<Correction> CorrectionScreen::best_shift(int axis) const {
+  if (sample_.by_joints()) return std::nullopt;
+  const auto shifted = [&](double mm) { return shifted_poses(mm * Vector3::Unit(axis)); };
+  const auto at = [&](double mm) { return predicted_with(shifted(mm)); };
+  // Gauss–Newton on the losses: numbers far off count little.
+  double mm = 0, least = as_recorded_;
+  for (int step = 0; step < 6; ++step) {
+    const auto here = at(mm), beside = at(mm + 0.1);
+    if (!here || !beside) return std::nullopt;
+    double along = 0, squares = 0;
+    std::vector<double> usual;
+    for (const Reading& r : sample_.readings)
+      for (std::size_t k = 0; k < 6; ++k)
+        if (r.displacement[k]) usual.push_back(std::abs(*r.displacement[k]) * (k < 3 ? 1 : size_));
+    const double scale = of_usual * quantile(usual, 0.75);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      for (std::size_t k = 0; k < 6; ++k) {
+        const Reading& r = sample_.readings[i];
+        if (!r.displacement[k]) continue;
+        const auto row = static_cast<Eigen::Index>(k);
+        const double weight = k < 3 ? 1 : size_, p = weight * (*here)[i](row);
+        const double e = scale + of_predicted * std::abs(p);
+        if (!(e > 0)) continue;
+        const double z = (weight * *r.displacement[k] - p) / e;
+        const double slope = weight * ((*beside)[i](row) - (*here)[i](row)) / 0.1 / e;
+        along += slope * z / (1 + z * z);
+        squares += slope * slope / (1 + z * z);
+      }
+    if (!(squares > 0)) return std::nullopt;
+    double further = along / squares;
+    bool better = false;
+    for (int half = 0; half < 5 && !better; ++half, further /= 2) {
+      if (std::abs(mm + further) > most_shift_mm) continue;
+      const double loss = loss_elsewhere(shifted(mm + further));
+      if (loss < least) least = loss, mm += further, better = true;
+    }
+    if (!better || std::abs(further) < 0.01) break;
+  }
+  // The recorded poses minus what they are off by are the true ones.
+  return std::abs(mm) >= least_shift_mm ? std::optional(shifted(mm)) : std::nullopt;
+}
+
+}  // namespace deflect

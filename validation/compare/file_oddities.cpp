@@ -1,0 +1,211 @@
+#include "validation/compare/file_oddities.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace deflect {
+namespace {
+
+constexpr std::size_t least_numbers = 10;       // of which a verdict can be made
+constexpr double sigma_out_of_scale = 50;       // between σ as stated and as seen
+constexpr std::size_t replicates_to_trust = 5;  // degrees of freedom
+constexpr const char* measured_names[] = {"ux_mm", "uy_mm", "uz_mm", "thx_rad", "thy_rad", "thz_rad"};
+
+std::string size_words(double value, bool rotation) {
+  return fmt::format("{:.3g} {}", 1e6 * value, rotation ? "µrad" : "µm");
+}
+
+bool temperature_varies(const Measurements& data) {
+  return data.temperature_recorded && std::any_of(data.readings.begin(), data.readings.end(), [&](const Reading& r) {
+           return r.temperature_C != data.readings.front().temperature_C;
+         });
+}
+
+/// Root mean squares by component of what was measured, of what is predicted there, and how many there are.
+struct ByComponent {
+  std::array<double, 6> measured{}, predicted{}, sigma{};
+  std::array<std::size_t, 6> count{};
+
+  explicit ByComponent(const Comparison& c) {
+    for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+      const MeasuredValue& v = c.study.values[i];
+      const double p = c.study.predicted[v.reading](static_cast<Eigen::Index>(v.component));
+      measured[v.component] += v.value * v.value;
+      predicted[v.component] += p * p;
+      sigma[v.component] += c.sigma[i] * c.sigma[i];
+      ++count[v.component];
+    }
+    for (std::size_t k = 0; k < 6; ++k)
+      for (auto* sum : {&measured, &predicted, &sigma})
+        (*sum)[k] = std::sqrt((*sum)[k] / static_cast<double>(std::max<std::size_t>(1, count[k])));
+  }
+};
+
+void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
+  const Measurements& data = *c.study.data;
+  const ByComponent by(c);
+  const auto zero = [&](std::size_t k) { return by.count[k] == 0 || by.measured[k] == 0; };
+  bool measured = false;
+  for (std::size_t k = 0; k < 6; ++k) measured = measured || !zero(k);
+  const bool loaded =
+      std::any_of(data.readings.begin(), data.readings.end(), [](const Reading& r) { return !r.load.isZero(0); });
+  if (!loaded && !temperature_varies(data))
+    out.push_back({{"nothing_loaded"},
+                   "nothing was loaded: every load is 0 in all readings, and the stiffness of a machine shows under "
+                   "load only"});
+  if (!measured) {
+    const bool rotations = rotations_alone(c.study.values);
+    out.push_back({{"nothing_measured"},
+                   fmt::format("nothing was measured: every displacement is 0, where {} rms are predicted; leave the "
+                               "cells empty that were not measured",
+                               size_words(rms_of_errors(c.study.values, rows_of(c.study.values, c.study.predicted)),
+                                          rotations))});
+    return;
+  }
+  for (std::size_t k = 0; k < 6; ++k)
+    if (by.count[k] >= least_numbers && by.measured[k] == 0 && by.predicted[k] > 5 * by.sigma[k])
+      out.push_back(
+          {{fmt::format("zero_column_{}", measured_names[k])},
+           fmt::format("{} is 0 in every reading, where {} rms are predicted: was its sensor connected? Leave "
+                       "the column away if it was not measured",
+                       measured_names[k], size_words(by.predicted[k], k >= 3))});
+}
+
+/// Whether readings are written more finely than they scatter, so that chance does not make them alike: most of them
+/// are no multiples of the power of ten below σ.
+bool finely_written(const Comparison& c) {
+  double fine = 0;
+  for (const MeasuredValue& v : c.study.values) {
+    const double unit = v.component < 3 ? 1e3 : 1;
+    const double scatter = unit * v.sigma.value_or(1e-3 * (c.all.measured > 0 ? c.all.measured : 1));
+    const double steps = std::abs(unit * v.value) / std::pow(10, std::floor(std::log10(scatter)));
+    if (std::abs(steps - std::round(steps)) > 1e-6 * std::max(1.0, steps)) ++fine;
+  }
+  return fine > 0.5 * static_cast<double>(c.study.values.size());
+}
+
+void add_identical_rows(const Comparison& c, std::vector<RecordingMistake>& out) {
+  const Measurements& data = *c.study.data;
+  if (c.study.sequence) return;
+  using Row = std::tuple<std::size_t, std::array<double, 6>, std::array<std::optional<double>, 6>, double>;
+  std::map<Row, std::size_t> first;  // line
+  std::size_t copies = 0, line = 0, of = 0;
+  for (const Reading& r : data.readings) {
+    std::array<double, 6> load;
+    for (std::size_t k = 0; k < 6; ++k) load[k] = r.load(static_cast<Eigen::Index>(k));
+    const auto [same, is_new] = first.emplace(Row{r.pose, load, r.displacement, r.temperature_C}, r.line);
+    if (is_new) continue;
+    if (++copies == 1) line = r.line, of = same->second;
+  }
+  if (copies < 3 || 20 * copies < data.readings.size() || !finely_written(c)) return;
+  out.push_back({{"identical_rows"},
+                 fmt::format("{} rows are identical copies of others (line {} of line {} first): a reading that stands "
+                             "twice is not two readings; remove the copies, or number the readings in a column "
+                             "sequence if they were taken",
+                             copies, line, of)});
+}
+
+/// "in µm" where σ is as many times what it should be.
+std::string sigma_unit_words(double factor, bool rotation) {
+  struct Unit {
+    double factor;
+    const char* words;
+  };
+  static const Unit lengths[] = {{1e3, "in µm"}, {1e6, "in nm"}, {1e-3, "in m"}, {1 / 25.4, "in inches"}};
+  static const Unit angles[] = {{1e3, "in mrad"}, {1e6, "in µrad"}, {180 / pi, "in degrees"}};
+  const auto near = [&](const Unit& u) { return std::abs(std::log(factor / u.factor)) < std::log(1.5); };
+  for (const Unit& u : lengths)
+    if (!rotation && near(u)) return u.words;
+  for (const Unit& u : angles)
+    if (rotation && near(u)) return u.words;
+  return "in another unit";
+}
+
+void add_sigma(const Comparison& c, std::vector<RecordingMistake>& out) {
+  const PureError pure = pure_error(*c.study.data);
+  for (const bool rotation : {false, true}) {
+    double sigma = 0, n = 0, residual = 0;
+    for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+      const MeasuredValue& v = c.study.values[i];
+      const Reading& r = c.study.data->readings[v.reading];
+      if ((v.component >= 3) != rotation || !(rotation ? r.sigma_th : r.sigma_u)) continue;
+      const double left = c.residual(static_cast<Eigen::Index>(i));
+      sigma += c.sigma[i] * c.sigma[i], residual += left * left, n += 1;
+    }
+    if (n < static_cast<double>(least_numbers)) continue;
+    sigma = std::sqrt(sigma / n), residual = std::sqrt(residual / n);
+    const std::optional<NoiseEstimate>& seen = rotation ? pure.th : pure.u;
+    const bool replicated = seen && seen->degrees_of_freedom >= replicates_to_trust;
+    const double scatter = replicated ? seen->sigma : residual, factor = sigma / scatter;
+    // Without replicates the scatter is the residual: of data that were computed it is all but nothing.
+    const bool large = factor > sigma_out_of_scale && (replicated || factor < 1e4);
+    const bool small = replicated && factor > 0.8e-3 && factor < 1.2e-3;
+    if (!large && !small) continue;
+    const char* column = rotation ? "sigma_th_rad" : "sigma_u_mm";
+    out.push_back({{"sigma_unit"},
+                   fmt::format("{} {}: it says {}, where {} {}: {} wants {}", column,
+                               sigma_unit_words(factor, rotation), size_words(sigma, rotation),
+                               replicated ? "replicates scatter by" : "measured and predicted differ by",
+                               size_words(scatter, rotation), column, rotation ? "rad" : "mm")});
+  }
+}
+
+}  // namespace
+
+std::vector<RecordingMistake> file_oddities(const Comparison& c) {
+  std::vector<RecordingMistake> out;
+  add_empty_ones(c, out);
+  if (c.numbers < least_numbers)
+    out.push_back(
+        {{"too_few"},
+         fmt::format("{} readings with {} measured numbers are too few to conclude anything: take at least {} "
+                     "numbers, under loads in several directions",
+                     c.readings, c.numbers, least_numbers)});
+  add_identical_rows(c, out);
+  return out;
+}
+
+std::vector<RecordingMistake> sigma_oddities(const Comparison& c) {
+  std::vector<RecordingMistake> out;
+  add_sigma(c, out);
+  return out;
+}
+
+std::vector<RecordingMistake> contradictions(const Comparison& c) {
+  const Measurements& data = *c.study.data;
+  std::vector<RecordingMistake> out;
+  std::size_t more = 0;
+  constexpr std::size_t most = 5;
+  for (const std::vector<std::size_t>& group : replicates(data))
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::size_t low = group[0], high = group[0];
+      for (const std::size_t i : group) {
+        const auto& u = data.readings[i].displacement;
+        if (!u[k]) continue;
+        if (!data.readings[low].displacement[k] || *u[k] < *data.readings[low].displacement[k]) low = i;
+        if (!data.readings[high].displacement[k] || *u[k] > *data.readings[high].displacement[k]) high = i;
+      }
+      const Reading &a = data.readings[low], &b = data.readings[high];
+      if (!a.sigma_u || !b.sigma_u || !a.displacement[k] || !b.displacement[k]) continue;
+      const double apart = *b.displacement[k] - *a.displacement[k];
+      if (!(apart > 10 * std::hypot(*a.sigma_u, *b.sigma_u))) continue;
+      if (out.size() == most) {
+        ++more;
+        continue;
+      }
+      out.push_back({{"contradiction"},
+                     fmt::format("lines {} and {} contradict each other: u{}_mm differs by {:.3g} at the same pose and "
+                                 "load, {:.0f} of its standard deviations",
+                                 std::min(a.line, b.line), std::max(a.line, b.line), "xyz"[k], 1e3 * apart,
+                                 apart / std::hypot(*a.sigma_u, *b.sigma_u)),
+                     false});
+    }
+  if (more > 0) out.push_back({{"contradiction"}, fmt::format("{} more such pairs", more), false});
+  return out;
+}
+
+}  // namespace deflect

@@ -1,0 +1,36 @@
+// How a laboratory's file may differ from what was measured, and the file with that undone.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+
+#include "validation/measurement/measurements.h"
+
+namespace deflect {
+
+/// Six numbers that are six others, each times a factor: out(k) = factor[k] · in(from[k]).
+struct Rewritten {
+  std::array<std::size_t, 6> from = {0, 1, 2, 3, 4, 5};
+  std::array<double, 6> factor = {1, 1, 1, 1, 1, 1};
+
+  bool operator==(const Rewritten&) const = default;
+  bool nothing() const { return *this == Rewritten{}; }
+  Vector6 of(const Vector6&) const;
+};
+
+/// A mistake of recording with what undoes it.
+struct Correction {
+  std::string id;        ///< "force_in_kgf"
+  std::string sentence;  ///< what the data look like, with the remedy: "loads in kgf: fx_N … want N, …"
+  Rewritten displacement, load;
+  Vector3 acts_at = Vector3::Zero();     ///< m, base axes: forces act at T + acts_at
+  std::function<void(PoseGroup&)> pose;  ///< empty: poses are as recorded
+  bool sigma_too = true;                 ///< a unit of displacements is the unit of their σ too
+  int fitted = 0;                        ///< numbers that were fitted to the data
+};
+
+/// A number without a partner in its new place (a column that was not recorded) is not measured.
+Measurements corrected(const Measurements&, const Correction&);
+
+}  // namespace deflect

@@ -1,0 +1,147 @@
+#include "validation/report/verdict_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/compare/number_words.h"
+#include "validation/report/compare_words.h"
+
+namespace deflect {
+namespace {
+
+constexpr double micro_per_SI = 1e6;
+constexpr double like_noise = 1.3;          // χ² per degree of freedom up to which a residual passes for noise
+constexpr double headline_of_outliers = 5;  // % of the readings
+
+/// "2.13 µm rms, 1.02 times what noise and tolerances give (chi2 per degree of freedom)".
+std::string residual_words(double rmse, double chi2_per_dof, const char* unit) {
+  return fmt::format("{:.2f} {} rms, {:.2f} times what noise and tolerances give (chi2 per degree of freedom)",
+                     micro_per_SI * rmse, unit, chi2_per_dof);
+}
+
+bool passes_for_noise(double chi2_per_dof) { return as_printed(chi2_per_dof, 2) <= like_noise; }
+
+std::string first_of_all(const std::vector<RecordingMistake>& mistakes) {
+  return "Before anything else: " + mistakes.front().sentence + ".";
+}
+
+std::string joined_by_and(const Hypothesis& effects) {
+  std::string out;
+  for (const PlacedEffect& e : effects)
+    out += (out.empty() ? "" : " and ") + e.effect->title + " (" + placed_words(e) + ")";
+  return out;
+}
+
+/// What the effects that were found take away, in the unit in which it can be seen.
+std::string fall_of_error(const Diagnosis& d, const char* unit) {
+  const double from = as_printed(micro_per_SI * d.baseline.rmse, 2), to = as_printed(micro_per_SI * d.final.rmse, 2);
+  const double percent = from > 0 ? as_printed(100 * (1 - to / from), 0) : 0;
+  if (percent >= 1)
+    return fmt::format(
+        "With it the error falls from {:.2f} to {:.2f} {} rms ({:.0f} %); the readings' noise is {:.2f} {}.", from, to,
+        unit, percent, micro_per_SI * d.noise_floor, unit);
+  if (d.final.chi2_per_dof < d.baseline.chi2_per_dof)
+    return fmt::format(
+        "It hardly shows in the size of the error, {:.2f} {} rms beside a noise of {:.2f} {}, but in all readings "
+        "together: chi2 per degree of freedom falls from {}.",
+        to, unit, micro_per_SI * d.noise_floor, unit, fall_words(d.baseline.chi2_per_dof, d.final.chi2_per_dof));
+  return fmt::format("The error does not fall with it: {:.2f} {} rms before, {:.2f} with it.", from, unit, to);
+}
+
+}  // namespace
+
+std::string outlier_words(std::size_t set_aside, std::size_t readings) {
+  const double percent =
+      as_printed(100 * static_cast<double>(set_aside) / static_cast<double>(std::max<std::size_t>(1, readings)), 1);
+  if (!(percent > headline_of_outliers)) return "";
+  return fmt::format(
+      "{} of {} readings ({:.1f} %) are gross outliers and are set aside: look at them first, what follows rests on "
+      "the "
+      "others. ",
+      set_aside, readings, percent);
+}
+
+std::string verdict_words(const Comparison& c) {
+  if (is_mistaken(c)) return first_of_all(c.mistakes);
+  const char* unit = error_unit(c).micro;
+  const std::string outliers = outlier_words(c.set_aside.size(), c.readings);
+  if (c.findings.empty())
+    return outliers +
+           (passes_for_noise(c.unexplained_chi2_per_dof)
+                ? "Nothing is missing that these readings can show: what is left is "
+                : "Something is missing, and none of the patterns looked for describes it: what is left is ") +
+           residual_words(c.kept_rmse, c.unexplained_chi2_per_dof, unit) + ".";
+  const double rmse = as_printed(micro_per_SI * c.kept_rmse, 2);
+  const double beyond =
+      std::sqrt(std::max(0.0, c.kept_rmse * c.kept_rmse - c.noise_and_tolerances * c.noise_and_tolerances));
+  const double percent = c.all.measured > 0 ? as_printed(100 * beyond / c.all.measured, 0) : 0;
+  if (percent >= 1)
+    return outliers + fmt::format(
+                          "Something is missing: the model fails by {:.2f} {} rms beyond noise and tolerances ({:.0f} "
+                          "% of what was "
+                          "measured).",
+                          micro_per_SI * beyond, unit, percent);
+  return outliers + fmt::format(
+                        "Something is missing, little against noise and tolerances ({:.2f} {} rms are left where they "
+                        "give {:.2f}): what is found below takes chi2 per degree of freedom from {}.",
+                        rmse, unit, micro_per_SI * c.noise_and_tolerances,
+                        fall_words(c.chi2_per_dof, c.unexplained_chi2_per_dof));
+}
+
+std::string verdict_words(const Diagnosis& d) {
+  if (is_mistaken(d)) return first_of_all(d.mistakes);
+  const char* unit = d.rotations ? "µrad" : "µm";
+  const std::string outliers = outlier_words(d.set_aside, d.readings);
+  const std::string names = joined_by_and(d.missing);
+  switch (d.verdict) {
+    case Verdict::nothing_missing:
+      return outliers +
+             (passes_for_noise(d.baseline.chi2_per_dof)
+                  ? "Nothing is missing that these data can show: what is left is "
+                  : "No effect is called for, but noise and tolerances do not explain all: what is left is ") +
+             residual_words(d.baseline.rmse, d.baseline.chi2_per_dof, unit) + ".";
+    case Verdict::effect:
+      return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d, unit));
+    case Verdict::ambiguous: {
+      std::string group;
+      for (const std::vector<std::string>& g : d.indistinguishable)
+        group += fmt::format("{}{}", group.empty() ? "" : "; and ", fmt::join(g, " or "));
+      return outliers + fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}. {}", group,
+                                    names, fall_of_error(d, unit));
+    }
+    case Verdict::unknown_effect:
+      return outliers +
+             fmt::format(
+                 "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
+                 names.empty() ? "" : ", not even with " + names, d.pattern);
+  }
+  return "";
+}
+
+std::string how_read_text(const std::vector<std::string>& how) {
+  return how.empty() ? "" : fmt::format("\nhow the file was read:\n  {}\n", fmt::join(how, "\n  "));
+}
+
+std::string placed_words(const PlacedEffect& e) { return fmt::format("{} ({})", e.effect->name, site_of(e)); }
+
+std::string fitted_words(const Hypothesis& h, const Fit& f) {
+  const std::vector<const EffectParameter*> all = parameters_of(h);
+  std::string out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [low, high] = interval95(h, f, i);
+    out += fmt::format("{}{} = {}", i ? ", " : "", all[i]->name,
+                       interval_words(f.values(static_cast<Eigen::Index>(i)), low, high));
+  }
+  return out;
+}
+
+Json mistakes_json(const std::vector<RecordingMistake>& mistakes) {
+  Json out = Json::array();
+  for (const RecordingMistake& m : mistakes)
+    out.push_back({{"ids", m.ids}, {"sentence", m.sentence}, {"certain", m.certain}});
+  return out;
+}
+
+}  // namespace deflect

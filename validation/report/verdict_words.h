@@ -1,0 +1,31 @@
+// Verdicts as sentences. What a sentence says of its numbers is decided on the numbers as it prints them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "validation/compare/comparison.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/report/json_text.h"
+
+namespace deflect {
+
+std::string verdict_words(const Comparison&);
+std::string verdict_words(const Diagnosis&);
+
+/// "37 of 720 readings (5.1 %) are gross outliers …" where they are more than one in twenty; empty otherwise.
+std::string outlier_words(std::size_t set_aside, std::size_t readings);
+
+/// "how the file was read: …" with a line for each; empty without any.
+std::string how_read_text(const std::vector<std::string>&);
+
+/// "guide_root_compliance (leg 3)".
+std::string placed_words(const PlacedEffect&);
+
+/// "stiffness_Nmm_per_rad = 5.00e6 (4.9e6 … 5.1e6)" of all parameters.
+std::string fitted_words(const Hypothesis&, const Fit&);
+
+/// [{"ids": […], "sentence": "…", "certain": true}].
+Json mistakes_json(const std::vector<RecordingMistake>&);
+
+}  // namespace deflect
