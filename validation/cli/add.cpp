@@ -22,6 +22,7 @@ namespace {
 struct AddArguments {
   std::string device, effect, leg, from, out, json;
   std::vector<std::string> set, files;
+  bool force = false;
 };
 
 std::optional<int> parse_leg(const std::string& text) {
@@ -137,7 +138,20 @@ std::vector<EffectInstance> add_effects(Mechanism& m, const AddArguments& a, con
   return added;
 }
 
+/// What is read is not written over without a word.
+void require_other_file(const AddArguments& a) {
+  std::vector<std::string> inputs = a.files;
+  inputs.push_back(device_file(a.device).string());
+  if (!a.from.empty()) inputs.push_back(a.from);
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (!a.force && std::filesystem::equivalent(input, a.out, error) && !error)
+      throw InputError(fmt::format("-o {}: that is the file which is read: name another, or give --force", a.out));
+  }
+}
+
 void run(const AddArguments& a) {
+  require_other_file(a);
   Mechanism m = read_device(a.device);
   const std::vector<Effect> all = known_effects(a.files);
   const std::vector<EffectInstance> added = add_effects(m, a, all);
@@ -166,6 +180,7 @@ Command add_command() {
         &a->from},
        {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
        {"-o,--output", "NEW_DEVICE", "file to write", &a->out, true},
+       {"--force", "", "write over a file that is read", &a->force},
        {"--json", "FILE", "write what was added", &a->json}},
       [a] { run(*a); }};
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "msa/base/error.h"
+#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/figures.h"
@@ -19,6 +20,23 @@ struct HistoryArguments {
   double threads = 0;
   FigureArguments figures;
 };
+
+/// "versions 1 and 3 are the same machine, …" of any two whose descriptions differ in name and remarks at most.
+std::string same_machines(const std::vector<Mechanism>& devices) {
+  std::vector<std::string> texts;
+  for (Mechanism m : devices) {
+    m.name = m.about = "";
+    texts.push_back(write_mechanism(m));
+  }
+  std::string out;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    for (std::size_t k = i + 1; k < texts.size(); ++k)
+      if (texts[i] == texts[k])
+        out +=
+            fmt::format("versions {} ({}) and {} ({}) are the same machine: nothing can fall from one to the other\n",
+                        i + 1, devices[i].name, k + 1, devices[k].name);
+  return out;
+}
 
 void run(const HistoryArguments& a) {
   require_pages(a.report);
@@ -48,7 +66,7 @@ void run(const HistoryArguments& a) {
     write_file(folder / "history.csv", history_csv(h));
   }
   if (!a.json.empty()) write_file(a.json, history_json(h));
-  fmt::print("{}", history_report(h));
+  fmt::print("{}{}", history_report(h), same_machines(devices));
   if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(folder).string());
   if (!a.report.empty()) write_report(a.report, a.devices.front(), all, {{"history", history_json(h)}});
 }

@@ -13,8 +13,10 @@
 #include "validation/compare/theories.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
+#include "validation/measurement/column_names.h"
 #include "validation/report/compare_results.h"
 #include "validation/report/history_results.h"
+#include "validation/report/result_file.h"
 
 namespace deflect::cli {
 namespace {
@@ -86,19 +88,33 @@ std::vector<Vector6> loads_of(const Measurements& data) {
   return out;
 }
 
-/// {"found": [{"effect", "site", "parameters": [{"name", "value"}]}]} of a diagnosis, or of its best candidates.
-std::vector<EffectInstance> found_in(const Json& diagnosis, const std::vector<Effect>& effects) {
+/// "leg 4" → 4; nothing for other places.
+std::optional<int> numbered_leg(const std::string& site, const std::string& origin) {
+  if (!site.starts_with("leg ")) return std::nullopt;
+  for (int leg = 1; leg <= 1000; ++leg)
+    if (site == fmt::format("leg {}", leg)) return leg;
+  throw InputError(fmt::format("{}: there is no '{}': legs are numbered from 1", origin, excerpt(site)));
+}
+
+/// {"found": [{"effect", "site", "parameters": [{"name", "value"}]}]} of a diagnosis. Of a diagnosis of another device
+/// InputError.
+std::vector<EffectInstance> found_in(const PageResult& result, const std::string& device,
+                                     const std::vector<Effect>& effects) {
+  const ReadResult read = read_result(result.json, result.origin);
+  if (read.kind != "diagnosis") return {};
+  if (const std::string of = read.json.value("device", device); of != device)
+    throw InputError(
+        fmt::format("{}: a diagnosis of another device: of '{}', and --device is '{}'", result.origin, of, device));
   std::vector<EffectInstance> out;
-  for (const Json& found : diagnosis.value("found", Json::array())) {
+  for (const Json& found : read.json.value("found", Json::array())) {
     EffectInstance e;
-    e.effect = &find_effect(effects, found.at("effect"));
-    const std::string site = found.at("site");
-    if (site.starts_with("leg ")) e.leg = std::stoi(site.substr(4));
+    e.effect = &find_effect(effects, found["effect"]);
+    e.leg = numbered_leg(found["site"], result.origin);
     e.values = start_values(*e.effect);
-    for (const Json& parameter : found.at("parameters"))
+    for (const Json& parameter : found["parameters"])
       for (std::size_t i = 0; i < e.effect->parameters.size(); ++i)
-        if (e.effect->parameters[i].name == parameter.at("name"))
-          e.values(static_cast<Eigen::Index>(i)) = parameter.at("value");
+        if (e.effect->parameters[i].name == parameter["name"])
+          e.values(static_cast<Eigen::Index>(i)) = parameter["value"];
     out.push_back(e);
   }
   return out;
@@ -137,10 +153,15 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
                                const Measurements& data, const std::vector<Effect>& effects,
                                const ComparisonOptions& options, std::vector<PageResult> results) {
   std::vector<Mechanism> devices = {m};
-  for (const PageResult& result : results)
-    for (const EffectInstance& e : found_in(Json::parse(result.json), effects)) {
-      devices.push_back(with_effect(devices.back(), e));
-      devices.back().name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + site_of(e) + ")" : "");
+  for (const PageResult& result : results) try {
+      for (const EffectInstance& e : found_in(result, m.name, effects)) {
+        devices.push_back(with_effect(devices.back(), e));
+        devices.back().name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + site_of(e) + ")" : "");
+      }
+    } catch (const InputError& e) {
+      if (std::string_view(e.what()).starts_with(result.origin)) throw;
+      throw InputError(fmt::format("{}: what it found does not go into {}: is it a diagnosis of another device? {}",
+                                   result.origin, m.name, e.what()));
     }
   std::vector<Comparison> versions;
   for (const Mechanism& each : devices)

@@ -5,6 +5,7 @@
 #include "validation/cli/devices.h"
 #include "validation/cli/effects.h"
 #include "validation/cli/report.h"
+#include "validation/report/result_file.h"
 
 namespace deflect::cli {
 namespace {
@@ -20,7 +21,10 @@ void run(const ReportArguments& a) {
   if (a.device.empty() != a.data.empty())
     throw InputError("give --device and --data together, or neither: residuals need both");
   std::vector<PageResult> results;
-  for (const std::string& file : a.results) results.push_back({file, read_text(file)});
+  for (const std::string& file : a.results) {
+    results.push_back({file, read_text(file)});
+    read_result(results.back().json, file);  // before any work
+  }
   if (a.device.empty()) {
     write_report_of_results(a.output, std::move(results));
     return;

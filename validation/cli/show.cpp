@@ -17,7 +17,7 @@
 namespace deflect::cli {
 namespace {
 
-struct Arguments {
+struct ShowArguments {
   std::string file, pose, joints, json, out, report;
   FigureArguments figures;
 };
@@ -32,7 +32,7 @@ bool is_frame(const std::string& name) {
   return kind_of(parse_yaml(read_text(file), file.string())) == FileKind::frame;
 }
 
-MachineDrawing drawing(const Arguments& a, bool frame) {
+MachineDrawing drawing(const ShowArguments& a, bool frame) {
   if (frame) {
     if (!a.pose.empty() || !a.joints.empty()) throw InputError("--pose and --joints are of devices: a frame has none");
     return drawing_of(frame::read_frame(frame_file(a.file)));
@@ -42,7 +42,7 @@ MachineDrawing drawing(const Arguments& a, bool frame) {
   return drawing_of(m, parse_stand(m, a.pose, a.joints, false).configuration);
 }
 
-void run(const Arguments& a) {
+void run(const ShowArguments& a) {
   require_pages(a.report);
   const FigureStyle style = figure_style(a.figures, a.out);
   const bool frame = is_frame(a.file);
@@ -60,7 +60,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 Command show_command() {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ShowArguments>();
   return {
       "show",
       "The machine or frame as its file draws it, unloaded and before any solution: members with their sections and "

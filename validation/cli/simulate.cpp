@@ -13,6 +13,7 @@
 #include "validation/cli/devices.h"
 #include "validation/cli/effects.h"
 #include "validation/cli/talk.h"
+#include "validation/compare/number_words.h"
 #include "validation/compare/simulate.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
@@ -118,6 +119,15 @@ Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64
   return campaign(a.campaign, m, a.force, seed);
 }
 
+/// What to say of loads that are too large: what the machine carries.
+std::string way_out(const Mechanism& m, const Measurements& plan, const SimulationOptions& o, const SimulateArguments& a) {
+  const double share = share_carried(m, plan, o);
+  if (share == 0 || share == 1) return "";
+  const bool named = plan.origin == "campaign";
+  return fmt::format(": the machine as drawn gives way above {} % of the loads{}", digits_of(100 * share, 2),
+                     named ? fmt::format(", --force {} N", digits_of(share * a.force, 2)) : "");
+}
+
 void run(const SimulateArguments& a) {
   const std::vector<Effect> all = known_effects(a.files);
   Mechanism m = read_device(a.device);
@@ -136,7 +146,11 @@ void run(const SimulateArguments& a) {
        a.geometry);
   const Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
     o.progress = told;
-    return simulate(m, std::move(plan), o);
+    try {
+      return simulate(m, plan, o);
+    } catch (const NumericalError& e) {
+      throw NumericalError(fmt::format("{}{}", e.what(), way_out(m, plan, o, a)));
+    }
   });
   say_new_folder(a.out);
   write_measurements(a.out, data);

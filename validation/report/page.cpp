@@ -5,6 +5,7 @@
 #include "msa/base/error.h"
 #include "validation/report/page_residuals.h"
 #include "validation/report/page_template.h"
+#include "validation/report/result_file.h"
 
 namespace deflect {
 namespace {
@@ -12,23 +13,6 @@ namespace {
 constexpr std::size_t most_source = 600'000;  // bytes
 constexpr std::size_t most_readings = 3000;   // of all versions
 constexpr const char* data_mark = "@DEFLECT_DATA@";
-
-/// Which command wrote a result, by the members that only its results have.
-const char* kind_of(const Json& result) {
-  struct Kind {
-    const char *name, *members[2];
-  };
-  constexpr Kind kinds[] = {{"diagnosis", {"verdict", "candidates"}},
-                            {"comparison", {"findings", "tests"}},
-                            {"history", {"versions", "data"}},
-                            {"validation", {"points", "max_relative_difference"}},
-                            {"map", {"grid", "arrays"}},
-                            {"drawing", {"drawing", "lines"}},
-                            {"solve", {"analytic", "shares"}}};
-  for (const Kind& kind : kinds)
-    if (result.is_object() && result.contains(kind.members[0]) && result.contains(kind.members[1])) return kind.name;
-  return nullptr;
-}
 
 /// Matrices pose by pose would make a page of many megabytes: ranged columns stay.
 void keep_what_is_shown(Json& map) {
@@ -43,21 +27,10 @@ void keep_what_is_shown(Json& map) {
   }
 }
 
-Json parsed(const PageResult& result) {
-  Json json;
-  try {
-    json = Json::parse(result.json);
-  } catch (const Json::exception& e) {
-    throw InputError(fmt::format("{}: not valid JSON: give files that --json wrote", result.origin));
-  }
-  const char* kind = kind_of(json);
-  if (!kind)
-    throw InputError(
-        fmt::format("{}: not a result of diagnose, compare, history, solve, validate, map or show: give files that "
-                    "their --json wrote",
-                    result.origin));
-  if (kind == std::string_view("map")) keep_what_is_shown(json);
-  return {{"kind", kind}, {"origin", result.origin}, {"result", std::move(json)}};
+Json shown_result(const PageResult& result) {
+  ReadResult read = read_result(result.json, result.origin);
+  if (read.kind == "map") keep_what_is_shown(read.json);
+  return {{"kind", read.kind}, {"origin", result.origin}, {"result", std::move(read.json)}};
 }
 
 Json source_json(const std::optional<PageSource>& source) {
@@ -91,7 +64,7 @@ Json page_json(const PageContents& page) {
   data["device"] = source_json(page.device);
   data["data"] = source_json(page.data);
   data["results"] = Json::array();
-  for (const PageResult& result : page.results) data["results"].push_back(parsed(result));
+  for (const PageResult& result : page.results) data["results"].push_back(shown_result(result));
   data["versions"] = Json::array();
   for (const Comparison* c : page.versions)
     data["versions"].push_back(residuals_json(*c, most_readings / page.versions.size()));
