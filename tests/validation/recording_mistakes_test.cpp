@@ -72,14 +72,17 @@ TEST_P(Recording, APlantedMistakeIsTheFirstThingSaid) {
       ++named;
       continue;
     }
-    if (named_first(c, kind.id))
+    if (named_first(c, kind.id)) {
       ++named;
-    else
+    } else {
       EXPECT_LT(c.chi2_per_dof, 1.3) << GetParam() << ", " << kind.id << ": " << words(c)
                                      << ": where the drawing explains the data nothing is mistaken";
+    }
   }
   std::printf("%s: %zu named\n", GetParam(), named);
-  if (all_wanted()) EXPECT_GE(named, 25u);
+  if (all_wanted()) {
+    EXPECT_GE(named, 25u);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, Recording, testing::ValuesIn(machine_names), [](const auto& machine) {
@@ -88,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Machines, Recording, testing::ValuesIn(machine_names), 
   return name;
 });
 
-TEST(Recording, HealthyMachinesAreNotAccused) {
+TEST(RecordingChecks, HealthyMachinesAreNotAccused) {
   const std::vector<Effect>& effects = test::all_effects();
   const std::size_t sets = all_wanted() ? 200 : 12;
   const char* plans[] = {"rich", "random", "paper", "cycle"};
@@ -121,7 +124,7 @@ TEST(Recording, HealthyMachinesAreNotAccused) {
   }
 }
 
-TEST(Recording, PracticeSetsAreNotAccused) {
+TEST(RecordingChecks, PracticeSetsAreNotAccused) {
   const char* folder = std::getenv("DEFLECT_PRACTICE");
   if (!folder) GTEST_SKIP() << "DEFLECT_PRACTICE names no folder";
   const Mechanism m = test::device("haptic-6psu-ideal-joints");
@@ -134,7 +137,7 @@ TEST(Recording, PracticeSetsAreNotAccused) {
   }
 }
 
-TEST(Recording, ADiagnosisSaysItFirstAndNamesNoEffect) {
+TEST(RecordingChecks, ADiagnosisSaysItFirstAndNamesNoEffect) {
   const Mechanism m = test::device("haptic-6psu-ideal-joints");
   Measurements data = measured(m, m, "random", 3, false);
   test::displacements_times(0, 3, 1 / 25.4)(data);

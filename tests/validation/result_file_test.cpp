@@ -22,14 +22,17 @@ Json good_diagnosis() {
   Diagnosis d;
   d.device = "arm";
   Json json = Json::parse(diagnosis_json(d));
-  json["candidates"].push_back(
-      {{"effect", "modulus"},
-       {"site", "machine"},
-       {"probability", 0.5},
-       {"parameters", {{{"name", "factor"}, {"value", 0.9}, {"low95", 0.8}, {"high95", nullptr}}}},
-       {"rmse_mm", 0.1},
-       {"held_out_rmse_mm", 0.1},
-       {"chi2_per_dof", 1.0}});
+  Json parameter, candidate;
+  parameter["name"] = "factor";
+  parameter["value"] = 0.9;
+  parameter["low95"] = 0.8;
+  parameter["high95"] = nullptr;
+  candidate["effect"] = "modulus";
+  candidate["site"] = "machine";
+  for (const char* number : {"probability", "rmse_mm", "held_out_rmse_mm", "chi2_per_dof"}) candidate[number] = 0.5;
+  candidate["parameters"] = Json::array();
+  candidate["parameters"].push_back(parameter);
+  json["candidates"].push_back(candidate);
   return json;
 }
 
@@ -67,10 +70,10 @@ TEST(ResultFile, WhatIsNoResultIsRefusedWithThePlace) {
       {changed("/candidates/0/rmse_mm", nullptr), "member 'candidates[0].rmse_mm' is null, where a number"},
       {changed("/candidates/0/parameters", 3), "member 'candidates[0].parameters' is 3, where a list"},
       {changed("/candidates", Json::object()), "member 'candidates' is an object, where a list"},
-      {changed("/missing", {1}), "member 'missing[0]' is 1, where a text"},
+      {changed("/missing", Json::array({1})), "member 'missing[0]' is 1, where a text"},
       {changed("/baseline", nullptr), "there is no member 'baseline.rmse_mm'"},
       {changed("/unexplained/significant", "no"), "member 'unexplained.significant' is \"no\", where true or false"},
-      {changed("/found", {{{"effect", "modulus"}}}), "there is no member 'found[0].site'"},
+      {changed("/found", Json::array({Json::object({{"effect", "modulus"}})})), "there is no member 'found[0].site'"},
   };
   for (const auto& c : cases) {
     const std::string said = refused(c.text);

@@ -114,7 +114,8 @@ std::string compare_report(const Comparison& c) {
                                 verdict_words(c));
   const std::string found = findings_text(c);
   if (!found.empty()) out += "\n" + found;
-  for (const RecordingMistake& mistake : c.mistakes) out += fmt::format("\n  {}\n", mistake.sentence);
+  for (std::size_t i = is_mistaken(c) ? 1 : 0; i < c.mistakes.size(); ++i)  // the headline has been said
+    out += fmt::format("\n  {}\n", c.mistakes[i].sentence);
   out += how_read_text(c.study.data->how_read);
   out += fmt::format(
       "\nresidual {:.2f} {} rms (held-out poses {:.2f}), σ of a reading {:.2f} {}{}, noise and tolerances {:.2f} {}, "
