@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "msa/base/error.h"
 #include "validation/compare/prediction.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "validation/measurement/column_names.h"
@@ -31,7 +32,7 @@ const std::vector<ColumnUnit> moment_units = {{"Nmm"},
 const std::vector<ColumnUnit> length_units = {{"mm"},      {"nm", 1e-6}, {"um", 1e-3},   {"µm", 1e-3},   {"cm", 10},
                                               {"m", 1000}, {"in", 25.4}, {"inch", 25.4}, {"mil", 0.0254}};
 const std::vector<ColumnUnit> degree_units = {
-    {"deg"}, {"rad", 1 / deg_rad}, {"mrad", 1e-3 / deg_rad}, {"urad", 1e-6 / deg_rad}, {"µrad", 1e-6 / deg_rad}};
+    {"deg"}, {"°"}, {"rad", 1 / deg_rad}, {"mrad", 1e-3 / deg_rad}, {"urad", 1e-6 / deg_rad}, {"µrad", 1e-6 / deg_rad}};
 const std::vector<ColumnUnit> radian_units = {{"rad"},        {"deg", deg_rad}, {"°", deg_rad},
                                               {"mrad", 1e-3}, {"urad", 1e-6},   {"µrad", 1e-6}};
 const std::vector<ColumnUnit> temperature_units = {{"C"}, {"°C"}, {"K", 1, -273.15}, {"F", 5.0 / 9, -32}};
