@@ -49,7 +49,7 @@ BaselineAnswer fixed_nuisances(const Plan& plan, const Changes& changes, const U
 
 BaselineAnswer all_parameters(const Plan& plan, const Changes& changes, const Uncertainty& noise,
                               const VectorX& residual) {
-  const MatrixX& tolerances = plan.observations->comparison().tolerances.A;
+  const MatrixX tolerances = plan.observations->comparison().tolerances.A.dense();
   Eigen::Index columns = tolerances.cols();
   for (const Change* c : changes) columns += c->measured.cols();
   MatrixX all(residual.size(), columns);
@@ -112,8 +112,8 @@ std::vector<BaselineAnswer> baselines(const Plan& plan, const VectorX& residual,
   for (const Change& c : plan.changes)
     if (c.effect.effect->name != left_out) changes.push_back(&c);
   const Comparison& known = plan.observations->comparison();
-  const Uncertainty noise(MatrixX(residual.size(), 0), known.study.values, known.sigma, known.study.predicted,
-                          plan.observations->device().tolerances.load);
+  const Uncertainty noise(PartedColumns(MatrixX(residual.size(), 0)), known.study.values, known.sigma,
+                          known.study.predicted, plan.observations->device().tolerances.load);
   return {fixed_nuisances(plan, changes, noise, residual), all_parameters(plan, changes, noise, residual),
           bic(plan, changes, residual)};
 }

@@ -34,7 +34,7 @@ constexpr int fewest_left = 10;  // freedoms, for a scatter to within a quarter 
 /// The scatter that no pattern explains, alike for all translations and for all rotations.
 std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const MatrixX& patterns) {
   const std::vector<double> one(s.values.size(), 1e-6);
-  const Uncertainty u(MatrixX(r.size(), 0), s.values, one, s.predicted, 0);
+  const Uncertainty u(PartedColumns(MatrixX(r.size(), 0)), s.values, one, s.predicted, 0);
   const Regression fit = regress(u, r, patterns);
   if (static_cast<int>(s.values.size()) < fit.freedoms + fewest_left)
     throw InputError(
@@ -59,14 +59,15 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
 }
 
 /// Root mean square of a residual that Errors speak of, with nothing missing.
-double expected_rmse(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma) {
+double expected_rmse(const ResidualStudy& s, const PartedColumns& A, const std::vector<double>& sigma) {
   double squares = 0, n = 0;
   const bool rotations = rotations_alone(s.values);
+  const VectorX tolerances = A.squared_row_norms();
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const MeasuredValue& v = s.values[i];
     if ((v.component >= 3) != rotations) continue;
     const double load = s.mechanism->tolerances.load * s.predicted[v.reading](static_cast<Eigen::Index>(v.component));
-    squares += sigma[i] * sigma[i] + load * load + A.row(static_cast<Eigen::Index>(i)).squaredNorm();
+    squares += sigma[i] * sigma[i] + load * load + tolerances(static_cast<Eigen::Index>(i));
     n += 1;
   }
   return n > 0 ? std::sqrt(squares / n) : 0;
@@ -149,8 +150,9 @@ Comparison compared_as_recorded(const Mechanism& m, const Measurements& data, co
   c.noise_and_tolerances = expected_rmse(s, c.tolerances.A, c.sigma);
   c.held_out = HeldOut(s, u, aside).rmse(c.residual);
   c.contrasts = contrast_tests(s, u, r, aside);
+  const Regressions regressions(u, r);
   for (std::size_t i = 0; i < patterns.size(); ++i) {
-    PatternTest t{patterns[i].id, patterns[i].title, regress(u, r, columns[i]), 0};
+    PatternTest t{patterns[i].id, patterns[i].title, regressions.on(columns[i]), 0};
     t.size = rms_of_errors(s.values, columns[i] * t.alone.amplitude);
     c.patterns.push_back(std::move(t));
   }

@@ -16,6 +16,50 @@ using Weights = std::vector<std::pair<std::size_t, double>>;  // reading, weight
 
 constexpr std::size_t most_contrasts = 1200;
 
+/// Contrasts whose noise is not independent lie in one block; blocks as small as they are.
+std::vector<NoiseBlock> blocks_of(const MatrixX& noise) {
+  std::vector<NoiseBlock> out;
+  Eigen::Index first = 0, reaches = 0;  // the last contrast that those since `first` have to do with
+  for (Eigen::Index i = 0; i < noise.rows(); ++i) {
+    Eigen::Index last = noise.rows() - 1;
+    while (last > i && noise(i, last) == 0) --last;
+    reaches = std::max(reaches, last);
+    if (reaches > i) continue;
+    const Eigen::Index size = i + 1 - first;
+    out.push_back({first, size, noise.block(first, first, size, size)});
+    first = reaches = i + 1;
+  }
+  return out;
+}
+
+/// Of contrasts z at least as large, by chance. Directions whose variance is lost beside the others' (1e-9, each
+/// contrast in its own deviation) do not count: where the noise alone is more than that there are none, for errors in
+/// common only add to it; else all directions are looked at.
+double chance_of(const VectorX& z, const Uncertainty::OfContrasts& of, const VectorX& deviation) {
+  constexpr double lost = 1e-9;
+  const std::vector<NoiseBlock> blocks = blocks_of(of.noise);
+  const VectorX scale = deviation.cwiseInverse();
+  const bool all_count = std::all_of(blocks.begin(), blocks.end(), [&](const NoiseBlock& b) {
+    const VectorX own = scale.segment(b.first, b.size);
+    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(own.asDiagonal() * b.covariance * own.asDiagonal(),
+                                                      Eigen::EigenvaluesOnly);
+    return axes.eigenvalues()(0) > lost;
+  });
+  if (all_count) return chi_squared_tail(static_cast<double>(z.size()), Whitening(blocks, of.errors)(z).squaredNorm());
+  const MatrixX errors = scale.asDiagonal() * of.errors.dense();
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(scale.asDiagonal() * of.noise * scale.asDiagonal() +
+                                                    errors * errors.transpose());
+  const VectorX along = axes.eigenvectors().transpose() * scale.cwiseProduct(z);
+  double chi2 = 0;
+  int freedoms = 0;
+  for (Eigen::Index i = 0; i < along.size(); ++i)
+    if (axes.eigenvalues()(i) > lost) {
+      chi2 += along(i) * along(i) / axes.eigenvalues()(i);
+      ++freedoms;
+    }
+  return chi_squared_tail(freedoms, chi2);
+}
+
 /// Contrasts of translations: one row for each component that all its readings have.
 class Contrasts {
  public:
@@ -61,19 +105,10 @@ class Contrasts {
       for (const auto& [column, weight] : rows[i]) entries.emplace_back(static_cast<Eigen::Index>(i), column, weight);
     T.setFromTriplets(entries.begin(), entries.end());
     const VectorX z = T * r;
-    const MatrixX covariance = u.covariance(T);
-    const VectorX scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(scale.asDiagonal() * covariance * scale.asDiagonal());
-    const VectorX along = axes.eigenvectors().transpose() * scale.cwiseProduct(z);
-    double chi2 = 0;
-    int freedoms = 0;
-    for (Eigen::Index i = 0; i < along.size(); ++i)
-      if (axes.eigenvalues()(i) > 1e-9) {
-        chi2 += along(i) * along(i) / axes.eigenvalues()(i);
-        ++freedoms;
-      }
-    t.p_value = chi_squared_tail(freedoms, chi2);
-    t.size = std::sqrt(std::max(0.0, (z.squaredNorm() - covariance.trace()) / static_cast<double>(z.size())));
+    const Uncertainty::OfContrasts of = u.of_contrasts(T);
+    const VectorX variance = of.noise.diagonal() + of.errors.squared_row_norms();
+    t.p_value = chance_of(z, of, variance.cwiseSqrt());
+    t.size = std::sqrt(std::max(0.0, (z.squaredNorm() - variance.sum()) / static_cast<double>(z.size())));
     return t;
   }
 

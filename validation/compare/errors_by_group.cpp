@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 
 namespace deflect {
 namespace {
@@ -12,13 +13,14 @@ namespace {
 /// Whether a measured number belongs to the group.
 using Belongs = std::function<bool(const MeasuredValue&)>;
 
-Errors errors_of(const Comparison& c, const std::string& group, bool rotations, const Belongs& belongs) {
+Errors errors_of(const Comparison& c, const std::string& group, bool rotations, const std::vector<std::size_t>& values,
+                 const Belongs& belongs) {
   Errors e;
   e.group = group;
   double squares = 0, measured = 0, n = 0;
   Vector3 sum = Vector3::Zero(), count = Vector3::Zero();
   std::size_t last = c.readings;
-  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+  for (const std::size_t i : values) {
     const MeasuredValue& v = c.study.values[i];
     if ((v.component >= 3) != rotations || !belongs(v)) continue;
     const double r = c.residual(static_cast<Eigen::Index>(i));
@@ -55,26 +57,30 @@ std::string direction_of(const Vector6& F) {
 void add_errors(Comparison& c) {
   const Measurements& data = *c.study.data;
   const bool rotations = rotations_alone(c.study.values);
+  std::vector<std::size_t> all(c.study.values.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   const auto group = [&](const std::string& name, const Belongs& belongs) {
-    return errors_of(c, name, rotations, belongs);
+    return errors_of(c, name, rotations, all, belongs);
   };
   c.all = group("", [](const MeasuredValue&) { return true; });
   for (std::size_t k = 0; k < 3; ++k) {
     const Errors e = group(std::string(1, "xyz"[k]), [&](const MeasuredValue& v) { return v.component % 3 == k; });
     if (e.readings > 0) c.by_axis.push_back(e);
   }
+  const auto every = [](const MeasuredValue&) { return true; };
+  std::vector<std::vector<std::size_t>> of_pose(data.poses.size());
+  for (const std::size_t i : all) of_pose[data.readings[c.study.values[i].reading].pose].push_back(i);
   for (std::size_t p = 0; p < data.poses.size(); ++p)
-    c.by_pose.push_back(group("pose " + data.poses[p].label,
-                              [&](const MeasuredValue& v) { return data.readings[v.reading].pose == p; }));
-  std::map<std::string, std::size_t> directions;
+    c.by_pose.push_back(errors_of(c, "pose " + data.poses[p].label, rotations, of_pose[p], every));
   double most = 0;
+  std::map<std::string, std::vector<std::size_t>> directions;
+  std::vector<std::vector<std::size_t>*> direction;
   for (const Reading& r : data.readings) {
-    ++directions[direction_of(r.load)];
+    direction.push_back(&directions[direction_of(r.load)]);
     most = std::max(most, r.load.head<3>().norm());
   }
-  for (const auto& [name, count] : directions)
-    c.by_direction.push_back(group(
-        name, [&, n = name](const MeasuredValue& v) { return direction_of(data.readings[v.reading].load) == n; }));
+  for (const std::size_t i : all) direction[c.study.values[i].reading]->push_back(i);
+  for (const auto& [name, values] : directions) c.by_direction.push_back(errors_of(c, name, rotations, values, every));
   if (most > 0)
     for (int third = 0; third < 3; ++third) {
       const double low = most * third / 3, high = most * (third + 1) / 3;

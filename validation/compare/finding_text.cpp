@@ -31,10 +31,10 @@ std::string joined(const std::vector<std::string>& parts) {
 
 /// How much a site of this geometry yields in the pattern found, which grows as a root's or a guide's does across
 /// slides.
-double weight_of(const Finding& found, const ResidualStudy& s, const Site& site) {
+double weight_of(const Finding& found, double mean_extension, const Site& site) {
   if (found.pattern == "elastic along slides") return site.along;
   if (found.pattern != "elastic across slides") return 1;
-  const double L = site.extension / mean_extension(s);
+  const double L = site.extension / mean_extension;
   double weight = 0, power = 1;
   for (Eigen::Index k = 0; k < found.amplitude.size(); ++k, power *= L) weight += found.amplitude(k) * power;
   return (1 - site.along) * weight / found.amplitude.cwiseAbs().maxCoeff();
@@ -45,8 +45,9 @@ std::string alike(const Finding& found, const ResidualStudy& s, const Uncertaint
                   const MatrixX& beside) {
   const std::vector<Site>& sites = s.sites.front();
   if (sites.size() < 2) return "";
+  const double mean = mean_extension(s);
   const auto shape = [&](std::size_t i, std::size_t k) {
-    return weight_of(found, s, s.sites[s.data->readings[i].pose][k]) * s.force[i](static_cast<Eigen::Index>(k));
+    return weight_of(found, mean, s.sites[s.data->readings[i].pose][k]) * s.force[i](static_cast<Eigen::Index>(k));
   };
   const MatrixX own = rows_of(s.values, site_columns(s, shape));
   MatrixX both(r.size(), beside.cols() + found.shape.cols());
@@ -73,15 +74,16 @@ std::string elastic(const Finding& f, const ResidualStudy& s, const Uncertainty&
   else if (f.pattern == "elastic by site")
     first += ": " + (rotation ? by_column(f, 1e3, "µrad/Nmm") : by_column(f, 1e6, "µm/N"));
   parts.push_back(first);
-  const auto weight = [&](const Site& site) { return weight_of(f, s, site); };
-  if (const auto p = force_exponent(s, u, r, weight, beside); p && !f.pattern.starts_with("elastic at ")) {
+  const auto weight = [&, mean = mean_extension(s)](const Site& site) { return weight_of(f, mean, site); };
+  const Regressions regressions(u, r, beside);
+  if (const auto p = force_exponent(s, regressions, weight); p && !f.pattern.starts_with("elastic at ")) {
     const double power = as_printed(p->value, 2), deviation = as_printed(p->deviation, 2);
     parts.push_back(fmt::format("odd in the load and {} (it grows as the force to the {:.2f} ± {:.2f})",
                                 std::abs(power - 1) < 3 * deviation + 0.05 ? "proportional" : "not quite proportional",
                                 power, deviation));
   }
   if (!f.pattern.starts_with("elastic at "))
-    if (const auto p = extension_exponent(s, u, r, beside); p && f.pattern == "elastic across slides")
+    if (const auto p = extension_exponent(s, regressions); p && f.pattern == "elastic across slides")
       parts.push_back(fmt::format("the excess grows as their length to the {:.1f} ± {:.1f}", p->value, p->deviation));
   if (!f.pattern.starts_with("elastic at ") && f.pattern != "elastic by site")
     if (const std::string same = alike(f, s, u, r, beside); !same.empty()) parts.push_back(same);
@@ -111,15 +113,15 @@ double mean_extension(const ResidualStudy& s) {
   return n > 0 && sum > 0 ? sum / n : 1;
 }
 
-Columns elastic_along(const ResidualStudy& s) {
-  return site_column(s, [&](std::size_t i, std::size_t k) {
+VectorX elastic_along(const ResidualStudy& s) {
+  return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
     return s.force[i](static_cast<Eigen::Index>(k)) * s.sites[s.data->readings[i].pose][k].along;
   });
 }
 
-Columns elastic_across(const ResidualStudy& s, double power) {
+VectorX elastic_across(const ResidualStudy& s, double power) {
   const double mean = mean_extension(s);
-  return site_column(s, [&](std::size_t i, std::size_t k) {
+  return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
     const Site& site = s.sites[s.data->readings[i].pose][k];
     return s.force[i](static_cast<Eigen::Index>(k)) * (1 - site.along) * std::pow(site.extension / mean, power);
   });
@@ -140,8 +142,7 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertai
         f.amplitude(0) > 0 ? "gives way by" : "holds back by",
         rotation ? amplitude(1e6, "µrad") : amplitude(1e6, "µm"));
   if (f.pattern == "power") {
-    const auto p = force_exponent(
-        s, u, r, [](const Site&) { return 1.0; }, beside);
+    const auto p = force_exponent(s, Regressions(u, r, beside), [](const Site&) { return 1.0; });
     const bool less = !p || as_printed(p->value, 2) < 1;
     return fmt::format(
         "the misfit is odd in the load and grows {} than in proportion{}: {}", less ? "less" : "no less",

@@ -17,9 +17,9 @@ bool varies_in_extension(const ResidualStudy&);
 double mean_extension(const ResidualStudy&);  ///< m; 1 without slides
 
 /// e ∝ f · along: what yields along slides.
-Columns elastic_along(const ResidualStudy&);
+VectorX elastic_along(const ResidualStudy&);
 
 /// e ∝ f (1 − along) (L/L̄)^p: what yields across slides of extension L, L̄ their mean.
-Columns elastic_across(const ResidualStudy&, double power);
+VectorX elastic_across(const ResidualStudy&, double power);
 
 }  // namespace deflect

@@ -23,22 +23,23 @@ struct Candidate {
 /// What one site alone can do: yield along its line; where it has a slide, along this, across it, and across as a bent
 /// guide does.
 void add_single_sites(const ResidualStudy& s, const Pattern& p, const MatrixX& columns, std::vector<Candidate>& out) {
+  const bool slides = has_slides(s);
+  const double mean = mean_extension(s);
   for (std::size_t site = 0; site < p.columns.size(); ++site) {
     const auto only = [&](const auto& e) {
-      return rows_of(s.values, site_column(s, [&](std::size_t reading, std::size_t k) {
-                       return k == site ? e(s.sites[s.data->readings[reading].pose][k]) *
-                                              s.force[reading](static_cast<Eigen::Index>(k))
-                                        : 0.0;
-                     }));
+      return rows_of_sites(s, [&](std::size_t reading, std::size_t k) {
+        return k == site
+                   ? e(s.sites[s.data->readings[reading].pose][k]) * s.force[reading](static_cast<Eigen::Index>(k))
+                   : 0.0;
+      });
     };
     Candidate c{
         "elastic at " + p.columns[site], {p.columns[site]}, p.unit, columns.col(static_cast<Eigen::Index>(site))};
-    if (has_slides(s)) {
+    if (slides) {
       c.columns.resize(Eigen::NoChange, 3);
       c.columns.col(0) = only([](const Site& x) { return x.along; });
       c.columns.col(1) = only([](const Site& x) { return 1 - x.along; });
-      c.columns.col(2) =
-          only([&](const Site& x) { return (1 - x.along) * std::pow(x.extension / mean_extension(s), 3); });
+      c.columns.col(2) = only([&](const Site& x) { return (1 - x.along) * std::pow(x.extension / mean, 3); });
       c.names = {"along its slide", "across", "across, as L^3"};
     }
     out.push_back(std::move(c));
@@ -54,13 +55,13 @@ std::vector<Candidate> candidates_of(const ResidualStudy& s, const std::vector<P
     if (p.id == "elastic by site") add_single_sites(s, p, columns[i], out);
     out.push_back({p.id, p.columns, p.unit, columns[i]});
     if (p.id == "elastic" && has_slides(s)) {
-      out.push_back({"elastic along slides", {"all"}, p.unit, rows_of(s.values, elastic_along(s))});
+      out.push_back({"elastic along slides", {"all"}, p.unit, elastic_along(s)});
       const int powers = varies_in_extension(s) ? 4 : 1;  // a carriage, its guide's clamp tilting, the guide bending
       MatrixX across(columns[i].rows(), powers);
       std::vector<std::string> names;
       for (int power = 0; power < powers; ++power) {
         names.push_back(fmt::format("L^{}", power));
-        across.col(power) = rows_of(s.values, elastic_across(s, power));
+        across.col(power) = elastic_across(s, power);
       }
       out.push_back({"elastic across slides", names, p.unit, across});
     }
@@ -75,10 +76,17 @@ MatrixX joined(const MatrixX& a, const MatrixX& b) {
   return out;
 }
 
-/// The exponent that takes most χ² away: grid, then a parabola through the best three.
-std::optional<Exponent> best_exponent(double low, double high, double step, const std::function<double(double)>& gain) {
+/// The exponent that takes most χ² away: grid, then a parabola through the best three. `column(p)`: of the exponent.
+std::optional<Exponent> best_exponent(double low, double high, double step, const Regressions& regressions,
+                                      const std::function<VectorX(double)>& column) {
   std::vector<double> at, gains;
-  for (double p = low; p <= high + 1e-9; p += step) at.push_back(p), gains.push_back(gain(p));
+  std::vector<VectorX> columns;
+  for (double p = low; p <= high + 1e-9; p += step) at.push_back(p), columns.push_back(column(p));
+  MatrixX all(columns.front().size(), std::ssize(columns));
+  for (std::size_t i = 0; i < columns.size(); ++i) all.col(static_cast<Eigen::Index>(i)) = columns[i];
+  columns.clear();
+  all = regressions.whitened(all);
+  for (Eigen::Index i = 0; i < all.cols(); ++i) gains.push_back(regressions.on_whitened(all.col(i)).gain);
   const auto best = static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
   if (best == 0 || best + 1 == at.size() || gains[best] < 25) return std::nullopt;
   const double curvature = (gains[best - 1] - 2 * gains[best] + gains[best + 1]) / (step * step);
@@ -89,22 +97,19 @@ std::optional<Exponent> best_exponent(double low, double high, double step, cons
 
 }  // namespace
 
-std::optional<Exponent> force_exponent(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
-                                       const std::function<double(const Site&)>& weight, const MatrixX& beside) {
-  return best_exponent(-0.5, 2.5, 0.1, [&](double p) {
-    const Columns e = site_column(s, [&](std::size_t i, std::size_t k) {
+std::optional<Exponent> force_exponent(const ResidualStudy& s, const Regressions& regressions,
+                                       const std::function<double(const Site&)>& weight) {
+  return best_exponent(-0.5, 2.5, 0.1, regressions, [&](double p) {
+    return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
       const double f = s.force[i](static_cast<Eigen::Index>(k));
       return f == 0 ? 0 : weight(s.sites[s.data->readings[i].pose][k]) * std::copysign(std::pow(std::abs(f), p), f);
     });
-    return regress(u, r, rows_of(s.values, e), beside).gain;
   });
 }
 
-std::optional<Exponent> extension_exponent(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
-                                           const MatrixX& beside) {
+std::optional<Exponent> extension_exponent(const ResidualStudy& s, const Regressions& regressions) {
   if (!varies_in_extension(s)) return std::nullopt;
-  return best_exponent(-2, 5, 0.1,
-                       [&](double p) { return regress(u, r, rows_of(s.values, elastic_across(s, p)), beside).gain; });
+  return best_exponent(-2, 5, 0.1, regressions, [&](double p) { return elastic_across(s, p); });
 }
 
 Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
@@ -115,11 +120,14 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
   Findings out;
   out.columns = MatrixX(r.size(), 0);
   out.chi2_left = chi2;
+  std::vector<MatrixX> whitened;
+  for (const Candidate& c : candidates) whitened.push_back(u.whitened(c.columns));
   while (out.findings.size() < most_findings) {
     std::vector<Regression> fits;
     std::vector<double> scores;
-    for (const Candidate& c : candidates) {
-      fits.push_back(regress(u, r, c.columns, out.columns));
+    const Regressions regressions(u, r, out.columns);
+    for (const MatrixX& columns_of_one : whitened) {
+      fits.push_back(regressions.on_whitened(columns_of_one));
       scores.push_back(fits.back().gain - penalty * fits.back().freedoms);
     }
     const auto best = static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());

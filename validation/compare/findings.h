@@ -24,9 +24,8 @@ Findings find_patterns(const ResidualStudy&, const Uncertainty&, const VectorX& 
 struct Exponent {
   double value = 0, deviation = 0;
 };
-std::optional<Exponent> force_exponent(const ResidualStudy&, const Uncertainty&, const VectorX& residual,
-                                       const std::function<double(const Site&)>& weight, const MatrixX& beside = {});
-std::optional<Exponent> extension_exponent(const ResidualStudy&, const Uncertainty&, const VectorX& residual,
-                                           const MatrixX& beside = {});
+std::optional<Exponent> force_exponent(const ResidualStudy&, const Regressions&,
+                                       const std::function<double(const Site&)>& weight);
+std::optional<Exponent> extension_exponent(const ResidualStudy&, const Regressions&);
 
 }  // namespace deflect

@@ -9,17 +9,17 @@ namespace deflect {
 
 HeldOut::HeldOut(const ResidualStudy& s, const Uncertainty& u, const std::vector<bool>& set_aside)
     : study_(&s), uncertainty_(&u), set_aside_(set_aside), folds_(std::min<std::size_t>(10, s.data->poses.size())) {
-  const MatrixX& A = u.tolerances_by_noise();
-  if (folds_ < 2 || A.cols() == 0) return;
+  const MatrixX& B = u.whitening()->shared();
+  if (folds_ < 2 || B.cols() == 0) return;
   std::vector<std::vector<Eigen::Index>> rows(folds_);
   for (std::size_t i = 0; i < s.values.size(); ++i) rows[fold_of(i)].push_back(static_cast<Eigen::Index>(i));
   std::vector<MatrixX> taught;
   for (const std::vector<Eigen::Index>& own : rows) {
-    const MatrixX part = A(own, Eigen::all);
+    const MatrixX part = B(own, Eigen::all);
     taught.push_back(part.transpose() * part);
   }
   for (std::size_t fold = 0; fold < folds_; ++fold) {
-    MatrixX information = MatrixX::Identity(A.cols(), A.cols());
+    MatrixX information = MatrixX::Identity(B.cols(), B.cols());
     for (std::size_t other = 0; other < folds_; ++other)
       if (other != fold) information += taught[other];
     others_.emplace_back(information);
@@ -31,19 +31,20 @@ std::size_t HeldOut::fold_of(std::size_t value) const {
 }
 
 double HeldOut::rmse(const VectorX& residual) const {
-  const MatrixX& A = uncertainty_->tolerances_by_noise();
-  const VectorX r = uncertainty_->whitened_by_noise(residual);
-  std::vector<VectorX> eta(folds_, VectorX::Zero(A.cols()));
+  const Whitening& white = *uncertainty_->whitening();
+  const MatrixX& B = white.shared();
+  std::vector<VectorX> eta(folds_, VectorX::Zero(B.cols()));
   if (!others_.empty()) {  // where there is one pose, nothing is learnt at others
-    std::vector<VectorX> score(folds_, VectorX::Zero(A.cols()));
-    for (std::size_t i = 0; i < study_->values.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      score[fold_of(i)] += r(row) * A.row(row).transpose();
-    }
+    // z in the rows of one fold alone.
+    MatrixX by_fold = MatrixX::Zero(residual.size(), static_cast<Eigen::Index>(folds_));
+    const VectorX z = white.within_groups(residual);
+    for (std::size_t i = 0; i < study_->values.size(); ++i)
+      by_fold(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(fold_of(i))) = z(static_cast<Eigen::Index>(i));
+    const MatrixX score = B.transpose() * by_fold;
     for (std::size_t fold = 0; fold < folds_; ++fold) {
-      VectorX all = VectorX::Zero(A.cols());
+      VectorX all = VectorX::Zero(B.cols());
       for (std::size_t other = 0; other < folds_; ++other)
-        if (other != fold) all += score[other];
+        if (other != fold) all += score.col(static_cast<Eigen::Index>(other));
       eta[fold] = others_[fold].solve(all);
     }
   }
@@ -53,7 +54,7 @@ double HeldOut::rmse(const VectorX& residual) const {
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
     if (set_aside_[study_->values[i].reading] || (study_->values[i].component >= 3) != rotations) continue;
     const auto row = static_cast<Eigen::Index>(i);
-    const double left = residual(row) - uncertainty_->tolerances().row(row).dot(eta[fold_of(i)]);
+    const double left = residual(row) - uncertainty_->tolerances().shared.row(row).dot(eta[fold_of(i)]);
     squares += left * left;
     ++n;
   }

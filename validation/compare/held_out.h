@@ -9,8 +9,9 @@
 
 namespace deflect {
 
-/// Residuals at each pose with the tolerances learnt at all others; poses in ten folds at most: η = (1 + ÃᵀÃ)⁻¹Ãᵀr̃ over
-/// the readings of the other folds, Ã and r̃ whitened by their noise. Readings set aside neither teach nor count.
+/// Residuals at each pose with the tolerances learnt at all others; poses in ten folds at most: η = (1 + BᵀB)⁻¹Bᵀz over
+/// the readings of the other folds, B and z white within poses (whitening.h), η of what all poses share: of a pose's
+/// own errors the others say nothing. Readings set aside neither teach nor count.
 class HeldOut {
  public:
   /// The study must outlive it. Readings that the uncertainty sets aside are those given.
@@ -27,7 +28,7 @@ class HeldOut {
   const Uncertainty* uncertainty_;
   std::vector<bool> set_aside_;
   std::size_t folds_;
-  std::vector<Eigen::LLT<MatrixX>> others_;  // of 1 + ÃᵀÃ over all folds but one
+  std::vector<Eigen::LLT<MatrixX>> others_;  // of 1 + BᵀB over all folds but one
 };
 
 }  // namespace deflect

@@ -9,7 +9,7 @@ namespace deflect {
 
 constexpr double limit = 4.5;
 
-std::vector<bool> gross_outliers(const ResidualStudy& s, const MatrixX& A, const std::vector<double>& sigma,
+std::vector<bool> gross_outliers(const ResidualStudy& s, const PartedColumns& A, const std::vector<double>& sigma,
                                  const VectorX& residual, const MatrixX& patterns) {
   std::vector<bool> aside(s.data->readings.size(), false);
   for (int round = 0; round < 5; ++round) {

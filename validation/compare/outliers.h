@@ -1,6 +1,7 @@
 // Readings that are out of all proportion to the others.
 #pragma once
 
+#include "validation/compare/parted_columns.h"
 #include "validation/compare/patterns.h"
 
 namespace deflect {
@@ -8,7 +9,7 @@ namespace deflect {
 /// By reading: those that neither tolerances nor the patterns (columns over the measured numbers) bring within 4.5 of
 /// the others' standard deviations, which chance does to one reading in 50 000. The rest of one that is set aside is
 /// judged by what the others say. A, σ, residual: of the study's values, as in uncertainty.h.
-std::vector<bool> gross_outliers(const ResidualStudy&, const MatrixX& A, const std::vector<double>& sigma,
+std::vector<bool> gross_outliers(const ResidualStudy&, const PartedColumns& A, const std::vector<double>& sigma,
                                  const VectorX& residual, const MatrixX& patterns);
 
 }  // namespace deflect

@@ -131,6 +131,21 @@ Columns site_column(const ResidualStudy& s, const std::function<double(std::size
   });
 }
 
+VectorX rows_of_sites(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
+  VectorX out(static_cast<Eigen::Index>(s.values.size()));
+  Vector6 moved;
+  for (std::size_t n = 0; n < s.values.size(); ++n) {
+    const std::size_t i = s.values[n].reading;
+    if (n == 0 || i != s.values[n - 1].reading) {
+      const std::vector<Site>& sites = s.sites[s.data->readings[i].pose];
+      moved.setZero();
+      for (std::size_t k = 0; k < sites.size(); ++k) moved += sites[k].g * elongation(i, k);
+    }
+    out(static_cast<Eigen::Index>(n)) = moved(static_cast<Eigen::Index>(s.values[n].component));
+  }
+  return out;
+}
+
 Columns site_columns(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
   return by_reading(s, [&](std::size_t i) {
     const std::vector<Site>& sites = s.sites[s.data->readings[i].pose];

@@ -60,6 +60,10 @@ std::vector<Pattern> patterns_of(const ResidualStudy&);
 Columns site_column(const ResidualStudy&,
                     const std::function<double(std::size_t reading, std::size_t site)>& elongation);
 
+/// The same over the measured numbers.
+VectorX rows_of_sites(const ResidualStudy&,
+                      const std::function<double(std::size_t reading, std::size_t site)>& elongation);
+
 /// `elongation` in a column of each site's own.
 Columns site_columns(const ResidualStudy&,
                      const std::function<double(std::size_t reading, std::size_t site)>& elongation);

@@ -11,6 +11,7 @@
 #include "validation/compare/as_built.h"
 #include "validation/compare/columns.h"
 #include "validation/compare/prediction.h"
+#include "validation/compare/scaled_groups.h"
 #include "validation/compare/tail.h"
 #include "validation/parallel/cases.h"
 
@@ -99,156 +100,176 @@ ToleranceModel tolerance_model(const Mechanism& device, const std::vector<Config
       }
 
   ToleranceModel out;
-  out.A = MatrixX::Zero(nominal.size(), static_cast<Eigen::Index>(moves.size()));
+  out.A.shared = MatrixX::Zero(nominal.size(), static_cast<Eigen::Index>(shared));
   for (const Move& move : moves) out.nuisances.push_back(move.nuisance);
-  const auto move_one = [&](std::size_t k) {
-    const Move& move = moves[k];
-    const Mechanism geometry = with_geometry(m, move.built);
-    if (k < shared) {
-      std::vector<Configuration> moved;
-      for (const Configuration& c : drawn) moved.push_back(configure_as_built(geometry, move.built, c));
-      out.A.col(static_cast<Eigen::Index>(k)) = rows_of(values, predict(m, moved, data, o)) - nominal;
-      return;
-    }
-    const auto p = static_cast<std::size_t>(move.pose);
-    VectorX errors = VectorX::Zero(static_cast<Eigen::Index>(drawn[p].actuators.size()));
-    errors(move.actuator) = move.nuisance.sigma;
+  // Where a pose has nuisances of its own: its rows and columns, and which column each move fills.
+  std::vector<Eigen::Index> column(moves.size(), 0), count(drawn.size(), 0);
+  for (std::size_t k = shared; k < moves.size(); ++k) column[k] = count[static_cast<std::size_t>(moves[k].pose)]++;
+  if (moves.size() > shared) {
+    out.A.groups.resize(drawn.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      out.A.groups[data.readings[values[i].reading].pose].rows.push_back(static_cast<Eigen::Index>(i));
+    for (std::size_t p = 0; p < drawn.size(); ++p)
+      out.A.groups[p].columns.resize(std::ssize(out.A.groups[p].rows), count[p]);
+  }
+  const auto move_shared = [&](std::size_t k) {
+    const Mechanism geometry = with_geometry(m, moves[k].built);
+    std::vector<Configuration> moved;
+    for (const Configuration& c : drawn) moved.push_back(configure_as_built(geometry, moves[k].built, c));
+    out.A.shared.col(static_cast<Eigen::Index>(k)) = rows_of(values, predict(m, moved, data, o)) - nominal;
+  };
+  const auto move_own = [&](std::size_t p, std::size_t first, std::size_t last) {
     const Measurements alone = one_pose(data, p);
-    const std::vector<Vector6> d = predict(m, {configure_as_built(geometry, move.built, drawn[p], errors)}, alone, o);
-    // Back to the rows of this pose's readings.
-    std::vector<std::ptrdiff_t> place(data.readings.size(), -1);
-    for (std::size_t i = 0; i < data.poses[p].readings.size(); ++i)
-      place[data.poses[p].readings[i]] = static_cast<std::ptrdiff_t>(i);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      if (const std::ptrdiff_t at = place[values[i].reading]; at >= 0)
-        out.A(row, static_cast<Eigen::Index>(k)) =
-            d[static_cast<std::size_t>(at)](static_cast<Eigen::Index>(values[i].component)) - nominal(row);
+    const Mechanism geometry = with_geometry(m, moves[first].built);
+    // Of the rows of this pose's readings, the reading in `alone`.
+    GroupColumns& own = out.A.groups[p];
+    std::vector<std::size_t> reading;
+    for (const Eigen::Index row : own.rows) {
+      const std::vector<std::size_t>& all = data.poses[p].readings;
+      reading.push_back(static_cast<std::size_t>(
+          std::lower_bound(all.begin(), all.end(), values[static_cast<std::size_t>(row)].reading) - all.begin()));
+    }
+    for (std::size_t k = first; k < last; ++k) {
+      VectorX errors = VectorX::Zero(static_cast<Eigen::Index>(drawn[p].actuators.size()));
+      errors(moves[k].actuator) = moves[k].nuisance.sigma;
+      const std::vector<Vector6> d =
+          predict(m, {configure_as_built(geometry, moves[k].built, drawn[p], errors)}, alone, o);
+      for (std::size_t i = 0; i < own.rows.size(); ++i)
+        own.columns(static_cast<Eigen::Index>(i), column[k]) =
+            d[reading[i]](static_cast<Eigen::Index>(values[static_cast<std::size_t>(own.rows[i])].component)) -
+            nominal(own.rows[i]);
     }
   };
-  const auto count = [&](std::size_t done) { told(static_cast<double>(done) / static_cast<double>(moves.size())); };
-  for_each_case(moves.size(), 1, threads, move_one, told ? std::function<void(std::size_t)>(count) : nullptr);
+  // First the moves of all poses, then pose by pose.
+  std::vector<std::pair<std::size_t, std::size_t>> of_pose;  // first and last move
+  for (std::size_t k = shared; k < moves.size(); ++k) {
+    if (k == shared || moves[k].pose != moves[k - 1].pose) of_pose.emplace_back(k, k);
+    ++of_pose.back().second;
+  }
+  const std::size_t cases = shared + of_pose.size();
+  const auto done = [&](std::size_t through) { told(static_cast<double>(through) / static_cast<double>(cases)); };
+  for_each_case(
+      cases, 1, threads,
+      [&](std::size_t k) {
+        if (k < shared) return move_shared(k);
+        const auto [first, last] = of_pose[k - shared];
+        move_own(static_cast<std::size_t>(moves[first].pose), first, last);
+      },
+      told ? std::function<void(std::size_t)>(done) : nullptr);
   return out;
 }
 
-Uncertainty::Uncertainty(const MatrixX& A, const std::vector<MeasuredValue>& values, const std::vector<double>& sigma,
-                         const std::vector<Vector6>& predicted, double load, const std::vector<bool>& set_aside) {
+Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<MeasuredValue>& values,
+                         const std::vector<double>& sigma, const std::vector<Vector6>& predicted, double load,
+                         const std::vector<bool>& set_aside)
+    : A_(A) {
   for (std::size_t first = 0; first < values.size();) {
     std::size_t last = first;
     while (last < values.size() && values[last].reading == values[first].reading) ++last;
     const auto size = static_cast<Eigen::Index>(last - first);
-    Block block{static_cast<Eigen::Index>(first), size, MatrixX::Zero(size, size), MatrixX::Zero(size, size)};
-    const bool used = set_aside.empty() || !set_aside[values[first].reading];
-    if (used) {
+    NoiseBlock block{static_cast<Eigen::Index>(first), size, {}};
+    if (set_aside.empty() || !set_aside[values[first].reading]) {
       VectorX d(size);
-      MatrixX covariance = MatrixX::Zero(size, size);
+      block.covariance = MatrixX::Zero(size, size);
       for (Eigen::Index i = 0; i < size; ++i) {
         const std::size_t at = first + static_cast<std::size_t>(i);
         d(i) = load * predicted[values[at].reading](static_cast<Eigen::Index>(values[at].component));
-        covariance(i, i) = sigma[at] * sigma[at];
+        block.covariance(i, i) = sigma[at] * sigma[at];
       }
-      covariance += d * d.transpose();
-      block.inverse_factor = covariance.llt().matrixL().solve(MatrixX::Identity(size, size));
-      block.covariance = covariance;
+      block.covariance += d * d.transpose();
       count_ += static_cast<std::size_t>(size);
     }
     blocks_.push_back(std::move(block));
     first = last;
   }
-  bare_A_ = A;
-  A_ = whitened_by_noise(A);
-  Q_.resize(A.rows(), 0);
-  V_.resize(A.cols(), 0);
-  S_.resize(0);
-  if (A.cols() == 0) return;
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(A_.transpose() * A_);
-  const VectorX& squares = axes.eigenvalues();
-  Eigen::Index zero = 0;
-  while (zero < squares.size() && !(squares(zero) > 1e-13 * squares(squares.size() - 1))) ++zero;
-  S_ = squares.tail(squares.size() - zero).cwiseSqrt();
-  V_ = axes.eigenvectors().rightCols(S_.size());
-  Q_ = A_ * V_ * S_.cwiseInverse().asDiagonal();
+  whitening_ = std::make_shared<const Whitening>(blocks_, A_);
 }
 
-MatrixX Uncertainty::whitened_by_noise(const MatrixX& X) const {
-  MatrixX out(X.rows(), X.cols());
-  for (const Block& b : blocks_)
-    out.middleRows(b.first, b.size).noalias() = b.inverse_factor * X.middleRows(b.first, b.size);
-  return out;
-}
-
-// (1 + A Aᵀ)^(−1/2) = 1 + Q ((1 + S²)^(−1/2) − 1) Qᵀ.
-MatrixX Uncertainty::whitened(const MatrixX& X) const {
-  MatrixX out = whitened_by_noise(X);
-  const VectorX less = (1 + S_.array().square()).rsqrt() - 1;
-  out += Q_ * (less.asDiagonal() * (Q_.transpose() * out)).eval();
-  return out;
-}
-
-// η = Aᵀ (1 + A Aᵀ)⁻¹ r = V S/(1 + S²) Qᵀ r.
-VectorX Uncertainty::nuisances(const VectorX& r) const {
-  const VectorX share = S_.array() / (1 + S_.array().square());
-  return V_ * share.cwiseProduct(Q_.transpose() * whitened_by_noise(r));
-}
-
-// In the axes of PA, P taking out the span of `beside`: numbers of variance 1 + s² w.
+// Errors of poses s times as large, those of all too; the span of `beside` is taken out.
 double Uncertainty::scale_of_tolerances(const VectorX& residual, const MatrixX& beside) const {
   if (A_.cols() == 0) return 1;
-  MatrixX A = A_;
-  VectorX r = whitened_by_noise(residual);
-  if (beside.cols() > 0) {
-    const MatrixX Q = orthonormal(whitened_by_noise(beside), 1e-8);
-    A -= Q * (Q.transpose() * A);
-    r -= Q * (Q.transpose() * r);
-  }
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(A.transpose() * A);
-  const VectorX w = axes.eigenvalues();
-  // (uᵀr)² of the unit vectors u = A v/√w, times w.
-  const VectorX along = axes.eigenvectors().transpose() * (A.transpose() * r);
-  const auto log_likelihood = [&](double s) {
-    double sum = 0;
-    for (Eigen::Index i = 0; i < w.size(); ++i) {
-      const double more = s * s * std::max(0.0, w(i));
-      sum += 0.5 * (along(i) * along(i) * s * s / (1 + more) - std::log1p(more));
-    }
-    return sum;
-  };
+  const MatrixX flat =
+      beside.cols() > 0 ? orthonormal(whitening_->by_noise(beside), 1e-8) : MatrixX(residual.size(), 0);
+  const ScaledGroups scaled(whitening_->groups_by_noise(), whitening_->by_noise(A_.shared), flat, 1e-13);
+  const ScaledGroups::Seen seen = scaled.seen(whitening_->by_noise(residual));
+  const auto log_likelihood = [&](double s) { return scaled.log_likelihood(scaled.at(s * s, s * s), seen); };
   double best = 1, most = log_likelihood(1) + 2;
   for (double s = 1; s <= 3; s *= 1.1)
     if (const double here = log_likelihood(s); here > most) most = here, best = s;
   return best;
 }
 
-MatrixX Uncertainty::covariance(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const Block& b : blocks_)
-    for (Eigen::Index i = 0; i < b.size; ++i)
-      for (Eigen::Index j = 0; j < b.size; ++j) entries.emplace_back(b.first + i, b.first + j, b.covariance(i, j));
-  Eigen::SparseMatrix<double> noise(T.cols(), T.cols());
-  noise.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SparseMatrix<double> own = T * noise * T.transpose();
-  MatrixX out(own);
-  const MatrixX TA = T * bare_A_;
-  out += TA * TA.transpose();
+Uncertainty::OfContrasts Uncertainty::of_contrasts(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const {
+  using Row = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
+  struct Entry {
+    Eigen::Index contrast, number;
+    double weight;
+  };
+  std::vector<Entry> entries;
+  for (Eigen::Index i = 0; i < T.rows(); ++i)
+    for (Row at(T, i); at; ++at) entries.push_back({i, at.col(), at.value()});
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.number < b.number; });
+  OfContrasts out{MatrixX::Zero(T.rows(), T.rows()), PartedColumns(T * A_.shared)};
+  auto entry = entries.begin();
+  for (const NoiseBlock& b : blocks_) {
+    auto end = entry;
+    while (end != entries.end() && end->number < b.first + b.size) ++end;
+    for (auto i = entry; i != end; ++i)
+      for (auto k = entry; k != end; ++k)
+        out.noise(i->contrast, k->contrast) +=
+            i->weight * k->weight * b.covariance(i->number - b.first, k->number - b.first);
+    entry = end;
+  }
+  std::vector<std::size_t> group(static_cast<std::size_t>(A_.rows()), A_.groups.size());
+  std::vector<Eigen::Index> row(group.size(), 0);  // of the group
+  for (std::size_t g = 0; g < A_.groups.size(); ++g)
+    for (std::size_t i = 0; i < A_.groups[g].rows.size(); ++i) {
+      const auto number = static_cast<std::size_t>(A_.groups[g].rows[i]);
+      group[number] = g;
+      row[number] = static_cast<Eigen::Index>(i);
+    }
+  std::vector<std::vector<Eigen::Index>> contrasts(A_.groups.size() + 1);
+  for (Eigen::Index i = 0; i < T.rows(); ++i)
+    if (const Row first(T, i); first) contrasts[group[static_cast<std::size_t>(first.col())]].push_back(i);
+  for (std::size_t g = 0; g < A_.groups.size(); ++g) {
+    const MatrixX& columns = A_.groups[g].columns;
+    GroupColumns own{contrasts[g], MatrixX::Zero(std::ssize(contrasts[g]), columns.cols())};
+    for (std::size_t i = 0; i < own.rows.size(); ++i)
+      for (Row at(T, own.rows[i]); at; ++at)
+        own.columns.row(static_cast<Eigen::Index>(i)) +=
+            at.value() * columns.row(row[static_cast<std::size_t>(at.col())]);
+    out.errors.groups.push_back(std::move(own));
+  }
   return out;
 }
 
-Regression regress(const Uncertainty& u, const VectorX& r, const MatrixX& G, const MatrixX& beside) {
+MatrixX Uncertainty::covariance(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const {
+  const OfContrasts of = of_contrasts(T);
+  const MatrixX errors = of.errors.dense();
+  return of.noise + errors * errors.transpose();
+}
+
+Regressions::Regressions(const Uncertainty& u, const VectorX& residual, const MatrixX& beside)
+    : uncertainty_(&u), y_(u.whitened(residual)) {
+  if (beside.cols() == 0) return;
+  beside_ = u.whitened(beside);
+  of_beside_.compute(beside_.transpose() * beside_);
+  fitted_ = of_beside_.solve(VectorX(beside_.transpose() * y_));
+}
+
+Regression Regressions::on_whitened(const MatrixX& g) const {
   Regression out;
-  out.amplitude = VectorX::Zero(G.cols());
-  out.covariance = MatrixX::Zero(G.cols(), G.cols());
-  if (G.cols() == 0) return out;
-  const MatrixX g = u.whitened(G);
-  const VectorX y = u.whitened(r);
+  out.amplitude = VectorX::Zero(g.cols());
+  out.covariance = MatrixX::Zero(g.cols(), g.cols());
+  if (g.cols() == 0) return out;
   MatrixX information = g.transpose() * g;
-  VectorX score = g.transpose() * y;
+  VectorX score = g.transpose() * y_;
   // Columns in their own units, so that ranks can be told.
   const VectorX own = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  if (beside.cols() > 0) {
-    const MatrixX n = u.whitened(beside), cross = n.transpose() * g;
-    const Eigen::CompleteOrthogonalDecomposition<MatrixX> cod(n.transpose() * n);
-    information -= cross.transpose() * cod.solve(cross);
-    score -= cross.transpose() * cod.solve(VectorX(n.transpose() * y));
+  if (beside_.cols() > 0) {
+    const MatrixX cross = beside_.transpose() * g;
+    information -= cross.transpose() * of_beside_.solve(cross);
+    score -= cross.transpose() * fitted_;
   }
   const MatrixX scaled = own.asDiagonal() * ((information + information.transpose()) / 2) * own.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(scaled);
@@ -264,6 +285,10 @@ Regression regress(const Uncertainty& u, const VectorX& r, const MatrixX& G, con
   }
   out.p_value = chi_squared_tail(out.freedoms, out.gain);
   return out;
+}
+
+Regression regress(const Uncertainty& u, const VectorX& r, const MatrixX& G, const MatrixX& beside) {
+  return Regressions(u, r, beside).on(G);
 }
 
 }  // namespace deflect

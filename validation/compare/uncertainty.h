@@ -6,14 +6,20 @@
 //      geometry) of machines as built (as_built.h);
 //   ε  reading noise σ, and within a reading the error of its load, relative, which moves along the prediction d:
 //      cov = diag(σ²) + t² d dᵀ.
-// So Σ = A Aᵀ + cov(ε), and everything below weighs by Σ⁻¹. Readings set aside weigh nothing.
+// So Σ = A Aᵀ + cov(ε), and everything below weighs by Σ⁻¹. Readings set aside weigh nothing. Errors of the load are of
+// a reading alone and those of the actuators of a pose alone: they are eliminated there (whitening.h), so that time and
+// memory grow as the readings do.
 #pragma once
 
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <Eigen/SparseCore>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "msa/mechanism/configuration.h"
+#include "validation/compare/whitening.h"
 #include "validation/measurement/replicates.h"
 #include "validation/parallel/cases.h"
 
@@ -32,48 +38,46 @@ struct Nuisance {
 
 /// The machine's sensitivity to its tolerances.
 struct ToleranceModel {
-  std::vector<Nuisance> nuisances;
-  MatrixX A;  ///< measured numbers × nuisances, per standard deviation; m, rad
+  std::vector<Nuisance> nuisances;  ///< of all poses, then pose by pose
+  PartedColumns A;                  ///< measured numbers × nuisances, per standard deviation; m, rad; groups: poses
 };
 ToleranceModel tolerance_model(const Mechanism&, const std::vector<Configuration>& drawn, const Measurements&,
                                const std::vector<MeasuredValue>&, int threads = 0, const Told& = {});
 
 class Uncertainty {
  public:
-  /// `predicted`: by reading; `load`: relative standard deviation of a recorded load.
-  Uncertainty(const MatrixX& A, const std::vector<MeasuredValue>&, const std::vector<double>& sigma,
+  /// `predicted`: by reading; `load`: relative standard deviation of a recorded load. Readings lie within A's groups.
+  Uncertainty(const PartedColumns& A, const std::vector<MeasuredValue>&, const std::vector<double>& sigma,
               const std::vector<Vector6>& predicted, double load, const std::vector<bool>& set_aside = {});
 
-  /// Σ^(−1/2) X: with it least squares are those of independent numbers of deviation 1. Rows set aside are 0.
-  MatrixX whitened(const MatrixX& X) const;
+  /// W X with WᵀW = Σ⁻¹: with it least squares are those of independent numbers of deviation 1. Rows set aside are 0.
+  MatrixX whitened(const MatrixX& X) const { return (*whitening_)(X); }
+  const std::shared_ptr<const Whitening>& whitening() const { return whitening_; }
   /// Xᵀ Σ⁻¹ Y.
   MatrixX inner(const MatrixX& X, const MatrixX& Y) const { return whitened(X).transpose() * whitened(Y); }
   /// The nuisances η that explain a residual best, with their prior.
-  VectorX nuisances(const VectorX& residual) const;
+  VectorX nuisances(const VectorX& residual) const { return whitening_->amplitudes(residual); }
   /// How many times the declared tolerances those of the machine look, 1 … 3: where noise, the tolerances so scaled and
   /// the patterns `beside` (columns over the measured numbers, of any size) make up the residual; 1 unless the data say
   /// otherwise by more than 2 in ln of the likelihood.
   double scale_of_tolerances(const VectorX& residual, const MatrixX& beside) const;
-  /// The covariance of T r for contrasts T (rows) of the measured numbers, none of which may be set aside.
+  /// The covariance of T r, noise + E Eᵀ, for contrasts T (rows) of the measured numbers, each within a group of A and
+  /// none of a number that is set aside.
+  struct OfContrasts {
+    MatrixX noise;
+    PartedColumns errors;  ///< E
+  };
+  OfContrasts of_contrasts(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const;
   MatrixX covariance(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const;
   /// Numbers that are not set aside.
   std::size_t count() const { return count_; }
 
-  /// By cov(ε) alone; rows set aside are 0.
-  MatrixX whitened_by_noise(const MatrixX&) const;
-  const MatrixX& tolerances() const { return bare_A_; }
-  const MatrixX& tolerances_by_noise() const { return A_; }
+  const PartedColumns& tolerances() const { return A_; }
 
  private:
-  struct Block {
-    Eigen::Index first, size;
-    MatrixX covariance, inverse_factor;  // and L⁻¹ of it, 0 where set aside
-  };
-  std::vector<Block> blocks_;
-  MatrixX bare_A_;
-  MatrixX A_;      // whitened by noise; A = Q S Vᵀ
-  MatrixX Q_, V_;  // where S > 0
-  VectorX S_;
+  std::vector<NoiseBlock> blocks_;  // of readings
+  PartedColumns A_;
+  std::shared_ptr<const Whitening> whitening_;
   std::size_t count_ = 0;
 };
 
@@ -85,7 +89,22 @@ struct Regression {
   int freedoms = 0;    ///< their rank
   double p_value = 1;  ///< of a gain at least as large by chance
 };
-/// With `beside` other patterns that are fitted in any case. Directions that the data do not determine stay 0.
+/// Regressions of one residual on pattern after pattern, with other patterns `beside` that are fitted in any case.
+/// Directions that the data do not determine stay 0. The uncertainty must outlive it.
+class Regressions {
+ public:
+  Regressions(const Uncertainty&, const VectorX& residual, const MatrixX& beside = {});
+  MatrixX whitened(const MatrixX& G) const { return uncertainty_->whitened(G); }
+  Regression on(const MatrixX& G) const { return on_whitened(whitened(G)); }
+  Regression on_whitened(const MatrixX& g) const;
+
+ private:
+  const Uncertainty* uncertainty_;
+  VectorX y_;       // whitened
+  MatrixX beside_;  // whitened
+  Eigen::CompleteOrthogonalDecomposition<MatrixX> of_beside_;
+  VectorX fitted_;  // amplitudes of `beside` alone
+};
 Regression regress(const Uncertainty&, const VectorX& residual, const MatrixX& G, const MatrixX& beside = {});
 
 }  // namespace deflect

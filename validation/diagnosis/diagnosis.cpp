@@ -64,7 +64,7 @@ double log_weight(const std::vector<Candidate>& all) {
 }
 
 /// Those of the effects that are called for even where the discrepancy takes what it can.
-Selection beside_unknown(const Observations& o, const Candidates& candidates, Selection s) {
+Selection beside_unknown(Observations& o, const Candidates& candidates, Selection s) {
   const Discrepancy all(o.whitened_patterns());
   const Discrepancy left(o.whitened_patterns(), s.fit.signature);
   const Discrepancy::Size size = left.likeliest(s.fit.residual);
@@ -72,8 +72,7 @@ Selection beside_unknown(const Observations& o, const Candidates& candidates, Se
     auto [others, values] = without(s.effects, s.fit.values, i);
     Fit rest = fit_of_all(o, others, values);
     if (!rest.found) continue;  // the others need it
-    const double gain =
-        all.whitened(rest.residual, size).squaredNorm() - all.whitened(s.fit.residual, size).squaredNorm();
+    const double gain = all.chi2(rest.residual, size) - all.chi2(s.fit.residual, size);
     if (candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
     s.effects = std::move(others);
     s.fit = std::move(rest);

@@ -8,6 +8,7 @@
 #include "validation/compare/finding_text.h"
 #include "validation/compare/tail.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 namespace {
@@ -29,10 +30,11 @@ MatrixX by_sites(const ResidualStudy& s) {
     add([&](std::size_t i, std::size_t k) { return std::copysign(f(i, k) * f(i, k), f(i, k)); });
     add([&](std::size_t i, std::size_t k) { return std::abs(f(i, k)); });
     if (has_slides(s)) {
+      const double mean = mean_extension(s);
       add([&](std::size_t i, std::size_t k) { return f(i, k) * site(i, k).along; });
       for (const int power : {0, 1, 2, 3, 4})
         add([&](std::size_t i, std::size_t k) {
-          return f(i, k) * (1 - site(i, k).along) * std::pow(site(i, k).extension / mean_extension(s), power);
+          return f(i, k) * (1 - site(i, k).along) * std::pow(site(i, k).extension / mean, power);
         });
     }
     if (s.sequence) add([&](std::size_t i, std::size_t k) { return s.heading[i](static_cast<Eigen::Index>(k)); });
@@ -40,24 +42,23 @@ MatrixX by_sites(const ResidualStudy& s) {
   return side_by_side(parts, static_cast<Eigen::Index>(s.values.size()));
 }
 
-/// Columns of all measured components c: basis(reading, b) in column b · 6 + c.
-MatrixX by_component(const ResidualStudy& s, const std::vector<VectorX>& basis) {
-  const Eigen::Index count = basis.front().size();
-  MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(s.values.size()), 6 * count);
+/// At each pose and for each component (b · 6 + c): as much as 10 N do, and what is in proportion to each force.
+PartedColumns by_poses(const ResidualStudy& s) {
+  PartedColumns out(MatrixX(static_cast<Eigen::Index>(s.values.size()), 0));
+  out.groups.resize(s.data->poses.size());
   for (std::size_t i = 0; i < s.values.size(); ++i)
-    for (Eigen::Index b = 0; b < count; ++b)
-      out(static_cast<Eigen::Index>(i), 6 * b + static_cast<Eigen::Index>(s.values[i].component)) =
-          basis[s.values[i].reading](b);
+    out.groups[s.data->readings[s.values[i].reading].pose].rows.push_back(static_cast<Eigen::Index>(i));
+  for (GroupColumns& g : out.groups) {
+    g.columns = MatrixX::Zero(std::ssize(g.rows), 24);
+    for (std::size_t i = 0; i < g.rows.size(); ++i) {
+      const MeasuredValue& v = s.values[static_cast<std::size_t>(g.rows[i])];
+      const Vector6& load = s.data->readings[v.reading].load;
+      for (Eigen::Index b = 0; b < 4; ++b)
+        g.columns(static_cast<Eigen::Index>(i), 6 * b + static_cast<Eigen::Index>(v.component)) =
+            b == 0 ? 10 : load(b - 1);
+    }
+  }
   return out;
-}
-
-MatrixX by_poses(const ResidualStudy& s) {
-  const std::vector<Reading>& readings = s.data->readings;
-  const auto poses = static_cast<Eigen::Index>(s.data->poses.size());
-  std::vector<VectorX> basis(readings.size(), VectorX::Zero(4 * poses));
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    basis[i].segment<4>(4 * static_cast<Eigen::Index>(readings[i].pose)) << 10, readings[i].load.head<3>();  // 10 N
-  return by_component(s, basis);
 }
 
 MatrixX by_loads(const ResidualStudy& s) {
@@ -79,40 +80,98 @@ MatrixX by_loads(const ResidualStudy& s) {
     }
     basis[i].tail<3>() << time * time, time * time * time, warmer * warmer;
   }
-  return by_component(s, basis);
+  // Columns of all measured components c: basis(reading, b) in column b · 6 + c.
+  MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(s.values.size()), 6 * basis.front().size());
+  for (std::size_t i = 0; i < s.values.size(); ++i)
+    for (Eigen::Index b = 0; b < basis.front().size(); ++b)
+      out(static_cast<Eigen::Index>(i), 6 * b + static_cast<Eigen::Index>(s.values[i].component)) =
+          basis[s.values[i].reading](b);
+  return out;
 }
 
 }  // namespace
 
 Families discrepancy_families(const ResidualStudy& s) { return {by_sites(s), by_poses(s), by_loads(s)}; }
 
-Discrepancy::Discrepancy(const Families& families, const MatrixX& fitted) {
-  const MatrixX Q = fitted.cols() > 0 ? orthonormal(fitted) : MatrixX(families.front().rows(), 0);
-  for (const MatrixX& columns : families) {
-    MatrixX B = columns;
-    const double length = std::sqrt(static_cast<double>(B.rows()));
-    for (auto column : B.colwise())
-      if (const double norm = column.norm(); norm > 0) column *= length / norm;
-    B -= Q * (Q.transpose() * B);
-    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(B.transpose() * B);
-    const VectorX& all = axes.eigenvalues();
-    Eigen::Index first = 0;
-    while (first < all.size() && !(all(first) > 1e-10 * all(all.size() - 1))) ++first;
+WhitenedFamilies::WhitenedFamilies(const Families& all, std::shared_ptr<const Whitening> with, int threads)
+    : whitening(std::move(with)) {
+  const double length = std::sqrt(static_cast<double>(whitening->rows()));
+  const auto factor = [length](double norm) { return norm > 0 ? length / norm : 0; };
+  for (const PartedColumns& family : all) {
+    Family out;
+    // A few columns at a time: their number does not depend on the threads, lest sums do.
+    constexpr Eigen::Index some = 16;
+    out.columns.resize(family.shared.rows(), family.shared.cols());
+    for_each_case(static_cast<std::size_t>((family.shared.cols() + some - 1) / some), 1, threads, [&](std::size_t k) {
+      const Eigen::Index first = static_cast<Eigen::Index>(k) * some,
+                         count = std::min(some, family.shared.cols() - first);
+      MatrixX X = (*whitening)(family.shared.middleCols(first, count));
+      for (auto column : X.colwise()) column *= factor(column.norm());
+      out.columns.middleCols(first, count) = X;
+    });
+    out.gram = out.columns.transpose() * out.columns;
+    out.groups = family.groups;
+    whitening->white_within_groups(out.groups);
+    for_each_case(out.groups.size(), 1, threads, [&](std::size_t k) {
+      GroupColumns& g = out.groups[k];
+      const VectorX norms = whitening->norms_of_shared(g);
+      for (Eigen::Index i = 0; i < norms.size(); ++i) g.columns.col(i) *= factor(norms(i));
+    });
+    families.push_back(std::move(out));
+  }
+}
+
+Discrepancy::Discrepancy(std::shared_ptr<const WhitenedFamilies> white, const MatrixX& fitted)
+    : white_(std::move(white)),
+      fitted_(fitted.cols() > 0 ? orthonormal(fitted) : MatrixX(white_->whitening->rows(), 0)) {
+  constexpr double none = 1e-10;  // of the largest w
+  for (const WhitenedFamilies::Family& of : white_->families) {
     Family family;
-    family.w = all.tail(all.size() - first);
-    family.Q = B * axes.eigenvectors().rightCols(family.w.size()) * family.w.cwiseSqrt().cwiseInverse().asDiagonal();
+    if (!of.groups.empty()) {
+      const Whitening& w = *white_->whitening;
+      ScaledGroups& groups = family.own.groups.emplace(of.groups, w.shared(), w.undo_shared(fitted_), none);
+      family.own.none = groups.at(0, 1);
+      for (const double tau : scales()) family.own.scaled.push_back(groups.at(tau * tau, 1));
+    } else {
+      OfAll& f = family.all;
+      f.along_fitted = of.columns.transpose() * fitted_;
+      const Eigen::SelfAdjointEigenSolver<MatrixX> axes(of.gram - f.along_fitted * f.along_fitted.transpose());
+      const VectorX& all = axes.eigenvalues();
+      Eigen::Index first = 0;
+      while (first < all.size() && !(all(first) > none * all(all.size() - 1))) ++first;
+      f.w = all.tail(all.size() - first);
+      f.V = axes.eigenvectors().rightCols(f.w.size()) * f.w.cwiseSqrt().cwiseInverse().asDiagonal();
+    }
     families_.push_back(std::move(family));
   }
 }
 
-std::vector<double> Discrepancy::log_likelihoods(const Family& family, const VectorX& r) {
-  const VectorX along = family.Q.transpose() * r;
+VectorX Discrepancy::along(std::size_t family, const VectorX& r) const {
+  const OfAll& f = families_[family].all;
+  return f.V.transpose() *
+         (white_->families[family].columns.transpose() * r - f.along_fitted * (fitted_.transpose() * r));
+}
+
+ScaledGroups::Seen Discrepancy::seen(std::size_t family, const VectorX& r) const {
+  return families_[family].own.groups->seen(white_->whitening->undo_shared(r));
+}
+
+std::vector<double> Discrepancy::log_likelihoods(std::size_t family, const VectorX& r) const {
   std::vector<double> out;
+  const Family& f = families_[family];
+  if (f.own.groups) {
+    const ScaledGroups::Seen seen_of_r = seen(family, r);
+    const double nothing = f.own.groups->log_likelihood(f.own.none, seen_of_r);
+    for (const ScaledGroups::Scaled& s : f.own.scaled)
+      out.push_back(f.own.groups->log_likelihood(s, seen_of_r) - nothing);
+    return out;
+  }
+  const VectorX a = along(family, r);
   for (const double tau : scales()) {
     double sum = 0;
-    for (Eigen::Index i = 0; i < family.w.size(); ++i) {
-      const double more = tau * tau * family.w(i);
-      sum += 0.5 * (along(i) * along(i) * more / (1 + more) - std::log1p(more));
+    for (Eigen::Index i = 0; i < f.all.w.size(); ++i) {
+      const double more = tau * tau * f.all.w(i);
+      sum += 0.5 * (a(i) * a(i) * more / (1 + more) - std::log1p(more));
     }
     out.push_back(sum);
   }
@@ -121,8 +180,8 @@ std::vector<double> Discrepancy::log_likelihoods(const Family& family, const Vec
 
 double Discrepancy::log_evidence(const VectorX& r) const {
   std::vector<double> all;
-  for (const Family& family : families_)
-    for (const double l : log_likelihoods(family, r)) all.push_back(l);
+  for (std::size_t f = 0; f < families_.size(); ++f)
+    for (const double l : log_likelihoods(f, r)) all.push_back(l);
   return log_mean_exp(all);
 }
 
@@ -130,30 +189,45 @@ Discrepancy::Size Discrepancy::likeliest(const VectorX& r) const {
   Size out;
   double most = -INFINITY;
   for (std::size_t f = 0; f < families_.size(); ++f) {
-    const std::vector<double> all = log_likelihoods(families_[f], r);
+    const std::vector<double> all = log_likelihoods(f, r);
     for (std::size_t i = 0; i < all.size(); ++i)
       if (all[i] > most) most = all[i], out = {f, scales()[i]};
   }
   return out;
 }
 
-double Discrepancy::p_value(const VectorX& r) const {
-  double least = 1;
-  for (const Family& family : families_) {
-    // Patterns that are all but one another's sum say nothing of their own.
-    const Eigen::Index own = family.w.size() > 0 ? (family.w.array() > 1e-6 * family.w.maxCoeff()).count() : 0;
-    if (own == 0) continue;
-    const double gain = (family.Q.rightCols(own).transpose() * r).squaredNorm();
-    least = std::min(least, chi_squared_tail(static_cast<double>(own), gain));
+// Patterns that are all but one another's sum say nothing of their own.
+Discrepancy::Gain Discrepancy::own_gain(std::size_t family, const VectorX& r) const {
+  constexpr double least = 1e-6;  // of the largest w
+  const Family& f = families_[family];
+  if (f.own.groups) {
+    const ScaledGroups::Gain of_groups = f.own.groups->free_gain(seen(family, r), least);
+    return {of_groups.gain, of_groups.freedoms};
   }
-  return std::min(1.0, least * static_cast<double>(families_.size()));
+  const Eigen::Index own = f.all.w.size() > 0 ? (f.all.w.array() > least * f.all.w.maxCoeff()).count() : 0;
+  return {along(family, r).tail(own).squaredNorm(), static_cast<int>(own)};
 }
 
-VectorX Discrepancy::whitened(const VectorX& r, const Size& size) const {
-  const Family& family = families_[size.family];
-  VectorX along = family.Q.transpose() * r;
-  for (Eigen::Index i = 0; i < along.size(); ++i) along(i) *= 1 / std::sqrt(1 + size.tau * size.tau * family.w(i)) - 1;
-  return r + family.Q * along;
+double Discrepancy::p_value(const VectorX& r) const {
+  double smallest = 1;
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    const Gain own = own_gain(f, r);
+    if (own.freedoms > 0) smallest = std::min(smallest, chi_squared_tail(own.freedoms, own.gain));
+  }
+  return std::min(1.0, smallest * static_cast<double>(families_.size()));
+}
+
+double Discrepancy::chi2(const VectorX& r, const Size& size) const {
+  const Family& f = families_[size.family];
+  const double scale = size.tau * size.tau;
+  if (f.own.groups) {
+    const ScaledGroups::Seen of_r = seen(size.family, r);
+    return r.squaredNorm() + f.own.groups->chi2(f.own.groups->at(scale, 1), of_r) -
+           f.own.groups->chi2(f.own.none, of_r);
+  }
+  const VectorX a = along(size.family, r);
+  const VectorX more = scale * f.all.w;
+  return r.squaredNorm() - (a.array().square() * more.array() / (1 + more.array())).sum();
 }
 
 }  // namespace deflect

@@ -4,21 +4,38 @@
 //   poses  at each pose a displacement and a compliance of its own;
 //   loads  displacements by kinks, steps, squares and products of the load's components, by powers of time and
 //          temperature.
-// Nothing is said of how the patterns come about.
+// Nothing is said of how the patterns come about. Those of poses are kept by pose: of W C, C of a pose alone and W as
+// in whitening.h, r ~ N(0, 1 + τ² W C Cᵀ Wᵀ) is y = W_S⁻¹ r ~ N(0, 1 + B Bᵀ + τ² C̃ C̃ᵀ), C̃ = W_O W_N C still of poses
+// alone and B of the errors that all poses share (scaled_groups.h).
 #pragma once
 
+#include <memory>
+
 #include "validation/compare/comparison.h"
+#include "validation/compare/scaled_groups.h"
 
 namespace deflect {
 
-/// One matrix per family, columns over the measured numbers, m and rad per unit of each pattern.
-using Families = std::vector<MatrixX>;
+/// One per family, over the measured numbers, m and rad per unit of each pattern; groups: poses.
+using Families = std::vector<PartedColumns>;
 Families discrepancy_families(const ResidualStudy&);
+
+/// The same white, each column √n long but where it is 0. A family is either of all numbers or of groups.
+struct WhitenedFamilies {
+  WhitenedFamilies(const Families&, std::shared_ptr<const Whitening>, int threads = 1);
+
+  struct Family {
+    MatrixX columns, gram;             // white; XᵀX
+    std::vector<GroupColumns> groups;  // white within groups
+  };
+  std::vector<Family> families;
+  std::shared_ptr<const Whitening> whitening;
+};
 
 class Discrepancy {
  public:
-  /// Whitened. What `fitted` (whitened too) spans is taken out of the patterns, which keep their size.
-  explicit Discrepancy(const Families&, const MatrixX& fitted = {});
+  /// What `fitted` (whitened too) spans is taken out of the patterns, which keep their size.
+  explicit Discrepancy(std::shared_ptr<const WhitenedFamilies>, const MatrixX& fitted = {});
 
   /// ln of the evidence against "nothing": mean over the families and over τ, spread evenly in ln τ from 1e-3 to 10:
   /// none is too small to be one.
@@ -32,16 +49,36 @@ class Discrepancy {
     double tau = 0;
   };
   Size likeliest(const VectorX& r) const;
-  /// (1 + τ² B Bᵀ)^(−1/2) r: with it the discrepancy is one more nuisance.
-  VectorX whitened(const VectorX& r, const Size&) const;
+  /// rᵀ (1 + τ² B Bᵀ)⁻¹ r: χ² with the discrepancy as one more nuisance.
+  double chi2(const VectorX& r, const Size&) const;
 
  private:
-  struct Family {
-    MatrixX Q;  // orthonormal, BBᵀ = Q diag(w) Qᵀ
+  /// B of all numbers, BBᵀ = Q diag(w) Qᵀ, Q = (1 − FFᵀ) X V.
+  struct OfAll {
+    MatrixX along_fitted;  // XᵀF
+    MatrixX V;
     VectorX w;
   };
-  static std::vector<double> log_likelihoods(const Family&, const VectorX& r);  // by scale
+  struct OfGroups {
+    std::optional<ScaledGroups> groups;
+    std::vector<ScaledGroups::Scaled> scaled;  // at each τ
+    ScaledGroups::Scaled none;
+  };
+  struct Family {
+    OfAll all;
+    OfGroups own;
+  };
+  struct Gain {
+    double gain = 0;
+    int freedoms = 0;
+  };
+  VectorX along(std::size_t family, const VectorX& r) const;  // Qᵀr
+  ScaledGroups::Seen seen(std::size_t family, const VectorX& r) const;
+  std::vector<double> log_likelihoods(std::size_t family, const VectorX& r) const;  // by τ
+  Gain own_gain(std::size_t family, const VectorX& r) const;
 
+  std::shared_ptr<const WhitenedFamilies> white_;
+  MatrixX fitted_;  // orthonormal
   std::vector<Family> families_;
 };
 

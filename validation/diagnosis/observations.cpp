@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "msa/base/error.h"
 #include "validation/compare/outliers.h"
@@ -15,12 +16,12 @@ constexpr double shape_known_to = 0.2;
 
 std::vector<bool> set_aside_by(const Comparison& c) {
   std::vector<bool> aside(c.readings, false);
-  for (std::size_t i = 0; i < c.readings; ++i)
-    aside[i] = std::find(c.set_aside.begin(), c.set_aside.end(), c.study.data->readings[i].line) != c.set_aside.end();
+  const std::set<std::size_t> lines(c.set_aside.begin(), c.set_aside.end());
+  for (std::size_t i = 0; i < c.readings; ++i) aside[i] = lines.contains(c.study.data->readings[i].line);
   return aside;
 }
 
-Uncertainty uncertainty_of(const Comparison& c, const MatrixX& A, const std::vector<bool>& aside) {
+Uncertainty uncertainty_of(const Comparison& c, const PartedColumns& A, const std::vector<bool>& aside) {
   return Uncertainty(A, c.study.values, c.sigma, c.study.predicted, c.study.mechanism->tolerances.load, aside);
 }
 
@@ -30,32 +31,34 @@ Observations::Observations(const Mechanism& m, const Measurements& data, const C
     : device_(&m),
       comparison_(compare(m, data, o)),
       patterns_(discrepancy_families(comparison_.study)),
+      threads_(o.threads),
       A_(comparison_.tolerances.A),
       aside_(set_aside_by(comparison_)),
       uncertainty_(uncertainty_of(comparison_, A_, aside_)) {
   const ResidualStudy& s = comparison_.study;
   measured_ = comparison_.residual + rows_of(s.values, s.predicted);
   shape_ = s.deformed_shape.empty() ? VectorX(VectorX::Zero(measured_.size())) : rows_of(s.values, s.deformed_shape);
-  tolerance_scale_ = uncertainty_.scale_of_tolerances(residual(m), patterns_.front());
+  tolerance_scale_ = uncertainty_.scale_of_tolerances(residual(m), patterns_.front().shared);
   A_ *= tolerance_scale_;
-  A_.conservativeResize(Eigen::NoChange, A_.cols() + 1);
+  A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
   count_shape();
   weigh(aside_);
 }
 
-void Observations::count_shape() { A_.rightCols<1>() = shape_known_to * shape_; }
+void Observations::count_shape() { A_.shared.rightCols<1>() = shape_known_to * shape_; }
 
 void Observations::weigh(const std::vector<bool>& aside) {
   aside_ = aside;
   uncertainty_ = uncertainty_of(comparison_, A_, aside_);
   held_out_.emplace(comparison_.study, uncertainty_, aside_);
+  whitened_patterns_.reset();
   null_ = whitened_residual(*device_);
 }
 
-Families Observations::whitened_patterns() const {
-  Families out;
-  for (const MatrixX& family : patterns_) out.push_back(uncertainty_.whitened(family));
-  return out;
+std::shared_ptr<const WhitenedFamilies> Observations::whitened_patterns() {
+  if (!whitened_patterns_)
+    whitened_patterns_ = std::make_shared<const WhitenedFamilies>(patterns_, uncertainty_.whitening(), threads_);
+  return whitened_patterns_;
 }
 
 std::size_t Observations::set_aside() const {
@@ -79,15 +82,17 @@ double Observations::rmse(const Mechanism& m) const {
 double Observations::held_out_rmse(const Mechanism& m) const { return held_out_->rmse(residual(m)); }
 
 std::vector<std::pair<std::string, double>> Observations::strained(const Mechanism& m) const {
-  VectorX eta = uncertainty_.nuisances(residual(m));
-  const Eigen::Index tolerances = eta.size() - 1;
-  eta.head(tolerances) *= tolerance_scale_;
+  const VectorX eta = uncertainty_.nuisances(residual(m));
+  const Eigen::Index shape = A_.shared.cols() - 1;  // between the tolerances of all poses and those of each
   std::vector<std::pair<std::string, double>> out;
+  const auto look_at = [&](const std::string& name, double deviations) {
+    if (std::abs(deviations) > 2) out.emplace_back(name, deviations);
+  };
   for (Eigen::Index i = 0; i < eta.size(); ++i)
-    if (std::abs(eta(i)) > 2)
-      out.emplace_back(
-          i < tolerances ? comparison_.tolerances.nuisances[static_cast<std::size_t>(i)].name : "the deformed shape",
-          eta(i));
+    if (i != shape)
+      look_at(comparison_.tolerances.nuisances[static_cast<std::size_t>(i < shape ? i : i - 1)].name,
+              tolerance_scale_ * eta(i));
+  look_at("the deformed shape", eta(shape));
   return out;
 }
 

@@ -31,8 +31,8 @@ class Observations {
   VectorX whitened_residual(const Mechanism&) const;
   /// The same for a device in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
-  /// All patterns that a residual can have (discrepancy.h), whitened.
-  Families whitened_patterns() const;
+  /// All patterns that a residual can have (discrepancy.h), white by the uncertainty as it is now.
+  std::shared_ptr<const WhitenedFamilies> whitened_patterns();
 
   /// Root mean square of measured − predicted, translations, m (or rotations alone, rad), of the readings that are not
   /// set aside.
@@ -48,12 +48,14 @@ class Observations {
 
  private:
   void weigh(const std::vector<bool>& aside);
-  void count_shape();  // its column of A_
+  void count_shape();
 
   const Mechanism* device_;
   Comparison comparison_;
   Families patterns_;
-  MatrixX A_;
+  std::shared_ptr<const WhitenedFamilies> whitened_patterns_;  // made when first asked for
+  int threads_;
+  PartedColumns A_;  // the last of the shared columns: of the deformed shape
   double tolerance_scale_ = 1;
   std::vector<bool> aside_;
   Uncertainty uncertainty_;

@@ -1,0 +1,50 @@
+// A matrix most of whose columns belong to a few of its rows.
+#pragma once
+
+#include <vector>
+
+#include "msa/base/spatial.h"
+
+namespace deflect {
+
+/// Columns that are 0 outside the rows of a group.
+struct GroupColumns {
+  std::vector<Eigen::Index> rows;  ///< ascending
+  MatrixX columns;                 ///< over these rows
+};
+
+/// Columns over all rows, then those of each group; no row is in two groups. Memory grows with the rows.
+struct PartedColumns {
+  MatrixX shared;
+  std::vector<GroupColumns> groups;
+
+  PartedColumns() = default;
+  PartedColumns(MatrixX all) : shared(std::move(all)) {}
+
+  Eigen::Index rows() const { return shared.rows(); }
+  Eigen::Index cols() const;
+  VectorX operator*(const VectorX&) const;
+  PartedColumns& operator*=(double);
+  VectorX squared_row_norms() const;
+  MatrixX dense() const;
+};
+
+/// X with the same done to the rows of each group: part ↦ change(group, part).
+template <class Groups, class Change>
+void change_groups(const Groups& groups, MatrixX& X, const Change& change) {
+  for (const auto& group : groups) {
+    if (group.rows.empty()) continue;
+    const auto first = group.rows.front(), size = static_cast<Eigen::Index>(group.rows.size());
+    if (group.rows.back() - first + 1 == size) {
+      MatrixX part = X.middleRows(first, size);
+      change(group, part);
+      X.middleRows(first, size) = part;
+    } else {
+      MatrixX part = X(group.rows, Eigen::all);
+      change(group, part);
+      X(group.rows, Eigen::all) = part;
+    }
+  }
+}
+
+}  // namespace deflect
