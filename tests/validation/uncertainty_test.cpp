@@ -164,5 +164,18 @@ TEST(ToleranceModel, AMachineOfSofterSteelMovesInProportion) {
   EXPECT_EQ(A.col(slider).tail(72).norm(), 0);
 }
 
+// Readings of a pose are predicted alone there: their rank among them says nothing of a drift over all.
+TEST(ToleranceModel, ADriftingSensorChangesNothing) {
+  Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const Measurements data = campaign("paper", m, 50, 1);
+  std::vector<MeasuredValue> values;
+  for (std::size_t i = 0; i < data.readings.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) values.push_back({i, k, 0, {}});
+  const std::vector<Configuration> drawn = configure_all(m, data);
+  const MatrixX still = tolerance_model(m, drawn, data, values).A.dense();
+  m.sensor.drift = Vector3(1e-3, -2e-3, 1e-3);
+  EXPECT_EQ((tolerance_model(m, drawn, data, values).A.dense() - still).norm(), 0);
+}
+
 }  // namespace
 }  // namespace deflect

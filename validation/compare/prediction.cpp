@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -18,6 +20,13 @@ namespace {
 /// One theory of one machine.
 class Predictor {
  public:
+  struct Response {
+    Vector6 displacement;
+    bool converged;
+    std::vector<double> slips;
+    std::string reason = "";  ///< where not converged, if it is known
+  };
+
   /// The configuration must outlive it.
   Predictor(const Configuration& c, const PredictionOptions& o) : configuration_(&c) {
     if (o.theory != Theory::analytic)
@@ -26,28 +35,25 @@ class Predictor {
       sweep_.emplace(std::move(sweep)).at(c);
   }
 
-  /// Answers are affine in load and temperature: a few of them give all.
-  void expect_many() {
-    if (msa_ || sweep_ || !model().linear() || model().jumps()) return;
-    affine_.emplace();
+  /// Where answers are affine in load and, if it is asked for, temperature a few of them give all.
+  void expect_many(bool warmer_or_colder) {
+    if (msa_ || (sweep_ ? !sweep_->linear() : !model().linear() || model().jumps())) return;
+    Affine affine;
     const auto at = [&](const Vector6& F, double warmer) {
       Conditions conditions;
       conditions.warmer = warmer;
-      const analytic::AnalyticSolution s = model().solve(F, conditions);
-      affine_->converged = affine_->converged && s.converged;
-      return s.displacement;
+      const Response r = solve(F, conditions);
+      affine.converged = affine.converged && r.converged;
+      return r.displacement;
     };
-    affine_->rest = at(Vector6::Zero(), 0);
-    for (Eigen::Index i = 0; i < 6; ++i) affine_->C.col(i) = at(Vector6::Unit(i), 0) - affine_->rest;
-    affine_->per_kelvin = at(Vector6::Zero(), 1) - affine_->rest;
+    affine.rest = at(Vector6::Zero(), 0);
+    for (Eigen::Index i = 0; i < 6; ++i) affine.C.col(i) = at(Vector6::Unit(i), 0) - affine.rest;
+    if (warmer_or_colder) affine.per_kelvin = at(Vector6::Zero(), 1) - affine.rest;
+    affine_ = affine;
   }
 
-  struct Response {
-    Vector6 displacement;
-    bool converged;
-    std::vector<double> slips;
-    std::string reason = "";  ///< where not converged, if it is known
-  };
+  bool affine() const { return affine_.has_value(); }
+
   Response solve(const Vector6& F, const Conditions& conditions) {
     if (affine_ && conditions.geometry == Geometry::linear)
       return {affine_->rest + affine_->C * F + conditions.warmer * affine_->per_kelvin, affine_->converged, {}};
@@ -71,7 +77,7 @@ class Predictor {
   std::optional<analytic::PoseSweep> sweep_;
   std::optional<analytic::AnalyticModel> analytic_;  // where the sweep does not reach
   struct Affine {
-    Vector6 rest, per_kelvin;
+    Vector6 rest, per_kelvin = Vector6::Zero();
     Matrix6 C;
     bool converged = true;
   };
@@ -178,25 +184,43 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
   const auto [frictions, beside] = machines.empty() ? std::pair{0, false} : frictions_of(machines.front());
   if (frictions > 0) in_sequence(data, "friction");
   Carried carried;
+  const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation)),
+                sensor = rotate_twist(rotation_from_vector(m.sensor.rotation));
   const auto at_pose = [&](std::size_t p) {
     Predictor predictor(machines[p], o);
-    if (data.poses[p].readings.size() > 8) predictor.expect_many();
     Conditions conditions(o.geometry.value_or(m.geometry));
+    const bool linear = conditions.geometry == Geometry::linear;
+    if (const std::vector<std::size_t>& all = data.poses[p].readings; linear && all.size() > 8)
+      predictor.expect_many(
+          std::any_of(all.begin(), all.end(), [&](std::size_t i) { return data.readings[i].temperature_C != 20; }));
     if (beside) {
       carried.enter(machines[p], o);
       conditions.slips = carried.slips();
     }
+    // Without history the same load at the same temperature has the same answer.
+    std::map<std::array<double, 7>, Predictor::Response> known;
+    Predictor::Response last;
+    const auto answer = [&](const Reading& reading) -> const Predictor::Response& {
+      conditions.warmer = reading.temperature_C - 20;
+      const Vector6 F = cell * reading.load;
+      if (frictions > 0 || predictor.affine()) return last = predictor.solve(F, conditions);
+      std::array<double, 7> key;
+      std::copy(F.begin(), F.end(), key.begin());
+      key[6] = conditions.warmer;
+      const auto [found, is_new] = known.try_emplace(key);
+      if (is_new) found->second = predictor.solve(F, conditions);
+      return found->second;
+    };
     for (const std::size_t i : ordered(data.poses[p], data)) {
       const Reading& reading = data.readings[i];
-      conditions.warmer = reading.temperature_C - 20;
-      Predictor::Response r = predictor.solve(true_load(m.load_cell, reading.load), conditions);
+      const Predictor::Response& r = answer(reading);
       if (!r.converged)
         throw NumericalError(fmt::format("{}:{}: {} finds no equilibrium under this load{}{}", data.origin,
                                          reading.line, o.theory == Theory::analytic ? "the analytic theory" : "the MSA",
                                          r.reason.empty() ? "" : ": ", r.reason));
       if (beside) carried.leave_with(r.displacement, r.slips);
-      conditions.slips = std::move(r.slips);
-      out[i] = recorded_displacement(m.sensor, r.displacement);
+      conditions.slips = r.slips;
+      out[i] = sensor * r.displacement;
     }
   };
   const auto all = static_cast<double>(machines.size());

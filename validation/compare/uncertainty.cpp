@@ -54,10 +54,12 @@ std::vector<Move> shared_moves(const Mechanism& m) {
   return moves;
 }
 
-/// Sensitivities are those of the machine in linear geometry, without history.
+/// Sensitivities are those of the machine in linear geometry; the sensor's drift, which no tolerance changes, goes by the
+/// rank among all readings, where those of a pose are predicted alone.
 Mechanism simplified(const Mechanism& m) {
   Mechanism out = m;
   out.geometry = Geometry::linear;
+  out.sensor.drift.setZero();
   return out;
 }
 

@@ -9,7 +9,7 @@
 namespace deflect {
 namespace {
 
-std::string range(double low, double high) {
+std::string range_text(double low, double high) {
   const std::string a = fmt::format("{:.4g}", low), b = fmt::format("{:.4g}", high);
   return a == b ? a : a + " ... " + b;
 }
@@ -32,7 +32,7 @@ std::string errata_table(const std::vector<ErratumPrice>& prices) {
   for (const ErratumPrice& p : prices) {
     std::vector<std::string> row{info(p.erratum).name, info(p.erratum).equations};
     for (int axis = 0; axis < 3; ++axis)
-      row.push_back(p.refused.empty() ? range(p.smallest(axis), p.largest(axis)) : "-");
+      row.push_back(p.refused.empty() ? range_text(p.smallest(axis), p.largest(axis)) : "-");
     row.push_back(remark(p));
     rows.push_back(std::move(row));
   }
