@@ -26,6 +26,7 @@ void run(const CompareArguments& a) {
   const FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
   const Measurements data = read_data(a.data);
+  tell_size(data, 450);
   ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);

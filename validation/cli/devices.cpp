@@ -106,6 +106,19 @@ Measurements read_data(const std::string& file) {
   return data;
 }
 
+void tell_size(const Measurements& data, double numbers_kept) {
+  constexpr std::size_t large = 20'000;
+  if (data.readings.size() < large) return;
+  double numbers = 0;
+  for (const Reading& r : data.readings)
+    numbers += static_cast<double>(
+        std::count_if(r.displacement.begin(), r.displacement.end(), [](const auto& d) { return d.has_value(); }));
+  const std::string text = fmt::format("{} readings at {} poses: about {:.1f} GB of memory", data.readings.size(),
+                                       data.poses.size(), 8e-9 * numbers * numbers_kept);
+  if (const ProgressStream stream = progress_stream(); stream.out && !verbose()) *stream.out << text << std::endl;
+  tell("{}", text);
+}
+
 int parse_threads(double value, const Ranks* ranks) {
   int threads = whole("--threads", value, 0, 1024);
   if (ranks && threads == 0) threads = ranks->threads();

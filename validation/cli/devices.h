@@ -33,6 +33,10 @@ Mechanism read_device(const std::string& name_or_path);
 /// As read_measurements(), told where verbose.
 Measurements read_data(const std::string& file);
 
+/// Of large data (20 000 readings): about how much memory the work takes that keeps so many numbers for each that was
+/// measured. Where progress is shown, and where verbose.
+void tell_size(const Measurements&, double numbers_kept);
+
 /// The number of --threads of this process; 0: all of the machine, with ranks all that this rank has.
 int parse_threads(double, const Ranks* = nullptr);
 

@@ -24,6 +24,7 @@ void run(const DiagnoseArguments& a, Ranks* ranks) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
   const Measurements data = read_data(a.data);
+  tell_size(data, 1200);
   const std::vector<Effect> effects = known_effects(a.files);
   DiagnosisOptions o;
   o.comparison.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);

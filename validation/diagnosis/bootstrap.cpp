@@ -32,17 +32,11 @@ double gain(const Signature& s, const Components& z) {
 
 double chance_of_any(const std::vector<Signature>& all, double least_p, const Bootstrap& o) {
   if (all.empty() || !(least_p < 1)) return 1;
-  Eigen::Index columns = 0;
-  for (const Signature& s : all) columns += s.basis.cols();
-  MatrixX B(all.front().basis.rows(), columns);
   std::vector<double> wanted;
-  columns = 0;
-  for (const Signature& s : all) {
-    B.middleCols(columns, s.basis.cols()) = s.basis;
-    columns += s.basis.cols();
+  for (const Signature& s : all)
     wanted.push_back(std::max(gain_at_p_value(s, least_p), std::numeric_limits<double>::min()));
-  }
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(B.transpose() * B);
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(inner_products(all));
+  const Eigen::Index columns = axes.eigenvalues().size();
   const MatrixX root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 
   const auto sets = static_cast<std::size_t>(o.sets);

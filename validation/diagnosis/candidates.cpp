@@ -21,11 +21,12 @@ constexpr double of_its_own = 0.05;                // share of a signature that 
 /// Per signature the first one that does all but the same.
 std::vector<std::size_t> classes_of(const std::vector<Signature>& all) {
   std::vector<std::size_t> out(all.size());
+  const MatrixX between = cosines(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
     out[i] = i;
     for (std::size_t k = 0; k < i; ++k)
       if (all[i].amplitudes() == all[k].amplitudes() && all[i].shaped == all[k].shaped &&
-          cosine(all[i], all[k]) > alike) {
+          between(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) > alike) {
         out[i] = out[k];
         break;
       }

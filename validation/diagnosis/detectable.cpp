@@ -6,6 +6,7 @@ namespace deflect {
 
 std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
   std::vector<Detectable> out;
+  const MatrixX between = cosines(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Signature& s = all[i];
     Detectable d{s.effect, s.at_start.norm(), {}, "", 0};
@@ -20,7 +21,8 @@ std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
     }
     for (std::size_t k = 0; k < all.size(); ++k)
       if (all[k].effect.effect != s.effect.effect)
-        if (const double c = cosine(s, all[k]); c > d.cosine) d.cosine = c, d.mistaken_for = name_of(all[k].effect);
+        if (const double c = between(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)); c > d.cosine)
+          d.cosine = c, d.mistaken_for = name_of(all[k].effect);
     if (d.cosine < 0.9) d.mistaken_for.clear();
     out.push_back(std::move(d));
   }

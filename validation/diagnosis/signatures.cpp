@@ -74,6 +74,14 @@ bool amplitude_from_nothing(const Effect& e) {
   });
 }
 
+double cosine(const Signature& a, const Signature& b, const MatrixX& cross) {
+  if (a.shaped && b.shaped) return cross.cwiseAbs().maxCoeff();
+  if (a.shaped) return cross.rowwise().norm().maxCoeff();
+  if (b.shaped) return cross.colwise().norm().maxCoeff();
+  if (cross.size() == 1) return std::abs(cross(0, 0));
+  return Eigen::JacobiSVD<MatrixX>(cross).singularValues()(0);
+}
+
 double tail(int freedoms, bool one_sided, double gain) {
   if (!(gain > 0)) return 1;
   const double p = chi_squared_tail(freedoms, gain);
@@ -160,12 +168,42 @@ double own_share(const Signature& s, const MatrixX& beside) {
   return (s.basis - beside * (beside.transpose() * s.basis)).norm() / std::sqrt(static_cast<double>(s.basis.cols()));
 }
 
-double cosine(const Signature& a, const Signature& b) {
-  const MatrixX cross = a.basis.transpose() * b.basis;
-  if (a.shaped && b.shaped) return cross.cwiseAbs().maxCoeff();
-  if (a.shaped) return cross.rowwise().norm().maxCoeff();
-  if (b.shaped) return cross.colwise().norm().maxCoeff();
-  return Eigen::JacobiSVD<MatrixX>(cross).singularValues()(0);
+double cosine(const Signature& a, const Signature& b) { return cosine(a, b, a.basis.transpose() * b.basis); }
+
+MatrixX inner_products(const std::vector<Signature>& all) {
+  Eigen::Index columns = 0;
+  for (const Signature& s : all) columns += s.basis.cols();
+  MatrixX out = MatrixX::Zero(columns, columns);
+  if (all.empty()) return out;
+  constexpr Eigen::Index some = 2048;  // rows side by side at a time
+  const Eigen::Index rows = all.front().basis.rows();
+  MatrixX part;
+  for (Eigen::Index first = 0; first < rows; first += some) {
+    part.resize(std::min(some, rows - first), columns);
+    Eigen::Index at = 0;
+    for (const Signature& s : all) {
+      part.middleCols(at, s.basis.cols()) = s.basis.middleRows(first, part.rows());
+      at += s.basis.cols();
+    }
+    out.noalias() += part.transpose() * part;
+  }
+  return out;
+}
+
+MatrixX cosines(const std::vector<Signature>& all) {
+  const MatrixX inner = inner_products(all);
+  MatrixX out(std::ssize(all), std::ssize(all));
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Eigen::Index column = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+          cosine(all[i], all[k], inner.block(row, column, all[i].basis.cols(), all[k].basis.cols()));
+      column += all[k].basis.cols();
+    }
+    row += all[i].basis.cols();
+  }
+  return out;
 }
 
 double single_p_value(const Signature& s, double gain) { return tail(s.amplitudes(), s.one_sided, gain); }

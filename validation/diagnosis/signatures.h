@@ -44,8 +44,12 @@ double most_gain(const Signature&, const VectorX& residual, const MatrixX& besid
 /// all its directions in the root mean square.
 double own_share(const Signature&, const MatrixX& beside);
 
-/// Largest cosine between the spaces of two signatures.
+/// Inner products of all columns of all bases, signature after signature.
+MatrixX inner_products(const std::vector<Signature>&);
+
+/// Largest cosine between the spaces of two signatures, by pair.
 double cosine(const Signature&, const Signature&);
+MatrixX cosines(const std::vector<Signature>&);
 
 /// p-value of a gain in χ² by the effect alone, as if it were the only one looked at.
 double single_p_value(const Signature&, double gain);
