@@ -34,12 +34,19 @@ struct Response {
   bool linear = true;  ///< no spring's stiffness depends on its load
   /// The load is all that moved it from where it was assembled: neither heat nor what earlier loads left.
   bool from_rest = true;
+  bool strained = false;  ///< parts carry forces before the load: misfits, preloads
+  bool slides = false;    ///< some part has friction
 };
 
-/// Sign (a load moves its point its own way, Fᵀd > 0), equilibrium (reaction = −F), energy (½Fᵀd of a linear structure;
-/// of one that stiffens under load, has play or friction between 0 and ½Fᵀd), each to `tolerance`; of one that was not
-/// at rest equilibrium alone. Empty when all hold, else which fails and
-/// by how much. Reciprocity is the symmetry of the stiffness.
+/// Sign (a load moves its point its own way, Fᵀd > 0), equilibrium (reaction = −F), energy, each to `tolerance`; of one
+/// that was not at rest equilibrium alone. Empty when all hold, else which fails and by how much. Reciprocity is the
+/// symmetry of the stiffness.
+///
+/// Energy E against the state at rest: ½Fᵀd of a linear structure. All laws stiffen under load, have play or friction.
+/// Of reversible ones that carry nothing at rest 0 ≤ E ≤ ½Fᵀd. Where forces at rest fall under the load a law grows
+/// softer, and a friction whose force turns stores more than half of what it has taken up: then what is left is that
+/// the total potential E + D − Fᵀd, D > 0 the heat of sliding, is at most that of the state at rest, so E ≤ Fᵀd.
+/// Sliding may let go what was strained at rest; else E ≥ 0.
 std::string response_failure(const Response&, double tolerance = 1e-9);
 
 }  // namespace deflect

@@ -93,5 +93,26 @@ TEST(ResponseChecks, FindEachFaultByName) {
   EXPECT_NE(response_failure(wrong).find("energy fails"), std::string::npos);
 }
 
+// A spring in two halves that press on each other with P at rest, δ = (f/a)²ᐟ³ each: the load F takes from one what it
+// gives to the other. While F grows to 2P the halves' stiffness together falls, as one of them softens to nothing.
+TEST(ResponseChecks, PrestressedContactsMayStoreMoreThanHalfTheWork) {
+  Response r;
+  r.linear = false;
+  r.d << 1, 0, 0, 0, 0, 0;
+  r.F << std::pow(2, 1.5), 0, 0, 0, 0, 0;  // one half carries (1 + 1)^1.5, the other has just let go
+  r.reaction = -r.F;
+  r.energy = 0.4 * std::pow(2, 2.5) - 2 * 0.4;  // ∫ x^1.5 dx
+  ASSERT_GT(r.energy, 0.5 * r.F.dot(r.d));
+  EXPECT_NE(response_failure(r).find("energy fails"), std::string::npos);
+  r.strained = true;
+  EXPECT_EQ(response_failure(r), "");
+  r.energy = 1.01 * r.F.dot(r.d);  // more than the load can have done
+  EXPECT_NE(response_failure(r).find("energy fails"), std::string::npos);
+  r.energy = -1e-3;
+  EXPECT_NE(response_failure(r).find("energy fails"), std::string::npos);
+  r.slides = true;  // sliding has let go what was strained
+  EXPECT_EQ(response_failure(r), "");
+}
+
 }  // namespace
 }  // namespace deflect

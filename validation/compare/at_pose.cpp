@@ -44,6 +44,25 @@ bool from_rest(const Conditions& c) {
   return c.warmer == 0 && std::all_of(c.slips.begin(), c.slips.end(), [](double slip) { return slip == 0; });
 }
 
+/// Parts carry forces before any load.
+bool strained_at_rest(const Configuration& c) {
+  const auto preloaded = [](const PlacedJoint& joint) {
+    return std::any_of(joint.preload.begin(), joint.preload.end(), [](double force) { return force != 0; });
+  };
+  bool found = preloaded(c.base) || preloaded(c.tool) ||
+               std::any_of(c.legs.begin(), c.legs.end(), [](const PlacedLeg& l) { return !l.misfit.isZero(0); });
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (requires { part.preload; }) found = found || preloaded(part);
+  });
+  return found;
+}
+
+bool has_friction(const Configuration& c) {
+  bool found = false;
+  for_each_law(c, [&](const Law& law) { found = found || std::holds_alternative<FrictionLaw>(law); });
+  return found;
+}
+
 }  // namespace
 
 double bound_with(double least, double rounding) {
@@ -52,7 +71,7 @@ double bound_with(double least, double rounding) {
 }
 
 AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where)
-    : model_(c), where_(std::move(where)), length_(c.size) {
+    : model_(c), where_(std::move(where)), length_(c.size), strained_(strained_at_rest(c)), slides_(has_friction(c)) {
   weight_ << c.weight, Vector3::Zero();
   const bool fits = std::all_of(c.legs.begin(), c.legs.end(), [](const PlacedLeg& l) { return l.misfit.isZero(0); });
   if (!fits) energy_at_rest_ = total(model_.energies(model_.assembled()));
@@ -89,7 +108,7 @@ Answer AnalyticAtPose::solve(const Vector6& F, const Conditions& conditions) con
   enforce(answer.checks.failure, "analytic stiffness", where_);
   const std::string failure =
       response_failure({F + weight_, s.displacement, -carried, total(answer.energies) - energy_at_rest_,
-                        model_.linear(), from_rest(conditions)});
+                        model_.linear(), from_rest(conditions), strained_, slides_});
   // Beside rigid motions what yields little may have no digits: the rigid ones are the cause to tell.
   if (!failure.empty() && answer.rigid > 0) (void)model_.stiffness(s);
   enforce(failure, "analytic response", where_);
@@ -182,7 +201,7 @@ Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
   // The reaction acts at the base origin; about T its moment changes by the arm.
   const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_->base_reaction(last_.load, last_.state);
   enforce(response_failure({last_.load, last_.displacement, reaction, total(last_.energies), model_->linear(),
-                            from_rest(conditions)},
+                            from_rest(conditions), strained_at_rest(configuration_), has_friction(configuration_)},
                            bound_with(checked_to, model_->rounding())),
           "MSA response", where_);
   Answer answer{last_.displacement, stiffness_, last_.energies, checks_, last_.slips};

@@ -56,6 +56,7 @@ class AnalyticAtPose {
   double length_;
   Vector6 weight_;             // at T, acts with every load
   double energy_at_rest_ = 0;  // of the assembled mechanism, whose legs may be strained
+  bool strained_, slides_;     // as in Response
 };
 
 /// In the finite shape elements are halved until what that changes, over 3 (errors fall with the square of the length
