@@ -83,8 +83,10 @@ TEST_P(EveryLaw, ComplianceIsTheDerivativeAndEnergyTheWorkStored) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Family, EveryLaw, ::testing::ValuesIn(every_law),
-                         [](const auto& law) { return std::string(law_names[law.param.index()]); });
+INSTANTIATE_TEST_SUITE_P(Family, EveryLaw, ::testing::ValuesIn(every_law), [](const auto& law) {
+  const auto* belt = std::get_if<BeltLaw>(&law.param);
+  return law_names[law.param.index()] + std::string(belt && belt->pulley_radius ? "_on_a_pulley" : "");
+});
 
 TEST(Laws, UniversalJointOfTheDeviceIs39kNPerMmInSeriesAnd1850AsPrinted) {
   const Material steel{210e9, 0.3, {}};

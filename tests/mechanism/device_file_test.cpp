@@ -219,9 +219,10 @@ TEST(DeviceFile, AnyTextComesBack) {
   }
   Mechanism m = test::device("haptic-6psu");
   for (const std::string& text : texts) {
-    m.name = m.source = text;
+    m.source = text;
+    if (std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < ' '; })) m.name = text;  // one line
     const Mechanism r = parse_mechanism(write_mechanism(m), "written");
-    ASSERT_EQ(r.name, text);
+    ASSERT_EQ(r.name, m.name);
     ASSERT_EQ(r.source, text);
   }
   for (const char* text : {"yes", "1", "2001-01-01", "1e5", ""}) {  // also for readers that know more types

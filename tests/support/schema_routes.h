@@ -94,11 +94,19 @@ class SchemaRoutes {
     }
   }
 
+  /// Whether the same stands at the top of a document.
+  bool at_top(const SchemaField& f) const {
+    for (const SchemaCase& c : schema_.levels[0].cases)
+      for (const SchemaField& top : c.fields)
+        if (top.key == f.key && top.level == f.level) return true;
+    return false;
+  }
+
   std::string nested(const SchemaField& f, const std::string& inner) const {
     const std::string map = "{" + inner + "}";
     if (f.kind == FieldKind::list) return "[" + map + "]";
     if (f.kind != FieldKind::entries) return map;
-    const auto there = prefix_.find(f.key);  // others refer to the entry that is there
+    const auto there = at_top(f) ? prefix_.find(f.key) : prefix_.end();  // others refer to the entry that is there
     const std::string first = there == prefix_.end() ? "{" : there->second.substr(0, there->second.size() - 1) + ", ";
     return first + (there == prefix_.end() ? schema_name : "OTHER") + ": " + map + "}";
   }

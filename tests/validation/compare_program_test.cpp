@@ -256,10 +256,16 @@ TEST_F(CompareProgram, AFileIsTheSameHoweverItWasSaved) {
   }
 }
 
+TEST_F(CompareProgram, ANumberThatIsNoneWasNotMeasuredAndIsSaid) {
+  const test::Run run = compare(with_cell(soft_root(), 2, 11, "nan"));
+  EXPECT_EQ(run.code, 0) << run.out;
+  EXPECT_NE(run.out.find("1 cell such as 'nan' in line 3 count as not measured"), std::string::npos) << run.out;
+}
+
 TEST_F(CompareProgram, RefusesBadFilesWithLineAndColumn) {
   expect_refused(with_cell(soft_root(), 4, 8, "fifty"), "data.csv:5: column 'fx_N': 'fifty' is not a finite number");
   expect_refused(with_cell(soft_root(), 2, 14, "0"), "data.csv:3: column 'sigma_u_mm'");
-  expect_refused(with_cell(soft_root(), 2, 11, "nan"), "data.csv:3: column 'ux_mm'");
+  expect_refused(with_cell(soft_root(), 2, 8, "nan"), "data.csv:3: column 'fx_N'");
   expect_refused(with_cell(soft_root(), 0, 11, "ux"), "data.csv:1: unknown column 'ux'");
   expect_refused(with_cell(soft_root(), 2, 4, "900"), "data.csv:3: ", "", 2);
   expect_refused("", "data.csv:1: ");

@@ -204,7 +204,7 @@ TEST_F(ReportProgram, WhatIsNoResultIsRefused) {
   write_text(folder / "x.json", "{\"a\": 1}");
   write_text(folder / "y.json", "{");
   for (const auto& [file, message] :
-       {std::pair{"x.json", "x.json: not a result of"}, std::pair{"y.json", "y.json: not valid JSON"}}) {
+       {std::pair{"x.json", "x.json: not a result of"}, std::pair{"y.json", "y.json:1: not valid JSON"}}) {
     const test::Run run = test::deflect("report " + path(file) + " -o " + path("page.html"));
     EXPECT_EQ(run.code, 2) << run.out;
     EXPECT_NE(run.out.find(message), std::string::npos) << run.out;

@@ -104,7 +104,7 @@ TEST_F(ShowProgram, LoopsThatDoNotCloseShowEachLegAlone) {
 
 TEST_F(ShowProgram, ThePictureIsDrawn) {
   write("loose.yaml", loose);
-  for (const std::string file : {std::string("hexapod"), std::string("truss"), path("loose.yaml")}) {
+  for (const std::string& file : {std::string("hexapod"), std::string("truss"), path("loose.yaml")}) {
     const std::string name = file == "hexapod" ? "stewart-6ups" : file;
     const test::Run run = test::deflect("show " + name + " --out " + path("drawn"));
     ASSERT_EQ(run.code, 0) << run.out;
@@ -128,7 +128,7 @@ TEST_F(ShowProgram, ThePageShowsTheMachine) {
   EXPECT_TRUE(seen->at("dragged"));
   EXPECT_FALSE(seen->at("wide"));
   for (const json& notes : seen->at("notes")) EXPECT_FALSE(notes.empty()) << "nothing to read under the pointer";
-  EXPECT_NE(seen->at("saved").at("members.csv").get<std::string>().find("leg 1 ram,ram,aluminium"), std::string::npos)
+  EXPECT_NE(seen->at("saved").at("members.csv").get<std::string>().find("arm ram,ram,aluminium"), std::string::npos)
       << seen->at("saved").at("members.csv");
   write("loose.yaml", loose);
   ASSERT_EQ(test::deflect("show " + path("loose.yaml") + " --report " + path("loose.html")).code, 0);

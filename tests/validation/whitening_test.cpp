@@ -58,7 +58,8 @@ struct Errors {
   Eigen::Index rows() const { return A.rows(); }
   MatrixX covariance() const {
     MatrixX out = A.dense() * A.dense().transpose();
-    for (const NoiseBlock& b : blocks) out.block(b.first, b.first, b.size, b.size) += b.covariance;
+    for (const NoiseBlock& b : blocks)
+      if (b.covariance.size() > 0) out.block(b.first, b.first, b.size, b.size) += b.covariance;
     return out;
   }
 };

@@ -68,9 +68,9 @@ void run(const CheckArguments& a) {
   if (!a.json.empty()) write_file(a.json, check_json(m, files));
   if (!a.out.empty()) {
     const std::filesystem::path folder = a.out;
-    write_file(folder / "check.txt", report);
-    write_file(folder / "checks.csv", checks_csv(m));
-    write_file(folder / "structure.csv", structure_csv(m));
+    write_table(folder / "check.txt", report);
+    write_table(folder / "checks.csv", checks_csv(m));
+    write_table(folder / "structure.csv", structure_csv(m));
   }
   fmt::print("{}", report);
   if (!m.passes()) throw NumericalError(a.matrix + " fails its checks");

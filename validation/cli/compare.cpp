@@ -40,9 +40,9 @@ void run(const CompareArguments& a) {
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
     draw(compare_figures(c, style), folder);
-    write_file(folder / "residuals.csv", residuals_csv(c));
-    write_file(folder / "errors.csv", errors_csv(c));
-    write_file(folder / "tests.csv", tests_csv(c));
+    write_table(folder / "residuals.csv", residuals_csv(c));
+    write_table(folder / "errors.csv", errors_csv(c));
+    write_table(folder / "tests.csv", tests_csv(c));
   }
   if (!a.json.empty()) write_file(a.json, compare_json(c));
   fmt::print("{}", compare_report(c));

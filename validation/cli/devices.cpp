@@ -85,8 +85,7 @@ fs::path frame_file(const std::string& name) {
 Mechanism read_device(const std::string& name) {
   const fs::path file = device_file(name);
   Mechanism m = read_mechanism(file);
-  tell("device {}: {}, {} driven coordinates, geometry {}", m.name, file.string(), actuators_of(m).size(),
-       geometry_names[static_cast<std::size_t>(m.geometry)]);
+  tell("device {}: {}, geometry {}", m.name, file.string(), geometry_names[static_cast<std::size_t>(m.geometry)]);
   for (const auto& [each, material] : m.materials)
     if (const auto question = question_about(each, material)) remark(fmt::format("{}: {}", file.string(), *question));
   return m;
@@ -133,10 +132,14 @@ void say_new_folder(const fs::path& file) {
   if (!folder.empty() && !fs::exists(folder, error)) remark(fmt::format("the folder {} is new", folder.string()));
 }
 
-void write_file(const fs::path& path, const std::string& text) {
-  say_new_folder(path);
+void write_table(const fs::path& path, const std::string& text) {
   write_text(path, text);
   tell("wrote {}, {} bytes", path.string(), text.size());
+}
+
+void write_file(const fs::path& path, const std::string& text) {
+  say_new_folder(path);
+  write_table(path, text);
 }
 
 std::vector<double> parse_list(const std::string& option, const std::string& text,
@@ -178,7 +181,8 @@ VectorX parse_joints(const Mechanism& m, const std::string& text) {
     items.push_back(text.substr(from, to - from));
     from = to + 1;
   }
-  if (actuators.empty()) throw InputError(fmt::format("{}: nothing is driven there: leave --joints away", m.name));
+  if (actuators.empty())
+    throw InputError(fmt::format("--joints '{}': {}: nothing is driven there: leave --joints away", text, m.name));
   if (items.size() != actuators.size())
     throw InputError(fmt::format("--joints '{}': {} coordinate{}; write {}: {}", text, items.size(),
                                  items.size() == 1 ? "" : "s", actuators.size(), fmt::join(names, ", ")));

@@ -40,7 +40,10 @@ void tell_size(const Measurements&, double numbers_kept);
 /// The number of --threads of this process; 0: all of the machine, with ranks all that this rank has.
 int parse_threads(double, const Ranks* = nullptr);
 
-/// As write_text(), told where verbose; a folder that has to be made for it is said.
+/// As write_text(), told where verbose.
+void write_table(const std::filesystem::path&, const std::string& text);
+
+/// Likewise, of a file that the user names: a folder that has to be made for it is said.
 void write_file(const std::filesystem::path&, const std::string& text);
 
 /// Says that the folder of a file that is about to be written is not there yet.

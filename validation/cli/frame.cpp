@@ -54,10 +54,10 @@ frame::Equations solver_of(const std::string& name, const frame::FrameDescriptio
 
 void write_results(const fs::path& folder, const frame::FrameDescription& f, const frame::FrameResult& r) {
   const FrameTables tables = frame_tables(f, r);
-  write_file(folder / "displacements.csv", tables.displacements);
-  write_file(folder / "reactions.csv", tables.reactions);
-  write_file(folder / "members.csv", tables.members);
-  write_file(folder / "shares.csv", tables.shares);
+  write_table(folder / "displacements.csv", tables.displacements);
+  write_table(folder / "reactions.csv", tables.reactions);
+  write_table(folder / "members.csv", tables.members);
+  write_table(folder / "shares.csv", tables.shares);
   const LineMesh mesh = lines_of(r.structure);
   for (const frame::CaseResult& c : r.cases) {
     const FieldData fields = fields_of(r.structure, c);

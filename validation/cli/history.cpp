@@ -63,7 +63,7 @@ void run(const HistoryArguments& a) {
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
     draw({history_figure(h, style)}, folder);
-    write_file(folder / "history.csv", history_csv(h));
+    write_table(folder / "history.csv", history_csv(h));
   }
   if (!a.json.empty()) write_file(a.json, history_json(h));
   fmt::print("{}{}", history_report(h), same_machines(devices));

@@ -106,8 +106,8 @@ void run(const MapArguments& a, Ranks* ranks) {
   const std::filesystem::path folder = a.out;
   std::string figures;
   if (!a.out.empty()) {
-    write_file(folder / "map.csv", map_csv(map));
-    write_file(folder / "map.vtu", map_vtu(map));
+    write_table(folder / "map.csv", map_csv(map));
+    write_table(folder / "map.vtu", map_vtu(map));
     std::vector<Figure> drawn = fig11(map, style);
     for (Figure& figure : stiffness_against_length(map, style)) drawn.push_back(std::move(figure));
     figures = draw(drawn, folder);

@@ -33,12 +33,12 @@ constexpr Likeness likenesses[] = {
     {"scara", "scara"}, {"arm", "arm"},     {"gantry", "gantry"},   {"delta", "delta"}, {"hexapod", "stewart-6ups"},
     {"3-rrr", "3-rrr"}, {"3-upu", "3-upu"}, {"flexure", "flexure"}, {"truss", "truss"}, {"portal", "portal"}};
 
-struct Source {
+struct Template {
   fs::path file;
   bool frame = false;
 };
 
-Source source_of(const std::string& like) {
+Template template_of(const std::string& like) {
   std::vector<std::string> words;
   for (const Likeness& each : likenesses) words.emplace_back(each.word);
   const auto found = std::find(words.begin(), words.end(), like);
@@ -64,7 +64,7 @@ std::string quoted(const std::string& path) {
 }
 
 /// Commands that take the file as it is.
-std::vector<std::string> first_commands(const Source& source, const std::string& file) {
+std::vector<std::string> first_commands(const Template& source, const std::string& file) {
   if (source.frame)
     return {fmt::format("deflect show {} --report drawing.html", file), fmt::format("deflect frame {}", file)};
   const Mechanism m = read_mechanism(source.file);
@@ -83,7 +83,7 @@ std::vector<std::string> first_commands(const Source& source, const std::string&
 }
 
 /// The file with its own name in it, and what to do with it above.
-std::string text_of(const Source& source, const fs::path& out, const std::vector<std::string>& commands) {
+std::string text_of(const Template& source, const fs::path& out, const std::vector<std::string>& commands) {
   const std::string text = read_text(source.file), mark = "\nname: ";
   const std::size_t at = text.find(mark), end = text.find('\n', at + 1);
   std::string stem = out.stem().string();
@@ -98,7 +98,7 @@ std::string text_of(const Source& source, const fs::path& out, const std::vector
 }
 
 void run(const NewArguments& a) {
-  const Source source = source_of(a.like);
+  const Template source = template_of(a.like);
   std::error_code error;
   if (!a.force && fs::is_regular_file(a.out, error))
     throw InputError(fmt::format("{}: is there already: name another file, or write over it with --force", a.out));

@@ -120,7 +120,8 @@ Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64
 }
 
 /// What to say of loads that are too large: what the machine carries.
-std::string way_out(const Mechanism& m, const Measurements& plan, const SimulationOptions& o, const SimulateArguments& a) {
+std::string way_out(const Mechanism& m, const Measurements& plan, const SimulationOptions& o,
+                    const SimulateArguments& a) {
   const double share = share_carried(m, plan, o);
   if (share == 0 || share == 1) return "";
   const bool named = plan.origin == "campaign";

@@ -58,8 +58,8 @@ void run(const ValidateArguments& a) {
     std::vector<Figure> figures = {fig10(v, style)};
     if (a.errata) figures.push_back(errata_figure(prices, v, style));
     draw(figures, folder);
-    write_file(folder / "validation.csv", validation_csv(v));
-    if (a.errata) write_file(folder / "errata.csv", errata_csv(prices));
+    write_table(folder / "validation.csv", validation_csv(v));
+    if (a.errata) write_table(folder / "errata.csv", errata_csv(prices));
   }
   if (!a.json.empty()) write_file(a.json, validation_json(v, prices));
   fmt::print("{}", validation_table(v));

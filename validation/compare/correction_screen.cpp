@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <tuple>
 
 #include "msa/base/error.h"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::size_t most_sampled = 1000;  // readings
 constexpr double of_usual = 0.005, of_predicted = 0.01, good_part = 0.4;
+constexpr double clearly_worse = 5;  // of the sum of losses
 constexpr double least_shift_mm = 0.5, most_shift_mm = 100;
 
 /// Some of the readings, spread evenly over the file, at the poses that they have.
@@ -51,43 +53,64 @@ double quantile(std::vector<double> values, double share) {
 
 CorrectionScreen::CorrectionScreen(const Mechanism& m, const Comparison& c, int threads)
     : mechanism_(&m), study_(&c.study), threads_(threads), size_(c.study.machines.front().size) {
+  if (!c.sigma_from_residuals) {
+    std::array<double, 2> sum{}, count{};
+    for (std::size_t i = 0; i < study_->values.size(); ++i) {
+      const std::size_t of = study_->values[i].component < 3 ? 0 : 1;
+      sum[of] += c.sigma[i] * c.sigma[i], count[of] += 1;
+    }
+    for (std::size_t of = 0; of < 2; ++of)
+      if (count[of] > 0) sigma_[of] = std::sqrt(sum[of] / count[of]);
+  }
   std::tie(sample_, rows_) = sample_of(*c.study.data);
   as_recorded_ = loss(Correction{});
+  std::size_t numbers = 0;
+  for (const Reading& r : sample_.readings)
+    for (const std::optional<double>& d : r.displacement) numbers += d.has_value();
+  equal_within_ = clearly_worse / static_cast<double>(std::max<std::size_t>(1, numbers));
   // Noise and tolerances alone, of the size that the comparison has for them.
-  std::vector<double> usual;
-  for (const MeasuredValue& v : study_->values) usual.push_back(std::abs(v.value) * (v.component < 3 ? 1 : size_));
-  const double scale = of_usual * quantile(usual, 0.75);
+  std::map<std::pair<std::size_t, std::size_t>, double> scale;
+  for (const Difference& d : differences(*study_->data, study_->predicted)) scale[{d.row, d.component}] = d.scale;
+  const VectorX tolerances = c.tolerances.A.squared_row_norms();
   double noise = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
     const MeasuredValue& v = study_->values[i];
-    const double weight = v.component < 3 ? 1 : size_;
-    const double predicted = study_->predicted[v.reading](static_cast<Eigen::Index>(v.component));
-    const double variance = (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) +
-                            c.tolerances.A.row(static_cast<Eigen::Index>(i)).squaredNorm();
-    const double e = scale + of_predicted * weight * std::abs(predicted);
-    noise += e > 0 ? std::log1p(weight * weight * variance / (e * e)) : 0;
+    const double weight = v.component < 3 ? 1 : size_, s = scale.at({v.reading, v.component});
+    const double variance =
+        (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) + tolerances(static_cast<Eigen::Index>(i));
+    noise += s > 0 ? std::log1p(weight * weight * variance / (s * s)) + std::log(s) : 0;
   }
   noise /= static_cast<double>(study_->values.size());
   promising_ = as_recorded_ - good_part * std::max(0.0, as_recorded_ - noise);
 }
 
-double CorrectionScreen::loss(const Measurements& data, const std::vector<Vector6>& predicted) const {
+std::vector<CorrectionScreen::Difference> CorrectionScreen::differences(const Measurements& data,
+                                                                        const std::vector<Vector6>& predicted) const {
   std::vector<double> usual;
   for (const Reading& r : data.readings)
     for (std::size_t k = 0; k < 6; ++k)
       if (r.displacement[k]) usual.push_back(std::abs(*r.displacement[k]) * (k < 3 ? 1 : size_));
-  const double scale = of_usual * quantile(usual, 0.75);
-  double sum = 0;
+  const double usually = of_usual * quantile(usual, 0.75);
+  std::vector<Difference> out;
   for (std::size_t i = 0; i < data.readings.size(); ++i)
     for (std::size_t k = 0; k < 6; ++k) {
       const Reading& r = data.readings[i];
       if (!r.displacement[k]) continue;
       const double weight = k < 3 ? 1 : size_, p = weight * predicted[i](static_cast<Eigen::Index>(k));
-      const double e = scale + of_predicted * std::abs(p);
-      const double z = e > 0 ? (weight * *r.displacement[k] - p) / e : 0;
-      sum += std::log1p(z * z);
+      const double sigma = weight * (k < 3 ? r.sigma_u.value_or(sigma_[0]) : r.sigma_th.value_or(sigma_[1]));
+      out.push_back({i, k, weight * *r.displacement[k] - p, std::hypot(sigma, usually, of_predicted * p)});
     }
-  return usual.empty() ? 0 : sum / static_cast<double>(usual.size());
+  return out;
+}
+
+double CorrectionScreen::loss(const Measurements& data, const std::vector<Vector6>& predicted,
+                              const Rewritten& displacement) const {
+  const std::vector<Difference> all = differences(data, predicted);
+  double sum = 0;
+  for (const Difference& d : all)
+    if (d.scale > 0)
+      sum += std::log1p(std::pow(d.left / d.scale, 2)) + std::log(d.scale / std::abs(displacement.factor[d.component]));
+  return all.empty() ? 0 : sum / static_cast<double>(all.size());
 }
 
 double CorrectionScreen::loss(const Correction& c) const {
@@ -99,7 +122,7 @@ double CorrectionScreen::loss(const Correction& c) const {
     if (!study_->deformed_shape.empty()) predicted[i] += study_->deformed_shape[rows_[i]];
     predicted[i] += study_->compliance[recorded.pose] * (data.readings[i].load - recorded.load);
   }
-  return loss(data, predicted);
+  return loss(data, predicted, c.displacement);
 }
 
 std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const Correction& c) const {
@@ -119,7 +142,7 @@ std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const Corre
 
 double CorrectionScreen::loss_elsewhere(const Correction& c) const {
   const auto predicted = predicted_with(c);
-  return predicted ? loss(corrected(sample_, c), *predicted) : std::numeric_limits<double>::infinity();
+  return predicted ? loss(corrected(sample_, c), *predicted, c.displacement) : std::numeric_limits<double>::infinity();
 }
 
 std::optional<Correction> CorrectionScreen::best_shift(int axis) const {
@@ -132,24 +155,14 @@ std::optional<Correction> CorrectionScreen::best_shift(int axis) const {
     const auto here = at(mm), beside = at(mm + 0.1);
     if (!here || !beside) return std::nullopt;
     double along = 0, squares = 0;
-    std::vector<double> usual;
-    for (const Reading& r : sample_.readings)
-      for (std::size_t k = 0; k < 6; ++k)
-        if (r.displacement[k]) usual.push_back(std::abs(*r.displacement[k]) * (k < 3 ? 1 : size_));
-    const double scale = of_usual * quantile(usual, 0.75);
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      for (std::size_t k = 0; k < 6; ++k) {
-        const Reading& r = sample_.readings[i];
-        if (!r.displacement[k]) continue;
-        const auto row = static_cast<Eigen::Index>(k);
-        const double weight = k < 3 ? 1 : size_, p = weight * (*here)[i](row);
-        const double e = scale + of_predicted * std::abs(p);
-        if (!(e > 0)) continue;
-        const double z = (weight * *r.displacement[k] - p) / e;
-        const double slope = weight * ((*beside)[i](row) - (*here)[i](row)) / 0.1 / e;
-        along += slope * z / (1 + z * z);
-        squares += slope * slope / (1 + z * z);
-      }
+    for (const Difference& d : differences(sample_, *here)) {
+      if (!(d.scale > 0)) continue;
+      const auto k = static_cast<Eigen::Index>(d.component);
+      const double z = d.left / d.scale;
+      const double slope = (d.component < 3 ? 1 : size_) * ((*beside)[d.row](k) - (*here)[d.row](k)) / 0.1 / d.scale;
+      along += slope * z / (1 + z * z);
+      squares += slope * slope / (1 + z * z);
+    }
     if (!(squares > 0)) return std::nullopt;
     double further = along / squares;
     bool better = false;

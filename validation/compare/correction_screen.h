@@ -1,6 +1,7 @@
 // A first look at corrections of recorded data, on some of the readings: what each leaves of the misfit.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -9,9 +10,11 @@
 
 namespace deflect {
 
-/// The loss is the mean of ln(1 + z²) over measured numbers, z what measured and predicted differ by, against a
-/// hundredth of what is usually measured and two hundredths of the prediction: gross outliers count little, small
-/// displacements as much as large ones. Corrected loads move the prediction by the tangent compliance.
+/// The loss is the mean of ln(1 + z²) + ln(s/|f|) over measured numbers: z what measured and predicted differ by, over
+/// a scale s; f the factor of the correction, so that it is about the density of the numbers as they were recorded (of
+/// Cauchy's form: gross outliers count little). s is the root of the squares of σ, of half a hundredth of what is
+/// usually measured and of a hundredth of the prediction. Corrected loads move the prediction by the tangent
+/// compliance.
 class CorrectionScreen {
  public:
   /// All must outlive it.
@@ -20,6 +23,8 @@ class CorrectionScreen {
   double as_recorded() const { return as_recorded_; }
   /// Below this a correction takes a good part away of what noise does not explain.
   double promising() const { return promising_; }
+  /// Losses that differ by less say nothing of which correction is right.
+  double equal_within() const { return equal_within_; }
 
   /// Of a correction of displacements and loads.
   double loss(const Correction&) const;
@@ -29,7 +34,13 @@ class CorrectionScreen {
   std::optional<Correction> best_shift(int axis) const;
 
  private:
-  double loss(const Measurements&, const std::vector<Vector6>& predicted) const;
+  /// A measured number against its prediction; rotations times the machine's size.
+  struct Difference {
+    std::size_t row, component;
+    double left, scale;
+  };
+  std::vector<Difference> differences(const Measurements&, const std::vector<Vector6>& predicted) const;
+  double loss(const Measurements&, const std::vector<Vector6>& predicted, const Rewritten& displacement) const;
   std::optional<std::vector<Vector6>> predicted_with(const Correction&) const;
 
   const Mechanism* mechanism_;
@@ -38,7 +49,8 @@ class CorrectionScreen {
   Measurements sample_;
   std::vector<std::size_t> rows_;  // readings of the study that are in the sample
   double size_ = 1;                // m: of the machine
-  double as_recorded_ = 0, promising_ = 0;
+  std::array<double, 2> sigma_{};  // m, rad: of readings that do not say it
+  double as_recorded_ = 0, promising_ = 0, equal_within_ = 0;
 };
 
 }  // namespace deflect

@@ -17,7 +17,10 @@ namespace deflect {
 namespace {
 
 constexpr double chance_of_bad_fit = 1e-4, share_set_aside = 0.02, share_of_misfit = 0.05;
-constexpr double excess_cured = 1.0 / 9, gross_misfit = 0.25, gross_misfit_cured = 1.0 / 3, right_to_noise = 2;
+constexpr double excess_cured = 1.0 / 9, excess_far_less = 1.0 / 36, gross_misfit = 0.25, right_to_noise = 2;
+constexpr double misfit_cured = 1.0 / 3, misfit_far_less = 1.0 / 6;  // of the share of what was measured
+constexpr double deviations_of_right = 5;                            // of χ²
+constexpr double hardly_more = 1.05;                                 // of shares, by noise
 constexpr double clearly = 30;          // of χ², by which corrected data are easier to explain
 constexpr double cost_of_reading = 25;  // χ² that setting one aside is worth
 constexpr std::size_t most_tried = 4;   // on all readings
@@ -35,19 +38,36 @@ double description(const MisfitAccount& a, int fitted, std::size_t readings) {
   return (a.scatter > 0 ? 2 * a.numbers * std::log(a.scatter) : a.left) + columns + aside;
 }
 
-/// Whether the corrected data are right, or so much better that the mistake is certain.
-bool cures(const MisfitAccount& before, const MisfitAccount& after, int fitted, std::size_t readings) {
-  if (after.share > before.share) return false;
+/// Of the recorded numbers y the corrected ones f y are told. Where σ is not told with them, σ/|f| is what y scatter
+/// by: −2 ln of the density of y is then χ² − 2 ln |f| a number, against χ² of y as they stand.
+double cost_of_scale(const Comparison& c, const Correction& correction) {
+  if (c.sigma_from_residuals) return 0;
+  double sum = 0;
+  for (const MeasuredValue& v : c.study.values) {
+    const Reading& r = c.study.data->readings[v.reading];
+    const bool told = correction.sigma_too && (v.component < 3 ? r.sigma_u : r.sigma_th).has_value();
+    if (!told) sum -= 2 * std::log(std::abs(correction.displacement.factor[v.component]));
+  }
+  return sum;
+}
+
+/// Whether the corrected data are right, or so much better that the mistake is certain. `gain`: by how much their
+/// description is shorter.
+bool cures(const MisfitAccount& before, const MisfitAccount& after, int fitted, double gain) {
+  if (after.share > hardly_more * before.share) return false;
   const std::size_t common = std::min(before.set_aside, after.set_aside);
   const auto excess = [&](const MisfitAccount& a) {
     return std::max(0.0, a.chi2 - a.numbers) + cost_of_reading * static_cast<double>(a.set_aside - common);
   };
   const bool estimated = before.scatter > 0;
-  const bool grossly = before.share > gross_misfit, falls = after.share < gross_misfit_cured * before.share;
-  const double gain = description(before, 0, readings) - description(after, fitted, readings);
-  if (grossly && falls && gain > -clearly && fitted == 0)
-    if (estimated || after.chi2 < right_to_noise * after.numbers) return true;
-  return gain > clearly && ((grossly && falls) || (estimated ? falls : excess(after) < excess_cured * excess(before)));
+  const bool grossly = before.share > gross_misfit, falls = after.share < misfit_cured * before.share;
+  const bool right = estimated || after.chi2 < right_to_noise * after.numbers;
+  const bool cured = estimated ? falls : excess(after) < (right ? excess_cured : excess_far_less) * excess(before);
+  // What physics can leave, a shift of the poses or of the point of the load can follow a long way.
+  const double to_noise = after.numbers + deviations_of_right * std::sqrt(2 * after.numbers);
+  if (fitted > 0 && !(cured && (estimated || after.chi2 < to_noise))) return false;
+  if (fitted == 0 && grossly && falls && right && gain > 0) return true;
+  return gain > clearly && (cured || (grossly && after.share < misfit_far_less * before.share));
 }
 
 struct Tried {
@@ -112,22 +132,22 @@ std::vector<Tried> promising_poses(const Comparison& c, const CorrectionScreen& 
 }
 
 /// Those that do as well as the first from `from` on.
-std::size_t end_of_equals(const std::vector<Tried>& all, std::size_t from) {
+std::size_t end_of_equals(const std::vector<Tried>& all, std::size_t from, double within) {
   std::size_t to = from + 1;
-  while (to < all.size() && all[to].loss <= 1.02 * all[from].loss + 1e-9) ++to;
+  while (to < all.size() && all[to].loss <= all[from].loss + within) ++to;
   return to;
 }
 
 class MistakeSearch {
  public:
-  MistakeSearch(const Comparison& c, const MisfitAccount& before,
+  MistakeSearch(const Comparison& c, const MisfitAccount& before, double equal_within,
                 const std::function<MisfitAccount(const Measurements&)>& again)
-      : c_(c), before_(before), again_(again) {}
+      : c_(c), before_(before), equal_within_(equal_within), again_(again) {}
 
   /// The best of several are tried on all readings, until one leaves nothing to explain.
   void look_among(const std::vector<Tried>& all) {
     for (std::size_t from = 0, tries = 0; from < all.size() && tries < most_tried && !right_; ++tries) {
-      const std::size_t to = end_of_equals(all, from);
+      const std::size_t to = end_of_equals(all, from, equal_within_);
       for (std::size_t i = from; i < to && !right_; ++i) {
         // Equals are tried once, but for the unit of σ.
         if (i > from && all[i].correction.id != all[from].correction.id) continue;
@@ -149,8 +169,8 @@ class MistakeSearch {
     } catch (const std::runtime_error&) {
       return;  // the corrected data ask for what the machine cannot do
     }
-    if (!cures(before_, after, correction.fitted, c_.readings)) return;
-    const double size = description(after, correction.fitted, c_.readings);
+    const double size = description(after, correction.fitted, c_.readings) + cost_of_scale(c_, correction);
+    if (!cures(before_, after, correction.fitted, description(before_, 0, c_.readings) - size)) return;
     if (found_ && size >= least_) return;
     least_ = size;
     right_ = before_.scatter == 0 && after.chi2 < right_to_noise * after.numbers &&
@@ -169,6 +189,7 @@ class MistakeSearch {
 
   const Comparison& c_;
   const MisfitAccount& before_;
+  const double equal_within_;
   const std::function<MisfitAccount(const Measurements&)>& again_;
   std::optional<RecordingMistake> found_;
   double least_ = 0;
@@ -202,7 +223,7 @@ std::vector<RecordingMistake> recording_mistakes(const Mechanism& m, const Compa
   if (out.empty() && before.share < gross_misfit) out = sigma;
   if (out.empty() && fits_badly(c, before)) {
     const CorrectionScreen screen(m, c, threads);
-    MistakeSearch search(c, before, again);
+    MistakeSearch search(c, before, screen.equal_within(), again);
     search.look_among(promising_readings(c, screen));
     if (!search.right()) search.look_among(promising_poses(c, screen));
     if (search.found()) out.push_back(*search.found());

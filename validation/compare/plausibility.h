@@ -2,10 +2,12 @@
 //
 // A mistake is looked for where the readings do not fit. Corrections (recording_mistakes.h) are tried on the prediction
 // of some readings; those that take a good part of the misfit away are tried on all of them, by a comparison of the
-// corrected data. One is told when the misfit beyond noise and tolerances falls to less than a ninth in χ² and the
-// corrected data need clearly less to explain them than the recorded ones with the patterns that physics can leave
-// (findings.h); where the misfit is more than a quarter of what was measured, also when the corrected data are right to
-// the noise, or the misfit falls to a third.
+// corrected data. One is told when the corrected data need clearly less to explain them than the recorded ones with the
+// patterns that physics can leave (findings.h), and the misfit beyond noise and tolerances falls to less than a ninth
+// in χ² where they are then right to the noise, to a 36th where something else is left; or, where it is more than a
+// quarter of what was measured, to a sixth. Where it is that large and a change of units or axes makes it right to the
+// noise, that is told before any physics. Fitted corrections, a shift of the poses or of the point of the load, must
+// make it right to the noise.
 #pragma once
 
 #include <functional>

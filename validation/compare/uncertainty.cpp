@@ -54,8 +54,8 @@ std::vector<Move> shared_moves(const Mechanism& m) {
   return moves;
 }
 
-/// Sensitivities are those of the machine in linear geometry; the sensor's drift, which no tolerance changes, goes by the
-/// rank among all readings, where those of a pose are predicted alone.
+/// Sensitivities are those of the machine in linear geometry; the sensor's drift, which no tolerance changes, goes by
+/// the rank among all readings, where those of a pose are predicted alone.
 Mechanism simplified(const Mechanism& m) {
   Mechanism out = m;
   out.geometry = Geometry::linear;

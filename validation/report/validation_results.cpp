@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "validation/measurement/column_names.h"
 #include "validation/report/by_point.h"
 #include "validation/report/json_text.h"
 #include "validation/report/text.h"
@@ -34,9 +35,6 @@ std::string csv_number(double value, const std::string& what) {
   if (!std::isfinite(value)) throw NumericalError(fmt::format("result '{}' is {}, not a number to write", what, value));
   return fmt::format("{}", value);
 }
-
-constexpr const char* pose_columns[] = {"x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg"};
-constexpr const char* displacement_columns[] = {"ux_mm", "uy_mm", "uz_mm", "thx_rad", "thy_rad", "thz_rad"};
 
 std::string row_name(const ValidationRow& row) {
   return fmt::format("point {}, load along {}", row.point.label, axis_names[row.axis]);
@@ -120,7 +118,7 @@ std::string validation_csv(const Validation& validation) {
   std::string text = fmt::format("point,{},load_axis,load_N", fmt::join(pose_columns, ","));
   const auto theories = printed ? std::vector{"analytic", "msa", "as_printed"} : std::vector{"analytic", "msa"};
   for (const char* theory : theories)
-    for (const char* column : displacement_columns) text += fmt::format(",{}_{}", theory, column);
+    for (const std::string& column : displacement_columns) text += fmt::format(",{}_{}", theory, column);
   text += ",relative_difference\n";
 
   for (const ValidationRow& row : validation.rows) {
