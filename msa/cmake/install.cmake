@@ -44,7 +44,7 @@ foreach(header ${headers})
           COMPONENT development)
 endforeach()
 
-foreach(folder devices effects cases frames)
+foreach(folder devices effects cases frames measurements)
   if(EXISTS ${PROJECT_SOURCE_DIR}/validation/${folder})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/deflect
             COMPONENT program PATTERN "*.h" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)

@@ -10,6 +10,7 @@
 #include "msa/base/files.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "tests/support/practice.h"
 #include "tests/support/recording.h"
 #include "validation/compare/comparison.h"
 #include "validation/compare/simulate.h"
@@ -23,13 +24,18 @@ bool all_wanted() { return std::getenv("DEFLECT_ALL_MISTAKES") != nullptr; }
 
 const char* machine_names[] = {"haptic-6psu", "stewart-6ups", "hybrid", "delta", "tripteron"};
 
+/// Such that displacements are far above the noise of 2 µm: some tenths of a millimetre.
+double force_on(const std::string& machine) {
+  return machine == "stewart-6ups" ? 10000 : machine == "hybrid" ? 1000 : machine == "tripteron" ? 500 : 50;
+}
+
 Measurements measured(const Mechanism& drawn, const Mechanism& truth, const std::string& plan, std::uint64_t seed,
                       bool rotations) {
   SimulationOptions o;
   o.seed = seed;
   o.geometry = Geometry::second_order;
   if (rotations) o.sigma_th = 2e-5;
-  return simulate(truth, campaign(plan, drawn, 50, seed), o);
+  return simulate(truth, campaign(plan, drawn, force_on(drawn.name), seed), o);
 }
 
 std::string words(const Comparison& c) {
@@ -55,8 +61,7 @@ TEST_P(Recording, APlantedMistakeIsTheFirstThingSaid) {
   const Measurements healthy = measured(m, m, "rich", 1, true);
   const Comparison usual = compare(m, healthy);
   ASSERT_FALSE(is_mistaken(usual)) << words(usual);
-  // Where noise is all that is seen, readings in another unit than their σ are σ in another unit than its readings.
-  const bool noise_alone = usual.all.measured < 2 * usual.sigma_u;
+  ASSERT_GT(usual.all.measured, 10 * usual.sigma_u) << "the campaign must show something";
   const std::vector<test::Planted> all = test::planted_mistakes();
   std::size_t named = 0, number = 0;
   const std::size_t machine = static_cast<std::size_t>(
@@ -75,7 +80,7 @@ TEST_P(Recording, APlantedMistakeIsTheFirstThingSaid) {
       ++named;
       continue;
     }
-    if (named_first(c, kind.id) || (noise_alone && named_first(c, "sigma_unit"))) {
+    if (named_first(c, kind.id)) {
       ++named;
     } else {
       EXPECT_LT(c.chi2_per_dof, 1.3) << GetParam() << ", " << kind.id << ": " << words(c)
@@ -107,7 +112,9 @@ TEST(RecordingChecks, HealthyMachinesAreNotAccused) {
       const Effect& e = effects[i * 7 % effects.size()];
       try {
         VectorX values = start_values(e);
-        if (!e.parameters.empty() && e.parameters.front().log) values(0) *= std::pow(2, static_cast<double>(i % 5) - 2);
+        if (!e.parameters.empty() && e.parameters.front().log)
+          values(0) = std::clamp(values(0) * std::pow(2, static_cast<double>(i % 5) - 2), e.parameters.front().low,
+                                 e.parameters.front().high);
         truth = with_effect(m, e, values, test::some_leg(e));
         hidden = e.name;
       } catch (const std::runtime_error&) {
@@ -128,15 +135,14 @@ TEST(RecordingChecks, HealthyMachinesAreNotAccused) {
 }
 
 TEST(RecordingChecks, PracticeSetsAreNotAccused) {
-  const char* folder = std::getenv("DEFLECT_PRACTICE");
-  if (!folder) GTEST_SKIP() << "DEFLECT_PRACTICE names no folder";
   const Mechanism m = test::device("haptic-6psu-ideal-joints");
-  const int step = all_wanted() ? 1 : 8;
+  const int step = all_wanted() ? 1 : 2;
   for (int i = 1; i <= 32; i += step) {
-    const std::string file = fmt::format("{}/p{:02}.csv", folder, i);
-    const Measurements data = read_measurements(file);
+    const auto file = test::practice_set(fmt::format("p{:02}", i));
+    if (!file) continue;
+    const Measurements data = read_measurements(*file);
     const Comparison c = compare(m, data);
-    EXPECT_FALSE(is_mistaken(c)) << file << ": " << words(c);
+    EXPECT_FALSE(is_mistaken(c)) << *file << ": " << words(c);
   }
 }
 

@@ -1,14 +1,13 @@
-// Measurement sets of foreign make with a hidden effect, for those who have them: with the effect and the parameters of
-// their key the residual is noise and tolerances. The folder is named by the environment variable DEFLECT_PRACTICE
-// (NAME.csv for each set); without it these tests are skipped.
+// Measurement sets of foreign make with a hidden effect: with the effect and the parameters of their key the residual
+// is noise and tolerances. Eight of them are in tests/practice; DEFLECT_PRACTICE names a folder with all.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "tests/support/devices.h"
+#include "tests/support/practice.h"
 #include "validation/compare/comparison.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/effect_file.h"
@@ -34,11 +33,11 @@ void PrintTo(const Hidden& h, std::ostream* out) { *out << h.set; }
 class Practice : public testing::TestWithParam<Hidden> {
  protected:
   void SetUp() override {
-    const char* folder = std::getenv("DEFLECT_PRACTICE");
-    if (!folder || !std::filesystem::exists(folder)) GTEST_SKIP() << "DEFLECT_PRACTICE names no folder of sets";
-    folder_ = folder;
+    const auto file = test::practice_set(GetParam().set);
+    if (!file) GTEST_SKIP() << "only with DEFLECT_PRACTICE";
+    file_ = *file;
   }
-  std::filesystem::path folder_;
+  std::filesystem::path file_;
 };
 
 Mechanism with_effects(const Hidden& h, const std::vector<double>& values) {
@@ -56,7 +55,7 @@ Mechanism with_effects(const Hidden& h, const std::vector<double>& values) {
 
 TEST_P(Practice, TheRightEffectLeavesNoiseAndTolerances) {
   const Hidden& h = GetParam();
-  const Measurements data = read_measurements(folder_ / (h.set + ".csv"));
+  const Measurements data = read_measurements(file_);
   const Comparison c = compare(with_effects(h, h.values), data);
   // χ² of n numbers scatters by √(2n); n is 800 to 2100 here.
   EXPECT_NEAR(c.chi2_per_dof, 1, 5 * std::sqrt(2 / static_cast<double>(c.numbers))) << testing::PrintToString(h.values);
@@ -83,11 +82,10 @@ void PrintTo(const Word& w, std::ostream* out) { *out << w.set; }
 class PracticeInWords : public testing::TestWithParam<Word> {};
 
 TEST_P(PracticeInWords, CompareSaysWhatTheKeySays) {
-  const char* folder = std::getenv("DEFLECT_PRACTICE");
-  if (!folder || !std::filesystem::exists(folder)) GTEST_SKIP() << "DEFLECT_PRACTICE names no folder of sets";
   const auto& [set, pattern, words] = GetParam();
-  const Comparison c = compare(test::device("haptic-6psu-ideal-joints"),
-                               read_measurements(std::filesystem::path(folder) / (set + ".csv")));
+  const auto file = test::practice_set(set);
+  if (!file) GTEST_SKIP() << "only with DEFLECT_PRACTICE";
+  const Comparison c = compare(test::device("haptic-6psu-ideal-joints"), read_measurements(*file));
   if (pattern.empty()) {
     EXPECT_TRUE(c.findings.empty());
     return;
@@ -119,12 +117,11 @@ void PrintTo(const Answer& a, std::ostream* out) { *out << a.set; }
 class PracticeDiagnosed : public testing::TestWithParam<Answer> {};
 
 TEST_P(PracticeDiagnosed, TheKeyIsFound) {
-  const char* folder = std::getenv("DEFLECT_PRACTICE");
-  if (!folder || !std::filesystem::exists(folder)) GTEST_SKIP() << "DEFLECT_PRACTICE names no folder of sets";
   const auto& [set, missing] = GetParam();
+  const auto file = test::practice_set(set);
+  if (!file) GTEST_SKIP() << "only with DEFLECT_PRACTICE";
   const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects");
-  const Diagnosis d = diagnose(test::device("haptic-6psu-ideal-joints"),
-                               read_measurements(std::filesystem::path(folder) / (set + ".csv")), all);
+  const Diagnosis d = diagnose(test::device("haptic-6psu-ideal-joints"), read_measurements(*file), all);
   if (missing == std::vector<std::string>{"unknown"}) {
     EXPECT_EQ(d.verdict, Verdict::unknown_effect);
     return;
@@ -154,13 +151,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Answer{"p32", {}}),
     [](const auto& sample) { return sample.param.set; });
 
-// The FANUC's six joint springs, by least squares over its 43 measured rows (fanuc-r2000ic/measured.csv beside the
-// sets): what the readings ask for beyond the published springs, joint by joint.
+// The FANUC's six joint springs, by least squares over its 43 measured rows (validation/measurements): what the
+// readings ask for beyond the published springs, joint by joint.
 TEST(Fanuc, SixJointSpringsFitTheMeasurements) {
-  const char* folder = std::getenv("DEFLECT_PRACTICE");
-  const std::filesystem::path file =
-      std::filesystem::path(folder ? folder : "") / ".." / "fanuc-r2000ic" / "measured.csv";
-  if (!folder || !std::filesystem::exists(file)) GTEST_SKIP() << "no measurements of the FANUC";
+  const std::filesystem::path file = DEFLECT_SOURCE_DIR "/validation/measurements/fanuc-r2000ic.csv";
   const Mechanism m = test::device("fanuc-r2000ic");
   const Measurements data = read_measurements(file);
   const Comparison c = compare(m, data);

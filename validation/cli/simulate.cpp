@@ -139,7 +139,7 @@ void run(const SimulateArguments& a) {
     const EffectInstance effect = parse_with(text, all);
     m = with_effect(m, effect);
     tell("hidden: {} ({})", effect.effect->name, site_of(effect));
-    if (effect.effect->name == "geometric_nonlinearity") o.geometry = m.geometry;
+    if (is_geometry(*effect.effect)) o.geometry = m.geometry;
     hidden += fmt::format("{}{} ({})", hidden.empty() ? "" : ", ", effect.effect->name, site_of(effect));
   }
   o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));

@@ -1,5 +1,6 @@
 #include "validation/compare/correction_screen.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -113,13 +114,22 @@ double CorrectionScreen::loss(const Measurements& data, const std::vector<Vector
   return all.empty() ? 0 : sum / static_cast<double>(all.size());
 }
 
+Vector6 CorrectionScreen::shape(std::size_t row, const Vector6& load) const {
+  if (study_->deformed_shape.empty()) return Vector6::Zero();
+  const auto squared = [&](const Vector6& F) {
+    return F.head<3>().squaredNorm() + F.tail<3>().squaredNorm() / (size_ * size_);
+  };
+  const double recorded = squared(study_->data->readings[rows_[row]].load);
+  return (recorded > 0 ? squared(load) / recorded : 0) * study_->deformed_shape[rows_[row]];
+}
+
 double CorrectionScreen::loss(const Correction& c) const {
   const Measurements data = corrected(sample_, c);
   std::vector<Vector6> predicted(rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Reading& recorded = study_->data->readings[rows_[i]];
     predicted[i] = study_->predicted[rows_[i]];
-    if (!study_->deformed_shape.empty()) predicted[i] += study_->deformed_shape[rows_[i]];
+    predicted[i] += shape(i, data.readings[i].load);
     predicted[i] += study_->compliance[recorded.pose] * (data.readings[i].load - recorded.load);
   }
   return loss(data, predicted, c.displacement);
@@ -131,8 +141,7 @@ std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const Corre
   o.threads = threads_;
   try {
     std::vector<Vector6> predicted = predict(*mechanism_, configure_all(*mechanism_, data), data, o);
-    if (!study_->deformed_shape.empty())
-      for (std::size_t i = 0; i < rows_.size(); ++i) predicted[i] += study_->deformed_shape[rows_[i]];
+    for (std::size_t i = 0; i < rows_.size(); ++i) predicted[i] += shape(i, data.readings[i].load);
     return predicted;
   } catch (const ModelError&) {      // does not reach it
   } catch (const NumericalError&) {  // does not stand there
@@ -175,6 +184,44 @@ std::optional<Correction> CorrectionScreen::best_shift(int axis) const {
   }
   // The recorded poses minus what they are off by are the true ones.
   return std::abs(mm) >= least_shift_mm ? std::optional(shifted(mm)) : std::nullopt;
+}
+
+std::optional<Correction> CorrectionScreen::best_point() const {
+  Vector3 p = Vector3::Zero();
+  double least = as_recorded_;
+  for (int step = 0; step < 6; ++step) {
+    const auto here = predicted_with(forces_elsewhere(p));
+    if (!here) return std::nullopt;
+    const std::vector<Difference> all = differences(sample_, *here);
+    // One scale for all: what the loads' point adds is as certain where little moves as where much does.
+    std::vector<double> left;
+    for (const Difference& d : all) left.push_back(std::abs(d.left));
+    const double scale = 3 * quantile(left, 0.5);
+    if (!(scale > 0)) break;
+    Matrix3 squares = Matrix3::Zero();
+    Vector3 along = Vector3::Zero();
+    for (const Difference& d : all) {
+      const Reading& r = sample_.readings[d.row];
+      const auto k = static_cast<Eigen::Index>(d.component);
+      // C [0; p × f] = −C_·θ [f]× p
+      const Vector3 slope =
+          -(d.component < 3 ? 1 : size_) / scale *
+          (study_->compliance[study_->data->readings[rows_[d.row]].pose].row(k).tail<3>() * skew(r.load.head<3>()))
+              .transpose();
+      const double z = d.left / scale, weight = 1 / (1 + z * z);
+      squares += weight * slope * slope.transpose();
+      along += weight * z * slope;
+    }
+    const Eigen::LDLT<Matrix3> solver(squares);
+    if (!(solver.rcond() > 1e-12)) return std::nullopt;
+    Vector3 further = solver.solve(along);
+    bool better = false;
+    for (int half = 0; half < 5 && !better; ++half, further /= 2)
+      if (const double loss = loss_elsewhere(forces_elsewhere(p + further)); loss < least)
+        least = loss, p += further, better = true;
+    if (!better || further.norm() < 1e-5) break;
+  }
+  return p.norm() > 1e-3 ? std::optional(forces_elsewhere(p)) : std::nullopt;
 }
 
 }  // namespace deflect

@@ -32,6 +32,9 @@ class CorrectionScreen {
   double loss_elsewhere(const Correction&) const;
   /// The shift of all poses along an axis of the base that leaves least, 0.5 mm or more.
   std::optional<Correction> best_shift(int axis) const;
+  /// The one point at which all forces act that leaves least, more than 1 mm from T: moments about T are then M + p ×
+  /// f.
+  std::optional<Correction> best_point() const;
 
  private:
   /// A measured number against its prediction; rotations times the machine's size.
@@ -42,6 +45,8 @@ class CorrectionScreen {
   std::vector<Difference> differences(const Measurements&, const std::vector<Vector6>& predicted) const;
   double loss(const Measurements&, const std::vector<Vector6>& predicted, const Rewritten& displacement) const;
   std::optional<std::vector<Vector6>> predicted_with(const Correction&) const;
+  /// What the deformed shape adds to a reading of the sample: even in the load, it goes with the load's square.
+  Vector6 shape(std::size_t row, const Vector6& load) const;
 
   const Mechanism* mechanism_;
   const ResidualStudy* study_;

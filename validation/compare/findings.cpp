@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "validation/compare/finding_text.h"
 
@@ -122,6 +123,7 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
   out.chi2_left = chi2;
   std::vector<MatrixX> whitened;
   for (const Candidate& c : candidates) whitened.push_back(u.whitened(c.columns));
+  std::vector<bool> found(candidates.size(), false);  // beside what it all but follows from, rounding of one is left
   while (out.findings.size() < most_findings) {
     std::vector<Regression> fits;
     std::vector<double> scores;
@@ -129,11 +131,13 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
     for (const MatrixX& columns_of_one : whitened) {
       fits.push_back(regressions.on_whitened(columns_of_one));
       scores.push_back(fits.back().gain - penalty * fits.back().freedoms);
+      if (found[scores.size() - 1]) scores.back() = -std::numeric_limits<double>::infinity();
     }
     const auto best = static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
     const Candidate& c = candidates[best];
     const Regression& fit = fits[best];
     if (scores[best] < least_score || fit.p_value * static_cast<double>(candidates.size()) > least_p) break;
+    found[best] = true;
     Finding f;
     f.pattern = c.id;
     f.columns = c.names;

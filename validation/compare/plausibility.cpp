@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -18,9 +17,10 @@ namespace {
 
 constexpr double chance_of_bad_fit = 1e-4, share_set_aside = 0.02, share_of_misfit = 0.05;
 constexpr double excess_cured = 1.0 / 9, excess_far_less = 1.0 / 36, gross_misfit = 0.25, right_to_noise = 2;
-constexpr double misfit_cured = 1.0 / 3, misfit_far_less = 1.0 / 6;  // of the share of what was measured
-constexpr double deviations_of_right = 5;                            // of χ²
-constexpr double hardly_more = 1.05;                                 // of shares, by noise
+constexpr double misfit_cured = 1.0 / 3, misfit_far_less = 1.0 / 6, all_of_misfit = 1.0 / 20;  // of the share
+constexpr double deviations_of_right = 5;                                                      // of χ²
+constexpr double hardly_more = 1.05;                                                           // of shares, by noise
+constexpr double hardly_worse = 20;     // of χ²: tolerances come into it
 constexpr double clearly = 30;          // of χ², by which corrected data are easier to explain
 constexpr double cost_of_reading = 25;  // χ² that setting one aside is worth
 constexpr std::size_t most_tried = 4;   // on all readings
@@ -61,41 +61,29 @@ bool cures(const MisfitAccount& before, const MisfitAccount& after, int fitted, 
   };
   const bool estimated = before.scatter > 0;
   const bool grossly = before.share > gross_misfit, falls = after.share < misfit_cured * before.share;
-  const bool right = estimated || after.chi2 < right_to_noise * after.numbers;
+  const bool right = estimated || after.chi2 < after.numbers + deviations_of_right * std::sqrt(2 * after.numbers);
   const bool cured = estimated ? falls : excess(after) < (right ? excess_cured : excess_far_less) * excess(before);
   // What physics can leave, a shift of the poses or of the point of the load can follow a long way.
-  const double to_noise = after.numbers + deviations_of_right * std::sqrt(2 * after.numbers);
-  if (fitted > 0 && !(cured && (estimated || after.chi2 < to_noise))) return false;
-  if (fitted == 0 && grossly && falls && right && gain > 0) return true;
+  const bool all_of_it = after.share < all_of_misfit * before.share && after.chi2 < right_to_noise * after.numbers;
+  if (fitted > 0 && !(cured && (right || all_of_it))) return false;
+  if (fitted == 0 && right && all_of_it) return true;  // no chance that physics is that near a unit or an axis
+  if (fitted == 0 && grossly && falls && right && gain > -hardly_worse) return true;
   return gain > clearly && (cured || (grossly && after.share < misfit_far_less * before.share));
+}
+
+/// Of rotations beside translations, or of little that is right at last, χ² says it where root mean squares do not.
+std::string what_would_fall(const MisfitAccount& before, const MisfitAccount& after) {
+  if (after.share < misfit_cured * before.share)
+    return fmt::format("the misfit would fall from {} % of what was measured",
+                       fall_words(100 * before.share, 100 * after.share));
+  return fmt::format("chi2 of a measured number would fall from {}",
+                     fall_words(before.chi2 / before.numbers, after.chi2 / after.numbers));
 }
 
 struct Tried {
   Correction correction;
   double loss = 0;
 };
-
-/// A load about another point P: moments about T are then M + p_TP × f. The one point that explains the residual best.
-std::optional<Correction> other_point(const Comparison& c) {
-  const ResidualStudy& s = c.study;
-  const double size = s.machines.front().size;
-  MatrixX X(static_cast<Eigen::Index>(s.values.size()), 3);
-  VectorX y(X.rows());
-  for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const MeasuredValue& v = s.values[i];
-    const Reading& r = s.data->readings[v.reading];
-    const auto row = static_cast<Eigen::Index>(i), k = static_cast<Eigen::Index>(v.component);
-    const double weight = v.component < 3 ? 1 : size;
-    // C [0; p × f] = −C_·θ [f]× p
-    X.row(row) = -weight * s.compliance[r.pose].row(k).tail<3>() * skew(r.load.head<3>());
-    y(row) = weight * (v.value - s.predicted[v.reading](k));
-  }
-  const Eigen::ColPivHouseholderQR<MatrixX> qr(X);
-  if (qr.rank() < 3) return std::nullopt;
-  const Vector3 p = qr.solve(y);
-  if (!(p.norm() > 1e-3)) return std::nullopt;
-  return forces_elsewhere(p);
-}
 
 /// The corrections that take a good part of the misfit away, the best first.
 class Promising {
@@ -117,7 +105,7 @@ class Promising {
 std::vector<Tried> promising_readings(const Comparison& c, const CorrectionScreen& screen) {
   Promising out(screen);
   for (const Correction& correction : mistaken_readings(*c.study.data)) out.add(correction, screen.loss(correction));
-  if (const auto point = other_point(c)) out.add(*point, screen.loss(*point));
+  if (const auto point = screen.best_point()) out.add(*point, screen.loss_elsewhere(*point));
   return std::move(out).sorted();
 }
 
@@ -183,8 +171,7 @@ class MistakeSearch {
       found_->ids.push_back(each.id);
       words += (words.empty() ? "" : "; or ") + each.sentence;
     }
-    found_->sentence = fmt::format("these data look like {}; the misfit would fall from {} % of what was measured",
-                                   words, fall_words(100 * before_.share, 100 * after.share));
+    found_->sentence = fmt::format("these data look like {}; {}", words, what_would_fall(before_, after));
   }
 
   const Comparison& c_;

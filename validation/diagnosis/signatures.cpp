@@ -94,7 +94,7 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
                                   std::vector<LeftOut>* left_out) {
   std::vector<PlacedEffect> places;
   for (const Effect& e : effects) {
-    if (e.name == "geometric_nonlinearity") continue;
+    if (is_geometry(e)) continue;
     const std::vector<PlacedEffect> own = places_of(e, o.device());
     places.insert(places.end(), own.begin(), own.end());
     if (left_out && own.empty()) {

@@ -3,6 +3,7 @@
 // description. Effects are read from files, see effect_file.h; the catalogue is a folder of them.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,5 +62,12 @@ struct Effect {
   std::string origin;  ///< the file, for messages
   int line = 0;        ///< of its name there
 };
+
+/// Whether all it does is to write equilibrium in another shape: it has a size of its own and nothing to fit.
+inline bool is_geometry(const Effect& e) {
+  return !e.edits.empty() && std::all_of(e.edits.begin(), e.edits.end(), [](const EffectEdit& edit) {
+    return edit.paths == std::vector<std::string>{"geometry"};
+  });
+}
 
 }  // namespace deflect

@@ -10,8 +10,8 @@
 //   q1_rad … qn_rad (qi_mm where i slides)      or commanded joint coordinates, all n, instead of the six
 //   fx_N fy_N fz_N mx_Nmm my_Nmm mz_Nmm         load; a moment without a column is zero
 //   ux_mm uy_mm uz_mm thx_rad thy_rad thz_rad   displacement, at least one column; an empty cell was not measured
-//   sigma_u_mm sigma_th_rad                     standard deviation of one reading, > 0; columns and cells may be
-//   missing sequence                                    order of the readings: numbers, no two alike; all rows or none
+//   sigma_u_mm sigma_th_rad                     σ of one reading, > 0; columns and cells may be missing
+//   sequence                                    order of the readings: numbers, no two alike; all rows or none
 //   temperature_C                               20 where the column or the cell is missing
 //   note…                                       remarks, kept as text
 //

@@ -3,7 +3,7 @@ import {download, el, figure, fileName, micro, num, numbers, table} from './dom.
 import {drawingVerdict, drawn} from './drawing.js';
 import {loadWords, machine} from './machine.js';
 import {curves, errorHeat, failureMap, findings, residuals, testHeat} from './measured.js';
-import {candidates, diagnosisVerdict, fall, mapped, solved, strained, unexplained, unseen, validated} from './results.js';
+import {candidates, diagnosisVerdict, fall, leftOut, mapped, solved, strained, unexplained, unseen, validated} from './results.js';
 
 const data = JSON.parse(document.getElementById('data').textContent);
 const page = document.getElementById('page');
@@ -73,7 +73,7 @@ function sections() {
     first ? [curves(versions), testHeat(versions), errorHeat(first), residuals(first, 0), versions.length > 1 ? residuals(last, 1) : null]
           : comparisons.map((c) => [testHeat([{device: c.device, result: c}]), errorHeat({device: c.device, result: c, unit: 'mm'})]),
     of('drawing').map(drawn), of('solve').map(solved), of('validation').map(validated), of('map').map(mapped),
-    diagnosis ? [strained(diagnosis), unseen(diagnosis)] : null,
+    diagnosis ? [strained(diagnosis), unseen(diagnosis), leftOut(diagnosis)] : null,
     source(),
   ].flat(3).filter(Boolean);
 }

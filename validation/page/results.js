@@ -62,11 +62,19 @@ export function unexplained(d) {
 
 export function unseen(d) {
   if (!d.detectable || !d.detectable.length) return null;
-  const rows = d.detectable.map((e) => [siteName(e), e.smallest.length ? e.smallest.map((x) => num(x, 3)).join(', ') : 'none within bounds', e.mistaken_for || '–', e.mistaken_for ? num(e.cosine, 3) : '–']);
+  const rows = d.detectable.map((e) => [siteName(e), e.smallest.length ? e.smallest.map((x, i) => `${(e.parameters || [])[i] || ''} ${num(x, 3)}`.trim()).join(', ') : 'none within bounds', e.mistaken_for || '–', e.mistaken_for ? num(e.cosine, 3) : '–']);
   const columns = ['effect', 'smallest size shown', 'would be mistaken for', 'cosine'];
   const holder = el('details', {}, el('summary', {}, `${rows.length} effects and places`), table(columns, rows, {show: String}));
   return figure('unseen', 'What this campaign can see', 'The smallest size of each effect that these readings would show, and what it would be mistaken for.', holder,
     numbers('detectable', () => ({columns, rows: d.detectable.map((e) => [siteName(e), e.smallest, e.mistaken_for, e.cosine])})));
+}
+
+export function leftOut(d) {
+  const list = d.left_out || [];
+  if (!list.length) return null;
+  const columns = ['entry of the catalogue', 'why'], rows = list.map((e) => [e.effect, e.why]);
+  return figure('left-out', 'What was not looked at', 'Entries that this machine has no place for, or these data nothing to say of.',
+    el('details', {}, el('summary', {}, `${rows.length} entries`), table(columns, rows, {show: String})), numbers('left-out', () => ({columns, rows})));
 }
 
 export function fall(history, diagnosis) {

@@ -7,6 +7,7 @@
 
 #include "validation/report/compare_words.h"
 #include "validation/report/json_text.h"
+#include "validation/report/short_lists.h"
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
 
@@ -129,11 +130,9 @@ std::string compare_report(const Comparison& c) {
   if (!c.set_aside.empty())
     out += fmt::format("set aside as gross outliers: {} readings, lines {}\n", c.set_aside.size(),
                        fmt::join(c.set_aside, ", "));
-  if (!c.strained.empty()) {
-    out += "tolerances alone would have to be off by more than two of their standard deviations:";
-    for (const auto& [name, eta] : c.strained) out += fmt::format(" {} {:+.1f}", name, eta);
-    out += "\n";
-  }
+  if (!c.strained.empty())
+    out +=
+        fmt::format("tolerances alone would have to be off, in standard deviations: {}\n", strained_words(c.strained));
   return out + "\n" + tests_table(c) + "\n" + errors_table(c);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "validation/report/json_text.h"
+#include "validation/report/short_lists.h"
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
 
@@ -74,25 +75,9 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
     out += fmt::format("the machine's tolerances look {:.1f} times as large as declared and count so\n",
                        d.tolerance_scale);
   if (d.set_aside > 0) out += fmt::format("readings set aside as gross outliers: {}\n", d.set_aside);
-  if (!d.strained.empty()) {
-    out += "tolerances beyond two standard deviations:";
-    for (const auto& [name, eta] : d.strained) out += fmt::format(" {} {:+.1f},", name, eta);
-    out.back() = '\n';
-  }
-  if (!d.left_out.empty()) {
-    out += "not looked at:";
-    for (const LeftOut& e : d.left_out) out += fmt::format(" {} ({});", e.effect, e.why);
-    out.back() = '\n';
-  }
-  std::vector<std::vector<std::string>> rows = {
-      {"smallest size this plan would show (λ = 4)", "", "would be mistaken for"}};
-  for (const Detectable& e : d.detectable) {
-    std::string sizes;
-    for (std::size_t i = 0; i < e.smallest.size(); ++i) sizes += fmt::format("{}{:.3g}", i ? ", " : "", e.smallest[i]);
-    rows.push_back({"  " + placed_words(e.effect), sizes.empty() ? "none within bounds" : sizes,
-                    e.mistaken_for.empty() ? "" : fmt::format("{} (cosine {:.3f})", e.mistaken_for, e.cosine)});
-  }
-  return out + "\n" + aligned(rows);
+  if (!d.strained.empty())
+    out += fmt::format("tolerances beyond two standard deviations: {}\n", strained_words(d.strained));
+  return out + left_out_words(d.left_out) + "\n" + detectable_table(d.detectable);
 }
 
 std::string diagnosis_json(const Diagnosis& d) {
@@ -142,12 +127,16 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["strained_tolerances"] = Json::array();
   for (const auto& [name, eta] : d.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});
   j["detectable"] = Json::array();
-  for (const Detectable& e : d.detectable)
+  for (const Detectable& e : d.detectable) {
+    Json names = Json::array();
+    for (const EffectParameter& p : e.effect.effect->parameters) names.push_back(p.name);
     j["detectable"].push_back({{"effect", e.effect.effect->name},
                                {"site", site_of(e.effect)},
+                               {"parameters", names},
                                {"smallest", e.smallest},
                                {"mistaken_for", e.mistaken_for},
                                {"cosine", e.cosine}});
+  }
   j["left_out"] = Json::array();
   for (const LeftOut& e : d.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});
   return json_text(j);

@@ -1,0 +1,23 @@
+// Long lists, short in the terminal: what matters most of each, and how many more there are. JSON and page have all.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "validation/diagnosis/detectable.h"
+
+namespace deflect {
+
+/// "modulus −90.0, leg 3 guide diameter −9.9, … and 28 more": names with multiples of their standard deviation, the
+/// largest first.
+std::string strained_words(std::vector<std::pair<std::string, double>>);
+
+/// "not looked at: joint_preload, motor_compliance (why: --json)", a line; empty where nothing was left out.
+std::string left_out_words(const std::vector<LeftOut>&);
+
+/// A table of the effects that this plan shows least of, by the size that their search starts with: one line an effect,
+/// of the leg where it is hardest to see.
+std::string detectable_table(const std::vector<Detectable>&);
+
+}  // namespace deflect
