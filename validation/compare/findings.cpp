@@ -153,10 +153,11 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
       if (i != best && scores[i] > scores[best] - close_call && scores[i] > 0) f.instead.push_back(candidates[i].id);
     f.shape = c.columns;
     f.sentence = sentence_of(f, s, u, r, out.columns);
-    out.chi2_left -= fit.gain;
     out.columns = joined(out.columns, c.columns);
     out.findings.push_back(std::move(f));
   }
+  // Of all together: one by one, gains of patterns that are nearly alike add up to more than there is.
+  if (!out.findings.empty()) out.chi2_left = std::max(0.0, chi2 - Regressions(u, r).on(out.columns).gain);
   return out;
 }
 
