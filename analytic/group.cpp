@@ -229,6 +229,7 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c) const {
   // the others at a force far below the largest for rest.
   double least = load > 0 ? load : 1;
   double change = std::numeric_limits<double>::infinity(), size_of_forces = 0;
+  double part = 1;  // of a step that is taken
   double held = 0;  // what free deflections would bring, were the far body to stay
   const bool straight = linear();
   while (!s.converged && s.iterations < 100) {
@@ -248,10 +249,13 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c) const {
     const double before = change;
     double largest = 0;
     change = 0;
-    s.t += moved;
+    for (const Vector6& each : more) change = std::max(change, weighed(each, length).norm());
+    // A contact that a misfit strains may be thrown to and fro across its rest, where it is soft: shorter steps end
+    // that.
+    if (s.iterations > 5) part = change > 0.7 * before ? std::max(part / 2, 1.0 / 64) : std::min(1.0, 2 * part);
+    s.t += part * moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
-      s.wrenches[i] += more[i];
-      change = std::max(change, weighed(more[i], length).norm());
+      s.wrenches[i] += part * more[i];
       largest = std::max(largest, weighed(s.wrenches[i], length).norm());
     }
     least = 1e-13 * std::max(load, largest);

@@ -53,7 +53,7 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
     for (Eigen::Index j = 0; j < leg.passive_twists.cols(); ++j) {
       const Vector6 twist = weights(length).cwiseProduct(leg.passive_twists.col(j));
       const double resisted = (K_c * twist).cwiseAbs().maxCoeff();
-      if (resisted <= tolerance * leg_scale * twist.norm()) continue;
+      if (resisted <= tolerance * std::max(leg_scale, scale) * twist.norm()) continue;
       if (out.passive_joints_free)
         out.failure += fmt::format("K_c J_q = 0 fails: {} resists passive freedom {} with {:.3g} of its stiffness; ",
                                    leg.name, j + 1, resisted / (leg_scale * twist.norm()));

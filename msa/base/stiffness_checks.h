@@ -23,7 +23,8 @@ struct StiffnessChecks {
 };
 
 /// Rotations are weighed by the length ℓ = √(tr K_θθ / tr K_δδ) so that the verdict does not depend on units. Each
-/// quantity may differ from zero by `tolerance` of the largest entry (eigenvalue) of what it is made from.
+/// quantity may differ from zero by `tolerance` of the largest entry (eigenvalue) of what it is made from; what a leg
+/// resists along its passive joints by that of K, too: of a leg far softer than the others rounding is left.
 StiffnessChecks check_stiffness(const Matrix6& K, const std::vector<LegStiffness>& legs, double tolerance = 1e-9);
 
 /// What one load did to a structure at T, SI, base axes.

@@ -2,8 +2,6 @@
 // table of as many.
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "tests/attack/count.h"
 #include "tests/attack/device_judge.h"
 #include "tests/attack/table.h"
@@ -40,11 +38,8 @@ TEST(RandomDevicesOnDemand, AreAnsweredRightByBothTheoriesOrRefusedRightly) {
 
 // Devices of extreme ratios are left to the linear ones.
 Table judged_nonlinear(unsigned first, unsigned last, unsigned step) {
-  // Still open: it is refused although it has an answer (the closed form does not converge). On demand it is tried.
-  const std::set<unsigned> open = count_on_demand() > 0 ? std::set<unsigned>() : std::set<unsigned>{471};
   Table table;
   for (unsigned seed = first; seed < last; seed += step) {
-    if (open.count(seed)) continue;
     const RandomDevice random = with_nonlinear_laws(random_device(seed));
     if (random.kind == DeviceKind::stiff_and_soft) continue;
     const DeviceJudgement j = judge_apart(random, judge_agreement);

@@ -59,6 +59,8 @@ TEST(StiffnessChecks, FindEachFaultByName) {
   Matrix6 released = K;
   released(5, 5) = 0;
   EXPECT_TRUE(check_stiffness(K, {{"leg 2", released, twist}}).all());
+  // A leg of which members 10⁹ times as stiff as its one spring leave rounding.
+  EXPECT_TRUE(check_stiffness(K, {{"leg 2", 1e-14 * K, twist}}).all());
   K(3, 3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(check_stiffness(K, {}).all());
 }
