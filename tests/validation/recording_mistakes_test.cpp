@@ -48,8 +48,9 @@ std::string words(const Comparison& c) {
   return out.empty() ? "nothing" : out;
 }
 
+/// A shift of all poses, which a missing effect can look like, is a remark.
 bool named_first(const Comparison& c, const std::string& id) {
-  if (!is_mistaken(c)) return false;
+  if (c.mistakes.empty() || (!is_mistaken(c) && !id.starts_with("pose_shifted"))) return false;
   const std::vector<std::string>& ids = c.mistakes.front().ids;
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
