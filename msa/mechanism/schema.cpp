@@ -180,25 +180,25 @@ class SchemaVisitor final : public FieldVisitor {
   void fill(std::size_t index, const std::string& path, const std::function<void()>& describe) {
     std::vector<Walk> walks;
     std::set<std::string> met;
-    for (std::deque<Chosen> todo = {{}}; !todo.empty(); todo.pop_front()) {
+    for (std::deque<Chosen> queued = {{}}; !queued.empty(); queued.pop_front()) {
       Walk outer = std::exchange(walk_, Walk());
       const std::string outer_path = std::exchange(path_, path);
       const Surroundings surroundings_before = surroundings;
-      walk_.forced = todo.front();
+      walk_.forced = queued.front();
       describe();
       if (index > 0) surroundings = surroundings_before;
       path_ = outer_path;
       walks.push_back(std::exchange(walk_, std::move(outer)));
       const Walk& walk = walks.back();
-      Chosen before = todo.front();
+      Chosen before = queued.front();
       for (const auto& [key, all] : walk.decisions) {
         before[key] = walk.chosen.at(key);
         if (!met.insert(key).second) continue;
         for (const std::string& word : all)
           if (word != walk.chosen.at(key)) {
-            Chosen next = todo.front();
+            Chosen next = queued.front();
             next[key] = word;
-            todo.push_back(std::move(next));
+            queued.push_back(std::move(next));
           }
       }
     }
