@@ -60,8 +60,7 @@ MatrixX complement(const MatrixX& columns) {
   Eigen::ColPivHouseholderQR<MatrixX> qr;
   qr.setThreshold(1e-9);
   qr.compute(columns);
-  const MatrixX Q = qr.householderQ();
-  return Q.rightCols(columns.rows() - qr.rank());
+  return evaluated(qr.householderQ()).rightCols(columns.rows() - qr.rank());
 }
 
 Matrix6X carried_wrenches(const Matrix6X& J, double length) {
@@ -74,7 +73,7 @@ Matrix6X free_twists(const Matrix6X& N, double length) {
 
 Matrix6X roots_of(const Matrix6& C, double length) {
   const Matrix6 weighed = weights(length).asDiagonal() * C * weights(length).asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen((weighed + weighed.transpose()) / 2);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6((weighed + weighed.transpose()) / 2));
   const double rounding = 1e-15 * std::max(eigen.eigenvalues()(5), 0.0);
   const Vector6 root = eigen.eigenvalues().unaryExpr([&](double g) { return g > rounding ? std::sqrt(g) : 0; });
   return weights(1 / length).asDiagonal() * (eigen.eigenvectors() * root.asDiagonal());
@@ -104,11 +103,11 @@ Resistance resistance(const Flexibility& f, double length) {
   }
   Eigen::FullPivLU<MatrixX> lu;
   lu.setThreshold(1e-13);
-  lu.compute(f.N.transpose() * f.C * f.N);
+  lu.compute(MatrixX(f.N.transpose() * f.C * f.N));
   if (lu.isInvertible())
-    out.K = f.N * lu.solve(f.N.transpose());
+    out.K = f.N * MatrixX(lu.solve(MatrixX(f.N.transpose())));
   else
-    out.rigid = f.N * lu.kernel();
+    out.rigid = f.N * MatrixX(lu.kernel());
   return out;
 }
 

@@ -172,7 +172,7 @@ Group group_of(const std::string& name, std::vector<Chain> branches, double leng
     D.rightCols(branch.N.cols()) = g.R.transpose() * branch.N;
   }
   if (D.cols() == D.rows() && D.cols() > 0)
-    if (const Eigen::PartialPivLU<MatrixX> lu(D); lu.rcond() > 1e-6) g.determinate = lu;
+    if (const Eigen::PartialPivLU<MatrixX> lu(D); reciprocal_condition(lu) > 1e-6) g.determinate = lu;
   return g;
 }
 

@@ -103,7 +103,7 @@ std::optional<Lines> Lines::of(const Group& g) {
   }
   if (besides.empty() || D.cols() == 0 || D.cols() != D.rows()) return std::nullopt;
   out.statics_.compute(D);
-  if (!(out.statics_.rcond() > 1e-6)) return std::nullopt;
+  if (!(reciprocal_condition(out.statics_) > 1e-6)) return std::nullopt;
   for (const std::size_t i : besides) {
     const Chain& branch = g.branches[i];
     const SteppedLaw& law = *friction_alone(branch);

@@ -263,7 +263,8 @@ Linearised VirtualChain::linearise(const Outlook& c) {
       out.stable = out.stable && held.stable;
       const Matrix6X free = held.B.cols() == 0 ? Matrix6X(Matrix6::Identity()) : free_twists(held.B, length);
       if (held.B.cols() > 0)
-        out.offset.segment<6>(at) = MatrixX(held.B.transpose()).completeOrthogonalDecomposition().solve(held.b);
+        out.offset.segment<6>(at) =
+            VectorX(MatrixX(held.B.transpose()).completeOrthogonalDecomposition().solve(held.b));
       Z.block(at, at, 6, free.cols()) = free;
       out.kept.insert(out.kept.end(), static_cast<std::size_t>(free.cols()), true);
       for (Eigen::Index i = 0; i < free.cols(); ++i) allowed.push_back(at + i);

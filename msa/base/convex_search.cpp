@@ -71,8 +71,7 @@ class Search {
       Eigen::ColPivHouseholderQR<MatrixX> qr;
       qr.setThreshold(no_rate);
       qr.compute(normals_);
-      const MatrixX Q = qr.householderQ();
-      Z_ = Q.rightCols(p_.a.size() - qr.rank());
+      Z_ = evaluated(qr.householderQ()).rightCols(p_.a.size() - qr.rank());
     }
     slope_ = Z_.transpose() * gradient_;
     VectorX curvatures(rows_);

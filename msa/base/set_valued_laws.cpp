@@ -26,7 +26,7 @@ class Laws {
       : relation_(r), laws_(laws), n_(r.c.size()), unit_(r.c.cwiseSqrt()), watched_(watched) {
     const MatrixX P = unit_.cwiseInverse().asDiagonal() * r.P * unit_.asDiagonal();
     symmetric_ = (P - P.transpose()).cwiseAbs().maxCoeff() < 1e-8;
-    const Eigen::SelfAdjointEigenSolver<MatrixX> eigen((P + P.transpose()) / 2);
+    const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(MatrixX((P + P.transpose()) / 2));
     const VectorX d0 = r.d0.cwiseQuotient(unit_), along = eigen.eigenvectors().transpose() * d0;
     std::vector<Eigen::Index> moving;
     for (Eigen::Index j = 0; j < n_; ++j)
@@ -218,7 +218,7 @@ class Laws {
       middle.e(m) = std::clamp(v, middle.rows[at(m)].low, middle.rows[at(m)].high);
     }
     Eigen::HouseholderQR<MatrixX> qr(relative);
-    middle.B = qr.householderQ() * MatrixX::Identity(k, N.cols());
+    middle.B = leading_columns(qr.householderQ(), N.cols());
     const MatrixX R = qr.matrixQR().topRows(N.cols()).triangularView<Eigen::Upper>();
     const MatrixX per_step = R.transpose().triangularView<Eigen::Lower>().solve(moves.transpose()).transpose();
     middle.a = middle.b = VectorX::Zero(N.cols());

@@ -4,8 +4,9 @@
 // translation first. Virtual work is dᵀF. All vectors are in one set of axes unless a name says otherwise.
 #pragma once
 
-#include <Eigen/Dense>
 #include <numbers>
+
+#include "msa/base/decompositions.h"
 
 namespace deflect {
 

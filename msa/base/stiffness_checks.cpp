@@ -42,7 +42,7 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
     out.failure +=
         fmt::format("K = K^T fails: the largest difference is {:.3g} of the largest entry; ", asymmetry / scale);
   const Vector6 eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Matrix6>((K + K.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues();
+      Eigen::SelfAdjointEigenSolver<Matrix6>(Matrix6((K + K.transpose()) / 2), Eigen::EigenvaluesOnly).eigenvalues();
   out.positive = eigenvalues(0) >= -tolerance * eigenvalues(5);
   if (!out.positive)
     out.failure += fmt::format("K >= 0 fails: the smallest eigenvalue is {:.3g} of the largest; ",

@@ -89,7 +89,7 @@ class SoftBlock {
         X(i, j) = std::sin(12.9898 * static_cast<double>(i + 1) + 78.233 * static_cast<double>(j + 1));
     for (int pass = 0; pass < 4; ++pass) {
       X = shifted.solve(X);
-      X = Eigen::HouseholderQR<MatrixX>(X).householderQ() * MatrixX::Identity(X.rows(), block);
+      X = leading_columns(Eigen::HouseholderQR<MatrixX>(X).householderQ(), block);
     }
   }
 

@@ -97,8 +97,8 @@ Matrix6 without(const MatrixX& twists, double length, const Matrix6& K) {
   const Vector6 weight = weights(length);
   Eigen::ColPivHouseholderQR<MatrixX> qr;
   qr.setThreshold(1e-9);
-  qr.compute(weight.asDiagonal() * twists);
-  const MatrixX Q = qr.householderQ();
+  qr.compute(MatrixX(weight.asDiagonal() * twists));
+  const MatrixX Q = evaluated(qr.householderQ());
   const MatrixX others = Q.rightCols(6 - qr.rank()).unaryExpr([](double x) { return std::abs(x) < 1e-12 ? 0 : x; });
   const MatrixX moved = weight.cwiseInverse().asDiagonal() * others, resisting = weight.asDiagonal() * others;
   return resisting * (moved.transpose() * K * moved) * resisting.transpose();

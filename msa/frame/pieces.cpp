@@ -117,9 +117,9 @@ void set_coordinates(Piece& piece, std::vector<Hold> holds) {
     row << holds[i].f, holds[i].m / piece.size;
     if (const double size = row.norm(); size > 0) A.row(static_cast<Eigen::Index>(i)) = row / size;
   }
-  const Matrix6 R = Eigen::HouseholderQR<MatrixX>(A).matrixQR().topRows<6>().triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Matrix6> svd(R, Eigen::ComputeFullV);
-  const Vector6& strength = svd.singularValues();
+  const MatrixX R = Eigen::HouseholderQR<MatrixX>(A).matrixQR().topRows<6>().triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<MatrixX> svd(R, Eigen::ComputeFullV);
+  const VectorX& strength = svd.singularValues();
   Eigen::Index rank = 0;
   while (rank < 6 && strength(rank) > unseen * std::max(1.0, strength(0))) ++rank;
   piece.held = svd.matrixV().leftCols(rank);

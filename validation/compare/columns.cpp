@@ -22,7 +22,7 @@ MatrixX orthonormal(const MatrixX& X, double threshold) {
     Eigen::ColPivHouseholderQR<MatrixX> qr;
     if (threshold > 0) qr.setThreshold(threshold);
     qr.compute(Y);
-    return MatrixX(qr.householderQ() * MatrixX::Identity(Y.rows(), qr.rank()));
+    return leading_columns(qr.householderQ(), qr.rank());
   };
   if (X.cols() < 16 || X.rows() < 4 * X.cols()) return ranked(X);
   // X = Q R: the columns of R are as long as those of X, so that the pivots are the same, and R is small.

@@ -41,14 +41,14 @@ double chance_of(const VectorX& z, const Uncertainty::OfContrasts& of, const Vec
   const VectorX scale = deviation.cwiseInverse();
   const bool all_count = std::all_of(blocks.begin(), blocks.end(), [&](const NoiseBlock& b) {
     const VectorX own = scale.segment(b.first, b.size);
-    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(own.asDiagonal() * b.covariance * own.asDiagonal(),
+    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(MatrixX(own.asDiagonal() * b.covariance * own.asDiagonal()),
                                                       Eigen::EigenvaluesOnly);
     return axes.eigenvalues()(0) > lost;
   });
   if (all_count) return chi_squared_tail(static_cast<double>(z.size()), Whitening(blocks, of.errors)(z).squaredNorm());
   const MatrixX errors = scale.asDiagonal() * of.errors.dense();
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(scale.asDiagonal() * of.noise * scale.asDiagonal() +
-                                                    errors * errors.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(
+      MatrixX(scale.asDiagonal() * of.noise * scale.asDiagonal() + errors * errors.transpose()));
   const VectorX along = axes.eigenvectors().transpose() * scale.cwiseProduct(z);
   double chi2 = 0;
   int freedoms = 0;

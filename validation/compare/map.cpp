@@ -37,9 +37,9 @@ std::size_t chunk_of(std::size_t poses) { return std::clamp<std::size_t>(poses /
 /// (C_δδ)⁻¹ as the Schur complement of the rotations: no inverse of a K that may be singular. N/mm.
 Matrix3 translational(const Matrix6& K_mm) {
   const Matrix3 K_tt = K_mm.bottomRightCorner<3, 3>();
-  const Matrix3 S =
-      K_mm.topLeftCorner<3, 3>() -
-      K_mm.topRightCorner<3, 3>() * K_tt.completeOrthogonalDecomposition().solve(K_mm.bottomLeftCorner<3, 3>());
+  const Matrix3 S = K_mm.topLeftCorner<3, 3>() -
+                    K_mm.topRightCorner<3, 3>() *
+                        Matrix3(K_tt.completeOrthogonalDecomposition().solve(Matrix3(K_mm.bottomLeftCorner<3, 3>())));
   return (S + S.transpose()) / 2;
 }
 

@@ -74,7 +74,7 @@ JudgedMatrix judge(const PrintedMatrix& printed, const PrintedMatrix* passive_tw
   out.stiffness = {"translational_stiffness", "mean, N/mm", {}, 1e-3 * softest_N_m, 1e-3 * stiffest_N_m};
   judge_symmetry(out, K, u, scale);
 
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen((K + K.transpose()) / 2);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6((K + K.transpose()) / 2));
   out.eigenvalues = eigen.eigenvalues();
   const double largest = std::max(out.eigenvalues.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
   const auto known_to = [&](Eigen::Index i) {

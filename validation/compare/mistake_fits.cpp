@@ -26,12 +26,12 @@ std::string triple(const Vector3& v) {
 
 /// p of A [p]× = M by least squares; shortest where A leaves it open.
 Vector3 lever(const Matrix3& A, const Matrix3& M) {
-  Eigen::Matrix<double, 9, 3> system;
+  MatrixX system(9, 3);
   for (int k = 0; k < 3; ++k) {
     const Matrix3 column = A * skew(Vector3::Unit(k));
-    system.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(column.data());
+    system.col(k) = Eigen::Map<const VectorX>(column.data(), 9);
   }
-  return system.completeOrthogonalDecomposition().solve(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(M.data()));
+  return system.completeOrthogonalDecomposition().solve(VectorX(Eigen::Map<const VectorX>(M.data(), 9)));
 }
 
 std::string point_text(const Vector3& p, const MistakeContext& c) {
@@ -80,7 +80,8 @@ struct Positive {
 };
 
 Positive positive_part(const Matrix6& difference, const Matrix6& whole, double length) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(weighed((difference + difference.transpose()) / 2, length));
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(
+      Matrix6(weighed((difference + difference.transpose()) / 2, length)));
   const double largest = std::max(eigen.eigenvalues()(5), 0.0);
   const double noise = std::max(-10 * eigen.eigenvalues()(0), 1e-9 * largest);
   Positive out{Matrix6::Zero(), 0, Vector6::Zero()};

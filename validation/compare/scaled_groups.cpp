@@ -102,14 +102,14 @@ ScaledGroups::Gain ScaledGroups::free_gain(const Seen& r, double least) const {
   double left = r.beside + weighed.dot(r.inside);
   const Eigen::Index first = H.rows() - flat_;
   if (first > 0) {
-    const Eigen::LLT<MatrixX> of_P(H.topLeftCorner(first, first));
+    const Eigen::LLT<MatrixX> of_P(MatrixX(H.topLeftCorner(first, first)));
     const MatrixX cross = of_P.solve(H.topRightCorner(first, flat_));
     left -= h.head(first).dot(of_P.solve(h.head(first)));
     h.tail(flat_) -= cross.transpose() * h.head(first);
     H.bottomRightCorner(flat_, flat_) -= H.bottomLeftCorner(flat_, first) * cross;
   }
   if (flat_ > 0) {
-    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(H.bottomRightCorner(flat_, flat_));
+    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(MatrixX(H.bottomRightCorner(flat_, flat_)));
     const VectorX along = axes.eigenvectors().transpose() * h.tail(flat_);
     for (Eigen::Index i = 0; i < flat_; ++i) {
       if (axes.eigenvalues()(i) > 1e-6)

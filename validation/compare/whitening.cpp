@@ -8,7 +8,7 @@ namespace deflect {
 
 Whitening::Root Whitening::root(const MatrixX& X) {
   if (X.cols() == 0) return {MatrixX(0, 0), MatrixX(0, 0), MatrixX(0, 0)};
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(X.transpose() * X);
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(MatrixX(X.transpose() * X));
   const VectorX deviation = (1 + axes.eigenvalues().array().max(0)).sqrt();
   const VectorX less = -(deviation.array() * (1 + deviation.array())).inverse(),
                 more = (1 + deviation.array()).inverse();

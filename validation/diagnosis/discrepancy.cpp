@@ -135,7 +135,7 @@ Discrepancy::Discrepancy(std::shared_ptr<const WhitenedFamilies> white, const Ma
     } else {
       OfAll& f = family.all;
       f.along_fitted = of.columns.transpose() * fitted_;
-      const Eigen::SelfAdjointEigenSolver<MatrixX> axes(of.gram - f.along_fitted * f.along_fitted.transpose());
+      const Eigen::SelfAdjointEigenSolver<MatrixX> axes(MatrixX(of.gram - f.along_fitted * f.along_fitted.transpose()));
       const VectorX& all = axes.eigenvalues();
       Eigen::Index first = 0;
       while (first < all.size() && !(all(first) > none * all(all.size() - 1))) ++first;
