@@ -68,7 +68,8 @@ std::string response_failure(const Response& r, double tolerance) {
   if (r.F.isZero(0)) return "";
   const double work = r.F.dot(r.d) / 2;
   if (!std::isfinite(work)) return "the displacement is not finite";
-  if (r.from_rest && !(work > 0))
+  const bool held = r.rigid && work == 0;
+  if (r.from_rest && !held && !(work > 0))
     return fmt::format("sign fails: the load does the work {:.3g} J on its own displacement", work);
   // Moments weigh against forces by the length that makes them do comparable work.
   const double translation = r.d.head<3>().norm(), rotation = r.d.tail<3>().norm();
@@ -77,7 +78,7 @@ std::string response_failure(const Response& r, double tolerance) {
   const double imbalance = inverse.cwiseProduct(r.F + r.reaction).norm() / inverse.cwiseProduct(r.F).norm();
   if (imbalance > tolerance)
     return fmt::format("equilibrium fails: reactions and load differ by {:.3g} of the load", imbalance);
-  if (!r.from_rest) return "";
+  if (!r.from_rest || held) return "";
   const double least = r.linear ? 1 : r.strained && r.slides ? -std::numeric_limits<double>::infinity() : 0;
   const double most = r.linear || !(r.strained || r.slides) ? 1 : 2;
   if (const double share = r.energy / work; share < least - tolerance || share > most + tolerance)

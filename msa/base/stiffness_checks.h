@@ -37,6 +37,7 @@ struct Response {
   bool from_rest = true;
   bool strained = false;  ///< parts carry forces before the load: misfits, preloads
   bool slides = false;    ///< some part has friction
+  bool rigid = false;     ///< some motions have an infinite stiffness: a load along them does no work
 };
 
 /// Sign (a load moves its point its own way, Fᵀd > 0), equilibrium (reaction = −F), energy, each to `tolerance`; of one

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "msa/base/error.h"
-#include "msa/frame/extended_factor.h"
+#include "msa/frame/extended_structure.h"
 #include "msa/frame/relative.h"
 #include "msa/frame/stability.h"
 #include "msa/frame/standing.h"
@@ -22,7 +22,8 @@ constexpr double nearly_free = 1e-6;  // strain of a motion, see mobility.h
 
 constexpr int most_corrections = 20;
 constexpr double extended_rounding = 1e-19, no_digits = 1e-9;
-constexpr double strains_nothing = 1e-24;  // of the energy that nothing would cancel  // of a solution
+constexpr double strains_nothing = 1e-24, is_no_strain = 1e-32;  // of the energy that nothing would cancel
+constexpr double few_digits_lost = 1e-13;  // of a plain solution, in energy
 
 MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
   MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(rows), m.cols());
@@ -91,6 +92,7 @@ void Solver::prepare() {
   assembly_ = std::make_unique<Assembly>(*model_, *elimination_);
   cholesky_ = std::make_unique<SparseCholesky>(assembly_->pattern());
   factored_ = false;
+  extended_.reset();
 }
 
 std::vector<char> Solver::resisting(const VectorX& tangents) const {
@@ -201,20 +203,20 @@ ExtendedMatrix Solver::linear(const VectorX& tangents, const MatrixX& given_load
   return U;
 }
 
-/// Corrections are measured in energy, |dq|² = dq·r for the residual r, against that of the answer. Where those of the
-/// sparse factor do not shrink, one with extended digits takes its place.
+/// By the sparse factor and corrections where that loses few digits, else with extended digits throughout.
 ExtendedVector Solver::refined(const VectorX& tangents, const VectorX& load, const VectorX& values) {
   ExtendedVector u;
-  double left = 1;
-  if (factored_ && corrected(
-                       tangents, load, values, [&](const VectorX& r) { return VectorX(cholesky_->solve(r)); }, u, left))
-    return u;
-  if (elimination_->independent <= ExtendedFactor::most_freedoms) {
-    const ExtendedFactor factor(*model_, *elimination_, tangents);
-    if (!factor.failed() && corrected(
-                                tangents, load, values, [&](const VectorX& r) { return factor.solve(r); }, u, left))
-      return u;
+  double lost = 1, left = 1;
+  const bool found = factored_ && corrected(tangents, load, values, u, lost, left);
+  if (found && lost < few_digits_lost) return u;
+  if (elimination_->independent <= ExtendedStructure::most_freedoms) {
+    if (!extended_ || extended_tangents_ != tangents) {
+      extended_ = std::make_shared<const ExtendedStructure>(*model_, *elimination_, tangents);
+      extended_tangents_ = tangents;
+    }
+    if (std::optional<ExtendedVector> fine = extended_->solve(load, values)) return *fine;
   }
+  if (found) return u;
   if (factored_ && (tangents.array() == 0).any()) {
     // Springs that let go leave motions that nothing resists. They take no part: what the first step and its correction
     // say of them is as good as anything.
@@ -230,24 +232,31 @@ ExtendedVector Solver::refined(const VectorX& tangents, const VectorX& load, con
       left));
 }
 
-/// u by a factor and corrections; false where `left`, the last of them, says that it is worth nothing.
-bool Solver::corrected(const VectorX& tangents, const VectorX& load, const VectorX& values,
-                       const std::function<VectorX(const VectorX&)>& solve, ExtendedVector& u, double& left) {
+/// Corrections are measured in energy, |dq|² = dq·r for the residual r, against that of the answer: `lost` is the first
+/// of them, `left` the last; false where that says that u is worth nothing.
+bool Solver::corrected(const VectorX& tangents, const VectorX& load, const VectorX& values, ExtendedVector& u,
+                       double& lost, double& left) {
   ExtendedVector q = ExtendedVector::Zero(elimination_->independent);
   u = elimination_->expand_fine(q, values);
   double before = 1;
   for (int pass = 0; pass < most_corrections; ++pass) {
     const VectorX unbalanced = load - tangent_forces(*model_, u, tangents);
     const VectorX residual = elimination_->reduce(unbalanced);
-    if (pass == 0 && is_rounding(residual, *elimination_, unbalanced)) return true;
-    const VectorX correction = solve(residual);
+    if (pass == 0 && is_rounding(residual, *elimination_, unbalanced)) {
+      lost = 0;
+      return true;
+    }
+    const VectorX correction = cholesky_->solve(residual);
     q += correction.cast<Extended>();
     u = elimination_->expand_fine(q, values);
     if (pass == 0) continue;
     const double energy = twice_energy(*model_, u, tangents), corrects = std::abs(correction.dot(residual));
     const double change = energy > 0 ? std::sqrt(corrects / energy) : 0;
-    if (pass == 1 && corrects > strains_nothing * unsigned_energy(*model_, u, tangents))
-      rounding_ = std::max(rounding_, std::min(change, 1.0));
+    if (pass == 1) {
+      lost = change;
+      if (corrects > is_no_strain * unsigned_energy(*model_, u, tangents))
+        rounding_ = std::max(rounding_, std::min(change, 1.0));
+    }
     const double shrinks = change / before;
     left = before = change;
     if (change * shrinks < extended_rounding) return true;

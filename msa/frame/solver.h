@@ -1,7 +1,6 @@
 // Static equilibrium of a structure: f_int(u) = f under u = T q + G b.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -25,6 +24,7 @@ struct NewtonOptions {
   std::vector<int> watched;  ///< freedoms of which Solution says how far play lets them move
 };
 
+class ExtendedStructure;
 struct GeometricState;  // geometric_solver.h
 
 struct Solution {
@@ -103,8 +103,8 @@ class Solver {
   void note_condition();
   void refuse_driven_motions(const VectorX& load) const;
   ExtendedVector refined(const VectorX& tangents, const VectorX& load, const VectorX& values);
-  bool corrected(const VectorX& tangents, const VectorX& load, const VectorX& values,
-                 const std::function<VectorX(const VectorX&)>& solve, ExtendedVector& u, double& left);
+  bool corrected(const VectorX& tangents, const VectorX& load, const VectorX& values, ExtendedVector& u, double& lost,
+                 double& left);
   Solution solve_linear(const VectorX& load, const VectorX& values);
   struct Work;
   void begin_by_forces(Work&);
@@ -129,9 +129,11 @@ class Solver {
   std::vector<IdleMotion> idle_;  // held by the last constraints
   double rounding_ = 0;
   bool factored_ = false;
-  VectorX factored_tangents_;                   // the state that the factor belongs to
-  std::shared_ptr<const Condensed> condensed_;  // made when first needed
-  bool frictions_soft_ = true;                  // the stiffness that stands in for them there
+  VectorX factored_tangents_;                          // the state that the factor belongs to
+  std::shared_ptr<const ExtendedStructure> extended_;  // made when first needed
+  VectorX extended_tangents_;                          // its state
+  std::shared_ptr<const Condensed> condensed_;         // made when first needed
+  bool frictions_soft_ = true;                         // the stiffness that stands in for them there
 };
 
 /// Stored energies by part: beams ½ (d − d0)ᵀ K (d − d0), d0 the free strains' (by beam; none: 0), springs ∫ F dδ,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "msa/base/error.h"
 
@@ -70,6 +71,19 @@ double bound_with(double least, double rounding) {
   return std::max(least, roundings * rounding);
 }
 
+double rounding_of(const Answer& answer, double length) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon(), most = 1e-7;
+  Vector6 inverse = Vector6::Ones();
+  inverse.tail<3>().setConstant(1 / length);
+  const Matrix6 weighed = inverse.asDiagonal() * answer.stiffness * inverse.asDiagonal();
+  const Vector6 all = Eigen::SelfAdjointEigenSolver<Matrix6>(weighed, Eigen::EigenvaluesOnly).eigenvalues();
+  const double lost = epsilon * all(5);  // in the rounding of the largest
+  if (!(lost > 0)) return 0;
+  Eigen::Index softest = answer.rigid;
+  while (!answer.floating.loose.empty() && softest < 5 && all(softest) < lost) ++softest;
+  return std::min(0.1 * lost / std::max(all(std::min<Eigen::Index>(softest, 5)), lost), most);
+}
+
 AnalyticAtPose::AnalyticAtPose(const Configuration& c, std::string where)
     : model_(c), where_(std::move(where)), length_(c.size), strained_(strained_at_rest(c)), slides_(has_friction(c)) {
   weight_ << c.weight, Vector3::Zero();
@@ -108,7 +122,8 @@ Answer AnalyticAtPose::solve(const Vector6& F, const Conditions& conditions) con
   enforce(answer.checks.failure, "analytic stiffness", where_);
   const std::string failure =
       response_failure({F + weight_, s.displacement, -carried, total(answer.energies) - energy_at_rest_,
-                        model_.linear(), from_rest(conditions), strained_, slides_});
+                        model_.linear(), from_rest(conditions), strained_, slides_, answer.rigid > 0},
+                       bound_with(checked_to, rounding_of(answer, length_)));
   // Beside rigid motions what yields little may have no digits: the rigid ones are the cause to tell.
   if (!failure.empty() && answer.rigid > 0) (void)model_.stiffness(s);
   enforce(failure, "analytic response", where_);
@@ -200,9 +215,10 @@ Answer MsaAtPose::solve(const Vector6& F, const Conditions& conditions) {
   }
   // The reaction acts at the base origin; about T its moment changes by the arm.
   const Vector6 reaction = shift_twist(p_WB_ - p_WT_).transpose() * model_->base_reaction(last_.load, last_.state);
-  enforce(response_failure({last_.load, last_.displacement, reaction, total(last_.energies), model_->linear(),
-                            from_rest(conditions), strained_at_rest(configuration_), has_friction(configuration_)},
-                           bound_with(checked_to, model_->rounding())),
+  enforce(response_failure(
+              {last_.load, last_.displacement, reaction, total(last_.energies), model_->linear(), from_rest(conditions),
+               strained_at_rest(configuration_), has_friction(configuration_), rigid_ > 0},
+              bound_with(checked_to, model_->rounding())),
           "MSA response", where_);
   Answer answer{last_.displacement, stiffness_, last_.energies, checks_, last_.slips};
   answer.rigid = rigid_;

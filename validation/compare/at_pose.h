@@ -40,6 +40,11 @@ struct Answer {
 /// numbers by `rounding` (Solver::rounding()), some dozens of which meet in an answer.
 double bound_with(double least, double rounding);
 
+/// The share of a displacement that rounding of the stiffness may cost: a tenth of ε times the ratio of the largest to
+/// the smallest stiffness, but for infinite ones and those of motions that float, rotations weighed by the length; at
+/// most 1e-7, so that no check loses its meaning.
+double rounding_of(const Answer&, double length);
+
 /// Checked: K = Kᵀ, K ⪰ 0, K_c J_q = 0, sign, equilibrium, energy. Throws NumericalError naming theory, pose and check,
 /// or where equilibrium is not found. `where` begins the messages. In the deformed shape (Geometry) legs carry forces
 /// that resist their passive joints, and the stored energy is not ½Fᵀd: there K = Kᵀ of what is left without −½[m]× of

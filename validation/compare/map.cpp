@@ -136,7 +136,7 @@ MapPose map_pose(SweptTheories& theories, const Mechanism& m, const MapOptions& 
   if (o.analytic && o.msa)
     for (std::size_t i = 0; i < loads.size(); ++i) {
       if (const double bound = theories.bound(); difference(analytic[i], msa[i], c->size).largest() > bound)
-        require_agreement(analytic[i], msa[i], c->size, bound, where());
+        require_agreement(analytic[i], msa[i], c->size, bound_with(bound, rounding_of(msa[i], c->size)), where());
       out.relative_difference = std::max(
           out.relative_difference,
           deflect::relative_difference(twist_in_mm(analytic[i].displacement), twist_in_mm(msa[i].displacement)));

@@ -29,8 +29,14 @@ struct Pair {
     return fmt::format("{} at ({:.6g})", m.name, fmt::join(at.pose_mm_deg, ", "));
   }
 
+  /// By how much rounding may be amplified in an answer.
+  double rounding(const Answer& answer, double length) const {
+    return std::max(msa.rounding(), rounding_of(answer, length));
+  }
   /// How far the theories may be apart in linear geometry.
-  double bound() const { return agreement_bound(analytic.model().linear(), msa.rounding()); }
+  double bound(const Answer& answer, double length) const {
+    return agreement_bound(analytic.model().linear(), rounding(answer, length));
+  }
 
   AnalyticAtPose analytic;
   MsaAtPose msa;
@@ -150,6 +156,7 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
   const bool linear = geometry == Geometry::linear;
   Pair pair(m, at, linear ? division : refined(at.configuration, division));
   const Vector6 F = wrench_from_mm(load);
+  const double size = at.configuration.size;
   SolveResult r;
   r.geometry = geometry;
   std::optional<Answer> linear_a, linear_f;
@@ -158,7 +165,7 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
     linear_f = pair.msa.solve(F);
   }
   const Answer a = pair.analytic.solve(F, geometry), f = pair.msa.solve(F, geometry);
-  if (linear) require_agreement(a, f, at.configuration.size, pair.bound(), Pair::where(m, at));
+  if (linear) require_agreement(a, f, size, pair.bound(f, size), Pair::where(m, at));
   if (!linear) {
     r.analytic_from_linear = from_linear(a, *linear_a);
     r.msa_from_linear = from_linear(f, *linear_f);
@@ -181,7 +188,7 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
     for (const auto& [part, energy] : f.energies) r.shares.emplace_back(part, energy / total);
   r.notes = pair.msa.notes();
   r.rigid_motions = a.rigid_motions;
-  if (const double known = bound_with(0, pair.msa.rounding()); linear && known > 1e-9)
+  if (const double known = bound_with(0, pair.rounding(f, size)); linear && known > 1e-9)
     r.notes.push_back(fmt::format(
         "the device amplifies the rounding of its own numbers: the answer is known to about {:.0e} of its size",
         known));
@@ -212,7 +219,7 @@ Validation validate(const Mechanism& m, const std::vector<ValidationPoint>& poin
       row.axis = axis;
       row.load_N = load_N;
       const Answer a = pair.analytic.solve(F), f = pair.msa.solve(F);
-      require_agreement(a, f, at.configuration.size, pair.bound(), Pair::where(m, at));
+      require_agreement(a, f, at.configuration.size, pair.bound(f, at.configuration.size), Pair::where(m, at));
       row.analytic = twist_in_mm(a.displacement);
       row.msa = twist_in_mm(f.displacement);
       if (!as_printed.empty())
