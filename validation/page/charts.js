@@ -1,7 +1,7 @@
 // Charts by Chart.js: one configuration per drawing, made anew for each theme.
 import {BarController, BarElement, CategoryScale, Chart, Filler, Legend, LinearScale, LineController, LineElement,
         LogarithmicScale, PointElement, ScatterController, Tooltip} from 'chart.js';
-import {el, num} from './dom.js';
+import {el, missing, num} from './dom.js';
 import {onTheme, theme} from './theme.js';
 
 Chart.register(BarController, BarElement, CategoryScale, Filler, Legend, LinearScale, LineController, LineElement,
@@ -23,14 +23,21 @@ export function chart(about, height, make) {
   let drawn = null;
   const draw = () => {
     if (drawn) drawn.destroy();
+    drawn = null;
     const t = theme();
     Chart.defaults.color = t.text;
     Chart.defaults.borderColor = t.line;
-    const configuration = make(t);
-    for (const scale of Object.values(configuration.options.scales || {}))
-      if (scale.ticks && scale.ticks.callback === undefined) delete scale.ticks.callback;
-    drawn = new Chart(canvas, configuration);
-    canvas.dataset.drawn = String(configuration.data.datasets.reduce((n, d) => n + d.data.length, 0));
+    try {
+      const configuration = make(t);
+      for (const scale of Object.values(configuration.options.scales || {}))
+        if (scale.ticks && scale.ticks.callback === undefined) delete scale.ticks.callback;
+      if (!canvas.getContext('2d')) throw new Error('this browser does not draw in two dimensions');
+      drawn = new Chart(canvas, configuration);
+      canvas.dataset.drawn = String(configuration.data.datasets.reduce((n, d) => n + d.data.length, 0));
+    } catch (error) {
+      holder.style.height = 'auto';
+      holder.replaceChildren(missing(`“${about}”`, error));
+    }
   };
   onTheme(draw);
   requestAnimationFrame(draw);

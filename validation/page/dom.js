@@ -93,6 +93,20 @@ export function figure(id, title, about, ...children) {
   return el('section', {id, class: 'card'}, el('h2', {}, title), about ? el('p', {class: 'about'}, about) : null, children);
 }
 
+/** What stands in the place of a picture that could not be drawn. */
+export function missing(what, error) {
+  return el('p', {class: 'missing', role: 'note'}, `${what} could not be drawn: ${error.message || error}. Nothing else on this page depends on it.`);
+}
+
+/** What `make` gives, or where it fails a sentence that says so: one picture less, and the page goes on. */
+export function attempt(what, make) {
+  try {
+    return make();
+  } catch (error) {
+    return missing(what, error);
+  }
+}
+
 let tip = null;
 /** A small note beside the pointer; nothing hides it. */
 export function tooltip(event, text) {
