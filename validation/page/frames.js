@@ -1,5 +1,5 @@
 // A frame under its load cases: displacements, reactions, forces in members, shares of the energy.
-import {axis, chart, labelled} from './charts.js';
+import {axis, chart, inLines, labelled} from './charts.js';
 import {el, figure, num, numbers} from './dom.js';
 
 const displacements = ['ux_mm', 'uy_mm', 'uz_mm', 'rx_rad', 'ry_rad', 'rz_rad'], forces = ['fx_N', 'fy_N', 'fz_N', 'mx_Nmm', 'my_Nmm', 'mz_Nmm'];
@@ -34,7 +34,7 @@ function shares(f) {
     if (!parts.length || !c.energy_Nmm) return null;
     return figure('shares-' + i, `What yields: load case ${name}`, `Share of each section or spring in the elastic energy, ${num(c.energy_Nmm)} Nmm.`,
       chart('Share in the elastic energy under ' + name, 60 + 28 * parts.length, (t) => ({
-        type: 'bar', data: {labels: parts.map((x) => x.part), datasets: [{label: 'share', data: parts.map((x) => 100 * x.share), backgroundColor: t.blue, maxBarThickness: 18, minBarLength: 2}]},
+        type: 'bar', data: {labels: parts.map((x) => inLines(x.part)), datasets: [{label: 'share', data: parts.map((x) => 100 * x.share), backgroundColor: t.blue, maxBarThickness: 18, minBarLength: 2}]},
         options: {indexAxis: 'y', scales: {x: axis('% of the elastic energy', t, {min: 0, max: 100}), y: axis('', t, {grid: {display: false}})}, plugins: {legend: {display: false}, tooltip: labelled('%', (item) => item.parsed.x)}},
       })), numbers('shares-' + i, () => ({columns: ['part', 'share'], rows: parts.map((x) => [x.part, x.share])})));
   });

@@ -107,7 +107,7 @@ export function curves(versions) {
           parsing: false, interaction: {mode: 'nearest', intersect: false},
           scales: {x: axis(curve.rotation ? 'moment (Nmm)' : 'force (N)', t, {type: 'linear'}), y: axis(unit[1], t)},
           plugins: {legend: {display: false},
-                    tooltip: {filter: (item) => item.datasetIndex % 3 === 0, callbacks: {title: (items) => items.length ? `${num(items[0].parsed.x)} ${unit[0]}` : '', ...labelled(unit[1]).callbacks}}},
+                    tooltip: {filter: (item) => item.datasetIndex % 3 === 0, callbacks: {...labelled(unit[1]).callbacks, title: (items) => (items.length ? `${num(items[0].parsed.x)} ${unit[0]}` : '')}}},
         },
       };
     });

@@ -1,5 +1,5 @@
 // Sections of results: diagnosis, history, solve, validation, map.
-import {axis, chart, labelled, waterfall} from './charts.js';
+import {axis, chart, inLines, labelled, waterfall} from './charts.js';
 import {attempt, el, figure, micro, num, numbers, table, um} from './dom.js';
 import {workspace} from './workspace.js';
 
@@ -28,9 +28,9 @@ export function candidates(d) {
   const entries = [...d.candidates.map((c) => ({name: siteName(c), p: c.probability, tied: isTied(c)})),
                    ...(d.probability_nothing === undefined ? [] : [{name: 'nothing', p: d.probability_nothing}, {name: 'something unknown', p: d.probability_unknown}])]
     .sort((a, b) => b.p - a.p).slice(0, 12);
-  const picture = chart('Probabilities of the candidates', 60 + 26 * entries.length, (t) => ({
+  const picture = chart('Probabilities of the candidates', 60 + 32 * entries.length, (t) => ({
     type: 'bar',
-    data: {labels: entries.map((e) => e.name), datasets: [{label: 'probability', data: entries.map((e) => e.p), maxBarThickness: 18, minBarLength: 2,
+    data: {labels: entries.map((e) => inLines(e.name)), datasets: [{label: 'probability', data: entries.map((e) => e.p), maxBarThickness: 18, minBarLength: 2,
       backgroundColor: entries.map((e, i) => (e.tied ? t.orange : i === 0 ? t.blue : t.grey))}]},
     options: {indexAxis: 'y', scales: {x: axis('probability', t, {min: 0, max: 1}), y: axis('', t, {grid: {display: false}, ticks: {color: t.text, autoSkip: false}})},
               plugins: {legend: {display: false}, tooltip: labelled('', (item) => item.parsed.x)}},
@@ -104,7 +104,7 @@ export function solved(s) {
   const stiffness = s.msa.stiffness.map((row, i) => [efforts[i], ...row.map((x, j) => (Math.abs(x) < 1e-10 * scale(i, j) ? 0 : x))]);
   const shares = [...s.shares].sort((a, b) => b.share - a.share);
   const picture = shares.length ? chart('Share of each part in the elastic energy', 60 + 28 * shares.length, (t) => ({
-    type: 'bar', data: {labels: shares.map((x) => x.part), datasets: [{label: 'share', data: shares.map((x) => 100 * x.share), backgroundColor: t.blue, maxBarThickness: 18, minBarLength: 2}]},
+    type: 'bar', data: {labels: shares.map((x) => inLines(x.part)), datasets: [{label: 'share', data: shares.map((x) => 100 * x.share), backgroundColor: t.blue, maxBarThickness: 18, minBarLength: 2}]},
     options: {indexAxis: 'y', scales: {x: axis('% of the elastic energy', t, {min: 0, max: 100}), y: axis('', t, {grid: {display: false}})}, plugins: {legend: {display: false}, tooltip: labelled('%', (item) => item.parsed.x)}},
   })) : null;
   return [
