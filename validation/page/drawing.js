@@ -110,7 +110,9 @@ function picture(d) {
     looking.fit(width, height);
     renderer.render(root, looking.camera);
   });
-  const looking = view(inView(d, rest, size, box, ground.points), shot.canvas, shot.ask);
+  const {from, up} = standpoint(box), right = new THREE.Vector3().crossVectors(up, from).normalize();
+  const ends = layers.names.children.map((sprite) => sprite.position.clone().addScaledVector(right, sprite.scale.x).addScaledVector(up, sprite.scale.y));
+  const looking = view([...inView(d, rest, size, box, ground.points), ...ends], shot.canvas, shot.ask);
   holder.append(looking.buttons, el('div', {class: 'measures'}, looking.scale));
 
   const readout = el('p', {class: 'quiet', id: 'machine-readout', 'aria-live': 'polite'});

@@ -71,7 +71,7 @@ export function standpoint(box) {
 export function view(points, element, changed, around = 0) {
   const box = new THREE.Box3().setFromPoints(points), size = Math.max(1e-6, box.getSize(new THREE.Vector3()).length());
   const {from, up} = standpoint(box), middle = box.getCenter(new THREE.Vector3());
-  const camera = new THREE.PerspectiveCamera(32, 1, size / 100, size * 30);
+  const camera = new THREE.PerspectiveCamera(22, 1, size / 100, size * 30);
   camera.up.copy(up);
   camera.position.copy(middle).addScaledVector(from, size);
   const controls = new OrbitControls(camera, element);

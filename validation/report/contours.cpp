@@ -144,20 +144,31 @@ bool LabelledCurves::fits(const CurveLabel& l) const {
   });
 }
 
-void LabelledCurves::label(double level) {
+PlanePoint LabelledCurves::moved_inside(const CurveLabel& l) const {
+  constexpr double kept = 0.02;  // of the panel, from its edge
+  const auto within = [](double at, double half, const std::vector<double>& axis) {
+    const double edge = half + kept * (axis.back() - axis.front());
+    const double low = axis.front() + edge, high = axis.back() - edge;
+    return low < high ? std::clamp(at, low, high) : at;
+  };
+  return {within(l.at.x, l.half_width, field_.x), within(l.at.y, l.half_height, field_.y)};
+}
+
+void LabelledCurves::label(double level, bool tight) {
   const double width = letter_ * (static_cast<double>(letters(fmt::format("{:g}", level))) + 0.6);
   for (const Polyline& line : curves_of(level)) {
     std::vector<double> run = {0};  // mm along the curve
     for (std::size_t k = 1; k < line.size(); ++k)
       run.push_back(run.back() + std::hypot(mm_x_ * (line[k].x - line[k - 1].x), mm_y_ * (line[k].y - line[k - 1].y)));
-    if (run.back() < 2.5 * width) continue;
+    if (run.back() < (tight ? 1.3 : 2.5) * width) continue;
     // As near to the middle of the curve as there is room.
     std::optional<CurveLabel> best;
     double farthest = run.back();
     for (std::size_t k = 0; k < line.size(); ++k) {
-      const CurveLabel here{line[k], level, width / 2 / mm_x_, 0.55 * line_ / mm_y_};
+      CurveLabel here{line[k], level, width / 2 / mm_x_, 0.55 * line_ / mm_y_};
+      if (tight) here.at = moved_inside(here);
       const double away = std::abs(run[k] - run.back() / 2);
-      if (away < farthest && fits(here)) best = here, farthest = away;
+      if (away < farthest && fits(here) && here.covers(line[k])) best = here, farthest = away;
     }
     if (best) labels_.push_back(*best);
   }
@@ -191,8 +202,9 @@ CurveRows curve_rows(LabelledCurves curves, const std::vector<double>& iso, cons
                      double light) {
   for (const double level : iso) curves.add(level);
   for (const double level : index) curves.label(level);
-  if (curves.labels().empty())  // none of the heavy ones passes here: a curve without a number says little
-    for (auto level = iso.begin(); level != iso.end() && curves.labels().empty(); ++level) curves.label(*level);
+  // Where none of the heavy ones has room, another carries its number: curves without any say little.
+  for (const bool tight : {false, true})
+    for (auto level = iso.begin(); level != iso.end() && curves.labels().empty(); ++level) curves.label(*level, tight);
   const auto ink = [&](double level) { return level < light ? 0xFFFFFF : 0x000000; };
   CurveRows out;
   for (const double level : iso) {

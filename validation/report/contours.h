@@ -38,8 +38,9 @@ class LabelledCurves {
   LabelledCurves(const GridField& field, double wide, double tall, double letter_mm, double line_mm);
 
   void add(double level);
-  /// On each curve of the level that is long enough, away from the panel's edge and from other labels.
-  void label(double level);
+  /// On each curve of the level that is long enough, apart from other labels. With `tight` on shorter curves too, where
+  /// need be beside the curve, so that the label keeps within the panel.
+  void label(double level, bool tight = false);
 
   const std::vector<CurveLabel>& labels() const { return labels_; }
   /// Curves of the level without what labels cover.
@@ -52,6 +53,7 @@ class LabelledCurves {
   };
   const std::vector<Polyline>& curves_of(double level) const;
   bool fits(const CurveLabel&) const;
+  PlanePoint moved_inside(const CurveLabel&) const;
 
   const GridField& field_;
   double mm_x_, mm_y_, letter_, line_;  ///< mm of paper for one unit; of text

@@ -198,10 +198,13 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
   const std::vector<double> iso = levels(e, below ? 8 : 14), index = levels(e, 4);
   const double light = std::exp(std::log(e.low) + 0.62 * std::log(e.high / e.low));
   std::vector<std::string> series;  // by row and axis
+  std::vector<bool> whole;          // whether every value is there
   for (std::size_t r = 0; r < slices.size(); ++r)
     for (int axis = 0; axis < 3; ++axis) {
       series.emplace_back("plot '+' using 1:(NaN):(1) with points palette");
       const std::optional<GridField> field = surface(map, slices[r], axis);
+      whole.push_back(field && std::none_of(field->values.begin(), field->values.end(),
+                                            [](double value) { return std::isnan(value); }));
       if (!field) continue;
       const LabelledCurves curves(*field, panel, panel_height(slices[r]), script.text_mm(1, iso_text), iso_text * line);
       const CurveRows drawn = curve_rows(curves, iso, index, light);
@@ -238,8 +241,13 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
       script.panel(x, y, panel, h);
       script.put("set xrange [{:.8g}:{:.8g}]\nset yrange [{:.8g}:{:.8g}]", g.low_mm(s.across), g.high_mm(s.across),
                  g.low_mm(s.up), g.high_mm(s.up));
-      script.put("set object 1 rect from graph 0,0 to graph 1,1 behind fc rgb '#f4f4f4' fs solid noborder");
-      script.put("set object 2 rect from graph 0,0 to graph 1,1 behind fc rgb '#b0b0b0' fs pattern 4 noborder");
+      // Hatching costs more than all the rest of a picture: only where it shows.
+      if (whole[3 * r + static_cast<std::size_t>(axis)])
+        script.put("unset object");
+      else
+        script.put(
+            "set object 1 rect from graph 0,0 to graph 1,1 behind fc rgb '#f4f4f4' fs solid noborder\n"
+            "set object 2 rect from graph 0,0 to graph 1,1 behind fc rgb '#b0b0b0' fs pattern 4 noborder");
       script.put("set xtics ({}) offset 0,0.4\nset ytics ({}) offset 0.6,0\nset format y '{}'",
                  inner_tics(script, g.low_mm(s.across), g.high_mm(s.across), panel),
                  inner_tics(script, g.low_mm(s.up), g.high_mm(s.up), h), axis == 0 ? "%g" : "");
