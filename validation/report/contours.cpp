@@ -188,14 +188,19 @@ std::vector<Polyline> LabelledCurves::visible(double level) const {
   return out;
 }
 
-std::string grid_rows(const GridField& f) {
+std::string matrix_rows(const GridField& f) {
   std::string text;
-  for (std::size_t j = 0; j < f.y.size(); ++j) {
-    for (std::size_t i = 0; i < f.x.size(); ++i)
-      text += fmt::format("{:.6g} {:.6g} {:.5g}\n", f.x[i], f.y[j], f.at(i, j));
-    text += "\n";
-  }
-  return text;
+  for (std::size_t j = 0; j < f.y.size(); ++j)
+    for (std::size_t i = 0; i < f.x.size(); ++i) text += fmt::format("{}{:.5g}", i ? " " : j ? "\n" : "", f.at(i, j));
+  return text + "\n";
+}
+
+std::string matrix_columns(const GridField& f) {
+  const auto spaced = [](const std::vector<double>& axis, int column) {
+    const double step = axis.size() > 1 ? (axis.back() - axis.front()) / static_cast<double>(axis.size() - 1) : 0;
+    return fmt::format("({:.10g}+${}*{:.10g})", axis.front(), column, step);
+  };
+  return fmt::format("matrix using {}:{}:3", spaced(f.x, 1), spaced(f.y, 2));
 }
 
 CurveRows curve_rows(LabelledCurves curves, const std::vector<double>& iso, const std::vector<double>& index,

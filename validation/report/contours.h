@@ -61,8 +61,10 @@ class LabelledCurves {
   std::vector<CurveLabel> labels_;
 };
 
-/// Lines of gnuplot's grid format, x fastest.
-std::string grid_rows(const GridField&);
+/// The values as gnuplot's matrix, a line for each y, which it reads several times as fast as points one by one.
+std::string matrix_rows(const GridField&);
+/// The columns x, y, value of that matrix, "matrix using …"; coordinates are evenly spaced.
+std::string matrix_columns(const GridField&);
 
 /// What is drawn over the colours of a panel, as gnuplot's rows: curves as x, y, colour; values as x, y, text, colour.
 struct CurveRows {

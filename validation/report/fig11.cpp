@@ -208,8 +208,8 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
       if (!field) continue;
       const LabelledCurves curves(*field, panel, panel_height(slices[r]), script.text_mm(1, iso_text), iso_text * line);
       const CurveRows drawn = curve_rows(curves, iso, index, light);
-      script.put("$s{}{} << EOD\n{}EOD", r, axis, grid_rows(*field));
-      series.back() = fmt::format("plot $s{}{} using 1:2:3 with image", r, axis);
+      script.put("$s{}{} << EOD\n{}EOD", r, axis, matrix_rows(*field));
+      series.back() = fmt::format("plot $s{}{} {} with image", r, axis, matrix_columns(*field));
       const auto over = [&](const char* name, const std::string& rows, const std::string& how) {
         if (rows.empty()) return;
         script.put("${}{}{} << EOD\n{}EOD", name, r, axis, rows);
