@@ -77,6 +77,7 @@ export function triad(corner, length) {
   });
   return group;
 }
+
 /** What a camera must see of it. */
 export const triadPoints = (corner, length) => [0, 1, 2].map((i) => corner.clone().setComponent(i, corner.getComponent(i) + 1.4 * length)).concat(corner);
 
@@ -118,7 +119,7 @@ function hatched() {
   return texture;
 }
 
-/** The axis (0, 1, 2) across which all these points lie, of four or more any; null where they lie across none. */
+/** The axis (0, 1, 2) on which three points or more all have the same coordinate; null where there is none. */
 function levelAcross(points, size) {
   if (points.length < 3) return null;
   const box = new THREE.Box3().setFromPoints(points), s = box.getSize(new THREE.Vector3()).toArray();

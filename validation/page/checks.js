@@ -5,15 +5,15 @@ const places = ['ux', 'uy', 'uz', 'thx', 'thy', 'thz'], efforts = ['fx', 'fy', '
 
 export const checkHeadline = (c) => ({
   words: c.verdict,
-  small: [c.file + (c.reference ? ` against ${c.reference}` : ''), ...new Set(c.diagnosis.map((d) => 'Remedy: ' + d.remedy))].join('. ') + '.',
+  small: [...(c.reference ? [`Against ${c.reference}.`] : []), ...new Set(c.diagnosis.map((d) => `Remedy: ${d.remedy}.`))].join(' '),
 });
 
 const bound = (c) => (c.at_least !== undefined && c.at_most !== undefined ? `${num(c.at_least, 3)} … ${num(c.at_most, 3)}` : c.at_most !== undefined ? `≤ ${num(c.at_most, 2)}` : `≥ ${num(c.at_least, 2)}`);
 
 function judged(c) {
-  const rows = c.checks.map((k) => [`${k.check.replace(/_/g, ' ')}: ${k.quantity}`, k.measured === undefined ? '–' : num(k.measured, 3), bound(k), k.measured === undefined ? 'not judged' : k.passes ? 'passes' : 'FAILS']);
+  const rows = c.checks.map((k) => [`${k.check.replace(/_/g, ' ')}: ${k.quantity}`, k.measured === undefined ? 'not judged' : k.passes ? 'passes' : 'FAILS', k.measured === undefined ? '–' : num(k.measured, 3), bound(k)]);
   return figure('checks', 'Checks', 'What was measured on the matrix, and the bound that its digits leave to rounding.',
-    table(['check', 'measured', 'bound', ''], rows, {shade: (i, j) => (j === 3 && rows[i][3] === 'FAILS' ? 1 : null), show: (x) => x}),
+    table(['check', '', 'measured', 'bound'], rows, {shade: (i, j) => (j === 1 && rows[i][1] === 'FAILS' ? 1 : null), show: (x) => x}),
     numbers('checks', () => ({columns: ['check', 'quantity', 'measured', 'at_least', 'at_most', 'passes'], rows: c.checks.map((k) => [k.check, k.quantity, k.measured ?? null, k.at_least ?? null, k.at_most ?? null, String(k.passes)])})));
 }
 

@@ -73,8 +73,10 @@ export function numbers(name, make, options = {}) {
   const fill = () => {
     if (shown) return;
     shown = true;
-    const {columns, rows} = make();
-    holder.append(table(columns, rows, options));
+    holder.append(attempt('The table', () => {
+      const {columns, rows} = make();
+      return table(columns, rows, options);
+    }));
   };
   details.addEventListener('toggle', () => details.open && fill());
   if (options.open) {
@@ -82,8 +84,11 @@ export function numbers(name, make, options = {}) {
     fill();
   }
   const save = el('button', {type: 'button', class: 'csv', 'data-name': name + '.csv', onclick: () => {
-    const {columns, rows} = make();
-    download(name + '.csv', csv(columns, rows));
+    const failed = attempt('The table', () => {
+      const {columns, rows} = make();
+      download(name + '.csv', csv(columns, rows));
+    });
+    if (failed) holder.replaceChildren(failed), details.open = true;
   }}, 'CSV');
   return el('div', {class: 'with-csv'}, details, save);
 }

@@ -128,7 +128,9 @@ LabelledCurves::LabelledCurves(const GridField& field, double wide, double tall,
 void LabelledCurves::add(double level) { all_.push_back({level, iso_curves(field_, level)}); }
 
 const std::vector<Polyline>& LabelledCurves::curves_of(double level) const {
-  return std::find_if(all_.begin(), all_.end(), [&](const Curves& c) { return c.level == level; })->lines;
+  static const std::vector<Polyline> none_drawn;
+  const auto found = std::find_if(all_.begin(), all_.end(), [&](const Curves& c) { return c.level == level; });
+  return found == all_.end() ? none_drawn : found->lines;
 }
 
 bool LabelledCurves::fits(const CurveLabel& l) const {

@@ -37,7 +37,7 @@ class LabelledCurves {
   /// `wide`, `tall`: the panel in mm; of text `letter_mm` a letter is wide and `line_mm` a line high.
   LabelledCurves(const GridField& field, double wide, double tall, double letter_mm, double line_mm);
 
-  void add(double level);
+  void add(double level);  ///< before its labels; a level that was not added has no curves
   /// On each curve of the level that is long enough, apart from other labels. With `tight` on shorter curves too, where
   /// need be beside the curve, so that the label keeps within the panel.
   void label(double level, bool tight = false);
