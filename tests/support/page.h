@@ -36,15 +36,18 @@ inline std::string from_base64(const std::string& text) {
   return out;
 }
 
-/// What page_check.js writes down; empty where the browser said nothing.
+/// What page_check.js writes down; empty where the browser said nothing. Without `webgl` it cannot draw in 3D.
 inline std::optional<nlohmann::json> used_page(const std::filesystem::path& page, const Folder& folder,
-                                               const std::string& window = "1200,900", bool dark = false) {
+                                               const std::string& window = "1200,900", bool dark = false,
+                                               bool webgl = true) {
   std::string html = contents(page);
   html.insert(html.find("<title>"),
               "<script>" + contents(DEFLECT_SOURCE_DIR "/tests/support/page_check.js") + "</script>");
   std::ofstream(folder / "checked.html", std::ios::binary) << html;
   const std::string command =
-      browser() + " --headless --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader" +
+      browser() + " --headless --no-sandbox" +
+      (webgl ? " --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader"
+             : " --disable-gpu --disable-3d-apis --disable-software-rasterizer") +
       " --disable-dev-shm-usage --user-data-dir='" + (folder / "browser").string() + "' --window-size=" + window +
       " --blink-settings=preferredColorScheme=" + (dark ? "0" : "1") +
       " --virtual-time-budget=60000 --dump-dom 'file://" + (folder / "checked.html").string() + "' 2>/dev/null";

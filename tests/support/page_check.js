@@ -51,8 +51,18 @@
     try {
       for (let i = 0; i < 200 && !document.documentElement.dataset.ready; ++i) await frame();
       await settle();
-      report.verdict = document.getElementById('verdict').textContent;
-      report.title = document.querySelector('h1').textContent;
+      const text = (id) => document.getElementById(id)?.textContent ?? '';
+      report.verdict = text('verdict');
+      report.ids = text('verdict-ids');
+      report.title = text('subject');
+      report.missing = [...document.querySelectorAll('.missing')].map((each) => each.textContent);
+      report.scale = document.querySelector('.scale')?.textContent ?? '';
+      report.factor = document.querySelector('.factor')?.textContent ?? '';
+      // Words that are wider than their place or stand beyond the window; tables are scrolled sideways, their names not.
+      report.cut = [...document.querySelectorAll('h1, h2, h3, p, li, dt, dd, label, summary, .legend div, tbody th')].filter((each) => {
+        const shown = each.getClientRects().length > 0 && getComputedStyle(each).overflow !== 'auto';
+        return shown && (each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== 'inline' || each.getBoundingClientRect().right > innerWidth + 0.5);
+      }).map((each) => each.textContent.slice(0, 80));
       report.scripts = document.querySelectorAll('script').length;
       report.wide = document.documentElement.scrollWidth > innerWidth;
       report.charts = [...document.querySelectorAll('.chart canvas')].map((c) => ({about: c.getAttribute('aria-label'), drawn: Number(c.dataset.drawn || 0), colours: painted(c).colours}));

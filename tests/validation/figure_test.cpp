@@ -149,6 +149,30 @@ TEST_F(FigureTest, Fig10ShowsTheSeriesLoadAndDevice) {
   EXPECT_FALSE(has(svg, "As printed"));
 }
 
+TEST_F(FigureTest, PointsOfTheWorkspaceAreNoSeriesAndNoLineJoinsThem) {
+  const std::string body = fig10(validation(9, true, 1e-9)).body;
+  EXPECT_FALSE(has(body, "linespoints"));
+  EXPECT_FALSE(has(body, "with lines"));
+  EXPECT_TRUE(has(body, "with points"));
+}
+
+TEST_F(FigureTest, SeveralFiguresAreDrawnTogetherAsEachByItself) {
+  Figure other = fig10(validation(5, false, 1e-9));
+  other.name = "other";
+  const std::vector<Figure> figures = {fig10(validation(9, true, 1e-9)), other};
+  const auto together = render_all(figures, folder_ / "together");
+  ASSERT_EQ(together.size(), 8u);
+  std::size_t i = 0;
+  for (const Figure& figure : figures)
+    for (const fs::path& alone : render(figure, folder_ / "alone")) {
+      EXPECT_EQ(together[i].filename(), alone.filename());
+      EXPECT_TRUE(read_text(together[i++]) == read_text(alone)) << alone;
+    }
+  EXPECT_TRUE(render_all({}, folder_).empty());
+  EXPECT_THROW(render_all({figures[0], {"bad", "plot [0:1] nonsense(x)"}}, folder_ / "none"), std::logic_error);
+  EXPECT_FALSE(fs::exists(folder_ / "none"));
+}
+
 TEST_F(FigureTest, Fig10NamesTheErrataAsPrinted) {
   Validation v = validation(9, true, 1e-9);
   std::string svg = read_text(render(fig10(v), folder_).front());

@@ -187,6 +187,18 @@ TEST(Map, CountsPosesOutOfReachByReason) {
   EXPECT_NE(report.find(fmt::format("reached: {} of 125 poses", 125 - refused)), std::string::npos) << report;
 }
 
+TEST(Map, EveryPanelHasAContourWithItsNumberInAJournalsColumn) {
+  const Mechanism m = device("haptic-6psu");
+  const StiffnessMap map = map_stiffness(m, cube(m, 5, 5, 5));
+  for (const double width : {88.0, 170.0}) {
+    const std::string body = fig11(map, {width, "DejaVu Sans", 8}).front().body;
+    for (int row = 0; row < 4; ++row)
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NE(body.find(fmt::format("$values{}{} << EOD", row, axis)), body.npos) << width << " " << row << axis;
+    EXPECT_NE(body.find("font 'DejaVu Sans,6.4'"), body.npos) << "of numbers on contours";
+  }
+}
+
 TEST(Map, NothingReachedIsAResultWithoutFigures) {
   const Mechanism m = device("haptic-6psu");
   MapOptions o = cube(m, 2, 2, 2);

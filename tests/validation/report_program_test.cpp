@@ -32,8 +32,8 @@ class ReportProgram : public ::testing::Test {
         path("data.csv") + more);
   }
   /// What the browser saw, after what holds for every page.
-  json used(const std::string& page, const std::string& window = "1200,900", bool dark = false) {
-    const auto seen = test::used_page(folder / page, folder, window, dark);
+  json used(const std::string& page, const std::string& window = "1200,900", bool dark = false, bool webgl = true) {
+    const auto seen = test::used_page(folder / page, folder, window, dark, webgl);
     EXPECT_TRUE(seen) << "the browser said nothing";
     if (!seen) return {};
     EXPECT_EQ(seen->at("failures"), json::array()) << seen->at("failures").dump(1);
@@ -49,6 +49,7 @@ class ReportProgram : public ::testing::Test {
       EXPECT_TRUE(seen->at("turned"));
     }
     EXPECT_FALSE(seen->at("wide")) << "wider than the window";
+    EXPECT_EQ(seen->at("cut"), json::array()) << "words that are cut or stand beyond the window";
     EXPECT_EQ(seen->at("scripts"), 3);  // data, program, the check
     EXPECT_LT(std::filesystem::file_size(folder / page), 5'000'000u);
     return *seen;
@@ -84,7 +85,10 @@ TEST_F(ReportProgram, APageOfADiagnosisIsUsedInABrowserAndHoldsTheNumbersOfItsJs
 
   const json seen = used("page.html");
   for (const char* each : {"posed", "readout", "deflected"}) EXPECT_TRUE(seen.at(each)) << each;
-  EXPECT_NE(seen.at("verdict").get<std::string>().find("guide_root_compliance"), std::string::npos);
+  const auto headline = seen.at("verdict").get<std::string>(), ids = seen.at("ids").get<std::string>();
+  EXPECT_TRUE(headline.starts_with("The clamp of every guideway yields and lets it tilt. ")) << headline;
+  EXPECT_EQ(headline.find("guide_root_compliance"), std::string::npos) << headline;
+  EXPECT_TRUE(ids.starts_with("guide_root_compliance (all legs): stiffness_Nmm_per_rad = ")) << ids;
   EXPECT_GE(seen.at("charts").size(), 10u);  // candidates, waterfall, residuals twice, six legs
 
   const json& best = d.at("candidates").at(0);
@@ -167,6 +171,135 @@ TEST_F(ReportProgram, APageFitsATelephoneInLightAndInDark) {
   run("compare haptic-6psu-ideal-joints " + path("data.csv") + " --report " + path("page.html"));
   const json light = used("page.html", "390,844"), dark = used("page.html", "390,844", true);
   EXPECT_NE(light.at("background"), dark.at("background"));
+}
+
+TEST_F(ReportProgram, PagesWithLongNamesFitATelephone) {
+  NEEDS_BROWSER();
+  simulate();
+  std::string device = test::deflect("devices haptic-6psu-ideal-joints").out;
+  device.replace(device.find("name: haptic-6psu-ideal-joints"), 30,
+                 "name: haptic_device_of_the_second_laboratory_with_another_carriage_and_ball_joints");
+  write_text(folder / "haptic-device-of-the-second-laboratory-with-another-carriage.yaml", device);
+  const std::string named = path("haptic-device-of-the-second-laboratory-with-another-carriage.yaml");
+  for (const std::string& command :
+       {"diagnose " + named + " " + path("data.csv"), "solve " + named + " --pose 25,25,198.9 --load 0,0,10",
+        "map " + named + " --n 3", std::string("validate tripteron"), std::string("frame ansys-vm217"),
+        std::string("show gantry")}) {
+    SCOPED_TRACE(command);
+    run(command + " --report " + path("page.html"));
+    used("page.html", "390,844");
+  }
+}
+
+TEST_F(ReportProgram, WithoutWebGLThePageSaysSoAndShowsTheRest) {
+  NEEDS_BROWSER();
+  simulate();
+  run("compare haptic-6psu-ideal-joints " + path("data.csv") + " --report " + path("page.html"));
+  const json seen = used("page.html", "1200,900", false, false);
+  const json missing = seen.at("missing");
+  ASSERT_EQ(missing.size(), 2u) << missing;  // the machine, the map of the residual
+  EXPECT_NE(missing[0].get<std::string>().find("The machine could not be drawn: this browser does not draw in 3D"),
+            std::string::npos)
+      << missing;
+  EXPECT_TRUE(seen.at("verdict").get<std::string>().starts_with("Something is missing")) << seen.at("verdict");
+  EXPECT_EQ(seen.at("charts").size(), used("page.html").at("charts").size());
+  EXPECT_TRUE(seen.at("saved").contains("tool-displacement.csv"));
+  EXPECT_EQ(used("page.html").at("missing"), json::array());
+}
+
+TEST_F(ReportProgram, AFigureThatFailsIsLeftOutAndTheOthersStand) {
+  NEEDS_BROWSER();
+  simulate();
+  run("compare haptic-6psu-ideal-joints " + path("data.csv") + " --report " + path("page.html"));
+  std::string html = contents(folder / "page.html");
+  const json whole = page_data(html);
+  const std::string mark = "id=\"data\">";
+  const std::size_t from = html.find(mark) + mark.size(), to = html.find("</script>", from);
+  json data = whole;
+  data["scene"]["poses"][0].erase("points_mm");
+  data["versions"][0]["curves"][1].erase("force");
+  data["versions"][0]["result"].erase("errors");
+  write_text(folder / "broken.html", html.substr(0, from) + data.dump() + html.substr(to));
+  const json seen = used("broken.html"), good = used("page.html");
+  const json missing = seen.at("missing");
+  ASSERT_EQ(missing.size(), 3u) << missing.dump(1);
+  EXPECT_TRUE(missing[0].get<std::string>().starts_with("The machine could not be drawn: ")) << missing[0];
+  EXPECT_TRUE(missing[1].get<std::string>().find("Force–elongation of ") != std::string::npos) << missing[1];
+  EXPECT_TRUE(missing[2].get<std::string>().starts_with("Errors by group could not be drawn: ")) << missing[2];
+  EXPECT_EQ(seen.at("verdict"), good.at("verdict"));
+  EXPECT_EQ(seen.at("charts").size() + 1, good.at("charts").size());
+}
+
+TEST_F(ReportProgram, TheSceneHasSectionsLoadsAndGround) {
+  run("solve scara --pose 380,50,160 --load 0,0,-20,0,500,0 --report " + path("page.html"));
+  const json scene = page_data(contents(folder / "page.html")).at("scene");
+  EXPECT_EQ(scene.at("kind"), "machine");
+  const json& pose = scene.at("poses").at(0);
+  bool box = false;
+  for (std::size_t i = 0; i < scene.at("bodies").size(); ++i) {
+    const json& body = scene.at("bodies")[i];
+    if (body.at("part") != "upper_link") continue;
+    box = true;
+    EXPECT_EQ(body.at("size_mm"), json({100.0, 70.0}));
+    EXPECT_EQ(body.at("round"), false);
+    EXPECT_NEAR(pose.at("axes")[i].at(2).get<double>(), 0, 1e-6) << "its local y lies level";
+  }
+  EXPECT_TRUE(box);
+  const json& arrows = pose.at("shapes").at(0).at("arrows");
+  ASSERT_EQ(arrows.size(), 2u);
+  EXPECT_EQ(arrows[0].at("words"), "20 N");
+  EXPECT_EQ(arrows[0].at("vector"), json({0.0, 0.0, -20.0}));
+  EXPECT_EQ(arrows[1].at("kind"), "moment");
+  EXPECT_EQ(arrows[1].at("words"), "500 Nmm");
+  ASSERT_EQ(scene.at("ground").size(), 1u);
+  EXPECT_EQ(scene.at("ground")[0].at("at_mm"), json({0.0, 0.0, 0.0}));
+  if (test::browser().empty()) return;
+  const json seen = used("page.html");
+  EXPECT_TRUE(seen.at("scale").get<std::string>().ends_with(" mm")) << seen.at("scale");
+  EXPECT_TRUE(seen.at("factor").get<std::string>().starts_with("deflection × ")) << seen.at("factor");
+}
+
+TEST_F(ReportProgram, AFrameUnderItsLoadsIsAPage) {
+  run("frame portal --json " + path("f.json") + " --report " + path("page.html"));
+  const json data = page_data(contents(folder / "page.html")), f = json::parse(contents(folder / "f.json"));
+  EXPECT_EQ(data.at("results").at(0).at("kind"), "frame");
+  EXPECT_EQ(data.at("results").at(0).at("result"), f);
+  const json& scene = data.at("scene");
+  EXPECT_EQ(scene.at("kind"), "frame");
+  EXPECT_EQ(scene.at("poses").at(0).at("shapes").size(), f.at("cases").size());
+  // Nodes of the description come first, and move as the result says.
+  for (const json& drawn : scene.at("poses").at(0).at("shapes")) {
+    const auto name = drawn.at("name").get<std::string>();
+    const json& of_case = f.at("cases").at(name);
+    EXPECT_EQ(drawn.at("arrows").empty(), name == "summer") << name;
+    EXPECT_EQ(drawn.at("other_loads"), name == "summer" ? "1 member warmer or colder" : "");
+    for (std::size_t i = 0; i < of_case.at("displacements").size(); ++i)
+      EXPECT_NEAR(drawn.at("displacement_mm").at(i).at(0), of_case.at("displacements")[i].at("ux_mm"), 1e-6);
+  }
+  if (test::browser().empty()) return;
+  const json seen = used("page.html");
+  EXPECT_TRUE(seen.at("verdict").get<std::string>().starts_with("The frame moves by ")) << seen.at("verdict");
+  EXPECT_TRUE(seen.at("deflected"));
+}
+
+TEST_F(ReportProgram, AMatrixThatFailsItsChecksIsAPageToo) {
+  write_text(folder / "K.csv",
+             "100,5,0,0,0,0\n0,100,0,0,0,0\n0,0,200,0,0,0\n0,0,0,90000,0,0\n0,0,0,0,90000,0\n0,0,0,0,0,90000\n");
+  EXPECT_EQ(
+      test::deflect("check " + path("K.csv") + " --json " + path("k.json") + " --report " + path("page.html")).code, 4);
+  const json data = page_data(contents(folder / "page.html"));
+  EXPECT_EQ(data.at("results").at(0).at("result"), json::parse(contents(folder / "k.json")));
+  EXPECT_EQ(data.at("results").at(0).at("result").at("matrix").at(0).at(1), 5);
+  run("frame truss --json " + path("f.json"));
+  run("report " + path("k.json") + " " + path("f.json") + " -o " + path("both.html"));
+  if (test::browser().empty()) return;
+  const json seen = used("page.html");
+  EXPECT_TRUE(seen.at("verdict").get<std::string>().starts_with("The stiffness fails: ")) << seen.at("verdict");
+  const json both = used("both.html");
+  for (const char* id : {"checks", "stiffness", "displacements", "members"})
+    EXPECT_TRUE(std::any_of(both.at("tables").begin(), both.at("tables").end(), [&](const json& t) {
+      return t.at("id") == id && t.at("rows") > 0;
+    })) << id;
 }
 
 TEST_F(ReportProgram, SeveralResultsAreOnePage) {

@@ -77,7 +77,7 @@ TEST_F(TalkProgram, VerboseTellsStepsOnStandardErrorAndChangesNothingElse) {
   EXPECT_EQ(usual.errors, "");
   EXPECT_EQ(verbose.out, usual.out);
   for (const char* told : {"version ", "BLAS", "device haptic-6psu-ideal-joints: ", "27 readings at 9 poses",
-                           "threads: all ", "figure ", "residual-map: 160 x ", "wrote ", "errors.csv", "compare: "})
+                           "threads: all ", "figures ", "residual-map: 160 x ", "wrote ", "errors.csv", "compare: "})
     EXPECT_NE(verbose.errors.find(told), std::string::npos) << told << "\n" << verbose.errors;
 }
 

@@ -3,6 +3,7 @@
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/compare/at_pose.h"
 #include "validation/compare/theories.h"
@@ -12,7 +13,7 @@ namespace deflect::cli {
 namespace {
 
 struct CheckArguments {
-  std::string matrix, passive, reference, device, pose, joints, load, size, json, out;
+  std::string matrix, passive, reference, device, pose, joints, load, size, json, out, report;
   std::string unit = "mm", order = "translation-first", key = "analytic.stiffness";
   double tolerance = 0;
 };
@@ -62,6 +63,7 @@ MatrixCheckOptions options_of(const CheckArguments& a) {
 }
 
 void run(const CheckArguments& a) {
+  require_pages(a.report);
   const MatrixCheck m = timed("checks of " + a.matrix, [&] { return check_matrix(options_of(a)); });
   const CheckedFiles files{a.matrix, a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints)};
   const std::string report = check_report(m, files);
@@ -73,6 +75,7 @@ void run(const CheckArguments& a) {
     write_table(folder / "structure.csv", structure_csv(m));
   }
   fmt::print("{}", report);
+  if (!a.report.empty()) write_report_of_file(a.report, a.matrix, {"check", check_json(m, files)});
   if (!m.passes()) throw NumericalError(a.matrix + " fails its checks");
 }
 
@@ -108,6 +111,7 @@ Command check_command() {
         &a->size},
        {"--key", "NAME", "member of a JSON object that is the matrix (default analytic.stiffness)", &a->key},
        {"--json", "FILE", "write the result", &a->json},
+       report_option(&a->report),
        {"--out", "DIR", "write report and tables: check.txt, checks.csv, structure.csv", &a->out}},
       [a] { run(*a); }};
 }

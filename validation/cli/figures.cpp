@@ -33,13 +33,16 @@ FigureStyle figure_style(const FigureArguments& a, const std::string& out) {
 }
 
 std::string draw(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
-  std::string names;
+  std::string names, sizes;
   for (const Figure& figure : figures) {
-    const Step step(fmt::format("figure {}: {:.4g} x {:.4g} mm, {} {:g} pt", (folder / figure.name).string(),
-                                figure.width_mm, figure.height_mm, figure.style.font, figure.style.size_pt));
-    render(figure, folder);
     names += (names.empty() ? "" : ", ") + figure.name;
+    sizes +=
+        fmt::format("{}{}: {:.4g} x {:.4g} mm, {} {:g} pt", sizes.empty() ? "" : "; ", (folder / figure.name).string(),
+                    figure.width_mm, figure.height_mm, figure.style.font, figure.style.size_pt);
   }
+  if (figures.empty()) return "";
+  const Step step(fmt::format("figure{} {}", figures.size() == 1 ? "" : "s", sizes));
+  render_all(figures, folder);
   return names;
 }
 

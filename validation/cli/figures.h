@@ -20,7 +20,7 @@ std::vector<Option> with_figures(std::vector<Option>, FigureArguments*);
 /// Before any work: InputError where text or font cannot be had, or where no figures are asked for (`out` is empty).
 FigureStyle figure_style(const FigureArguments&, const std::string& out);
 
-/// Draws each into the folder; their names, joined by commas.
+/// Draws all of them, side by side, into the folder; their names, joined by commas.
 std::string draw(const std::vector<Figure>&, const std::filesystem::path& folder);
 
 }  // namespace deflect::cli

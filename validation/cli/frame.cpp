@@ -16,8 +16,10 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/motions.h"
+#include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/report/frame_results.h"
+#include "validation/report/page_frame_scene.h"
 #include "validation/report/schema_results.h"
 
 namespace deflect::cli {
@@ -25,7 +27,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct FrameArguments {
-  std::string file, element_size, solver = "auto", json, out;
+  std::string file, element_size, solver = "auto", json, out, report;
   bool schema = false;
 };
 
@@ -73,6 +75,7 @@ void print_schema(const std::string& json) {
 }
 
 void run(const FrameArguments& a) {
+  require_pages(a.report);
   if (a.schema) return print_schema(a.json);
   if (a.file.empty()) throw InputError("name a frame file or a published case, or ask for --schema");
   const frame::FrameDescription f = timed("frame: reading", [&] { return frame::read_frame(frame_file(a.file)); });
@@ -93,6 +96,9 @@ void run(const FrameArguments& a) {
   if (!a.json.empty()) write_file(a.json, frame_json(f, r));
   fmt::print("{}", frame_report(f, r));
   if (!a.out.empty()) fmt::print("Tables and deflected shapes: {}/*.csv, *.msh, *.vtu\n", a.out);
+  if (!a.report.empty())
+    write_report_of_file(a.report, frame_file(a.file), {"frame", frame_json(f, r)},
+                         timed("frame: its picture", [&] { return frame_scene_json(f, r); }));
 }
 
 }  // namespace
@@ -115,6 +121,7 @@ Command frame_command() {
             &a->solver},
            {"--schema", "", "every key of frame files: type and unit, default, one line", &a->schema},
            {"--json", "FILE", "write the result; with --schema the keys as JSON Schema", &a->json},
+           report_option(&a->report),
            {"--out", "DIR", "write displacements, reactions, members, shares (.csv) and each case as .msh and .vtu",
             &a->out}},
           [a] { drawing_motions(a->out, [a] { run(*a); }); }};

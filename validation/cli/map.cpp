@@ -120,7 +120,7 @@ void run(const MapArguments& a, Ranks* ranks) {
   if (!a.report.empty()) {
     const Stand home = parse_stand(m, "", "", true);
     const Vector6 load = o.load_N_Nmm.value_or(o.force_N * Vector6::Unit(2));
-    write_report_of_stands(a.report, a.device, {{"home", home.pose_mm_deg, home.configuration}}, {load},
+    write_report_of_stands(a.report, a.device, m, {{"home", home.pose_mm_deg, home.configuration}}, {load},
                            {"map", map_json(map)});
   }
 }

@@ -143,7 +143,7 @@ void write_report(const std::string& file, const std::string& device, const std:
   const std::string origin = page.results.empty() ? first.data : page.results.front().origin;
   if (versions.size() > 1 && origin != "history") page.results.push_back({origin, history_json(history(versions))});
   for (const Comparison& c : versions) page.versions.push_back(&c);
-  page.scene = scene_json(stands_of(first), loads_of(*first.study.data),
+  page.scene = scene_json(*first.study.mechanism, stands_of(first), loads_of(*first.study.data),
                           changed_parts(first.study.machines.front(), last.study.machines.front()),
                           first.study.mechanism->geometry);
   write_page(file, page);
@@ -169,20 +169,22 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
   write_report(file, device, versions, std::move(results));
 }
 
-void write_report_of_stands(const std::string& file, const std::string& device, const std::vector<SceneStand>& stands,
-                            const std::vector<Vector6>& loads_N_Nmm, PageResult result, Geometry geometry) {
+void write_report_of_stands(const std::string& file, const std::string& device, const Mechanism& m,
+                            const std::vector<SceneStand>& stands, const std::vector<Vector6>& loads_N_Nmm,
+                            PageResult result, Geometry geometry) {
   PageContents page = contents(device);
   page.results = {std::move(result)};
   std::vector<Vector6> loads;
   for (const Vector6& load : loads_N_Nmm) loads.push_back(wrench_from_mm(load));
-  page.scene = scene_json(stands, loads, {}, geometry);
+  page.scene = scene_json(m, stands, loads, {}, geometry);
   write_page(file, page);
 }
 
-void write_report_of_drawing(const std::string& file, const std::filesystem::path& drawn, PageResult result) {
+void write_report_of_file(const std::string& file, const std::filesystem::path& source, PageResult result, Json scene) {
   PageContents page = contents("");
-  page.device = source_of(drawn.string());
+  page.device = source_of(source.string());
   page.results = {std::move(result)};
+  page.scene = std::move(scene);
   write_page(file, page);
 }
 

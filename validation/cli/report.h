@@ -29,11 +29,14 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
                                std::vector<PageResult> results);
 
 /// The page of a device where it stands, under loads (N, Nmm).
-void write_report_of_stands(const std::string& file, const std::string& device, const std::vector<SceneStand>&,
-                            const std::vector<Vector6>& loads_N_Nmm, PageResult, Geometry = Geometry::linear);
+void write_report_of_stands(const std::string& file, const std::string& device, const Mechanism&,
+                            const std::vector<SceneStand>&, const std::vector<Vector6>& loads_N_Nmm, PageResult,
+                            Geometry = Geometry::linear);
 
-/// The page of a device or frame as its file draws it.
-void write_report_of_drawing(const std::string& file, const std::filesystem::path& drawn, PageResult);
+/// The page of what a command says of one file: a device or frame as drawn, a frame under its loads with its scene
+/// (page_frame_scene.h), a matrix.
+void write_report_of_file(const std::string& file, const std::filesystem::path& source, PageResult,
+                          Json scene = nullptr);
 
 /// The page of results alone, without a machine.
 void write_report_of_results(const std::string& file, std::vector<PageResult>);

@@ -42,7 +42,8 @@ void run(const ReportArguments& a) {
 Command report_command() {
   auto a = std::make_shared<ReportArguments>();
   return {"report",
-          "One page of several results (--json of diagnose, compare, history, solve, validate, map): pictures with "
+          "One page of several results (--json of diagnose, compare, history, solve, validate, map, frame, check, "
+          "show): pictures with "
           "their numbers, self-contained. With --device and --data the machine is drawn with its residuals, and what a "
           "diagnosis among the results found is put into it",
           "deflect report diagnosis.json solve.json --device haptic-6psu-ideal-joints --data measurements.csv "

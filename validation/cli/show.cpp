@@ -54,7 +54,7 @@ void run(const ShowArguments& a) {
   if (!a.out.empty())
     fmt::print("\nFigure drawing.svg, .pdf, .png in {}\n", std::filesystem::absolute(folder).string());
   if (!a.report.empty())
-    write_report_of_drawing(a.report, frame ? frame_file(a.file) : device_file(a.file), {"show", drawing_json(d)});
+    write_report_of_file(a.report, frame ? frame_file(a.file) : device_file(a.file), {"show", drawing_json(d)});
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ void run(const SolveArguments& a) {
     fmt::print("Without load the contacts have no stiffness; give --load for the stiffness under it.\n");
   if (!a.out.empty()) fmt::print("Deflected structure: {0}/deflected.msh, {0}/deflected.vtu\n", a.out);
   if (!a.report.empty())
-    write_report_of_stands(a.report, a.device, {{"", at.pose_mm_deg, at.configuration}}, {load},
+    write_report_of_stands(a.report, a.device, m, {{"", at.pose_mm_deg, at.configuration}}, {load},
                            {"solve", solve_json(r)}, geometry);
 }
 

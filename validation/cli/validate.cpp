@@ -72,7 +72,7 @@ void run(const ValidateArguments& a) {
       stands.push_back({p.label, p.pose_mm_deg, stand(m, p.pose_mm_deg).configuration});
     std::vector<Vector6> loads;
     for (int axis = 0; axis < 3; ++axis) loads.push_back(a.load_N * Vector6::Unit(axis));
-    write_report_of_stands(a.report, a.device, stands, loads, {"validate", validation_json(v, prices)});
+    write_report_of_stands(a.report, a.device, m, stands, loads, {"validate", validation_json(v, prices)});
   }
 }
 

@@ -125,6 +125,9 @@ MatrixCheck check_matrix(const MatrixCheckOptions& o) {
   JudgedMatrix m = judge(K, o.passive_twists ? &*o.passive_twists : nullptr, o.unit_m, o.plausible);
   if (o.passive_twists || !m.free.empty()) m.length.measured = m.stiffness.measured = std::nullopt;  // rounding only
   MatrixCheck out;
+  out.K_mm = K.values;
+  out.K_mm.topLeftCorner<3, 3>() /= 1e3 * o.unit_m;
+  out.K_mm.bottomRightCorner<3, 3>() *= 1e3 * o.unit_m;
   out.checks = {m.symmetric, m.positive, m.holds, m.length, m.stiffness};
   out.checks.insert(out.checks.end(), m.passive.begin(), m.passive.end());
   const double length = weighing_length(K.values);

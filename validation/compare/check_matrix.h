@@ -22,6 +22,7 @@ struct MatrixCheckOptions {
 };
 
 struct MatrixCheck {
+  Matrix6 K_mm = Matrix6::Zero();  ///< as it was read: N/mm, N, Nmm, rad
   std::vector<Check> checks;
   std::vector<MatrixDiagnosis> explanations;  ///< usual mistakes: one of them was made; several where K cannot tell
   bool guessed = false;                       ///< explanations rest on nothing but what size a device may have

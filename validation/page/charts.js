@@ -1,7 +1,7 @@
 // Charts by Chart.js: one configuration per drawing, made anew for each theme.
 import {BarController, BarElement, CategoryScale, Chart, Filler, Legend, LinearScale, LineController, LineElement,
         LogarithmicScale, PointElement, ScatterController, Tooltip} from 'chart.js';
-import {el, num} from './dom.js';
+import {el, missing, num} from './dom.js';
 import {onTheme, theme} from './theme.js';
 
 Chart.register(BarController, BarElement, CategoryScale, Filler, Legend, LinearScale, LineController, LineElement,
@@ -23,23 +23,36 @@ export function chart(about, height, make) {
   let drawn = null;
   const draw = () => {
     if (drawn) drawn.destroy();
+    drawn = null;
     const t = theme();
     Chart.defaults.color = t.text;
     Chart.defaults.borderColor = t.line;
-    const configuration = make(t);
-    for (const scale of Object.values(configuration.options.scales || {}))
-      if (scale.ticks && scale.ticks.callback === undefined) delete scale.ticks.callback;
-    drawn = new Chart(canvas, configuration);
-    canvas.dataset.drawn = String(configuration.data.datasets.reduce((n, d) => n + d.data.length, 0));
+    try {
+      const configuration = make(t);
+      for (const scale of Object.values(configuration.options.scales || {}))
+        if (scale.ticks && scale.ticks.callback === undefined) delete scale.ticks.callback;
+      if (!canvas.getContext('2d')) throw new Error('this browser does not draw in two dimensions');
+      drawn = new Chart(canvas, configuration);
+      canvas.dataset.drawn = String(configuration.data.datasets.reduce((n, d) => n + d.data.length, 0));
+    } catch (error) {
+      holder.style.height = 'auto';
+      holder.replaceChildren(missing(`“${about}”`, error));
+    }
   };
   onTheme(draw);
   requestAnimationFrame(draw);
   return holder;
 }
 
-/** Tooltip lines "series: value unit". */
+/** A name in lines that an axis has room for, cut behind blanks and underscores; on a telephone they are shorter. */
+export function inLines(name, most = innerWidth < 640 ? 20 : 40) {
+  return name.match(new RegExp(`.{1,${most}}(_|\\s|$)|.{1,${most}}`, 'g')) || [name];
+}
+
+/** Tooltip lines "series: value unit", under the whole name. */
 export function labelled(unit, of = (item) => item.parsed.y) {
-  return {callbacks: {label: (item) => `${item.dataset.label}: ${num(of(item))} ${unit}`}};
+  return {callbacks: {title: (items) => (items.length ? [].concat(items[0].chart.data.labels?.[items[0].dataIndex] ?? items[0].label).join('') : ''),
+                      label: (item) => `${item.dataset.label}: ${num(of(item))} ${unit}`}};
 }
 
 /** The error from version to version: what is left, what each step takes off, held-out poses, a placebo, the floor. */
@@ -56,7 +69,7 @@ export function waterfall(steps, unit = 'µm') {
   return chart('Waterfall of the error', 320, (t) => ({
     type: 'bar',
     data: {
-      labels: bars.map((b) => b.label.match(/.{1,22}(_|\s|$)|.{1,22}/g) || [b.label]),
+      labels: bars.map((b) => inLines(b.label, 22)),
       datasets: [
         points('held-out poses', 'held', t.purple, 'rectRot'),
         ...(bars.some((b) => b.placebo !== null && b.placebo !== undefined) ? [points('a placebo in its place', 'placebo', t.grey, 'crossRot')] : []),

@@ -73,8 +73,10 @@ export function numbers(name, make, options = {}) {
   const fill = () => {
     if (shown) return;
     shown = true;
-    const {columns, rows} = make();
-    holder.append(table(columns, rows, options));
+    holder.append(attempt('The table', () => {
+      const {columns, rows} = make();
+      return table(columns, rows, options);
+    }));
   };
   details.addEventListener('toggle', () => details.open && fill());
   if (options.open) {
@@ -82,8 +84,11 @@ export function numbers(name, make, options = {}) {
     fill();
   }
   const save = el('button', {type: 'button', class: 'csv', 'data-name': name + '.csv', onclick: () => {
-    const {columns, rows} = make();
-    download(name + '.csv', csv(columns, rows));
+    const failed = attempt('The table', () => {
+      const {columns, rows} = make();
+      download(name + '.csv', csv(columns, rows));
+    });
+    if (failed) holder.replaceChildren(failed), details.open = true;
   }}, 'CSV');
   return el('div', {class: 'with-csv'}, details, save);
 }
@@ -91,6 +96,20 @@ export function numbers(name, make, options = {}) {
 /** A picture with a title, a sentence and the numbers behind it. */
 export function figure(id, title, about, ...children) {
   return el('section', {id, class: 'card'}, el('h2', {}, title), about ? el('p', {class: 'about'}, about) : null, children);
+}
+
+/** What stands in the place of a picture that could not be drawn. */
+export function missing(what, error) {
+  return el('p', {class: 'missing', role: 'note'}, `${what} could not be drawn: ${error.message || error}. Nothing else on this page depends on it.`);
+}
+
+/** What `make` gives, or where it fails a sentence that says so: one picture less, and the page goes on. */
+export function attempt(what, make) {
+  try {
+    return make();
+  } catch (error) {
+    return missing(what, error);
+  }
 }
 
 let tip = null;

@@ -1,41 +1,22 @@
 // The machine as its file draws it: members with their sections and axes, joints, frames of reference, names and lengths;
 // where it cannot stand, the motions that nothing resists, moving.
 import * as THREE from 'three';
-import {el, figure, num, numbers, tooltip} from './dom.js';
-import {stage, view} from './machine.js';
+import {groundUnder, label, lit, piece, put, shapes, vector} from './bodies.js';
+import {attempt, el, figure, num, numbers, tooltip} from './dom.js';
+import {stage, standpoint, view} from './stage.js';
 import {onTheme, theme} from './theme.js';
 
 const axisNames = ['x', 'y', 'z'], axisColours = [0xd14b4b, 0x3f9b54, 0x4c7fd1];
-const up = new THREE.Vector3(0, 1, 0);
-const vector = (p) => new THREE.Vector3(...p);
 
-export const drawingVerdict = (d) => {
-  if (d.motions.length) return `${d.name}: ${d.trouble}: ${d.motions[0].words}.`;
-  if (d.trouble) return `${d.name}: ${d.trouble}.`;
-  const driven = d.driven.length ? `driven: ${d.driven.map((q) => `${q.name} ${num(q.value)} ${q.unit}`).join(', ')}` : 'nothing is driven';
-  return d.drawing === 'frame' ? `${d.name} as drawn: ${d.frames.length} nodes, ${d.members.length} members.` : `${d.name} as drawn, unloaded; ${driven}.`;
+/** The verdict in words, then the names and numbers that belong to it. */
+export const drawingHeadline = (d) => {
+  const what = d.drawing === 'frame' ? 'The frame' : 'The machine', count = (n, one) => `${n} ${one}${n === 1 ? '' : 's'}`;
+  if (d.motions.length) return {words: `${what} as drawn cannot stand: nothing resists ${count(d.motions.length, 'motion')}.`, small: d.motions.map((m) => m.words).join('; ')};
+  if (d.trouble) return {words: `${what} as drawn does not go together.`, small: d.trouble + '.'};
+  if (d.drawing === 'frame') return {words: `The frame as drawn has ${count(d.frames.length, 'node')} and ${count(d.members.length, 'member')}.`};
+  const driven = d.driven.map((q) => `${q.name} ${num(q.value)} ${q.unit}`).join(', ');
+  return {words: `The machine as drawn, unloaded, has ${count(d.members.length, 'member')} and ${count(d.joints.length, 'joint')}; ${d.driven.length || 'none'} of its motions ${d.driven.length === 1 ? 'is' : 'are'} driven.`, small: driven && `Driven: ${driven}.`};
 };
-
-/** Text on a light ground that faces the eye. */
-function label(words, height) {
-  const canvas = el('canvas'), pen = canvas.getContext('2d'), font = '40px system-ui, sans-serif';
-  pen.font = font;
-  canvas.width = Math.ceil(pen.measureText(words).width) + 16;
-  canvas.height = 56;
-  pen.font = font;
-  pen.fillStyle = 'rgba(255, 255, 255, 0.8)';
-  pen.fillRect(0, 0, canvas.width, canvas.height);
-  pen.fillStyle = '#222';
-  pen.fillText(words, 8, 42);
-  const texture = new THREE.CanvasTexture(canvas);
-  texture.minFilter = THREE.LinearFilter;  // of any size, without smaller copies
-  texture.generateMipmaps = false;
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({map: texture, depthTest: false}));
-  sprite.scale.set(height * canvas.width / canvas.height, height, 1);
-  sprite.center.set(0, 0);
-  sprite.renderOrder = 2;
-  return sprite;
-}
 
 function triadAt(at, axes, length, which = [0, 1, 2]) {
   const group = new THREE.Group();
@@ -47,6 +28,18 @@ function triadAt(at, axes, length, which = [0, 1, 2]) {
   return group;
 }
 
+/** Every point that the camera shows: both ends of every motion, widths of members, tips of axes. */
+function inView(d, rest, size, box, more) {
+  const points = [...rest, ...more];
+  for (const motion of d.motions) motion.displacement_mm.forEach((u, i) => points.push(rest[i].clone().add(vector(u)), rest[i].clone().sub(vector(u))));
+  for (const m of d.members)
+    for (const p of [m.start_mm, m.end_mm])
+      for (const [y, z] of [[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]]) points.push(vector(p).addScaledVector(vector(m.axes[1]), y * m.size_mm[0]).addScaledVector(vector(m.axes[2]), z * m.size_mm[1]));
+  const frames = d.drawing === 'frame' ? [{at_mm: box.min.toArray(), axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}] : d.frames;
+  for (const f of frames) for (const axis of f.axes) points.push(vector(f.at_mm).addScaledVector(vector(axis), 0.12 * size));
+  return points;
+}
+
 function picture(d) {
   const box = new THREE.Box3();
   for (const p of d.points_mm) box.expandByPoint(vector(p));
@@ -56,15 +49,9 @@ function picture(d) {
     for (const p of [m.start_mm, m.end_mm]) box.union(new THREE.Box3().setFromCenterAndSize(vector(p), new THREE.Vector3(half, half, half)));
   }
   const size = Math.max(1e-6, box.getSize(new THREE.Vector3()).length()), thin = 0.0028 * size;
-  const root = new THREE.Scene();
-  root.add(new THREE.HemisphereLight(0xffffff, 0x8a8a8a, 0.85));
-  const sun = new THREE.DirectionalLight(0xffffff, 0.45);
-  sun.position.set(1, -1, 2);
-  root.add(sun);
-  const materials = {};
+  const root = lit(), materials = {};
   for (const name of ['metal', 'pale', 'quiet', 'blue', 'orange', 'guilty']) materials[name] = new THREE.MeshLambertMaterial();
   Object.assign(materials.metal, {transparent: true, opacity: 0.6, depthWrite: false});  // joints and axes are seen inside
-  const cylinder = new THREE.CylinderBufferGeometry(0.5, 0.5, 1, 20), block = new THREE.BoxBufferGeometry(1, 1, 1), ball = new THREE.SphereBufferGeometry(1, 16, 12);
   const rest = d.points_mm.map(vector);
   const hits = [];
 
@@ -72,33 +59,17 @@ function picture(d) {
   const pieces = d.lines.map(([a, b, m]) => {
     const member = m < 0 ? null : d.members[m];
     const [y, z] = member ? member.size_mm.map((s) => Math.max(s, thin)) : [0.7 * thin, 0.7 * thin];
-    const mesh = new THREE.Mesh(!member || member.round ? cylinder : block, materials[member ? 'metal' : 'quiet']);
-    mesh.userData = {a, b, y, z, axes: member && !member.round ? member.axes : null,
-      words: member ? `${[member.leg, member.part].filter(Boolean).join(' ')}: ${member.section}, ${member.material}, ${num(member.length_mm, 5)} mm` : 'rigid'};
+    const mesh = piece(a, b, [y, z], member && !member.round, materials[member ? 'metal' : 'quiet'],
+      member ? `${name(member)}: ${member.section}, ${member.material}, ${num(member.length_mm, 5)} mm` : 'rigid');
+    mesh.userData.side = member && !member.round ? vector(member.axes[1]) : null;
     root.add(mesh);
     hits.push(mesh);
     return mesh;
   });
-  const put = (mesh, a, b) => {
-    const along = b.clone().sub(a), length = along.length(), {y, z, axes} = mesh.userData;
-    mesh.visible = length > 1e-9;
-    if (!mesh.visible) return;
-    mesh.position.copy(a).addScaledVector(along, 0.5);
-    along.divideScalar(length);
-    if (axes) {
-      const side = vector(axes[1]), other = new THREE.Vector3().crossVectors(along, side).normalize();
-      side.crossVectors(other, along);
-      mesh.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(side, along, side.clone().cross(along)));
-      mesh.scale.set(y, length, z);
-    } else {
-      mesh.quaternion.setFromUnitVectors(up, along);
-      mesh.scale.set(y, length, z);
-    }
-  };
   const thickest = Math.max(thin, ...d.members.map((m) => Math.min(0.03 * size, Math.max(...m.size_mm) / 2)));
   for (const joint of d.joints) {
     const moving = [0, 1, 2, 3, 4, 5].filter((i) => joint.freedoms[i] !== 'r');
-    const mesh = new THREE.Mesh(joint.driven ? block : ball, materials[joint.driven ? 'orange' : 'pale']);
+    const mesh = new THREE.Mesh(joint.driven ? shapes.block : shapes.ball, materials[joint.driven ? 'orange' : 'pale']);
     mesh.scale.setScalar(joint.driven ? 2.6 * Math.max(thickest, 2 * thin) : 1.3 * Math.max(thickest, 2 * thin));
     mesh.position.copy(vector(joint.at_mm));
     mesh.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(...joint.axes.map(vector)));
@@ -116,45 +87,40 @@ function picture(d) {
   Object.values(layers).forEach((layer) => root.add(layer));
   for (const m of d.members) layers.sections.add(triadAt(m.start_mm.map((x, i) => (x + m.end_mm[i]) / 2), m.axes, 0.05 * size, [1, 2]));
   for (const f of d.drawing === 'frame' ? [{at_mm: box.min.toArray(), axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}] : d.frames) layers.frames.add(triadAt(f.at_mm, f.axes, 0.11 * size));
-  for (const f of d.frames.filter((each) => each.held)) {
-    const foot = new THREE.Mesh(new THREE.ConeBufferGeometry(0.018 * size, 0.03 * size, 4), materials.quiet);
-    foot.rotation.x = Math.PI / 2;
-    foot.position.copy(vector(f.at_mm)).add(new THREE.Vector3(0, 0, -0.016 * size));
-    foot.userData = {words: `${f.name}: ${f.held} held`};
-    root.add(foot);
-    hits.push(foot);
-  }
+  const held = d.frames.filter((f) => f.held).map((f) => ({at_mm: f.at_mm, words: `${f.name}: ${f.held} held`, whole: f.held.split(' ').length === 6}));
+  const ground = groundUnder(held, false, box.getCenter(new THREE.Vector3()), size, standpoint(box).up);
+  root.add(ground.group);
+  hits.push(...ground.meshes);
   const said = new Set();
-  const name = (words, at) => {
+  const tag = (words, at) => {
     if (said.has(words)) return;
     said.add(words);
     const sprite = label(words, 0.026 * size);
     sprite.position.copy(vector(at));
     layers.names.add(sprite);
   };
-  for (const m of d.members) name(`${m.part} ${num(m.length_mm, 4)} mm`, m.start_mm.map((x, i) => (x + m.end_mm[i]) / 2));
-  for (const j of d.joints) name(j.part + (j.driven ? ' (driven)' : ''), j.at_mm);
-  for (const f of d.frames) name(f.name, f.at_mm);
+  for (const m of d.members) tag(`${m.part} ${num(m.length_mm, 4)} mm`, m.start_mm.map((x, i) => (x + m.end_mm[i]) / 2));
+  for (const j of d.joints) tag(j.part + (j.driven ? ' (driven)' : ''), j.at_mm);
+  for (const f of d.frames) tag(f.name, f.at_mm);
 
   const holder = el('div', {class: 'view', id: 'machine-view'});
-  const shot = stage(holder, (renderer, width, height) => {
+  const shot = stage(holder, 'The machine as drawn, in 3D', (renderer, width, height) => {
     const t = theme();
     for (const [key, material] of Object.entries(materials)) material.color.set(t[key] || t.quiet);
     looking.fit(width, height);
     renderer.render(root, looking.camera);
   });
-  if (!shot) return el('div', {}, holder);
-  const looking = view(box, shot.canvas, shot.ask);
-  shot.canvas.setAttribute('role', 'img');
-  shot.canvas.setAttribute('aria-label', 'The machine as drawn, in 3D');
-  holder.append(looking.buttons);
+  const {from, up} = standpoint(box), right = new THREE.Vector3().crossVectors(up, from).normalize();
+  const ends = layers.names.children.map((sprite) => sprite.position.clone().addScaledVector(right, sprite.scale.x).addScaledVector(up, sprite.scale.y));
+  const looking = view([...inView(d, rest, size, box, ground.points), ...ends], shot.canvas, shot.ask);
+  holder.append(looking.buttons, el('div', {class: 'measures'}, looking.scale));
 
   const readout = el('p', {class: 'quiet', id: 'machine-readout', 'aria-live': 'polite'});
   const state = {motion: d.motions.length ? 0 : -1, phase: 1, moving: d.motions.length > 0};
   const update = () => {
     const motion = d.motions[state.motion], amplitude = state.phase;
     const at = rest.map((p, i) => (motion ? p.clone().addScaledVector(vector(motion.displacement_mm[i]), amplitude) : p));
-    for (const piece of pieces) put(piece, at[piece.userData.a], at[piece.userData.b]);
+    for (const each of pieces) put(each, at[each.userData.a], at[each.userData.b], each.userData.side);
     shot.ask();
   };
   const say = () => { readout.textContent = state.motion < 0 ? d.trouble : `${d.motions[state.motion].words}. Drawn as large as a tenth of the machine; a motion without any load.`; };
@@ -220,7 +186,7 @@ export function drawn(d) {
     rows: d.frames.map((f) => (d.drawing === 'frame' ? [f.name, place(f.at_mm), f.held] : [f.name, place(f.at_mm), ...f.axes.map(axis)])),
   });
   return [
-    figure('machine', d.trouble ? 'As drawn: it does not stand' : 'As drawn, unloaded', 'Before any solution. Drag to turn, scroll or pinch to zoom; a part under the pointer says what it is.', picture(d)),
+    figure('machine', d.trouble ? 'As drawn: it does not stand' : 'As drawn, unloaded', 'Before any solution. Drag to turn, scroll or pinch to zoom; a part under the pointer says what it is.', attempt('The machine', () => picture(d))),
     figure('members', 'Members', 'Lengths from node to node; axes of the section in axes of the base.', numbers('members', members, {open: d.members.length <= 30})),
     d.joints.length ? figure('joints', 'Joints', 'tx ty tz along, rx ry rz about the axes x y z of the joint.', numbers('joints', joints, {open: d.joints.length <= 30})) : null,
     figure('frames', d.drawing === 'frame' ? 'Nodes' : 'Frames', null, numbers('frames', frames, {open: d.frames.length <= 30})),

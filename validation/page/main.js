@@ -1,26 +1,33 @@
 // The page from its data: what was found in a sentence, then pictures, each with its numbers, then how it was made.
-import {download, el, figure, fileName, micro, num, numbers, table} from './dom.js';
-import {drawingVerdict, drawn} from './drawing.js';
+import {checked, checkHeadline} from './checks.js';
+import {attempt, download, el, figure, fileName, micro, num, numbers, table} from './dom.js';
+import {drawingHeadline, drawn} from './drawing.js';
+import {frameHeadline, framed} from './frames.js';
 import {loadWords, machine} from './machine.js';
 import {curves, errorHeat, failureMap, findings, residuals, testHeat} from './measured.js';
-import {candidates, diagnosisVerdict, fall, leftOut, mapped, solved, strained, unexplained, unseen, validated} from './results.js';
+import {candidates, diagnosisHeadline, fall, leftOut, mapped, solved, strained, unexplained, unseen, validated} from './results.js';
 
 const data = JSON.parse(document.getElementById('data').textContent);
 const page = document.getElementById('page');
 const of = (kind) => data.results.filter((r) => r.kind === kind).map((r) => r.result);
 
-function verdict() {
-  const [diagnosis] = of('diagnosis'), [comparison] = of('comparison'), [history] = of('history'), [solve] = of('solve'), [validation] = of('validation'), [map] = of('map'), [drawing] = of('drawing');
-  if (diagnosis) return diagnosisVerdict(diagnosis);
-  if (comparison) return comparison.verdict;
-  if (history) {
-    const first = history.versions[0], last = history.versions[history.versions.length - 1];
-    return `From ${first.device} to ${last.device} the error goes from ${micro(first.rmse_mm)} to ${micro(last.rmse_mm)} rms; noise and tolerances give ${micro(last.noise_floor_mm)}.`;
-  }
-  if (solve) return `Under ${loadWords(solve.load)} the tool point moves by ${micro(Math.hypot(...solve.msa.displacement.slice(0, 3)))}; both theories agree to ${num(solve.relative_difference, 2)}.`;
-  if (drawing) return drawingVerdict(drawing);
-  if (validation) return `Both theories agree to ${num(validation.max_relative_difference, 2)} at ${new Set(validation.points.map((p) => p.point)).size} points.`;
-  return map ? `Stiffness at ${map.reached} of ${map.poses} poses.` : '';
+function historyHeadline(history) {
+  const first = history.versions[0], last = history.versions[history.versions.length - 1], falls = last.rmse_mm <= first.rmse_mm;
+  return {words: `The error ${falls ? 'falls' : 'rises'} from ${micro(first.rmse_mm)} to ${micro(last.rmse_mm)} rms; noise and tolerances alone give ${micro(last.noise_floor_mm)}.`,
+          small: `From ${first.device} to ${last.device}.`};
+}
+
+function solveHeadline(solve) {
+  return {words: `The tool point moves by ${micro(Math.hypot(...solve.msa.displacement.slice(0, 3)))} under ${loadWords(solve.load)}; both theories agree to ${num(solve.relative_difference, 2)}, relative.`};
+}
+
+/** What was found: `words` that a person reads, and in small the ids and values that belong to them. */
+function headline() {
+  const kinds = [['diagnosis', diagnosisHeadline], ['comparison', (c) => ({words: c.verdict})], ['history', historyHeadline], ['solve', solveHeadline], ['check', checkHeadline], ['frame', frameHeadline], ['drawing', drawingHeadline],
+    ['validation', (v) => ({words: `Both theories agree to ${num(v.max_relative_difference, 2)}, relative, at ${new Set(v.points.map((p) => p.point)).size} points.`})],
+    ['map', (m) => ({words: `The stiffness is known at ${m.reached} of ${m.poses} poses of the workspace${m.max_relative_difference === undefined ? '' : `; both theories agree to ${num(m.max_relative_difference, 2)}, relative`}.`})]];
+  for (const [kind, words] of kinds) if (of(kind).length) return words(of(kind)[0]);
+  return {words: ''};
 }
 
 function facts() {
@@ -39,6 +46,7 @@ function guilt() {
 }
 
 function machineFigure() {
+  if (data.scene.kind === 'frame') return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom.', attempt('The frame', () => machine(data.scene, null, '')));
   const version = data.versions[0];
   const moves = () => ({
     columns: ['pose', 'x_mm', 'y_mm', 'z_mm', 'fx_N', 'fy_N', 'fz_N', 'mx_Nmm', 'my_Nmm', 'mz_Nmm', 'ux_mm', 'uy_mm', 'uz_mm'],
@@ -46,7 +54,7 @@ function machineFigure() {
   });
   const outside = of('diagnosis').flatMap((d) => d.found || []).filter((f) => f.site === 'rig');
   const left = version && version.poses.length > data.scene.poses.length ? ` The ${data.scene.poses.length} of ${version.poses.length} poses where the residual is largest.` : '';
-  return figure('machine', 'The machine', `Drag to turn, scroll or pinch to zoom.${left}`, machine(data.scene, version, guilt()).element, outside.length ? el('p', {}, `Not in the machine but in the rig: ${outside.map((f) => f.effect).join(', ')}.`) : null, numbers('tool-displacement', moves));
+  return figure('machine', 'The machine', `Drag to turn, scroll or pinch to zoom.${left}`, attempt('The machine', () => machine(data.scene, version, guilt())), outside.length ? el('p', {}, `Not in the machine but in the rig: ${outside.map((f) => f.effect).join(', ')}.`) : null, numbers('tool-displacement', moves));
 }
 
 function source() {
@@ -55,30 +63,44 @@ function source() {
       : el('div', {class: 'with-csv'}, el('details', {}, el('summary', {}, `${file.bytes} bytes`), el('pre', {}, file.text)),
            el('button', {type: 'button', class: 'csv', 'data-name': file.name, onclick: () => download(file.name, file.text, 'text/plain')}, 'Save'))) : null);
   return figure('source', 'To repeat it', `deflect ${data.version}, ${data.made_with}.`,
-    el('p', {}, el('code', {}, data.command)), block('Device', data.device), block('Measurements', data.data),
+    el('p', {}, el('code', {}, data.command)), block(of('check').length ? 'Matrix' : of('frame').length ? 'Frame' : 'Device', data.device), block('Measurements', data.data),
     data.results.map((r) => el('div', {class: 'with-csv'}, el('span', {}, `Result of ${fileName(r.origin)} (${r.kind})`),
       el('button', {type: 'button', class: 'csv', 'data-name': r.kind + '.json', onclick: () => download(r.kind + '.json', JSON.stringify(r.result, null, 2), 'application/json')}, 'JSON'))));
 }
 
+/** Each a section of the page by its name; one that fails leaves the others alone. */
 function sections() {
   const [diagnosis] = of('diagnosis'), [history] = of('history'), versions = data.versions;
   const comparisons = of('comparison');
   const first = versions[0], last = versions[versions.length - 1];
-  return [
-    data.scene ? machineFigure() : null,
-    first ? failureMap(first) : null,
-    diagnosis ? [candidates(diagnosis), unexplained(diagnosis)] : null,
-    history || diagnosis ? fall(history, diagnosis) : null,
-    comparisons.map(findings),
-    first ? [curves(versions), testHeat(versions), errorHeat(first), residuals(first, 0), versions.length > 1 ? residuals(last, 1) : null]
-          : comparisons.map((c) => [testHeat([{device: c.device, result: c}]), errorHeat({device: c.device, result: c, unit: 'mm'})]),
-    of('drawing').map(drawn), of('solve').map(solved), of('validation').map(validated), of('map').map(mapped),
-    diagnosis ? [strained(diagnosis), unseen(diagnosis), leftOut(diagnosis)] : null,
-    source(),
-  ].flat(3).filter(Boolean);
+  const all = [
+    ['The machine', () => (data.scene ? machineFigure() : null)],
+    ['Where it fails', () => (first ? failureMap(first) : null)],
+    ['Candidates', () => diagnosis && candidates(diagnosis)],
+    ['What is left unexplained', () => diagnosis && unexplained(diagnosis)],
+    ['The error falling', () => (history || diagnosis ? fall(history, diagnosis) : null)],
+    ['What the residual holds', () => comparisons.map(findings)],
+    ['Force–elongation', () => first && curves(versions)],
+    ['Tests of the residual', () => (first ? testHeat(versions) : comparisons.map((c) => testHeat([{device: c.device, result: c}])))],
+    ['Errors by group', () => (first ? errorHeat(first) : comparisons.map((c) => errorHeat({device: c.device, result: c, unit: 'mm'})))],
+    ['Residuals', () => first && residuals(first, 0)],
+    ['Residuals of the last version', () => versions.length > 1 && residuals(last, 1)],
+    ...[['The drawing', 'drawing', drawn], ['The displacement', 'solve', solved], ['The frame', 'frame', framed], ['The checks', 'check', checked], ['The validation', 'validation', validated], ['The map', 'map', mapped]]
+      .flatMap(([name, kind, make]) => of(kind).map((result) => [name, () => make(result)])),
+    ['Strained tolerances', () => diagnosis && strained(diagnosis)],
+    ['What this campaign can see', () => diagnosis && unseen(diagnosis)],
+    ['What was not looked at', () => diagnosis && leftOut(diagnosis)],
+    ['To repeat it', source],
+  ];
+  return all.map(([name, make]) => attempt(name, make)).flat(3).filter(Boolean).map((part) => (part.tagName === 'P' ? el('section', {class: 'card'}, part) : part));
 }
 
-const title = [data.device?.name.replace(/\.yaml$/, ''), data.data?.name].filter(Boolean).join(' against ') || data.results.map((r) => fileName(r.origin)).join(', ');
-document.title = title + ' – deflect';
-page.append(el('header', {class: 'card'}, el('h1', {}, title), el('p', {class: 'verdict', id: 'verdict'}, verdict()), facts()), ...sections());
+function head() {
+  const subject = [data.device?.name.replace(/\.yaml$/, ''), data.data?.name].filter(Boolean).join(' against ') || data.results.map((r) => fileName(r.origin)).join(', ');
+  document.title = subject + ' – deflect';
+  const {words, small} = headline();
+  return el('header', {class: 'card'}, el('h1', {class: 'verdict', id: 'verdict'}, words), small ? el('p', {class: 'quiet', id: 'verdict-ids'}, small) : null, el('p', {class: 'quiet', id: 'subject'}, subject), attempt('The facts', facts));
+}
+
+page.append(attempt('The head of the page', head), ...sections());
 requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = String(Math.round(performance.now())); }));

@@ -1,6 +1,6 @@
 // Sections of a comparison with measurements: where it fails, tests, residuals, force–elongation curves.
 import {axis, chart, labelled} from './charts.js';
-import {el, figure, micro, num, numbers, table} from './dom.js';
+import {attempt, el, figure, micro, num, numbers, table} from './dom.js';
 import {workspace} from './workspace.js';
 
 const components = ['ux_mm', 'uy_mm', 'uz_mm', 'thx_rad', 'thy_rad', 'thz_rad'];
@@ -16,7 +16,7 @@ export function failureMap(version) {
                 ...[0, 1, 2].map((k) => ({title: `nothing missing, draw ${k + 1}`, values: version.poses.map((p) => p.with_nothing_missing[k])}))];
   return figure('failure', 'Where it fails',
     `Root mean square of the residual at each pose, beside three draws of what noise, tolerances and loads give with nothing missing; one colour scale. ${version.device}.`,
-    workspace('failure-map', version.poses, maps, {unit, times}),
+    attempt('The map', () => workspace('failure-map', version.poses, maps, {unit, times})),
     numbers('residual-by-pose', () => ({
       columns: ['pose', 'x_mm', 'y_mm', 'z_mm', `rms_${version.unit}`, 'mean_x', 'mean_y', 'mean_z', 'draw_1', 'draw_2', 'draw_3'],
       rows: version.poses.map((p) => [p.label, ...p.at_mm, p.rmse, ...p.bias, ...p.with_nothing_missing]),
@@ -107,7 +107,7 @@ export function curves(versions) {
           parsing: false, interaction: {mode: 'nearest', intersect: false},
           scales: {x: axis(curve.rotation ? 'moment (Nmm)' : 'force (N)', t, {type: 'linear'}), y: axis(unit[1], t)},
           plugins: {legend: {display: false},
-                    tooltip: {filter: (item) => item.datasetIndex % 3 === 0, callbacks: {title: (items) => items.length ? `${num(items[0].parsed.x)} ${unit[0]}` : '', ...labelled(unit[1]).callbacks}}},
+                    tooltip: {filter: (item) => item.datasetIndex % 3 === 0, callbacks: {...labelled(unit[1]).callbacks, title: (items) => (items.length ? `${num(items[0].parsed.x)} ${unit[0]}` : '')}}},
         },
       };
     });

@@ -1,6 +1,6 @@
 // Sections of results: diagnosis, history, solve, validation, map.
-import {axis, chart, labelled, waterfall} from './charts.js';
-import {el, figure, micro, num, numbers, table, um} from './dom.js';
+import {axis, chart, inLines, labelled, waterfall} from './charts.js';
+import {attempt, el, figure, micro, num, numbers, table, um} from './dom.js';
 import {workspace} from './workspace.js';
 
 const places = ['ux', 'uy', 'uz', 'thx', 'thy', 'thz'], efforts = ['fx', 'fy', 'fz', 'mx', 'my', 'mz'];
@@ -14,17 +14,11 @@ const intervalWords = (value, low, high) => {
 };
 const valueWords = (parameters) => parameters.map((p) => `${p.name} = ${intervalWords(p.value, p.low95, p.high95)}`).join(', ');
 
-export function diagnosisVerdict(d) {
-  if (d.mistakes?.[0]?.certain) return d.sentence + ' No effect was looked for.';
-  if (d.sentence) return d.sentence + ((d.found || []).some((f) => f.parameters.length) ? ' Fitted: ' + d.found.map((f) => `${siteName(f)}: ${valueWords(f.parameters)}`).join('; ') + '.' : '');
-  const found = (d.found || []).map((f) => siteName(f) + (f.parameters.length ? ', ' + valueWords(f.parameters) : '')).join(' and ') || d.missing.join(' and ');
-  const fall = `the error falls from ${micro(d.baseline.rmse_mm)} to ${micro(d.final.rmse_mm)} rms; the readings’ noise is ${micro(d.noise_floor_mm)}`;
-  switch (d.verdict) {
-    case 'nothing_missing': return `Nothing is missing that these data can show: what is left, ${micro(d.baseline.rmse_mm)} rms, is noise and tolerances.`;
-    case 'effect': return `Missing: ${found}. With it ${fall}.`;
-    case 'ambiguous': return `Something is missing, and these data cannot tell what of: ${d.indistinguishable.map((g) => g.join(' or ')).join('; and ')}. Best: ${found}; with it ${fall}.`;
-    default: return `Something is missing that no effect of the catalogue explains to the noise${found ? ', not even with ' + found : ''}. What is left: ${d.unexplained.pattern}.`;
-  }
+/** What was found in words, then by its ids with the values that were fitted. */
+export function diagnosisHeadline(d) {
+  const words = d.headline || d.sentence || 'A diagnosis without its sentence.';
+  if (d.mistakes?.[0]?.certain) return {words, small: 'No effect was looked for.'};
+  return {words, small: (d.found || []).map((f) => siteName(f) + (f.parameters.length ? ': ' + valueWords(f.parameters) : '')).join('; ')};
 }
 
 export function candidates(d) {
@@ -34,9 +28,9 @@ export function candidates(d) {
   const entries = [...d.candidates.map((c) => ({name: siteName(c), p: c.probability, tied: isTied(c)})),
                    ...(d.probability_nothing === undefined ? [] : [{name: 'nothing', p: d.probability_nothing}, {name: 'something unknown', p: d.probability_unknown}])]
     .sort((a, b) => b.p - a.p).slice(0, 12);
-  const picture = chart('Probabilities of the candidates', 60 + 26 * entries.length, (t) => ({
+  const picture = chart('Probabilities of the candidates', 60 + 32 * entries.length, (t) => ({
     type: 'bar',
-    data: {labels: entries.map((e) => e.name), datasets: [{label: 'probability', data: entries.map((e) => e.p), maxBarThickness: 18, minBarLength: 2,
+    data: {labels: entries.map((e) => inLines(e.name)), datasets: [{label: 'probability', data: entries.map((e) => e.p), maxBarThickness: 18, minBarLength: 2,
       backgroundColor: entries.map((e, i) => (e.tied ? t.orange : i === 0 ? t.blue : t.grey))}]},
     options: {indexAxis: 'y', scales: {x: axis('probability', t, {min: 0, max: 1}), y: axis('', t, {grid: {display: false}, ticks: {color: t.text, autoSkip: false}})},
               plugins: {legend: {display: false}, tooltip: labelled('', (item) => item.parsed.x)}},
@@ -110,7 +104,7 @@ export function solved(s) {
   const stiffness = s.msa.stiffness.map((row, i) => [efforts[i], ...row.map((x, j) => (Math.abs(x) < 1e-10 * scale(i, j) ? 0 : x))]);
   const shares = [...s.shares].sort((a, b) => b.share - a.share);
   const picture = shares.length ? chart('Share of each part in the elastic energy', 60 + 28 * shares.length, (t) => ({
-    type: 'bar', data: {labels: shares.map((x) => x.part), datasets: [{label: 'share', data: shares.map((x) => 100 * x.share), backgroundColor: t.blue, maxBarThickness: 18, minBarLength: 2}]},
+    type: 'bar', data: {labels: shares.map((x) => inLines(x.part)), datasets: [{label: 'share', data: shares.map((x) => 100 * x.share), backgroundColor: t.blue, maxBarThickness: 18, minBarLength: 2}]},
     options: {indexAxis: 'y', scales: {x: axis('% of the elastic energy', t, {min: 0, max: 100}), y: axis('', t, {grid: {display: false}})}, plugins: {legend: {display: false}, tooltip: labelled('%', (item) => item.parsed.x)}},
   })) : null;
   return [
@@ -161,7 +155,7 @@ export function mapped(m) {
   const theory = m.arrays.analytic ? 'analytic' : 'msa', values = m.arrays[theory];
   const shown = Object.keys(values).filter((k) => /^(stiffness|smallest|largest|isotropy)/.test(k));
   const holder = el('div');
-  const draw = (key) => holder.replaceChildren(workspace('map-view', points, [{title: key.replace(/_/g, ' ').replace(' N per mm', ', N/mm'), values: values[key]}], {unit: key === 'isotropy' ? '' : 'N/mm', low: null}));
+  const draw = (key) => holder.replaceChildren(attempt('The map', () => workspace('map-view', points, [{title: key.replace(/_/g, ' ').replace(' N per mm', ', N/mm'), values: values[key]}], {unit: key === 'isotropy' ? '' : 'N/mm', low: null})));
   draw(shown[0]);
   return figure('map', 'Stiffness over the workspace', `${m.reached} of ${m.poses} poses reached; ${theory === 'msa' ? 'MSA' : 'analytic'} theory.`,
     el('label', {}, 'Shown ', el('select', {id: 'map-quantity', onchange: (event) => draw(event.target.value)}, shown.map((key) => el('option', {value: key}, key)))), holder,

@@ -1,7 +1,8 @@
 // Values over the workspace: points in 3D, one picture or several side by side that turn together on one scale.
 import * as THREE from 'three';
 import {el, num, tooltip} from './dom.js';
-import {stage, triad, view} from './machine.js';
+import {triad, triadPoints} from './bodies.js';
+import {stage, view} from './stage.js';
 import {colour, colourBar, theme} from './theme.js';
 
 function disc() {
@@ -17,6 +18,7 @@ export function workspace(id, points, maps, {unit, times = 1, low = 0} = {}) {
   const at = points.map((p) => new THREE.Vector3(...p.at_mm));
   const box = new THREE.Box3().setFromPoints(at);
   box.expandByScalar(Math.max(1, 0.06 * box.getSize(new THREE.Vector3()).length()));
+  const letters = 0.22 * box.getSize(new THREE.Vector3()).length();
   const all = maps.flatMap((m) => m.values).filter((x) => x !== null);
   const bottom = low === null ? Math.min(...all) : low, top = Math.max(...all, bottom + 1e-15);
   const one = maps.length === 1;
@@ -32,11 +34,11 @@ export function workspace(id, points, maps, {unit, times = 1, low = 0} = {}) {
     const size = points.length > 2000 ? 5 : points.length > 300 ? 8 : one ? 16 : 13;
     scene.add(new THREE.Points(geometry, new THREE.PointsMaterial({size, sizeAttenuation: false, vertexColors: THREE.VertexColors, map: disc(), alphaTest: 0.5})));
     const frame = new THREE.Box3Helper(box, 0x888888);
-    scene.add(frame, triad(box.min, 0.22 * box.getSize(new THREE.Vector3()).length()));
+    scene.add(frame, triad(box.min, letters));
     return {scene, frame, kept};
   });
   let rectangles = [];
-  const shot = stage(holder, (renderer, width, height) => {
+  const shot = stage(holder, maps.map((m) => m.title).join('; '), (renderer, width, height) => {
     const origin = holder.getBoundingClientRect();
     renderer.setScissorTest(false);
     renderer.clear();
@@ -56,14 +58,12 @@ export function workspace(id, points, maps, {unit, times = 1, low = 0} = {}) {
   });
   const ends = el('div', {class: 'bar-ends'}, el('span', {}, num(bottom * times) + ' ' + unit), el('span', {}, num(top * times) + ' ' + unit));
   const whole = el('div', {}, holder, el('div', {class: 'bar', style: {background: colourBar, marginTop: '.5rem'}}), ends);
-  if (!shot) return whole;
-  const looking = view(box, shot.canvas, () => shot.ask(), one ? 1.6 : 1.75);
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => new THREE.Vector3(...['x', 'y', 'z'].map((name, k) => (i & (1 << k) ? box.max : box.min)[name])));
+  const looking = view([...corners, ...triadPoints(box.min, letters)], shot.canvas, () => shot.ask());
   looking.buttons.style.marginTop = '.4rem';
   looking.buttons.style.display = 'flex';
   looking.buttons.style.gap = '.3rem';
   whole.append(looking.buttons);
-  shot.canvas.setAttribute('role', 'img');
-  shot.canvas.setAttribute('aria-label', maps.map((m) => m.title).join('; '));
   shot.canvas.addEventListener('pointermove', (event) => {
     const r = shot.canvas.getBoundingClientRect(), x = event.clientX - r.left, y = event.clientY - r.top;
     const which = rectangles.findIndex((c) => x >= c.x && x <= c.x + c.w && y >= c.y && y <= c.y + c.h);

@@ -60,13 +60,14 @@ std::string structure_text(const MatrixCheck& m) {
   return text;
 }
 
-std::string verdict(const MatrixCheck& m, const CheckedFiles& f) {
+/// `matrix`, `reference`: what they are called; the reference "" where there is none.
+std::string check_verdict(const MatrixCheck& m, const std::string& matrix, const std::string& reference) {
   if (m.passes()) {
     const bool one_leg =
         std::any_of(m.checks.begin(), m.checks.end(), [](const Check& c) { return c.id.starts_with("passive"); });
-    return fmt::format("{} passes: it is symmetric and positive and {}{}.", f.matrix,
+    return fmt::format("{} passes: it is symmetric and positive and {}{}.", matrix,
                        one_leg ? "leaves its passive joints free and nothing else" : "holds every direction",
-                       f.reference.empty() ? "" : ", and it equals " + f.reference);
+                       reference.empty() ? "" : ", and it equals " + reference);
   }
   std::vector<std::string> sentences;
   for (const MatrixDiagnosis& d : m.explanations) sentences.push_back(d.sentence);
@@ -74,7 +75,7 @@ std::string verdict(const MatrixCheck& m, const CheckedFiles& f) {
   if (sentences.size() > 1) text = "either " + text;
   if (m.guessed && !text.empty()) text = "by its size it is no machine's; most likely " + text;
   for (const MatrixDiagnosis& d : m.findings) text += (text.empty() ? "" : "; ") + d.sentence;
-  return fmt::format("{} fails: {}.", f.matrix, text);
+  return fmt::format("{} fails: {}.", matrix, text);
 }
 
 std::string remedies(const MatrixCheck& m) {
@@ -111,7 +112,7 @@ Json json_diagnosis(const MatrixDiagnosis& d, bool certain) {
 }  // namespace
 
 std::string check_report(const MatrixCheck& m, const CheckedFiles& f) {
-  std::string text = paragraph(verdict(m, f));
+  std::string text = paragraph(check_verdict(m, f.matrix, f.reference));
   if (!m.passes()) text += paragraph("Remedy: " + remedies(m) + ".");
   text += "\n" + checks_table(m) + "\n" + structure_text(m);
   if (f.reference.empty())
@@ -126,7 +127,9 @@ std::string check_json(const MatrixCheck& m, const CheckedFiles& f) {
   Json json;
   json["file"] = f.matrix;
   if (!f.reference.empty()) json["reference"] = f.reference;
+  json["verdict"] = check_verdict(m, "The stiffness", f.reference.empty() ? "" : "the reference");
   json["passes"] = m.passes();
+  json["matrix"] = json_rows(m.K_mm, "matrix");
   json["checks"] = Json::array();
   for (const Check& c : m.checks) json["checks"].push_back(json_check(c));
   json["diagnosis"] = Json::array();

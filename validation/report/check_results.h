@@ -16,9 +16,10 @@ struct CheckedFiles {
 /// Verdict in a sentence with its remedy, table of checks, structure, and what one matrix cannot tell.
 std::string check_report(const MatrixCheck&, const CheckedFiles&);
 
-/// {"file", "reference", "passes", "checks": [{"check", "quantity", "measured", "at_least", "at_most", "passes"}, …],
-/// "diagnosis": [{"id", "sentence", "remedy", "certain"}, …], "max_asymmetry", "eigenvalues_N_per_mm", …}; a check
-/// that could not be judged has no "measured", one without a bound has none.
+/// {"file", "reference", "verdict": a sentence, "passes", "matrix": as read, N/mm, N, Nmm, "checks": [{"check",
+/// "quantity", "measured", "at_least", "at_most", "passes"}, …], "diagnosis": [{"id", "sentence", "remedy", "certain"},
+/// …], "max_asymmetry", "eigenvalues_N_per_mm", …}; a check that could not be judged has no "measured", one without a
+/// bound has none.
 std::string check_json(const MatrixCheck&, const CheckedFiles&);
 
 /// Tables: the checks; the structure as quantity, unit, three values.

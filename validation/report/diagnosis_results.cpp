@@ -86,6 +86,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["device"] = d.device;
   j["notes"] = d.how_read;
   j["sentence"] = verdict_words(d);
+  j["headline"] = headline_words(d);
   j["mistakes"] = mistakes_json(d.mistakes);
   j["missing"] = Json::array();
   for (const PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
@@ -93,6 +94,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   for (const Candidate& c : d.candidates)
     j["candidates"].push_back(
         {{"effect", c.added().effect->name},
+         {"title", c.added().effect->title},
          {"site", site_of(c.added())},
          {"probability", c.probability},
          {"parameters", parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size())},
@@ -113,6 +115,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   std::size_t from = 0;
   for (const PlacedEffect& e : d.missing) {
     j["found"].push_back({{"effect", e.effect->name},
+                          {"title", e.effect->title},
                           {"site", site_of(e)},
                           {"parameters", parameters_json(d.missing, d.fit, from, e.effect->parameters.size())}});
     from += e.effect->parameters.size();

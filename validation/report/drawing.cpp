@@ -21,17 +21,12 @@ namespace {
 
 constexpr double shown_motion = 0.1;  // of the machine's size
 
-struct Outline {
-  double y = 0, z = 0;
-  bool round = false;
-};
-
-Outline outline(const RoundSection& s) { return {s.diameter, s.diameter, true}; }
-Outline outline(const TubeSection& s) { return {s.outer_diameter, s.outer_diameter, true}; }
-Outline outline(const GivenSection&) { return {}; }
-Outline outline(const AngleSection& s) { return {s.long_leg, s.short_leg, false}; }
+SectionOutline outline(const RoundSection& s) { return {s.diameter, s.diameter, true}; }
+SectionOutline outline(const TubeSection& s) { return {s.outer_diameter, s.outer_diameter, true}; }
+SectionOutline outline(const GivenSection&) { return {}; }
+SectionOutline outline(const AngleSection& s) { return {s.long_leg, s.short_leg, false}; }
 template <class Shaped>
-Outline outline(const Shaped& s) {
+SectionOutline outline(const Shaped& s) {
   return {s.width_y, s.height_z, false};
 }
 
@@ -39,9 +34,9 @@ void set_section(DrawnMember& m, const Named<Section>& sections, const std::stri
   m.section = name;
   const Section* section = find(sections, name);
   if (!section) return;
-  const Outline o = std::visit([](const auto& s) { return outline(s); }, section->shape);
-  m.size_y = o.y;
-  m.size_z = o.z;
+  const SectionOutline o = outline_of(*section);
+  m.size_y = o.size_y;
+  m.size_z = o.size_z;
   m.round = o.round;
 }
 
@@ -224,6 +219,10 @@ std::optional<Configuration> at_home(const Mechanism& m, std::string& why) try {
 }
 
 }  // namespace
+
+SectionOutline outline_of(const Section& section) {
+  return std::visit([](const auto& s) { return outline(s); }, section.shape);
+}
 
 double MachineDrawing::size() const {
   Eigen::AlignedBox3d box;

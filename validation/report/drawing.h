@@ -14,6 +14,14 @@
 
 namespace deflect {
 
+/// The box around a section in the member's local y and z, m; of a round one both are its diameter; zero where the file
+/// gives no shape.
+struct SectionOutline {
+  double size_y = 0, size_z = 0;
+  bool round = false;
+};
+SectionOutline outline_of(const Section&);
+
 /// A straight member with its section: axes are its local x (along it), y, z as columns. Sizes are those of the box
 /// around the section, m; of a round one both are its diameter; zero where the file gives no shape.
 struct DrawnMember {

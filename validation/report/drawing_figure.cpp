@@ -17,7 +17,7 @@ using Paper = Eigen::Vector2d;
 constexpr const char *metal = "#9db4c8", *dark = "#33475b", *rigid_grey = "#9a9a9a", *driven_orange = "#d95f02",
                      *free_motion_red = "#c1121f";
 constexpr const char* axis_colours[] = {"#c1121f", "#2a7f3f", "#1f5fbf"};
-constexpr double points_in_mm = 72 / 25.4;
+constexpr double points_in_mm = 72 / 25.4, axes_length = 0.1;  // of the machine's size
 
 /// A direction from which the machine is seen: what lies to the right and upwards on the paper.
 struct Eye {
@@ -30,13 +30,28 @@ Eye askew() {
   return {"", right, right.cross(forward)};
 }
 
-/// A panel of the sheet with the machine to scale in it.
+/// The frames of reference that are drawn with all three axes: of a frame one at the corner of the box around it.
+std::vector<std::pair<Vector3, Matrix3>> shown_axes(const MachineDrawing& d) {
+  std::vector<std::pair<Vector3, Matrix3>> out;
+  if (!d.frame) {
+    for (const DrawnPoint& p : d.frames) out.emplace_back(p.at, p.axes);
+  } else if (!d.points.empty()) {
+    Eigen::AlignedBox3d box;
+    for (const Vector3& p : d.points) box.extend(p);
+    out.emplace_back(box.min(), Matrix3::Identity());
+  }
+  return out;
+}
+
+/// A panel of the sheet with the machine to scale in it, arrows of its axes included.
 class DrawnView {
  public:
   DrawnView(Sheet& s, const MachineDrawing& d, const Eye& eye, const Eigen::Vector4d& xywh, double margin)
       : sheet_(s), drawing_(d), eye_(eye), box_(xywh) {
     Eigen::AlignedBox2d seen;
     for (const Vector3& p : d.points) seen.extend(flat(p));
+    for (const auto& [from, axes] : shown_axes(d))
+      for (Eigen::Index axis = 0; axis < 3; ++axis) seen.extend(flat(from + axes_length * d.size() * axes.col(axis)));
     const Paper size = seen.sizes(),
                 room(box_(2) - 2 * margin, box_(3) - 2 * margin * std::min(1.0, box_(3) / box_(2)));
     const double least = 1e-6 + 1e-3 * d.size();
@@ -126,7 +141,7 @@ void draw_joints(DrawnView& v, const MachineDrawing& d, const std::string& id) {
 
 /// Axes of a frame of reference, or y and z of a section.
 void draw_axes(DrawnView& v, const MachineDrawing& d, const std::string& id, bool sections) {
-  const double length = (sections ? 0.045 : 0.1) * d.size();
+  const double length = (sections ? 0.045 : axes_length) * d.size();
   for (Eigen::Index axis = sections ? 1 : 0; axis < 3; ++axis) {
     std::string data;
     const auto add = [&](const Vector3& from, const Matrix3& R) {
@@ -136,12 +151,8 @@ void draw_axes(DrawnView& v, const MachineDrawing& d, const std::string& id, boo
     if (sections) {
       for (const DrawnMember& m : d.members)
         if (!m.round && m.axes != Matrix3::Identity()) add((m.start + m.end) / 2, m.axes);
-    } else if (!d.frame) {
-      for (const DrawnPoint& p : d.frames) add(p.at, p.axes);
-    } else if (!d.points.empty()) {
-      Eigen::AlignedBox3d box;
-      for (const Vector3& p : d.points) box.extend(p);
-      add(box.min(), Matrix3::Identity());
+    } else {
+      for (const auto& [at, axes] : shown_axes(d)) add(at, axes);
     }
     if (data.empty()) continue;
     const std::string name = fmt::format("{}{}_{}", sections ? "section" : "frame", axis, id);

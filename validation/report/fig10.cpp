@@ -127,22 +127,21 @@ struct Stroke {
   const char *colour, *name;
   int shape;
   double marker, width;
-  int dashes;
 };
 
 std::vector<Stroke> strokes_of(const std::vector<PointRows>& points, std::size_t axis) {
   const Look& look = looks[axis];
   std::vector<Stroke> out;
-  if (there(points, axis, true)) out.push_back({look.light, "As printed", look.filled, 0.5, 1.1, 2});
+  if (there(points, axis, true)) out.push_back({look.light, "As printed", look.filled, 0.7, 0.8});
   if (!there(points, axis, false)) return out;
-  out.push_back({look.colour, "Analytical", look.filled, 0.5, 1.1, 1});
-  out.push_back({look.colour, "MSA", look.open, 1.1, 0.8, 3});
+  out.push_back({look.colour, "Analytical", look.filled, 0.5, 0.8});
+  out.push_back({look.colour, "MSA", look.open, 1.1, 0.8});
   return out;
 }
 
 /// A column for each axis, where the paper is too narrow a row for each, or all below each other; y below it.
 double put_legend(Sheet& s, const std::vector<PointRows>& points, double top, double left) {
-  const double line = s.line(), dash = 1.75 * line, entry = dash + 1 + 0.9 * s.text_mm(12) + 2;
+  const double line = s.line(), mark = 0.6 * line, entry = mark + 1 + 0.9 * s.text_mm(12) + 2;
   std::size_t most = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) most = std::max(most, strokes_of(points, axis).size());
   const double room = s.width() - left;
@@ -157,11 +156,9 @@ double put_legend(Sheet& s, const std::vector<PointRows>& points, double top, do
       const double x = left + static_cast<double>(column) * entry,
                    y = top + (static_cast<double>(row) + 0.5) * 1.05 * line;
       const Stroke& stroke = strokes[i];
-      s.put("set arrow {} from {} to {} nohead lc rgb '{}' lw {} dt {}", tag, s.at(x, y).substr(3),
-            s.at(x + dash, y).substr(3), stroke.colour, stroke.width, stroke.dashes);
-      s.put("set label {} '' {} point pt {} ps {} lc rgb '{}'", tag, s.at(x + dash / 2, y), stroke.shape, stroke.marker,
-            stroke.colour);
-      s.label(fmt::format("{}-{}", capitals[axis], stroke.name), x + dash + 1, y, "left");
+      s.put("set label {} '' {} point pt {} ps {} lw {} lc rgb '{}'", tag, s.at(x + mark / 2, y), stroke.shape,
+            stroke.marker, stroke.width, stroke.colour);
+      s.label(fmt::format("{}-{}", capitals[axis], stroke.name), x + mark + 1, y, "left");
       foot = std::max(foot, y + 0.55 * line);
     }
   }
@@ -246,16 +243,15 @@ Figure fig10(const Validation& validation, const FigureStyle& style) {
       const Series which = strokes.size() == 3 && i == 0 ? Series::as_printed
                            : i + 1 == strokes.size()     ? Series::msa
                                                          : Series::analytic;
-      series.push_back(fmt::format("{} with linespoints lc rgb '{}' pt {} ps {:.2f} lw {} dt {} notitle",
-                                   place(which, axis), stroke.colour, stroke.shape, stroke.marker * marker,
-                                   stroke.width, stroke.dashes));
+      series.push_back(fmt::format("{} with points lc rgb '{}' pt {} ps {:.2f} lw {} notitle", place(which, axis),
+                                   stroke.colour, stroke.shape, stroke.marker * marker, stroke.width));
     }
   }
   s.plot(fmt::format("plot {}", fmt::join(series, ", \\\n  ")));
 
-  // Residuals as stems.
+  // Points of the workspace are no series: no line joins them. Residuals are stems.
   const double below = top + panel_height + 1.25 * line, foot = below + strip_height;
-  for (int tag = 60; tag < 69; ++tag) s.put("unset arrow {0}\nunset label {0}", tag);
+  for (int tag = 60; tag < 69; ++tag) s.put("unset label {}", tag);
   s.panel(left, below, w, strip_height);
   s.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", -1.15 * residual, 1.15 * residual, residual_step);
   s.put("set xtics ({}) {} noenhanced", tics.labels, tics.turned ? "rotate by 90 right" : "norotate");

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "validation/report/by_point.h"
+#include "validation/report/contours.h"
 #include "validation/report/map_correlation.h"
 #include "validation/report/map_results.h"
 #include "validation/report/map_words.h"
@@ -18,6 +20,7 @@
 namespace deflect {
 namespace {
 
+constexpr double iso_text = 0.8;  // of the style's size
 const double none = std::numeric_limits<double>::quiet_NaN();
 
 /// Stiffness along x, y, z at the grid's poses; NaN out of reach. All are positive or the map would have no stiffness.
@@ -65,8 +68,8 @@ const MapPose& at(const StiffnessMap& map, const Slice& s, int i, int j) {
 }
 
 /// Interpolated bilinearly in the logarithm, with some steps between poses; NaN outside the cells whose four corners
-/// are reached. Lines of gnuplot's grid format, x fastest; empty where no cell is whole.
-std::string surface(const StiffnessMap& map, const Slice& s, int axis) {
+/// are reached. Nothing where no cell is whole.
+std::optional<GridField> surface(const StiffnessMap& map, const Slice& s, int axis) {
   const MapGrid& g = map.options.grid;
   const int n = g.counts[static_cast<std::size_t>(s.across)], m = g.counts[static_cast<std::size_t>(s.up)];
   const auto steps = [](int count) { return std::max(1, static_cast<int>(std::ceil(60.0 / (count - 1)))); };
@@ -80,7 +83,13 @@ std::string surface(const StiffnessMap& map, const Slice& s, int axis) {
     return (1 - v) * ((1 - u) * log_value(i, j) + u * log_value(i + 1, j)) +
            v * ((1 - u) * log_value(i, j + 1) + u * log_value(i + 1, j + 1));
   };
-  std::string text;
+  const auto place = [&](int where, int low, double t) {
+    const double from = g.coordinate(where, low);
+    return t == 0 ? from : from + t * (g.coordinate(where, low + 1) - from);
+  };
+  GridField field;
+  for (int x = 0; x <= (n - 1) * fine_x; ++x)
+    field.x.push_back(place(s.across, x / fine_x, static_cast<double>(x % fine_x) / fine_x));
   bool whole = false;
   for (int y = 0; y <= (m - 1) * fine_y; ++y) {
     const int j = y / fine_y;
@@ -92,16 +101,12 @@ std::string surface(const StiffnessMap& map, const Slice& s, int axis) {
       if (std::isnan(value) && u == 0) value = in_cell(i - 1, j, 1, v);
       if (std::isnan(value) && v == 0) value = in_cell(i, j - 1, u, 1);
       if (std::isnan(value) && u == 0 && v == 0) value = in_cell(i - 1, j - 1, 1, 1);
-      const auto place = [&](int where, int low, double t) {
-        const double from = g.coordinate(where, low);
-        return t == 0 ? from : from + t * (g.coordinate(where, low + 1) - from);
-      };
-      text += fmt::format("{:.6g} {:.6g} {:.5g}\n", place(s.across, i, u), place(s.up, j, v), std::exp(value));
+      field.values.push_back(std::exp(value));
       whole = whole || !std::isnan(value);
     }
-    text += "\n";
+    field.y.push_back(place(s.up, j, v));
   }
-  return whole ? text : "";
+  return whole ? std::optional(field) : std::nullopt;
 }
 
 /// Tics of an axis of so many mm: whole steps, none of them so near to an end that its label would touch the next
@@ -120,10 +125,8 @@ std::string inner_tics(const Sheet& s, double low, double high, double room_mm) 
 /// Preferred numbers within the range: the coarsest series that has at least `wanted` of them, or the finest.
 std::vector<double> levels(const Extremes& e, std::size_t wanted) {
   static const std::vector<std::vector<double>> series = {
-      {1, 2, 5},
-      {1, 1.6, 2.5, 4, 6.3},
-      {1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8},
-      {1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9}};
+      {1, 2, 5}, {1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8}, {1,    1.12, 1.25, 1.4, 1.6, 1.8, 2,   2.24, 2.5, 2.8,
+                                                              3.15, 3.55, 4,    4.5, 5,   5.6, 6.3, 7.1,  8,   9}};
   std::vector<double> list;
   for (const std::vector<double>& numbers : series) {
     list.clear();
@@ -192,23 +195,31 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
     return std::clamp(panel * extent(s.up) / extent(s.across), 0.5 * panel, 1.4 * panel);
   };
 
-  std::vector<bool> has_surface(slices.size());
+  const std::vector<double> iso = levels(e, below ? 8 : 14), index = levels(e, 4);
+  const double light = std::exp(std::log(e.low) + 0.62 * std::log(e.high / e.low));
+  std::vector<std::string> series;  // by row and axis
+  std::vector<bool> whole;          // whether every value is there
   for (std::size_t r = 0; r < slices.size(); ++r)
     for (int axis = 0; axis < 3; ++axis) {
-      const std::string points = surface(map, slices[r], axis);
-      has_surface[r] = !points.empty();
-      if (has_surface[r]) script.put("$s{}{} << EOD\n{}EOD", r, axis, points);
+      series.emplace_back("plot '+' using 1:(NaN):(1) with points palette");
+      const std::optional<GridField> field = surface(map, slices[r], axis);
+      whole.push_back(field && std::none_of(field->values.begin(), field->values.end(),
+                                            [](double value) { return std::isnan(value); }));
+      if (!field) continue;
+      const LabelledCurves curves(*field, panel, panel_height(slices[r]), script.text_mm(1, iso_text), iso_text * line);
+      const CurveRows drawn = curve_rows(curves, iso, index, light);
+      script.put("$s{}{} << EOD\n{}EOD", r, axis, matrix_rows(*field));
+      series.back() = fmt::format("plot $s{}{} {} with image", r, axis, matrix_columns(*field));
+      const auto over = [&](const char* name, const std::string& rows, const std::string& how) {
+        if (rows.empty()) return;
+        script.put("${}{}{} << EOD\n{}EOD", name, r, axis, rows);
+        series.back() += fmt::format(", ${}{}{} using {}", name, r, axis, how);
+      };
+      over("thin", drawn.thin, "1:2:3 with lines lc rgb variable lw 0.3");
+      over("heavy", drawn.heavy, "1:2:3 with lines lc rgb variable lw 0.9");
+      over("values", drawn.values,
+           fmt::format("1:2:(sprintf('%g',$3)):4 with labels {} textcolor rgb variable", script.font(iso_text)));
     }
-  // Iso-curves as tables, made before there is a plot to disturb.
-  const std::vector<double> iso = levels(e, below ? 8 : 14), index = levels(e, 4);
-  if (!iso.empty()) {
-    script.put("set contour base\nunset surface\nset cntrparam linear\nset cntrparam levels discrete {:g}",
-               fmt::join(iso, ","));
-    for (std::size_t r = 0; r < slices.size(); ++r)
-      for (int axis = 0; has_surface[r] && axis < 3; ++axis)
-        script.put("set table $c{0}{1}\nsplot $s{0}{1} using 1:2:3\nunset table", r, axis);
-    script.put("unset contour\nset surface");
-  }
 
   script.put("{}\nset logscale cb\nset cbrange [{:.6g}:{:.6g}]\nset cbtics ({}) scale 0.5", palette, e.low,
              std::max(e.high, e.low * 1.001), tics(e));
@@ -216,10 +227,6 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
   double y = map_heading(script, map, "stiffness over the workspace", all_reached ? "" : "; hatched: out of reach",
                          below ? 3 : left) +
              1.3 * line;
-  const double light = std::exp(std::log(e.low) + 0.62 * std::log(e.high / e.low));  // dark lines on light colours
-  const std::string ink = fmt::format("($3 < {:.6g} ? 0xFFFFFF : 0x000000)", light);
-  std::string is_index = "0";  // the iso-curves that are heavier and carry their number
-  for (const double level : index) is_index += fmt::format("||abs($3/{:g}-1)<1e-3", level);
   const double top = y + row_title;
   double foot = top;
   for (const Slice& s : slices) foot += panel_height(s) + row_foot + row_title;
@@ -234,8 +241,13 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
       script.panel(x, y, panel, h);
       script.put("set xrange [{:.8g}:{:.8g}]\nset yrange [{:.8g}:{:.8g}]", g.low_mm(s.across), g.high_mm(s.across),
                  g.low_mm(s.up), g.high_mm(s.up));
-      script.put("set object 1 rect from graph 0,0 to graph 1,1 behind fc rgb '#f4f4f4' fs solid noborder");
-      script.put("set object 2 rect from graph 0,0 to graph 1,1 behind fc rgb '#b0b0b0' fs pattern 4 noborder");
+      // Hatching costs more than all the rest of a picture: only where it shows.
+      if (whole[3 * r + static_cast<std::size_t>(axis)])
+        script.put("unset object");
+      else
+        script.put(
+            "set object 1 rect from graph 0,0 to graph 1,1 behind fc rgb '#f4f4f4' fs solid noborder\n"
+            "set object 2 rect from graph 0,0 to graph 1,1 behind fc rgb '#b0b0b0' fs pattern 4 noborder");
       script.put("set xtics ({}) offset 0,0.4\nset ytics ({}) offset 0.6,0\nset format y '{}'",
                  inner_tics(script, g.low_mm(s.across), g.high_mm(s.across), panel),
                  inner_tics(script, g.low_mm(s.up), g.high_mm(s.up), h), axis == 0 ? "%g" : "");
@@ -261,22 +273,7 @@ std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
       } else {
         script.put("unset colorbox");
       }
-      std::string curves;
-      if (!iso.empty()) {
-        const double margin_x = std::min(0.4, 4.1 * line / 4 / panel) * extent(s.across),
-                     margin_y = 0.06 * extent(s.up);
-        const std::string inside =
-            fmt::format("$1>{:.6g}&&$1<{:.6g}&&$2>{:.6g}&&$2<{:.6g}", g.low_mm(s.across) + margin_x,
-                        g.high_mm(s.across) - margin_x, g.low_mm(s.up) + margin_y, g.high_mm(s.up) - margin_y);
-        curves = fmt::format(
-            ", $c{0}{1} using 1:2:{2} with lines lc rgb variable lw 0.3"
-            ", $c{0}{1} using 1:({3} ? $2 : NaN):{2} with lines lc rgb variable lw 0.9"
-            ", $c{0}{1} using 1:(({3})&&{4} ? $2 : NaN):(sprintf('%g',$3)):{2} every ::28::28 with labels {5} "
-            "offset 0,0.35 textcolor rgb variable",
-            r, axis, ink, is_index, inside, script.font(0.75));
-      }
-      script.plot(has_surface[r] ? fmt::format("plot $s{}{} using 1:2:3 with image{}", r, axis, curves)
-                                 : "plot '+' using 1:(NaN):(1) with points palette");
+      script.plot(series[3 * r + static_cast<std::size_t>(axis)]);
     }
     y += h + row_foot;
   }

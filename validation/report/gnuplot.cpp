@@ -10,6 +10,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "validation/parallel/cases.h"
 #include "validation/report/child_process.h"
 
 namespace deflect {
@@ -103,24 +104,31 @@ std::string draw(const std::string& suffix, const Figure& figure) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> render(const Figure& figure, const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> render_all(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
   const std::string allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
-  if (figure.name.empty() || figure.name.find_first_not_of(allowed) != std::string::npos)
-    throw std::logic_error(fmt::format("'{}' is no name for a figure's files", figure.name));
+  for (const Figure& figure : figures)
+    if (figure.name.empty() || figure.name.find_first_not_of(allowed) != std::string::npos)
+      throw std::logic_error(fmt::format("'{}' is no name for a figure's files", figure.name));
   const std::array<std::string, 3> suffixes = {"svg", "pdf", "png"};
-  std::array<std::string, 3> pictures;
-  std::transform(suffixes.begin(), suffixes.end(), pictures.begin(),
-                 [&](const std::string& suffix) { return draw(suffix, figure); });
+  std::vector<std::string> pictures(figures.size() * suffixes.size());
+  for_each_case(pictures.size(), 1, 0, [&](std::size_t i) {
+    pictures[i] = draw(suffixes[i % suffixes.size()], figures[i / suffixes.size()]);
+  });
   std::vector<std::filesystem::path> paths;
-  for (std::size_t i = 0; i < suffixes.size(); ++i) {
-    paths.push_back(folder / (figure.name + "." + suffixes[i]));
-    write_text(paths.back(), pictures[i]);
-  }
-  if (!figure.caption.empty()) {
-    paths.push_back(folder / (figure.name + ".txt"));
-    write_text(paths.back(), caption_of(figure) + "\n");
+  for (std::size_t k = 0; k < figures.size(); ++k) {
+    for (std::size_t i = 0; i < suffixes.size(); ++i) {
+      paths.push_back(folder / (figures[k].name + "." + suffixes[i]));
+      write_text(paths.back(), pictures[k * suffixes.size() + i]);
+    }
+    if (figures[k].caption.empty()) continue;
+    paths.push_back(folder / (figures[k].name + ".txt"));
+    write_text(paths.back(), caption_of(figures[k]) + "\n");
   }
   return paths;
+}
+
+std::vector<std::filesystem::path> render(const Figure& figure, const std::filesystem::path& folder) {
+  return render_all({figure}, folder);
 }
 
 std::string gnuplot_quote(std::string_view text) {

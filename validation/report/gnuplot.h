@@ -22,11 +22,13 @@ struct Figure {
   FigureStyle style = {};    ///< font and size of the text; the body is laid out for them
 };
 
-/// Writes name.svg, name.pdf, name.png (300 dpi) and, with a caption, name.txt into the folder, creating it, and
-/// returns their paths. The caption ends with the program's version and is the SVG's description too. All are drawn
-/// before the first is written, so a refused script leaves the folder as it was, and each file is replaced whole. The
-/// same figure gives the same bytes. Throws InputError when gnuplot is not installed or the folder cannot be written,
-/// std::logic_error with gnuplot's own words when it refuses the script.
+/// Writes of each figure name.svg, name.pdf, name.png (300 dpi) and, with a caption, name.txt into the folder, creating
+/// it, and returns their paths. The caption ends with the program's version and is the SVG's description too. Every
+/// file is drawn by a gnuplot of its own, as many at a time as the machine has cores; all are drawn before the first is
+/// written, so a refused script leaves the folder as it was, and each file is replaced whole. The same figure gives the
+/// same bytes. Throws InputError when gnuplot is not installed or the folder cannot be written, std::logic_error with
+/// gnuplot's own words when it refuses a script.
+std::vector<std::filesystem::path> render_all(const std::vector<Figure>&, const std::filesystem::path& folder);
 std::vector<std::filesystem::path> render(const Figure&, const std::filesystem::path& folder);
 
 /// The text as a gnuplot string that prints as it is, wherever `noenhanced` is set; control characters become

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "msa/base/error.h"
 #include "validation/report/page_residuals.h"
 #include "validation/report/page_template.h"
@@ -10,8 +12,9 @@
 namespace deflect {
 namespace {
 
-constexpr std::size_t most_source = 600'000;  // bytes
-constexpr std::size_t most_readings = 3000;   // of all versions
+constexpr std::size_t most_source = 600'000;   // bytes
+constexpr std::size_t most_readings = 3000;    // of all versions
+constexpr std::size_t most_frame_rows = 4000;  // of each list, in all load cases together
 constexpr const char* data_mark = "@DEFLECT_DATA@";
 
 /// Matrices pose by pose would make a page of many megabytes: ranged columns stay.
@@ -27,9 +30,22 @@ void keep_what_is_shown(Json& map) {
   }
 }
 
+/// Of a large frame the first rows of each list stay; "left_out" says of each list how many do not.
+void keep_first_rows(Json& frame) {
+  if (frame["cases"].empty()) return;
+  const std::size_t most = std::max<std::size_t>(1, most_frame_rows / frame["cases"].size());
+  for (auto& [name, of_case] : frame["cases"].items())
+    for (const char* list : {"displacements", "reactions", "springs", "constraints", "members", "shares"}) {
+      if (!of_case.contains(list) || of_case[list].size() <= most) continue;
+      of_case["left_out"][list] = of_case[list].size() - most;
+      of_case[list].erase(of_case[list].begin() + static_cast<std::ptrdiff_t>(most), of_case[list].end());
+    }
+}
+
 Json shown_result(const PageResult& result) {
   ReadResult read = read_result(result.json, result.origin);
   if (read.kind == "map") keep_what_is_shown(read.json);
+  if (read.kind == "frame") keep_first_rows(read.json);
   return {{"kind", read.kind}, {"origin", result.origin}, {"result", std::move(read.json)}};
 }
 

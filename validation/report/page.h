@@ -35,7 +35,8 @@ bool pages_are_built();
 
 /// {"version", "made_with", "command", "device", "data", "results": [{"kind", "origin", "result"}], "versions":
 /// [page_residuals.h], "scene"}. A source of more than 0.6 MB is named but not held; of more than
-/// 3000 readings the first are held, in all versions together; of a map the arrays that are shown. InputError naming
+/// 3000 readings the first are held, in all versions together; of a map the arrays that are shown; of a frame's lists
+/// the first 4000 rows in all load cases together, with "left_out" beside them. InputError naming
 /// the origin of a result that is not JSON or of no kind that a page can show.
 Json page_json(const PageContents&);
 

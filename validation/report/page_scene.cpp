@@ -1,32 +1,75 @@
 #include "validation/report/page_scene.h"
-#include "validation/report/text.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
+#include <utility>
 
 #include "validation/compare/at_pose.h"
+#include "validation/report/drawing.h"
+#include "validation/report/scene_numbers.h"
+#include "validation/report/text.h"
 
 namespace deflect {
 namespace {
 
-constexpr int elements = 8;
+constexpr int scene_elements = 8;  // of a member
 
-/// For the eye: positions to 0.1 µm; displacements keep seven digits.
-double rounded(double x, double step) { return std::round(x / step) * step; }
-double digits(double x) {
-  if (x == 0) return 0;
-  const double step = std::pow(10, std::floor(std::log10(std::abs(x))) - 6);
-  return rounded(x, step);
+/// What each part of the description looks like, by leg and part.
+using Outlines = std::map<std::pair<std::string, std::string>, SectionOutline>;
+
+Outlines outlines_of(const Mechanism& m, const Configuration& c) {
+  Outlines out;
+  for (const DrawnMember& member : drawing_of(m, c).members)
+    out[{member.leg, member.part}] = {member.size_y, member.size_z, member.round};
+  return out;
 }
 
-Json position(const Vector3& p) {
-  return {rounded(mm * p.x(), 1e-4), rounded(mm * p.y(), 1e-4), rounded(mm * p.z(), 1e-4)};
+/// Of each body the local y of its section, null of those that are no members.
+class SectionAxes {
+ public:
+  explicit SectionAxes(const std::vector<PlacedLeg>& legs) { add(legs); }
+  Json json(std::size_t bodies) {
+    while (axes_.size() < bodies) axes_.push_back(nullptr);
+    return axes_;
+  }
+
+ private:
+  void add(const std::vector<PlacedLeg>& legs) {
+    for (const PlacedLeg& leg : legs)
+      for (const PlacedPart& part : leg.parts)
+        if (const auto* group = std::get_if<PlacedParallel>(&part))
+          add(group->branches);
+        else if (const auto* member = std::get_if<PlacedMember>(&part)) {
+          const Vector3 y = member->R_WM.col(1);
+          axes_.push_back({scene_digits(y.x()), scene_digits(y.y()), scene_digits(y.z())});
+        }
+  }
+
+  Json axes_ = Json::array();
+};
+
+Vector3 start_of(const PlacedPart& part) {
+  if (const auto* joint = std::get_if<PlacedJoint>(&part)) return joint->p_W;
+  if (const auto* member = std::get_if<PlacedMember>(&part)) return member->p_W_start;
+  return std::get<PlacedParallel>(part).p_W_start;
+}
+
+/// Where the legs stand on the base.
+Json ground_of(const Configuration& c) {
+  Json out = Json::array();
+  for (const PlacedLeg& leg : c.legs)
+    if (!leg.beside && !leg.parts.empty())
+      out.push_back({{"at_mm", scene_position(start_of(leg.parts.front()))},
+                     {"words", c.legs.size() == 1 ? "base" : "base of " + leg.name},
+                     {"whole", true}});
+  return out;
 }
 
 class Drawing {
  public:
-  Drawing(const Configuration& c, const frame::MechanismModel& built, const std::vector<ChangedPart>& guilty)
-      : configuration_(c), built_(built), guilty_(guilty) {
+  Drawing(const Mechanism& m, const Configuration& c, const frame::MechanismModel& built,
+          const std::vector<ChangedPart>& guilty)
+      : configuration_(c), outlines_(outlines_of(m, c)), built_(built), guilty_(guilty) {
     members(c.legs);
     arms();
     joints(c.legs);
@@ -41,7 +84,9 @@ class Drawing {
       const std::string words = g.leg.empty() ? g.part : g.leg + " " + (g.part.empty() ? "seat" : g.part);
       if (std::find(names.begin(), names.end(), words) == names.end()) names.push_back(words);
     }
-    return {{"bodies", bodies_}, {"cells", cells_}, {"joints", joints_}, {"tool", built_.tool}, {"guilty", names}};
+    return {{"kind", "machine"}, {"bodies", bodies_},     {"cells", cells_},
+            {"joints", joints_}, {"tool", built_.tool},   {"ground", ground_of(configuration_)},
+            {"guilty", names},   {"poses", Json::array()}};
   }
 
  private:
@@ -63,12 +108,10 @@ class Drawing {
   /// Beams of a member are called "leg 1 guideway [3]".
   void add_member(const std::string& leg, const PlacedMember& m) {
     const std::string name = leg + " " + m.part + " [";
-    const double radius = 2 * std::sqrt(std::max(m.section.Iy, m.section.Iz) / m.section.A);
-    bodies_.push_back({{"leg", leg},
-                       {"part", m.part},
-                       {"kind", "member"},
-                       {"radius_mm", digits(mm * radius)},
-                       {"guilty", is_guilty(leg, m.part)}});
+    Json body = {{"leg", leg}, {"part", m.part}, {"kind", "member"}, {"guilty", is_guilty(leg, m.part)}};
+    const auto outline = outlines_.find({leg, m.part});
+    put_outline(body, outline == outlines_.end() ? SectionOutline{} : outline->second, m.section);
+    bodies_.push_back(std::move(body));
     for (const frame::Beam& beam : built_.model.beams)
       if (beam.name.starts_with(name)) cells_.push_back({beam.a, beam.b, bodies_.size() - 1});
   }
@@ -77,8 +120,7 @@ class Drawing {
     const auto body = [this](const char* kind) {
       for (std::size_t i = 0; i < bodies_.size(); ++i)
         if (bodies_[i]["kind"] == kind) return i;
-      bodies_.push_back(
-          {{"leg", ""}, {"part", kind}, {"kind", kind}, {"radius_mm", 0}, {"guilty", is_guilty("", kind)}});
+      bodies_.push_back({{"leg", ""}, {"part", kind}, {"kind", kind}, {"guilty", is_guilty("", kind)}});
       return bodies_.size() - 1;
     };
     for (const auto& [a, b] : built_.arms) {
@@ -119,6 +161,7 @@ class Drawing {
   }
 
   const Configuration& configuration_;
+  Outlines outlines_;
   const frame::MechanismModel& built_;
   const std::vector<ChangedPart>& guilty_;
   Json bodies_ = Json::array(), cells_ = Json::array(), joints_ = Json::array();
@@ -126,18 +169,17 @@ class Drawing {
 
 }  // namespace
 
-Json scene_json(const std::vector<SceneStand>& stands, const std::vector<Vector6>& loads,
+Json scene_json(const Mechanism& m, const std::vector<SceneStand>& stands, const std::vector<Vector6>& loads,
                 const std::vector<ChangedPart>& guilty, Geometry geometry) {
   Json scene;
   for (const SceneStand& stand : stands) {
-    MsaAtPose msa(stand.configuration, frame::equal_division(stand.configuration, elements), "pose " + stand.label);
+    MsaAtPose msa(stand.configuration, frame::equal_division(stand.configuration, scene_elements),
+                  "pose " + stand.label);
     const auto& nodes = msa.mechanism().model.nodes;
-    if (scene.is_null()) {
-      scene = Drawing(stand.configuration, msa.mechanism(), guilty).json();
-      scene["poses"] = Json::array();
-    }
+    if (scene.is_null()) scene = Drawing(m, stand.configuration, msa.mechanism(), guilty).json();
     Json pose = {{"label", stand.label}, {"pose_mm_deg", json_numbers(stand.pose_mm_deg, "pose")}};
-    for (const frame::Node& node : nodes) pose["points_mm"].push_back(position(node.position));
+    for (const frame::Node& node : nodes) pose["points_mm"].push_back(scene_position(node.position));
+    pose["axes"] = SectionAxes(stand.configuration.legs).json(scene["bodies"].size());
     pose["shapes"] = Json::array();
     for (const Vector6& load : loads) {
       msa.solve(load, geometry);
@@ -145,10 +187,11 @@ Json scene_json(const std::vector<SceneStand>& stands, const std::vector<Vector6
       Vector6 shown = load;
       shown.tail<3>() *= mm;
       shape["load_N_Nmm"] = json_numbers(shown, "load");
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const Vector3 u = mm * msa.displacements().segment<3>(static_cast<Eigen::Index>(6 * i));
-        shape["displacement_mm"].push_back({digits(u.x()), digits(u.y()), digits(u.z())});
-      }
+      shape["arrows"] = Json::array();
+      put_load_arrows(shape["arrows"], msa.mechanism().tool, load);
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        shape["displacement_mm"].push_back(
+            scene_displacement(msa.displacements().segment<3>(static_cast<Eigen::Index>(6 * i))));
       pose["shapes"].push_back(std::move(shape));
     }
     scene["poses"].push_back(std::move(pose));

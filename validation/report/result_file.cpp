@@ -15,8 +15,8 @@ namespace {
 
 constexpr int deepest = 32;  // lists and objects in each other: results have six
 
-/// A member by its path, "candidates[].site", and what it must be: text, number, number or null (an infinite one is
-/// written so), truth, list, object; three, six, 6×6 numbers.
+/// A member by its path, "candidates[].site", "cases{}.energy_Nmm" of an object with names of its own, and what it must
+/// be: text, number, number or null (an infinite one is written so), truth, list, object; three, six, 6×6 numbers.
 struct WantedMember {
   const char* path;
   enum class Type { text, number, number_or_null, truth, list, object, three, six, six_by_six } type;
@@ -71,6 +71,9 @@ const std::vector<ResultKind>& result_kinds() {
                                                 {"found?[].parameters[].value", Type::number},
                                                 {"device?", Type::text},
                                                 {"sentence?", Type::text},
+                                                {"headline?", Type::text},
+                                                {"candidates[].title?", Type::text},
+                                                {"found?[].title?", Type::text},
                                                 {"detectable?", Type::list},
                                                 {"detectable?[].effect", Type::text},
                                                 {"detectable?[].site", Type::text},
@@ -169,6 +172,58 @@ const std::vector<ResultKind>& result_kinds() {
                                                 {"motions[].words", Type::text},
                                                 {"motions[].displacement_mm", Type::list},
                                                 {"motions[].displacement_mm[]", Type::three}}},
+                                              {"check",
+                                               {"checks", "passes"},
+                                               {{"file", Type::text},
+                                                {"verdict", Type::text},
+                                                {"passes", Type::truth},
+                                                {"matrix", Type::six_by_six},
+                                                {"checks", Type::list},
+                                                {"checks[].check", Type::text},
+                                                {"checks[].quantity", Type::text},
+                                                {"checks[].measured?", Type::number},
+                                                {"checks[].at_least?", Type::number},
+                                                {"checks[].at_most?", Type::number},
+                                                {"checks[].passes", Type::truth},
+                                                {"diagnosis", Type::list},
+                                                {"diagnosis[].sentence", Type::text},
+                                                {"diagnosis[].remedy", Type::text},
+                                                {"eigenvalues_N_per_mm", Type::six},
+                                                {"weighing_length_mm", Type::number},
+                                                {"centre_of_stiffness_mm?", Type::three},
+                                                {"centre_of_compliance_mm?", Type::three},
+                                                {"principal_translation_N_per_mm?", Type::three},
+                                                {"principal_axes?", Type::list},
+                                                {"principal_axes?[]", Type::three},
+                                                {"principal_rotation_Nmm_per_rad?", Type::three}}},
+                                              {"frame",
+                                               {"frame", "cases"},
+                                               {{"frame", Type::text},
+                                                {"geometry", Type::text},
+                                                {"notes", Type::list},
+                                                {"notes[]", Type::text},
+                                                {"cases", Type::object},
+                                                {"cases{}.displacements", Type::list},
+                                                {"cases{}.displacements[].node", Type::text},
+                                                {"cases{}.displacements[].ux_mm", Type::number},
+                                                {"cases{}.displacements[].uy_mm", Type::number},
+                                                {"cases{}.displacements[].uz_mm", Type::number},
+                                                {"cases{}.displacements[].rx_rad", Type::number},
+                                                {"cases{}.displacements[].ry_rad", Type::number},
+                                                {"cases{}.displacements[].rz_rad", Type::number},
+                                                {"cases{}.reactions", Type::list},
+                                                {"cases{}.reactions[].node", Type::text},
+                                                {"cases{}.members", Type::list},
+                                                {"cases{}.members[].member", Type::text},
+                                                {"cases{}.members[].start.N_N", Type::number},
+                                                {"cases{}.members[].end.N_N", Type::number},
+                                                {"cases{}.members[].largest_My_Nmm", Type::number},
+                                                {"cases{}.members[].largest_Mz_Nmm", Type::number},
+                                                {"cases{}.energy_Nmm", Type::number},
+                                                {"cases{}.shares", Type::list},
+                                                {"cases{}.shares[].part", Type::text},
+                                                {"cases{}.shares[].share", Type::number},
+                                                {"cases{}.checks", Type::object}}},
                                               {"solve",
                                                {"analytic", "shares"},
                                                {{"load", Type::six},
@@ -242,8 +297,13 @@ class ResultCheck {
         walk(value[i], rest.substr(2), fmt::format("{}[{}]", where, i), wanted);
       return;
     }
+    if (rest.starts_with("{}")) {
+      if (!value.is_object()) return;
+      for (const auto& [name, member] : value.items()) walk(member, rest.substr(2), where + "." + name, wanted);
+      return;
+    }
     if (rest.starts_with('.')) rest.remove_prefix(1);
-    const std::size_t end = std::min(rest.find_first_of(".["), rest.size());
+    const std::size_t end = std::min(rest.find_first_of(".[{"), rest.size());
     std::string name(rest.substr(0, end));
     const bool may_lack = name.ends_with('?');
     if (may_lack) name.pop_back();
@@ -305,7 +365,8 @@ ReadResult read_result(const std::string& text, const std::string& origin) {
     return {kind.name, std::move(json)};
   }
   throw InputError(
-      fmt::format("{}: not a result of diagnose, compare, history, solve, validate, map or show: give files that their "
+      fmt::format("{}: not a result of diagnose, compare, history, solve, validate, map, frame, check or show: give "
+                  "files that their "
                   "--json wrote",
                   origin));
 }

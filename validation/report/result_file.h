@@ -8,7 +8,8 @@
 namespace deflect {
 
 struct ReadResult {
-  std::string kind;  ///< "diagnosis", "comparison", "history", "validation", "map", "drawing", "solve"
+  std::string
+      kind;  ///< "diagnosis", "comparison", "history", "validation", "map", "drawing", "check", "frame", "solve"
   Json json;
 };
 

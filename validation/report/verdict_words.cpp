@@ -34,6 +34,24 @@ std::string joined_by_and(const Hypothesis& effects) {
   return out;
 }
 
+/// "The guideway of one leg bends more easily than the others: leg 4".
+std::string titled_words(const PlacedEffect& e) {
+  return e.leg ? fmt::format("{}: {}", e.effect->title, site_of(e)) : e.effect->title;
+}
+
+std::string joined_titles(const Hypothesis& effects, const char* between) {
+  std::string out;
+  for (const PlacedEffect& e : effects) out += (out.empty() ? "" : between) + titled_words(e);
+  return out;
+}
+
+/// An id of a tie in words; ties are among the candidates.
+std::string title_of(const std::string& id, const Diagnosis& d) {
+  for (const Candidate& c : d.candidates)
+    if (id == placed_words(c.added()) || id == name_of(c.added())) return titled_words(c.added());
+  return id;
+}
+
 /// What the effects that were found take away, in the unit in which it can be seen.
 std::string fall_of_error(const Diagnosis& d, const char* unit) {
   const double from = as_printed(micro_per_SI * d.baseline.rmse, 2), to = as_printed(micro_per_SI * d.final.rmse, 2);
@@ -116,6 +134,35 @@ std::string verdict_words(const Diagnosis& d) {
              fmt::format(
                  "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
                  names.empty() ? "" : ", not even with " + names, d.pattern);
+  }
+  return "";
+}
+
+std::string headline_words(const Diagnosis& d) {
+  if (is_mistaken(d)) return verdict_words(d);
+  const char* unit = d.rotations ? "µrad" : "µm";
+  const std::string outliers = outlier_words(d.set_aside, d.readings);
+  switch (d.verdict) {
+    case Verdict::nothing_missing:
+      return verdict_words(d);
+    case Verdict::effect:
+      return outliers + fmt::format("{}. This is missing from the model. {}", joined_titles(d.missing, "; and "),
+                                    fall_of_error(d, unit));
+    case Verdict::ambiguous: {
+      std::string either;
+      for (const std::vector<std::string>& group : d.indistinguishable) {
+        if (!either.empty()) either += " And: ";
+        for (const std::string& id : group) either += (&id == &group.front() ? "" : " – or – ") + title_of(id, d);
+        either += ".";
+      }
+      return outliers + fmt::format("Something is missing, and these data cannot tell which of these: {} {}", either,
+                                    fall_of_error(d, unit));
+    }
+    case Verdict::unknown_effect:
+      return outliers +
+             fmt::format(
+                 "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
+                 d.missing.empty() ? "" : ", not even with this: " + joined_titles(d.missing, "; and "), d.pattern);
   }
   return "";
 }

@@ -13,6 +13,9 @@ namespace deflect {
 std::string verdict_words(const Comparison&);
 std::string verdict_words(const Diagnosis&);
 
+/// The same verdict for the head of a page: what is missing first and in words, without the ids of effects.
+std::string headline_words(const Diagnosis&);
+
 /// "37 of 720 readings (5.1 %) are gross outliers …" where they are more than one in twenty; empty otherwise.
 std::string outlier_words(std::size_t set_aside, std::size_t readings);
 
