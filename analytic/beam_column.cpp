@@ -34,7 +34,8 @@ Functions phi(double z) {
     constexpr Functions factorial = {1, 1, 2, 6, 24, 120, 720, 5040, 40320};
     for (const std::size_t n : {functions - 2, functions - 1}) {
       double term = 1 / factorial[n];
-      for (int k = 1; k < 40; ++k) {
+      for (int k = 1; k < 40; ++k) {  // |term| falls from the first one on
+        if (f[n] + term == f[n]) break;
         f[n] += term;
         const double m = 2.0 * k + static_cast<double>(n);
         term *= z / (m * (m - 1));

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "analytic/beam_column.h"
 #include "analytic/flexibility.h"
@@ -19,6 +20,8 @@ constexpr int most_pieces = 64;
 constexpr double known_to = 0.01;    // of the load at which it gives way
 constexpr double follows = 0.4;      // a step of Newton's method beside the one before, on the path of equilibria
 constexpr double least_step = 1e-6;  // of the load
+constexpr double settled = 1e-12;    // of the last step of Newton's method
+constexpr double nearly = 1e-6;      // from a step of which the next one is likely to be the last
 
 std::size_t legs_step(const VirtualChain& whole) {
   return static_cast<std::size_t>(
@@ -79,8 +82,15 @@ Vector3 turning_moment(const Deformed& d) {
   return d.outlook.geometry == Geometry::finite ? Vector3(d.whole.F.tail<3>()) : Vector3::Zero();
 }
 
+/// What the last step of Newton's method knows of the state that it leaves, where it was looked at whether that is
+/// stable: all but nothing was left to move.
+struct LastStep {
+  Linearised before;
+  Vector6 moves = Vector6::Zero();  // [δ; ψ] of the end
+};
+
 /// Newton's method under the wrench F and a share of the misfits.
-bool equilibrium(Deformed& d, const Vector6& F, double misfit) {
+bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<LastStep>& last) {
   Outlook& c = d.outlook;
   VirtualChain& whole = d.whole;
   whole.F = F;
@@ -92,7 +102,9 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit) {
   c.least = !at_rest ? 1e-9 * largest : largest > 0 ? largest : 1;
   for (int i = 0; i < 50; ++i) {
     ++d.iterations;
-    const Linearised l = whole.linearise(c);
+    Outlook here = c;
+    here.judged = i > 0 && d.residual <= nearly;
+    Linearised l = whole.linearise(here);
     const Tangent tangent(l, turning_moment(d));
     const MatrixX difference = l.K - l.H;
     const VectorX delta =
@@ -107,21 +119,33 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit) {
     // A first step from rest takes contacts for what they will be.
     if (finite && i > (at_rest ? 1 : 0) && d.residual > 1e-7 && progress.step > follows * step) return false;
     step = progress.step;
-    if (d.residual <= 1e-12 || (d.residual <= 1e-9 && d.residual > 0.3 * previous)) return true;
+    if (here.judged && d.residual <= settled) {
+      const Vector6 moves = l.J * delta;
+      last = LastStep{std::move(l), moves};
+    }
+    if (d.residual <= settled || (d.residual <= 1e-9 && d.residual > 0.3 * previous)) return true;
     previous = d.residual;
   }
   return false;
 }
 
 /// Reads off the state what is asked of it; false where it is not stable.
-bool conclude(Deformed& d) {
-  Outlook asked = d.outlook;
-  asked.judged = true;
-  const Linearised l = d.whole.linearise(asked);
+bool conclude(Deformed& d, std::optional<LastStep> last) {
   const Geometry geometry = d.outlook.geometry;
-  d.translation = translation(d.whole, l, geometry);
-  d.turning = l.end.D;
-  d.rotation_vector = geometry == Geometry::finite ? rotation_vector(l.end.D) : Vector3(l.J.bottomRows<3>() * l.x);
+  if (!last) {
+    Outlook asked = d.outlook;
+    asked.judged = true;
+    last = LastStep{d.whole.linearise(asked)};
+  }
+  const Linearised& l = last->before;
+  const Vector3 turn = last->moves.tail<3>();
+  d.translation = translation(d.whole, l, geometry) + last->moves.head<3>();
+  if (geometry == Geometry::finite) {
+    d.turning = combined(turning(turn), l.end.D);
+    d.rotation_vector = rotation_vector(d.turning);
+  } else {
+    d.rotation_vector = l.J.bottomRows<3>() * l.x + turn;
+  }
   const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), geometry));
   d.leg_wrenches.clear();
   for (const VirtualChain& leg : legs_of(d.whole).branches) d.leg_wrenches.push_back(axes * leg.F);
@@ -138,14 +162,19 @@ bool all_fit(const std::vector<PlacedLeg>& legs) {
   });
 }
 
+/// Whether there is a stable state under the wrench F and a share of the misfits; d is then in it.
+bool settles(Deformed& d, const Vector6& F, double misfit) {
+  std::optional<LastStep> last;
+  return equilibrium(d, F, misfit, last) && conclude(d, std::move(last));
+}
+
 /// From the state as it is to all of the misfits under F, where F is given to a state that has them already.
 void approach(Deformed& d, const Vector6& F, bool fitting) {
   d.load_factor = 0;
   for (double step = 1; d.load_factor < 1;) {
     Deformed next = d;
     const double factor = std::min(1.0, d.load_factor + step);
-    const bool settles = equilibrium(next, fitting ? Vector6::Zero() : Vector6(factor * F), fitting ? factor : 1);
-    const bool stable = settles && conclude(next);
+    const bool stable = settles(next, fitting ? Vector6::Zero() : Vector6(factor * F), fitting ? factor : 1);
     d.iterations = next.iterations;
     if (stable) {
       d = std::move(next);
@@ -199,9 +228,7 @@ double relative(const Eigen::Vector2d& e, const Deformed& d, double length) {
   return moved > 0 ? std::max(e(0), length * e(1)) / moved : 0;
 }
 
-/// `coarser`: with fewer pieces, whose state is taken for the beginning where it is one.
-Deformed with_pieces(const Configuration& c, Geometry geometry, const Vector6& F, std::vector<int> pieces,
-                     const Deformed* coarser) {
+Deformed unloaded(const Configuration& c, Geometry geometry, std::vector<int> pieces) {
   Deformed d;
   d.pieces = std::move(pieces);
   Pieces of_members{d.pieces};
@@ -209,31 +236,51 @@ Deformed with_pieces(const Configuration& c, Geometry geometry, const Vector6& F
   d.whole = virtual_chain_of({"the mechanism", {c.base, legs, c.tool}}, c.pose.p_WT, c.pose.p_WT, c.size, of_members);
   d.outlook.geometry = geometry;
   d.leg_wrenches.assign(c.legs.size(), Vector6::Zero());
-  if (coarser && coarser->converged) {
-    Deformed same = d;
-    take_state(same.whole, coarser->whole);
-    same.converged = equilibrium(same, F, 1) && conclude(same);
-    same.load_factor = 1;
-    if (same.converged) return same;
-  }
+  return d;
+}
+
+Deformed loaded(Deformed d, const Configuration& c, const Vector6& F) {
   const bool fits = all_fit(c.legs);
   if (!fits || F.isZero(0)) approach(d, F, true);
   if ((fits || d.converged) && !F.isZero(0)) approach(d, F, false);
   return d;
 }
 
+/// `coarser`: with fewer pieces, whose state is taken for the beginning where it is one.
+Deformed with_pieces(const Configuration& c, const Vector6& F, std::vector<int> pieces, const Deformed& coarser) {
+  Deformed d = unloaded(c, coarser.outlook.geometry, std::move(pieces));
+  if (coarser.converged) {
+    Deformed same = d;
+    take_state(same.whole, coarser.whole);
+    same.converged = settles(same, F, 1);
+    same.load_factor = 1;
+    if (same.converged) return same;
+  }
+  return loaded(std::move(d), c, F);
+}
+
 }  // namespace
 
-Deformed deform(const Configuration& c, Geometry geometry, const Vector6& F) {
+Deformed at_rest(const Configuration& c, Geometry geometry, bool linear) {
   std::size_t members = 0;
   for_each_part(c.legs, [&](const auto& part) {
     if constexpr (requires { part.section; }) ++members;
   });
-  Deformed d = with_pieces(c, geometry, F, std::vector<int>(members, 1), nullptr);
+  Deformed d = unloaded(c, geometry, std::vector<int>(members, 1));
+  if (linear && all_fit(c.legs)) {
+    auto& legs = std::get<VirtualGroup>(d.whole.steps[legs_step(d.whole)]);
+    legs.known = legs.restrain(d.outlook);
+  }
+  return d;
+}
+
+Deformed deform(const Deformed& rest, const Configuration& c, const Vector6& F) {
+  Deformed d = loaded(rest, c, F);
   const std::vector<double> bends = bends_of(d);
   const double most = bends.empty() ? 0 : *std::max_element(bends.begin(), bends.end());
   d.discretisation = {most * d.translation.norm(), most * d.rotation_vector.norm()};
-  if (most <= small_error || geometry != Geometry::finite) return d;  // what one piece leaves is known by its order
+  if (most <= small_error || d.outlook.geometry != Geometry::finite)
+    return d;  // what one piece leaves is known by its order
   for (double left = 1; left > small_error;) {
     std::vector<int> pieces = divided(d.pieces, bends, d.converged);
     if (pieces == d.pieces) {
@@ -242,7 +289,7 @@ Deformed deform(const Configuration& c, Geometry geometry, const Vector6& F) {
       d.message = fmt::format("members bend so far that {} pieces each leave an error of {:.1e}", most_pieces, left);
       break;
     }
-    Deformed finer = with_pieces(c, geometry, F, std::move(pieces), &d);
+    Deformed finer = with_pieces(c, F, std::move(pieces), d);
     finer.discretisation = {(finer.translation - d.translation).norm() / 3,
                             rotation_vector(combined(finer.turning, d.turning.transpose())).norm() / 3};
     left = d.converged && finer.converged ? relative(finer.discretisation, finer, c.size) : 1;

@@ -41,8 +41,12 @@ struct Deformed {
   std::string message;                                       ///< why it has not converged
 };
 
+/// The beginning for any load: nothing has moved, every member is in one piece. `linear`: no law's stiffness depends on
+/// its force, so that the first step of Newton's method sees the same legs whatever the load.
+Deformed at_rest(const Configuration&, Geometry, bool linear);
+
 /// The state under the wrench F at T, weight included. Not converged: the last stable state that was found.
-Deformed deform(const Configuration&, Geometry, const Vector6& F_T_W);
+Deformed deform(const Deformed& rest, const Configuration&, const Vector6& F_T_W);
 
 /// Tangent of a state, [f; m] at T by [δ; spin], base axes: K = J⁻ᵀ(K − H)J⁻¹ − ½[m]× with K and H of the whole chain,
 /// symmetric where no outer moment m acts. Second order: K_E + K_G at the forces of the state. Throws ModelError where

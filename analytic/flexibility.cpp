@@ -60,7 +60,9 @@ MatrixX complement(const MatrixX& columns) {
   Eigen::ColPivHouseholderQR<MatrixX> qr;
   qr.setThreshold(1e-9);
   qr.compute(columns);
-  return evaluated(qr.householderQ()).rightCols(columns.rows() - qr.rank());
+  const Eigen::Index left = columns.rows() - qr.rank();
+  if (left == 0) return MatrixX(columns.rows(), 0);
+  return evaluated(qr.householderQ()).rightCols(left);
 }
 
 Matrix6X carried_wrenches(const Matrix6X& J, double length) {

@@ -151,7 +151,9 @@ AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& 
 
 AnalyticSolution AnalyticModel::deformed_equilibrium(const Vector6& F, Geometry geometry) const {
   AnalyticSolution s;
-  s.deformed = std::make_shared<const Deformed>(deform(configuration_, geometry, F));
+  if (!rest_ || rest_->outlook.geometry != geometry)
+    rest_ = std::make_shared<const Deformed>(at_rest(configuration_, geometry, linear()));
+  s.deformed = std::make_shared<const Deformed>(deform(*rest_, configuration_, F));
   const Deformed& d = *s.deformed;
   s.displacement << d.translation, d.rotation_vector;
   s.load = F;

@@ -95,7 +95,9 @@ class AnalyticModel {
   std::vector<SteppedLaw> stepped_;
   std::optional<Lines> lines_;  ///< where frictions beside the legs are all that jumps
   int frictions_ = 0;
-  mutable std::shared_ptr<Imposed> imposed_;  // made when first needed: a model is for one thread at a time
+  // Made when first needed: a model is for one thread at a time.
+  mutable std::shared_ptr<Imposed> imposed_;
+  mutable std::shared_ptr<const Deformed> rest_;
 };
 
 }  // namespace deflect::analytic

@@ -111,6 +111,7 @@ void hold_idle(Linearised& l, const std::vector<int>& step, double length) {
   kept.resize(static_cast<std::size_t>(rest.cols() + moving.cols()), true);
   VectorX scale = VectorX::Ones(rest.cols() + moving.cols());
   scale.head(rest.cols()) = l.scale(others);
+  l.all = false;
   l.kept = kept;
   l.scale = scale;
   l.Z.resize(l.Z.rows(), rest.cols() + moving.cols());
@@ -261,6 +262,7 @@ Linearised VirtualChain::linearise(const Outlook& c) {
       out.s.segment<6>(at) = held.F0;
       out.K.block<6, 6>(at, at) = held.K;
       out.stable = out.stable && held.stable;
+      out.all = out.all && held.B.cols() == 0;
       const Matrix6X free = held.B.cols() == 0 ? Matrix6X(Matrix6::Identity()) : free_twists(held.B, length);
       if (held.B.cols() > 0)
         out.offset.segment<6>(at) =

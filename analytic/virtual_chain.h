@@ -29,6 +29,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -108,6 +109,8 @@ struct VirtualGroup {
   std::string part;
   Tip tip;
   std::vector<VirtualChain> branches;
+  /// About the state as it is, the branches' too, where no outlook changes it but one that is judged.
+  std::optional<Restraint> known = {};
 
   Restraint restrain(const Outlook&);
   /// The body moves further by t under the wrench F.
@@ -121,8 +124,9 @@ struct Linearised {
   Matrix6X J;
   MatrixX H, K;
   VectorX s, x;
-  VectorX turned;  ///< second order: what H of the state, H x, adds to JᵀF; taken off s
-  MatrixX Z;       ///< δ = offset + Z z: motions that rigid branches of groups allow
+  VectorX turned;   ///< second order: what H of the state, H x, adds to JᵀF; taken off s
+  MatrixX Z;        ///< δ = offset + Z z: motions that rigid branches of groups allow
+  bool all = true;  ///< Z = 1, offset = 0
   VectorX offset;
   std::vector<bool> kept;  ///< of z: not to be eliminated, passive freedoms and groups
   VectorX scale;           ///< of z: 1/length of rotations

@@ -19,7 +19,7 @@ Vector6 weights(double rotation) {
 }
 
 int negatives(const MatrixX& symmetric, double zero) {
-  if (symmetric.rows() == 0) return 0;
+  if (symmetric.rows() == 0 || symmetric.llt().info() == Eigen::Success) return 0;
   const VectorX eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixX>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
   return static_cast<int>((eigenvalues.array() < -zero * eigenvalues.cwiseAbs().maxCoeff()).count());
 }
@@ -43,6 +43,18 @@ MatrixX pick(const MatrixX& A, const std::vector<Eigen::Index>& rows, const std:
   return A(rows, cols);
 }
 
+/// J, K − H and what it resists with, by z.
+struct ByFreeMotions {
+  MatrixX J, A;
+  VectorX r;
+};
+
+ByFreeMotions by_free_motions(const Linearised& l) {
+  MatrixX difference = l.K - l.H;
+  if (l.all) return {l.J, std::move(difference), l.s};
+  return {l.J * l.Z, l.Z.transpose() * difference * l.Z, l.Z.transpose() * (l.s + difference * l.offset)};
+}
+
 }  // namespace
 
 // With A = K − H, δ = offset + Z z and z split into E, which is eliminated, and Q, which stays,
@@ -62,11 +74,8 @@ Restraint VirtualChain::restrain(const Tip& end, const Outlook& outlook) {
     c << end.x.head<3>() - l.end.displacement(p_E), rotation_vector(combined(end.D, l.end.D.transpose()));
   else
     c = end.x - outlook.misfit * misfit - l.J * l.x;
-  c -= l.J * l.offset;
-
-  const MatrixX difference = l.K - l.H;
-  const MatrixX J = l.J * l.Z, A = l.Z.transpose() * difference * l.Z;
-  const VectorX r = l.Z.transpose() * (l.s + difference * l.offset);
+  const auto [J, A, r] = by_free_motions(l);
+  if (!l.all) c -= l.J * l.offset;
   std::vector<Eigen::Index> E, Q;
   for (std::size_t i = 0; i < l.kept.size(); ++i) (l.kept[i] ? Q : E).push_back(static_cast<Eigen::Index>(i));
   const std::vector<Eigen::Index> six = {0, 1, 2, 3, 4, 5};
@@ -75,8 +84,14 @@ Restraint VirtualChain::restrain(const Tip& end, const Outlook& outlook) {
   const Eigen::PartialPivLU<MatrixX> lu = [&] {
     return E.empty() ? Eigen::PartialPivLU<MatrixX>() : Eigen::PartialPivLU<MatrixX>(A_EE);
   }();
-  const auto solve = [&](const MatrixX& right) -> MatrixX { return E.empty() ? right : MatrixX(lu.solve(right)); };
-  const MatrixX yields = solve(J_E.transpose()), A_EE_EQ = solve(A_EQ), A_EE_r = solve(r_E);
+  const Eigen::Index kept = std::ssize(Q);
+  MatrixX solved(std::ssize(E), 7 + kept);
+  solved.leftCols(6) = J_E.transpose();
+  solved.middleCols(6, kept) = A_EQ;
+  solved.rightCols(1) = r_E;
+  if (!E.empty()) solved = lu.solve(solved).eval();
+  const MatrixX yields = solved.leftCols(6), A_EE_EQ = solved.middleCols(6, kept);
+  const VectorX A_EE_r = solved.col(6 + kept);
   const Vector6 e = J_E * A_EE_r;
 
   const Vector6 W = weights(length);
@@ -127,6 +142,7 @@ Progress VirtualChain::follow(const Vector6& t, const VectorX& mu, const Outlook
 }
 
 Restraint VirtualGroup::restrain(const Outlook& c) {
+  if (known && !c.judged) return *known;
   Restraint all;
   for (VirtualChain& branch : branches) {
     const Restraint one = branch.restrain(tip, c);
@@ -144,6 +160,7 @@ Restraint VirtualGroup::restrain(const Outlook& c) {
 }
 
 Progress VirtualGroup::follow(const Vector6& t, const Vector6& F, const Outlook& c) {
+  known.reset();
   // What rigid branches carry is what the others leave of F.
   Vector6 rest = F;
   MatrixX B(6, 0);

@@ -12,6 +12,7 @@
 #include "validation/measurement/campaign.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/random.h"
+#include "validation/report/compare_results.h"
 
 namespace deflect {
 namespace {
@@ -262,7 +263,25 @@ TEST(Compare, ResultsDoNotDependOnThreads) {
   four.threads = 4;
   const Comparison a = compare(m, data, one), b = compare(m, data, four);
   EXPECT_EQ(a.residual, b.residual);
-  EXPECT_EQ(a.chi2_per_dof, b.chi2_per_dof);
+  EXPECT_EQ(compare_json(a), compare_json(b));
+}
+
+TEST(Compare, TheDeformedShapeUnderOtherLoadsGoesWithTheirSquare) {
+  const Mechanism m = ideal();
+  Measurements data = made(m, "random", nothing), half = data;
+  for (Reading& r : half.readings) r.load /= 2;
+  ResidualStudy whole = residual_study(m, data, 0), less = residual_study(m, half, 0);
+  EXPECT_EQ(deformed_shape_under(whole, 0, half.readings[0].load), Vector6::Zero());
+  whole.deformed_shape = deformed_shape_of(whole, 0);
+  less.deformed_shape = deformed_shape_of(less, 0);
+  double apart = 0, size = 0;
+  for (std::size_t i = 0; i < half.readings.size(); ++i) {
+    const Vector6 wanted = less.deformed_shape[i];
+    apart += (deformed_shape_under(whole, i, half.readings[i].load) - wanted).head<3>().squaredNorm();
+    size += wanted.head<3>().squaredNorm();
+  }
+  EXPECT_GT(size, 0);
+  EXPECT_LT(apart, 0.01 * size);  // what is odd in the load: the next order, of the rotations
 }
 
 // Data that are not what they say.

@@ -100,6 +100,18 @@ TEST(Whitening, WeighsByTheInverseOfTheDenseCovariance) {
   }
 }
 
+TEST(Whitening, ManyColumnsAreThoseTakenOneByOneWhateverTheThreads) {
+  const Errors e(4, true);
+  Random random(12);
+  const MatrixX X = normal(random, e.rows(), 4001), alone = Whitening(e.blocks, e.A, 1)(X);
+  ASSERT_GT(X.size(), 200'000);  // so many are shared among threads
+  for (const int threads : {2, 5}) EXPECT_EQ(Whitening(e.blocks, e.A, threads)(X), alone);
+  MatrixX one_by_one(X.rows(), X.cols());
+  const Whitening white(e.blocks, e.A);
+  for (Eigen::Index i = 0; i < X.cols(); ++i) one_by_one.col(i) = white(X.col(i));
+  expect_close(alone, one_by_one);
+}
+
 TEST(Whitening, NumbersWithoutACovarianceDoNotCount) {
   Errors e(3, true);
   const NoiseBlock out = e.blocks[5];

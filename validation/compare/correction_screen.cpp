@@ -10,6 +10,7 @@
 #include "msa/base/error.h"
 #include "validation/compare/prediction.h"
 #include "validation/compare/recording_mistakes.h"
+#include "validation/compare/residual_study.h"
 #include "validation/measurement/configure_all.h"
 
 namespace deflect {
@@ -114,22 +115,13 @@ double CorrectionScreen::loss(const Measurements& data, const std::vector<Vector
   return all.empty() ? 0 : sum / static_cast<double>(all.size());
 }
 
-Vector6 CorrectionScreen::shape(std::size_t row, const Vector6& load) const {
-  if (study_->deformed_shape.empty()) return Vector6::Zero();
-  const auto squared = [&](const Vector6& F) {
-    return F.head<3>().squaredNorm() + F.tail<3>().squaredNorm() / (size_ * size_);
-  };
-  const double recorded = squared(study_->data->readings[rows_[row]].load);
-  return (recorded > 0 ? squared(load) / recorded : 0) * study_->deformed_shape[rows_[row]];
-}
-
 double CorrectionScreen::loss(const Correction& c) const {
   const Measurements data = corrected(sample_, c);
   std::vector<Vector6> predicted(rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Reading& recorded = study_->data->readings[rows_[i]];
     predicted[i] = study_->predicted[rows_[i]];
-    predicted[i] += shape(i, data.readings[i].load);
+    predicted[i] += deformed_shape_under(*study_, rows_[i], data.readings[i].load);
     predicted[i] += study_->compliance[recorded.pose] * (data.readings[i].load - recorded.load);
   }
   return loss(data, predicted, c.displacement);
@@ -141,7 +133,8 @@ std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const Corre
   o.threads = threads_;
   try {
     std::vector<Vector6> predicted = predict(*mechanism_, configure_all(*mechanism_, data), data, o);
-    for (std::size_t i = 0; i < rows_.size(); ++i) predicted[i] += shape(i, data.readings[i].load);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      predicted[i] += deformed_shape_under(*study_, rows_[i], data.readings[i].load);
     return predicted;
   } catch (const ModelError&) {      // does not reach it
   } catch (const NumericalError&) {  // does not stand there

@@ -45,8 +45,6 @@ class CorrectionScreen {
   std::vector<Difference> differences(const Measurements&, const std::vector<Vector6>& predicted) const;
   double loss(const Measurements&, const std::vector<Vector6>& predicted, const Rewritten& displacement) const;
   std::optional<std::vector<Vector6>> predicted_with(const Correction&) const;
-  /// What the deformed shape adds to a reading of the sample: even in the load, it goes with the load's square.
-  Vector6 shape(std::size_t row, const Vector6& load) const;
 
   const Mechanism* mechanism_;
   const ResidualStudy* study_;

@@ -29,22 +29,28 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const Unc
   VectorX most = VectorX::Zero(static_cast<Eigen::Index>(sites));
   for (const VectorX& f : s.force) most = most.cwiseMax(f.cwiseAbs());
   const Eigen::Index columns = static_cast<Eigen::Index>(sites) * knots;
-  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> by_reading;
   VectorX weight = VectorX::Zero(columns);  // how often a knot was near
+  MatrixX hats(columns, std::ssize(s.force));
   for (std::size_t i = 0; i < s.force.size(); ++i) {
-    Eigen::Matrix<double, 6, Eigen::Dynamic> block(6, columns);
+    const auto reading = static_cast<Eigen::Index>(i);
     for (std::size_t k = 0; k < sites; ++k) {
       const auto at = static_cast<Eigen::Index>(k);
       const double x = most(at) > 0 ? s.force[i](at) / most(at) : 0;
-      for (int j = 0; j < knots; ++j) {
-        const double h = hat(x, j, knots);
-        block.col(at * knots + j) = h * s.sites[s.data->readings[i].pose][k].g;
-        weight(at * knots + j) += h;
-      }
+      for (int j = 0; j < knots; ++j) hats(at * knots + j, reading) = hat(x, j, knots);
     }
-    by_reading.push_back(std::move(block));
+    weight += hats.col(reading);
   }
-  const Regression fit = regress(u, r, rows_of(s.values, by_reading));
+  MatrixX shapes(std::ssize(s.values), columns);
+  for (std::size_t n = 0; n < s.values.size(); ++n) {
+    const MeasuredValue& v = s.values[n];
+    const std::vector<Site>& own = s.sites[s.data->readings[v.reading].pose];
+    for (Eigen::Index c = 0; c < columns; ++c)
+      shapes(static_cast<Eigen::Index>(n), c) =
+          hats(c, static_cast<Eigen::Index>(v.reading)) *
+          own[static_cast<std::size_t>(c / knots)].g(static_cast<Eigen::Index>(v.component));
+  }
+  hats.resize(0, 0);
+  const Regression fit = regress(u, r, shapes);
   for (std::size_t k = 0; k < sites; ++k) {
     const Site& site = s.sites.front()[k];
     ElongationCurve curve{site.name, site.rotation, {}, {}, {}};

@@ -121,9 +121,13 @@ VectorX elastic_along(const ResidualStudy& s) {
 
 VectorX elastic_across(const ResidualStudy& s, double power) {
   const double mean = mean_extension(s);
+  std::vector<std::vector<double>> weight;  // by pose and site
+  for (const std::vector<Site>& sites : s.sites) {
+    weight.emplace_back();
+    for (const Site& site : sites) weight.back().push_back((1 - site.along) * std::pow(site.extension / mean, power));
+  }
   return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
-    const Site& site = s.sites[s.data->readings[i].pose][k];
-    return s.force[i](static_cast<Eigen::Index>(k)) * (1 - site.along) * std::pow(site.extension / mean, power);
+    return s.force[i](static_cast<Eigen::Index>(k)) * weight[s.data->readings[i].pose][k];
   });
 }
 

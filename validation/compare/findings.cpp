@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "validation/compare/finding_text.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 namespace {
@@ -19,6 +20,7 @@ struct Candidate {
   std::vector<std::string> names;
   std::string unit;
   MatrixX columns;
+  bool is_pattern = false;  // of the list, in its order
 };
 
 /// What one site alone can do: yield along its line; where it has a slide, along this, across it, and across as a bent
@@ -54,7 +56,7 @@ std::vector<Candidate> candidates_of(const ResidualStudy& s, const std::vector<P
   for (std::size_t i = 0; i < patterns.size(); ++i) {
     const Pattern& p = patterns[i];
     if (p.id == "elastic by site") add_single_sites(s, p, columns[i], out);
-    out.push_back({p.id, p.columns, p.unit, columns[i]});
+    out.push_back({p.id, p.columns, p.unit, columns[i], true});
     if (p.id == "elastic" && has_slides(s)) {
       out.push_back({"elastic along slides", {"all"}, p.unit, elastic_along(s)});
       const int powers = varies_in_extension(s) ? 4 : 1;  // a carriage, its guide's clamp tilting, the guide bending
@@ -80,20 +82,42 @@ MatrixX joined(const MatrixX& a, const MatrixX& b) {
 /// The exponent that takes most χ² away: grid, then a parabola through the best three. `column(p)`: of the exponent.
 std::optional<Exponent> best_exponent(double low, double high, double step, const Regressions& regressions,
                                       const std::function<VectorX(double)>& column) {
-  std::vector<double> at, gains;
-  std::vector<VectorX> columns;
-  for (double p = low; p <= high + 1e-9; p += step) at.push_back(p), columns.push_back(column(p));
-  MatrixX all(columns.front().size(), std::ssize(columns));
-  for (std::size_t i = 0; i < columns.size(); ++i) all.col(static_cast<Eigen::Index>(i)) = columns[i];
-  columns.clear();
-  all = regressions.whitened(all);
-  for (Eigen::Index i = 0; i < all.cols(); ++i) gains.push_back(regressions.on_whitened(all.col(i)).gain);
+  std::vector<double> at;
+  for (double p = low; p <= high + 1e-9; p += step) at.push_back(p);
+  std::vector<double> gains(at.size());
+  constexpr std::size_t some = 8;  // columns that are whitened together
+  for_each_case((at.size() + some - 1) / some, 1, regressions.threads(), [&](std::size_t part) {
+    const std::size_t first = part * some, end = std::min(first + some, at.size());
+    MatrixX columns;
+    for (std::size_t i = first; i < end; ++i) {
+      const VectorX one = column(at[i]);
+      if (i == first) columns.resize(one.size(), static_cast<Eigen::Index>(end - first));
+      columns.col(static_cast<Eigen::Index>(i - first)) = one;
+    }
+    columns = regressions.whitened(columns);
+    for (std::size_t i = first; i < end; ++i)
+      gains[i] = regressions.on_whitened(columns.col(static_cast<Eigen::Index>(i - first))).gain;
+  });
   const auto best = static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
   if (best == 0 || best + 1 == at.size() || gains[best] < 25) return std::nullopt;
   const double curvature = (gains[best - 1] - 2 * gains[best] + gains[best + 1]) / (step * step);
   if (!(curvature < 0)) return std::nullopt;
   const double slope = (gains[best + 1] - gains[best - 1]) / (2 * step);
   return Exponent{at[best] - slope / curvature, std::sqrt(-2 / curvature)};
+}
+
+/// Whitened, by candidate.
+std::vector<MatrixX> whitened_columns(const std::vector<Candidate>& candidates, const Uncertainty& u) {
+  std::vector<MatrixX> out(candidates.size());
+  for_each_case(out.size(), 1, u.threads(), [&](std::size_t i) { out[i] = u.whitened(candidates[i].columns); });
+  return out;
+}
+
+std::vector<Regression> fits_of(const Regressions& regressions, const std::vector<MatrixX>& whitened) {
+  std::vector<Regression> out(whitened.size());
+  for_each_case(out.size(), 1, regressions.threads(),
+                [&](std::size_t i) { out[i] = regressions.on_whitened(whitened[i]); });
+  return out;
 }
 
 }  // namespace
@@ -114,25 +138,23 @@ std::optional<Exponent> extension_exponent(const ResidualStudy& s, const Regress
 }
 
 Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
-                       const std::vector<Pattern>& patterns, const std::vector<MatrixX>& columns) {
+                       const std::vector<Pattern>& patterns, const std::vector<MatrixX>& columns, bool in_words) {
   const std::vector<Candidate> candidates = candidates_of(s, patterns, columns);
   const double penalty = std::log(static_cast<double>(s.data->readings.size()));
   const double chi2 = u.inner(r, r)(0, 0), freedoms = static_cast<double>(u.count());
   Findings out;
   out.columns = MatrixX(r.size(), 0);
   out.chi2_left = chi2;
-  std::vector<MatrixX> whitened;
-  for (const Candidate& c : candidates) whitened.push_back(u.whitened(c.columns));
+  const std::vector<MatrixX> whitened = whitened_columns(candidates, u);
   std::vector<bool> found(candidates.size(), false);  // beside what it all but follows from, rounding of one is left
   while (out.findings.size() < most_findings) {
-    std::vector<Regression> fits;
+    const std::vector<Regression> fits = fits_of(Regressions(u, r, out.columns), whitened);
+    if (out.alone.empty())
+      for (std::size_t i = 0; i < fits.size(); ++i)
+        if (candidates[i].is_pattern) out.alone.push_back(fits[i]);
     std::vector<double> scores;
-    const Regressions regressions(u, r, out.columns);
-    for (const MatrixX& columns_of_one : whitened) {
-      fits.push_back(regressions.on_whitened(columns_of_one));
-      scores.push_back(fits.back().gain - penalty * fits.back().freedoms);
-      if (found[scores.size() - 1]) scores.back() = -std::numeric_limits<double>::infinity();
-    }
+    for (std::size_t i = 0; i < fits.size(); ++i)
+      scores.push_back(found[i] ? -std::numeric_limits<double>::infinity() : fits[i].gain - penalty * fits[i].freedoms);
     const auto best = static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
     const Candidate& c = candidates[best];
     const Regression& fit = fits[best];
@@ -152,7 +174,7 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
     for (std::size_t i = 0; i < candidates.size(); ++i)
       if (i != best && scores[i] > scores[best] - close_call && scores[i] > 0) f.instead.push_back(candidates[i].id);
     f.shape = c.columns;
-    f.sentence = sentence_of(f, s, u, r, out.columns);
+    if (in_words) f.sentence = sentence_of(f, s, u, r, out.columns);
     out.columns = joined(out.columns, c.columns);
     out.findings.push_back(std::move(f));
   }

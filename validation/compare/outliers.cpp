@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "validation/compare/uncertainty.h"
+#include <optional>
 
 namespace deflect {
 
 constexpr double limit = 4.5;
 
-std::vector<bool> gross_outliers(const ResidualStudy& s, const PartedColumns& A, const std::vector<double>& sigma,
-                                 const VectorX& residual, const MatrixX& patterns) {
+Outliers gross_outliers(const ResidualStudy& s, const PartedColumns& A, const std::vector<double>& sigma,
+                        const VectorX& residual, const MatrixX& patterns, int threads) {
+  const auto without = [&](const std::vector<bool>& aside) {
+    return Uncertainty(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, aside, threads);
+  };
   std::vector<bool> aside(s.data->readings.size(), false);
+  std::optional<Uncertainty> uncertainty;
   for (int round = 0; round < 5; ++round) {
-    const Uncertainty u(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, aside);
+    uncertainty = without(aside);
+    const Uncertainty& u = *uncertainty;
     const VectorX rest =
         patterns.cols() > 0 ? VectorX(residual - patterns * regress(u, residual, patterns).amplitude) : residual;
     const VectorX left = rest - A * u.nuisances(rest);
@@ -29,10 +33,10 @@ std::vector<bool> gross_outliers(const ResidualStudy& s, const PartedColumns& A,
     const double typical = sorted[sorted.size() / 2];  // about 1.2 for three Gaussian numbers
     std::vector<bool> next(aside.size());
     for (std::size_t i = 0; i < worst.size(); ++i) next[i] = worst[i] > limit * std::max(1.0, typical / 1.2);
-    if (next == aside) break;
+    if (next == aside) return {std::move(aside), std::move(*uncertainty)};
     aside = next;
   }
-  return aside;
+  return {aside, without(aside)};
 }
 
 }  // namespace deflect

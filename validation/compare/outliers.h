@@ -3,13 +3,18 @@
 
 #include "validation/compare/parted_columns.h"
 #include "validation/compare/patterns.h"
+#include "validation/compare/uncertainty.h"
 
 namespace deflect {
 
 /// By reading: those that neither tolerances nor the patterns (columns over the measured numbers) bring within 4.5 of
 /// the others' standard deviations, which chance does to one reading in 50 000. The rest of one that is set aside is
 /// judged by what the others say. A, σ, residual: of the study's values, as in uncertainty.h.
-std::vector<bool> gross_outliers(const ResidualStudy&, const PartedColumns& A, const std::vector<double>& sigma,
-                                 const VectorX& residual, const MatrixX& patterns);
+struct Outliers {
+  std::vector<bool> aside;
+  Uncertainty uncertainty;  ///< of the others
+};
+Outliers gross_outliers(const ResidualStudy&, const PartedColumns& A, const std::vector<double>& sigma,
+                        const VectorX& residual, const MatrixX& patterns, int threads = 1);
 
 }  // namespace deflect

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <unordered_set>
 
 #include "msa/base/error.h"
 #include "validation/compare/correction_screen.h"
@@ -128,8 +130,7 @@ std::size_t end_of_equals(const std::vector<Tried>& all, std::size_t from, doubl
 
 class MistakeSearch {
  public:
-  MistakeSearch(const Comparison& c, const MisfitAccount& before, double equal_within,
-                const std::function<MisfitAccount(const Measurements&)>& again)
+  MistakeSearch(const Comparison& c, const MisfitAccount& before, double equal_within, const ComparedAgain& again)
       : c_(c), before_(before), equal_within_(equal_within), again_(again) {}
 
   /// The best of several are tried on all readings, until one leaves nothing to explain.
@@ -150,17 +151,29 @@ class MistakeSearch {
   const std::optional<RecordingMistake>& found() const { return found_; }
 
  private:
+  /// By how much the corrected data's description is shorter than the recorded ones'.
+  double shorter_by(const MisfitAccount& after, const Correction& correction) const {
+    return description(before_, 0, c_.readings) - description(after, correction.fitted, c_.readings) -
+           cost_of_scale(c_, correction);
+  }
+
   void try_one(const std::vector<Tried>& all, std::size_t from, std::size_t to, const Correction& correction) {
-    MisfitAccount after;
+    std::optional<MisfitAccount> compared;
     try {
-      after = again_(corrected(*c_.study.data, correction));
+      compared = again_(corrected(*c_.study.data, correction), [&](const MisfitAccount& at_best) {
+        const double gain =
+            at_best.left > 0 ? shorter_by(at_best, correction) : std::numeric_limits<double>::infinity();
+        return cures(before_, at_best, correction.fitted, gain);
+      });
     } catch (const std::runtime_error&) {
       return;  // the corrected data ask for what the machine cannot do
     }
-    const double size = description(after, correction.fitted, c_.readings) + cost_of_scale(c_, correction);
-    if (!cures(before_, after, correction.fitted, description(before_, 0, c_.readings) - size)) return;
-    if (found_ && size >= least_) return;
-    least_ = size;
+    if (!compared) return;
+    const MisfitAccount& after = *compared;
+    const double gain = shorter_by(after, correction);
+    if (!cures(before_, after, correction.fitted, gain)) return;
+    if (found_ && gain <= most_) return;
+    most_ = gain;
     right_ = before_.scatter == 0 && after.chi2 < right_to_noise * after.numbers &&
              after.chi2 > after.numbers / right_to_noise;
     found_.emplace();
@@ -180,9 +193,9 @@ class MistakeSearch {
   const Comparison& c_;
   const MisfitAccount& before_;
   const double equal_within_;
-  const std::function<MisfitAccount(const Measurements&)>& again_;
+  const ComparedAgain& again_;
   std::optional<RecordingMistake> found_;
-  double least_ = 0;
+  double most_ = 0;  // shorter by
   bool right_ = false;
 };
 
@@ -191,9 +204,8 @@ class MistakeSearch {
 MisfitAccount account_of(const Comparison& c) {
   MisfitAccount a;
   double aside = 0;
-  for (const MeasuredValue& v : c.study.values)
-    aside +=
-        std::find(c.set_aside.begin(), c.set_aside.end(), c.study.data->readings[v.reading].line) != c.set_aside.end();
+  const std::unordered_set<std::size_t> lines(c.set_aside.begin(), c.set_aside.end());
+  for (const MeasuredValue& v : c.study.values) aside += lines.contains(c.study.data->readings[v.reading].line);
   a.numbers = static_cast<double>(c.numbers) - aside;
   a.chi2 = c.chi2_per_dof * a.numbers;
   for (const Finding& f : c.findings) a.columns += f.freedoms;
@@ -205,7 +217,7 @@ MisfitAccount account_of(const Comparison& c) {
 }
 
 std::vector<RecordingMistake> recording_mistakes(const Mechanism& m, const Comparison& c, int threads,
-                                                 const std::function<MisfitAccount(const Measurements&)>& again) {
+                                                 const ComparedAgain& again) {
   std::vector<RecordingMistake> out = file_oddities(c);
   const MisfitAccount before = account_of(c);
   // Where nearly all is misfit it may be the readings that are in another unit than their σ: they are asked first.

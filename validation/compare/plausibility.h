@@ -11,6 +11,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ struct RecordingMistake {
 /// What is left of a misfit, and what it took to leave no more.
 struct MisfitAccount {
   double numbers = 0, chi2 = 0;  ///< without the readings set aside
-  double left = 0;               ///< χ² with the findings
+  double left = 0;               ///< χ² with the findings; 0: not known yet
   int columns = 0;               ///< of the findings
   std::size_t set_aside = 0;     ///< readings
   double share = 0;              ///< misfit of all readings by what was measured, root mean squares
@@ -42,9 +43,14 @@ struct MisfitAccount {
 };
 MisfitAccount account_of(const Comparison&);
 
-/// The first is the headline where it is certain. `again` compares other data with the same device.
+/// Whether data of which no more speaks against them than in the account may be right; asked on the way.
+using CanBeRight = std::function<bool(const MisfitAccount&)>;
+/// Compares other data with the same device; empty where they cannot be right.
+using ComparedAgain = std::function<std::optional<MisfitAccount>(const Measurements&, const CanBeRight&)>;
+
+/// The first is the headline where it is certain.
 std::vector<RecordingMistake> recording_mistakes(const Mechanism&, const Comparison&, int threads,
-                                                 const std::function<MisfitAccount(const Measurements&)>& again);
+                                                 const ComparedAgain&);
 
 /// What to add to the message about a pose that cannot be reached: which corrections of the poses bring all of them
 /// within reach; empty where none does.

@@ -56,19 +56,8 @@ ResidualStudy residual_study(const Mechanism& m, const Measurements& data, int t
       std::all_of(data.readings.begin(), data.readings.end(), [](const Reading& r) { return r.sequence.has_value(); });
   PredictionOptions o;
   o.threads = threads;
-  o.progress = part_of(told, 0, 0.1);
+  o.progress = told;
   s.predicted = predict(m, s.machines, data, o);
-  if (m.geometry == Geometry::linear) try {
-      Mechanism true_axes = m;  // the difference is small: what the rig does to it does not count
-      o.geometry = Geometry::finite;
-      o.progress = part_of(told, 0.1, 1);
-      s.deformed_shape = predict(true_axes, s.machines, data, o);
-      for (std::size_t i = 0; i < s.deformed_shape.size(); ++i) s.deformed_shape[i] -= s.predicted[i];
-    } catch (const NumericalError&) {
-      s.deformed_shape.clear();  // a load beyond what the deformed shape carries
-    } catch (const ModelError&) {
-      s.deformed_shape.clear();  // it does not stand there
-    }
   s.sites.resize(s.machines.size());
   s.compliance.resize(s.machines.size());
   for_each_case(s.machines.size(), 1, threads, [&](std::size_t p) {
@@ -77,6 +66,32 @@ ResidualStudy residual_study(const Mechanism& m, const Measurements& data, int t
   });
   add_forces(s);
   return s;
+}
+
+std::vector<Vector6> deformed_shape_of(const ResidualStudy& s, int threads, const Told& told) {
+  if (s.mechanism->geometry != Geometry::linear) return {};
+  PredictionOptions o;
+  o.threads = threads;
+  o.geometry = Geometry::finite;
+  o.progress = told;
+  try {
+    std::vector<Vector6> shape = predict(*s.mechanism, s.machines, *s.data, o);
+    for (std::size_t i = 0; i < shape.size(); ++i) shape[i] -= s.predicted[i];
+    return shape;
+  } catch (const NumericalError&) {  // a load beyond what the deformed shape carries
+  } catch (const ModelError&) {      // it does not stand there
+  }
+  return {};
+}
+
+Vector6 deformed_shape_under(const ResidualStudy& s, std::size_t reading, const Vector6& load) {
+  if (s.deformed_shape.empty()) return Vector6::Zero();
+  const double size = s.machines.front().size;
+  const auto squared = [size](const Vector6& F) {
+    return F.head<3>().squaredNorm() + F.tail<3>().squaredNorm() / (size * size);
+  };
+  const double recorded = squared(s.data->readings[reading].load);
+  return (recorded > 0 ? squared(load) / recorded : 0) * s.deformed_shape[reading];
 }
 
 }  // namespace deflect

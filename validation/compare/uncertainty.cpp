@@ -163,7 +163,7 @@ ToleranceModel tolerance_model(const Mechanism& device, const std::vector<Config
 
 Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<MeasuredValue>& values,
                          const std::vector<double>& sigma, const std::vector<Vector6>& predicted, double load,
-                         const std::vector<bool>& set_aside)
+                         const std::vector<bool>& set_aside, int threads)
     : A_(A) {
   for (std::size_t first = 0; first < values.size();) {
     std::size_t last = first;
@@ -184,7 +184,7 @@ Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<MeasuredValue
     blocks_.push_back(std::move(block));
     first = last;
   }
-  whitening_ = std::make_shared<const Whitening>(blocks_, A_);
+  whitening_ = std::make_shared<const Whitening>(blocks_, A_, threads);
 }
 
 // Errors of poses s times as large, those of all too; the span of `beside` is taken out.

@@ -47,8 +47,10 @@ ToleranceModel tolerance_model(const Mechanism&, const std::vector<Configuration
 class Uncertainty {
  public:
   /// `predicted`: by reading; `load`: relative standard deviation of a recorded load. Readings lie within A's groups.
+  /// `threads`: of whitening.h.
   Uncertainty(const PartedColumns& A, const std::vector<MeasuredValue>&, const std::vector<double>& sigma,
-              const std::vector<Vector6>& predicted, double load, const std::vector<bool>& set_aside = {});
+              const std::vector<Vector6>& predicted, double load, const std::vector<bool>& set_aside = {},
+              int threads = 1);
 
   /// W X with WᵀW = Σ⁻¹: with it least squares are those of independent numbers of deviation 1. Rows set aside are 0.
   MatrixX whitened(const MatrixX& X) const { return (*whitening_)(X); }
@@ -69,6 +71,7 @@ class Uncertainty {
   };
   OfContrasts of_contrasts(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const;
   MatrixX covariance(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const;
+  int threads() const { return whitening_->threads(); }
   /// Numbers that are not set aside.
   std::size_t count() const { return count_; }
 
@@ -97,6 +100,7 @@ class Regressions {
   MatrixX whitened(const MatrixX& G) const { return uncertainty_->whitened(G); }
   Regression on(const MatrixX& G) const { return on_whitened(whitened(G)); }
   Regression on_whitened(const MatrixX& g) const;
+  int threads() const { return uncertainty_->threads(); }
 
  private:
   const Uncertainty* uncertainty_;

@@ -4,11 +4,32 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "validation/parallel/cases.h"
+
 namespace deflect {
+namespace {
+
+/// f of some columns at a time, as many whatever the threads: so are the sums in products.
+template <class F>
+MatrixX by_parts(const MatrixX& X, int threads, const F& f) {
+  constexpr Eigen::Index some = 8, little = 200'000;  // numbers that are not worth a thread
+  if (X.cols() <= some) return f(X);
+  MatrixX out(X.rows(), X.cols());
+  const auto parts = static_cast<std::size_t>((X.cols() + some - 1) / some);
+  for_each_case(parts, 1, X.size() > little ? threads : 1, [&](std::size_t part) {
+    const Eigen::Index first = static_cast<Eigen::Index>(part) * some, count = std::min(some, X.cols() - first);
+    out.middleCols(first, count) = f(X.middleCols(first, count));
+  });
+  return out;
+}
+
+}  // namespace
 
 Whitening::Root Whitening::root(const MatrixX& X) {
   if (X.cols() == 0) return {MatrixX(0, 0), MatrixX(0, 0), MatrixX(0, 0)};
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(MatrixX(X.transpose() * X));
+  MatrixX squares = MatrixX::Zero(X.cols(), X.cols());
+  squares.selfadjointView<Eigen::Lower>().rankUpdate(X.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(squares);  // reads the lower half
   const VectorX deviation = (1 + axes.eigenvalues().array().max(0)).sqrt();
   const VectorX less = -(deviation.array() * (1 + deviation.array())).inverse(),
                 more = (1 + deviation.array()).inverse();
@@ -18,8 +39,8 @@ Whitening::Root Whitening::root(const MatrixX& X) {
           V * square.asDiagonal() * V.transpose()};
 }
 
-Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns& errors)
-    : rows_(errors.rows()), amplitudes_(errors.cols()) {
+Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns& errors, int threads)
+    : rows_(errors.rows()), amplitudes_(errors.cols()), threads_(threads) {
   for (const NoiseBlock& b : blocks) {
     if (b.covariance.size() == 0) continue;
     MatrixX inverse = MatrixX::Identity(b.size, b.size);
@@ -28,7 +49,6 @@ Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns&
     for (Eigen::Index i = 0; i < b.size; ++i)
       for (Eigen::Index k = 0; k <= i; ++k) entries_.push_back(inverse(i, k));
   }
-  B_ = by_noise(errors.shared);
   Eigen::Index widest = 0, first = errors.shared.cols();
   for (const GroupColumns& g : errors.groups) {
     if (!g.rows.empty() && g.columns.cols() > 0) groups_.push_back({g.rows, g.columns, {}, first});
@@ -44,7 +64,7 @@ Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns&
       g.less = root(g.O).less;
     }
   }
-  within_groups_in_place(B_);
+  B_ = by_parts(errors.shared, threads_, [&](const MatrixX& part) { return within_groups(part); });
   root_ = root(B_);
 }
 
@@ -110,7 +130,9 @@ MatrixX Whitening::undo_shared(MatrixX X) const {
   return X;
 }
 
-MatrixX Whitening::operator()(const MatrixX& X) const { return of_shared(within_groups(X)); }
+MatrixX Whitening::operator()(const MatrixX& X) const {
+  return by_parts(X, threads_, [&](const MatrixX& part) { return of_shared(within_groups(part)); });
+}
 
 // Sᵀ Σ⁻¹ r = Bᵀ W_S W r and Oᵀ Σ⁻¹ r = Õᵀ W_O W_S W r.
 VectorX Whitening::amplitudes(const VectorX& r) const {

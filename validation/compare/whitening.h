@@ -30,10 +30,11 @@ struct NoiseBlock {
 
 class Whitening {
  public:
-  /// Blocks in order, of all rows.
-  Whitening(const std::vector<NoiseBlock>&, const PartedColumns& errors);
+  /// Blocks in order, of all rows. `threads`: for products with many columns; 0: all.
+  Whitening(const std::vector<NoiseBlock>&, const PartedColumns& errors, int threads = 1);
 
-  /// W X: with it least squares are those of independent numbers of deviation 1.
+  /// W X: with it least squares are those of independent numbers of deviation 1. Columns are taken some at a time, as
+  /// many whatever the threads: so are their sums.
   MatrixX operator()(const MatrixX& X) const;
   /// W_N X and W_O W_N X.
   MatrixX by_noise(const MatrixX& X) const;
@@ -52,6 +53,7 @@ class Whitening {
   /// What is expected of the errors' amplitudes, prior N(0, 1), given r: [S O]ᵀ Σ⁻¹ r; those of S, then group by group.
   VectorX amplitudes(const VectorX& r) const;
   Eigen::Index rows() const { return rows_; }
+  int threads() const { return threads_; }
 
  private:
   /// (1 + X Xᵀ)^(∓1/2) = 1 + X less Xᵀ, 1 + X more Xᵀ;
@@ -71,6 +73,7 @@ class Whitening {
   static Root root(const MatrixX& X);
 
   Eigen::Index rows_ = 0, amplitudes_ = 0;
+  int threads_ = 1;
   std::vector<Factor> factors_;
   std::vector<double> entries_;
   std::vector<Group> groups_;

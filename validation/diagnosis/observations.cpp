@@ -109,7 +109,7 @@ void Observations::take_for_granted(const Mechanism& m) {
   } catch (const ModelError&) {      // it does not stand in the deformed shape
   }
   count_shape();
-  const std::vector<bool> aside = gross_outliers(s, A_, comparison_.sigma, residual(m), {});
+  const std::vector<bool> aside = gross_outliers(s, A_, comparison_.sigma, residual(m), {}).aside;
   const auto count = static_cast<std::size_t>(std::count(aside.begin(), aside.end(), true));
   weigh(20 * count <= aside.size() ? aside : aside_);
 }
