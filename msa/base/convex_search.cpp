@@ -82,7 +82,7 @@ class Search {
     }
     const MatrixX along = p_.B * Z_;
     MatrixX H = Z_.transpose() * p_.a.asDiagonal() * Z_ + along.transpose() * curvatures.asDiagonal() * along;
-    if (H.rows() > 0) curvature_.compute((H + H.transpose()) / 2);
+    if (H.rows() > 0) curvature_.compute(MatrixX((H + H.transpose()) / 2));
   }
 
   bool at_rest() {
