@@ -227,9 +227,23 @@ Comparison compared_as_recorded(const Mechanism& m, const Measurements& data, co
   return std::move(comparing.c);
 }
 
-/// The account of corrected data. The deformed shape takes longest: at first that of the recorded data is taken. Where
-/// the corrected ones are not right then, even if it is off by a fifth and half of what else speaks against them is its
-/// doing, they are not.
+/// The deformed shape of readings as it follows from that of others: with the square of the predicted displacement.
+std::vector<Vector6> supposed_shape(const ResidualStudy& known, const ResidualStudy& s) {
+  const double size = s.machines.front().size;
+  const auto squared = [size](const Vector6& d) {
+    return d.head<3>().squaredNorm() + size * size * d.tail<3>().squaredNorm();
+  };
+  std::vector<Vector6> out = known.deformed_shape;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double before = squared(known.predicted[i]);
+    out[i] *= before > 0 ? squared(s.predicted[i]) / before : 0;
+  }
+  return out;
+}
+
+/// The account of corrected data. The deformed shape takes longest: at first it is supposed from that of the recorded
+/// data. Where the corrected ones are not right then, even if it is off by a fifth and half of what else speaks against
+/// them is its doing, they are not.
 std::optional<MisfitAccount> compared_again(const Comparison& recorded, const Measurements& data,
                                             const ComparisonOptions& o, const CanBeRight& can_be_right) {
   Comparing comparing(*recorded.study.mechanism, data, o);
@@ -239,8 +253,7 @@ std::optional<MisfitAccount> compared_again(const Comparison& recorded, const Me
   if (!can_be_right(at_best)) return std::nullopt;
   comparing.add_tolerances();
   if (!recorded.study.deformed_shape.empty() && !recorded.sigma_from_residuals) {
-    for (std::size_t i = 0; i < data.readings.size(); ++i)
-      comparing.c.study.deformed_shape.push_back(deformed_shape_under(recorded.study, i, data.readings[i].load));
+    comparing.c.study.deformed_shape = supposed_shape(recorded.study, comparing.c.study);
     comparing.weigh();
     comparing.find(false);
     at_best = account_of(comparing.c);
