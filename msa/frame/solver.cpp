@@ -22,8 +22,8 @@ constexpr double nearly_free = 1e-6;  // strain of a motion, see mobility.h
 
 constexpr int most_corrections = 20;
 constexpr double extended_rounding = 1e-19, no_digits = 1e-9;
-constexpr double strains_nothing = 1e-24, is_no_strain = 1e-32;  // of the energy that nothing would cancel
-constexpr double few_digits_lost = 1e-13;  // of a plain solution, in energy
+constexpr double strains_nothing = 1e-24, is_no_strain = 1e-26;  // of the energy that nothing would cancel
+constexpr double few_digits_lost = 1e-13;                        // of a plain solution, in energy
 
 MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
   MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(rows), m.cols());
@@ -253,9 +253,8 @@ bool Solver::corrected(const VectorX& tangents, const VectorX& load, const Vecto
     const double energy = twice_energy(*model_, u, tangents), corrects = std::abs(correction.dot(residual));
     const double change = energy > 0 ? std::sqrt(corrects / energy) : 0;
     if (pass == 1) {
-      lost = change;
-      if (corrects > is_no_strain * unsigned_energy(*model_, u, tangents))
-        rounding_ = std::max(rounding_, std::min(change, 1.0));
+      lost = energy > is_no_strain * unsigned_energy(*model_, u, tangents) ? std::min(change, 1.0) : 0;
+      rounding_ = std::max(rounding_, lost);
     }
     const double shrinks = change / before;
     left = before = change;
