@@ -16,6 +16,7 @@ namespace {
 enum class Phase { start, plus, minus, open, sticks, bends };  // of one-sided laws, plus pulls and minus pushes
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double no_force = 1e-11;  // of the largest
 
 double sign(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
 
@@ -241,9 +242,9 @@ class Balance {
       else if (std::holds_alternative<FrictionLaw>(m.law()))
         m.phase = found.end[at] > 0 ? Phase::plus : found.end[at] < 0 ? Phase::minus : Phase::sticks;
       else if (!is_stepped(m.law()))
-        m.phase = std::abs(found.s(i) + m.stepped->preload) <= 1e-11 * sizes_(i) ? Phase::open : Phase::bends;
+        m.phase = std::abs(found.s(i) + m.stepped->preload) <= no_force * sizes_(i) ? Phase::open : Phase::bends;
       else
-        m.phase = found.s(i) + m.stepped->preload < 0 ? Phase::minus : Phase::plus;
+        m.phase = found.s(i) + m.stepped->preload < -no_force * sizes_(i) ? Phase::minus : Phase::plus;
     }
     BalancedSteps out = conclude();
     for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)

@@ -75,7 +75,7 @@ class Search {
     }
     slope_ = Z_.transpose() * gradient_;
     VectorX curvatures(rows_);
-    noise_ = 0;
+    noise_ = p_.rounding;
     for (Eigen::Index i = 0; i < rows_; ++i) {
       curvatures(i) = side(i) == 0 ? row(i).curvature(out_.y(i)) : 0;
       noise_ = std::max(noise_, 1e-15 * curvatures(i) * std::abs(out_.y(i)) * p_.B.row(i).norm());

@@ -30,6 +30,7 @@ struct ConvexProblem {
   MatrixX B;
   VectorX e;
   std::vector<ConvexRow> rows;
+  double rounding = 0;  ///< of b and of slopes by rows, where these are known to no better; smaller ones are zero
 };
 
 struct ConvexAnswer {

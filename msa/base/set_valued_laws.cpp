@@ -35,6 +35,7 @@ class Laws {
     problem_.a.resize(k), problem_.b.resize(k), problem_.B.resize(n_, k);
     start_.resize(k);
     problem_.e = d0;
+    if (n_ > 0) problem_.rounding = 1e-15 * r.size.cwiseProduct(unit_).maxCoeff();
     for (Eigen::Index m = 0; m < k; ++m) {
       const Eigen::Index j = moving[static_cast<std::size_t>(m)];
       const double p = std::min(eigen.eigenvalues()(j), 1.0), root = std::sqrt(p);
@@ -222,6 +223,7 @@ class Laws {
     const MatrixX R = qr.matrixQR().topRows(N.cols()).triangularView<Eigen::Upper>();
     const MatrixX per_step = R.transpose().triangularView<Eigen::Lower>().solve(moves.transpose()).transpose();
     middle.a = middle.b = VectorX::Zero(N.cols());
+    middle.rounding = 1e-15;  // of the halves
     const ConvexAnswer found = least(middle, VectorX::Zero(N.cols()));
     for (const Eigen::Index i : loose) d_(i) += per_step.row(i).dot(found.x);
     out.loose = unit_.asDiagonal() * per_step;
@@ -230,6 +232,7 @@ class Laws {
 
   void extent(ConvexProblem middle, const VectorX& x, SetValuedSolution& out) const {
     for (ConvexRow& row : middle.rows) row.slope = row.curvature = [](double) { return 0.0; };
+    middle.rounding = 0;
     const MatrixX per_step = watched_ * out.loose;
     for (Eigen::Index w = 0; w < watched_.rows(); ++w)
       for (const double sign : {-1.0, 1.0}) {

@@ -92,6 +92,18 @@ Matrix6 above_rounding(const Matrix6& K, const Model& m) {
   return size < 1e-15 * stiffest ? Matrix6(Matrix6::Zero()) : K;
 }
 
+/// Of one node in free motions of all nodes, m and rad; zero where it is the rounding of what other nodes do.
+MatrixX twists_of(const MatrixX& free, int node, double length) {
+  MatrixX out = free.middleRows<6>(6 * node);
+  for (Eigen::Index j = 0; j < free.cols(); ++j) {
+    double most = 0;
+    for (Eigen::Index i = 0; i + 6 <= free.rows(); i += 6)
+      most = std::max(most, weights(length).cwiseProduct(free.col(j).segment<6>(i)).norm());
+    if (weights(length).cwiseProduct(out.col(j)).norm() <= 1e-9 * most) out.col(j).setZero();
+  }
+  return out;
+}
+
 /// K where it resists nothing along twists, which it does but for rounding.
 Matrix6 without(const MatrixX& twists, double length, const Matrix6& K) {
   const Vector6 weight = weights(length);
@@ -303,7 +315,8 @@ MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
   tool_held_->displace(state.spring_tangents);
   Stiffness out{tool_held_->reactions(), {}, tool_held_->motions};
   if (state.free.cols() > 0)
-    out.K = without(state.free.middleRows<6>(6 * built_.tool), characteristic_length(built_.model), out.K);
+    out.K = without(twists_of(state.free, built_.tool, characteristic_length(built_.model)),
+                    characteristic_length(built_.model), out.K);
   const bool legs_stand_alone =
       built_.base == built_.ground && built_.tool == built_.platform && out.motions.cols() == 6;
   Vector6 per_length = Vector6::Ones();

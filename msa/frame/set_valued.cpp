@@ -16,6 +16,12 @@
 #include "msa/frame/solver.h"
 
 namespace deflect::frame {
+namespace {
+
+constexpr double no_force = 1e-11;  // of the load
+
+}  // namespace
+
 struct Solver::Condensed {
   std::vector<std::size_t> springs;  // that are not linear
   VectorX tangents;                  // of all springs; of those, k
@@ -146,6 +152,11 @@ Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, con
     return s;
   }
   const ExtendedVector offsets = refined(laws, found, relation, u);
+  // A law at its kink has forces whose signs are rounding: it takes the stiffness of a pull, as in the closed form.
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double rest = -springs[c.springs[static_cast<std::size_t>(i)]].law.preload;
+    if (std::abs(found.s(i) - rest) <= no_force * relation.size(i)) found.s(i) = rest;
+  }
   u += c.u * c.k.cast<Extended>().cwiseProduct(offsets);
   VectorX pulls(static_cast<Eigen::Index>(springs.size()));
   const VectorX f = elimination_->reduce(load);

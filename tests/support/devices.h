@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,6 +18,15 @@ namespace deflect::test {
 
 inline Mechanism device(const std::string& name) {
   return read_mechanism(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/" + name + ".yaml");
+}
+
+/// All that are built in, in order.
+inline std::vector<std::string> device_names() {
+  std::vector<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices"))
+    names.push_back(file.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 inline const SixPsu& six_psu(const Mechanism& m) { return std::get<SixPsu>(m.kinematics); }

@@ -2,8 +2,6 @@
 // too, and on mechanisms by the dice.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "analytic/model.h"
 #include "msa/frame/msa.h"
 #include "tests/support/random_mechanisms.h"
@@ -12,14 +10,6 @@
 
 namespace deflect {
 namespace {
-
-std::vector<std::string> built_in() {
-  std::vector<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices"))
-    names.push_back(file.path().stem().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 class Agreement : public ::testing::TestWithParam<std::string> {};
 
@@ -42,7 +32,7 @@ TEST_P(Agreement, HoldsAllOverTheWorkspace) {
   EXPECT_LE(worst, bound);
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Agreement, ::testing::ValuesIn(built_in()), [](const auto& p) {
+INSTANTIATE_TEST_SUITE_P(Devices, Agreement, ::testing::ValuesIn(test::device_names()), [](const auto& p) {
   std::string name = p.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;

@@ -95,13 +95,13 @@ double left_by_division(const Answer& a, const Answer& f, const Vector6& displac
 }
 
 /// In the deformed shape theories may differ by what dividing members leaves, estimated by each; in second order by the
-/// square of the change, which both leave out in ways of their own; where laws jump by the change itself, because the
-/// closed form takes their jumps in linear geometry.
+/// squares of the change and of the rotation, which both leave out in ways of their own; where laws jump by the change
+/// itself, because the closed form takes their jumps in linear geometry.
 void require_agreement_deformed(const Pair& pair, Geometry geometry, double discretisation, double from_linear,
-                                double apart, const std::string& where) {
+                                double rotation, double apart, const std::string& where) {
   constexpr double solved_to = 1e-6, estimate_is_known_to = 10;
   double bound = solved_to + estimate_is_known_to * discretisation;
-  if (geometry == Geometry::second_order) bound += from_linear * from_linear;
+  if (geometry == Geometry::second_order) bound += from_linear * from_linear + rotation * rotation;
   if (pair.analytic.model().jumps()) bound += from_linear;
   if (apart > bound)
     throw NumericalError(fmt::format(
@@ -121,6 +121,15 @@ frame::MemberDivision refined(const Configuration& c, frame::MemberDivision divi
     }
   });
   return division;
+}
+
+/// m and rad of a device of this size, without what is the rounding of its coordinates.
+Vector6 above_rounding(const Vector6& moved, double size) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  Vector6 out = moved;
+  for (int i = 0; i < 6; ++i)
+    if (std::abs(out(i)) < epsilon * (i < 3 ? size : 1)) out(i) = 0;
+  return out;
 }
 
 Vector6 along(int axis, double force) { return force * Vector6::Unit(axis); }
@@ -170,14 +179,18 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
     r.analytic_from_linear = from_linear(a, *linear_a);
     r.msa_from_linear = from_linear(f, *linear_f);
     r.discretisation = left_by_division(a, f, twist_in_mm(f.displacement));
-    require_agreement_deformed(pair, geometry, r.discretisation, r.msa_from_linear,
+    require_agreement_deformed(pair, geometry, r.discretisation, r.msa_from_linear, f.displacement.tail<3>().norm(),
                                relative_difference(twist_in_mm(a.displacement), twist_in_mm(f.displacement)),
                                Pair::where(m, at));
   }
   r.pose_mm_deg = at.pose_mm_deg;
   r.load_N_Nmm = load;
-  r.analytic = {twist_in_mm(a.displacement), stiffness_in_mm(a.stiffness)};
-  r.msa = {twist_in_mm(f.displacement), stiffness_in_mm(f.stiffness)};
+  // Of a device that is held rigidly but for some motions, displacements may be the rounding of coordinates.
+  const auto moved = [&](const Answer& x) {
+    return x.rigid > 0 ? above_rounding(x.displacement, size) : x.displacement;
+  };
+  r.analytic = {twist_in_mm(moved(a)), stiffness_in_mm(a.stiffness)};
+  r.msa = {twist_in_mm(moved(f)), stiffness_in_mm(f.stiffness)};
   r.relative_difference = relative_difference(r.analytic.displacement_mm_rad, r.msa.displacement_mm_rad);
   r.symmetric = a.checks.symmetric && f.checks.symmetric;
   r.positive = a.checks.positive && f.checks.positive;
@@ -197,7 +210,8 @@ SolveResult solve(const Mechanism& m, const Stand& at, const Vector6& load, cons
   r.redundant_constraints = analytic::redundant_constraints(at.configuration);
   r.assembly = assembly_of(at.configuration, pair);
   if (!f.floating.loose.empty())
-    r.floating = {f.floating.loose, twist_in_mm(f.floating.least), twist_in_mm(f.floating.most)};
+    r.floating = {f.floating.loose, twist_in_mm(above_rounding(f.floating.least, size)),
+                  twist_in_mm(above_rounding(f.floating.most, size))};
   r.mesh = lines_of(pair.msa.mechanism());
   r.fields = fields_of(pair.msa.mechanism(), pair.msa.displacements(), pair.msa.deformed());
   return r;
