@@ -44,10 +44,12 @@ foreach(header ${headers})
           COMPONENT development)
 endforeach()
 
+# The README of the effects is for readers of the source; that of the measurements is data: it names their source.
 foreach(folder devices effects cases frames measurements)
   if(EXISTS ${PROJECT_SOURCE_DIR}/validation/${folder})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/deflect
-            COMPONENT program PATTERN "*.h" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)
+            COMPONENT program PATTERN "*.h" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE
+            PATTERN "effects/README.md" EXCLUDE)
   endif()
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR}

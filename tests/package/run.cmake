@@ -38,6 +38,11 @@ if(NOT output MATCHES "haptic-6psu")
   message(FATAL_ERROR "The installed program does not know its devices:\n${output}")
 endif()
 
+file(GLOB_RECURSE documents RELATIVE ${prefix}/${DATADIR}/deflect ${prefix}/${DATADIR}/deflect/*.md)
+if(NOT documents STREQUAL "measurements/README.md")
+  message(FATAL_ERROR "Installed documents are '${documents}', not the measurements' alone")
+endif()
+
 run(${prefix}/${BINDIR}/deflect effects)
 if(NOT output MATCHES "guide_root_compliance")
   message(FATAL_ERROR "The installed program does not know its effects:\n${output}")
