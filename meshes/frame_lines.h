@@ -2,7 +2,7 @@
 #pragma once
 
 #include "meshes/line_mesh.h"
-#include "msa/frame/frame_analysis.h"
+#include "msa/frame/file/frame_analysis.h"
 
 namespace deflect {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "meshes/line_mesh.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "msa/mechanism/configuration.h"
 
 namespace deflect {

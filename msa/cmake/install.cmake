@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/deflect)
 
-foreach(name base mechanism frame analytic meshes validation)
+foreach(name base fields mechanism frame analytic meshes validation)
   if(TARGET deflect_${name})
     install(TARGETS deflect_${name} EXPORT deflectTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
             COMPONENT development)
@@ -44,13 +44,10 @@ foreach(header ${headers})
           COMPONENT development)
 endforeach()
 
-# The README of the effects is for readers of the source; that of the measurements is data: it names their source.
-foreach(folder devices effects cases frames measurements)
-  if(EXISTS ${PROJECT_SOURCE_DIR}/validation/${folder})
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/deflect
-            COMPONENT program PATTERN "*.h" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE
-            PATTERN "effects/README.md" EXCLUDE)
-  endif()
+foreach(folder devices effects/catalogue cases frames measurements)
+  cmake_path(GET folder PARENT_PATH parent)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/deflect/${parent}
+          COMPONENT program)
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT program)

@@ -27,21 +27,11 @@
 
 #include "msa/base/geometry.h"
 #include "msa/base/spatial.h"
+#include "msa/fields/named.h"
 #include "msa/mechanism/law.h"
 #include "msa/mechanism/section.h"
 
 namespace deflect {
-
-/// A list of named things that keeps the order of the file.
-template <class T>
-using Named = std::vector<std::pair<std::string, T>>;
-
-template <class T>
-const T* find(const Named<T>& list, const std::string& name) {
-  for (const auto& [key, value] : list)
-    if (key == name) return &value;
-  return nullptr;
-}
 
 /// A frame seen from another: shift in the axes of the other, turn as roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
 struct Placement {

@@ -5,10 +5,10 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/fields/field_reader.h"
+#include "msa/fields/field_writer.h"
+#include "msa/fields/file_kind.h"
 #include "msa/mechanism/chain_kinematics.h"
-#include "msa/mechanism/field_reader.h"
-#include "msa/mechanism/field_writer.h"
-#include "msa/mechanism/file_kind.h"
 #include "msa/mechanism/mechanism_tree.h"
 
 namespace deflect {

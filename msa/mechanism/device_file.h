@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "msa/fields/edit.h"
 #include "msa/mechanism/description.h"
 
 namespace deflect {
@@ -19,21 +20,6 @@ Mechanism parse_mechanism(std::string_view yaml, const std::string& origin);
 
 /// The description as a device file; reading it again gives an equal description, to the last bit of every number.
 std::string write_mechanism(const Mechanism&);
-
-/// One change of a description.
-///   path   field names joined by dots as they nest in the file: "materials.steel.E", "leg.ball_joint.tz";
-///          "*" stands for every entry ("materials.*.E"); "leg[4]…" for leg 4 alone, which is kept as a variation.
-///   value  YAML as it would stand in the file: "200 GPa", "{law: linear, stiffness: 500 N/mm}".
-struct Edit {
-  enum class Action {
-    set,       ///< the field takes the value
-    append,    ///< the value joins a list (laws in series)
-    multiply,  ///< the number is multiplied by the plain number `value`
-    add,       ///< the value is added to the number
-  };
-  std::string path, value;
-  Action action = Action::set;
-};
 
 /// A new description with the edit in it, checked like a file; the old one is untouched. A value that was assumed
 /// ("ours") and is edited is no longer marked so. Throws InputError naming path, value and the nearest valid name.

@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/fields/field_reader.h"
+#include "msa/fields/field_writer.h"
+#include "msa/fields/tree_edit.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
-#include "msa/mechanism/field_reader.h"
-#include "msa/mechanism/field_writer.h"
 #include "msa/mechanism/mechanism_tree.h"
-#include "msa/mechanism/tree_edit.h"
 
 namespace deflect {
 namespace {
@@ -172,6 +172,22 @@ Mechanism edited_in_turn(const Mechanism& m, const std::vector<Edit>& edits) {
     origins = origin_of(edit);
   }
   return edits.empty() ? m : mechanism_of(stripped(tree), origins);
+}
+
+YamlNode tree_of(const Mechanism& m) {
+  if (!m.legs.empty()) throw std::logic_error("a resolved mechanism is for models, not for files");
+  Mechanism copy = m;
+  FieldWriter writer(m.ours);
+  describe(writer, copy);
+  return writer.tree();
+}
+
+YamlNode tree_of(const Named<Part>& parts, const std::set<std::string>& ours, const Mechanism& m) {
+  Named<Part> copy = parts;
+  FieldWriter writer(ours);
+  writer.surroundings = surroundings_of(m);
+  describe_leg(writer, copy);
+  return *writer.tree().child("leg");
 }
 
 }  // namespace deflect

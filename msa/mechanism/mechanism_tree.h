@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
+#include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/description.h"
-#include "msa/mechanism/yaml_tree.h"
 
 namespace deflect {
 
@@ -26,5 +26,11 @@ MarkedLeg varied(const MarkedLeg&, const Variation&, const YamlNode& value, cons
 
 /// The legs that have variations, by number. `variations` is the list in the tree that `m` was read from.
 std::map<int, MarkedLeg> varied_legs(const Mechanism& m, const YamlNode* variations, const std::string& origin);
+
+/// The whole description, everything implied included.
+YamlNode tree_of(const Mechanism&);
+
+/// The parts of a leg as a map of entries; paths in `ours` begin with "leg.".
+YamlNode tree_of(const Named<Part>&, const std::set<std::string>& ours, const Mechanism& surroundings);
 
 }  // namespace deflect

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "msa/frame/name_index.h"
+#include "msa/frame/file/name_index.h"
 #include "tests/attack/member_flexibility.h"
 
 namespace deflect::attack {

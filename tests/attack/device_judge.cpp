@@ -14,12 +14,12 @@
 
 #include "analytic/model.h"
 #include "msa/base/error.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/attack/count.h"
 #include "tests/support/apart.h"
-#include "validation/compare/solve_result.h"
-#include "validation/compare/theories.h"
+#include "validation/theories/solve_result.h"
+#include "validation/theories/theories.h"
 
 namespace deflect::attack {
 namespace {

@@ -11,7 +11,7 @@
 #include "tests/support/apart.h"
 #include "tests/support/program.h"
 #include "tests/support/stiffnesses.h"
-#include "validation/compare/theories.h"
+#include "validation/theories/theories.h"
 
 namespace deflect::attack {
 namespace {

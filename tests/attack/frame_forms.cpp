@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "msa/frame/member_axes.h"
+#include "msa/frame/file/member_axes.h"
 
 namespace deflect::attack {
 namespace {

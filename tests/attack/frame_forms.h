@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "msa/frame/frame_description.h"
+#include "msa/frame/file/frame_description.h"
 #include "tests/attack/random_frame.h"
 
 namespace deflect::attack {

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "msa/base/error.h"
-#include "msa/frame/frame_analysis.h"
-#include "msa/frame/frame_file.h"
+#include "msa/frame/file/frame_analysis.h"
+#include "msa/frame/file/frame_file.h"
 #include "tests/attack/count.h"
 #include "tests/attack/frame_forms.h"
 

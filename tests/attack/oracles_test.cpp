@@ -1,7 +1,7 @@
 // The oracles themselves, on structures that are solved by hand.
 #include <gtest/gtest.h>
 
-#include "msa/frame/frame_file.h"
+#include "msa/frame/file/frame_file.h"
 #include "tests/attack/dense_oracle.h"
 #include "tests/attack/device_oracle.h"
 #include "tests/attack/echelon.h"

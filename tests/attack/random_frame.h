@@ -6,7 +6,7 @@
 // match. Then displacements are `unit` times those of the ideal frame, rotations the same.
 #pragma once
 
-#include "msa/frame/frame_description.h"
+#include "msa/frame/file/frame_description.h"
 
 namespace deflect::attack {
 

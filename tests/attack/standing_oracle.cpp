@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "msa/frame/name_index.h"
+#include "msa/frame/file/name_index.h"
 
 namespace deflect::attack {
 namespace {

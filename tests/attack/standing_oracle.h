@@ -20,7 +20,7 @@
 
 #include <vector>
 
-#include "msa/frame/frame_description.h"
+#include "msa/frame/file/frame_description.h"
 
 namespace deflect::attack {
 

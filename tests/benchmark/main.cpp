@@ -10,9 +10,9 @@
 #include "msa/base/units.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/benchmark/scores.h"
+#include "validation/cli/progress.h"
 #include "validation/effects/effect_file.h"
 #include "validation/parallel/shared_cases.h"
-#include "validation/report/progress.h"
 
 namespace deflect::benchmark {
 namespace {
@@ -82,7 +82,7 @@ Arguments parse(int argc, char** argv) {
 void run_all(const Arguments& a, Ranks* ranks) {
   const std::string data = std::string(DEFLECT_SOURCE_DIR) + "/validation";
   const Mechanism device = read_mechanism(data + "/devices/haptic-6psu-ideal-joints.yaml");
-  const std::vector<Effect> effects = catalogue(data + "/effects");
+  const std::vector<Effect> effects = catalogue(data + "/effects/catalogue");
   const std::vector<Case> orders = cases(a.seed, a.group, a.sets);
   Plans plans(device, effects, a.seed);
   std::vector<Record> records(orders.size());

@@ -5,10 +5,10 @@
 
 #include "msa/base/error.h"
 #include "msa/mechanism/configuration.h"
-#include "validation/compare/theories.h"
-#include "validation/measurement/campaign.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/random.h"
+#include "validation/prediction/campaign.h"
+#include "validation/theories/theories.h"
 
 namespace deflect::benchmark {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "validation/compare/simulate.h"
 #include "validation/diagnosis/observations.h"
 #include "validation/diagnosis/signatures.h"
+#include "validation/prediction/simulate.h"
 
 namespace deflect::benchmark {
 

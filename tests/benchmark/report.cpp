@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "tests/benchmark/scores.h"
-#include "validation/report/sheet.h"
+#include "validation/figures/sheet.h"
 
 namespace deflect::benchmark {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/benchmark/record.h"
-#include "validation/report/gnuplot.h"
+#include "validation/figures/gnuplot.h"
 #include "validation/report/json_text.h"
 
 namespace deflect::benchmark {

@@ -1,5 +1,5 @@
 // A member of several elements and what stays of it from pose to pose.
-#include "msa/frame/condensed_member.h"
+#include "msa/frame/elements/condensed_member.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The co-rotational beam: forces and stiffness as derivatives, rigid motion, and the closed forms at small deformation.
-#include "msa/frame/deformed_beam.h"
+#include "msa/frame/elements/deformed_beam.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Stiffnesses so far apart that doubles keep no digit of the stiff part's strain, against closed forms.
-#include "msa/frame/extended_structure.h"
+#include "msa/frame/structure/extended_structure.h"
 
 #include <gtest/gtest.h>
 
-#include "msa/frame/solver.h"
+#include "msa/frame/structure/solver.h"
 
 namespace deflect::frame {
 namespace {

@@ -1,5 +1,5 @@
 // What the parts of a frame file do, each against a closed form; and the checks of the analysis on all of them.
-#include "msa/frame/frame_analysis.h"
+#include "msa/frame/file/frame_analysis.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Frame files: what is read, that writing is its inverse, and that every mistake is told with its line and the way out.
-#include "msa/frame/frame_file.h"
+#include "msa/frame/file/frame_file.h"
 
 #include <gtest/gtest.h>
 
 #include "msa/base/error.h"
-#include "msa/frame/frame_analysis.h"
+#include "msa/frame/file/frame_analysis.h"
 
 namespace deflect::frame {
 namespace {

@@ -1,7 +1,7 @@
 // The schema of frame files is what the reader reads.
-#include "msa/frame/frame_schema.h"
+#include "msa/frame/file/frame_schema.h"
 
-#include "msa/frame/frame_file.h"
+#include "msa/frame/file/frame_file.h"
 #include "tests/support/schema_routes.h"
 
 namespace deflect::frame {

@@ -1,7 +1,7 @@
 // Mechanisms in second order and at finite displacement.
 #include <gtest/gtest.h>
 
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/devices.h"
 
 namespace deflect::frame {

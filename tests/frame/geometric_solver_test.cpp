@@ -1,6 +1,6 @@
 // Second order and finite displacement: arms, joints, springs and supports against closed forms, and the laws that
 // states and tangents must keep.
-#include "msa/frame/geometric_solver.h"
+#include "msa/frame/deformed/geometric_solver.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // The finite motion of a connection: its derivatives, what rigid motion does to it, and the joints that it makes.
-#include "msa/frame/joint_motion.h"
+#include "msa/frame/elements/joint_motion.h"
 
 #include <gtest/gtest.h>
 
-#include "msa/frame/linearisation.h"
+#include "msa/frame/deformed/linearisation.h"
 #include "tests/support/finite_motion.h"
 
 namespace deflect::frame {

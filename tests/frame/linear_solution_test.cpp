@@ -1,13 +1,13 @@
 // The two ways to solve the equations of a linear frame: they agree to the bound that is stated, the iterative one says
 // the same for any number of threads, and leaves to the direct one what it cannot vouch for.
-#include "msa/frame/linear_solution.h"
+#include "msa/frame/iterative/linear_solution.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "msa/base/error.h"
-#include "msa/frame/frame_analysis.h"
+#include "msa/frame/file/frame_analysis.h"
 #include "tests/support/lattice.h"
 
 namespace deflect::frame {

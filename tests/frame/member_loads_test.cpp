@@ -1,5 +1,5 @@
 // Loads along members: against integration of the beam equations, equilibrium, work, and subdivision.
-#include "msa/frame/member_loads.h"
+#include "msa/frame/elements/member_loads.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <ostream>
 
-#include "msa/frame/member_axes.h"
+#include "msa/frame/file/member_axes.h"
 
 namespace deflect::frame {
 namespace {

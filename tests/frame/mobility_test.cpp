@@ -1,5 +1,5 @@
 // What nothing resists: counted from the kinematics alone, whatever the sizes, units and stiffnesses.
-#include "msa/frame/mobility.h"
+#include "msa/frame/structure/mobility.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "msa/base/error.h"
-#include "msa/frame/frame_analysis.h"
-#include "msa/frame/frame_file.h"
-#include "msa/frame/solver.h"
-#include "msa/frame/stability.h"
+#include "msa/frame/file/frame_analysis.h"
+#include "msa/frame/file/frame_file.h"
+#include "msa/frame/structure/solver.h"
+#include "msa/frame/structure/stability.h"
 
 namespace deflect::frame {
 namespace {

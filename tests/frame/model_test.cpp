@@ -6,7 +6,7 @@
 #include <random>
 
 #include "msa/base/error.h"
-#include "msa/frame/solver.h"
+#include "msa/frame/structure/solver.h"
 #include "tests/support/devices.h"
 
 namespace deflect::frame {

@@ -1,9 +1,9 @@
 // The frame solver for sweeps against the one that assembles the whole structure at each pose.
-#include "msa/frame/msa_sweep.h"
+#include "msa/frame/mechanism/msa_sweep.h"
 
 #include <gtest/gtest.h>
 
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/apart.h"
 #include "tests/support/devices.h"

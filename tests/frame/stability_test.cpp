@@ -1,12 +1,12 @@
 // Structures that cannot stand, harmless spins, and parts so stiff that they are nearly rigid.
-#include "msa/frame/stability.h"
+#include "msa/frame/structure/stability.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "msa/base/error.h"
-#include "msa/frame/solver.h"
+#include "msa/frame/structure/solver.h"
 
 namespace deflect::frame {
 namespace {

@@ -1,5 +1,5 @@
 // The proof from connections alone that a structure can stand.
-#include "msa/frame/standing.h"
+#include "msa/frame/structure/standing.h"
 
 #include <gtest/gtest.h>
 

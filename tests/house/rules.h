@@ -22,6 +22,12 @@ std::string room_of(const std::string& path);
 /// - the included name cannot be read off (a macro).
 std::vector<std::string> include_violations(const std::vector<Source>& sources);
 
+/// One message for every room of the table that may look into one that stands behind it there.
+std::vector<std::string> table_violations();
+
+/// "room has n sources" for every room with more than `limit`.
+std::vector<std::string> crowded_rooms(const std::vector<Source>& sources, int limit);
+
 /// "file: n lines, at most `limit`" for every longer file.
 std::vector<std::string> length_violations(const std::vector<Source>& sources, int limit);
 

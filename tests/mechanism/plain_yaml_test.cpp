@@ -1,5 +1,5 @@
 // The short way to read plain YAML gives the library's tree, or none.
-#include "msa/mechanism/plain_yaml.h"
+#include "msa/fields/plain_yaml.h"
 
 #include <gtest/gtest.h>
 

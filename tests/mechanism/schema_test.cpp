@@ -1,5 +1,5 @@
 // The schema of device files is what the reader reads.
-#include "msa/mechanism/schema.h"
+#include "msa/fields/schema.h"
 
 #include "msa/mechanism/device_file.h"
 #include "tests/support/schema_routes.h"

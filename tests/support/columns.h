@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "msa/frame/geometric_solver.h"
+#include "msa/frame/deformed/geometric_solver.h"
 
 namespace deflect::test {
 

@@ -7,7 +7,7 @@
 namespace deflect::test {
 
 inline const std::vector<Effect>& all_effects() {
-  static const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects");
+  static const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
   return all;
 }
 

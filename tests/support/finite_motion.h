@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "msa/frame/finite_rotation.h"
+#include "msa/frame/elements/finite_rotation.h"
 
 namespace deflect::test {
 

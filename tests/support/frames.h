@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "msa/frame/frame_analysis.h"
-#include "msa/frame/frame_file.h"
+#include "msa/frame/file/frame_analysis.h"
+#include "msa/frame/file/frame_file.h"
 
 namespace deflect::test {
 

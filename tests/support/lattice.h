@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "msa/frame/frame_description.h"
+#include "msa/frame/file/frame_description.h"
 
 namespace deflect::test {
 

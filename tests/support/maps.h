@@ -1,7 +1,7 @@
 // Small grids of poses for tests.
 #pragma once
 
-#include "validation/compare/map.h"
+#include "validation/theories/map.h"
 
 namespace deflect::test {
 

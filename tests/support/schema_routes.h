@@ -14,7 +14,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/units.h"
-#include "msa/mechanism/schema.h"
+#include "msa/fields/schema.h"
 
 namespace deflect::test {
 

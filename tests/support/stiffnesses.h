@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tests/support/devices.h"
-#include "validation/measurement/matrix_file.h"
+#include "validation/matrix/matrix_file.h"
 
 namespace deflect::test {
 

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/devices.h"
-#include "validation/compare/solve_result.h"
-#include "validation/compare/theories.h"
+#include "validation/theories/solve_result.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

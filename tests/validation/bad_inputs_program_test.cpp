@@ -7,8 +7,8 @@
 #include "tests/support/measurements.h"
 #include "tests/support/program.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/page/page.h"
 #include "validation/report/diagnosis_results.h"
-#include "validation/report/page.h"
 
 namespace deflect {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
-#include "validation/compare/changed_parts.h"
+#include "validation/effects/changed_parts.h"
 
 namespace deflect {
 namespace {

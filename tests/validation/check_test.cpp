@@ -1,6 +1,6 @@
 // Every usual mistake in a stiffness is found, in any device, alone and beside a reference, in full and in few digits;
 // a right stiffness passes.
-#include "validation/compare/check_matrix.h"
+#include "validation/matrix/check_matrix.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "analytic/model.h"
 #include "msa/base/error.h"
 #include "tests/support/stiffnesses.h"
-#include "validation/compare/mistakes.h"
+#include "validation/matrix/mistakes.h"
 
 namespace deflect {
 namespace {

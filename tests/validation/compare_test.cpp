@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "tests/support/devices.h"
-#include "validation/compare/prediction.h"
 #include "validation/compare/residual_study.h"
-#include "validation/measurement/campaign.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/random.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/prediction.h"
 #include "validation/report/compare_results.h"
 
 namespace deflect {

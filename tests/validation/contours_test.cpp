@@ -1,5 +1,5 @@
 // Iso-curves of a field and the numbers that stand on them.
-#include "validation/report/contours.h"
+#include "validation/figures/contours.h"
 
 #include <gtest/gtest.h>
 

@@ -11,10 +11,10 @@
 #include "msa/base/files.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
-#include "validation/compare/simulate.h"
-#include "validation/compare/theories.h"
-#include "validation/measurement/campaign.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
 #include "validation/report/diagnosis_results.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

@@ -1,12 +1,12 @@
 // The picture of a machine as its file draws it.
-#include "validation/report/drawing.h"
+#include "validation/figures/drawing.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "tests/support/devices.h"
-#include "validation/report/drawing_results.h"
+#include "validation/figures/drawing_results.h"
 
 namespace deflect {
 namespace {

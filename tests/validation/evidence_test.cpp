@@ -7,10 +7,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "validation/compare/tail.h"
-#include "validation/compare/uncertainty.h"
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/measurement/random.h"
+#include "validation/statistics/tail.h"
+#include "validation/statistics/uncertainty.h"
 
 namespace deflect {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
-#include "validation/report/child_process.h"
-#include "validation/report/fig10.h"
-#include "validation/report/gnuplot.h"
+#include "validation/figures/child_process.h"
+#include "validation/figures/fig10.h"
+#include "validation/figures/gnuplot.h"
 
 namespace deflect {
 namespace {

@@ -1,5 +1,5 @@
 // Maps on small grids: values against single solutions, symmetry, threads, reach.
-#include "validation/compare/map.h"
+#include "validation/theories/map.h"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,11 @@
 
 #include "tests/support/devices.h"
 #include "tests/support/maps.h"
-#include "validation/compare/solve_result.h"
-#include "validation/compare/theories.h"
-#include "validation/report/fig11.h"
+#include "validation/figures/fig11.h"
 #include "validation/report/map_correlation.h"
 #include "validation/report/map_results.h"
+#include "validation/theories/solve_result.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

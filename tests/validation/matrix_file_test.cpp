@@ -1,5 +1,5 @@
 // Matrices as programs print them: every layout, how well the digits are known, and refusals.
-#include "validation/measurement/matrix_file.h"
+#include "validation/matrix/matrix_file.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "tests/support/program.h"
-#include "validation/report/page.h"
+#include "validation/page/page.h"
 
 namespace deflect {
 namespace {

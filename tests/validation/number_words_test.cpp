@@ -1,5 +1,5 @@
 // Numbers in sentences.
-#include "validation/compare/number_words.h"
+#include "msa/base/number_words.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The progress line with a clock of its own.
-#include "validation/report/progress.h"
+#include "validation/cli/progress.h"
 
 #include <gtest/gtest.h>
 

@@ -11,11 +11,11 @@
 #include "msa/base/error.h"
 #include "tests/support/devices.h"
 #include "tests/support/thread_ranks.h"
-#include "validation/compare/map.h"
 #include "validation/diagnosis/bootstrap.h"
 #include "validation/parallel/pack.h"
 #include "validation/parallel/shared_cases.h"
 #include "validation/report/map_results.h"
+#include "validation/theories/map.h"
 
 namespace deflect {
 namespace {

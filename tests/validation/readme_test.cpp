@@ -10,10 +10,10 @@
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/frames.h"
-#include "validation/compare/solve_result.h"
-#include "validation/compare/theories.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/measurements.h"
+#include "validation/theories/solve_result.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

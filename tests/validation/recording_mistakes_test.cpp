@@ -13,9 +13,9 @@
 #include "tests/support/practice.h"
 #include "tests/support/recording.h"
 #include "validation/compare/comparison.h"
-#include "validation/compare/simulate.h"
 #include "validation/diagnosis/diagnosis.h"
-#include "validation/measurement/campaign.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
 
 namespace deflect {
 namespace {

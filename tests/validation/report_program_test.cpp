@@ -7,7 +7,7 @@
 
 #include "msa/base/files.h"
 #include "tests/support/page.h"
-#include "validation/report/page.h"
+#include "validation/page/page.h"
 
 namespace deflect {
 namespace {

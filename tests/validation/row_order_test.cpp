@@ -6,8 +6,8 @@
 
 #include "tests/support/devices.h"
 #include "validation/compare/comparison.h"
-#include "validation/compare/simulate.h"
-#include "validation/measurement/campaign.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
 
 namespace deflect {
 namespace {

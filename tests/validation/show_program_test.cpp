@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "tests/support/page.h"
-#include "validation/report/page.h"
+#include "validation/page/page.h"
 
 namespace deflect {
 namespace {

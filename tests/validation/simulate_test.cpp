@@ -1,13 +1,13 @@
 // Simulated measurements.
-#include "validation/compare/simulate.h"
+#include "validation/prediction/simulate.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/devices.h"
-#include "validation/compare/as_built.h"
-#include "validation/compare/prediction.h"
-#include "validation/measurement/campaign.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/prediction/as_built.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/prediction.h"
 
 namespace deflect {
 namespace {

@@ -1,6 +1,6 @@
 // Theories from pose to pose against those made for one pose, with every effect of the catalogue in the device: laws of
 // all kinds, joints anywhere, legs of their own.
-#include "validation/compare/swept.h"
+#include "validation/theories/swept.h"
 
 #include <gtest/gtest.h>
 

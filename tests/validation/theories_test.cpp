@@ -1,15 +1,15 @@
 // The two theories against each other, against the table of the paper's device and against symmetry.
-#include "validation/compare/theories.h"
+#include "validation/theories/theories.h"
 
 #include <gtest/gtest.h>
 
 #include "analytic/model.h"
 #include "msa/base/stiffness_checks.h"
-#include "msa/frame/component.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/component.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/devices.h"
-#include "validation/compare/solve_result.h"
-#include "validation/compare/workspace.h"
+#include "validation/theories/solve_result.h"
+#include "validation/theories/workspace.h"
 
 namespace deflect {
 namespace {

@@ -1,5 +1,5 @@
 // Residuals weighed by noise and tolerances.
-#include "validation/compare/uncertainty.h"
+#include "validation/statistics/uncertainty.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 
 #include "tests/support/devices.h"
 #include "validation/compare/held_out.h"
-#include "validation/compare/prediction.h"
-#include "validation/measurement/campaign.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/random.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/prediction.h"
 
 namespace deflect {
 namespace {

@@ -1,5 +1,5 @@
 // Errors eliminated block by block and group by group, against the dense covariance that they make together.
-#include "validation/compare/whitening.h"
+#include "validation/statistics/whitening.h"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <numeric>
 
-#include "validation/compare/columns.h"
 #include "validation/compare/held_out.h"
 #include "validation/compare/residual_study.h"
-#include "validation/compare/scaled_groups.h"
-#include "validation/compare/uncertainty.h"
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/measurement/random.h"
+#include "validation/statistics/columns.h"
+#include "validation/statistics/scaled_groups.h"
+#include "validation/statistics/uncertainty.h"
 
 namespace deflect {
 namespace {

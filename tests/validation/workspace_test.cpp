@@ -1,5 +1,5 @@
 // The regions of poses that device files state.
-#include "validation/compare/workspace.h"
+#include "validation/theories/workspace.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "msa/base/error.h"
 #include "tests/support/devices.h"
-#include "validation/compare/map.h"
-#include "validation/measurement/campaign.h"
 #include "validation/measurement/random.h"
+#include "validation/prediction/campaign.h"
+#include "validation/theories/map.h"
 
 namespace deflect {
 namespace {

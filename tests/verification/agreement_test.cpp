@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "analytic/model.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/random_mechanisms.h"
-#include "validation/compare/at_pose.h"
-#include "validation/compare/theories.h"
+#include "validation/theories/at_pose.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

@@ -5,7 +5,7 @@
 #include <ostream>
 
 #include "analytic/member.h"
-#include "msa/frame/solver.h"
+#include "msa/frame/structure/solver.h"
 
 namespace deflect {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "tests/support/elastica.h"
 #include "tests/support/mechanisms.h"
-#include "validation/compare/at_pose.h"
+#include "validation/theories/at_pose.h"
 
 namespace deflect {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "analytic/deflection.h"
-#include "msa/frame/component.h"
+#include "msa/frame/mechanism/component.h"
 
 namespace deflect {
 namespace {

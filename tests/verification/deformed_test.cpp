@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "analytic/model.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/chains.h"
-#include "validation/compare/solve_result.h"
-#include "validation/compare/theories.h"
+#include "validation/theories/solve_result.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

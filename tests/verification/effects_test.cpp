@@ -6,16 +6,18 @@
 
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
-#include "validation/compare/prediction.h"
-#include "validation/compare/theories.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/prediction/prediction.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {
 
-std::vector<Effect> all_effects() { return catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects"); }
+std::vector<Effect> all_effects() {
+  return catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
+}
 
 /// Fifty poses, each with a load that rises, falls and turns round, and a temperature of its own.
 Measurements plan(const Mechanism& m, std::mt19937& random) {

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "msa/base/error.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/support/mechanisms.h"
-#include "validation/compare/agreement.h"
-#include "validation/compare/at_pose.h"
-#include "validation/compare/theories.h"
+#include "validation/theories/agreement.h"
+#include "validation/theories/at_pose.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

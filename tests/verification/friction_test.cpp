@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic/model.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/mechanisms.h"
 
 namespace deflect {

@@ -1,7 +1,7 @@
 // A hybrid machine: its stages stand one upon the other, so that their compliances at the tool add up.
 #include <gtest/gtest.h>
 
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/chains.h"
 
 namespace deflect {

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "msa/frame/solver.h"
+#include "msa/frame/structure/solver.h"
 #include "msa/mechanism/section.h"
 
 namespace deflect::frame {

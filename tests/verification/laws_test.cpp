@@ -4,12 +4,12 @@
 
 #include "analytic/constraint.h"
 #include "analytic/model.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
-#include "validation/compare/at_pose.h"
-#include "validation/compare/theories.h"
+#include "validation/theories/at_pose.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

@@ -1,7 +1,7 @@
 // A leg that is assembled beside its drawing moves the unloaded platform, to first order, as a mount drawn there would.
 #include <gtest/gtest.h>
 
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/chains.h"
 
 namespace deflect {

@@ -1,7 +1,7 @@
 // The joint "parallelogram" against a true one: two rigid bars on hinges, side by side.
 #include <gtest/gtest.h>
 
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "msa/mechanism/place.h"
 #include "tests/support/chains.h"
 

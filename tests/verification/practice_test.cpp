@@ -41,7 +41,7 @@ class Practice : public testing::TestWithParam<Hidden> {
 };
 
 Mechanism with_effects(const Hidden& h, const std::vector<double>& values) {
-  static const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects");
+  static const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
   Mechanism m = test::with(test::device("haptic-6psu-ideal-joints"), "geometry", "finite");
   std::size_t next = 0;
   for (const std::string& name : h.effects) {
@@ -120,7 +120,7 @@ TEST_P(PracticeDiagnosed, TheKeyIsFound) {
   const auto& [set, missing] = GetParam();
   const auto file = test::practice_set(set);
   if (!file) GTEST_SKIP() << "only with DEFLECT_PRACTICE";
-  const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects");
+  const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
   const Diagnosis d = diagnose(test::device("haptic-6psu-ideal-joints"), read_measurements(*file), all);
   if (missing == std::vector<std::string>{"unknown"}) {
     EXPECT_EQ(d.verdict, Verdict::unknown_effect);

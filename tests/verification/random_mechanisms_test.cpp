@@ -6,7 +6,7 @@
 
 #include <regex>
 
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 
 namespace deflect {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic/model.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "msa/mechanism/six_psu.h"
 #include "tests/support/chains.h"
 

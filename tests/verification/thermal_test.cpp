@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "analytic/model.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
-#include "validation/compare/theories.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {

@@ -7,7 +7,7 @@
 #include "analytic/member.h"
 #include "analytic/model.h"
 #include "msa/base/stiffness_checks.h"
-#include "msa/frame/msa.h"
+#include "msa/frame/mechanism/msa.h"
 #include "tests/support/chains.h"
 
 namespace deflect {

@@ -109,7 +109,7 @@ Choices choices_of(const std::string& value) {
     } else if (piece == "FRAME") {
       names = names_in("cases");
     } else if (split(piece, ',').front() == "EFFECT") {
-      names = names_in("effects");
+      names = names_in("effects/catalogue");
     } else if (piece == "ERRATA") {
       for (const ErratumInfo& e : errata()) names.push_back(e.name);
       names.emplace_back("all");

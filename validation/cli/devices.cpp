@@ -14,8 +14,8 @@
 #include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"
-#include "validation/compare/theories.h"
 #include "validation/report/schema_results.h"
+#include "validation/theories/theories.h"
 
 namespace deflect::cli {
 namespace fs = std::filesystem;

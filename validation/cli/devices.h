@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "msa/frame/build.h"
+#include "msa/frame/mechanism/build.h"
 #include "msa/mechanism/description.h"
-#include "validation/compare/theories.h"
 #include "validation/measurement/measurements.h"
 #include "validation/parallel/ranks.h"
+#include "validation/theories/theories.h"
 
 namespace deflect::cli {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "validation/cli/command.h"
-#include "validation/report/gnuplot.h"
+#include "validation/figures/gnuplot.h"
 
 namespace deflect::cli {
 

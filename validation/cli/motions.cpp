@@ -7,7 +7,7 @@
 #include "meshes/gmsh.h"
 #include "meshes/structure.h"
 #include "meshes/vtu.h"
-#include "msa/frame/stability.h"
+#include "msa/frame/structure/stability.h"
 
 namespace deflect::cli {
 

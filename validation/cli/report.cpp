@@ -10,13 +10,13 @@
 #include "msa/base/files.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/talk.h"
-#include "validation/compare/theories.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
+#include "validation/figures/history_results.h"
 #include "validation/measurement/column_names.h"
 #include "validation/report/compare_results.h"
-#include "validation/report/history_results.h"
 #include "validation/report/result_file.h"
+#include "validation/theories/theories.h"
 
 namespace deflect::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include "validation/cli/command.h"
 #include "validation/compare/comparison.h"
 #include "validation/effects/effect.h"
-#include "validation/report/page.h"
-#include "validation/report/page_scene.h"
+#include "validation/page/page.h"
+#include "validation/page/page_scene.h"
 
 namespace deflect::cli {
 

@@ -5,7 +5,7 @@
 #include <exception>
 
 #include "msa/base/error.h"
-#include "validation/report/progress.h"
+#include "validation/cli/progress.h"
 
 namespace deflect::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "validation/report/progress.h"
+#include "validation/cli/progress.h"
 
 namespace deflect::cli {
 

@@ -9,14 +9,14 @@
 #include <optional>
 
 #include "msa/base/error.h"
-#include "validation/compare/columns.h"
 #include "validation/compare/errors_by_group.h"
 #include "validation/compare/findings.h"
 #include "validation/compare/held_out.h"
 #include "validation/compare/outliers.h"
 #include "validation/compare/residual_study.h"
-#include "validation/compare/tail.h"
 #include "validation/parallel/cases.h"
+#include "validation/statistics/columns.h"
+#include "validation/statistics/tail.h"
 
 namespace deflect {
 namespace {

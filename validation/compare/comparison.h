@@ -10,8 +10,8 @@
 #include "validation/compare/elongation.h"
 #include "validation/compare/patterns.h"
 #include "validation/compare/plausibility.h"
-#include "validation/compare/prediction.h"
-#include "validation/compare/uncertainty.h"
+#include "validation/prediction/prediction.h"
+#include "validation/statistics/uncertainty.h"
 
 namespace deflect {
 

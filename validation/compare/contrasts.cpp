@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "validation/compare/tail.h"
+#include "validation/statistics/tail.h"
 
 namespace deflect {
 namespace {

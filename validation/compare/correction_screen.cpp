@@ -8,10 +8,10 @@
 #include <tuple>
 
 #include "msa/base/error.h"
-#include "validation/compare/prediction.h"
-#include "validation/compare/recording_mistakes.h"
 #include "validation/compare/residual_study.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/prediction/prediction.h"
+#include "validation/recording/recording_mistakes.h"
 
 namespace deflect {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "validation/compare/comparison.h"
-#include "validation/compare/recorded.h"
+#include "validation/recording/recorded.h"
 
 namespace deflect {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "validation/compare/patterns.h"
-#include "validation/compare/uncertainty.h"
+#include "validation/statistics/uncertainty.h"
 
 namespace deflect {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validation/compare/number_words.h"
+#include "msa/base/number_words.h"
 
 namespace deflect {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "validation/compare/residual_study.h"
-#include "validation/compare/uncertainty.h"
+#include "validation/statistics/uncertainty.h"
 
 namespace deflect {
 

@@ -1,9 +1,9 @@
 // Readings that are out of all proportion to the others.
 #pragma once
 
-#include "validation/compare/parted_columns.h"
 #include "validation/compare/patterns.h"
-#include "validation/compare/uncertainty.h"
+#include "validation/statistics/parted_columns.h"
+#include "validation/statistics/uncertainty.h"
 
 namespace deflect {
 

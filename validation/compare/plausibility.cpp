@@ -8,11 +8,11 @@
 #include <unordered_set>
 
 #include "msa/base/error.h"
+#include "msa/base/number_words.h"
 #include "validation/compare/correction_screen.h"
 #include "validation/compare/file_oddities.h"
-#include "validation/compare/number_words.h"
-#include "validation/compare/recording_mistakes.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/recording/recording_mistakes.h"
 
 namespace deflect {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "analytic/model.h"
 #include "msa/base/error.h"
-#include "validation/compare/prediction.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/parallel/cases.h"
+#include "validation/prediction/prediction.h"
 
 namespace deflect {
 namespace {

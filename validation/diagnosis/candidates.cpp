@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
-#include "validation/compare/columns.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/parallel/cases.h"
+#include "validation/statistics/columns.h"
 
 namespace deflect {
 namespace {

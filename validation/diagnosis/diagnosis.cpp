@@ -4,12 +4,12 @@
 #include <cmath>
 #include <mutex>
 
-#include "validation/compare/columns.h"
 #include "validation/compare/findings.h"
 #include "validation/diagnosis/bootstrap.h"
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/selection.h"
+#include "validation/statistics/columns.h"
 
 namespace deflect {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validation/compare/columns.h"
 #include "validation/compare/finding_text.h"
-#include "validation/compare/tail.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/parallel/cases.h"
+#include "validation/statistics/columns.h"
+#include "validation/statistics/tail.h"
 
 namespace deflect {
 namespace {

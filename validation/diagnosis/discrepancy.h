@@ -12,7 +12,7 @@
 #include <memory>
 
 #include "validation/compare/comparison.h"
-#include "validation/compare/scaled_groups.h"
+#include "validation/statistics/scaled_groups.h"
 
 namespace deflect {
 

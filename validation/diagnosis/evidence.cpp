@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "validation/compare/tail.h"
+#include "validation/statistics/tail.h"
 
 namespace deflect {
 

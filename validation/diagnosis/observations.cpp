@@ -6,8 +6,8 @@
 
 #include "msa/base/error.h"
 #include "validation/compare/outliers.h"
-#include "validation/compare/prediction.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/prediction/prediction.h"
 
 namespace deflect {
 namespace {

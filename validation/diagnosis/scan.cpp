@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "msa/mechanism/device_file.h"
-#include "validation/compare/columns.h"
 #include "validation/diagnosis/signatures.h"
+#include "validation/statistics/columns.h"
 
 namespace deflect {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "msa/base/error.h"
-#include "validation/compare/columns.h"
-#include "validation/compare/tail.h"
 #include "validation/parallel/cases.h"
+#include "validation/statistics/columns.h"
+#include "validation/statistics/tail.h"
 
 namespace deflect {
 namespace {

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "msa/base/error.h"
+#include "msa/fields/field_writer.h"
+#include "msa/fields/tree_edit.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
-#include "msa/mechanism/field_writer.h"
 #include "msa/mechanism/place.h"
-#include "msa/mechanism/tree_edit.h"
 
 namespace deflect {
 namespace {

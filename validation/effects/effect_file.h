@@ -16,7 +16,8 @@ Effect read_effect(const std::filesystem::path&);
 /// The same from text; `origin` stands for the file's name in messages.
 Effect parse_effect(std::string_view yaml, const std::string& origin);
 
-/// The files *.yaml of a folder (validation/effects, or share/deflect/effects where installed), by name of file.
+/// The files *.yaml of a folder (effects/catalogue, or share/deflect/effects/catalogue where installed), by name of
+/// file.
 std::vector<Effect> catalogue(const std::filesystem::path& folder);
 
 /// Joins an effect to others; InputError when one of them has its name.

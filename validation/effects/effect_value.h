@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "msa/base/spatial.h"
-#include "msa/mechanism/yaml_tree.h"
+#include "msa/fields/yaml_tree.h"
 #include "validation/effects/effect.h"
 
 namespace deflect {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "msa/base/error.h"
-#include "validation/compare/theories.h"
+#include "msa/mechanism/stand.h"
 #include "validation/measurement/measurement_columns.h"
 
 namespace deflect {

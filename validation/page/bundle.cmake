@@ -27,7 +27,7 @@ if(BUNDLED)
 endif()
 
 # A text of the program in pieces, which compilers take of any number.
-set(source "#include \"validation/report/page_template.h\"\n\nnamespace deflect {\n\nstd::string_view page_template() {\n")
+set(source "#include \"validation/page/page_template.h\"\n\nnamespace deflect {\n\nstd::string_view page_template() {\n")
 string(APPEND source "  using namespace std::literals;\n  return \"\"")
 string(LENGTH "${page}" length)
 set(at 0)

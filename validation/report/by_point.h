@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/compare/theories.h"
+#include "validation/theories/theories.h"
 
 namespace deflect {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "validation/compare/check_matrix.h"
+#include "validation/matrix/check_matrix.h"
 
 namespace deflect {
 

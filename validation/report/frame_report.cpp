@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "msa/frame/elimination.h"
+#include "msa/frame/structure/elimination.h"
 #include "validation/report/frame_results.h"
 #include "validation/report/text.h"
 

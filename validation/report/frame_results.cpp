@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
-#include "msa/frame/name_index.h"
+#include "msa/frame/file/name_index.h"
 #include "validation/report/json_text.h"
 #include "validation/report/large_displacements.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "msa/frame/frame_analysis.h"
+#include "msa/frame/file/frame_analysis.h"
 
 namespace deflect {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "validation/compare/map.h"
+#include "validation/theories/map.h"
 
 namespace deflect {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/compare/map.h"
+#include "validation/theories/map.h"
 
 namespace deflect {
 

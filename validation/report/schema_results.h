@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "msa/mechanism/schema.h"
+#include "msa/fields/schema.h"
 
 namespace deflect {
 

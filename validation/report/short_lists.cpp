@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "validation/compare/number_words.h"
+#include "msa/base/number_words.h"
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "validation/compare/solve_result.h"
+#include "validation/theories/solve_result.h"
 
 namespace deflect {
 

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "msa/frame/assembly.h"
-#include "msa/frame/frame_build.h"
-#include "msa/frame/frame_file.h"
+#include "msa/frame/file/frame_build.h"
+#include "msa/frame/file/frame_file.h"
+#include "msa/frame/structure/assembly.h"
 
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 

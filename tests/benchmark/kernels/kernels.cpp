@@ -4,8 +4,8 @@
 
 #include "analytic/model.h"
 #include "analytic/pose_sweep.h"
-#include "msa/frame/msa.h"
-#include "msa/frame/msa_sweep.h"
+#include "msa/frame/mechanism/msa.h"
+#include "msa/frame/mechanism/msa_sweep.h"
 #include "tests/support/devices.h"
 
 namespace {

@@ -1,0 +1,50 @@
+#include "msa/base/number_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace deflect {
+namespace {
+
+/// The decimal place of the first digit: 0 of 1 … 9, 2 of 314, −3 of 0.004.
+int place_of(double value) { return value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value)))); }
+
+}  // namespace
+
+std::string digits_of(double value, int significant) {
+  if (!std::isfinite(value)) return fmt::format("{}", value);
+  // Rounding may carry into another place: 9.996 is 10.0.
+  const double rounded = std::stod(fmt::format("{:.{}e}", value, std::max(1, significant) - 1));
+  const int place = place_of(rounded);
+  if (rounded != 0 && (place < -4 || place > 6)) return fmt::format("{:.{}g}", value, significant);
+  return fmt::format("{:.{}f}", rounded, std::max(0, significant - 1 - place));
+}
+
+std::string plus_minus_words(double value, double deviation) {
+  if (!(deviation > 0) || !std::isfinite(deviation)) return digits_of(value, 3) + " ± " + digits_of(deviation, 2);
+  const int more = place_of(value) - place_of(deviation);
+  return digits_of(value, std::clamp(more + 2, 3, 9)) + " ± " + digits_of(deviation, 2);
+}
+
+std::string interval_words(double value, double low, double high) {
+  const double width = high - low;
+  const double largest = std::max({std::abs(value), std::abs(low), std::abs(high)});
+  int digits = 4;
+  if (width > 0 && std::isfinite(width) && largest > 0)
+    digits = std::clamp(place_of(largest) - place_of(width) + 2, 4, 12);
+  return fmt::format("{} ({} … {})", digits_of(value, digits), digits_of(low, digits), digits_of(high, digits));
+}
+
+double as_printed(double value, int decimals) {
+  return std::isfinite(value) ? std::stod(fmt::format("{:.{}f}", value, decimals)) : value;
+}
+
+std::string fall_words(double from, double to) {
+  int digits = 2;
+  while (digits < 6 && digits_of(from, digits) == digits_of(to, digits)) ++digits;
+  return digits_of(from, digits) + " to " + digits_of(to, digits);
+}
+
+}  // namespace deflect

@@ -1,0 +1,18 @@
+// What a YAML file describes, told by the keys at its top: for files that are given to the wrong command.
+#pragma once
+
+#include <string>
+
+#include "msa/fields/yaml_tree.h"
+
+namespace deflect {
+
+enum class FileKind { unknown, device, frame, effect };
+
+FileKind kind_of(const YamlNode& tree);
+
+/// InputError "origin:line: this file describes a frame, not a device: 'deflect frame FILE' solves it" where the file
+/// is plainly of another kind than the one wanted.
+void require_kind(const YamlNode& tree, FileKind wanted, const std::string& origin);
+
+}  // namespace deflect

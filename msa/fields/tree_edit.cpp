@@ -1,0 +1,201 @@
+#include "msa/fields/tree_edit.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "msa/base/error.h"
+
+namespace deflect {
+namespace {
+
+using Kind = YamlNode::Kind;
+
+class Search {
+ public:
+  Search(const std::string& path, const std::string& where) : segments_(segments_of(path)), where_(where) {}
+
+  std::vector<Place> found;
+
+  void from(const YamlNode& node, std::size_t depth, const std::string& walked) {
+    if (depth == segments_.size()) {
+      found.push_back(place_);
+      return;
+    }
+    const std::string& segment = segments_[depth];
+    if (node.kind == Kind::map) {
+      if (segment == "*") return from_each(node, depth, walked);
+      const YamlNode* child = node.child(segment);
+      if (!child)
+        fail(joined(walked, segment), fmt::format("there is no '{}'{}", segment, suggestion(segment, node.keys)));
+      step(node, static_cast<std::size_t>(child - node.children.data()), depth + 1, walked);
+    } else if (node.kind == Kind::list) {
+      from_list(node, depth, walked);
+    } else {
+      fail(joined(walked, segment), fmt::format("'{}' has no fields", walked));
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& path, const std::string& what) const {
+    throw InputError(fmt::format("{}{}: {}", where_, path, what));
+  }
+
+  void step(const YamlNode& node, std::size_t i, std::size_t depth, const std::string& walked) {
+    place_.push_back(i);
+    from(node.children[i], depth, joined(walked, node.kind == Kind::map ? node.keys[i] : std::to_string(i)));
+    place_.pop_back();
+  }
+
+  void from_each(const YamlNode& node, std::size_t depth, const std::string& walked) {
+    if (node.kind == Kind::map && !node.entries)
+      fail(joined(walked, "*"),
+           "'*' stands for named entries or for list elements, here are fields" + suggestion("*", node.keys));
+    const std::size_t before = found.size();
+    std::string first_error = fmt::format("{}{}: there are no entries", where_, joined(walked, "*"));
+    bool failed = false;
+    const Place here = place_;
+    for (std::size_t i = 0; i < node.children.size(); ++i) try {
+        step(node, i, depth + 1, walked);
+      } catch (const InputError& e) {
+        place_ = here;
+        if (!failed) first_error = e.what();
+        failed = true;
+      }
+    if (found.size() == before) throw InputError(first_error);
+  }
+
+  void from_list(const YamlNode& node, std::size_t depth, const std::string& walked) {
+    const std::string& segment = segments_[depth];
+    if (segment == "*") return from_each(node, depth, walked);
+    std::size_t i = 0;
+    const auto [end, error] = std::from_chars(segment.data(), segment.data() + segment.size(), i);
+    const bool index = error == std::errc() && end == segment.data() + segment.size() && !segment.empty();
+    if (!index && node.collapses && node.children.size() == 1) return step(node, 0, depth, walked);
+    if (!index || i >= node.children.size())
+      fail(joined(walked, segment), node.empty() ? fmt::format("'{}' is empty", walked)
+                                                 : fmt::format("an index from 0 to {} or '*' is wanted, not '{}'",
+                                                               node.children.size() - 1, segment));
+    step(node, i, depth + 1, walked);
+  }
+
+  std::vector<std::string> segments_;
+  std::string where_;
+  Place place_;
+};
+
+/// An assumption about the whole becomes one about each of its parts.
+void pass_down(YamlNode& node) {
+  for (YamlNode& child : node.children) child.ours = child.ours || (node.ours && !child.implied);
+  node.ours = false;
+}
+
+YamlNode& opened(YamlNode& root, const Place& place) {
+  YamlNode* node = &root;
+  for (const std::size_t i : place) {
+    pass_down(*node);
+    node->implied = false;
+    node = &node->children[i];
+  }
+  node->implied = false;
+  return *node;
+}
+
+void append(YamlNode& node, const YamlNode& value, const std::string& here) {
+  pass_down(node);
+  if (node.kind == Kind::list) {
+    node.children.push_back(value);
+    return;
+  }
+  if (!node.entries) throw InputError(here + "is not a list: nothing can be appended");
+  if (value.kind != Kind::map) throw InputError(here + "a map of new entries 'name: {...}' is wanted");
+  for (std::size_t i = 0; i < value.keys.size(); ++i) {
+    if (node.child(value.keys[i])) throw InputError(fmt::format("{}'{}' is there already", here, value.keys[i]));
+    node.add(value.keys[i], value.children[i]);
+  }
+}
+
+void multiply(YamlNode& node, const YamlNode& value, const std::string& here) {
+  if (!node.number) throw InputError(here + "is not a number that is there to be multiplied");
+  if (value.kind != Kind::scalar) throw InputError(here + "a plain number is wanted as factor");
+  double factor = 0;
+  try {
+    factor = parse_number(value.text);
+  } catch (const InputError& e) {
+    throw InputError(here + e.what());
+  }
+  node.number = *node.number * factor;
+  if (!std::isfinite(*node.number)) throw InputError(here + "the product is not finite");
+  node.text = format_quantity(*node.number, node.dimension);
+  node.ours = false;
+}
+
+void add(YamlNode& node, const YamlNode& value, const std::string& here) {
+  if (!node.number) throw InputError(here + "is not a number that is there to be added to");
+  if (value.kind != Kind::scalar) throw InputError(here + "a single value is wanted as summand");
+  try {
+    node.number = *node.number + parse_quantity(value.text, node.dimension);
+  } catch (const InputError& e) {
+    throw InputError(here + e.what());
+  }
+  if (!std::isfinite(*node.number)) throw InputError(here + "the sum is not finite");
+  node.text = format_quantity(*node.number, node.dimension);
+  node.ours = false;
+}
+
+}  // namespace
+
+std::vector<std::string> segments_of(const std::string& path) {
+  std::vector<std::string> out(1);
+  for (const char c : path)
+    if (c == '.')
+      out.emplace_back();
+    else
+      out.back() += c;
+  return out;
+}
+
+std::vector<Place> places(const YamlNode& root, const std::string& path, const std::string& where) {
+  if (path.empty()) throw InputError(where + "the path is empty");
+  Search search(path, where);
+  search.from(root, 0, "");
+  return std::move(search.found);
+}
+
+const YamlNode& at(const YamlNode& root, const Place& place) {
+  const YamlNode* node = &root;
+  for (const std::size_t i : place) node = &node->children[i];
+  return *node;
+}
+
+std::string path_of(const YamlNode& root, const Place& place) {
+  std::string path;
+  const YamlNode* node = &root;
+  for (const std::size_t i : place) {
+    path = joined(path, node->kind == Kind::map ? node->keys[i] : std::to_string(i));
+    node = &node->children[i];
+  }
+  return path;
+}
+
+void change(YamlNode& root, const Place& place, Edit::Action action, const YamlNode& value, const std::string& where) {
+  const std::string here = fmt::format("{}{}: ", where, path_of(root, place));
+  YamlNode& node = opened(root, place);
+  switch (action) {
+    case Edit::Action::set:
+      node = value;
+      break;
+    case Edit::Action::append:
+      append(node, value, here);
+      break;
+    case Edit::Action::multiply:
+      multiply(node, value, here);
+      break;
+    case Edit::Action::add:
+      add(node, value, here);
+      break;
+  }
+}
+
+}  // namespace deflect

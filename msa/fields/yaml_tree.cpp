@@ -1,0 +1,47 @@
+#include "msa/fields/yaml_tree.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace deflect {
+
+YamlNode* YamlNode::child(std::string_view key) {
+  const auto at = std::find(keys.begin(), keys.end(), key);
+  return at == keys.end() ? nullptr : &children[static_cast<std::size_t>(at - keys.begin())];
+}
+
+void YamlNode::add(std::string key, YamlNode node) {
+  keys.push_back(std::move(key));
+  children.push_back(std::move(node));
+}
+
+YamlNode stripped(const YamlNode& node) {
+  YamlNode out = node;
+  out.keys.clear();
+  out.children.clear();
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    if (node.children[i].implied) continue;
+    if (node.kind == YamlNode::Kind::map) out.keys.push_back(node.keys[i]);
+    out.children.push_back(stripped(node.children[i]));
+  }
+  return out;
+}
+
+void set_line(YamlNode& node, int line) {
+  node.line = node.key_line = line;
+  for (YamlNode& child : node.children) set_line(child, line);
+}
+
+std::string joined(const std::string& path, std::string_view key) {
+  return path.empty() || key.empty() ? fmt::format("{}{}", path, key) : fmt::format("{}.{}", path, key);
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  const std::string hint = nearest(word, known);
+  return fmt::format("{} (known: {})", hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint),
+                     known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")));
+}
+
+}  // namespace deflect

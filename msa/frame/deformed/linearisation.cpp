@@ -1,0 +1,218 @@
+#include "msa/frame/deformed/linearisation.h"
+
+#include <algorithm>
+#include <deque>
+#include <iterator>
+
+#include "msa/frame/elements/joint_motion.h"
+#include "msa/frame/structure/assembly.h"
+
+namespace deflect::frame {
+namespace {
+
+using Pair = std::array<int, 2>;
+
+Vector12 gather(const Pair& nodes, const VectorX& u) {
+  Vector12 out = Vector12::Zero();
+  for (int i = 0; i < 2; ++i)
+    if (const int node = nodes[static_cast<std::size_t>(i)]; node >= 0) out.segment<6>(6 * i) = u.segment<6>(6 * node);
+  return out;
+}
+
+void scatter(const Pair& nodes, const Vector12& f, VectorX& to) {
+  for (int i = 0; i < 2; ++i)
+    if (const int node = nodes[static_cast<std::size_t>(i)]; node >= 0) to.segment<6>(6 * node) += f.segment<6>(6 * i);
+}
+
+void scatter(const Pair& nodes, const Matrix12& K, std::vector<Eigen::Triplet<double>>& to) {
+  for (int j = 0; j < 12; ++j)
+    for (int i = 0; i < 12; ++i) {
+      const int a = nodes[static_cast<std::size_t>(i / 6)], b = nodes[static_cast<std::size_t>(j / 6)];
+      if (a >= 0 && b >= 0 && K(i, j) != 0) to.emplace_back(6 * a + i % 6, 6 * b + j % 6, K(i, j));
+    }
+}
+
+/// A component of a connection in the place of the terms on nodes of its linear form; scalars stay.
+LinearForm with_gradient(const Model& m, const LinearForm& form, const Pair& nodes, const Vector12& gradient) {
+  LinearForm out;
+  const auto nodal = static_cast<int>(6 * m.nodes.size());
+  for (int i = 0; i < 12; ++i)
+    if (const int node = nodes[static_cast<std::size_t>(i / 6)]; node >= 0 && gradient(i) != 0)
+      out.push_back({6 * node + i % 6, gradient(i)});
+  std::copy_if(form.begin(), form.end(), std::back_inserter(out), [&](const Term& t) { return t.dof >= nodal; });
+  return out;
+}
+
+double on_scalars(const Model& m, const LinearForm& form, const VectorX& path) {
+  const auto nodal = static_cast<int>(6 * m.nodes.size());
+  double sum = 0;
+  for (const Term& t : form)
+    if (t.dof >= nodal) sum += t.coefficient * path(t.dof);
+  return sum;
+}
+
+/// How the elongation of a spring turns with the bodies that a connection puts it between.
+struct Curved {
+  const Matrix12* hessian = nullptr;
+  Pair nodes{};
+};
+
+class Linearising {
+ public:
+  Linearising(const Model& model, const Shape& shape, const Circumstances& circumstances)
+      : m(model), s(shape), c(circumstances) {
+    out.forces = VectorX::Zero(m.dofs());
+    out.nodal = 6 * m.nodes.size();
+    out.values.resize(static_cast<Eigen::Index>(m.constraints.size()));
+    const auto springs = static_cast<Eigen::Index>(m.springs.size());
+    out.elongations.resize(springs), out.spring_forces.resize(springs), out.spring_tangents.resize(springs);
+    curved.resize(m.springs.size());
+    for (std::size_t i = 0; i < m.springs.size(); ++i) {
+      out.spring_forms.push_back(m.springs[i].elongation);
+      out.elongations(static_cast<Eigen::Index>(i)) = evaluate(out.spring_forms[i], s.path);
+    }
+    for (std::size_t k = 0; k < m.constraints.size(); ++k) {
+      out.forms.push_back(m.constraints[k].form);
+      out.values(static_cast<Eigen::Index>(k)) = evaluate(out.forms[k], s.path);
+    }
+  }
+
+  /// The motion of a connection at given motions of the nodes.
+  const JointMotion& motion(const Connection& joint, const BodyMotion& a, const BodyMotion& b) {
+    std::array<bool, 6> wanted{};
+    for (std::size_t i = 0; i < 6; ++i) wanted[i] = joint.constraint[i] >= 0 || joint.spring[i] >= 0;
+    const auto position = [&](int node) { return m.nodes[static_cast<std::size_t>(node)].position; };
+    motions.push_back(
+        joint_motion(joint.a < 0 ? joint.p : position(joint.a), a, position(joint.b), b, joint.p, joint.axes, wanted));
+    return motions.back();
+  }
+
+  void add_spring_forces() {
+    for (std::size_t i = 0; i < m.springs.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const double force = frame::force(m.springs[i].law, out.elongations(at));
+      const double tangent = std::max(frame::tangent(m.springs[i].law, out.elongations(at)), c.least_tangents(at));
+      out.spring_forces(at) = force;
+      out.spring_tangents(at) = tangent;
+      for (const Term& t : out.spring_forms[i]) {
+        out.forces(t.dof) += t.coefficient * force;
+        for (const Term& u : out.spring_forms[i])
+          out.stiffness.emplace_back(t.dof, u.dof, t.coefficient * tangent * u.coefficient);
+      }
+      if (curved[i].hessian) scatter(curved[i].nodes, force * *curved[i].hessian, out.stiffness);
+    }
+  }
+
+  const Model& m;
+  const Shape& s;
+  const Circumstances& c;
+  Linearisation out;
+  std::vector<Curved> curved;
+  std::deque<JointMotion> motions;  // whose Hessians the forms point to
+};
+
+}  // namespace
+
+Shape::Shape(const Model& m) : nodes(m.nodes.size()), path(VectorX::Zero(m.dofs())) {}
+
+void Shape::move(const VectorX& increment) {
+  path += increment;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    nodes[i].u += increment.segment<3>(at);
+    nodes[i].Q = (rotation_by(increment.segment<3>(at + 3)) * nodes[i].Q).normalized();
+  }
+}
+
+VectorX Shape::displacements() const {
+  VectorX u = path;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    u.segment<3>(static_cast<Eigen::Index>(6 * i + 3)) = rotation_vector(nodes[i].Q);
+  return u;
+}
+
+Linearisation linearise_finite(const Model& m, const Shape& shape, const Circumstances& c) {
+  Linearising work(m, shape, c);
+  Linearisation& out = work.out;
+  for (std::size_t e = 0; e < m.beams.size(); ++e) {
+    const Beam& beam = m.beams[e];
+    const DeformedBeam d = deformed(beam, shape.nodes[static_cast<std::size_t>(beam.a)],
+                                    shape.nodes[static_cast<std::size_t>(beam.b)], c.strains[e]);
+    scatter({beam.a, beam.b}, d.forces, out.forces);
+    scatter({beam.a, beam.b}, d.K, out.stiffness);
+    out.beams.push_back({d.forces, d.A, d.B, d.energy});
+  }
+  for (const Connection& joint : m.connections) {
+    const BodyMotion a = joint.a < 0 ? BodyMotion{} : shape.nodes[static_cast<std::size_t>(joint.a)];
+    const JointMotion& motion = work.motion(joint, a, shape.nodes[static_cast<std::size_t>(joint.b)]);
+    const Pair nodes{joint.a, joint.b};
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double component = motion.components(static_cast<Eigen::Index>(i));
+      if (const int k = joint.constraint[i]; k >= 0) {
+        LinearForm& form = out.forms[static_cast<std::size_t>(k)];
+        out.values(k) = component + on_scalars(m, form, shape.path);
+        form = with_gradient(m, form, nodes, motion.gradient[i]);
+        out.curvatures.push_back({k, nodes, motion.hessian[i]});
+      }
+      if (const int k = joint.spring[i]; k >= 0) {
+        LinearForm& form = out.spring_forms[static_cast<std::size_t>(k)];
+        out.elongations(k) = component + on_scalars(m, form, shape.path);
+        form = with_gradient(m, form, nodes, motion.gradient[i]);
+        work.curved[static_cast<std::size_t>(k)] = {&motion.hessian[i], nodes};
+      }
+    }
+  }
+  for (std::size_t k = c.first_hold; k < m.constraints.size(); ++k) {
+    LinearForm& form = out.forms[k];
+    const int node = form.front().dof / 6;
+    Vector3 axis = Vector3::Zero();
+    for (const Term& t : form) axis(t.dof % 6 - 3) = t.coefficient;
+    form = rotation_of(node, shape.nodes[static_cast<std::size_t>(node)].Q * axis);
+    out.values(static_cast<Eigen::Index>(k)) = 0;
+  }
+  work.add_spring_forces();
+  return std::move(out);
+}
+
+Linearisation linearise_second_order(const Model& m, const Shape& shape, const VectorX& lambda,
+                                     const Circumstances& c) {
+  Linearising work(m, shape, c);
+  Linearisation& out = work.out;
+  for (std::size_t e = 0; e < m.beams.size(); ++e) {
+    const Beam& beam = m.beams[e];
+    const Pair nodes{beam.a, beam.b};
+    const Vector12 d = gather(nodes, shape.path);
+    const double heat = beam.rigidity.EA * c.strains[e];
+    Vector12 ends = end_forces(beam, d), pushed = Vector12::Zero();  // local axes, base axes
+    ends(0) += heat, ends(6) -= heat;
+    pushed.head<3>() = heat * beam.R_WM.col(0), pushed.segment<3>(6) = -pushed.head<3>();
+    const Matrix12 K = stiffness(beam) + geometric_stiffness(beam, ends);
+    const Vector12 forces = K * d + pushed;
+    scatter(nodes, forces, out.forces);
+    scatter(nodes, K, out.stiffness);
+    const double energy = d.dot(pull(beam, d)) / 2 + d.dot(pushed) + heat * c.strains[e] * beam.length / 2;
+    out.beams.push_back({forces, beam.R_WM, beam.R_WM, energy});
+  }
+  VectorX turned = VectorX::Zero(m.dofs());  // what the forces of connections gain by turning
+  for (const Connection& joint : m.connections) {
+    const JointMotion& motion = work.motion(joint, {}, {});
+    const Pair nodes{joint.a, joint.b};
+    const Vector12 d = gather(nodes, shape.path);
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (const int k = joint.constraint[i]; k >= 0) {
+        out.curvatures.push_back({k, nodes, motion.hessian[i]});
+        scatter(nodes, -lambda(k) * motion.hessian[i] * d, turned);
+      }
+      if (const int k = joint.spring[i]; k >= 0) {
+        work.curved[static_cast<std::size_t>(k)] = {&motion.hessian[i], nodes};
+        scatter(nodes, force(m.springs[static_cast<std::size_t>(k)].law, out.elongations(k)) * motion.hessian[i] * d,
+                turned);
+      }
+    }
+  }
+  work.add_spring_forces();
+  out.forces += turned;
+  return std::move(out);
+}
+
+}  // namespace deflect::frame

@@ -1,0 +1,98 @@
+#include "msa/frame/deformed/tangent.h"
+
+#include <Eigen/SparseLU>
+
+#include "msa/frame/structure/sparse_cholesky.h"
+
+namespace deflect::frame {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+Sparse sparse(const std::vector<LinearForm>& rows, Eigen::Index columns) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const Term& t : rows[i]) entries.emplace_back(static_cast<int>(i), t.dof, t.coefficient);
+  Sparse out(static_cast<Eigen::Index>(rows.size()), columns);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+}  // namespace
+
+Sparse tangent_stiffness(const Linearisation& at, const VectorX& lambda, const VectorX& loads) {
+  std::vector<Eigen::Triplet<double>> entries = at.stiffness;
+  for (const Linearisation::Curvature& c : at.curvatures)
+    for (int j = 0; j < 12; ++j)
+      for (int i = 0; i < 12; ++i) {
+        const int a = c.nodes[static_cast<std::size_t>(i / 6)], b = c.nodes[static_cast<std::size_t>(j / 6)];
+        const double value = -lambda(c.constraint) * c.H(i, j);
+        if (a >= 0 && b >= 0 && value != 0) entries.emplace_back(6 * a + i % 6, 6 * b + j % 6, value);
+      }
+  for (std::size_t node = 0; 6 * node + 5 < at.nodal; ++node) {
+    const auto first = static_cast<int>(6 * node + 3);
+    const Matrix3 half = skew(loads.segment<3>(first)) / 2;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (half(i, j) != 0) entries.emplace_back(first + i, first + j, -half(i, j));
+  }
+  Sparse K(at.forces.size(), at.forces.size());
+  K.setFromTriplets(entries.begin(), entries.end());
+  return K;
+}
+
+struct Tangent::Impl {
+  Sparse T, G, K, reduced;
+  Eigen::SparseLU<Sparse> lu;
+  bool regular = true;
+};
+
+Tangent::Tangent(const Elimination& e, const Sparse& K) : impl_(std::make_unique<Impl>()) {
+  Impl& s = *impl_;
+  s.T = sparse(e.T, e.independent);
+  s.G = sparse(e.G, static_cast<Eigen::Index>(e.pivot.size()));
+  s.K = K;
+  s.reduced = s.T.transpose() * K * s.T;
+  s.reduced.makeCompressed();
+  if (e.independent == 0) return;
+  s.lu.compute(s.reduced);
+  s.regular = s.lu.info() == Eigen::Success;
+}
+
+Tangent::~Tangent() = default;
+
+bool Tangent::regular() const { return impl_->regular; }
+
+double Tangent::largest_entry() const {
+  const Sparse& K = impl_->reduced;
+  return K.nonZeros() > 0 ? Eigen::Map<const VectorX>(K.valuePtr(), K.nonZeros()).cwiseAbs().maxCoeff() : 0;
+}
+
+bool Tangent::stable() const {
+  const Sparse symmetric = Sparse(impl_->reduced.transpose()) + impl_->reduced;  // twice the part
+  SparsePattern pattern{static_cast<int>(symmetric.cols()), {0}, {}};
+  std::vector<double> values;
+  for (int j = 0; j < pattern.n; ++j) {
+    pattern.row.push_back(j);
+    values.push_back(symmetric.coeff(j, j));
+    for (Sparse::InnerIterator entry(symmetric, j); entry; ++entry)
+      if (entry.row() > j) {
+        pattern.row.push_back(static_cast<int>(entry.row()));
+        values.push_back(entry.value());
+      }
+    pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
+  }
+  if (SparseCholesky(pattern).factor(values) > 0) return true;
+  const Sparse skew_part = Sparse(impl_->reduced.transpose()) - impl_->reduced;
+  return impl_->regular && skew_part.norm() > 1e-9 * symmetric.norm() && impl_->lu.signDeterminant() > 0;
+}
+
+MatrixX Tangent::solve(const MatrixX& loads, const MatrixX& values) const {
+  const Impl& s = *impl_;
+  const MatrixX moved = s.G * values;
+  if (s.reduced.cols() == 0) return moved;
+  const MatrixX rhs = s.T.transpose() * (loads - s.K * moved);
+  return s.T * MatrixX(s.lu.solve(rhs)) + moved;
+}
+
+}  // namespace deflect::frame

@@ -1,0 +1,275 @@
+#include "msa/frame/file/frame_build.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "msa/base/error.h"
+#include "msa/frame/file/member_axes.h"
+
+namespace deflect::frame {
+namespace {
+
+constexpr std::array<int, 6> nowhere = {-1, -1, -1, -1, -1, -1};
+
+std::size_t at(const NameIndex& index, const char* what, const std::string& name) {
+  const int found = index.find(name);
+  if (found < 0) throw InputError(fmt::format("there is no {} '{}'", what, name));
+  return static_cast<std::size_t>(found);
+}
+
+/// Rigidities of a member, sections evaluated once for each material they are made of.
+class Rigidities {
+ public:
+  explicit Rigidities(const FrameDescription& f) : f_(f), materials_(f.materials), sections_(f.sections) {}
+
+  const FrameMaterial& material(const FrameMember& m) const {
+    return f_.materials[at(materials_, "material", m.material)].second;
+  }
+
+  const SectionProperties& section(const FrameMember& m) {
+    const std::pair key{at(sections_, "section", m.section), at(materials_, "material", m.material)};
+    const auto found = known_.find(key);
+    if (found != known_.end()) return found->second;
+    return known_.emplace(key, properties(f_.sections[key.first].second, material(m).elastic.poisson())).first->second;
+  }
+
+  BeamRigidity operator()(const FrameMember& m) {
+    const SectionProperties& s = section(m);
+    const double E = material(m).elastic.E, G = material(m).elastic.shear_modulus(), c = m.bending_factor;
+    const double none = std::numeric_limits<double>::infinity();
+    BeamRigidity r{E * s.A, c * E * s.Iy, c * E * s.Iz, G * s.J, none, none};
+    if (m.beam == BeamTheory::timoshenko) r.GAs_y = G * s.As_y, r.GAs_z = G * s.As_z;
+    return r;
+  }
+
+ private:
+  const FrameDescription& f_;
+  NameIndex materials_, sections_;
+  std::map<std::pair<std::size_t, std::size_t>, SectionProperties> known_;
+};
+
+std::array<ConnectionFreedom, 6> rigid_where(const Freedoms& rigid) {
+  std::array<ConnectionFreedom, 6> out;
+  for (std::size_t i = 0; i < 6; ++i) out[i].rigid = rigid[i];
+  return out;
+}
+
+/// The node of a member's end: the named one, or one of its own behind the releases.
+int end_node(Model& m, int node, const Freedoms& released, const Matrix3& R_WM, const std::string& name) {
+  if (released == Freedoms{}) return node;
+  Freedoms rigid{};
+  std::transform(released.begin(), released.end(), rigid.begin(), [](bool free) { return !free; });
+  const Vector3 p = m.nodes[static_cast<std::size_t>(node)].position;
+  const int end = m.add_node(name, p);
+  m.connect(node, end, p, R_WM, rigid_where(rigid), name, name);
+  return end;
+}
+
+void add_member(FrameModel& out, const std::string& name, const FrameMember& member, const BeamRigidity& rigidity,
+                const std::vector<double>& fractions) {
+  Model& m = out.model;
+  const auto a = static_cast<int>(at(out.nodes, "node", member.from)),
+             b = static_cast<int>(at(out.nodes, "node", member.to));
+  const Vector3 start = m.nodes[static_cast<std::size_t>(a)].position,
+                end = m.nodes[static_cast<std::size_t>(b)].position;
+  const Matrix3 R_WM = member_axes(end - start, member.y_axis);
+  constexpr Freedoms hinged{false, false, false, true, true, true};
+  int previous =
+      end_node(m, a, member.truss ? hinged : member.release_from, R_WM, fmt::format("{} at {}", name, member.from));
+  const int last =
+      end_node(m, b, member.truss ? hinged : member.release_to, R_WM, fmt::format("{} at {}", name, member.to));
+  for (std::size_t i = 1; i + 1 < fractions.size(); ++i) {
+    const int next = m.add_node(fmt::format("{} {:.4g}", name, fractions[i]), start + fractions[i] * (end - start));
+    m.add_beam(previous, next, R_WM, rigidity, fmt::format("{} [{}]", name, i), member.section);
+    previous = next;
+  }
+  m.add_beam(previous, last, R_WM, rigidity,
+             fractions.size() > 2 ? fmt::format("{} [{}]", name, fractions.size() - 1) : name, member.section);
+}
+
+std::vector<double> equal_parts(int elements) {
+  std::vector<double> fractions;
+  for (int i = 0; i <= elements; ++i) fractions.push_back(static_cast<double>(i) / elements);
+  return fractions;
+}
+
+void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision& division) {
+  Rigidities rigidity(f);
+  for (std::size_t i = 0; i < f.members.size(); ++i) {
+    const auto& [name, member] = f.members[i];
+    out.first_element.push_back(static_cast<int>(out.model.beams.size()));
+    add_member(out, name, member, rigidity(member), division.empty() ? equal_parts(member.elements) : division[i]);
+    const FrameMaterial& material = rigidity.material(member);
+    out.mass_per_length.push_back(material.density.value_or(0) * rigidity.section(member).A);
+    out.expansion.push_back(material.expansion.value_or(0));
+  }
+  out.first_element.push_back(static_cast<int>(out.model.beams.size()));
+}
+
+void add_supports(FrameModel& out, const FrameDescription& f) {
+  for (const auto& [name, freedoms] : f.supports) {
+    const auto node = static_cast<int>(at(out.nodes, "node", name));
+    out.support_constraint.push_back(nowhere);
+    Connection& record = out.model.grounded(node);
+    for (int i = 0; i < 6; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!freedoms[k]) continue;
+      record.constraint[k] = out.support_constraint.back()[k] = static_cast<int>(out.model.constraints.size());
+      Constraint c;
+      c.form = {{6 * node + i, 1}};
+      c.name = fmt::format("support {} {}", name, node_freedoms[k]);
+      out.model.constraints.push_back(std::move(c));
+    }
+  }
+}
+
+void add_links(FrameModel& out, const FrameDescription& f) {
+  for (const auto& [name, link] : f.rigid_links)
+    for (const std::string& follower : link.nodes) {
+      const auto a = static_cast<int>(at(out.nodes, "node", link.master)),
+                 b = static_cast<int>(at(out.nodes, "node", follower));
+      const Vector3 p = out.model.nodes[static_cast<std::size_t>(b)].position;
+      out.model.connect(a, b, p, Matrix3::Identity(), rigid_where(link.freedoms), fmt::format("{} {}", name, follower),
+                        name);
+      if (p != out.model.nodes[static_cast<std::size_t>(a)].position) out.arms.emplace_back(a, b);
+    }
+}
+
+void add_constraints(FrameModel& out, const FrameDescription& f) {
+  for (const auto& [name, constraint] : f.constraints) {
+    Constraint c;
+    c.name = name;
+    for (const ConstraintTerm& t : constraint.terms)
+      c.form.push_back({6 * static_cast<int>(at(out.nodes, "node", t.node)) + t.freedom, t.factor * t.arm.value_or(1)});
+    out.constraint.push_back(static_cast<int>(out.model.constraints.size()));
+    out.model.constraints.push_back(std::move(c));
+  }
+}
+
+void add_springs(FrameModel& out, const FrameDescription& f) {
+  Model& m = out.model;
+  for (const auto& [name, spring] : f.springs) {
+    const auto node = static_cast<int>(at(out.nodes, "node", spring.node));
+    const Vector3 p = m.nodes[static_cast<std::size_t>(node)].position;
+    std::array<ConnectionFreedom, 6> laws = rigid_where({});
+    out.spring.push_back(nowhere);
+    auto next = static_cast<int>(m.springs.size());
+    Connection* record = spring.to.empty() ? &m.grounded(node) : nullptr;
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (!spring.stiffness[i]) continue;
+      const LinearSpring law{*spring.stiffness[i]};
+      laws[i].laws = {law};
+      out.spring.back()[i] = next++;
+      if (!record) continue;
+      record->spring[i] = out.spring.back()[i];
+      m.springs.push_back(
+          {{{6 * node + static_cast<int>(i), 1}}, law, fmt::format("{} {}", name, node_freedoms[i]), name});
+    }
+    if (!spring.to.empty())
+      m.connect(static_cast<int>(at(out.nodes, "node", spring.to)), node, p, Matrix3::Identity(), laws, name, name);
+  }
+}
+
+bool out_of_plane(Plane plane, int freedom) {
+  return plane != Plane::none && (freedom % 3 == static_cast<int>(plane)) == (freedom < 3);
+}
+
+/// Last, so that what supports and links hold already is not told of them.
+void hold_plane(Model& m, Plane plane) {
+  for (std::size_t node = 0; plane != Plane::none && node < m.nodes.size(); ++node)
+    for (int i = 0; i < 6; ++i) {
+      if (!out_of_plane(plane, i)) continue;
+      Constraint c;
+      c.form = {{6 * static_cast<int>(node) + i, 1}};
+      c.name = fmt::format("plane {} at {}", plane_names[static_cast<std::size_t>(plane)], m.nodes[node].name);
+      c.may_repeat = true;
+      m.constraints.push_back(std::move(c));
+    }
+}
+
+/// A plane frame cannot carry what acts across its plane.
+void refuse_across_plane(const FrameDescription& f, const FrameModel& m, const std::string& name,
+                         const VectorX& forces) {
+  const double most = forces.cwiseAbs().maxCoeff();
+  for (Eigen::Index dof = 0; f.plane != Plane::none && dof < static_cast<Eigen::Index>(6 * m.model.nodes.size()); ++dof)
+    if (out_of_plane(f.plane, static_cast<int>(dof % 6)) && std::abs(forces(dof)) > 1e-9 * most)
+      throw InputError(fmt::format(
+          "load case '{}' acts at node '{}' along or about a direction that leaves the plane {}: "
+          "take it away, or leave 'plane' away",
+          name, m.model.nodes[static_cast<std::size_t>(dof / 6)].name, plane_names[static_cast<std::size_t>(f.plane)]));
+}
+
+}  // namespace
+
+FrameModel build_frame(const FrameDescription& f, const FrameDivision& division) {
+  FrameModel out;
+  out.nodes = NameIndex(f.nodes);
+  out.members = NameIndex(f.members);
+  for (const auto& [name, position] : f.nodes) out.model.add_node(name, position);
+  add_members(out, f, division);
+  add_supports(out, f);
+  add_links(out, f);
+  add_constraints(out, f);
+  add_springs(out, f);
+  hold_plane(out.model, f.plane);
+  return out;
+}
+
+CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::string& case_name, const LoadCase& c) {
+  CaseLoad out;
+  out.forces = out.thermal = VectorX::Zero(m.model.dofs());
+  out.values = VectorX::Zero(static_cast<Eigen::Index>(m.model.constraints.size()));
+  out.elements.resize(m.model.beams.size());
+
+  const auto elements_of = [&](std::size_t member, const auto& change) {
+    for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e)
+      change(out.elements[static_cast<std::size_t>(e)], m.model.beams[static_cast<std::size_t>(e)]);
+  };
+  for (const auto& [name, load] : c.members)
+    elements_of(at(m.members, "member", name), [&load = load](ElementLoad& e, const Beam& beam) {
+      e.q_M += load.member_axes ? load.q : Vector3(beam.R_WM.transpose() * load.q);
+    });
+  for (const auto& [name, kelvin] : c.temperature) {
+    const std::size_t member = at(m.members, "member", name);
+    elements_of(member,
+                [&, strain = m.expansion[member] * kelvin](ElementLoad& e, const Beam&) { e.strain += strain; });
+  }
+  if (!c.gravity.isZero(0))
+    for (std::size_t member = 0; member < f.members.size(); ++member)
+      elements_of(member, [&](ElementLoad& e, const Beam& beam) {
+        e.q_M += m.mass_per_length[member] * (beam.R_WM.transpose() * c.gravity);
+      });
+
+  const auto add = [](VectorX& to, const Beam& beam, const Vector12& local) {
+    for (int i = 0; i < 4; ++i)
+      to.segment<3>(6 * (i < 2 ? beam.a : beam.b) + 3 * (i % 2)) += beam.R_WM * local.segment<3>(3 * i);
+  };
+  for (std::size_t e = 0; e < out.elements.size(); ++e) {
+    const Beam& beam = m.model.beams[e];
+    const ElementLoad heat{Vector3::Zero(), out.elements[e].strain};
+    if (heat.strain != 0) add(out.thermal, beam, equivalent_forces(beam.rigidity, beam.length, heat));
+    if (heat.strain != 0 || !out.elements[e].q_M.isZero(0))
+      add(out.forces, beam, equivalent_forces(beam.rigidity, beam.length, out.elements[e]));
+  }
+  for (const auto& [name, wrench] : c.nodes)
+    out.forces.segment<6>(6 * static_cast<Eigen::Index>(at(m.nodes, "node", name))) += wrench;
+  refuse_across_plane(f, m, case_name, out.forces);
+
+  const NameIndex supports(f.supports);
+  for (const auto& [name, values] : c.displacements) {
+    const auto& constraints = m.support_constraint[at(supports, "support at node", name)];
+    for (std::size_t i = 0; i < 6; ++i)
+      if (values[i]) {
+        if (constraints[i] < 0)
+          throw InputError(fmt::format("node '{}' is not supported in {}: its displacement cannot be prescribed", name,
+                                       node_freedoms[i]));
+        out.values(constraints[i]) = *values[i];
+      }
+  }
+  return out;
+}
+
+}  // namespace deflect::frame

@@ -1,0 +1,213 @@
+#include "msa/frame/mechanism/build.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "msa/base/error.h"
+#include "msa/frame/mechanism/component.h"
+
+namespace deflect::frame {
+namespace {
+
+std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
+  std::array<ConnectionFreedom, 6> out;
+  for (std::size_t i = 0; i < 6; ++i) {
+    out[i].rigid = !j.elastic(i) && !j.free(i);
+    for (const Law& law : j.laws[i]) {
+      out[i].laws.push_back(preloaded(spring_of(law), j.preload[i]));
+      out[i].laws.back().rotation = i >= 3;
+    }
+  }
+  return out;
+}
+
+/// A stiffness of all six freedoms together is Σ λ v vᵀ over its eigenvectors: a spring λ for each, along the relative
+/// motion vᵀ[δ; θ]. Rotations are weighed by the stiffness' own length, so that eigenvectors are well defined.
+void connect_elastic(Model& model, int a, int b, const PlacedJoint& j, const std::string& name) {
+  const Matrix6& K = *j.stiffness;
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(std::sqrt(K.bottomRightCorner<3, 3>().trace() / K.topLeftCorner<3, 3>().trace()));
+  const Matrix6 weighed = weight.cwiseInverse().asDiagonal() * K * weight.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(weighed);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const Vector6 v = weight.cwiseProduct(eigen.eigenvectors().col(i));
+    LinearForm form;
+    for (const auto& [node, sign] : {std::pair{b, 1.0}, std::pair{a, -1.0}})
+      for (const LinearForm& half : {translation_of(model, node, j.p_W, j.R_WJ * v.head<3>(), sign),
+                                     rotation_of(node, j.R_WJ * v.tail<3>(), sign)})
+        form.insert(form.end(), half.begin(), half.end());
+    model.springs.push_back({form, LinearSpring{eigen.eigenvalues()(i)}, fmt::format("{} [{}]", name, i + 1), j.part});
+  }
+}
+
+/// Nodes must all exist before connections bring scalars: what is to be connected waits here.
+struct Pending {
+  int a, b;
+  Vector3 p;
+  const PlacedJoint* joint;  // nullptr: rigid
+  std::string name;
+  bool ends_leg = false;
+  Vector6 beside = Vector6::Zero();  // rigid: how far b stands beside a, at p
+};
+
+class Builder {
+ public:
+  explicit Builder(const MemberDivision& division) : division_(division) {}
+
+  int body(const std::string& name, const Vector3& p) { return model.add_node(name, p); }
+
+  void joint(int a, int b, const PlacedJoint& j, const std::string& name) {
+    pending_.push_back({a, b, j.p_W, &j, name});
+  }
+
+  /// A leg of the mechanism, from the body of node `from` to the platform at p_WT, the body of node `to`.
+  void mounted_leg(const PlacedLeg& leg, int from, int to, const Vector3& p_WT) {
+    const bool beside = !leg.misfit.isZero(0);
+    const int end = beside ? body(leg.name + " end", p_WT) : to;
+    chain(leg, from, end);
+    if (beside) pending_.push_back({end, to, p_WT, nullptr, leg.name + " seat", false, leg.misfit});
+    pending_.back().ends_leg = true;
+  }
+
+  void finish(MechanismModel& out) {
+    const auto position = [this](int node) { return model.nodes[static_cast<std::size_t>(node)].position; };
+    for (const Pending& p : pending_) {
+      if ((position(p.a) - position(p.b)).norm() > 1e-9) out.arms.emplace_back(p.a, p.b);
+      const std::size_t constraints = model.constraints.size(), springs = model.springs.size();
+      if (p.joint && p.joint->stiffness)
+        connect_elastic(model, p.a, p.b, *p.joint, p.name);
+      else
+        model.connect(p.a, p.b, p.p, p.joint ? p.joint->R_WJ : Matrix3::Identity(),
+                      p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,
+                      p.joint ? p.joint->part : "");
+      if (!p.beside.isZero(0))
+        for (Eigen::Index i = 0; i < 6; ++i)
+          model.constraints[constraints + static_cast<std::size_t>(i)].value = p.beside(i);
+      if (p.ends_leg) out.attachments.push_back({constraints, model.constraints.size(), springs, model.springs.size()});
+    }
+    out.model = std::move(model);
+  }
+
+  Model model;
+
+ private:
+  /// A chain from the body of node `from` to the body of node `to`.
+  void chain(const PlacedLeg& leg, int from, int to) {
+    int at = from;
+    const PlacedJoint* waiting = nullptr;  // a joint whose far side is the next member's node
+    const auto attach = [&](int node, const Vector3& p) {
+      if (waiting)
+        joint(at, node, *waiting, leg.name + " " + waiting->part);
+      else
+        pending_.push_back({at, node, p, nullptr, leg.name + " attachment"});
+      waiting = nullptr;
+      at = node;
+    };
+    for (const PlacedPart& part : leg.parts) {
+      if (const auto* j = std::get_if<PlacedJoint>(&part)) {
+        if (j->rigid()) continue;
+        if (waiting) attach(body(fmt::format("{} {} / {}", leg.name, waiting->part, j->part), j->p_W), j->p_W);
+        waiting = j;
+      } else if (const auto* group = std::get_if<PlacedParallel>(&part)) {
+        attach(body(fmt::format("{} {} start", leg.name, group->part), group->p_W_start), group->p_W_start);
+        const int end = body(fmt::format("{} {} end", leg.name, group->part), group->p_W_end);
+        for (const PlacedLeg& branch : group->branches) chain(branch, at, end);
+        at = end;
+      } else {
+        const auto& m = std::get<PlacedMember>(part);
+        attach(body(fmt::format("{} {} start", leg.name, m.part), m.p_W_start), m.p_W_start);
+        at = member(leg, m, at);
+      }
+    }
+    attach(to, model.nodes[static_cast<std::size_t>(to)].position);
+  }
+
+  int member(const PlacedLeg& leg, const PlacedMember& m, int start) {
+    const auto found = division_.find(m.part);
+    const std::vector<double> at = found == division_.end() ? std::vector<double>{0, 1} : found->second;
+    const std::string name = leg.name + " " + m.part;
+    int previous = start;
+    for (std::size_t i = 1; i < at.size(); ++i) {
+      const bool last = i + 1 == at.size();
+      const Vector3 p = last ? m.p_W_end : m.p_W_start + at[i] * (m.p_W_end - m.p_W_start);
+      const int next = body(last ? name + " end" : fmt::format("{} {:.4g}", name, at[i]), p);
+      model.add_beam(previous, next, m.R_WM, rigidity(m), fmt::format("{} [{}]", name, i), m.part);
+      model.beams.back().expansion = m.expansion;
+      previous = next;
+    }
+    return previous;
+  }
+
+  const MemberDivision& division_;
+  std::vector<Pending> pending_;
+};
+
+}  // namespace
+
+BeamRigidity rigidity(const PlacedMember& m) {
+  const double none = std::numeric_limits<double>::infinity();
+  BeamRigidity r{m.E * m.section.A, m.E * m.section.Iy, m.E * m.section.Iz, m.G * m.section.J, none, none};
+  if (m.beam == BeamTheory::timoshenko) {
+    r.GAs_y = m.G * m.section.As_y;
+    r.GAs_z = m.G * m.section.As_z;
+  }
+  return r;
+}
+
+MemberDivision equal_division(const Configuration& c, int elements) {
+  std::vector<double> at;
+  for (int i = 0; i <= elements; ++i) at.push_back(static_cast<double>(i) / elements);
+  MemberDivision out;
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, PlacedMember>) out[part.part] = at;
+  });
+  return out;
+}
+
+MemberDivision halved(const Configuration& c, const MemberDivision& division) {
+  MemberDivision out = division;
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, PlacedMember>) {
+      const auto given = division.find(part.part);
+      const std::vector<double> at = given == division.end() ? std::vector<double>{0, 1} : given->second;
+      std::vector<double> finer{at.front()};
+      for (std::size_t i = 1; i < at.size(); ++i) finer.insert(finer.end(), {(at[i - 1] + at[i]) / 2, at[i]});
+      out[part.part] = std::move(finer);
+    }
+  });
+  return out;
+}
+
+MechanismModel build(const Configuration& c, const MemberDivision& division) {
+  Builder b(division);
+  MechanismModel out;
+  out.ground = b.body("ground", c.base.p_W);
+  out.base = c.base.rigid() ? out.ground : b.body("base", c.base.p_W);
+  out.platform = b.body("platform", c.pose.p_WT);
+  out.tool = c.tool.rigid() ? out.platform : b.body("tool", c.tool.p_W);
+  if (out.base != out.ground) b.joint(out.ground, out.base, c.base, "base");
+  if (out.tool != out.platform) b.joint(out.platform, out.tool, c.tool, "tool");
+  for (const PlacedLeg& leg : c.legs) b.mounted_leg(leg, out.base, out.platform, c.pose.p_WT);
+  b.model.fix(out.ground, "ground");
+  b.model.watched = out.tool;
+  b.finish(out);
+  return out;
+}
+
+MechanismModel build_leg(const Configuration& c, std::size_t leg, const MemberDivision& division) {
+  Builder b(division);
+  MechanismModel out;
+  out.ground = out.base = b.body("ground", c.base.p_W);
+  out.platform = out.tool = b.body("platform", c.pose.p_WT);
+  b.mounted_leg(c.legs[leg], out.ground, out.platform, c.pose.p_WT);
+  b.model.fix(out.ground, "ground");
+  b.model.watched = out.tool;
+  b.finish(out);
+  return out;
+}
+
+}  // namespace deflect::frame

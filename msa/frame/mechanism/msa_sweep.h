@@ -1,0 +1,59 @@
+// The frame solver for one device at many poses and loads: legs condensed to the platform once per pose
+// (condensed_leg.h), where their stiffness adds up; nothing is allocated from pose to pose. Springs whose stiffness
+// depends on their load are linearised about their forces until these stay, which costs no walk along the legs.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <vector>
+
+#include "msa/frame/mechanism/condensed_leg.h"
+
+namespace deflect::frame {
+
+class MsaSweep {
+ public:
+  /// For configurations of this device: of the same parts, freedoms and laws.
+  explicit MsaSweep(const Configuration&, const MemberDivision& = {});
+
+  /// False where the device has what a sweep leaves to MsaModel: legs that CondensedLeg leaves, base or tool that move
+  /// or yield.
+  bool applies() const { return applies_; }
+
+  /// Moves on, for any number of solve(); the configuration may go afterwards.
+  void at(const Configuration&);
+
+  /// Response there to the wrench F at T and the weight, base axes, SI: displacement [δ; θ] of T and the tangent
+  /// stiffness. False, and no result, where nothing holds T in some direction, a contact carries nothing, the springs'
+  /// forces do not settle, or a member is so stiff beside the whole (10⁵ times) that condensation would lose digits
+  /// (relative.h keeps them).
+  bool solve(const Vector6& F_T_W);
+
+  const Vector6& displacement() const { return displacement_; }
+  const Matrix6& stiffness() const { return stiffness_; }
+  bool linear() const { return linear_; }  ///< no spring's stiffness depends on its load
+  /// Of the last solve(): a leg's stiffness; the wrench of the ground on the legs, about T; the stored energy, J.
+  const Matrix6& leg_stiffness(std::size_t leg) const { return legs_[leg].stiffness(); }
+  const Vector6& reaction() const { return reaction_; }
+  double energy() const { return energy_; }
+  /// Twists at T of a leg's passive joints (columns).
+  Matrix6X passive_twists(const Configuration&, std::size_t leg) const;
+  int iterations() const { return iterations_; }  ///< of the last solve; 1 where all springs are linear
+
+ private:
+  bool assemble();
+  Vector6 moved_by(Vector6 F) const;
+  bool iterate(const Vector6& F);
+  double settle();
+
+  bool applies_ = true, linear_ = true, held_ = false;
+  int iterations_ = 0;
+  std::vector<CondensedLeg> legs_;
+  Vector3 weight_ = Vector3::Zero();
+  double size_ = 0;
+  Eigen::LLT<Matrix6> factor_;  // of the stiffness, rotations weighed by the size
+  Vector6 displacement_ = Vector6::Zero(), reaction_ = Vector6::Zero();
+  Matrix6 stiffness_ = Matrix6::Zero();
+  double energy_ = 0;
+};
+
+}  // namespace deflect::frame

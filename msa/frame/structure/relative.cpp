@@ -1,0 +1,117 @@
+#include "msa/frame/structure/relative.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "msa/frame/structure/elimination.h"
+
+namespace deflect::frame {
+namespace {
+
+/// Nm/rad; of a linear spring along a line its stiffness times the squared length of the structure.
+double softest(const Model& m) {
+  double least = std::numeric_limits<double>::infinity();
+  const double length = characteristic_length(m);
+  for (const Beam& b : m.beams) least = std::min({least, b.rigidity.EIy / b.length, b.rigidity.EIz / b.length});
+  for (const Spring& s : m.springs)
+    if (const auto* linear = std::get_if<LinearSpring>(&s.law); linear && linear->k > 0)
+      least = std::min(least, linear->k * (s.law.rotation ? 1 : length * length));
+  return least;
+}
+
+void make_relative(Model& m, Beam& beam) {
+  beam.relative = m.dofs();
+  for (int i = 0; i < 6; ++i) m.scalars.push_back(fmt::format("deformation {} of {}", i + 1, beam.name));
+  const Vector3 arm = m.nodes[static_cast<std::size_t>(beam.b)].position;
+  for (int i = 0; i < 6; ++i) {
+    const Vector3 axis = Vector3::Unit(i % 3);
+    LinearForm form = i < 3 ? translation_of(m, beam.a, arm, axis, -1) : rotation_of(beam.a, axis, -1);
+    form.push_back({6 * beam.b + i, 1});
+    form.push_back({beam.relative + i, -1});
+    m.constraints.push_back({std::move(form), 0, beam.name, 6 * beam.b + i});
+  }
+}
+
+/// The elongation becomes a coordinate; the constraint that defines it eliminates what it was made from.
+void make_relative(Model& m, Spring& spring) {
+  const int elongation = m.dofs();
+  m.scalars.push_back("elongation of " + spring.name);
+  LinearForm form = spring.elongation;
+  const auto most = std::max_element(form.begin(), form.end(), [](const Term& a, const Term& b) {
+    return std::abs(a.coefficient) < std::abs(b.coefficient);
+  });
+  const int eliminates = most->dof;
+  form.push_back({elongation, -1});
+  m.constraints.push_back({std::move(form), 0, spring.name, eliminates});
+  spring.elongation = {{elongation, 1}};
+  spring.defined_by = static_cast<int>(m.constraints.size()) - 1;
+}
+
+bool is_stiff(const Beam& beam, double limit) {
+  return std::min(beam.rigidity.EIy, beam.rigidity.EIz) / beam.length > limit;
+}
+
+bool is_stiff(const Spring& spring, double limit, double length) {
+  const auto* linear = std::get_if<LinearSpring>(&spring.law);
+  return linear && linear->k * length * length > limit * 1e4;
+}
+
+/// Of the translations that the structure resists, N/m.
+double stiffest(const Model& m) {
+  const double length = characteristic_length(m);
+  double most = 0;
+  for (const Beam& b : m.beams) most = std::max(most, b.rigidity.EA / b.length);
+  for (const Spring& s : m.springs) {
+    const double per_length = s.law.rotation ? 1 / (length * length) : 1;
+    if (const auto* linear = std::get_if<LinearSpring>(&s.law)) most = std::max(most, linear->k * per_length);
+    if (const auto* friction = std::get_if<FrictionSpring>(&s.law)) most = std::max(most, friction->k * per_length);
+  }
+  return most > 0 ? most : 1e8;
+}
+
+}  // namespace
+
+double contact_stiffness(const Model& m) { return 10 * stiffest(m); }
+
+void give_contacts_stiffness(Model& m) {
+  if (std::none_of(m.springs.begin(), m.springs.end(), [](const Spring& s) { return jumps(s.law); })) return;
+  const double length = characteristic_length(m), contact = contact_stiffness(m);
+  for (Spring& s : m.springs) {
+    const double stiffness = s.law.rotation ? contact * length * length : contact;
+    if (auto* gap = std::get_if<GapSpring>(&s.law)) gap->contact = stiffness;
+    if (auto* one = std::get_if<OneSidedSpring>(&s.law)) one->contact = stiffness;
+    know_force(s.law, 0);
+  }
+}
+
+bool wants_relative_motion(const Model& m, double ratio) {
+  const double limit = ratio * softest(m), length = characteristic_length(m);
+  return std::any_of(m.beams.begin(), m.beams.end(),
+                     [&](const Beam& b) { return b.relative < 0 && is_stiff(b, limit); }) ||
+         std::any_of(m.springs.begin(), m.springs.end(), [&](const Spring& s) {
+           return s.elongation.size() > 1 && (is_stiff(s, limit, length) || jumps(s.law));
+         });
+}
+
+std::vector<std::string> use_relative_motion(Model& m, double ratio) {
+  std::vector<std::string> names;
+  const double limit = ratio * softest(m);
+  for (Beam& beam : m.beams)
+    if (beam.relative < 0 && is_stiff(beam, limit)) {
+      make_relative(m, beam);
+      names.push_back(beam.name);
+    }
+  const double length = characteristic_length(m);
+  for (Spring& spring : m.springs) {
+    const bool stiff = is_stiff(spring, limit, length);
+    if (spring.elongation.size() > 1 && (stiff || jumps(spring.law))) {
+      make_relative(m, spring);
+      if (stiff) names.push_back(spring.name);
+    }
+  }
+  return names;
+}
+
+}  // namespace deflect::frame

@@ -1,0 +1,26 @@
+// Exactness beside very stiff parts. A member 1e12 times stiffer than its neighbours moves almost as a rigid body: its
+// forces are differences of displacements that agree to twelve digits, and nothing of them is left. Such a part gets
+// the deformation itself as coordinates, u_b = X u_a + s, so that its stiffness acts on s and its rigid motion costs
+// exactly nothing. The structure is the same; any ratio of stiffnesses, up to rigid, has the same digits.
+#pragma once
+
+#include "msa/frame/structure/model.h"
+
+namespace deflect::frame {
+
+/// Ten times the stiffest part, N/m.
+double contact_stiffness(const Model&);
+
+/// Gives gaps and rigid sides of springs (stepped_spring.h) their contact stiffness: ten times the stiffest part, so
+/// that each step of λ leaves at most a tenth of what it lacks.
+void give_contacts_stiffness(Model&);
+
+/// Whether the next function would find a beam or a spring to change.
+bool wants_relative_motion(const Model&, double ratio = 1e5);
+
+/// Gives relative coordinates to springs that jump, to beams whose bending stiffness EI/L exceeds `ratio` times that of
+/// the softest beam or spring, and to linear springs whose stiffness times the squared length of the structure exceeds
+/// 1e4 times that limit (a translational spring; a rotational one counts alike). Returns the names of those parts.
+std::vector<std::string> use_relative_motion(Model&, double ratio = 1e5);
+
+}  // namespace deflect::frame

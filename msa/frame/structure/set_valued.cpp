@@ -1,0 +1,209 @@
+// Equilibrium with springs that jump, Solver::solve: the structure condensed to the elongations of the springs that are
+// not linear, whose laws are a convex minimisation of few variables (set_valued_laws.h). With K the stiffness of the
+// rest, E the elongations' forms and f the load, K u + E s = f. Any stiffness k beside each of these springs makes
+// A = K + E k Eᵀ regular, and with o = δ − s/k
+//   u = A⁻¹(f + E k o),   δ = Eᵀu = Eᵀ A⁻¹f + (EᵀA⁻¹E) k o.
+// k is no error of the result: what it adds is taken away again in o.
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "msa/frame/elements/jumping_springs.h"
+#include "msa/frame/structure/relative.h"
+#include "msa/frame/structure/solver.h"
+
+namespace deflect::frame {
+namespace {
+
+constexpr double no_force = 1e-11;  // of the load
+
+}  // namespace
+
+struct Solver::Condensed {
+  std::vector<std::size_t> springs;  // that are not linear
+  VectorX tangents;                  // of all springs; of those, k
+  VectorX k;
+  ExtendedMatrix u;     // under unit forces in those: A⁻¹E
+  MatrixX elongations;  // EᵀA⁻¹E
+};
+
+const Solver::Condensed& Solver::condensed() {
+  if (condensed_) return *condensed_;
+  auto c = std::make_shared<Condensed>();
+  const std::vector<Spring>& springs = model_->springs;
+  c->tangents = starting_tangents(1);
+  for (std::size_t i = 0; i < springs.size(); ++i)
+    if (!is_linear(springs[i].law)) c->springs.push_back(i);
+  const auto n = static_cast<Eigen::Index>(c->springs.size());
+  const double length = characteristic_length(*model_), contact = contact_stiffness(*model_);
+  MatrixX forces = MatrixX::Zero(model_->dofs(), n);
+  c->k.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Spring& spring = springs[c->springs[static_cast<std::size_t>(i)]];
+    for (const Term& t : spring.elongation) forces(t.dof, i) += t.coefficient;
+    c->k(i) = spring.law.rotation ? contact * length * length : contact;
+  }
+  // First with a k that is stiffer than all else, then with as much as the structure itself resists each elongation.
+  const MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(model_->constraints.size()), n);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (Eigen::Index i = 0; i < n; ++i)
+      c->tangents(static_cast<Eigen::Index>(c->springs[static_cast<std::size_t>(i)])) = c->k(i);
+    c->u = linear(c->tangents, forces, values);
+    c->elongations.resize(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j)
+        c->elongations(i, j) =
+            evaluate(springs[c->springs[static_cast<std::size_t>(i)]].elongation, ExtendedVector(c->u.col(j)));
+    if (pass == 1) break;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (const double sum = 1 / c->elongations(i, i); sum < 1e12 * c->k(i)) {
+        // A friction that slips has no stiffness of its own: digits are kept by one of the structure's size.
+        const SpringLaw& law = springs[c->springs[static_cast<std::size_t>(i)]].law;
+        const bool soft = frictions_soft_ && std::holds_alternative<FrictionSpring>(law);
+        c->k(i) = soft ? std::max(sum - c->k(i), 1e-8 * c->k(i)) : sum;
+      }
+  }
+  condensed_ = std::move(c);
+  return *condensed_;
+}
+
+/// The offsets with the digits that laws of great stiffness need: Newton on the structure's own displacements in
+/// Extended numbers, ends staying as they are. u0 without offsets; forces and elongations follow in `found`.
+ExtendedVector Solver::refined(const std::vector<ScalarLaw>& laws, SetValuedSolution& found,
+                               const LinearRelation& relation, const ExtendedVector& u0) {
+  const Condensed& c = condensed();
+  const auto n = static_cast<Eigen::Index>(laws.size());
+  const VectorX root = c.k.cwiseSqrt();  // units in which k is 1
+  const MatrixX P = root.asDiagonal() * relation.P * root.cwiseInverse().asDiagonal();
+  ExtendedVector o = found.o.cast<Extended>(), best = o;
+  double before = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < 10; ++pass) {
+    const ExtendedVector u = u0 + c.u * c.k.cast<Extended>().cwiseProduct(o);
+    VectorX lacking(n), d(n), s(n);
+    MatrixX J(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const ScalarLaw& law = laws[at];
+      Extended fine = 0;
+      for (const Term& t : model_->springs[c.springs[at]].elongation) fine += t.coefficient * u(t.dof);
+      const bool bounded = std::isfinite(law.low) || std::isfinite(law.high);
+      const bool held = bounded && found.end[at] != 0;
+      const double end = found.end[at] > 0 ? law.high : law.low;
+      d(i) = held ? end : std::clamp(static_cast<double>(fine), law.low, law.high);
+      s(i) = c.k(i) * static_cast<double>(fine - o(i));
+      const double t = held ? 0 : law.tangent(d(i)) / c.k(i), weight = 1 / (1 + t);
+      lacking(i) =
+          held ? root(i) * static_cast<double>(Extended(end) - fine) : weight * (s(i) - law.force(d(i))) / root(i);
+      J.row(i) = held ? VectorX(P.row(i)) : VectorX(weight * (t - 1) * P.row(i));
+      if (!held) J(i, i) += weight;
+    }
+    const double now = lacking.norm();
+    if (!(now < 0.5 * before)) break;
+    before = now;
+    best = o;
+    found.d = d, found.s = s;
+    if (now == 0) break;
+    Eigen::CompleteOrthogonalDecomposition<MatrixX> solver;
+    solver.setThreshold(1e-11);
+    o += VectorX(solver.compute(J).solve(lacking).cwiseQuotient(root)).cast<Extended>();
+  }
+  return best;
+}
+
+Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, const std::vector<int>& watched) {
+  const Condensed& c = condensed();
+  const std::vector<Spring>& springs = model_->springs;
+  const auto n = static_cast<Eigen::Index>(c.springs.size());
+  ExtendedVector u = linear(c.tangents, load, values);
+  const double length = characteristic_length(*model_);
+  double driving = 0;  // N
+  for (Eigen::Index i = 0; i < load.size(); ++i)
+    driving =
+        std::max(driving, std::abs(load(i)) /
+                              (i < static_cast<Eigen::Index>(6 * model_->nodes.size()) && i % 6 > 2 ? length : 1));
+  LinearRelation relation{c.k.cwiseInverse(), VectorX(n), c.elongations * c.k.asDiagonal(), VectorX(n)};
+  std::vector<ScalarLaw> laws;
+  MatrixX by_elongation = MatrixX::Zero(static_cast<Eigen::Index>(watched.size()), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Spring& spring = springs[c.springs[static_cast<std::size_t>(i)]];
+    relation.d0(i) = evaluate(spring.elongation, u);
+    relation.size(i) = driving * (spring.law.rotation ? length : 1);
+    laws.push_back(scalar_law(spring.law));
+    for (std::size_t w = 0; w < watched.size(); ++w)
+      by_elongation(static_cast<Eigen::Index>(w), i) = c.k(i) * static_cast<double>(c.u(watched[w], i));
+  }
+  SetValuedSolution found = deflect::solve(relation, laws, by_elongation);
+  Solution s;
+  s.iterations = 1;
+  s.converged = found.outcome == SetValuedSolution::Outcome::solved;
+  if (found.outcome == SetValuedSolution::Outcome::undecided && frictions_soft_) {
+    frictions_soft_ = false;
+    condensed_.reset();
+    return solve_condensed(load, values, watched);
+  }
+  if (!s.converged) {
+    s.fine = u;
+    s.u = u.cast<double>();
+    s.spring_tangents = s.spring_forces = VectorX::Zero(static_cast<Eigen::Index>(springs.size()));
+    s.message = reason(found);
+    return s;
+  }
+  const ExtendedVector offsets = refined(laws, found, relation, u);
+  // A law at its kink has forces whose signs are rounding: it takes the stiffness of a pull, as in the closed form.
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double rest = -springs[c.springs[static_cast<std::size_t>(i)]].law.preload;
+    if (std::abs(found.s(i) - rest) <= no_force * relation.size(i)) found.s(i) = rest;
+  }
+  u += c.u * c.k.cast<Extended>().cwiseProduct(offsets);
+  VectorX pulls(static_cast<Eigen::Index>(springs.size()));
+  const VectorX f = elimination_->reduce(load);
+  for (std::size_t i = 0; i < springs.size(); ++i)
+    pulls(static_cast<Eigen::Index>(i)) = force(springs[i].law, evaluate(springs[i].elongation, u));
+  for (Eigen::Index i = 0; i < n; ++i)
+    pulls(static_cast<Eigen::Index>(c.springs[static_cast<std::size_t>(i)])) = found.s(i);
+  const VectorX held = elimination_->reduce(forces_with(*model_, u, pulls));
+  // Stiffness times the rounding of displacements is all that can be asked of forces.
+  const double rounding = 1e-15 * contact_stiffness(*model_) * largest(u.cast<double>());
+  const double size = std::max({largest(f) + largest(held), largest(found.s), rounding * 1e8});
+  s.residual = size > 0 ? largest(VectorX(f - held)) / size : 0;
+  s.converged = std::isfinite(s.residual) && s.residual < 1e-7;
+  s.fine = u;
+  s.u = u.cast<double>();
+  s.spring_forces = pulls;
+  s.spring_tangents = c.tangents;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t spring = c.springs[static_cast<std::size_t>(i)];
+    const SpringLaw& law = springs[spring].law;
+    const int end = found.end[static_cast<std::size_t>(i)];
+    know_force(model_->springs[spring].law, found.s(i));
+    s.spring_tangents(static_cast<Eigen::Index>(spring)) = tangent_at(law, found.d(i), found.s(i), end);
+    if (found.loose.cols() > 0 && found.loose.row(i).cwiseAbs().maxCoeff() > 0) s.loose.push_back(springs[spring].name);
+    if (const auto* friction = std::get_if<FrictionSpring>(&law); friction && friction->number >= 0) {
+      const auto number = static_cast<std::size_t>(friction->number);
+      s.slips.resize(std::max(s.slips.size(), number + 1));
+      s.slips[number] = slip_at(*friction, law.at_rest, found.d(i), end);
+    }
+  }
+  s.free = c.u.cast<double>() * c.k.asDiagonal() * found.loose;
+  s.least = found.least, s.most = found.most;
+  return s;
+}
+
+std::string Solver::reason(const SetValuedSolution& found) const {
+  const Condensed& c = *condensed_;
+  if (found.outcome == SetValuedSolution::Outcome::no_fit)
+    return "the parts cannot be assembled: their misfits are larger than the play, and nothing yields";
+  for (std::size_t i = 0; i < c.springs.size() && found.outcome == SetValuedSolution::Outcome::overcome; ++i) {
+    const Spring& spring = model_->springs[c.springs[i]];
+    const auto* friction = std::get_if<FrictionSpring>(&spring.law);
+    if (friction && std::abs(found.along(static_cast<Eigen::Index>(i))) > 1e-3 * largest(found.along))
+      return fmt::format("{} slips at {:.6g} {} and nothing else holds what it lets go", spring.name, friction->most,
+                         spring.law.rotation ? "Nm" : "N");
+  }
+  return "";
+}
+
+}  // namespace deflect::frame

@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "msa/base/error.h"
+#include "msa/base/units.h"
+#include "msa/fields/yaml_tree.h"
+#include "msa/mechanism/configuration.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/cli/command.h"
+#include "validation/cli/commands/effects.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
+#include "validation/diagnosis/found_effects.h"
+#include "validation/effects/effect_file.h"
+#include "validation/report/effect_results.h"
+
+namespace deflect::cli {
+namespace {
+
+struct AddArguments {
+  std::string device, effect, leg, from, out, json;
+  std::vector<std::string> set, files;
+  bool force = false;
+};
+
+std::optional<int> parse_leg(const std::string& text) {
+  if (text.empty()) return {};
+  for (int leg = 1; leg <= 1000; ++leg)
+    if (text == std::to_string(leg)) return leg;
+  throw InputError(fmt::format("--leg '{}': the number of a leg is wanted, as in --leg 4", text));
+}
+
+/// "name=value": numbers in the unit that the name ends with.
+std::vector<std::pair<std::string, double>> parse_values(const std::vector<std::string>& set) {
+  std::vector<std::pair<std::string, double>> out;
+  for (const std::string& text : set) {
+    const std::size_t equals = text.find('=');
+    if (equals == text.npos) throw InputError(fmt::format("--set '{}': write name=value", text));
+    const std::string name = text.substr(0, equals);
+    for (const auto& [other, value] : out)
+      if (other == name) throw InputError(fmt::format("--set '{}': '{}' is set twice", text, name));
+    try {
+      out.emplace_back(name, parse_number(std::string_view(text).substr(equals + 1)));
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("--set '{}': {}; the unit is that of the name", text, e.what()));
+    }
+  }
+  return out;
+}
+
+EffectInstance instance(const Effect& e, const FoundEffect& found) {
+  std::vector<std::string> names;
+  for (const EffectParameter& p : e.parameters) names.push_back(p.name);
+  for (const auto& [name, value] : found.parameters)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw InputError(fmt::format("effect '{}' has no parameter '{}'{}", e.name, name, suggestion(name, names)));
+
+  EffectInstance out{{&e, found.leg}, start_values(e)};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const EffectParameter& p = e.parameters[i];
+    const auto at = std::find_if(found.parameters.begin(), found.parameters.end(),
+                                 [&](const auto& given) { return given.first == p.name; });
+    if (at == found.parameters.end())
+      throw InputError(fmt::format("effect '{}' needs a value: --set {}={:g} ({}; between {:g} and {:g})", e.name,
+                                   p.name, p.start, p.about, p.low, p.high));
+    require_in_bounds(fmt::format("{}={:g}", p.name, at->second), e, p, at->second);
+    out.values(static_cast<Eigen::Index>(i)) = at->second;
+  }
+  return out;
+}
+
+/// Values set on the command line take the place of those found.
+FoundEffect with_values(FoundEffect found, const std::vector<std::pair<std::string, double>>& values) {
+  for (const auto& given : values) {
+    std::erase_if(found.parameters, [&](const auto& p) { return p.first == given.first; });
+    found.parameters.push_back(given);
+  }
+  return found;
+}
+
+/// The effect as the diagnosis found it: missing, or only thought of.
+FoundEffect look_up(const FoundEffects& all, const std::string& effect, std::optional<int> leg,
+                    const std::string& file) {
+  std::vector<std::string> names;
+  for (const std::vector<FoundEffect>* list : {&all.missing, &all.candidates})
+    for (const FoundEffect& f : *list) {
+      if (f.effect == effect && (!leg || f.leg == leg)) return f;
+      if (std::find(names.begin(), names.end(), f.effect) == names.end()) names.push_back(f.effect);
+    }
+  throw InputError(fmt::format("{}: the diagnosis has no effect '{}'{}{}", file, effect,
+                               leg ? fmt::format(" of leg {}", *leg) : "", suggestion(effect, names)));
+}
+
+std::vector<FoundEffect> wanted(const AddArguments& a) {
+  const auto values = parse_values(a.set);
+  const std::optional<int> leg = parse_leg(a.leg);
+  if (a.from.empty()) {
+    if (a.effect.empty()) throw InputError("name the effect to add ('deflect effects' lists them), or give --from");
+    return {{a.effect, leg, values}};
+  }
+  const FoundEffects all = read_found_effects(a.from);
+  if (!a.effect.empty()) return {with_values(look_up(all, a.effect, leg, a.from), values)};
+  if (all.missing.empty()) throw InputError(a.from + ": nothing is missing there: name the effect to add");
+  if (leg || !values.empty()) throw InputError("--leg and --set belong to one effect: name it");
+  return all.missing;
+}
+
+std::vector<std::string> names_of(const std::vector<EffectInstance>& added) {
+  std::vector<std::string> out;
+  for (const EffectInstance& i : added) out.push_back(words(i));
+  return out;
+}
+
+/// The name of the new device is its file's; what was added stands in its one line and above all.
+std::string device_text(Mechanism m, const std::string& device, const std::vector<EffectInstance>& added,
+                        const std::string& out) {
+  const std::vector<std::string> names = names_of(added);
+  m.about += fmt::format("{}with {}", m.about.empty() ? "" : "; ", fmt::join(names, ", "));
+  m.name = std::filesystem::path(out).stem().string();
+  return fmt::format("# {} with\n#   {}\n{}", device, fmt::join(names, "\n#   "), write_mechanism(m));
+}
+
+/// One after the other into the device; a diagnosis that they do not fit is named.
+std::vector<EffectInstance> add_effects(Mechanism& m, const AddArguments& a, const std::vector<Effect>& all) {
+  const std::vector<FoundEffect> effects = wanted(a);
+  std::vector<EffectInstance> added;
+  try {
+    for (const FoundEffect& found : effects) {
+      added.push_back(instance(find_effect(all, found.effect), found));
+      m = with_effect(m, added.back());
+      tell("effect {} from {}", found.effect, a.from.empty() ? "the command line" : a.from);
+    }
+  } catch (const InputError& e) {
+    throw InputError(a.from.empty() ? e.what() : fmt::format("{}: {}", a.from, e.what()));
+  }
+  return added;
+}
+
+/// What is read is not written over without a word.
+void require_other_file(const AddArguments& a) {
+  std::vector<std::string> inputs = a.files;
+  inputs.push_back(device_file(a.device).string());
+  if (!a.from.empty()) inputs.push_back(a.from);
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (!a.force && std::filesystem::equivalent(input, a.out, error) && !error)
+      throw InputError(fmt::format("-o {}: that is the file which is read: name another, or give --force", a.out));
+  }
+}
+
+void run(const AddArguments& a) {
+  require_other_file(a);
+  Mechanism m = read_device(a.device);
+  const std::vector<Effect> all = known_effects(a.files);
+  const std::vector<EffectInstance> added = add_effects(m, a, all);
+  const std::string old = m.name, text = device_text(m, old, added, a.out);
+  const Mechanism written = parse_mechanism(text, a.out);
+  configure(written, home_pose(written));  // it stands
+  write_file(a.out, text);
+  if (!a.json.empty()) write_file(a.json, added_json(a.device, a.out, added));
+  fmt::print("{}: {} with {}\n", a.out, old, fmt::join(names_of(added), ", "));
+}
+
+}  // namespace
+
+Command add_command() {
+  auto a = std::make_shared<AddArguments>();
+  return {
+      "add",
+      "A new device file: the device with an effect in it, with values given by --set or found by a diagnosis. With "
+      "--from and without EFFECT, everything that the diagnosis calls missing",
+      "deflect add haptic-6psu guide_root_compliance --set stiffness_Nmm_per_rad=5e6 -o softer.yaml",
+      {{"device", "DEVICE", "device file, or the name of a built-in device", &a->device, true},
+       {"effect", "EFFECT", "name of the effect, see 'deflect effects'", &a->effect},
+       {"--set", "NAME=VALUE", "value of each parameter, in the unit that its name ends with", &a->set},
+       {"--leg", "NUMBER", "for an effect of one leg: which", &a->leg},
+       {"--from", "DIAGNOSIS.json", "take effects, legs and values from the result of 'deflect diagnose --json'",
+        &a->from},
+       {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
+       {"-o,--output", "NEW_DEVICE", "file to write", &a->out, true},
+       {"--force", "", "write over a file that is read", &a->force},
+       {"--json", "FILE", "write what was added", &a->json}},
+      [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

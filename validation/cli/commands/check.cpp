@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include "msa/base/error.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/report.h"
+#include "validation/cli/talk.h"
+#include "validation/report/check_results.h"
+#include "validation/theories/at_pose.h"
+#include "validation/theories/theories.h"
+
+namespace deflect::cli {
+namespace {
+
+struct CheckArguments {
+  std::string matrix, passive, reference, device, pose, joints, load, size, json, out, report;
+  std::string unit = "mm", order = "translation-first", key = "analytic.stiffness";
+  double tolerance = 0;
+};
+
+MatrixConvention convention_of(const CheckArguments& a) {
+  MatrixConvention c;
+  if (a.unit != "mm" && a.unit != "m") throw InputError(fmt::format("--unit '{}': write mm or m", a.unit));
+  c.unit_m = a.unit == "m" ? 1 : 1e-3;
+  if (a.order != "translation-first" && a.order != "rotation-first")
+    throw InputError(fmt::format("--order '{}': write translation-first or rotation-first", a.order));
+  c.rotation_first = a.order == "rotation-first";
+  return c;
+}
+
+/// The closed form's stiffness, which has passed its checks, in N and the unit of length.
+PrintedMatrix stiffness_of(const CheckArguments& a, double unit_m) {
+  const Mechanism m = read_device(a.device);
+  const Vector6 load = parse_load(a.load);
+  const Stand at = parse_stand(m, a.pose, a.joints, false);
+  Matrix6 K = AnalyticAtPose(at.configuration, m.name).solve(wrench_from_mm(load)).stiffness;
+  if (load.isZero(0) && stiffness_in_mm(K).isZero(1e-9))
+    throw InputError("--device " + a.device + ": without load its contacts have no stiffness; give --load");
+  K.topLeftCorner<3, 3>() *= unit_m;
+  K.bottomRightCorner<3, 3>() /= unit_m;
+  return {K, Matrix6::Zero()};
+}
+
+MatrixCheckOptions options_of(const CheckArguments& a) {
+  const MatrixConvention convention = convention_of(a);
+  MatrixCheckOptions o;
+  o.unit_m = convention.unit_m;
+  o.K = read_stiffness(a.matrix, convention, a.key);
+  if (!a.passive.empty()) o.passive_twists = read_twists(a.passive, convention);
+  if (!a.reference.empty() && !a.device.empty()) throw InputError("give either --reference or --device");
+  if (a.device.empty() && !(a.pose + a.joints + a.load).empty())
+    throw InputError("--pose, --joints and --load belong to --device");
+  if (!a.reference.empty()) o.reference = read_stiffness(a.reference, convention, a.key);
+  if (!a.device.empty()) o.reference = stiffness_of(a, o.unit_m);
+  if (!(a.tolerance >= 0 && a.tolerance < 1))
+    throw InputError(fmt::format("--tolerance {}: a relative difference between 0 and 1 is wanted", a.tolerance));
+  if (a.tolerance > 0) o.tolerance = a.tolerance;
+  if (!a.size.empty()) {
+    const double size = parse_length("--size", a.size);
+    o.plausible = {size / 10, size * 10};
+  }
+  return o;
+}
+
+void run(const CheckArguments& a) {
+  require_pages(a.report);
+  const MatrixCheck m = timed("checks of " + a.matrix, [&] { return check_matrix(options_of(a)); });
+  const CheckedFiles files{a.matrix, a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints)};
+  const std::string report = check_report(m, files);
+  if (!a.json.empty()) write_file(a.json, check_json(m, files));
+  if (!a.out.empty()) {
+    const std::filesystem::path folder = a.out;
+    write_table(folder / "check.txt", report);
+    write_table(folder / "checks.csv", checks_csv(m));
+    write_table(folder / "structure.csv", structure_csv(m));
+  }
+  fmt::print("{}", report);
+  if (!a.report.empty()) write_report_of_file(a.report, a.matrix, {"check", check_json(m, files)});
+  if (!m.passes()) throw NumericalError(a.matrix + " fails its checks");
+}
+
+}  // namespace
+
+Command check_command() {
+  auto a = std::make_shared<CheckArguments>();
+  return {
+      "check",
+      "The trust checks of your own 6x6 stiffness of a point (MATLAB, Python, Ansys ...): K = K^T, K >= 0, no free "
+      "direction, a plausible size, passive joints free, equal to a reference; and which usual mistake explains a "
+      "failure. Exit code 0 when all checks pass, 4 when one fails, 2 when a file cannot be read",
+      "deflect check K.csv --unit m --device haptic-6psu-ideal-joints --pose 25,25,198.9 --json check.json",
+      {{"matrix", "K", "six rows of six numbers: CSV, blanks, MATLAB or NumPy text, or the JSON of deflect solve",
+        &a->matrix, true},
+       {"--unit", "mm|m", "unit of length of the matrices: N/mm, N, Nmm (default) or N/m, N, Nm; angles in rad",
+        &a->unit},
+       {"--order", "translation-first|rotation-first", "translation-first (default): [f; m] = K [d; theta]", &a->order},
+       {"--passive", "J",
+        "twists of the passive joints of the leg whose stiffness K is, at its point, as rows or columns: "
+        "K J = 0 is checked",
+        &a->passive},
+       {"--reference", "R", "stiffness that K should equal, in the same unit and order", &a->reference},
+       {"--device", "DEVICE", "instead of --reference: a device of deflect at --pose, by the closed form", &a->device},
+       {"--pose", "x,y,z,roll,pitch,yaw", "of --device, mm and deg", &a->pose},
+       {"--joints", "q1,...,qn", "of --device, instead of --pose: slides in mm, turns in rad, or with unit",
+        &a->joints},
+       {"--load", "fx,fy,fz,mx,my,mz", "of --device: its contacts are stiff under load only; N and Nmm", &a->load},
+       {"--tolerance", "X", "relative difference that does not count (default: the digits printed)", &a->tolerance},
+       {"--size", "LENGTH",
+        "size of the device, with unit; its characteristic length is then expected within a tenth and "
+        "ten times of it (default: between 1 mm and 30 m)",
+        &a->size},
+       {"--key", "NAME", "member of a JSON object that is the matrix (default analytic.stiffness)", &a->key},
+       {"--json", "FILE", "write the result", &a->json},
+       report_option(&a->report),
+       {"--out", "DIR", "write report and tables: check.txt, checks.csv, structure.csv", &a->out}},
+      [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

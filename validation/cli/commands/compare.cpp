@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "msa/base/error.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/figures.h"
+#include "validation/cli/report.h"
+#include "validation/cli/talk.h"
+#include "validation/compare/comparison.h"
+#include "validation/figures/compare_figures.h"
+#include "validation/report/compare_results.h"
+
+namespace deflect::cli {
+namespace {
+
+struct CompareArguments {
+  std::string device, data, json, out, report, sigma_mm, sigma_rad;
+  double threads = 0;
+  FigureArguments figures;
+};
+
+void run(const CompareArguments& a) {
+  require_pages(a.report);
+  const FigureStyle style = figure_style(a.figures, a.out);
+  const Mechanism m = read_device(a.device);
+  const Measurements data = read_data(a.data);
+  tell_size(data, 450);
+  ComparisonOptions o;
+  o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
+  o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
+  o.threads = parse_threads(a.threads);
+  const Comparison c =
+      timed_with_progress("compare: closed form at every reading, tolerances, patterns", [&](const auto& told) {
+        ComparisonOptions shown = o;
+        shown.progress = told;
+        return compare(m, data, shown);
+      });
+  const std::filesystem::path folder = a.out;
+  if (!a.out.empty()) {
+    draw(compare_figures(c, style), folder);
+    write_table(folder / "residuals.csv", residuals_csv(c));
+    write_table(folder / "errors.csv", errors_csv(c));
+    write_table(folder / "tests.csv", tests_csv(c));
+  }
+  if (!a.json.empty()) write_file(a.json, compare_json(c));
+  fmt::print("{}", compare_report(c));
+  if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
+  if (!a.report.empty()) write_report(a.report, a.device, {c}, {{"compare", compare_json(c)}});
+}
+
+}  // namespace
+
+Command compare_command() {
+  auto a = std::make_shared<CompareArguments>();
+  return {
+      "compare",
+      "Measurements against the closed form, nothing fitted: where the model fails, in sentences with numbers; tests "
+      "that need no idea of what is missing; patterns of the residual; errors by pose, direction and magnitude",
+      "deflect compare haptic-6psu-ideal-joints measurements.csv --out comparison --json comparison.json",
+      with_figures(
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"data", "DATA", "measurements (CSV)", &a->data, true},
+           {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
+           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+           {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report),
+           {"--out", "DIR", "write figures (SVG, PDF, PNG, each with its caption) and tables", &a->out}},
+          &a->figures),
+      [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

@@ -1,0 +1,77 @@
+#include "validation/cli/commands/effects.h"
+
+#include <fmt/format.h>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
+#include "validation/effects/effect_file.h"
+#include "validation/report/effect_results.h"
+
+namespace deflect::cli {
+
+std::vector<Effect> known_effects(const std::vector<std::string>& files) {
+  std::vector<Effect> all = catalogue(data_folder() / "effects" / "catalogue");
+  tell("effects: {} from {}", all.size(), (data_folder() / "effects" / "catalogue").string());
+  for (const std::string& file : files) {
+    add_effect(all, read_effect(file));
+    tell("effect {} from {}", all.back().name, file);
+  }
+  return all;
+}
+
+void require_in_bounds(const std::string& given, const Effect& e, const EffectParameter& p, double value) {
+  if (p.low <= value && value <= p.high) return;
+  throw InputError(
+      fmt::format("{}: the value must lie between {:g} and {:g} ({}). For another range copy the effect with 'deflect "
+                  "effects {} --yaml', give it a name of its own and name it with --effects",
+                  given, p.low, p.high, p.about, e.name));
+}
+
+namespace {
+
+struct EffectsArguments {
+  std::string name, device, json;
+  std::vector<std::string> files;
+  bool yaml = false;
+};
+
+void run(const EffectsArguments& a) {
+  std::vector<Effect> all = known_effects(a.files);
+  if (!a.name.empty()) all = {find_effect(all, a.name)};
+  if (a.yaml) {
+    if (a.name.empty()) throw InputError("--yaml prints the file of one effect: name it");
+    fmt::print("{}", read_text(all.front().origin));
+    return;
+  }
+  std::optional<Mechanism> device;
+  if (!a.device.empty()) device = read_device(a.device);
+  if (!a.json.empty()) write_file(a.json, effects_json(all, device ? &*device : nullptr));
+  if (!a.name.empty())
+    fmt::print("{}", effect_page(all.front()));
+  else if (!device)
+    fmt::print("{}", effect_table(all));
+  if (device) fmt::print("{}{}", a.name.empty() ? "" : "\n", effects_in_device(all, *device));
+}
+
+}  // namespace
+
+Command effects_command() {
+  auto a = std::make_shared<EffectsArguments>();
+  return {
+      "effects",
+      "What a model can lack: the catalogue of effects, or the pages of one of them: what happens in the machine, "
+      "what it looks like in the data, how to confirm it on the bench, how to cure it. With --yaml its file, to "
+      "start one's own from",
+      "deflect effects guide_root_compliance --device haptic-6psu",
+      {{"name", "EFFECT", "effect to explain; without it all are listed", &a->name},
+       {"--device", "DEVICE", "say which effects the device can have, and why it cannot have the others", &a->device},
+       {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
+       {"--yaml", "", "print the effect's file", &a->yaml},
+       {"--json", "FILE", "write the effects", &a->json}},
+      [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "msa/base/error.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/figures.h"
+#include "validation/cli/report.h"
+#include "validation/cli/talk.h"
+#include "validation/figures/history_results.h"
+
+namespace deflect::cli {
+namespace {
+
+struct HistoryArguments {
+  std::string data, json, out, report, sigma_mm, sigma_rad;
+  std::vector<std::string> devices;
+  double threads = 0;
+  FigureArguments figures;
+};
+
+/// "versions 1 and 3 are the same machine, …" of any two whose descriptions differ in name and remarks at most.
+std::string same_machines(const std::vector<Mechanism>& devices) {
+  std::vector<std::string> texts;
+  for (Mechanism m : devices) {
+    m.name = m.about = "";
+    texts.push_back(write_mechanism(m));
+  }
+  std::string out;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    for (std::size_t k = i + 1; k < texts.size(); ++k)
+      if (texts[i] == texts[k])
+        out +=
+            fmt::format("versions {} ({}) and {} ({}) are the same machine: nothing can fall from one to the other\n",
+                        i + 1, devices[i].name, k + 1, devices[k].name);
+  return out;
+}
+
+void run(const HistoryArguments& a) {
+  require_pages(a.report);
+  const FigureStyle style = figure_style(a.figures, a.out);
+  const Measurements data = read_data(a.data);
+  ComparisonOptions o;
+  o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
+  o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
+  o.threads = parse_threads(a.threads);
+  std::vector<Mechanism> devices;
+  for (const std::string& name : a.devices) devices.push_back(read_device(name));
+  const std::vector<Comparison> all = timed_with_progress("compare with each", [&](const auto& told) {
+    std::vector<Comparison> out;
+    const auto versions = static_cast<double>(devices.size());
+    for (const Mechanism& m : devices) {
+      const auto before = static_cast<double>(out.size());
+      ComparisonOptions shown = o;
+      shown.progress = part_of(told, before / versions, (before + 1) / versions);
+      out.push_back(timed("compare with " + m.name, [&] { return compare(m, data, shown); }));
+    }
+    return out;
+  });
+  const History h = timed("placebos", [&] { return history(all); });
+  const std::filesystem::path folder = a.out;
+  if (!a.out.empty()) {
+    draw({history_figure(h, style)}, folder);
+    write_table(folder / "history.csv", history_csv(h));
+  }
+  if (!a.json.empty()) write_file(a.json, history_json(h));
+  fmt::print("{}{}", history_report(h), same_machines(devices));
+  if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(folder).string());
+  if (!a.report.empty()) write_report(a.report, a.devices.front(), all, {{"history", history_json(h)}});
+}
+
+}  // namespace
+
+Command history_command() {
+  auto a = std::make_shared<HistoryArguments>();
+  return {"history",
+          "The error falling from version to version of a device on one set of measurements: all poses, held-out "
+          "poses, tests "
+          "that still fail, patterns left, tolerances that would have to be strained",
+          "deflect history measurements.csv haptic-6psu-ideal-joints softer.yaml --out history",
+          with_figures(
+              {{"data", "DATA", "measurements (CSV)", &a->data, true},
+               {"devices", "DEVICE", "devices in order, built-in or files", &a->devices, true},
+               {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
+               {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
+               {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+               {"--json", "FILE", "write the result", &a->json},
+               report_option(&a->report),
+               {"--out", "DIR", "write the figure (SVG, PDF, PNG) with its caption, and the table", &a->out}},
+              &a->figures),
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

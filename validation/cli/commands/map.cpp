@@ -1,0 +1,169 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "msa/base/error.h"
+#include "msa/base/units.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/figures.h"
+#include "validation/cli/progress.h"
+#include "validation/cli/report.h"
+#include "validation/cli/talk.h"
+#include "validation/figures/fig11.h"
+#include "validation/report/map_results.h"
+#include "validation/theories/map.h"
+
+namespace deflect::cli {
+namespace {
+
+struct MapArguments {
+  std::string device, ranges[3], n, tilt, load, theory = "both", length, json, out, report;
+  double force_N = 50, threads = 0;
+  FigureArguments figures;
+};
+
+/// The workspace, or a box where a range is given.
+void set_grid(const Mechanism& m, const MapArguments& a, MapOptions& o) {
+  std::array<int, 3> counts = {11, 11, 11};
+  if (!a.n.empty()) {
+    const std::vector<double> n = parse_list("--n", a.n, {1, 3}, "nx,ny,nz or one number for all");
+    for (std::size_t i = 0; i < 3; ++i) counts[i] = whole("--n", n[n.size() == 1 ? 0 : i], 1, 1e6);
+  }
+  const char* names[] = {"--x", "--y", "--z"};
+  MapGrid& grid = o.grid;
+  grid.counts = counts;
+  const bool all = !a.ranges[0].empty() && !a.ranges[1].empty() && !a.ranges[2].empty();
+  if (!all) grid = workspace_grid(m, counts);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string& range = a.ranges[axis];
+    if (range.empty()) continue;
+    const std::vector<double> ends = parse_list(names[axis], range, {1, 2}, "from,to in mm, or one value");
+    if (ends.back() < ends.front())
+      throw InputError(fmt::format("{} {}: the range is reversed; write the smaller value first", names[axis], range));
+    grid.low_mm(axis) = ends.front();
+    grid.high_mm(axis) = ends.back();
+    const auto i = static_cast<std::size_t>(axis);
+    grid.counts[i] = ends.front() == ends.back() ? 1 : counts[i];
+  }
+  if (a.ranges[0].empty() && a.ranges[1].empty() && a.ranges[2].empty()) o.region = region_of(m);
+  if (!a.tilt.empty()) {
+    const std::vector<double> tilt = parse_list("--tilt", a.tilt, {3}, "roll,pitch,yaw in deg");
+    grid.tilt_deg = Vector3(tilt[0], tilt[1], tilt[2]);
+  }
+}
+
+double length_mm(const Mechanism& m, const std::string& text) {
+  if (text.empty()) return weighing_length_mm(m);
+  return 1e3 * parse_length("--length", text);
+}
+
+MapOptions options_of(const Mechanism& m, const MapArguments& a, Ranks* ranks) {
+  MapOptions o;
+  set_grid(m, a, o);
+  o.force_N = a.force_N;
+  if (!std::isfinite(a.force_N) || a.force_N == 0)
+    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.force_N));
+  if (!a.load.empty()) {
+    o.load_N_Nmm = parse_load(a.load);
+    if (o.load_N_Nmm->isZero(0))
+      throw InputError(fmt::format("--load {}: without load a contact has no stiffness; give one", a.load));
+  }
+  if (a.theory != "both" && a.theory != "analytic" && a.theory != "msa")
+    throw InputError(fmt::format("--theory '{}': analytic, msa or both is wanted", a.theory));
+  o.analytic = a.theory != "msa";
+  o.msa = a.theory != "analytic";
+  o.length_mm = length_mm(m, a.length);
+  o.ranks = ranks;
+  o.threads = parse_threads(a.threads, ranks);
+  return o;
+}
+
+/// A map without a pose says nothing of the device.
+void require_reached(const StiffnessMap& map) {
+  if (std::any_of(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); })) return;
+  throw ModelError(fmt::format(
+      "the map has nothing to show: none of its {} poses is reached; give --x, --y, --z or --tilt. The first: {}",
+      map.poses.size(), map.poses.front().out_of_reach));
+}
+
+void run(const MapArguments& a, Ranks* ranks) {
+  require_pages(a.report);
+  const FigureStyle style = figure_style(a.figures, a.out);
+  const Mechanism m = read_device(a.device);
+  MapOptions o = options_of(m, a, ranks);
+  StiffnessMap map;
+  {
+    const Step step(fmt::format("map: {} poses, theory {}", o.grid.size(), a.theory));
+    Progress progress(o.grid.size(), "poses", progress_stream());
+    o.progress = [&progress](std::size_t done) { progress.update(done); };
+    map = map_stiffness(m, o);
+  }
+  if (ranks && !ranks->first()) return;
+  require_reached(map);
+  const std::filesystem::path folder = a.out;
+  std::string figures;
+  if (!a.out.empty()) {
+    write_table(folder / "map.csv", map_csv(map));
+    write_table(folder / "map.vtu", map_vtu(map));
+    std::vector<Figure> drawn = fig11(map, style);
+    for (Figure& figure : stiffness_against_length(map, style)) drawn.push_back(std::move(figure));
+    figures = draw(drawn, folder);
+  }
+  if (!a.json.empty()) write_file(a.json, map_json(map));
+  fmt::print("{}", map_report(map));
+  if (!a.out.empty())
+    fmt::print("\nTables map.csv, map.vtu and figures {} in {}\n", figures.empty() ? "(none)" : figures,
+               std::filesystem::absolute(folder).string());
+  if (!a.report.empty()) {
+    const Stand home = parse_stand(m, "", "", true);
+    const Vector6 load = o.load_N_Nmm.value_or(o.force_N * Vector6::Unit(2));
+    write_report_of_stands(a.report, a.device, m, {{"home", home.pose_mm_deg, home.configuration}}, {load},
+                           {"map", map_json(map)});
+  }
+}
+
+}  // namespace
+
+Command map_command() {
+  auto a = std::make_shared<MapArguments>();
+  return {
+      "map",
+      "Stiffness of the tool point over the workspace by direction: a grid of poses, both theories, Fig. 11.\n"
+      "With --force (the default) every pose is loaded along x, y and z in turn: the compliance C = u/F is secant, "
+      "from no load to the force, and the 6x6 stiffness K (its diagonal, smallest, largest, isotropy) is tangent at "
+      "the force. With --load both are tangent under that wrench. They differ where contacts carry load. The MSA takes "
+      "one element per member, which is exact at its nodes. Under mpirun the processes share the poses, and the first "
+      "one writes; the result is the same.",
+      "deflect map haptic-6psu --n 21,21,21 --x -40,40 --y -40,40 --z 124,224 --out map --json map.json",
+      with_figures(
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--x", "from,to",
+            "range of the tool point in mm, or one value (default: the device's workspace; with a range a box)",
+            &a->ranges[0]},
+           {"--y", "from,to", "likewise", &a->ranges[1]},
+           {"--z", "from,to", "likewise", &a->ranges[2]},
+           {"--n", "nx,ny,nz", "poses along x, y, z, or one number for all (default 11)", &a->n},
+           {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default: that of the workspace's centre)",
+            &a->tilt},
+           {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},
+           {"--load", "fx,fy,fz,mx,my,mz", "one wrench in N and Nmm instead of --force", &a->load},
+           {"--theory", "analytic|msa|both", "by which theory (default both)", &a->theory},
+           {"--length", "LENGTH",
+            "characteristic length, with unit, that makes rotations comparable to displacements in the isotropy "
+            "(default: "
+            "the platform's radius, or the machine's extent)",
+            &a->length},
+           {"--threads", "N", "threads of a process (default 0: all cores); the result does not depend on it",
+            &a->threads},
+           {"--json", "FILE", "write summary and arrays", &a->json},
+           report_option(&a->report),
+           {"--out", "DIR",
+            "write fig11 and stiffness-vs-length as SVG, PDF, PNG with their captions, and map.csv, map.vtu", &a->out}},
+          &a->figures),
+      [a](Ranks* ranks) { run(*a, ranks); }};
+}
+
+}  // namespace deflect::cli

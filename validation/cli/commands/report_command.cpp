@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "validation/cli/commands/effects.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/report.h"
+#include "validation/report/result_file.h"
+
+namespace deflect::cli {
+namespace {
+
+struct ReportArguments {
+  std::vector<std::string> results, effects;
+  std::string device, data, output, sigma_mm, sigma_rad;
+  double threads = 0;
+};
+
+void run(const ReportArguments& a) {
+  require_pages(a.output);
+  if (a.device.empty() != a.data.empty())
+    throw InputError("give --device and --data together, or neither: residuals need both");
+  std::vector<PageResult> results;
+  for (const std::string& file : a.results) {
+    results.push_back({file, read_text(file)});
+    read_result(results.back().json, file);  // before any work
+  }
+  if (a.device.empty()) {
+    write_report_of_results(a.output, std::move(results));
+    return;
+  }
+  ComparisonOptions o;
+  o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
+  o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
+  o.threads = parse_threads(a.threads);
+  write_report_of_diagnosis(a.output, a.device, read_device(a.device), read_data(a.data), known_effects(a.effects), o,
+                            std::move(results));
+}
+
+}  // namespace
+
+Command report_command() {
+  auto a = std::make_shared<ReportArguments>();
+  return {"report",
+          "One page of several results (--json of diagnose, compare, history, solve, validate, map, frame, check, "
+          "show): pictures with "
+          "their numbers, self-contained. With --device and --data the machine is drawn with its residuals, and what a "
+          "diagnosis among the results found is put into it",
+          "deflect report diagnosis.json solve.json --device haptic-6psu-ideal-joints --data measurements.csv "
+          "-o report.html",
+          {{"results", "RESULT.json", "results of deflect", &a->results, true},
+           {"--device", "DEVICE", "built-in device or device file", &a->device},
+           {"--data", "DATA", "measurements (CSV)", &a->data},
+           {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->effects},
+           {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
+           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+           {"-o,--output", "FILE.html", "file to write", &a->output, true}},
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+
+#include "msa/base/error.h"
+#include "msa/base/number_words.h"
+#include "msa/base/units.h"
+#include "msa/fields/yaml_tree.h"
+#include "msa/mechanism/configuration.h"
+#include "validation/cli/command.h"
+#include "validation/cli/commands/effects.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
+#include "validation/effects/effect_file.h"
+#include "validation/effects/with_effect.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
+
+namespace deflect::cli {
+namespace {
+
+constexpr double most_noise_mm = 1000, most_tolerances = 1000;
+
+struct SimulateArguments {
+  std::string device, out, campaign = "rich", geometry = "finite", temperature, noise_rad;
+  std::vector<std::string> with, files;
+  double seed = 1, noise_mm = 0.002, tolerances = 1, outliers = 0, force = 50, elements = 4, threads = 0;
+};
+
+/// "EFFECT,leg=4,name=value,…": parameters that are not named keep the value at which a search begins.
+EffectInstance parse_with(const std::string& text, const std::vector<Effect>& all) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    words.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  const Effect& effect = find_effect(all, words.front());
+  EffectInstance out{{&effect, {}}, start_values(effect)};
+  std::vector<std::string> names = {"leg"};
+  for (const EffectParameter& p : effect.parameters) names.push_back(p.name);
+  std::vector<bool> given(names.size());
+  for (auto word = words.begin() + 1; word != words.end(); ++word) {
+    const std::size_t equals = word->find('=');
+    if (equals == word->npos)
+      throw InputError(fmt::format("--with '{}': write name=value after '{}'", text, effect.name));
+    const std::string name = word->substr(0, equals);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      throw InputError(
+          fmt::format("--with '{}': {} has no parameter '{}'{}", text, effect.name, name, suggestion(name, names)));
+    const auto at = static_cast<std::size_t>(found - names.begin());
+    if (given[at]) throw InputError(fmt::format("--with '{}': '{}' is set twice", text, name));
+    given[at] = true;
+    double value = 0;
+    try {
+      value = parse_number(std::string_view(*word).substr(equals + 1));
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("--with '{}': {}", text, e.what()));
+    }
+    if (at == 0) {
+      out.leg = whole("--with leg", value, 1, 1000);
+      continue;
+    }
+    require_in_bounds(fmt::format("--with '{}': {}={:g}", text, name, value), effect, effect.parameters[at - 1], value);
+    out.values(static_cast<Eigen::Index>(at - 1)) = value;
+  }
+  return out;
+}
+
+Geometry geometry_of_data(const std::string& text) {
+  const auto found = std::find(std::begin(geometry_names), std::end(geometry_names), text);
+  if (found == std::end(geometry_names))
+    throw InputError(fmt::format("--geometry '{}': write {}", text, fmt::join(geometry_names, ", ")));
+  return static_cast<Geometry>(found - std::begin(geometry_names));
+}
+
+SimulationOptions options_of(const SimulateArguments& a) {
+  SimulationOptions o;
+  if (!(a.seed >= 0 && a.seed < 9e15) || a.seed != std::floor(a.seed))
+    throw InputError(fmt::format("--seed {}: a whole number is wanted", a.seed));
+  o.seed = static_cast<std::uint64_t>(a.seed);
+  if (!(a.noise_mm >= 0 && a.noise_mm <= most_noise_mm))
+    throw InputError(fmt::format("--noise {}: mm, from 0 to {}, are wanted", a.noise_mm, most_noise_mm));
+  o.sigma_u = a.noise_mm / 1e3;
+  if (!a.noise_rad.empty()) {
+    o.sigma_th = parse_list("--noise-rotation", a.noise_rad, {1}, "rad")[0];
+    if (!(*o.sigma_th >= 0 && *o.sigma_th <= 1))
+      throw InputError(fmt::format("--noise-rotation {}: rad, from 0 to 1, are wanted", a.noise_rad));
+  }
+  if (!(a.tolerances >= 0 && a.tolerances <= most_tolerances))
+    throw InputError(fmt::format("--tolerances {}: a factor from 0 to {} is wanted", a.tolerances, most_tolerances));
+  o.tolerances = a.tolerances;
+  if (!(a.outliers >= 0 && a.outliers < 0.5))
+    throw InputError(fmt::format("--outliers {}: a share from 0 to 0.5 is wanted", a.outliers));
+  o.outliers = a.outliers;
+  if (!a.temperature.empty()) {
+    const std::vector<double> t = parse_list("--temperature", a.temperature, {1, 2}, "mean or mean,swing in deg C");
+    o.temperature = t[0];
+    if (t.size() > 1) o.swing = t[1];
+    if (const double coldest = o.temperature - std::abs(o.swing); coldest < -273.15 || !std::isfinite(coldest))
+      throw InputError(fmt::format("--temperature {}: colder than -273.15 deg C", a.temperature));
+  }
+  o.geometry = geometry_of_data(a.geometry);
+  o.threads = parse_threads(a.threads);
+  return o;
+}
+
+/// Every member in `elements` equal parts.
+Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64_t seed) {
+  const bool named = std::any_of(std::begin(campaign_names), std::end(campaign_names),
+                                 [&](const char* name) { return a.campaign == name; });
+  if (!named && std::filesystem::exists(a.campaign)) return read_plan(a.campaign);
+  if (!(std::isfinite(a.force) && a.force != 0))
+    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.force));
+  return campaign(a.campaign, m, a.force, seed);
+}
+
+/// What to say of loads that are too large: what the machine carries.
+std::string way_out(const Mechanism& m, const Measurements& plan, const SimulationOptions& o,
+                    const SimulateArguments& a) {
+  const double share = share_carried(m, plan, o);
+  if (share == 0 || share == 1) return "";
+  const bool named = plan.origin == "campaign";
+  return fmt::format(": the machine as drawn gives way above {} % of the loads{}", digits_of(100 * share, 2),
+                     named ? fmt::format(", --force {} N", digits_of(share * a.force, 2)) : "");
+}
+
+void run(const SimulateArguments& a) {
+  const std::vector<Effect> all = known_effects(a.files);
+  Mechanism m = read_device(a.device);
+  SimulationOptions o = options_of(a);
+  Measurements plan = plan_of(a, m, o.seed);
+  std::string hidden;
+  for (const std::string& text : a.with) {
+    const EffectInstance effect = parse_with(text, all);
+    m = with_effect(m, effect);
+    tell("hidden: {} ({})", effect.effect->name, site_of(effect));
+    if (is_geometry(*effect.effect)) o.geometry = m.geometry;
+    hidden += fmt::format("{}{} ({})", hidden.empty() ? "" : ", ", effect.effect->name, site_of(effect));
+  }
+  o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));
+  tell("campaign {}: {} readings; {} elements a member, geometry {}", a.campaign, plan.readings.size(), a.elements,
+       a.geometry);
+  const Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
+    o.progress = told;
+    try {
+      return simulate(m, plan, o);
+    } catch (const NumericalError& e) {
+      throw NumericalError(fmt::format("{}{}", e.what(), way_out(m, plan, o, a)));
+    }
+  });
+  say_new_folder(a.out);
+  write_measurements(a.out, data);
+  fmt::print("{}: {} readings at {} poses of {}{}, seed {}\n", a.out, data.readings.size(), data.poses.size(), m.name,
+             hidden.empty() ? ", nothing hidden" : " with " + hidden, o.seed);
+}
+
+}  // namespace
+
+Command simulate_command() {
+  auto a = std::make_shared<SimulateArguments>();
+  return {"simulate",
+          "Measurements of a device as a laboratory would hand them over, with effects hidden in it, every part a "
+          "little off its "
+          "drawing within the device's tolerances, and reading noise; computed by the MSA in the deformed shape. The "
+          "same seed "
+          "gives the same file",
+          "deflect simulate haptic-6psu-ideal-joints --with joint_clearance,gap_mm=0.01 --campaign rich --seed 7 -o "
+          "hidden.csv",
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--with", "EFFECT,NAME=VALUE,...",
+            "hide an effect of the catalogue, with values for its parameters and, for one of a single leg, leg=4; "
+            "several times "
+            "for several effects",
+            &a->with},
+           {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
+           {"--campaign", "paper|cycle|rich|random|FILE",
+            "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280); or a "
+            "measurement "
+            "file whose poses, loads, sequence and temperatures are taken",
+            &a->campaign},
+           {"--force", "N", "largest force of a named campaign (default 50)", &a->force},
+           {"--noise", "MM", "standard deviation of a translation in mm (default 0.002)", &a->noise_mm},
+           {"--noise-rotation", "RAD", "measure rotations too, with this standard deviation", &a->noise_rad},
+           {"--tolerances", "FACTOR", "times the device's tolerances (default 1; 0: built as drawn)", &a->tolerances},
+           {"--outliers", "SHARE", "share of gross outliers, 10 to 30 standard deviations (default 0)", &a->outliers},
+           {"--temperature", "MEAN,SWING", "deg C: a slow wave about the mean over the campaign (default 20)",
+            &a->temperature},
+           {"--geometry", "linear|second-order|finite", "equilibrium in which shape (default finite)", &a->geometry},
+           {"--elements", "N", "elements per member (default 4)", &a->elements},
+           {"--seed", "N", "of everything drawn by lot (default 1)", &a->seed},
+           {"--threads", "N", "threads (default 0: all cores); the file does not depend on it", &a->threads},
+           {"-o,--output", "DATA", "file to write", &a->out, true}},
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include "meshes/gmsh.h"
+#include "meshes/vtu.h"
+#include "msa/base/error.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/motions.h"
+#include "validation/cli/report.h"
+#include "validation/cli/talk.h"
+#include "validation/report/solve_results.h"
+#include "validation/theories/solve_result.h"
+#include "validation/theories/theories.h"
+
+namespace deflect::cli {
+namespace {
+
+struct SolveArguments {
+  std::string device, pose, joints, load, json, out, report, element_size, geometry = "linear";
+};
+
+void write_structure(const std::filesystem::path& folder, const SolveResult& r) {
+  gmsh::write_msh(folder / "deflected.msh", r.mesh, r.fields);
+  write_vtu(folder / "deflected.vtu", r.mesh, r.fields);
+}
+
+Geometry parse_geometry(const std::string& text) {
+  for (std::size_t i = 0; i < std::size(geometry_names); ++i)
+    if (text == geometry_names[i]) return static_cast<Geometry>(i);
+  throw InputError(fmt::format("--geometry: '{}' is none of {}", text, fmt::join(geometry_names, ", ")));
+}
+
+/// As asked for; else one element a member, which is exact at its ends, or as many as a drawing wants.
+frame::MemberDivision division(const Mechanism& m, const Stand& at, const SolveArguments& a) {
+  if (!a.element_size.empty() || a.out.empty()) return divide(m, a.element_size);
+  return frame::equal_division(at.configuration, 20);
+}
+
+void run(const SolveArguments& a) {
+  require_pages(a.report);
+  const Mechanism m = read_device(a.device);
+  const Vector6 load = parse_load(a.load);
+  const Geometry geometry = parse_geometry(a.geometry);
+  const Stand at = parse_stand(m, a.pose, a.joints, false);
+  const SolveResult r = timed(fmt::format("both theories, geometry {}: closed form; MSA, sparse Cholesky", a.geometry),
+                              [&] { return solve(m, at, load, division(m, at, a), geometry); });
+  if (!a.out.empty()) write_structure(a.out, r);
+  if (!a.json.empty()) write_file(a.json, solve_json(r));
+  fmt::print("{}\n{}", m.name, solve_report(r));
+  if (load.isZero(0) && r.msa.stiffness_mm.isZero(1e-9))
+    fmt::print("Without load the contacts have no stiffness; give --load for the stiffness under it.\n");
+  if (!a.out.empty()) fmt::print("Deflected structure: {0}/deflected.msh, {0}/deflected.vtu\n", a.out);
+  if (!a.report.empty())
+    write_report_of_stands(a.report, a.device, m, {{"", at.pose_mm_deg, at.configuration}}, {load},
+                           {"solve", solve_json(r)}, geometry);
+}
+
+}  // namespace
+
+Command solve_command() {
+  auto a = std::make_shared<SolveArguments>();
+  return {
+      "solve",
+      "One pose, one load: displacement and 6x6 stiffness of the tool point by both theories, the share of each part "
+      "in the compliance, the checks. Where nothing loads a play, how far the device floats in it; the displacement is "
+      "then the middle of the play",
+      "deflect solve haptic-6psu --pose 25,25,198.9,0,0,0 --load 50,0,0,0,0,0 --json result.json --out result",
+      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+       {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in the base frame, mm and deg", &a->pose},
+       {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
+        &a->joints},
+       {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
+       {"--geometry", "linear|second-order|finite",
+        "shape in which equilibrium is written (default linear). In the deformed shape, second order or finite, with "
+        "rotations of any size, K is the tangent there; a load past buckling is refused",
+        &a->geometry},
+       {"--element-size", "LENGTH",
+        "size of the MSA's elements, with unit (default: one element a member, which is exact at its ends; with --out "
+        "twenty, for the drawing; in the deformed shape at least eight)",
+        &a->element_size},
+       {"--json", "FILE", "write the result", &a->json},
+       report_option(&a->report),
+       {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
+      [a] { drawing_motions(a->out, [a] { run(*a); }); }};
+}
+
+}  // namespace deflect::cli

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "meshes/structure.h"
+#include "msa/base/error.h"
+#include "validation/cli/command.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/figures.h"
+#include "validation/cli/report.h"
+#include "validation/cli/talk.h"
+#include "validation/figures/errata_figure.h"
+#include "validation/figures/fig10.h"
+#include "validation/report/errata_table.h"
+#include "validation/report/validation_results.h"
+#include "validation/theories/points_file.h"
+#include "validation/theories/theories.h"
+#include "validation/theories/workspace.h"
+
+namespace deflect::cli {
+namespace {
+
+struct ValidateArguments {
+  std::string device, points, as_printed, json, out, report, element_size;
+  double load_N = 50;
+  bool errata = false, mesh_study = false;
+  FigureArguments figures;
+};
+
+void print_mesh_study(const Mechanism& m, const std::vector<ValidationPoint>& points, double load_N) {
+  fmt::print("\nMesh: largest relative difference of the two theories as the elements shrink.\n");
+  fmt::print("{:>12}  {:>16}  {:>10}\n", "element", "elements per leg", "difference");
+  for (const double size_mm : {200.0, 100.0, 50.0, 25.0, 10.0, 5.0, 2.0}) {
+    const frame::MemberDivision division = divide_members(configure(m, home_pose(m)), size_mm / 1e3);
+    std::size_t elements = 0;
+    for (const auto& [part, at] : division) elements += at.size() - 1;
+    fmt::print("{:>9} mm  {:>16}  {:>10.2g}\n", size_mm, elements,
+               validate(m, points, load_N, {}, division).max_relative_difference);
+  }
+}
+
+void run(const ValidateArguments& a) {
+  require_pages(a.report);
+  const FigureStyle style = figure_style(a.figures, a.out);
+  const Mechanism m = read_device(a.device);
+  const std::set<Erratum> as_printed = parse_errata(a.as_printed);
+  if (!std::isfinite(a.load_N) || a.load_N == 0)
+    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.load_N));
+  const std::vector<ValidationPoint> points = a.points.empty() ? workspace_points(m) : read_points(a.points);
+  const Validation v =
+      timed(fmt::format("both theories at {} points: closed form; MSA, sparse Cholesky", points.size()),
+            [&] { return validate(m, points, a.load_N, as_printed, divide(m, a.element_size)); });
+  std::vector<ErratumPrice> prices;
+  if (a.errata) prices = timed("price of the errata", [&] { return price_errata(m, points, a.load_N); });
+  const std::filesystem::path folder = a.out;
+  if (!a.out.empty()) {
+    std::vector<Figure> figures = {fig10(v, style)};
+    if (a.errata) figures.push_back(errata_figure(prices, v, style));
+    draw(figures, folder);
+    write_table(folder / "validation.csv", validation_csv(v));
+    if (a.errata) write_table(folder / "errata.csv", errata_csv(prices));
+  }
+  if (!a.json.empty()) write_file(a.json, validation_json(v, prices));
+  fmt::print("{}", validation_table(v));
+  if (a.errata) fmt::print("\n{}", errata_table(prices));
+  if (a.mesh_study) print_mesh_study(m, points, a.load_N);
+  if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
+  if (!a.report.empty()) {
+    std::vector<SceneStand> stands;
+    for (const ValidationPoint& p : points)
+      stands.push_back({p.label, p.pose_mm_deg, stand(m, p.pose_mm_deg).configuration});
+    std::vector<Vector6> loads;
+    for (int axis = 0; axis < 3; ++axis) loads.push_back(a.load_N * Vector6::Unit(axis));
+    write_report_of_stands(a.report, a.device, m, stands, loads, {"validate", validation_json(v, prices)});
+  }
+}
+
+}  // namespace
+
+Command validate_command() {
+  auto a = std::make_shared<ValidateArguments>();
+  std::string errata_help = "errata of the paper to take as printed, joined by commas, or all:";
+  for (const ErratumInfo& e : errata()) errata_help += fmt::format("\n{} {}: {}", e.name, e.equations, e.as_printed);
+  return {"validate",
+          "Analytic theory against MSA at the points of the device's workspace, nine of a cube (or --points), for a "
+          "force along x, y and z: "
+          "table of errors, Fig. 10",
+          "deflect validate haptic-6psu --out figures --as-printed passive-joints,ujoint-parallel",
+          with_figures(
+              {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+               {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg",
+                &a->points},
+               {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
+               {"--as-printed", "ERRATA", errata_help, &a->as_printed},
+               {"--errata", "", "the price of each erratum, one at a time", &a->errata},
+               {"--mesh-study", "", "the difference of the theories for finer and finer meshes", &a->mesh_study},
+               {"--element-size", "LENGTH",
+                "size of the MSA's elements, with unit (default: one a member, exact at its ends)", &a->element_size},
+               {"--json", "FILE", "write the result", &a->json},
+               report_option(&a->report),
+               {"--out", "DIR",
+                "write Fig. 10 and, with --errata, their price as SVG, PDF, PNG with captions, and the tables as CSV",
+                &a->out}},
+              &a->figures),
+          [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

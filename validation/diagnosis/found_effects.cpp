@@ -1,0 +1,113 @@
+#include "validation/diagnosis/found_effects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+
+namespace deflect {
+namespace {
+
+using nlohmann::json;
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path) : file_(path.string()) {
+    try {
+      root_ = json::parse(read_text(path));
+    } catch (const json::parse_error& e) {
+      throw InputError(
+          fmt::format("{}: not valid JSON at byte {}: give the file of 'deflect diagnose --json'", file_, e.byte));
+    } catch (const json::out_of_range&) {
+      throw InputError(
+          fmt::format("{}: a number is beyond what a double holds: give the file of 'deflect diagnose "
+                      "--json' as it was written",
+                      file_));
+    }
+  }
+
+  FoundEffects read() const {
+    FoundEffects out;
+    const json& candidates = list(root_, "candidates", "");
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      out.candidates.push_back(hypothesis(candidates[i], fmt::format("candidates[{}]", i)));
+    const json& missing = list(root_, "missing", "");
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+      const std::string where = fmt::format("missing[{}]", i);
+      out.missing.push_back(missing[i].is_string() ? named(missing[i]) : hypothesis(missing[i], where));
+    }
+    if (root_.contains("found")) take_found(out.missing);
+    for (FoundEffect& f : out.missing) complete(f, out.candidates);
+    return out;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& where, const std::string& what) const {
+    throw InputError(fmt::format("{}: {}: {}", file_, where, what));
+  }
+
+  /// Legs and values of what is missing, fitted together: of several effects each alone has others.
+  void take_found(std::vector<FoundEffect>& missing) const {
+    const json& found = list(root_, "found", "");
+    for (std::size_t i = 0; i < std::max(found.size(), missing.size()); ++i) {
+      const std::string where = fmt::format("found[{}]", i);
+      if (i >= found.size() || i >= missing.size())
+        fail(where,
+             fmt::format("'missing' names {} effects, 'found' {}: each has its entry", missing.size(), found.size()));
+      FoundEffect f = hypothesis(found[i], where);
+      if (f.effect != missing[i].effect)
+        fail(where, fmt::format("is '{}', where 'missing' has '{}'", f.effect, missing[i].effect));
+      missing[i] = std::move(f);
+    }
+  }
+
+  static FoundEffect named(const json& name) { return {name.get<std::string>(), {}, {}}; }
+
+  const json& list(const json& in, const char* key, const std::string& where) const {
+    const std::string path = where.empty() ? key : fmt::format("{}.{}", where, key);
+    if (!in.is_object() || !in.contains(key) || !in[key].is_array())
+      fail(path, "a list is wanted, as 'deflect diagnose --json' writes it");
+    return in[key];
+  }
+
+  FoundEffect hypothesis(const json& in, const std::string& where) const {
+    if (!in.is_object() || !in.contains("effect") || !in["effect"].is_string()) fail(where, "has no 'effect'");
+    FoundEffect found = named(in["effect"]);
+    if (in.contains("site") && in["site"].is_string()) {
+      const std::string site = in["site"];
+      for (int leg = 1; leg <= 1000 && !found.leg; ++leg)
+        if (site == fmt::format("leg {}", leg)) found.leg = leg;
+    }
+    if (!in.contains("parameters")) return found;
+    const json& parameters = list(in, "parameters", where);
+    for (const json& p : parameters) {
+      if (!p.is_object() || !p.contains("name") || !p["name"].is_string() || !p.contains("value") ||
+          !p["value"].is_number())
+        fail(where + ".parameters", R"(each is {"name": ..., "value": number})");
+      found.parameters.emplace_back(p["name"], p["value"]);
+    }
+    return found;
+  }
+
+  /// Values and leg from the best candidate of that effect, where they are not given.
+  static void complete(FoundEffect& found, const std::vector<FoundEffect>& candidates) {
+    for (const FoundEffect& c : candidates) {
+      if (c.effect != found.effect || (found.leg && c.leg != found.leg)) continue;
+      if (!found.leg) found.leg = c.leg;
+      if (found.parameters.empty()) found.parameters = c.parameters;
+      return;
+    }
+  }
+
+  std::string file_;
+  json root_;
+};
+
+}  // namespace
+
+FoundEffects read_found_effects(const std::filesystem::path& path) { return Reader(path).read(); }
+
+}  // namespace deflect

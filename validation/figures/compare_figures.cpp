@@ -1,0 +1,191 @@
+#include "validation/figures/compare_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/figures/load_curves.h"
+#include "validation/figures/residual_map.h"
+#include "validation/figures/sheet.h"
+#include "validation/report/compare_words.h"
+#include "validation/report/text.h"
+
+namespace deflect {
+namespace {
+
+Figure residuals(const Comparison& c, const FigureStyle& style) {
+  const ErrorUnit unit = error_unit(c);
+  const std::vector<ReadingCells> cells = cells_of(c);
+  Sheet s("residuals", style, 160);
+  std::string data = "$data << EOD\n";
+  const double band = 2 * um * c.noise_and_tolerances;
+  Vector3 low = Vector3::Constant(-band), high = -low;
+  std::array<bool, 3> measured = {};
+  double last = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double at = c.study.sequence ? *c.study.data->readings[i].sequence : static_cast<double>(i);
+    last = std::max(last, at);
+    data += fmt::format("{}", at);
+    for (int k = 0; k < 3; ++k) {
+      const double r = um * cells[i].residual(k);
+      data += fmt::format(" {}", r);
+      if (!std::isfinite(r)) continue;
+      measured[static_cast<std::size_t>(k)] = true;
+      low(k) = std::min(low(k), r), high(k) = std::max(high(k), r);
+    }
+    data += "\n";
+  }
+  s.put("{}EOD\nset multiplot\nunset key", data);
+  const std::string order = c.study.sequence ? "in the order taken" : "in the order of the file";
+  double y = s.heading("Residuals " + order, {subjects(c)}) + 0.6 * s.line();
+  const double height = std::max(5.2 * s.line(), 0.165 * s.width()), gap = 1.1 * s.line();
+  std::array<Tics, 3> tics;
+  Tics widest;
+  for (int k = 0; k < 3; ++k) {
+    const double room = 0.06 * std::max(high(k) - low(k), 1e-6);
+    low(k) -= room, high(k) += room;
+    tics[static_cast<std::size_t>(k)] = s.tics(low(k), high(k), height, true);
+    widest.letters = std::max(widest.letters, tics[static_cast<std::size_t>(k)].letters);
+  }
+  const double left = s.left_of(widest), w = s.width() - left - 4;
+  s.put("set xrange [0:{}]\nset xtics {}\nset xzeroaxis lt 1 lc rgb '#404040' lw 0.7", 1.01 * std::max(last, 1.0),
+        s.tics(0, last, w).step);
+  const auto below =
+      static_cast<int>(std::find(measured.rbegin(), measured.rend(), true).base() - measured.begin()) - 1;
+  for (int k = 0; k < 3; ++k) {
+    if (!measured[static_cast<std::size_t>(k)]) continue;
+    s.panel(left, y, w, height);
+    s.axis_names(k == below ? "reading" : "", fmt::format("{} ({})", unit.components[k], unit.micro), widest);
+    s.put("set object 1 rectangle from graph 0,first {} to graph 1,first {} fc rgb '#E8E8E8' fs solid noborder behind",
+          -band, band);
+    s.put("set yrange [{}:{}]\nset ytics {}\nset format x '{}'", low(k), high(k),
+          tics[static_cast<std::size_t>(k)].step, k == below ? "%g" : "");
+    s.plot(fmt::format("plot $data using 1:{} with points pt 7 ps 0.3 lc rgb '{}'", k + 2, colours[k]));
+    y += height + gap;
+  }
+  s.put("unset multiplot");
+  return s.figure(
+      y - gap + s.below(),
+      fmt::format("Residuals of every reading {}, component by component, in {}. Grey: ±2 standard deviations "
+                  "({:.3g} {}) of what noise and tolerances give with nothing missing. {} {} {}",
+                  order, unit.micro, band, unit.micro, axes_sentence(c), data_sentence(c), noise_sentence(c)));
+}
+
+Figure groups(const Comparison& c, const FigureStyle& style) {
+  const ErrorUnit unit = error_unit(c);
+  Sheet s("groups", style, 160);
+  std::string labels, data = "$data << EOD\n";
+  int at = 0;
+  std::size_t longest = 1;
+  const double floor = um * c.noise_and_tolerances;
+  double most = floor;
+  for (const auto* list : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading}) {
+    if (list->empty()) continue;
+    for (const Errors& e : *list) {
+      data += fmt::format("{} {:.5g}\n", at, um * e.rmse);
+      labels += fmt::format("{}{} {}", labels.empty() ? "" : ", ", gnuplot_tic_label(e.group), at);
+      longest = std::max(longest, letters(e.group));
+      most = std::max(most, um * e.rmse);
+      ++at;
+    }
+    ++at;
+  }
+  s.put("{}EOD", data);
+  const double y = s.heading("Residual by group: root mean square", {subjects(c)}) + 1.2 * s.line();
+  const double left = s.text_mm(longest) + 3, w = s.width() - left - 5, height = 1.25 * s.line() * at;
+  s.panel(left, y, w, height);
+  s.axis_names(fmt::format("rms of measured − predicted ({})", unit.micro), "", {});
+  s.put("unset key\nset ytics ({}) noenhanced\nset yrange [{}:-1]\nset xrange [0:{}]\nset xtics {}", labels, at - 1,
+        1.08 * most, s.tics(0, most, w).step);
+  s.put("set arrow 1 from {0},graph 0 to {0},graph 1 nohead dt 2 lc rgb '#D55E00' front", floor);
+  const bool on_left = floor > 0.6 * most;
+  s.label("noise and tolerances", left + w * floor / (1.08 * most) + (on_left ? -1 : 1), y - 0.4 * s.line(),
+          fmt::format("{} textcolor rgb '#D55E00' {}", on_left ? "right" : "left", s.font(0.9)));
+  s.plot("plot $data using (0):1:2:(0) with vectors nohead lw 5 lc rgb '#0072B2'");
+  return s.figure(
+      y + height + s.below(),
+      fmt::format("Root mean square of the residual by component, direction of the load, its size{}, in {}. "
+                  "Dashed: what noise and tolerances give with nothing missing. {} {} {}",
+                  c.by_heading.empty() ? "" : ", loading or unloading", unit.micro, axes_sentence(c), data_sentence(c),
+                  noise_sentence(c)));
+}
+
+/// Range of the curves of one kind.
+struct CurveRange {
+  double low_force = 0, high_force = 0, low = 0, high = 0;
+};
+
+std::optional<Figure> elongation(const Comparison& c, const FigureStyle& style) {
+  if (c.curves.empty()) return std::nullopt;
+  Sheet s("elongation", style, 160);
+  CurveRange ranges[2];
+  bool there[2] = {false, false};
+  for (std::size_t k = 0; k < c.curves.size(); ++k) {
+    const ElongationCurve& curve = c.curves[k];
+    CurveRange& r = ranges[curve.rotation];
+    there[curve.rotation] = true;
+    s.put("$c{} << EOD", k);
+    for (std::size_t i = 0; i < curve.force.size(); ++i) {
+      const double e = um * curve.elongation[i], deviation = um * curve.deviation[i];
+      s.put("{} {} {}", curve.force[i], e, deviation);
+      r.low_force = std::min(r.low_force, curve.force[i]), r.high_force = std::max(r.high_force, curve.force[i]);
+      r.low = std::min(r.low, e - deviation), r.high = std::max(r.high, e + deviation);
+    }
+    s.put("EOD");
+  }
+  const bool mixed = there[0] && there[1];
+  const std::size_t columns = std::min<std::size_t>(s.narrow() ? 2 : 3, c.curves.size()),
+                    rows = (c.curves.size() + columns - 1) / columns;
+  const double n = static_cast<double>(columns), guess = s.width() / n - 4 * s.line();
+  Tics across[2], up[2];
+  for (const int kind : {0, 1}) {
+    CurveRange& r = ranges[kind];
+    const double x = std::max(0.05 * (r.high_force - r.low_force), 1e-6), z = std::max(0.06 * (r.high - r.low), 1e-6);
+    r.low_force -= x, r.high_force += x, r.low -= z, r.high += z;
+    across[kind] = s.tics(r.low_force, r.high_force, guess);
+    up[kind] = s.tics(r.low, r.high, std::min(guess, 45.0), true);
+  }
+  const Tics widest{1, std::max(there[0] ? up[0].letters : 1, there[1] ? up[1].letters : 1)};
+  const double left = s.left_of(widest), gap = mixed ? left : 1.2 * s.line();
+  const double w = (s.width() - left - 4 - gap * (n - 1)) / n, h = std::clamp(0.97 * w, 6 * s.line(), 45.0);
+  s.put("set multiplot\nunset key");
+  const double top = s.heading("Force–elongation of the sites beyond the model", {subjects(c)}) + 0.6 * s.line();
+  const double row = h + (mixed ? s.below() : 0) + 1.1 * s.line();
+  s.put("set xzeroaxis lt 1 lc rgb '#808080' lw 0.6\nset yzeroaxis lt 1 lc rgb '#808080' lw 0.6");
+  for (std::size_t k = 0; k < c.curves.size(); ++k) {
+    const bool turn = c.curves[k].rotation, bottom = mixed || k + columns >= c.curves.size(),
+               first = mixed || k % columns == 0;
+    s.panel(left + static_cast<double>(k % columns) * (w + gap), top + static_cast<double>(k / columns) * row, w, h);
+    s.axis_names(bottom ? (turn ? "moment (Nm)" : "force (N)") : "",
+                 first ? (turn ? "turn (µrad)" : "elongation (µm)") : "", widest);
+    s.put("set xrange [{}:{}]\nset xtics {}", ranges[turn].low_force, ranges[turn].high_force, across[turn].step);
+    s.put("set yrange [{}:{}]\nset ytics {}", ranges[turn].low, ranges[turn].high, up[turn].step);
+    s.put("set format x '{}'\nset format y '{}'", bottom ? "%g" : "", first ? "%g" : "");
+    s.put("set label 50 {} at graph 0.04,0.92 noenhanced", gnuplot_quote(c.curves[k].site));
+    s.plot(fmt::format(
+        "plot $c{0} using 1:($2-$3):($2+$3) with filledcurves fc rgb '#C6DBEF', '' using 1:2 with linespoints "
+        "pt 7 ps 0.4 lw 1.4 lc rgb '#0072B2'",
+        k));
+  }
+  s.put("unset multiplot");
+  const double height = top + static_cast<double>(rows) * row + (mixed ? 0 : s.below() - 1.1 * s.line());
+  const std::string what =
+      !there[1]   ? "elongation (µm, positive where pulled longer) over the force (N, positive where it pulls)"
+      : !there[0] ? "turn (µrad) over the moment (Nm), both positive about the joint's axis"
+                  : "elongation (µm) over the force (N), or turn (µrad) over the moment (Nm)";
+  return s.figure(
+      height, fmt::format("What the sites ({} to {}) yield beyond the model, read off the residuals without a law: {}. "
+                          "Band: one standard deviation. {} {} {}",
+                          c.curves.front().site, c.curves.back().site, what, axes_sentence(c), data_sentence(c),
+                          noise_sentence(c)));
+}
+
+}  // namespace
+
+std::vector<Figure> compare_figures(const Comparison& c, const FigureStyle& style) {
+  std::vector<Figure> out = {residuals(c, style), residual_map(c, style), groups(c, style)};
+  for (const std::optional<Figure>& f : {secant(c, style), elongation(c, style), loops(c, style)})
+    if (f) out.push_back(*f);
+  return out;
+}
+
+}  // namespace deflect

@@ -1,0 +1,277 @@
+#include "validation/figures/drawing.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "msa/base/error.h"
+#include "msa/frame/file/frame_build.h"
+#include "msa/frame/file/member_axes.h"
+#include "msa/frame/mechanism/build.h"
+#include "msa/frame/structure/mobility.h"
+#include "msa/frame/structure/stability.h"
+#include "msa/mechanism/chain_kinematics.h"
+#include "msa/mechanism/device_file.h"
+#include "msa/mechanism/place.h"
+#include "validation/theories/theories.h"
+
+namespace deflect {
+namespace {
+
+constexpr double shown_motion = 0.1;  // of the machine's size
+
+SectionOutline outline(const RoundSection& s) { return {s.diameter, s.diameter, true}; }
+SectionOutline outline(const TubeSection& s) { return {s.outer_diameter, s.outer_diameter, true}; }
+SectionOutline outline(const GivenSection&) { return {}; }
+SectionOutline outline(const AngleSection& s) { return {s.long_leg, s.short_leg, false}; }
+template <class Shaped>
+SectionOutline outline(const Shaped& s) {
+  return {s.width_y, s.height_z, false};
+}
+
+void set_section(DrawnMember& m, const Named<Section>& sections, const std::string& name) {
+  m.section = name;
+  const Section* section = find(sections, name);
+  if (!section) return;
+  const SectionOutline o = outline_of(*section);
+  m.size_y = o.size_y;
+  m.size_z = o.size_z;
+  m.round = o.round;
+}
+
+void set_motions(MachineDrawing& d, const frame::Model& model, std::size_t points) {
+  const std::vector<char> all(model.springs.size(), 1);
+  const frame::Mobility mobility = frame::mobility_of(model, all);
+  if (mobility.free.cols() == 0) return;
+  d.trouble = fmt::format("it cannot stand: {} motion{} that nothing resists", mobility.free.cols(),
+                          mobility.free.cols() == 1 ? "" : "s");
+  for (const frame::FreeMotion& motion : frame::free_motions_of(model, mobility.free)) {
+    DrawnMotion drawn{describe(model, motion), {}};
+    double largest = 0;
+    for (std::size_t i = 0; i < points; ++i) {
+      drawn.displacements.push_back(motion.u.segment<3>(static_cast<Eigen::Index>(6 * i)));
+      largest = std::max(largest, drawn.displacements.back().norm());
+    }
+    const double scale = largest > 0 ? shown_motion * d.size() / largest : 0;
+    for (Vector3& u : drawn.displacements) u *= scale;
+    d.motions.push_back(std::move(drawn));
+  }
+}
+
+/// Parts of a leg as they are described, beside the same parts as they stand.
+class PlacedDrawing {
+ public:
+  PlacedDrawing(MachineDrawing& d, const Mechanism& m, const frame::MechanismModel& built)
+      : drawing_(d), mechanism_(m), built_(built) {}
+
+  void add_leg(const PlacedLeg& leg, const Named<Part>& parts) {
+    auto described = parts.begin();
+    for (const PlacedPart& placed : leg.parts) {
+      const std::string& name = std::visit([](const auto& p) -> const std::string& { return p.part; }, placed);
+      while (described != parts.end() && described->first != name) ++described;
+      const Part* part = described == parts.end() ? nullptr : &described->second;
+      if (const auto* joint = std::get_if<PlacedJoint>(&placed)) {
+        add_joint(leg.name, *joint);
+      } else if (const auto* member = std::get_if<PlacedMember>(&placed)) {
+        add_member(leg.name, *member, part ? std::get_if<Member>(part) : nullptr);
+      } else {
+        const auto& group = std::get<PlacedParallel>(placed);
+        const auto* branches = part ? std::get_if<Parallel>(part) : nullptr;
+        for (std::size_t i = 0; branches && i < group.branches.size() && i < branches->mounts.size(); ++i)
+          add_leg(group.branches[i], branches->mounts[i].leg.empty() ? branches->leg : branches->mounts[i].leg);
+      }
+    }
+  }
+
+  void add_joint(const std::string& leg, const PlacedJoint& joint) {
+    DrawnJoint out;
+    out.leg = leg;
+    out.part = joint.part;
+    for (std::size_t i = 0; i < 6; ++i) {
+      out.letters += joint.freedoms[i] == Freedom::actuated ? 'a' : joint.freedoms[i] == Freedom::free ? 'f' : 'r';
+      out.elastic[i] = joint.elastic(i);
+    }
+    if (joint.rigid() && !out.driven()) return;
+    out.at = joint.p_W;
+    out.axes = joint.R_WJ;
+    drawing_.joints.push_back(std::move(out));
+  }
+
+ private:
+  /// Beams of a member are called "leg 1 guideway [3]".
+  void add_member(const std::string& leg, const PlacedMember& placed, const Member* described) {
+    DrawnMember m;
+    m.leg = leg;
+    m.part = placed.part;
+    m.start = placed.p_W_start;
+    m.end = placed.p_W_end;
+    m.axes = placed.R_WM;
+    if (described) {
+      m.material = described->material;
+      set_section(m, mechanism_.sections, described->section);
+    }
+    const std::string name = leg + " " + placed.part;
+    for (const frame::Beam& beam : built_.model.beams)
+      if (beam.name == name || beam.name.starts_with(name + " ["))
+        drawing_.lines.push_back({beam.a, beam.b, static_cast<int>(drawing_.members.size())});
+    drawing_.members.push_back(std::move(m));
+  }
+
+  MachineDrawing& drawing_;
+  const Mechanism& mechanism_;
+  const frame::MechanismModel& built_;
+};
+
+MachineDrawing standing(const Mechanism& m, const Configuration& c) {
+  MachineDrawing d;
+  d.pose_mm_deg = mm_deg_from(c.pose);
+  d.driven = c.actuators;
+  const frame::MechanismModel built = frame::build(c);
+  for (const frame::Node& node : built.model.nodes) d.points.push_back(node.position);
+  PlacedDrawing placed(d, m, built);
+  for (std::size_t i = 0; i < c.legs.size(); ++i)
+    placed.add_leg(c.legs[i], c.legs[i].beside ? Named<Part>() : leg_parts(m, static_cast<int>(i) + 1));
+  placed.add_joint("", c.base);
+  placed.add_joint("", c.tool);
+  for (const auto& [a, b] : built.arms) d.lines.push_back({a, b, -1});
+  d.frames = {{"base", "", Vector3::Zero(), Matrix3::Identity()}, {"tool", "", c.pose.p_WT, c.pose.R_WT}};
+  set_motions(d, built.model, d.points.size());
+  return d;
+}
+
+/// Each leg by itself, where the walk leads it with its joints at home.
+class OpenDrawing {
+ public:
+  OpenDrawing(MachineDrawing& d, const Mechanism& m) : drawing_(d), mechanism_(m) {}
+
+  void add(const std::string& leg, const std::vector<Step>& steps) {
+    for (const Step& step : steps) {
+      if (const auto* joint = std::get_if<Joint>(step.part)) {
+        add_joint(leg, step, *joint);
+        add_line(step.before.p, step.after.p, -1);
+      } else if (const auto* member = std::get_if<Member>(step.part)) {
+        DrawnMember out;
+        out.leg = leg;
+        out.part = *step.name;
+        out.material = member->material;
+        out.start = step.start;
+        out.end = step.after.p;
+        set_section(out, mechanism_.sections, member->section);
+        add_line(out.start, out.end, static_cast<int>(drawing_.members.size()));
+        drawing_.members.push_back(std::move(out));
+      } else if (std::holds_alternative<Parallel>(*step.part)) {
+        for (std::size_t i = 0; i < step.branches.size(); ++i)
+          add(fmt::format("{} {} {}", leg, *step.name, i + 1), step.branches[i]);
+      } else {
+        add_line(step.before.p, step.after.p, -1);
+      }
+    }
+  }
+
+  void add_line(const Vector3& a, const Vector3& b, int member) {
+    const auto i = static_cast<int>(drawing_.points.size());
+    drawing_.points.push_back(a);
+    drawing_.points.push_back(b);
+    drawing_.lines.push_back({i, i + 1, member});
+  }
+
+ private:
+  void add_joint(const std::string& leg, const Step& step, const Joint& joint) {
+    DrawnJoint out;
+    out.leg = leg;
+    out.part = *step.name;
+    const std::array<Freedom, 6> freedoms = freedoms_of(joint);
+    for (std::size_t i = 0; i < 6; ++i) {
+      out.letters += freedoms[i] == Freedom::actuated ? 'a' : freedoms[i] == Freedom::free ? 'f' : 'r';
+      out.elastic[i] = joint.stiffness || !joint.laws[i].empty();
+    }
+    out.at = step.joint.p;
+    out.axes = step.joint.R;
+    drawing_.joints.push_back(std::move(out));
+  }
+
+  MachineDrawing& drawing_;
+  const Mechanism& mechanism_;
+};
+
+MachineDrawing open_legs(const Mechanism& m, const std::string& why) {
+  MachineDrawing d;
+  const std::vector<LegParts> legs = legs_of(m);
+  const Trace trace = walk(legs, home_states(legs));
+  OpenDrawing open(d, m);
+  for (std::size_t i = 0; i < trace.legs.size(); ++i) {
+    open.add_line(Vector3::Zero(), trace.legs[i].start.p, -1);
+    open.add(fmt::format("leg {}", i + 1), trace.legs[i].steps);
+    d.frames.push_back({fmt::format("end of leg {}", i + 1), "", trace.legs[i].end.p, trace.legs[i].end.R});
+  }
+  d.frames.insert(d.frames.begin(), {"base", "", Vector3::Zero(), Matrix3::Identity()});
+  d.trouble = fmt::format("{}. Each leg is drawn alone, with its joints at their home", why);
+  return d;
+}
+
+/// Where the device stands at home, or why it does not.
+std::optional<Configuration> at_home(const Mechanism& m, std::string& why) try {
+  return configure(m, home_pose(m));
+} catch (const ModelError& e) {
+  why = e.what();
+  return {};
+}
+
+}  // namespace
+
+SectionOutline outline_of(const Section& section) {
+  return std::visit([](const auto& s) { return outline(s); }, section.shape);
+}
+
+double MachineDrawing::size() const {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& p : points) box.extend(p);
+  return points.empty() ? 0 : box.diagonal().norm();
+}
+
+MachineDrawing drawing_of(const Mechanism& m, const std::optional<Configuration>& at) {
+  std::string why;
+  const std::optional<Configuration> c = at ? at : at_home(m, why);
+  if (!c && !std::holds_alternative<Chains>(m.kinematics)) throw ModelError(why);
+  MachineDrawing d = c ? standing(m, *c) : open_legs(m, why);
+  d.name = m.name;
+  d.about = m.about;
+  return d;
+}
+
+MachineDrawing drawing_of(const frame::FrameDescription& f) {
+  MachineDrawing d;
+  d.name = f.name;
+  d.about = f.about;
+  d.frame = true;
+  const frame::FrameModel built = frame::build_frame(f);
+  for (const frame::Node& node : built.model.nodes) d.points.push_back(node.position);
+  for (std::size_t i = 0; i < f.members.size(); ++i) {
+    const auto& [name, member] = f.members[i];
+    DrawnMember m;
+    m.part = name;
+    m.material = member.material;
+    m.start = f.nodes[static_cast<std::size_t>(built.nodes.find(member.from))].second;
+    m.end = f.nodes[static_cast<std::size_t>(built.nodes.find(member.to))].second;
+    m.axes = frame::member_axes(m.end - m.start, member.y_axis);
+    set_section(m, f.sections, member.section);
+    for (int e = built.first_element[i]; e < built.first_element[i + 1]; ++e) {
+      const frame::Beam& beam = built.model.beams[static_cast<std::size_t>(e)];
+      d.lines.push_back({beam.a, beam.b, static_cast<int>(i)});
+    }
+    d.members.push_back(std::move(m));
+  }
+  for (const auto& [a, b] : built.arms) d.lines.push_back({a, b, -1});
+  for (const auto& [name, position] : f.nodes) {
+    DrawnPoint node{name, "", position, Matrix3::Identity()};
+    for (const auto& [where, held] : f.supports)
+      for (std::size_t i = 0; where == name && i < 6; ++i)
+        if (held[i]) node.held += (node.held.empty() ? "" : " ") + std::string(frame::node_freedoms[i]);
+    d.frames.push_back(std::move(node));
+  }
+  set_motions(d, built.model, d.points.size());
+  return d;
+}
+
+}  // namespace deflect

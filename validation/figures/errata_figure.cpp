@@ -1,0 +1,130 @@
+#include "validation/figures/errata_figure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/figures/sheet.h"
+#include "validation/report/by_point.h"
+#include "validation/report/text.h"
+
+namespace deflect {
+namespace {
+
+constexpr double linear_to = 1e-3, knee = 2;
+
+/// Signed: the logarithm of the change up to a factor of 2 (0.1 %, 1 %, 10 % take equal steps), beyond it that of the
+/// factor.
+double place(double ratio) {
+  const double x = std::abs(std::log(ratio)), most = std::log(knee);
+  const double size =
+      std::log10(1 + std::min(x, most) / linear_to) + (x > most ? 0.8 * (x - most) / std::log(10.0) : 0);
+  return std::copysign(size, std::log(ratio));
+}
+
+struct Mark {
+  double ratio;
+  const char* name;
+};
+constexpr Mark marks[] = {{1e-4, "÷10⁴"}, {1e-3, "÷1000"}, {0.01, "÷100"}, {0.1, "÷10"},   {0.5, "÷2"},
+                          {0.9, "−10 %"}, {0.99, "−1 %"},  {1, "0"},       {1.01, "+1 %"}, {1.1, "+10 %"},
+                          {2, "×2"},      {10, "×10"},     {100, "×100"},  {1e3, "×1000"}, {1e4, "×10⁴"}};
+
+bool drawable(double ratio) { return std::isfinite(ratio) && ratio > 0; }
+
+}  // namespace
+
+Figure errata_figure(const std::vector<ErratumPrice>& prices, const Validation& v, const FigureStyle& style) {
+  Sheet s("errata", style, 160);
+  double low_end = place(0.9), high_end = place(1.1);
+  std::size_t longest = 1;
+  for (const ErratumPrice& p : prices) {
+    longest = std::max(longest, letters(info(p.erratum).name));
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double ratio : {p.smallest(axis), p.largest(axis)})
+        if (p.refused.empty() && drawable(ratio))
+          low_end = std::min(low_end, place(ratio)), high_end = std::max(high_end, place(ratio));
+  }
+  const double beside = 0.04 * (high_end - low_end);
+  low_end -= beside, high_end += beside;
+
+  double y = s.heading(
+      "Price of the errata: deflection as printed / corrected",
+      {fmt::format("{}, {} along x, y, z, smallest to largest of the points", clip(v.device, 40), load_text(v))});
+  y += 0.4 * s.line();
+  double x = 3;
+  for (int axis = 0; axis < 3; ++axis) {
+    s.label((s.narrow() ? "load " : "load along ") + std::string(axis_names[axis]), x + 3, y, "left");
+    s.put("set label {} '' at screen {:.5f},1-{:.4f}/H point pt {} ps 0.7 lc rgb '{}'", 40 + axis,
+          (x + 1.2) / s.width(), y, shapes[axis], colours[axis]);
+    x += s.text_mm(12) + 5;
+  }
+  y += 1.9 * s.line();
+
+  const double left = s.text_mm(longest) + 3, w = s.width() - left - 4;
+  const double row = 1.9 * s.line(), height = row * static_cast<double>(prices.size());
+  s.label("← too stiff", left, y - 0.7 * s.line(), "left textcolor rgb '#505050'");
+  s.label("too soft →", left + w, y - 0.7 * s.line(), "right textcolor rgb '#505050'");
+  std::string names, data = "$data << EOD\n", tics;
+  for (std::size_t i = 0; i < prices.size(); ++i) {
+    const ErratumPrice& p = prices[i];
+    names += fmt::format("{}{} {}", i ? ", " : "", gnuplot_tic_label(info(p.erratum).name), i);
+    const auto in_row = [&](int axis) { return static_cast<double>(i) + 0.24 * (axis - 1); };
+    const auto note = [&](const std::string& text, int axis) {
+      s.label(text, left + w / 2, y + row * (in_row(axis) + 0.5),
+              "center " + s.font(0.8) + (axis == 1 ? "" : fmt::format(" textcolor rgb '{}'", colours[axis])));
+    };
+    if (!p.refused.empty()) {
+      note("no solution", 1);
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const double low = p.smallest(axis), high = p.largest(axis);
+      if (!drawable(low) || !drawable(high)) {
+        note(fmt::format("{:.3g} … {:.3g}", low, high), axis);
+        continue;
+      }
+      const double a = place(low), b = place(high);
+      data +=
+          fmt::format("{} {:.6g} {:.6g} {:.6g} {:.6g}\n", axis, in_row(axis), a, b, std::abs(a) > std::abs(b) ? a : b);
+    }
+  }
+  // As many marks as have room, outwards from none.
+  const auto add_marks = [&](auto chosen) {
+    double last = -INFINITY, half = 0;
+    for (const Mark& mark : chosen) {
+      const double at = place(mark.ratio), offset = w * std::abs(at) / (high_end - low_end),
+                   own = s.text_mm(letters(mark.name)) / 2;
+      if (at < low_end || at > high_end || offset - last < half + own + 0.6 * s.line()) continue;
+      last = offset, half = own;
+      tics += fmt::format("{}{} {:.6g}", tics.empty() ? "" : ", ", gnuplot_tic_label(mark.name), at);
+    }
+  };
+  const auto none = std::find_if(std::begin(marks), std::end(marks), [](const Mark& m) { return m.ratio == 1; });
+  add_marks(std::vector<Mark>(none, std::end(marks)));
+  add_marks(std::vector<Mark>(std::make_reverse_iterator(none), std::rend(marks)));
+  s.put("{}EOD\nunset key", data);
+  s.panel(left, y, w, height);
+  s.axis_names("change of the deflection by the erratum", "", {});
+  s.put("set xrange [{0}:{1}]\nset yrange [{2}:-0.5]\nset xtics ({3}) noenhanced\nset ytics ({4}) noenhanced", low_end,
+        high_end, static_cast<double>(prices.size()) - 0.5, tics, names);
+  s.put("set arrow 1 from 0,graph 0 to 0,graph 1 nohead lc rgb '#404040' lw 0.8 back");
+  std::string series;
+  for (int axis = 0; axis < 3; ++axis)
+    series += fmt::format(
+        "{0}$data using ($1=={1}?$3:NaN):2:($4-$3):(0) with vectors nohead lw 2 lc rgb '{2}', '' using "
+        "($1=={1}?$5:NaN):2 "
+        "with points pt {3} ps 0.6 lc rgb '{2}'",
+        axis ? ", " : "plot ", axis, colours[axis], shapes[axis]);
+  s.plot(series);
+  return s.figure(
+      y + height + s.below(),
+      fmt::format("Price of each erratum of the paper, taken as printed one at a time: displacement of the tool "
+                  "point of {} along a force of {} on it in x, y and z (base axes), as printed over corrected, "
+                  "both by the closed form. Lines: from the smallest to the largest of the {} points; dots: "
+                  "the end with the larger effect. Signed, logarithmic in the change up to a factor of 2 (linear "
+                  "below 0.1 %) and in the factor beyond: to the left the erratum makes the device too stiff "
+                  "(÷2: half the deflection), to the right too soft. Computed, no measurements and no noise.",
+                  v.device, load_text(v), by_point(v).size()));
+}
+
+}  // namespace deflect

@@ -1,0 +1,121 @@
+#include "validation/page/page_residuals.h"
+#include "validation/report/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/measurement/random.h"
+#include "validation/report/compare_results.h"
+
+namespace deflect {
+namespace {
+
+/// Of each pose, over the kind of numbers that Errors speak of.
+std::vector<double> rmse_by_pose(const Comparison& c, const VectorX& residual, bool rotations) {
+  std::vector<double> squares(c.study.data->poses.size(), 0), count(squares.size(), 0);
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const MeasuredValue& v = c.study.values[i];
+    if ((v.component >= 3) != rotations) continue;
+    const std::size_t pose = c.study.data->readings[v.reading].pose;
+    const double r = residual(static_cast<Eigen::Index>(i));
+    squares[pose] += r * r;
+    count[pose] += 1;
+  }
+  for (std::size_t p = 0; p < squares.size(); ++p) squares[p] = count[p] > 0 ? std::sqrt(squares[p] / count[p]) : 0;
+  return squares;
+}
+
+VectorX with_nothing_missing(const Comparison& c, std::uint64_t seed) {
+  Random random(seed);
+  VectorX eta(c.tolerances.A.cols());
+  for (double& each : eta) each = random.normal();
+  VectorX r = c.tolerances.A * eta;
+  double load = 0;
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const MeasuredValue& v = c.study.values[i];
+    if (i == 0 || v.reading != c.study.values[i - 1].reading)
+      load = c.study.mechanism->tolerances.load * random.normal();
+    r(static_cast<Eigen::Index>(i)) +=
+        c.sigma[i] * random.normal() + load * c.study.predicted[v.reading](static_cast<Eigen::Index>(v.component));
+  }
+  return r;
+}
+
+Json poses_json(const Comparison& c, bool rotations) {
+  const double unit = rotations ? 1 : mm;
+  std::vector<std::vector<double>> healthy;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    healthy.push_back(rmse_by_pose(c, with_nothing_missing(c, seed), rotations));
+  Json out = Json::array();
+  for (std::size_t p = 0; p < c.by_pose.size(); ++p) {
+    const Vector3 at = mm * c.study.machines[p].pose.p_WT;
+    const Errors& e = c.by_pose[p];
+    Json pose = {{"label", c.study.data->poses[p].label},
+                 {"at_mm", {at.x(), at.y(), at.z()}},
+                 {"rmse", unit * e.rmse},
+                 {"bias", {unit * e.bias.x(), unit * e.bias.y(), unit * e.bias.z()}}};
+    for (const std::vector<double>& draw : healthy) pose["with_nothing_missing"].push_back(unit * draw[p]);
+    out.push_back(std::move(pose));
+  }
+  return out;
+}
+
+Json readings_json(const Comparison& c, std::size_t most) {
+  const Measurements& data = *c.study.data;
+  Json out = Json::array();
+  for (std::size_t i = 0; i < std::min(most, data.readings.size()); ++i) {
+    const Reading& r = data.readings[i];
+    Vector6 load = r.load;
+    load.tail<3>() *= mm;
+    const Json nothing = Json::array({nullptr, nullptr, nullptr, nullptr, nullptr, nullptr});
+    Json reading = {{"line", r.line},
+                    {"pose", r.pose},
+                    {"sequence", r.sequence ? Json(*r.sequence) : Json()},
+                    {"load_N_Nmm", json_numbers(load, "load")},
+                    {"measured", nothing},
+                    {"predicted", json_numbers(twist_in_mm(c.study.predicted[i]), "predicted")},
+                    {"residual", nothing}};
+    if (!data.note_columns.empty()) reading["notes"] = r.notes;
+    out.push_back(std::move(reading));
+  }
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const MeasuredValue& v = c.study.values[i];
+    if (v.reading >= out.size()) continue;
+    const double unit = v.component < 3 ? mm : 1;
+    out[v.reading]["measured"][v.component] = unit * v.value;
+    out[v.reading]["residual"][v.component] = unit * c.residual(static_cast<Eigen::Index>(i));
+  }
+  return out;
+}
+
+Json curves_json(const Comparison& c) {
+  Json out = Json::array();
+  for (const ElongationCurve& curve : c.curves) {
+    Json json = {{"site", curve.site}, {"rotation", curve.rotation}};
+    for (std::size_t i = 0; i < curve.force.size(); ++i) {
+      json["force"].push_back((curve.rotation ? mm : 1) * curve.force[i]);
+      json["elongation"].push_back((curve.rotation ? 1 : mm) * curve.elongation[i]);
+      json["deviation"].push_back((curve.rotation ? 1 : mm) * curve.deviation[i]);
+    }
+    out.push_back(std::move(json));
+  }
+  return out;
+}
+
+}  // namespace
+
+Json residuals_json(const Comparison& c, std::size_t most) {
+  const bool rotations = rotations_alone(c.study.values);
+  Json out;
+  out["device"] = c.device;
+  out["result"] = Json::parse(compare_json(c));
+  out["unit"] = rotations ? "rad" : "mm";
+  out["poses"] = poses_json(c, rotations);
+  out["readings"] = readings_json(c, most);
+  out["readings_left_out"] = c.study.data->readings.size() - out["readings"].size();
+  out["note_columns"] = c.study.data->note_columns;
+  out["curves"] = curves_json(c);
+  return out;
+}
+
+}  // namespace deflect

@@ -1,0 +1,119 @@
+#include "validation/prediction/simulate.h"
+
+#include <cmath>
+
+#include "msa/base/error.h"
+#include "validation/measurement/configure_all.h"
+#include "validation/measurement/random.h"
+#include "validation/prediction/as_built.h"
+#include "validation/prediction/prediction.h"
+
+namespace deflect {
+namespace {
+
+AsBuilt draw(const Mechanism& m, double scale, Random& random) {
+  const Tolerances& t = m.tolerances;
+  AsBuilt built;
+  built.modulus = scale * t.modulus * random.normal();
+  for (int leg = 0; leg < leg_count(m); ++leg) {
+    LegAsBuilt l;
+    l.base_joint = scale * t.joint_position * random.normal3();
+    l.platform_joint = scale * t.joint_position * random.normal3();
+    l.link_length = scale * t.link_length * random.normal();
+    l.guide_diameter = scale * t.guide_diameter * random.normal();
+    built.legs.push_back(l);
+  }
+  return built;
+}
+
+/// Repeatability is a length: of slides.
+VectorX draw_errors(const std::vector<Actuator>& actuators, double sigma, Random& random) {
+  VectorX errors = VectorX::Zero(static_cast<Eigen::Index>(actuators.size()));
+  for (std::size_t i = 0; i < actuators.size(); ++i)
+    if (!actuators[i].rotation) errors(static_cast<Eigen::Index>(i)) = sigma * random.normal();
+  return errors;
+}
+
+/// To a digit that an instrument of this noise would show, as a decimal number in mm or rad.
+double rounded(double value, double sigma, double per_SI) {
+  const double digits = std::pow(10, std::ceil(-std::log10(sigma * per_SI / 1e3)));
+  return (std::round(value * per_SI * digits) / digits + 0.0) / per_SI;
+}
+
+}  // namespace
+
+Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOptions& o) {
+  Random random(o.seed);
+  const AsBuilt built = draw(m, o.tolerances, random);
+  const Mechanism geometry = o.tolerances > 0 ? with_geometry(m, built) : m;
+  std::vector<Configuration> machines = configure_all(m, plan);
+  for (Configuration& machine : machines) {
+    const VectorX errors = draw_errors(machine.actuators, o.tolerances * m.tolerances.actuator_repeatability, random);
+    if (o.tolerances > 0) machine = configure_as_built(geometry, built, machine, errors);
+  }
+
+  const auto n = static_cast<double>(plan.readings.size());
+  if (o.swing != 0 || o.temperature != 20) {
+    plan.temperature_recorded = true;
+    for (std::size_t i = 0; i < plan.readings.size(); ++i)
+      plan.readings[i].temperature_C =
+          std::round(1e3 * (o.temperature + o.swing * std::sin(2 * pi * static_cast<double>(i) / n))) / 1e3;
+  }
+  Measurements loaded = plan;
+  for (Reading& r : loaded.readings) r.load *= 1 + o.tolerances * m.tolerances.load * random.normal();
+
+  PredictionOptions p;
+  p.theory = Theory::msa;
+  p.geometry = o.geometry;
+  p.division = o.division;
+  p.threads = o.threads;
+  p.progress = o.progress;
+  const std::vector<Vector6> exact = predict(m, machines, loaded, p);
+
+  for (std::size_t i = 0; i < plan.readings.size(); ++i) {
+    Reading& r = plan.readings[i];
+    const bool gross = o.outliers > 0 && random.uniform(0, 1) < o.outliers;
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      const double sigma = k < 3 ? o.sigma_u : o.sigma_th.value_or(0);
+      if (k >= 3 && !o.sigma_th) continue;
+      double value = exact[i](k) + sigma * random.normal();
+      if (gross) value += (random.uniform(0, 1) < 0.5 ? -1 : 1) * random.uniform(10, 30) * sigma;
+      r.displacement[static_cast<std::size_t>(k)] = sigma > 0 ? rounded(value, sigma, k < 3 ? 1e3 : 1) : value;
+    }
+    if (o.sigma_u > 0) r.sigma_u = o.sigma_u;
+    if (o.sigma_th && *o.sigma_th > 0) r.sigma_th = o.sigma_th;
+  }
+  return plan;
+}
+
+double share_carried(const Mechanism& m, const Measurements& plan, const SimulationOptions& o) {
+  const std::vector<Configuration> machines = configure_all(m, plan);
+  PredictionOptions p;
+  p.theory = Theory::msa;
+  p.geometry = o.geometry;
+  p.division = o.division;
+  p.threads = 1;
+  for (std::size_t pose = 0; pose < machines.size(); ++pose) {
+    const auto carries = [&](double share) {
+      Measurements some = one_pose(plan, pose);
+      for (Reading& r : some.readings) r.load *= share;
+      try {
+        predict(m, {machines[pose]}, some, p);
+        return true;
+      } catch (const NumericalError&) {
+        return false;
+      }
+    };
+    if (carries(1)) continue;
+    double low = 1e-6, high = 1;
+    if (!carries(low)) return 0;
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high);
+      (carries(middle) ? low : high) = middle;
+    }
+    return low;
+  }
+  return 1;
+}
+
+}  // namespace deflect

@@ -1,0 +1,32 @@
+#include "validation/recording/recorded.h"
+
+#include <cmath>
+
+namespace deflect {
+
+Vector6 Rewritten::of(const Vector6& x) const {
+  Vector6 out;
+  for (std::size_t k = 0; k < 6; ++k)
+    out(static_cast<Eigen::Index>(k)) = factor[k] * x(static_cast<Eigen::Index>(from[k]));
+  return out;
+}
+
+Measurements corrected(const Measurements& data, const Correction& c) {
+  Measurements out = data;
+  for (Reading& r : out.readings) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const std::optional<double>& recorded =
+          data.readings[static_cast<std::size_t>(&r - out.readings.data())].displacement[c.displacement.from[k]];
+      r.displacement[k] = recorded ? std::optional(c.displacement.factor[k] * *recorded) : std::nullopt;
+    }
+    if (c.sigma_too && r.sigma_u) *r.sigma_u *= std::abs(c.displacement.factor[0]);
+    if (c.sigma_too && r.sigma_th) *r.sigma_th *= std::abs(c.displacement.factor[3]);
+    r.load = c.load.of(r.load);
+    r.load.tail<3>() += c.acts_at.cross(Vector3(r.load.head<3>()));
+  }
+  if (c.pose)
+    for (PoseGroup& group : out.poses) c.pose(group);
+  return out;
+}
+
+}  // namespace deflect

@@ -1,0 +1,25 @@
+// The usual mistakes of recording: units, signs, axes, columns.
+#pragma once
+
+#include <vector>
+
+#include "validation/recording/recorded.h"
+
+namespace deflect {
+
+/// Of displacements and loads: those that would change these data.
+std::vector<Correction> mistaken_readings(const Measurements&);
+
+/// Of commanded poses or joint coordinates: those that would change these data.
+std::vector<Correction> mistaken_poses(const Measurements&);
+
+/// Lengths of poses in another unit: for poses that cannot be reached as they stand.
+std::vector<Correction> mistaken_pose_lengths(const Measurements&);
+
+/// Every pose off by the same, mm in base axes.
+Correction shifted_poses(const Vector3& by_mm);
+
+/// Every force at T + p, m in base axes.
+Correction forces_elsewhere(const Vector3& p);
+
+}  // namespace deflect
