@@ -258,19 +258,4 @@ Schema schema_of(const std::function<void(FieldVisitor&)>& describe, const std::
   return std::move(visitor.schema);
 }
 
-Schema device_schema(const std::string& family) {
-  Mechanism m;
-  return schema_of([&](FieldVisitor& v) { describe(v, m); }, {{"family", family}});
-}
-
-Schema law_schema(bool rotation) {
-  Law law;
-  return schema_of(
-      [&](FieldVisitor& v) {
-        v.surroundings.rotation = rotation;
-        describe(v, law);
-      },
-      {});
-}
-
 }  // namespace deflect

@@ -56,10 +56,4 @@ inline constexpr const char* schema_name = "NAME";
 /// The fields that `describe` asks for. `fixed`: words by key that are taken as they are, others are tried in turn.
 Schema schema_of(const std::function<void(FieldVisitor&)>& describe, const std::map<std::string, std::string>& fixed);
 
-/// Of device files of a family (family_names).
-Schema device_schema(const std::string& family);
-
-/// Of a law on a translation or on a rotation: one level with a case for each law.
-Schema law_schema(bool rotation);
-
 }  // namespace deflect

@@ -9,6 +9,7 @@
 #include "msa/fields/field_writer.h"
 #include "msa/fields/file_kind.h"
 #include "msa/mechanism/chain_kinematics.h"
+#include "msa/mechanism/fields.h"
 #include "msa/mechanism/mechanism_tree.h"
 
 namespace deflect {

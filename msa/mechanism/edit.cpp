@@ -8,6 +8,7 @@
 #include "msa/fields/tree_edit.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/fields.h"
 #include "msa/mechanism/mechanism_tree.h"
 
 namespace deflect {

@@ -10,8 +10,8 @@
 #include "msa/base/units.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/benchmark/scores.h"
-#include "validation/cli/progress.h"
 #include "validation/effects/effect_file.h"
+#include "validation/parallel/progress.h"
 #include "validation/parallel/shared_cases.h"
 
 namespace deflect::benchmark {

@@ -63,7 +63,7 @@ const std::vector<std::pair<std::string, Rooms>>& table() {
       {"validation/cli",
        {"msa/base", "msa/mechanism", "analytic", "msa/frame/structure", "msa/frame/mechanism", "meshes",
         "validation/measurement", "validation/parallel", "validation/theories", "validation/compare",
-        "validation/effects", "validation/report", "validation/figures", "validation/page"}},
+        "validation/effects", "validation/diagnosis", "validation/report", "validation/figures", "validation/page"}},
       {"validation/cli/commands",
        {"msa/base", "msa/fields", "msa/mechanism", "msa/frame/file", "meshes", "validation/theories",
         "validation/prediction", "validation/compare", "validation/effects", "validation/diagnosis",

@@ -1,5 +1,6 @@
 // The schema of device files is what the reader reads.
 #include "msa/fields/schema.h"
+#include "msa/mechanism/device_schema.h"
 
 #include "msa/mechanism/device_file.h"
 #include "tests/support/schema_routes.h"

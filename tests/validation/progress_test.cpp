@@ -1,5 +1,5 @@
 // The progress line with a clock of its own.
-#include "validation/cli/progress.h"
+#include "validation/parallel/progress.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "validation/cli/devices.h"
+#include "msa/mechanism/device_schema.h"
 
 #include <fmt/format.h>
 

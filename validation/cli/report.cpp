@@ -10,6 +10,7 @@
 #include "msa/base/files.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/talk.h"
+#include "validation/diagnosis/found_effects.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
 #include "validation/figures/history_results.h"
@@ -88,16 +89,7 @@ std::vector<Vector6> loads_of(const Measurements& data) {
   return out;
 }
 
-/// "leg 4" → 4; nothing for other places.
-std::optional<int> numbered_leg(const std::string& site, const std::string& origin) {
-  if (!site.starts_with("leg ")) return std::nullopt;
-  for (int leg = 1; leg <= 1000; ++leg)
-    if (site == fmt::format("leg {}", leg)) return leg;
-  throw InputError(fmt::format("{}: there is no '{}': legs are numbered from 1", origin, excerpt(site)));
-}
-
-/// {"found": [{"effect", "site", "parameters": [{"name", "value"}]}]} of a diagnosis. Of a diagnosis of another device
-/// InputError.
+/// What a diagnosis names as missing, with the values found. Of a diagnosis of another device InputError.
 std::vector<EffectInstance> found_in(const PageResult& result, const std::string& device,
                                      const std::vector<Effect>& effects) {
   const ReadResult read = read_result(result.json, result.origin);
@@ -106,17 +98,8 @@ std::vector<EffectInstance> found_in(const PageResult& result, const std::string
     throw InputError(
         fmt::format("{}: a diagnosis of another device: of '{}', and --device is '{}'", result.origin, of, device));
   std::vector<EffectInstance> out;
-  for (const Json& found : read.json.value("found", Json::array())) {
-    EffectInstance e;
-    e.effect = &find_effect(effects, found["effect"]);
-    e.leg = numbered_leg(found["site"], result.origin);
-    e.values = start_values(*e.effect);
-    for (const Json& parameter : found["parameters"])
-      for (std::size_t i = 0; i < e.effect->parameters.size(); ++i)
-        if (e.effect->parameters[i].name == parameter["name"])
-          e.values(static_cast<Eigen::Index>(i)) = parameter["value"];
-    out.push_back(e);
-  }
+  for (const FoundEffect& found : parse_found_effects(result.json, result.origin).missing)
+    out.push_back(instance(find_effect(effects, found.effect), found));
   return out;
 }
 

@@ -5,7 +5,7 @@
 #include <exception>
 
 #include "msa/base/error.h"
-#include "validation/cli/progress.h"
+#include "validation/parallel/progress.h"
 
 namespace deflect::cli {
 namespace {

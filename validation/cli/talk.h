@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "validation/cli/progress.h"
+#include "validation/parallel/progress.h"
 
 namespace deflect::cli {
 

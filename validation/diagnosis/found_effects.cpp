@@ -7,6 +7,8 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/fields/yaml_tree.h"
+#include "validation/measurement/column_names.h"
 
 namespace deflect {
 namespace {
@@ -15,9 +17,9 @@ using nlohmann::json;
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path) : file_(path.string()) {
+  Reader(const std::string& text, const std::string& origin) : file_(origin) {
     try {
-      root_ = json::parse(read_text(path));
+      root_ = json::parse(text);
     } catch (const json::parse_error& e) {
       throw InputError(
           fmt::format("{}: not valid JSON at byte {}: give the file of 'deflect diagnose --json'", file_, e.byte));
@@ -73,14 +75,27 @@ class Reader {
     return in[key];
   }
 
+  /// "leg" is the place as a number; results of versions before have it in the words of "site" alone.
+  std::optional<int> leg(const json& in, const std::string& where) const {
+    constexpr int most = 1000;
+    if (in.contains("leg")) {
+      const json& number = in["leg"];
+      if (!number.is_number_integer() || number < 1 || number > most)
+        fail(where + ".leg", fmt::format("is {}: the number of a leg is wanted, from 1", excerpt(number.dump())));
+      return number.get<int>();
+    }
+    if (!in.contains("site") || !in["site"].is_string()) return std::nullopt;
+    const std::string site = in["site"];
+    if (!site.starts_with("leg ")) return std::nullopt;
+    for (int number = 1; number <= most; ++number)
+      if (site == fmt::format("leg {}", number)) return number;
+    fail(where + ".site", fmt::format("there is no '{}': legs are numbered from 1", excerpt(site)));
+  }
+
   FoundEffect hypothesis(const json& in, const std::string& where) const {
     if (!in.is_object() || !in.contains("effect") || !in["effect"].is_string()) fail(where, "has no 'effect'");
     FoundEffect found = named(in["effect"]);
-    if (in.contains("site") && in["site"].is_string()) {
-      const std::string site = in["site"];
-      for (int leg = 1; leg <= 1000 && !found.leg; ++leg)
-        if (site == fmt::format("leg {}", leg)) found.leg = leg;
-    }
+    found.leg = leg(in, where);
     if (!in.contains("parameters")) return found;
     const json& parameters = list(in, "parameters", where);
     for (const json& p : parameters) {
@@ -108,6 +123,33 @@ class Reader {
 
 }  // namespace
 
-FoundEffects read_found_effects(const std::filesystem::path& path) { return Reader(path).read(); }
+FoundEffects parse_found_effects(const std::string& json, const std::string& origin) {
+  return Reader(json, origin).read();
+}
+
+FoundEffects read_found_effects(const std::filesystem::path& path) {
+  return parse_found_effects(read_text(path), path.string());
+}
+
+EffectInstance instance(const Effect& e, const FoundEffect& found) {
+  std::vector<std::string> names;
+  for (const EffectParameter& p : e.parameters) names.push_back(p.name);
+  for (const auto& [name, value] : found.parameters)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw InputError(fmt::format("effect '{}' has no parameter '{}'{}", e.name, name, suggestion(name, names)));
+
+  EffectInstance out{{&e, found.leg}, start_values(e)};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const EffectParameter& p = e.parameters[i];
+    const auto at = std::find_if(found.parameters.begin(), found.parameters.end(),
+                                 [&](const auto& given) { return given.first == p.name; });
+    if (at == found.parameters.end())
+      throw InputError(fmt::format("effect '{}' needs a value: --set {}={:g} ({}; between {:g} and {:g})", e.name,
+                                   p.name, p.start, p.about, p.low, p.high));
+    require_in_bounds(fmt::format("{}={:g}", p.name, at->second), e, p, at->second);
+    out.values(static_cast<Eigen::Index>(i)) = at->second;
+  }
+  return out;
+}
 
 }  // namespace deflect

@@ -7,11 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "validation/effects/with_effect.h"
+
 namespace deflect {
 
 struct FoundEffect {
   std::string effect;
-  std::optional<int> leg;  ///< from "site": "leg 4"
+  std::optional<int> leg;  ///< from "leg": 4; where there is none from "site": "leg 4"
   std::vector<std::pair<std::string, double>> parameters;
 };
 
@@ -23,5 +25,12 @@ struct FoundEffects {
 
 /// InputError naming the file and the member that is not as the contract says.
 FoundEffects read_found_effects(const std::filesystem::path&);
+
+/// The same from the text of a file that messages call `origin`.
+FoundEffects parse_found_effects(const std::string& json, const std::string& origin);
+
+/// The effect with the values found. InputError for a parameter that it does not have, one without a value, and a value
+/// out of its bounds.
+EffectInstance instance(const Effect&, const FoundEffect&);
 
 }  // namespace deflect

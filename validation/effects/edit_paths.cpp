@@ -10,6 +10,8 @@
 #include "msa/fields/tree_edit.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/fields.h"
+#include "msa/mechanism/mechanism_tree.h"
 #include "msa/mechanism/place.h"
 
 namespace deflect {

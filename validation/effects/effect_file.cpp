@@ -10,6 +10,7 @@
 #include "msa/base/units.h"
 #include "msa/fields/field_reader.h"
 #include "msa/fields/file_kind.h"
+#include "msa/mechanism/fields.h"
 #include "msa/mechanism/joint_table.h"
 #include "validation/effects/effect_value.h"
 #include "validation/effects/parameter_unit.h"

@@ -24,6 +24,9 @@ struct EffectInstance : PlacedEffect {
 /// "all legs", "leg 4", "machine" or "rig".
 std::string site_of(const PlacedEffect&);
 
+/// InputError "GIVEN: the value must lie between … and …" with the remedy, where it does not.
+void require_in_bounds(const std::string& given, const Effect&, const EffectParameter&, double value);
+
 /// The parameters' start.
 VectorX start_values(const Effect&);
 

@@ -118,6 +118,7 @@ std::string drawing_report(const MachineDrawing& d) {
 
 std::string drawing_json(const MachineDrawing& d) {
   Json out;
+  out["kind"] = "drawing";
   out["drawing"] = d.frame ? "frame" : "device";
   out["name"] = d.name;
   out["about"] = d.about;

@@ -72,6 +72,7 @@ std::string history_report(const History& h) {
 std::string history_json(const History& h) {
   const std::vector<Comparison>& all = h.versions;
   Json j;
+  j["kind"] = "history";
   j["data"] = all.front().data;
   j["unit"] = error_unit(all.front()).milli;  // of what ends with _mm
   j["versions"] = Json::array();

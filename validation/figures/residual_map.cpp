@@ -14,7 +14,7 @@ namespace {
 constexpr double depth_x = 0.42, depth_z = 0.26;  // of a step along y, into the page
 
 // Blue, white, red of ColorBrewer's RdBu, told apart with any colour vision.
-constexpr const char* palette =
+constexpr const char* diverging_palette =
     "set palette defined (-1 '#053061', -0.75 '#2166AC', -0.5 '#4393C3', -0.25 '#92C5DE', 0 '#F7F7F7', 0.25 '#F4A582', "
     "0.5 '#D6604D', 0.75 '#B2182B', 1 '#67001F')";
 
@@ -119,7 +119,8 @@ Figure residual_map(const Comparison& c, const FigureStyle& style) {
       for (int k = 0; k < 3; ++k) row += fmt::format(" {:.5g}", um * v(k));
     s.put("{}", row);
   }
-  s.put("EOD\nset multiplot\nunset key\nunset border\nunset tics\n{}\nset cbrange [{}:{}]", palette, -most, most);
+  s.put("EOD\nset multiplot\nunset key\nunset border\nunset tics\n{}\nset cbrange [{}:{}]", diverging_palette, -most,
+        most);
 
   // One row for each quantity, or on narrow paper one column.
   const bool upright = s.narrow();

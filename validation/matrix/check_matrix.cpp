@@ -12,8 +12,6 @@
 namespace deflect {
 namespace {
 
-constexpr std::array<const char*, 6> wrenches = {"fx", "fy", "fz", "mx", "my", "mz"};
-constexpr std::array<const char*, 6> displacements = {"ux", "uy", "uz", "thx", "thy", "thz"};
 /// Asymmetry below this is more likely to be the precision of a program than a mistake.
 constexpr double numerical_asymmetry = 1e-4;
 
@@ -33,8 +31,8 @@ MatrixDiagnosis asymmetric(const Matrix6& K, const JudgedMatrix& m) {
   const auto i = static_cast<std::size_t>(m.row), j = static_cast<std::size_t>(m.column);
   MatrixDiagnosis d{"asymmetric",
                     fmt::format("it is not symmetric in {} of 15 pairs, most at {} {} ({:.6g}) against {} {} ({:.6g})",
-                                m.asymmetric_pairs, wrenches[i], displacements[j], K(m.row, m.column), wrenches[j],
-                                displacements[i], K(m.column, m.row)),
+                                m.asymmetric_pairs, wrench_axes[i], displacement_axes[j], K(m.row, m.column),
+                                wrench_axes[j], displacement_axes[i], K(m.column, m.row)),
                     "find where it is made: a conservative structure has K = Kᵀ; no single usual mistake leaves this"};
   if (*m.symmetric.measured < numerical_asymmetry)
     d.remedy = fmt::format("if this is the precision of the program that made it: --tolerance {:.0e}",

@@ -5,6 +5,7 @@
 // most that these can do: u_ij + u_ji to K − Kᵀ, |v|ᵀ u |v| to the eigenvalue of v, |u| |J| + |K| u_J to K J.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -13,6 +14,9 @@
 #include "validation/matrix/matrix_file.h"
 
 namespace deflect {
+
+inline constexpr std::array<const char*, 6> wrench_axes = {"fx", "fy", "fz", "mx", "my", "mz"},
+                                            displacement_axes = {"ux", "uy", "uz", "thx", "thy", "thz"};
 
 struct Check {
   std::string id;                  ///< "symmetric"

@@ -10,12 +10,10 @@
 
 #include "msa/base/motion_text.h"
 #include "validation/matrix/elastic_structure.h"
+#include "validation/matrix/matrix_checks.h"
 
 namespace deflect {
 namespace {
-
-constexpr std::array<const char*, 6> wrenches = {"fx", "fy", "fz", "mx", "my", "mz"};
-constexpr std::array<const char*, 6> displacements = {"ux", "uy", "uz", "thx", "thy", "thz"};
 
 /// What is fitted is known to few digits: components below the last one that is shown are rounding.
 std::string triple(const Vector3& v) {
@@ -25,7 +23,7 @@ std::string triple(const Vector3& v) {
 }
 
 /// p of A [p]× = M by least squares; shortest where A leaves it open.
-Vector3 lever(const Matrix3& A, const Matrix3& M) {
+Vector3 shift_from(const Matrix3& A, const Matrix3& M) {
   MatrixX system(9, 3);
   for (int k = 0; k < 3; ++k) {
     const Matrix3 column = A * skew(Vector3::Unit(k));
@@ -122,9 +120,10 @@ std::optional<Undone> worst_pair_copied(const Matrix6& K, const MistakeContext&)
   Eigen::Index a = 0, b = 0;
   (w - w.transpose()).cwiseAbs().maxCoeff(&a, &b);
   const Eigen::Index i = std::min(a, b), j = std::max(a, b);
-  Undone out{K, fmt::format(": {} {} is {:.6g}, {} {} is {:.6g}", wrenches[static_cast<std::size_t>(i)],
-                            displacements[static_cast<std::size_t>(j)], K(i, j), wrenches[static_cast<std::size_t>(j)],
-                            displacements[static_cast<std::size_t>(i)], K(j, i))};
+  Undone out{
+      K, fmt::format(": {} {} is {:.6g}, {} {} is {:.6g}", wrench_axes[static_cast<std::size_t>(i)],
+                     displacement_axes[static_cast<std::size_t>(j)], K(i, j), wrench_axes[static_cast<std::size_t>(j)],
+                     displacement_axes[static_cast<std::size_t>(i)], K(j, i))};
   out.K(j, i) = K(i, j);
   return out;
 }
@@ -146,13 +145,14 @@ std::optional<Undone> inverse(const Matrix6& K, const MistakeContext&) {
 
 std::optional<Undone> moved_back(const Matrix6& K, const MistakeContext& c) {
   if (!c.R) return {};
-  const Vector3 p = lever(c.R->topLeftCorner<3, 3>(), c.R->topRightCorner<3, 3>() - K.topRightCorner<3, 3>());
+  const Vector3 p = shift_from(c.R->topLeftCorner<3, 3>(), c.R->topRightCorner<3, 3>() - K.topRightCorner<3, 3>());
   const Matrix6 back = shift_twist(-p);
   return Undone{back.transpose() * K * back, point_text(-p, c)};
 }
 
 std::optional<Undone> moved_on_one_side(const Matrix6& K, const MistakeContext& c) {
-  const Vector3 p = lever(K.topLeftCorner<3, 3>(), K.bottomLeftCorner<3, 3>().transpose() - K.topRightCorner<3, 3>());
+  const Vector3 p =
+      shift_from(K.topLeftCorner<3, 3>(), K.bottomLeftCorner<3, 3>().transpose() - K.topRightCorner<3, 3>());
   return Undone{K * shift_twist(-p), point_text(-p, c)};
 }
 

@@ -57,6 +57,12 @@ function machineFigure() {
   return figure('machine', 'The machine', `Drag to turn, scroll or pinch to zoom.${left}`, attempt('The machine', () => machine(data.scene, version, guilt())), outside.length ? el('p', {}, `Not in the machine but in the rig: ${outside.map((f) => f.effect).join(', ')}.`) : null, numbers('tool-displacement', moves));
 }
 
+/** A browser does not turn thousands of members smoothly. */
+function notDrawn(frame) {
+  const [first] = Object.values(frame.cases), members = first ? first.members.length + ((first.left_out || {}).members || 0) : 0;
+  return members > 3000 ? figure('machine', 'The frame under its loads', `${members} members are too many to be drawn here (at most 3000). deflect frame with --out writes the frame for ParaView.`) : null;
+}
+
 function source() {
   const block = (title, file) => (file ? el('div', {}, el('h3', {}, `${title}: ${file.name}`),
     file.text === null ? el('p', {class: 'quiet'}, `${file.bytes} bytes, not held in this page.`)
@@ -74,7 +80,7 @@ function sections() {
   const comparisons = of('comparison');
   const first = versions[0], last = versions[versions.length - 1];
   const all = [
-    ['The machine', () => (data.scene ? machineFigure() : null)],
+    ['The machine', () => (data.scene ? machineFigure() : of('frame').map(notDrawn))],
     ['Where it fails', () => (first ? failureMap(first) : null)],
     ['Candidates', () => diagnosis && candidates(diagnosis)],
     ['What is left unexplained', () => diagnosis && unexplained(diagnosis)],

@@ -125,6 +125,7 @@ std::string check_report(const MatrixCheck& m, const CheckedFiles& f) {
 
 std::string check_json(const MatrixCheck& m, const CheckedFiles& f) {
   Json json;
+  json["kind"] = "check";
   json["file"] = f.matrix;
   if (!f.reference.empty()) json["reference"] = f.reference;
   json["verdict"] = check_verdict(m, "The stiffness", f.reference.empty() ? "" : "the reference");

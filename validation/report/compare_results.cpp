@@ -138,6 +138,7 @@ std::string compare_report(const Comparison& c) {
 
 std::string compare_json(const Comparison& c) {
   Json j;
+  j["kind"] = "comparison";
   j["device"] = c.device;
   j["data"] = c.data;
   j["readings"] = c.readings;

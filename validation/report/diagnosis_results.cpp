@@ -53,6 +53,13 @@ Json parameters_json(const Hypothesis& h, const Fit& f, std::size_t from, std::s
   return out;
 }
 
+/// An effect and its place: in words, and where it is one leg as its number.
+Json place_json(const PlacedEffect& e) {
+  Json out = {{"effect", e.effect->name}, {"title", e.effect->title}, {"site", site_of(e)}};
+  if (e.leg) out["leg"] = *e.leg;
+  return out;
+}
+
 }  // namespace
 
 std::string diagnosis_report(const Diagnosis& d, const std::string& device, const std::string& data) {
@@ -82,6 +89,7 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
 
 std::string diagnosis_json(const Diagnosis& d) {
   Json j;
+  j["kind"] = "diagnosis";
   j["verdict"] = verdict_names[static_cast<int>(d.verdict)];
   j["device"] = d.device;
   j["notes"] = d.how_read;
@@ -91,16 +99,15 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["missing"] = Json::array();
   for (const PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
   j["candidates"] = Json::array();
-  for (const Candidate& c : d.candidates)
-    j["candidates"].push_back(
-        {{"effect", c.added().effect->name},
-         {"title", c.added().effect->title},
-         {"site", site_of(c.added())},
-         {"probability", c.probability},
-         {"parameters", parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size())},
-         {"rmse_mm", mm * c.rmse},
-         {"held_out_rmse_mm", mm * c.held_out},
-         {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")}});
+  for (const Candidate& c : d.candidates) {
+    Json one = place_json(c.added());
+    one["probability"] = c.probability;
+    one["parameters"] = parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size());
+    one["rmse_mm"] = mm * c.rmse;
+    one["held_out_rmse_mm"] = mm * c.held_out;
+    one["chi2_per_dof"] = json_number(c.chi2_per_dof, "chi2");
+    j["candidates"].push_back(std::move(one));
+  }
   j["indistinguishable"] = d.indistinguishable;
   j["baseline"] = quality_json(d.baseline);
   j["final"] = quality_json(d.final);
@@ -114,10 +121,9 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["found"] = Json::array();  // the effects of "missing", fitted together
   std::size_t from = 0;
   for (const PlacedEffect& e : d.missing) {
-    j["found"].push_back({{"effect", e.effect->name},
-                          {"title", e.effect->title},
-                          {"site", site_of(e)},
-                          {"parameters", parameters_json(d.missing, d.fit, from, e.effect->parameters.size())}});
+    Json one = place_json(e);
+    one["parameters"] = parameters_json(d.missing, d.fit, from, e.effect->parameters.size());
+    j["found"].push_back(std::move(one));
     from += e.effect->parameters.size();
   }
   j["probability_nothing"] = d.probability_nothing;
@@ -133,12 +139,12 @@ std::string diagnosis_json(const Diagnosis& d) {
   for (const Detectable& e : d.detectable) {
     Json names = Json::array();
     for (const EffectParameter& p : e.effect.effect->parameters) names.push_back(p.name);
-    j["detectable"].push_back({{"effect", e.effect.effect->name},
-                               {"site", site_of(e.effect)},
-                               {"parameters", names},
-                               {"smallest", e.smallest},
-                               {"mistaken_for", e.mistaken_for},
-                               {"cosine", e.cosine}});
+    Json one = place_json(e.effect);
+    one["parameters"] = names;
+    one["smallest"] = e.smallest;
+    one["mistaken_for"] = e.mistaken_for;
+    one["cosine"] = e.cosine;
+    j["detectable"].push_back(std::move(one));
   }
   j["left_out"] = Json::array();
   for (const LeftOut& e : d.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});

@@ -10,9 +10,10 @@ namespace deflect {
 /// Verdict in a sentence, candidates, what would change it, what this campaign cannot see.
 std::string diagnosis_report(const Diagnosis&, const std::string& device, const std::string& data);
 
-/// {"verdict", "missing", "candidates": [{"effect", "site", "probability", "parameters": [{"name", "value", "low95",
-/// "high95"}], "rmse_mm", "held_out_rmse_mm", "chi2_per_dof"}], "indistinguishable", "baseline", "final",
-/// "noise_floor_mm", "unit" (of what ends with _mm: mrad where rotations alone were measured), "unexplained":
+/// {"verdict", "missing", "candidates": [{"effect", "site", "leg" (where it is one), "probability", "parameters":
+/// [{"name", "value", "low95", "high95"}], "rmse_mm", "held_out_rmse_mm", "chi2_per_dof"}], "indistinguishable",
+/// "baseline", "final", "noise_floor_mm", "unit" (of what ends with _mm: mrad where rotations alone were measured),
+/// "unexplained":
 /// {"significant", "share_of_misfit", "pattern"}, …}
 std::string diagnosis_json(const Diagnosis&);
 

@@ -118,12 +118,15 @@ std::string words(const EffectInstance& i) {
 
 std::string added_json(const std::string& device, const std::string& new_device,
                        const std::vector<EffectInstance>& added) {
-  Json out = {{"device", device}, {"new_device", new_device}, {"added", Json::array()}};
+  Json out = {{"kind", "addition"}, {"device", device}, {"new_device", new_device}, {"added", Json::array()}};
   for (const EffectInstance& i : added) {
     Json parameters = Json::array();
     for (std::size_t k = 0; k < i.effect->parameters.size(); ++k)
       parameters.push_back({{"name", i.effect->parameters[k].name}, {"value", i.values(static_cast<Eigen::Index>(k))}});
-    out["added"].push_back({{"effect", i.effect->name}, {"site", site_of(i)}, {"parameters", parameters}});
+    Json one = {{"effect", i.effect->name}, {"site", site_of(i)}};
+    if (i.leg) one["leg"] = *i.leg;
+    one["parameters"] = parameters;
+    out["added"].push_back(std::move(one));
   }
   return json_text(out);
 }

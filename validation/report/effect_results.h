@@ -26,7 +26,7 @@ std::string effects_json(const std::vector<Effect>&, const Mechanism* device);
 /// "guide_root_compliance (stiffness_Nmm_per_rad = 5e+06)", "leg_defect of leg 4 (factor = 0.7)".
 std::string words(const EffectInstance&);
 
-/// {"device", "new_device", "added": [{"effect", "site", "parameters": [{"name", "value"}]}]}.
+/// {"device", "new_device", "added": [{"effect", "site", "leg" (where it is one), "parameters": [{"name", "value"}]}]}.
 std::string added_json(const std::string& device, const std::string& new_device, const std::vector<EffectInstance>&);
 
 }  // namespace deflect

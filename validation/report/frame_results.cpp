@@ -161,6 +161,7 @@ std::string members_header() {
 
 std::string frame_json(const FrameDescription& f, const FrameResult& result) {
   Json json;
+  json["kind"] = "frame";
   json["frame"] = result.name;
   json["geometry"] = geometry_names[static_cast<std::size_t>(result.geometry)];
   json["cases"] = Json::object();

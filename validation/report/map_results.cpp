@@ -76,13 +76,13 @@ std::vector<SlideColumn> slide_columns(const StiffnessMap& map) {
           {map.slides.key + "_max_mm", &MapPose::slide_max_mm}};
 }
 
-struct Range {
+struct Spread {
   double smallest = 0, largest = 0;
   const MapPose *smallest_at = nullptr, *largest_at = nullptr;
 };
 
-Range range_of(const StiffnessMap& map, std::optional<MapValues> MapPose::*theory, const Column& column) {
-  Range r;
+Spread range_of(const StiffnessMap& map, std::optional<MapValues> MapPose::*theory, const Column& column) {
+  Spread r;
   for (const MapPose& p : map.poses) {
     if (!p.reached()) continue;
     const double value = column.of(*(p.*theory));
@@ -187,7 +187,7 @@ std::string map_report(const StiffnessMap& map) {
   for (const TheoryColumns& theory : told) {
     std::vector<std::vector<std::string>> rows = {{theory.title, "from", "at x, y, z (mm)", "to", "at x, y, z (mm)"}};
     for (std::size_t c = first_ranged; c <= last_ranged; ++c) {
-      const Range r = range_of(map, theory.values, columns()[c]);
+      const Spread r = range_of(map, theory.values, columns()[c]);
       const char* unit = c == last_ranged ? "" : " N/mm";
       rows.push_back({ranged_names[c - first_ranged], fmt::format("{:.4g}{}", r.smallest, unit),
                       position(*r.smallest_at), fmt::format("{:.4g}{}", r.largest, unit), position(*r.largest_at)});
@@ -243,6 +243,7 @@ std::string map_csv(const StiffnessMap& map) {
 std::string map_json(const StiffnessMap& map) {
   const MapOptions& o = map.options;
   Json result, grid, arrays;
+  result["kind"] = "map";
   result["device"] = map.device;
   if (o.load_N_Nmm)
     result["load"] = json_numbers(*o.load_N_Nmm, "load");
@@ -275,7 +276,7 @@ std::string map_json(const StiffnessMap& map) {
       arrays[theory.name][column.name] =
           array(column.name, [&](const MapPose& p) { return column.of(*(p.*theory.values)); });
       if (c < first_ranged || c > last_ranged || reached(map) == 0) continue;
-      const Range r = range_of(map, theory.values, column);
+      const Spread r = range_of(map, theory.values, column);
       Json& range = result["ranges"][theory.name][column.name];
       range["smallest"] = r.smallest;
       range["smallest_at"] = json_numbers(r.smallest_at->pose_mm_deg, "pose");

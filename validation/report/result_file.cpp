@@ -28,7 +28,7 @@ constexpr const char* type_names[] = {"a text",    "a number",      "a number", 
 
 struct ResultKind {
   const char* name;
-  const char* members[2];  ///< by which it is known
+  const char* members[2];  ///< by which it is known where it does not say its kind
   std::vector<WantedMember> wanted;
 };
 
@@ -355,12 +355,18 @@ Json parsed(const std::string& text, const std::string& origin) {
   }
 }
 
+bool is_of(const ResultKind& kind, const Json& json) {
+  if (!json.is_object()) return false;
+  if (json.contains("kind")) return json["kind"] == kind.name;
+  return json.contains(kind.members[0]) && json.contains(kind.members[1]);
+}
+
 }  // namespace
 
 ReadResult read_result(const std::string& text, const std::string& origin) {
   Json json = parsed(text, origin);
   for (const ResultKind& kind : result_kinds()) {
-    if (!json.is_object() || !json.contains(kind.members[0]) || !json.contains(kind.members[1])) continue;
+    if (!is_of(kind, json)) continue;
     for (const WantedMember& wanted : kind.wanted) ResultCheck(origin, kind.name).check(json, wanted);
     return {kind.name, std::move(json)};
   }

@@ -13,8 +13,9 @@ struct ReadResult {
   Json json;
 };
 
-/// Throws InputError "origin:line: …" for text that is no JSON, "origin: member 'candidates[3].site' …" for a result
-/// that lacks what its command writes, and for JSON that is no result at all.
+/// The kind is the member "kind" of the result, or told from two of its members where there is none (results of
+/// versions before that). Throws InputError "origin:line: …" for text that is no JSON, "origin: member
+/// 'candidates[3].site' …" for a result that lacks what its command writes, and for JSON that is no result at all.
 ReadResult read_result(const std::string& text, const std::string& origin);
 
 }  // namespace deflect

@@ -1,4 +1,5 @@
 #include "validation/report/schema_results.h"
+#include "msa/mechanism/device_schema.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

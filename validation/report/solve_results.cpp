@@ -168,6 +168,7 @@ std::vector<std::string> notes_of(const SolveResult& result) {
 
 std::string solve_json(const SolveResult& result) {
   Json json;
+  json["kind"] = "solve";
   json["pose"] = json_numbers(result.pose_mm_deg, "pose");
   json["load"] = json_numbers(result.load_N_Nmm, "load");
   json["analytic"] = json_theory(result.analytic, "analytic");

@@ -96,6 +96,7 @@ std::string validation_json(const Validation& validation, const std::vector<Erra
     points.push_back(std::move(entry));
   }
   Json result;
+  result["kind"] = "validation";
   result["device"] = validation.device;
   result["points"] = std::move(points);
   result["max_relative_difference"] = json_number(validation.max_relative_difference, "max_relative_difference");

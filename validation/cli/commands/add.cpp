@@ -50,27 +50,6 @@ std::vector<std::pair<std::string, double>> parse_values(const std::vector<std::
   return out;
 }
 
-EffectInstance instance(const Effect& e, const FoundEffect& found) {
-  std::vector<std::string> names;
-  for (const EffectParameter& p : e.parameters) names.push_back(p.name);
-  for (const auto& [name, value] : found.parameters)
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      throw InputError(fmt::format("effect '{}' has no parameter '{}'{}", e.name, name, suggestion(name, names)));
-
-  EffectInstance out{{&e, found.leg}, start_values(e)};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const EffectParameter& p = e.parameters[i];
-    const auto at = std::find_if(found.parameters.begin(), found.parameters.end(),
-                                 [&](const auto& given) { return given.first == p.name; });
-    if (at == found.parameters.end())
-      throw InputError(fmt::format("effect '{}' needs a value: --set {}={:g} ({}; between {:g} and {:g})", e.name,
-                                   p.name, p.start, p.about, p.low, p.high));
-    require_in_bounds(fmt::format("{}={:g}", p.name, at->second), e, p, at->second);
-    out.values(static_cast<Eigen::Index>(i)) = at->second;
-  }
-  return out;
-}
-
 /// Values set on the command line take the place of those found.
 FoundEffect with_values(FoundEffect found, const std::vector<std::pair<std::string, double>>& values) {
   for (const auto& given : values) {

@@ -22,14 +22,6 @@ std::vector<Effect> known_effects(const std::vector<std::string>& files) {
   return all;
 }
 
-void require_in_bounds(const std::string& given, const Effect& e, const EffectParameter& p, double value) {
-  if (p.low <= value && value <= p.high) return;
-  throw InputError(
-      fmt::format("{}: the value must lie between {:g} and {:g} ({}). For another range copy the effect with 'deflect "
-                  "effects {} --yaml', give it a name of its own and name it with --effects",
-                  given, p.low, p.high, p.about, e.name));
-}
-
 namespace {
 
 struct EffectsArguments {

@@ -9,10 +9,10 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/figures.h"
-#include "validation/cli/progress.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/figures/fig11.h"
+#include "validation/parallel/progress.h"
 #include "validation/report/map_results.h"
 #include "validation/theories/map.h"
 

@@ -1,4 +1,4 @@
-#include "validation/cli/progress.h"
+#include "validation/parallel/progress.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,0 +1,16 @@
+// The keys of device files and of laws as data.
+#pragma once
+
+#include <string>
+
+#include "msa/fields/schema.h"
+
+namespace deflect {
+
+/// Of device files of a family (family_names).
+Schema device_schema(const std::string& family);
+
+/// Of a law on a translation or on a rotation: one level with a case for each law.
+Schema law_schema(bool rotation);
+
+}  // namespace deflect
