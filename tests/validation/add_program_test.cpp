@@ -105,7 +105,7 @@ TEST_F(AddProgram, RefusesADiagnosisThatIsNone) {
   expect_refused("haptic-6psu joint_complience --from " + file("d.json", diagnosis),
                  "the diagnosis has no effect 'joint_complience'");
   expect_refused("haptic-6psu --from " + file("empty.json", R"({"missing": [], "candidates": []})"),
-                 "nothing is missing there");
+                 "the diagnosis reports no missing effect");
 }
 
 // Two effects that share the misfit: each alone would have to be larger.
@@ -168,7 +168,7 @@ TEST_F(AddProgram, RefusesValuesThatDoNotFit) {
   expect_refused(effect, "needs a value: --set stiffness_Nmm_per_rad=1e+07");
   expect_refused(effect + "--set stiffness_Nmm_per_rad=5", "the value must lie between 10000 and 1e+12");
   expect_refused(effect + "--set stiffness_Nmm_per_rad=nan", "--set 'stiffness_Nmm_per_rad=nan'");
-  expect_refused(effect + "--set stiffness_Nmm_per_rad=5e6Nm", "the unit is that of the name");
+  expect_refused(effect + "--set stiffness_Nmm_per_rad=5e6Nm", "the name gives the unit");
   expect_refused(effect + "--set stiffness_Nmm_per_rad", "write name=value");
   expect_refused(effect + "--set stiffness_Nmm_per_rad=5e6 --set stiffness_Nmm_per_rad=6e6", "is set twice");
   expect_refused(effect + "--set stiffness_Nmm_per_rad=5e6 --leg 3", "it takes no leg");

@@ -71,7 +71,7 @@ TEST_F(BadInputProgram, CommandsAndOptionsHaveNearestNames) {
          "deflect: there is no command 'solv', did you mean 'solve'? (known: new, show, solve, ");
   expect("Diagnose a b", 2, "there is no command 'Diagnose', did you mean 'diagnose'?");
   expect("xyzzy", 2, "there is no command 'xyzzy' (known: new, show, solve, ");
-  expect("", 2, "a command is wanted: new, show, solve, validate, ");
+  expect("", 2, "give a command: new, show, solve, validate, ");
   expect("solve " + path("arm.yaml") + " --lod 1,0,0", 2,
          "deflect: solve has no option '--lod', did you mean '--load'? (known: --pose, --joints, --load, ");
   expect("solve " + path("arm.yaml") + " --lod=1,0,0", 2, "solve has no option '--lod', did you mean '--load'?");
@@ -145,21 +145,21 @@ TEST_F(BadInputProgram, SoftMaterialsAreReadWithAQuestion) {
 
 TEST_F(BadInputProgram, NothingDrivenTakesNoJoints) {
   const std::string rigid = with(with(arm, "joint: motor", "joint: fixed"), "joint: motor", "joint: fixed");
-  expect_device(rigid, 2, "--joints '0.3,1.2': arm: nothing is driven there: leave --joints away");
+  expect_device(rigid, 2, "--joints '0.3,1.2': arm has no actuator: omit --joints");
   expect_device(rigid, 0, "relative difference", "--load 1,0,0");
   expect_device(arm, 2, "give either --pose", "--load 1,0,0");
 }
 
 TEST_F(BadInputProgram, AMapOfNothingIsNoResult) {
   expect("map haptic-6psu --z 900,1000 --n 3 --json " + path("map.json"), 3,
-         "the map has nothing to show: none of its 27 poses is reached; give --x, --y, --z or --tilt. The first: "
+         "the map is empty: the device reaches none of the 27 poses; give --x, --y, --z or --tilt. The first pose: "
          "haptic-6psu at (-25, -25, 900) mm");
   EXPECT_FALSE(std::filesystem::exists(folder / "map.json"));
 }
 
 TEST_F(BadInputProgram, ANewFolderIsSaid) {
   const std::string solve = "solve haptic-6psu --pose 0,0,173.9 --load 50,0,0 --json ";
-  const std::string said = "note: the folder " + (folder / "new/dir").string() + " is new";
+  const std::string said = "note: creating the folder " + (folder / "new/dir").string();
   expect(solve + path("new/dir/x.json"), 0, said);
   const test::Run again = test::deflect(solve + path("new/dir/x.json"));
   EXPECT_EQ(again.out.find(said), again.out.npos) << again.out;

@@ -43,14 +43,14 @@ TEST_F(BadInputs, ResultsThatAreNone) {
              write("data.csv",
                    test::usual_file("a,0,0,173.9,0,0,0,50,0,0,0.1,0,0\na,0,0,173.9,0,0,0,0,50,0,0,0.1,0\n", "")) +
              " --sigma 0.002 -o " + path("page.html"),
-         2, "a diagnosis of another device: of 'another', and --device is 'haptic-6psu-ideal-joints'");
+         2, "this diagnosis is of 'another', but --device is 'haptic-6psu-ideal-joints'");
   EXPECT_FALSE(std::filesystem::exists(folder / "page.html"));
 }
 
 TEST_F(BadInputs, ADeviceIsNotWrittenOverWithoutAWord) {
   const std::string mine = write("mine.yaml", test::deflect("devices " + device).out);
   const std::string add = "add " + mine + " modulus --set factor=0.9 -o " + mine;
-  expect(add, 2, "that is the file which is read: name another, or give --force");
+  expect(add, 2, "this is an input file: name another, or overwrite it with --force");
   expect(add + " --force", 0, "modulus");
 }
 

@@ -317,7 +317,7 @@ TEST_F(CompareProgram, RefusesOptionsThatCannotBe) {
   expect_refused(soft_root(), "--sigma 'nan'", "--sigma nan");
   expect_refused(soft_root(), "--sigma 'inf'", "--sigma inf");
   expect_refused(soft_root(), "a standard deviation above zero, in rad", "--sigma-rotation 0");
-  expect_refused(soft_root(), "--threads -1: a whole number", "--threads=-1");
+  expect_refused(soft_root(), "--threads -1: give a whole number", "--threads=-1");
 }
 
 TEST_F(CompareProgram, FilesThatCannotBeWrittenAreSaid) {

@@ -110,7 +110,7 @@ TEST_P(ExportRefused, WithCodeAndReason) {
 
 INSTANTIATE_TEST_SUITE_P(
     Inputs, ExportRefused,
-    ::testing::Values(Refusal{"Calculix", "--to calculix -o x.inp", 2, "there are msh (Gmsh) and vtk (ParaView)"},
+    ::testing::Values(Refusal{"Calculix", "--to calculix -o x.inp", 2, "write msh (Gmsh) or vtk (ParaView)"},
                       Refusal{"NoFormat", "-o x.vtu", 2, "--to"}, Refusal{"NoFile", "--to vtk", 2, "either -o FILE"},
                       Refusal{"Both", "--to vtk -o x.vtu --out y", 2, "either -o FILE"},
                       Refusal{"Suffix", "--to vtk -o x.vtk", 2, "ends in .vtu"},

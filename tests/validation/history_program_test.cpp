@@ -118,7 +118,7 @@ TEST_F(HistoryProgram, RefusesWhatItCannotReadAndWritesNothing) {
   expect_refused(device + " " + file("bad.yaml", "name: bad\nkinematik: {}\n"), "bad.yaml:2: kinematik: unknown key");
   expect_refused("", "devices is required");
   expect_refused(device + " --sigma 0", "a standard deviation above zero, in mm");
-  expect_refused(device + " --threads 0.5", "--threads 0.5: a whole number");
+  expect_refused(device + " --threads 0.5", "--threads 0.5: give a whole number");
   expect_refused(device + " tripteron", "data.csv:2: ", 3);
   file("data.csv", contents(folder / "data.csv") + "9,x\n");
   expect_refused(device, "data.csv:29: ");

@@ -168,8 +168,8 @@ TEST_P(MapRefused, WithCodeTwoAndReasonAndNoFile) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Inputs, MapRefused,
-                         ::testing::Values(Refusal{"NoPoses", "--n 0", "--n 0: a whole number from 1"},
-                                           Refusal{"HalfAPose", "--n 2.5,3,3", "--n 2.5: a whole number"},
+                         ::testing::Values(Refusal{"NoPoses", "--n 0", "--n 0: give a whole number from 1"},
+                                           Refusal{"HalfAPose", "--n 2.5,3,3", "--n 2.5: give a whole number"},
                                            Refusal{"TwoCounts", "--n 2,3", "2 numbers; write nx,ny,nz"},
                                            Refusal{"TooMany", "--n 1000", "at most 10 million"},
                                            Refusal{"Reversed", "--x 20,-20", "--x 20,-20: the range is reversed"},

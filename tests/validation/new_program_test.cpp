@@ -33,7 +33,7 @@ TEST_P(NewProgram, RunsThroughEveryCommandThatItNames) {
   const test::Run made = typed("deflect new --like " + kind + " -o mine.yaml");
   ASSERT_EQ(made.code, 0) << made.out;
   const std::string text = contents(folder / "mine.yaml");
-  EXPECT_TRUE(text.starts_with("# Change it, and try:\n#   deflect show mine.yaml")) << text.substr(0, 300);
+  EXPECT_TRUE(text.starts_with("# Edit this file and try:\n#   deflect show mine.yaml")) << text.substr(0, 300);
   EXPECT_NE(text.find("\nname: mine\n"), text.npos);
 
   std::vector<std::string> commands;
@@ -72,7 +72,7 @@ TEST_P(NewFile, WritesOverNothingUnlessTold) {
   std::ofstream(folder / "mine.yaml") << "precious";
   const test::Run run = typed("deflect new --like scara -o mine.yaml");
   EXPECT_EQ(run.code, 2);
-  EXPECT_NE(run.out.find("mine.yaml: is there already: name another file, or write over it with --force"), run.out.npos)
+  EXPECT_NE(run.out.find("mine.yaml: exists already: name another file, or overwrite it with --force"), run.out.npos)
       << run.out;
   EXPECT_EQ(contents(folder / "mine.yaml"), "precious");
   EXPECT_EQ(typed("deflect new --like scara --force -o mine.yaml").code, 0);

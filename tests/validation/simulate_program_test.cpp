@@ -136,10 +136,10 @@ TEST_F(SimulateProgram, RefusesOptionsThatCannotBe) {
   expect_refused("--temperature 20,400", "colder than -273.15 deg C");
   expect_refused("--geometry round", "write linear, second-order, finite");
   expect_refused("--elements 0", "a whole number from 1 to 1000");
-  expect_refused("--seed 1.5", "--seed 1.5: a whole number");
-  expect_refused("--seed -1", "--seed -1: a whole number");
+  expect_refused("--seed 1.5", "--seed 1.5: give a whole number");
+  expect_refused("--seed -1", "--seed -1: give a whole number");
   expect_refused("--force 0", "other than zero");
-  expect_refused("--threads 0.5", "--threads 0.5: a whole number");
+  expect_refused("--threads 0.5", "--threads 0.5: give a whole number");
 }
 
 TEST_F(SimulateProgram, NamesTheReadingThatItCannotCompute) {

@@ -1,4 +1,4 @@
-// A command of the program: its options as data, so that only main.cpp knows the parser, and what it does.
+// A command of the program: its options as data, so that only main.cpp knows the parser, and the work it does.
 #pragma once
 
 #include <functional>
@@ -13,15 +13,15 @@ namespace deflect::cli {
 
 struct Option {
   std::string flags;  ///< "--load", or "device" for a positional argument
-  std::string value;  ///< what to write for the value in the help: "fx,fy,fz,mx,my,mz"; empty for a flag
+  std::string value;  ///< placeholder of the value in the help: "fx,fy,fz,mx,my,mz"; empty for a flag
   std::string help;
   std::variant<std::string*, bool*, double*, std::vector<std::string>*> target;
   bool required = false;
 };
 
-/// What a command does: print the report for a person on standard output, write files; throws InputError, ModelError or
-/// NumericalError. One that can share its work takes the ranks of the run, nullptr where this process is the only one,
-/// and prints and writes on the first rank only; another one is run there alone.
+/// The work of a command: it prints a report on standard output and writes files. Throws InputError, ModelError or
+/// NumericalError. Run is called on the first rank only. SharedRun divides its work among the ranks that it is given
+/// (nullptr: this process is the only one); it prints and writes on the first rank only.
 using Run = std::function<void()>;
 using SharedRun = std::function<void(Ranks*)>;
 

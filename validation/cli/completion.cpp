@@ -153,17 +153,17 @@ std::string bash_completion(const std::vector<Command>& commands) {
 
 Command completion_command(const std::vector<Command>& others) {
   auto shell = std::make_shared<std::string>();
-  Command own{
-      "completion",
-      "A script that lets the shell complete commands, options, names of devices, effects and frames, and files. "
-      "Packages install it; elsewhere put the line of the example into ~/.bashrc",
-      "source <(deflect completion bash)",
-      {{"shell", "bash", "for which shell", shell.get(), true}},
-      {}};
+  Command own{"completion",
+              "Print a script that makes the shell complete commands, options, files, and the names of devices, "
+              "effects and frames. Packages install it. Without a package, put the example's line into ~/.bashrc",
+              "source <(deflect completion bash)",
+              {{"shell", "bash", "the shell", shell.get(), true}},
+              {}};
   std::vector<Command> all = others;
   all.push_back(own);
   own.run = Run([all, shell] {
-    if (*shell != "bash") throw InputError(fmt::format("completion: there is none for '{}', only for bash", *shell));
+    if (*shell != "bash")
+      throw InputError(fmt::format("completion: there is no script for '{}', only for bash", *shell));
     fmt::print("{}", bash_completion(all));
   });
   return own;

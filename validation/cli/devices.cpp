@@ -79,7 +79,7 @@ fs::path device_file(const std::string& name) {
 
 fs::path frame_file(const std::string& name) {
   const std::string other =
-      fmt::format("a device, not a frame: 'deflect solve {}' and the other commands for devices take it", name);
+      fmt::format("a device, not a frame: 'deflect solve {}' and the other device commands read it", name);
   return built_in(name, {"frame", frame_folders, other}, device_names());
 }
 
@@ -102,7 +102,7 @@ Measurements read_data(const std::string& file) {
       count([](const Reading& r) { return r.displacement[0] || r.displacement[1] || r.displacement[2]; }),
       count([](const Reading& r) { return r.displacement[3] || r.displacement[4] || r.displacement[5]; }),
       count([](const Reading& r) { return r.sigma_u || r.sigma_th; }),
-      data.readings.front().sequence ? "in a known order" : "in no known order");
+      data.readings.front().sequence ? "in a known order" : "in an unknown order");
   return data;
 }
 
@@ -130,7 +130,7 @@ int parse_threads(double value, const Ranks* ranks) {
 void say_new_folder(const fs::path& file) {
   std::error_code error;
   const fs::path folder = file.parent_path();
-  if (!folder.empty() && !fs::exists(folder, error)) remark(fmt::format("the folder {} is new", folder.string()));
+  if (!folder.empty() && !fs::exists(folder, error)) remark(fmt::format("creating the folder {}", folder.string()));
 }
 
 void write_table(const fs::path& path, const std::string& text) {
@@ -183,7 +183,7 @@ VectorX parse_joints(const Mechanism& m, const std::string& text) {
     from = to + 1;
   }
   if (actuators.empty())
-    throw InputError(fmt::format("--joints '{}': {}: nothing is driven there: leave --joints away", text, m.name));
+    throw InputError(fmt::format("--joints '{}': {} has no actuator: omit --joints", text, m.name));
   if (items.size() != actuators.size())
     throw InputError(fmt::format("--joints '{}': {} coordinate{}; write {}: {}", text, items.size(),
                                  items.size() == 1 ? "" : "s", actuators.size(), fmt::join(names, ", ")));
@@ -256,8 +256,8 @@ struct DevicesArguments {
 };
 
 void list_or_print(const DevicesArguments& a) {
-  if (a.schema && !a.name.empty()) throw InputError("--schema is of all devices: leave the name away");
-  if (!a.json.empty() && !a.schema) throw InputError("--json belongs to --schema");
+  if (a.schema && !a.name.empty()) throw InputError("--schema covers all devices: omit the name");
+  if (!a.json.empty() && !a.schema) throw InputError("--json needs --schema");
   if (a.schema) {
     std::vector<NamedSchema> all;
     for (const char* family : family_names)
@@ -278,22 +278,22 @@ Command devices_command() {
   auto a = std::make_shared<DevicesArguments>();
   return {
       "devices",
-      "List the built-in devices, or print one as a file to start one's own from ('deflect new' writes one with "
+      "List the built-in devices, or print one as a file to start your own from ('deflect new' writes one with "
       "comments).\n"
-      "Sections lie in a member's local y and z, x along it. In a chain local y is the chain's y, less its part along "
-      "x, or the chain's z where x is within 2.6 deg of the chain's y; 'y_axis: [x, y, z]' names another direction, in "
-      "the axes of the chain at that line. z = x cross y. 'from: PART' begins at the end of a member or offset and "
-      "where a joint stands; 'from: {part: PART, at: start}' or 'at: end' says which.\n"
-      "The freedoms of a joint are tx ty tz rx ry rz, along and about its axes. Of 'joint: custom' six letters say "
-      "which are r rigid, f free, a actuated; they move in this order: along x, y, z, then about x, about y as that "
-      "has "
-      "turned it, about z as both have. For another order write several joints, one behind the other.\n"
-      "Laws of a freedom, with their fields; several in a list are in series:" +
+      "A section lies in its member's local y and z. Local x runs along the member, and z = x cross y. In a chain, "
+      "local y is the chain's y without its component along x. If x lies within 2.6 deg of the chain's y, local y "
+      "comes from the chain's z instead. 'y_axis: [x, y, z]' sets another direction, in the chain's axes at that line. "
+      "'from: PART' starts at the end of a member or offset, or at the position of a joint; 'from: {part: PART, at: "
+      "start}' or 'at: end' chooses the end.\n"
+      "A joint has the freedoms tx ty tz (along its axes) and rx ry rz (about them). In 'joint: custom' six letters "
+      "set them: r rigid, f free, a actuated. They move in this order: along x, y and z, then about x, then about y as "
+      "turned by rx, then about z as turned by rx and ry. For another order, write several joints in series.\n"
+      "Laws of a freedom, with their fields; several laws in a list act in series:" +
           law_lines(),
       "deflect devices haptic-6psu > my-device.yaml",
-      {{"name", "DEVICE", "device to print; without it all are listed", &a->name, false},
-       {"--schema", "", "every key of device files: type and unit, default, one line", &a->schema},
-       {"--json", "FILE", "with --schema: write it as JSON Schema, for editors that complete and check files",
+      {{"name", "DEVICE", "device to print (default: list all)", &a->name, false},
+       {"--schema", "", "list the keys of device files: type, unit, default, meaning", &a->schema},
+       {"--json", "FILE", "with --schema: write the keys as JSON Schema, for editors that complete and check",
         &a->json}},
       [a] { list_or_print(*a); }};
 }
@@ -303,13 +303,13 @@ std::optional<double> parse_sigma(const std::string& option, const std::string& 
   if (text.empty()) return {};
   const double value = parse_list(option, text, {1}, "a standard deviation in " + unit)[0];
   if (!(value > 0))
-    throw InputError(fmt::format("{} {}: a standard deviation above zero, in {}, is wanted", option, text, unit));
+    throw InputError(fmt::format("{} {}: give a standard deviation above zero, in {}", option, text, unit));
   return value / per_SI;
 }
 
 int whole(const std::string& option, double value, double low, double high) {
   if (!(value >= low && value <= high) || value != std::floor(value))
-    throw InputError(fmt::format("{} {:g}: a whole number from {:g} to {:g} is wanted", option, value, low, high));
+    throw InputError(fmt::format("{} {:g}: give a whole number from {:g} to {:g}", option, value, low, high));
   return static_cast<int>(value);
 }
 

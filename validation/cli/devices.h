@@ -14,69 +14,69 @@
 
 namespace deflect::cli {
 
-/// Where the program's devices and effects are: share/deflect beside an installed program, the source tree otherwise.
+/// The folder of devices and effects: share/deflect of an installed program, or of the build tree (a link to the
+/// source).
 std::filesystem::path data_folder();
 
-/// Names of the built-in devices, and of the frames: published cases and examples; sorted.
+/// Sorted names of the built-in devices, and of the built-in frames (published cases and examples).
 std::vector<std::string> device_names();
 std::vector<std::string> frame_names();
 
-/// The file of a built-in name, or of a path. InputError with the nearest name, or, where the name is one of the other
-/// kind, with the command that takes it.
+/// The file of a built-in name, or the path itself. InputError names the nearest name; for a name of the other kind it
+/// names the command that reads it.
 std::filesystem::path device_file(const std::string& name_or_path);
 std::filesystem::path frame_file(const std::string& name_or_path);
 
-/// The device of that name or path, with remarks on what can hardly be meant; InputError as device_file() and
-/// read_mechanism() have it.
+/// Reads the device and remarks on implausible materials. Throws InputError like device_file() and read_mechanism().
 Mechanism read_device(const std::string& name_or_path);
 
-/// As read_measurements(), told where verbose.
+/// read_measurements(), with a summary if verbose.
 Measurements read_data(const std::string& file);
 
-/// Of large data (20 000 readings): about how much memory the work takes that keeps so many numbers for each that was
-/// measured. Where progress is shown, and where verbose.
+/// For 20 000 readings or more, prints roughly how much memory the work needs if it keeps `numbers_kept` numbers per
+/// measured number. Only if progress is shown or the program is verbose.
 void tell_size(const Measurements&, double numbers_kept);
 
-/// The number of --threads of this process; 0: all of the machine, with ranks all that this rank has.
+/// The number of threads from --threads; for 0, all of this rank's threads, or 0 (all of the machine) without ranks.
 int parse_threads(double, const Ranks* = nullptr);
 
-/// As write_text(), told where verbose.
+/// write_text(), reported if verbose.
 void write_table(const std::filesystem::path&, const std::string& text);
 
-/// Likewise, of a file that the user names: a folder that has to be made for it is said.
+/// The same for a file that the user names; remarks on a folder that it creates.
 void write_file(const std::filesystem::path&, const std::string& text);
 
-/// Says that the folder of a file that is about to be written is not there yet.
+/// Remarks that the folder of a file to be written does not exist yet.
 void say_new_folder(const std::filesystem::path& file);
 
-/// "1,2.5,-3" → numbers; exactly one of `counts` of them, or InputError naming the option and what it wants.
+/// "1,2.5,-3" → numbers. InputError unless their number is one of `counts`; it names the option and `wanted`.
 std::vector<double> parse_list(const std::string& option, const std::string& text,
                                const std::vector<std::size_t>& counts, const std::string& wanted);
 
-/// Three or six of them, the rest zero. `counts` as above.
+/// The same as a vector of six, padded with zeros.
 Vector6 parse_six(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts,
                   const std::string& wanted);
 
-/// Where --pose (mm, deg) puts the mechanism, or --joints by forward kinematics; the home pose, where `or_home` or
-/// nothing is driven, without either. Throws InputError for both or none, ModelError when the mechanism cannot stand
-/// there.
+/// The mechanism at --pose (mm, deg), or at --joints by forward kinematics. Without either: at the home pose, if
+/// `or_home` or if it has no actuators. Throws InputError for both options, and for none if one is needed; ModelError
+/// if the mechanism cannot assemble there.
 Stand parse_stand(const Mechanism&, const std::string& pose, const std::string& joints, bool or_home);
 
-/// The wrench of --load in N and Nmm, zero where it is empty.
+/// The wrench of --load in N and Nmm; zero if empty.
 Vector6 parse_load(const std::string& load);
 
-/// A positive length with unit ("25 mm"), in m; InputError naming the option.
+/// A positive length with unit ("25 mm"), in m. InputError names the option.
 double parse_length(const std::string& option, const std::string& text);
 
-/// "25 mm" for --element-size; the members of the device divided so by Gmsh at its home pose. Empty: one element each.
+/// The device's members as Gmsh divides them for --element-size ("25 mm") at the home pose; empty: one element each.
 frame::MemberDivision divide(const Mechanism&, const std::string& element_size);
 
-/// The standard deviation that an option gave in a unit of which `per_SI` make one in SI; none where it is empty.
-/// Throws InputError where it is not above zero.
+/// A standard deviation in SI from an option in a unit of which `per_SI` make one SI unit; none if the option is empty.
+/// Throws InputError unless it is above zero.
 std::optional<double> parse_sigma(const std::string& option, const std::string& text, const std::string& unit,
                                   double per_SI);
 
-/// The whole number that an option gave. Throws InputError where it is none between low and high.
+/// The number from an option. Throws InputError unless it is whole and between low and high.
 int whole(const std::string& option, double value, double low, double high);
 
 }  // namespace deflect::cli

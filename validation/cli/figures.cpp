@@ -10,11 +10,10 @@ namespace deflect::cli {
 
 std::vector<Option> with_figures(std::vector<Option> options, FigureArguments* a) {
   options.push_back({"--figure-width", "LENGTH",
-                     "width of figures on paper, with unit, as '88 mm' for one column (default: each figure's own)",
-                     &a->width});
+                     "width of figures on paper, with unit, such as '88 mm' (default: each figure's own)", &a->width});
   options.push_back(
-      {"--figure-font", "NAME", "family of figures' text, one that fontconfig knows (default: DejaVu Sans)", &a->font});
-  options.push_back({"--figure-font-size", "PT", "size of figures' text in points (default 8)", &a->size});
+      {"--figure-font", "NAME", "font of text in figures, by its fontconfig name (default: DejaVu Sans)", &a->font});
+  options.push_back({"--figure-font-size", "PT", "size of text in figures, in points (default 8)", &a->size});
   return options;
 }
 

@@ -1,4 +1,4 @@
-// The options of commands that draw, and the drawing.
+// Options of commands that draw figures, and drawing them.
 #pragma once
 
 #include <filesystem>
@@ -14,13 +14,13 @@ struct FigureArguments {
   std::string width, font, size;
 };
 
-/// The command's own options, and those of figures behind them.
+/// The command's own options, followed by those of figures.
 std::vector<Option> with_figures(std::vector<Option>, FigureArguments*);
 
-/// Before any work: InputError where text or font cannot be had, or where no figures are asked for (`out` is empty).
+/// To call before any work. InputError if the size or font is unusable, or if options are given without `out`.
 FigureStyle figure_style(const FigureArguments&, const std::string& out);
 
-/// Draws all of them, side by side, into the folder; their names, joined by commas.
+/// Draws all figures, in parallel, into the folder. Returns their names, separated by commas.
 std::string draw(const std::vector<Figure>&, const std::filesystem::path& folder);
 
 }  // namespace deflect::cli

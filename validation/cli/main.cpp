@@ -1,5 +1,5 @@
-// deflect: the stiffness of mechanisms by two independent theories. Exit codes: 0 done, 2 bad input or usage, 3 a model
-// that cannot be, 4 a numerical failure, 70 a bug.
+// deflect: the stiffness of mechanisms by two independent theories. Exit codes: 0 done, 2 bad input or usage, 3 an
+// impossible model, 4 a numerical failure, 70 a bug.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -34,7 +34,7 @@ void declare(CLI::App& app, const Option& option) {
   o->required(option.required);
 }
 
-/// False where the arguments ask for help or the version only, which is said.
+/// Returns false if the arguments only request help or the version, which it prints.
 bool parse(CLI::App& app, const std::vector<Command>& commands, int argc, char** argv, bool say) try {
   app.parse(argc, argv);
   return true;
@@ -56,7 +56,8 @@ void run(const Command& command, Ranks* ranks) {
     (*shared)(ranks);
   } else if (!ranks || ranks->first()) {
     if (ranks)
-      fmt::print(stderr, "deflect: {} is no work to share: one process of {} does it\n", command.name, ranks->size());
+      fmt::print(stderr, "deflect: {} runs on one of the {} processes: its work is not divided\n", command.name,
+                 ranks->size());
     std::get<deflect::cli::Run>(command.run)();
   }
   if (std::fflush(stdout) != 0) throw deflect::InputError("standard output cannot be written");
@@ -70,7 +71,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", DEFLECT_VERSION);
   app.require_subcommand(1);
   app.get_formatter()->column_width(32);  // two blanks at least between "--pose x,y,z,roll,pitch,yaw" and its help
-  app.footer("Exit codes: 0 done, 2 bad input or usage, 3 a model that cannot be, 4 a numerical failure, 70 a bug.");
+  app.footer(
+      "Exit codes: 0 done, 2 bad input or usage, 3 an impossible model (unreachable pose, unstable mechanism), 4 a "
+      "numerical failure, 70 a bug.");
 
   using namespace deflect::cli;
   std::vector<Command> commands = {new_command(),      show_command(),     solve_command(),   validate_command(),
@@ -84,8 +87,8 @@ int main(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     sub->footer("Example:\n  " + command.example);
     for (const Option& option : command.options) declare(*sub, option);
-    CLI::Option* const q = sub->add_flag("--quiet", quiet, "print nothing but errors; files are written all the same");
-    sub->add_flag("--verbose", loud, "tell every step with its time and choices on standard error")->excludes(q);
+    CLI::Option* const q = sub->add_flag("--quiet", quiet, "print only errors; files are still written");
+    sub->add_flag("--verbose", loud, "print every step with its time and choices on standard error")->excludes(q);
     parsers.push_back(sub);
   }
   const bool first = deflect::launched().rank == 0;

@@ -14,7 +14,7 @@ namespace deflect::cli {
 void drawing_motions(const std::string& out, const std::function<void()>& run) try {
   run();
 } catch (const frame::CannotStand& e) {
-  if (out.empty()) throw ModelError(fmt::format("{}\nWith --out DIR each motion is drawn there.", e.what()));
+  if (out.empty()) throw ModelError(fmt::format("{}\nAdd --out DIR to draw each motion.", e.what()));
   const LineMesh mesh = lines_of(*e.model);
   for (std::size_t i = 0; i < e.motions.size(); ++i) {
     const FieldData fields = fields_of_motion(*e.model, e.motions[i].u);
@@ -22,7 +22,8 @@ void drawing_motions(const std::string& out, const std::function<void()>& run) t
     write_vtu(file.string() + ".vtu", mesh, fields);
     gmsh::write_msh(file.string() + ".msh", mesh, fields);
   }
-  throw ModelError(fmt::format("{}\nDrawn as displacements in {}/motion-*.vtu, motion-*.msh", e.what(), out));
+  throw ModelError(
+      fmt::format("{}\nThe motions are drawn as displacements in {}/motion-*.vtu, motion-*.msh", e.what(), out));
 }
 
 }  // namespace deflect::cli

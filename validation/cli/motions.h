@@ -1,4 +1,4 @@
-// Structures that cannot stand, drawn.
+// Drawings of the free motions of structures that cannot stand.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,8 @@
 
 namespace deflect::cli {
 
-/// Runs a command; where its structure cannot stand and `out` names a folder, each free motion is drawn there as
-/// motion-1.vtu and motion-1.msh, … and the error that goes on says so.
+/// Runs a command. If its structure cannot stand and `out` names a folder, draws each free motion there as motion-1.vtu
+/// and motion-1.msh, … and rethrows the error with the names of the files.
 void drawing_motions(const std::string& out, const std::function<void()>& run);
 
 }  // namespace deflect::cli

@@ -95,8 +95,7 @@ std::vector<EffectInstance> found_in(const PageResult& result, const std::string
   const ReadResult read = read_result(result.json, result.origin);
   if (read.kind != "diagnosis") return {};
   if (const std::string of = read.json.value("device", device); of != device)
-    throw InputError(
-        fmt::format("{}: a diagnosis of another device: of '{}', and --device is '{}'", result.origin, of, device));
+    throw InputError(fmt::format("{}: this diagnosis is of '{}', but --device is '{}'", result.origin, of, device));
   std::vector<EffectInstance> out;
   for (const FoundEffect& found : parse_found_effects(result.json, result.origin).missing)
     out.push_back(instance(find_effect(effects, found.effect), found));
@@ -106,7 +105,7 @@ std::vector<EffectInstance> found_in(const PageResult& result, const std::string
 }  // namespace
 
 Option report_option(std::string* file) {
-  return {"--report", "FILE.html", "write a page that explains the result in pictures with their numbers", file};
+  return {"--report", "FILE.html", "write an HTML page with the result in pictures and numbers", file};
 }
 
 void require_pages(const std::string& file) {
@@ -143,7 +142,7 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
       }
     } catch (const InputError& e) {
       if (std::string_view(e.what()).starts_with(result.origin)) throw;
-      throw InputError(fmt::format("{}: what it found does not go into {}: is it a diagnosis of another device? {}",
+      throw InputError(fmt::format("{}: its effects do not fit {}: is it a diagnosis of another device? {}",
                                    result.origin, m.name, e.what()));
     }
   std::vector<Comparison> versions;

@@ -15,26 +15,27 @@ namespace deflect::cli {
 
 Option report_option(std::string* file);
 
-/// Before any work: InputError where a page is asked for and this program was built without.
+/// To call before any work. InputError if `file` is given and this program was built without pages.
 void require_pages(const std::string& file);
 
-/// The page of versions of a device against one set of measurements; the parts in which the last differs from the first
-/// are marked. With the comparison of the first and, of several, their history beside `results`.
+/// The page of versions of a device against one set of measurements. It marks the parts in which the last version
+/// differs from the first. It shows `results`, the comparison of the first version and, for several, their history.
 void write_report(const std::string& file, const std::string& device, const std::vector<Comparison>& versions,
                   std::vector<PageResult> results);
 
-/// The page of a diagnosis (--json's text): the device and, one after the other, with what was found missing.
+/// The page of results. If one is a diagnosis, the versions are the device and the device with each effect found, added
+/// one after the other.
 void write_report_of_diagnosis(const std::string& file, const std::string& device, const Mechanism&,
                                const Measurements&, const std::vector<Effect>&, const ComparisonOptions&,
                                std::vector<PageResult> results);
 
-/// The page of a device where it stands, under loads (N, Nmm).
+/// The page of a device at its stands, under loads (N, Nmm).
 void write_report_of_stands(const std::string& file, const std::string& device, const Mechanism&,
                             const std::vector<SceneStand>&, const std::vector<Vector6>& loads_N_Nmm, PageResult,
                             Geometry = Geometry::linear);
 
-/// The page of what a command says of one file: a device or frame as drawn, a frame under its loads with its scene
-/// (page_frame_scene.h), a matrix.
+/// The page of a command's result on one file: a drawn device or frame, a matrix, or a frame under its loads with its
+/// scene (page_frame_scene.h).
 void write_report_of_file(const std::string& file, const std::filesystem::path& source, PageResult,
                           Json scene = nullptr);
 

@@ -1,4 +1,4 @@
-// What the program tells beside its report: nothing, progress on a terminal, or every step with its time and choices.
+// Messages in addition to the report: none, progress on a terminal, or every step with its time and choices.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,14 +12,15 @@ namespace deflect::cli {
 
 enum class Talk { quiet, usual, verbose };
 
-/// For the rest of the run. Quiet: reports, and whatever else goes to standard output, are thrown away.
+/// For the rest of the run. Quiet discards everything on standard output.
 void set_talk(Talk);
 bool verbose();
 
-/// Where progress of long work is shown: watched_stream(), nowhere when quiet.
+/// The stream for progress of long work: watched_stream(), or none if quiet.
 ProgressStream progress_stream();
 
-/// One line on standard error where verbose, with the seconds since the program began: "deflect 0.12 s: …".
+/// Prints one line on standard error with the seconds since the program began: "deflect 0.12 s: …". tell() does so only
+/// if verbose.
 void tell_line(const std::string&);
 
 template <class... T>
@@ -27,10 +28,10 @@ void tell(fmt::format_string<T...> format, T&&... values) {
   if (verbose()) tell_line(fmt::format(format, std::forward<T>(values)...));
 }
 
-/// One line on standard error, "note: …", of what a user should know before the result; nothing when quiet.
+/// Prints "note: …" on standard error, for what a user should know before the result; nothing if quiet.
 void remark(const std::string&);
 
-/// A step of the work, told when it begins and, unless it fails, when it is done, with its time.
+/// A step of the work. If verbose, prints a line when it begins and, unless it fails, one with its time when it ends.
 class Step {
  public:
   explicit Step(std::string what);
@@ -44,14 +45,14 @@ class Step {
   int failing_;
 };
 
-/// What `work` returns, as a step.
+/// Runs `work` as a step and returns its result.
 template <class Work>
 auto timed(std::string what, const Work& work) {
   const Step step(std::move(what));
   return work();
 }
 
-/// The same for work that tells how far it has come: shown on progress_stream() in percent, with the time left.
+/// The same for work that reports its progress; progress_stream() shows it in percent, with the time left.
 template <class Work>
 auto timed_with_progress(std::string what, const Work& work) {
   const Step step(std::move(what));

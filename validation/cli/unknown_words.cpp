@@ -51,9 +51,8 @@ std::string unknown_word(const std::vector<Command>& commands, const std::vector
   for (const Command& command : commands) names.push_back(command.name);
   const auto typed = std::find_if_not(arguments.begin(), arguments.end(), is_option);
   if (typed == arguments.end())
-    return arguments.empty()
-               ? fmt::format("a command is wanted: {}; 'deflect --help' explains them", fmt::join(names, ", "))
-               : "";
+    return arguments.empty() ? fmt::format("give a command: {}; 'deflect --help' explains them", fmt::join(names, ", "))
+                             : "";
   for (const Command& command : commands)
     if (command.name == *typed)
       return unknown_option(command, arguments, static_cast<std::size_t>(typed - arguments.begin()) + 1);

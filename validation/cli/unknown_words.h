@@ -1,4 +1,4 @@
-// Commands and options that the program does not know, and the nearest that it does.
+// Messages for unknown commands and options, with the nearest known ones.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace deflect::cli {
 
-/// What to say of arguments that the parser refused: the command that is not there, or an option that the command does
-/// not have. Empty where all of them are known.
+/// The message for arguments that the parser refused: an unknown command, or an unknown option of a command. Empty if
+/// all are known.
 std::string unknown_word(const std::vector<Command>&, const std::vector<std::string>& arguments);
 
 }  // namespace deflect::cli

@@ -122,8 +122,8 @@ std::vector<PlacedEffect> places_of(const Effect& e, const Mechanism& m) {
 void require_in_bounds(const std::string& given, const Effect& e, const EffectParameter& p, double value) {
   if (p.low <= value && value <= p.high) return;
   throw InputError(
-      fmt::format("{}: the value must lie between {:g} and {:g} ({}). For another range copy the effect with 'deflect "
-                  "effects {} --yaml', give it a name of its own and name it with --effects",
+      fmt::format("{}: the value must lie between {:g} and {:g} ({}). For another range, copy the effect with 'deflect "
+                  "effects {} --yaml', rename it and pass its file with --effects",
                   given, p.low, p.high, p.about, e.name));
 }
 

@@ -1,4 +1,4 @@
-// A line on a terminal that says how far a long piece of work has come and how long it will still take.
+// A progress line on a terminal: how much of a long piece of work is done and how long the rest will take.
 #pragma once
 
 #include <cstddef>
@@ -9,30 +9,29 @@
 
 namespace deflect {
 
-/// Where progress is shown, if anywhere: on one line that is drawn over, or line after line.
+/// Where progress is shown, if anywhere: on one line that is redrawn, or line after line.
 struct ProgressStream {
   ProgressStream(std::ostream* to, bool line_after_line = false) : out(to), lines(line_after_line) {}
   std::ostream* out;
   bool lines;
 };
 
-/// Standard error: drawn over where it is a terminal; lines where mpirun stands before the terminal; else nothing.
+/// Standard error. One redrawn line if it is a terminal, separate lines under mpirun, otherwise nothing.
 ProgressStream watched_stream();
 
-/// Silent for the first second, and without a stream altogether; then a line that is drawn over at most ten times a
-/// second and wiped away by the destructor; or lines that stay, one in ten seconds. The time left supposes that the
-/// rest goes as fast as what is done.
+/// One redrawn line: it appears after one second, changes at most ten times a second, and the destructor wipes it. Or
+/// separate lines, one in ten seconds. Silent without a stream. The time left assumes a constant speed.
 class Progress {
  public:
   using Clock = std::function<double()>;  ///< seconds from any beginning
 
-  /// `what` names the pieces: "poses"; empty: they are not counted out. The stream must outlive the object.
+  /// `what` names the pieces, such as "poses"; if it is empty, no count is shown. The stream must outlive the object.
   Progress(std::size_t total, std::string what, ProgressStream, Clock clock = steady_seconds);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// From any thread; a smaller number than one already told changes nothing.
+  /// From any thread. A number below an earlier one has no effect.
   void update(std::size_t done);
 
   static double steady_seconds();

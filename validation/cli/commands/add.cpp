@@ -29,7 +29,7 @@ std::optional<int> parse_leg(const std::string& text) {
   if (text.empty()) return {};
   for (int leg = 1; leg <= 1000; ++leg)
     if (text == std::to_string(leg)) return leg;
-  throw InputError(fmt::format("--leg '{}': the number of a leg is wanted, as in --leg 4", text));
+  throw InputError(fmt::format("--leg '{}': give the number of a leg, as in --leg 4", text));
 }
 
 /// "name=value": numbers in the unit that the name ends with.
@@ -44,7 +44,7 @@ std::vector<std::pair<std::string, double>> parse_values(const std::vector<std::
     try {
       out.emplace_back(name, parse_number(std::string_view(text).substr(equals + 1)));
     } catch (const InputError& e) {
-      throw InputError(fmt::format("--set '{}': {}; the unit is that of the name", text, e.what()));
+      throw InputError(fmt::format("--set '{}': {}; the name gives the unit", text, e.what()));
     }
   }
   return out;
@@ -81,8 +81,9 @@ std::vector<FoundEffect> wanted(const AddArguments& a) {
   }
   const FoundEffects all = read_found_effects(a.from);
   if (!a.effect.empty()) return {with_values(look_up(all, a.effect, leg, a.from), values)};
-  if (all.missing.empty()) throw InputError(a.from + ": nothing is missing there: name the effect to add");
-  if (leg || !values.empty()) throw InputError("--leg and --set belong to one effect: name it");
+  if (all.missing.empty())
+    throw InputError(a.from + ": the diagnosis reports no missing effect: name the effect to add");
+  if (leg || !values.empty()) throw InputError("--leg and --set apply to one effect: name it");
   return all.missing;
 }
 
@@ -125,7 +126,7 @@ void require_other_file(const AddArguments& a) {
   for (const std::string& input : inputs) {
     std::error_code error;
     if (!a.force && std::filesystem::equivalent(input, a.out, error) && !error)
-      throw InputError(fmt::format("-o {}: that is the file which is read: name another, or give --force", a.out));
+      throw InputError(fmt::format("-o {}: this is an input file: name another, or overwrite it with --force", a.out));
   }
 }
 
@@ -146,22 +147,21 @@ void run(const AddArguments& a) {
 
 Command add_command() {
   auto a = std::make_shared<AddArguments>();
-  return {
-      "add",
-      "A new device file: the device with an effect in it, with values given by --set or found by a diagnosis. With "
-      "--from and without EFFECT, everything that the diagnosis calls missing",
-      "deflect add haptic-6psu guide_root_compliance --set stiffness_Nmm_per_rad=5e6 -o softer.yaml",
-      {{"device", "DEVICE", "device file, or the name of a built-in device", &a->device, true},
-       {"effect", "EFFECT", "name of the effect, see 'deflect effects'", &a->effect},
-       {"--set", "NAME=VALUE", "value of each parameter, in the unit that its name ends with", &a->set},
-       {"--leg", "NUMBER", "for an effect of one leg: which", &a->leg},
-       {"--from", "DIAGNOSIS.json", "take effects, legs and values from the result of 'deflect diagnose --json'",
-        &a->from},
-       {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
-       {"-o,--output", "NEW_DEVICE", "file to write", &a->out, true},
-       {"--force", "", "write over a file that is read", &a->force},
-       {"--json", "FILE", "write what was added", &a->json}},
-      [a] { run(*a); }};
+  return {"add",
+          "Write a new device file: the device with an added effect. The effect's values come from --set or from a "
+          "diagnosis. With --from and without EFFECT, all effects that the diagnosis reports as missing are added",
+          "deflect add haptic-6psu guide_root_compliance --set stiffness_Nmm_per_rad=5e6 -o softer.yaml",
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"effect", "EFFECT", "effect to add; 'deflect effects' lists them", &a->effect},
+           {"--set", "NAME=VALUE", "value of a parameter, in the unit at the end of its name", &a->set},
+           {"--leg", "NUMBER", "the leg, for an effect of one leg", &a->leg},
+           {"--from", "DIAGNOSIS.json", "take effects, legs and values from the result of 'deflect diagnose --json'",
+            &a->from},
+           {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
+           {"-o,--output", "NEW_DEVICE", "file to write", &a->out, true},
+           {"--force", "", "allow the output to overwrite an input", &a->force},
+           {"--json", "FILE", "write the added effects", &a->json}},
+          [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli

@@ -53,7 +53,7 @@ MatrixCheckOptions options_of(const CheckArguments& a) {
   if (!a.reference.empty()) o.reference = read_stiffness(a.reference, convention, a.key);
   if (!a.device.empty()) o.reference = stiffness_of(a, o.unit_m);
   if (!(a.tolerance >= 0 && a.tolerance < 1))
-    throw InputError(fmt::format("--tolerance {}: a relative difference between 0 and 1 is wanted", a.tolerance));
+    throw InputError(fmt::format("--tolerance {}: give a relative difference between 0 and 1", a.tolerance));
   if (a.tolerance > 0) o.tolerance = a.tolerance;
   if (!a.size.empty()) {
     const double size = parse_length("--size", a.size);
@@ -85,31 +85,31 @@ Command check_command() {
   auto a = std::make_shared<CheckArguments>();
   return {
       "check",
-      "The trust checks of your own 6x6 stiffness of a point (MATLAB, Python, Ansys ...): K = K^T, K >= 0, no free "
-      "direction, a plausible size, passive joints free, equal to a reference; and which usual mistake explains a "
-      "failure. Exit code 0 when all checks pass, 4 when one fails, 2 when a file cannot be read",
+      "Check your own 6x6 stiffness of a point, from MATLAB, Python, Ansys or elsewhere: K = K^T, K >= 0, no free "
+      "direction, a plausible size, free passive joints, agreement with a reference. If a check fails, the report "
+      "names the usual mistakes that explain it. Exit code 0 when all checks pass, 4 when one fails, 2 when a file "
+      "cannot be read",
       "deflect check K.csv --unit m --device haptic-6psu-ideal-joints --pose 25,25,198.9 --json check.json",
-      {{"matrix", "K", "six rows of six numbers: CSV, blanks, MATLAB or NumPy text, or the JSON of deflect solve",
+      {{"matrix", "K", "six rows of six numbers: CSV, blanks, MATLAB or NumPy text, or JSON of 'deflect solve'",
         &a->matrix, true},
        {"--unit", "mm|m", "unit of length of the matrices: N/mm, N, Nmm (default) or N/m, N, Nm; angles in rad",
         &a->unit},
        {"--order", "translation-first|rotation-first", "translation-first (default): [f; m] = K [d; theta]", &a->order},
        {"--passive", "J",
-        "twists of the passive joints of the leg whose stiffness K is, at its point, as rows or columns: "
-        "K J = 0 is checked",
+        "if K is of one leg: twists of its passive joints at K's point, as rows or columns, to check K J = 0",
         &a->passive},
        {"--reference", "R", "stiffness that K should equal, in the same unit and order", &a->reference},
-       {"--device", "DEVICE", "instead of --reference: a device of deflect at --pose, by the closed form", &a->device},
-       {"--pose", "x,y,z,roll,pitch,yaw", "of --device, mm and deg", &a->pose},
-       {"--joints", "q1,...,qn", "of --device, instead of --pose: slides in mm, turns in rad, or with unit",
+       {"--device", "DEVICE", "instead of --reference: this device at --pose, by the closed form", &a->device},
+       {"--pose", "x,y,z,roll,pitch,yaw", "pose of --device in mm and deg", &a->pose},
+       {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
         &a->joints},
-       {"--load", "fx,fy,fz,mx,my,mz", "of --device: its contacts are stiff under load only; N and Nmm", &a->load},
-       {"--tolerance", "X", "relative difference that does not count (default: the digits printed)", &a->tolerance},
+       {"--load", "fx,fy,fz,mx,my,mz", "load on --device, N and Nmm; contacts are stiff only under load", &a->load},
+       {"--tolerance", "X", "relative difference to ignore (default: the digits printed)", &a->tolerance},
        {"--size", "LENGTH",
-        "size of the device, with unit; its characteristic length is then expected within a tenth and "
-        "ten times of it (default: between 1 mm and 30 m)",
+        "size of the device, with unit: K's characteristic length must be a tenth to ten times this (default: 1 mm to "
+        "30 m)",
         &a->size},
-       {"--key", "NAME", "member of a JSON object that is the matrix (default analytic.stiffness)", &a->key},
+       {"--key", "NAME", "JSON member that holds the matrix (default analytic.stiffness)", &a->key},
        {"--json", "FILE", "write the result", &a->json},
        report_option(&a->report),
        {"--out", "DIR", "write report and tables: check.txt, checks.csv, structure.csv", &a->out}},

@@ -56,19 +56,19 @@ Command compare_command() {
   auto a = std::make_shared<CompareArguments>();
   return {
       "compare",
-      "Measurements against the closed form, nothing fitted: where the model fails, in sentences with numbers; tests "
-      "that need no idea of what is missing; patterns of the residual; errors by pose, direction and magnitude",
+      "Compare measurements with the closed form, without fitting it. The report says in sentences with numbers where "
+      "the model fails. It gives tests that need no hypothesis, patterns of the residual, and errors by pose, "
+      "direction and magnitude",
       "deflect compare haptic-6psu-ideal-joints measurements.csv --out comparison --json comparison.json",
-      with_figures(
-          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-           {"data", "DATA", "measurements (CSV)", &a->data, true},
-           {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
-           {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
-           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
-           {"--json", "FILE", "write the result", &a->json},
-           report_option(&a->report),
-           {"--out", "DIR", "write figures (SVG, PDF, PNG, each with its caption) and tables", &a->out}},
-          &a->figures),
+      with_figures({{"device", "DEVICE", "built-in device or device file", &a->device, true},
+                    {"data", "DATA", "measurements (CSV)", &a->data, true},
+                    {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
+                    {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
+                    {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
+                    {"--json", "FILE", "write the result", &a->json},
+                    report_option(&a->report),
+                    {"--out", "DIR", "write figures (SVG, PDF, PNG, each with its caption) and tables", &a->out}},
+                   &a->figures),
       [a] { run(*a); }};
 }
 

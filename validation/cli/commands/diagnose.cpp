@@ -33,7 +33,7 @@ void run(const DiagnoseArguments& a, Ranks* ranks) {
   o.bootstrap_sets = whole("--bootstrap", a.bootstrap, 99, 1e9);
   o.ranks = ranks;
   o.threads = o.comparison.threads = parse_threads(a.threads, ranks);
-  const Diagnosis d = timed_with_progress("diagnose: every effect fitted and weighed", [&](const auto& told) {
+  const Diagnosis d = timed_with_progress("diagnose: fit and weigh every effect", [&](const auto& told) {
     DiagnosisOptions shown = o;
     shown.progress = told;
     return diagnose(m, data, effects, shown);
@@ -50,29 +50,29 @@ void run(const DiagnoseArguments& a, Ranks* ranks) {
 
 Command diagnose_command() {
   auto a = std::make_shared<DiagnoseArguments>();
-  return {
-      "diagnose",
-      "Which physical effect is missing: first of all whether the file is what it says (units, signs, axes, columns, "
-      "poses; such a mistake is named and no effect is looked for); then every effect of the catalogue at every place "
-      "it has in the device, fitted "
-      "with all tolerances free under their priors, weighed by the evidence; ties, unknown effects and what the "
-      "campaign cannot see are said. Verdict first; exit code 0 whatever it is. Under mpirun the processes share the "
-      "sets of --bootstrap, and the first one writes; the result is the same",
-      "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
-      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-       {"data", "DATA", "measurements (CSV)", &a->data, true},
-       {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
-       {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
-       {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
-       {"--as-recorded", "", "take the file as it is: do not look for mistakes of recording first", &a->as_recorded},
-       {"--bootstrap", "N",
-        "data sets with nothing missing that are drawn to find how often chance looks like an effect (default "
-        "1999, at least 99); it is known to 1/(N+1)",
-        &a->bootstrap},
-       {"--threads", "N", "threads of a process (default 0: all cores); the result does not depend on it", &a->threads},
-       {"--json", "FILE", "write the result", &a->json},
-       report_option(&a->report)},
-      [a](Ranks* ranks) { run(*a, ranks); }};
+  return {"diagnose",
+          "Find which physical effect the model lacks. The command first checks the file for recording mistakes "
+          "(units, signs, axes, columns, poses). If one is certain, the report names it and the search ends. Otherwise "
+          "the command fits every effect of the catalogue at every possible place in the device, with all tolerances "
+          "free under their priors, and weighs the fits by their evidence. The report starts with the verdict. It "
+          "lists ties, unknown effects and effects that the campaign cannot detect. The exit code is 0 for every "
+          "verdict. Under mpirun the processes share the "
+          "sets of --bootstrap and the first one writes; the result is the same",
+          "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"data", "DATA", "measurements (CSV)", &a->data, true},
+           {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
+           {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
+           {"--as-recorded", "", "take the file as it is: skip the search for recording mistakes", &a->as_recorded},
+           {"--bootstrap", "N",
+            "random data sets with nothing missing; they give the chance of a false alarm to 1/(N+1) (default 1999, at "
+            "least 99)",
+            &a->bootstrap},
+           {"--threads", "N", "threads per process (default 0: all cores); they do not change the result", &a->threads},
+           {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report)},
+          [a](Ranks* ranks) { run(*a, ranks); }};
 }
 
 }  // namespace deflect::cli

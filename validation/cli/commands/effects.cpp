@@ -52,18 +52,17 @@ void run(const EffectsArguments& a) {
 
 Command effects_command() {
   auto a = std::make_shared<EffectsArguments>();
-  return {
-      "effects",
-      "What a model can lack: the catalogue of effects, or the pages of one of them: what happens in the machine, "
-      "what it looks like in the data, how to confirm it on the bench, how to cure it. With --yaml its file, to "
-      "start one's own from",
-      "deflect effects guide_root_compliance --device haptic-6psu",
-      {{"name", "EFFECT", "effect to explain; without it all are listed", &a->name},
-       {"--device", "DEVICE", "say which effects the device can have, and why it cannot have the others", &a->device},
-       {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
-       {"--yaml", "", "print the effect's file", &a->yaml},
-       {"--json", "FILE", "write the effects", &a->json}},
-      [a] { run(*a); }};
+  return {"effects",
+          "List the effects that a model can lack, or explain one: what happens in the machine, what the data show, "
+          "how to confirm it on the bench, how to cure it. With --yaml, print the effect's file to start your own from",
+          "deflect effects guide_root_compliance --device haptic-6psu",
+          {{"name", "EFFECT", "effect to explain (default: list all)", &a->name},
+           {"--device", "DEVICE", "list the effects that this device can have, and why it cannot have the others",
+            &a->device},
+           {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
+           {"--yaml", "", "print the effect's file", &a->yaml},
+           {"--json", "FILE", "write the effects", &a->json}},
+          [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli

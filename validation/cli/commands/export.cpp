@@ -31,7 +31,7 @@ constexpr Format formats[] = {{"msh", ".msh"}, {"vtk", ".vtu"}};
 const Format& format_of(const std::string& name) {
   for (const Format& f : formats)
     if (f.name == name) return f;
-  throw InputError(fmt::format("--to '{}': there are msh (Gmsh) and vtk (ParaView)", name));
+  throw InputError(fmt::format("--to '{}': write msh (Gmsh) or vtk (ParaView)", name));
 }
 
 /// 1, 2 or 5 times a power of ten that shows the largest displacement as some 8 % of the structure's size.
@@ -52,7 +52,7 @@ double automatic_scale(const LineMesh& mesh, const std::vector<Vector3>& displac
 double scale_of(const ExportArguments& a, const LineMesh& mesh, const FieldData& fields) {
   if (a.scale == "auto") return automatic_scale(mesh, fields.points.front().values);
   const double scale = parse_list("--scale", a.scale, {1}, "auto or a factor").front();
-  if (!(scale > 0)) throw InputError(fmt::format("--scale {}: a factor greater than zero is wanted", a.scale));
+  if (!(scale > 0)) throw InputError(fmt::format("--scale {}: give a factor greater than zero", a.scale));
   return scale;
 }
 
@@ -152,7 +152,7 @@ void run(const ExportArguments& a) {
              fmt::join(load, ", "));
   fmt::print("tool point moves by ({:.6g}) mm, ({:.6g}) rad\n", fmt::join(d.head<3>(), ", "),
              fmt::join(d.tail<3>(), ", "));
-  fmt::print("{}: as it stands unloaded, with displacements and forces\n{}: deflected shape, {:g} times enlarged\n",
+  fmt::print("{}: unloaded shape, with displacements and forces\n{}: deflected shape, enlarged {:g} times\n",
              path.string(), deflected_path.string(), scale);
 }
 
@@ -162,18 +162,18 @@ Command export_command() {
   auto a = std::make_shared<ExportArguments>();
   return {
       "export",
-      "The mechanism at a pose for other programs: nodes and members in mm, displacements, load, reaction and member "
-      "forces as fields, groups by leg and part; a second file holds the deflected shape, enlarged.\n"
-      "msh: Gmsh 4.1; with the file FILE.msh.opt beside it Gmsh draws the deflected shape by itself. vtk: .vtu for "
-      "ParaView.",
+      "Write the mechanism at a pose for other programs: nodes and members in mm; displacements, load, reaction and "
+      "member forces as fields; groups by leg and part. A second file holds the deflected shape, enlarged.\n"
+      "msh: Gmsh "
+      "4.1; FILE.msh.opt makes Gmsh draw the deflected shape when it opens FILE.msh. vtk: .vtu for ParaView.",
       "deflect export haptic-6psu --to vtk --pose 25,25,198.9,0,0,0 --load 50,0,0 -o loaded.vtu",
       {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-       {"--to", "msh|vtk", "format", &a->to, true},
+       {"--to", "msh|vtk", "file format", &a->to, true},
        {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in mm and deg (default: the home pose)", &a->pose},
        {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
         &a->joints},
        {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
-       {"--scale", "FACTOR", "of the displacements in the deflected shape; auto makes them visible (default)",
+       {"--scale", "FACTOR", "factor on displacements in the deflected shape (default auto: makes them visible)",
         &a->scale},
        {"--element-size", "LENGTH", "size of the MSA's elements, with unit (default '5 mm')", &a->element_size},
        {"-o,--output", "FILE", "file to write", &a->file},

@@ -50,7 +50,7 @@ frame::Equations solver_of(const std::string& name, const frame::FrameDescriptio
     throw InputError(fmt::format("--solver: '{}' is none of {}", name, fmt::join(names, ", ")));
   const auto solver = static_cast<frame::Equations>(at);
   if (solver == frame::Equations::iterative && f.geometry != Geometry::linear)
-    throw InputError("--solver iterative goes with 'geometry: linear'");
+    throw InputError("--solver iterative needs 'geometry: linear'");
   return solver;
 }
 
@@ -77,7 +77,7 @@ void print_schema(const std::string& json) {
 void run(const FrameArguments& a) {
   require_pages(a.report);
   if (a.schema) return print_schema(a.json);
-  if (a.file.empty()) throw InputError("name a frame file or a published case, or ask for --schema");
+  if (a.file.empty()) throw InputError("name a frame file or a built-in frame, or give --schema");
   const frame::FrameDescription f = timed("frame: reading", [&] { return frame::read_frame(frame_file(a.file)); });
   tell("frame {}: {}, {} nodes, {} members", f.name, frame_file(a.file).string(), f.nodes.size(), f.members.size());
   for (const auto& [name, material] : f.materials)
@@ -106,20 +106,20 @@ void run(const FrameArguments& a) {
 Command frame_command() {
   auto a = std::make_shared<FrameArguments>();
   return {"frame",
-          "A frame of nodes and members under its load cases: displacements, reactions, member forces, shares of the "
-          "strain energy, checks. The file says in which shape equilibrium is written: 'geometry: linear', "
-          "'second-order' (P-delta, stress stiffening, buckling) or 'finite' (rotations of any size, 'load_steps: n'); "
-          "'elements: n' divides a member",
+          "Solve a frame of nodes and members under its load cases: displacements, reactions, member forces, shares of "
+          "the strain energy, checks. The file sets the shape in which forces balance: undeformed ('geometry: "
+          "linear'), or deformed ('second-order': P-delta, stress stiffening, buckling; 'finite': rotations of any "
+          "size, 'load_steps: n'). 'elements: n' divides a member",
           "deflect frame logan-5-30 --json result.json --out result",
-          {{"file", "FRAME", "frame file, or the name of a built-in one in share/deflect/cases or frames", &a->file},
+          {{"file", "FRAME", "frame file or built-in frame (in share/deflect/cases or frames)", &a->file},
            {"--element-size", "LENGTH",
-            "divide members, with unit (default: as the file says, or one element, exact at its nodes if linear)",
+            "size of elements, with unit (default: from the file, or one per member, exact at its nodes if linear)",
             &a->element_size},
            {"--solver", "auto|direct|iterative",
             "auto (default: by size and conditioning), direct (factorisation) or iterative (conjugate gradients; falls "
-            "back to direct where it cannot vouch for its answer)",
+            "back to direct if it cannot verify its answer)",
             &a->solver},
-           {"--schema", "", "every key of frame files: type and unit, default, one line", &a->schema},
+           {"--schema", "", "list the keys of frame files: type, unit, default, meaning", &a->schema},
            {"--json", "FILE", "write the result; with --schema the keys as JSON Schema", &a->json},
            report_option(&a->report),
            {"--out", "DIR", "write displacements, reactions, members, shares (.csv) and each case as .msh and .vtu",

@@ -32,9 +32,8 @@ std::string same_machines(const std::vector<Mechanism>& devices) {
   for (std::size_t i = 0; i < texts.size(); ++i)
     for (std::size_t k = i + 1; k < texts.size(); ++k)
       if (texts[i] == texts[k])
-        out +=
-            fmt::format("versions {} ({}) and {} ({}) are the same machine: nothing can fall from one to the other\n",
-                        i + 1, devices[i].name, k + 1, devices[k].name);
+        out += fmt::format("versions {} ({}) and {} ({}) are the same machine: the error cannot fall between them\n",
+                           i + 1, devices[i].name, k + 1, devices[k].name);
   return out;
 }
 
@@ -75,22 +74,21 @@ void run(const HistoryArguments& a) {
 
 Command history_command() {
   auto a = std::make_shared<HistoryArguments>();
-  return {"history",
-          "The error falling from version to version of a device on one set of measurements: all poses, held-out "
-          "poses, tests "
-          "that still fail, patterns left, tolerances that would have to be strained",
-          "deflect history measurements.csv haptic-6psu-ideal-joints softer.yaml --out history",
-          with_figures(
-              {{"data", "DATA", "measurements (CSV)", &a->data, true},
-               {"devices", "DEVICE", "devices in order, built-in or files", &a->devices, true},
-               {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
-               {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
-               {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
-               {"--json", "FILE", "write the result", &a->json},
-               report_option(&a->report),
-               {"--out", "DIR", "write the figure (SVG, PDF, PNG) with its caption, and the table", &a->out}},
-              &a->figures),
-          [a] { run(*a); }};
+  return {
+      "history",
+      "Show how the error falls from version to version of a device, on one set of measurements: all poses, held-out "
+      "poses, tests that still fail, remaining patterns, strained tolerances",
+      "deflect history measurements.csv haptic-6psu-ideal-joints softer.yaml --out history",
+      with_figures({{"data", "DATA", "measurements (CSV)", &a->data, true},
+                    {"devices", "DEVICE", "versions in order: built-in devices or device files", &a->devices, true},
+                    {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
+                    {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
+                    {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
+                    {"--json", "FILE", "write the result", &a->json},
+                    report_option(&a->report),
+                    {"--out", "DIR", "write the figure (SVG, PDF, PNG) with its caption, and the table", &a->out}},
+                   &a->figures),
+      [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli

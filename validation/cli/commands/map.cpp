@@ -65,14 +65,14 @@ MapOptions options_of(const Mechanism& m, const MapArguments& a, Ranks* ranks) {
   set_grid(m, a, o);
   o.force_N = a.force_N;
   if (!std::isfinite(a.force_N) || a.force_N == 0)
-    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.force_N));
+    throw InputError(fmt::format("--force {}: give a force in N other than zero", a.force_N));
   if (!a.load.empty()) {
     o.load_N_Nmm = parse_load(a.load);
     if (o.load_N_Nmm->isZero(0))
-      throw InputError(fmt::format("--load {}: without load a contact has no stiffness; give one", a.load));
+      throw InputError(fmt::format("--load {}: without load a contact has no stiffness; give a load", a.load));
   }
   if (a.theory != "both" && a.theory != "analytic" && a.theory != "msa")
-    throw InputError(fmt::format("--theory '{}': analytic, msa or both is wanted", a.theory));
+    throw InputError(fmt::format("--theory '{}': write analytic, msa or both", a.theory));
   o.analytic = a.theory != "msa";
   o.msa = a.theory != "analytic";
   o.length_mm = length_mm(m, a.length);
@@ -81,11 +81,11 @@ MapOptions options_of(const Mechanism& m, const MapArguments& a, Ranks* ranks) {
   return o;
 }
 
-/// A map without a pose says nothing of the device.
+/// ModelError for a map without any reached pose.
 void require_reached(const StiffnessMap& map) {
   if (std::any_of(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); })) return;
   throw ModelError(fmt::format(
-      "the map has nothing to show: none of its {} poses is reached; give --x, --y, --z or --tilt. The first: {}",
+      "the map is empty: the device reaches none of the {} poses; give --x, --y, --z or --tilt. The first pose: {}",
       map.poses.size(), map.poses.front().out_of_reach));
 }
 
@@ -131,34 +131,32 @@ Command map_command() {
   auto a = std::make_shared<MapArguments>();
   return {
       "map",
-      "Stiffness of the tool point over the workspace by direction: a grid of poses, both theories, Fig. 11.\n"
-      "With --force (the default) every pose is loaded along x, y and z in turn: the compliance C = u/F is secant, "
-      "from no load to the force, and the 6x6 stiffness K (its diagonal, smallest, largest, isotropy) is tangent at "
-      "the force. With --load both are tangent under that wrench. They differ where contacts carry load. The MSA takes "
-      "one element per member, which is exact at its nodes. Under mpirun the processes share the poses, and the first "
-      "one writes; the result is the same.",
+      "Map the stiffness of the tool point by direction over the workspace: a grid of poses, both theories, Fig. 11.\n"
+      "With --force (the default) every pose is loaded along x, y and z in turn. The compliance C = u/F is then "
+      "secant, from no load to the force. The 6x6 stiffness K (its diagonal, smallest, largest, isotropy) is tangent "
+      "at the force. With --load both are tangent under that wrench. Secant and tangent differ if contacts carry load. "
+      "The MSA uses one element per member, which is exact at its nodes. Under mpirun the processes share the poses "
+      "and the first one writes; the result is the same.",
       "deflect map haptic-6psu --n 21,21,21 --x -40,40 --y -40,40 --z 124,224 --out map --json map.json",
       with_figures(
           {{"device", "DEVICE", "built-in device or device file", &a->device, true},
            {"--x", "from,to",
-            "range of the tool point in mm, or one value (default: the device's workspace; with a range a box)",
+            "range of the tool point in mm, or one value (default: the workspace; its box if any range is given)",
             &a->ranges[0]},
-           {"--y", "from,to", "likewise", &a->ranges[1]},
-           {"--z", "from,to", "likewise", &a->ranges[2]},
+           {"--y", "from,to", "the same along y", &a->ranges[1]},
+           {"--z", "from,to", "the same along z", &a->ranges[2]},
            {"--n", "nx,ny,nz", "poses along x, y, z, or one number for all (default 11)", &a->n},
            {"--tilt", "roll,pitch,yaw", "orientation at all poses in deg (default: that of the workspace's centre)",
             &a->tilt},
            {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},
            {"--load", "fx,fy,fz,mx,my,mz", "one wrench in N and Nmm instead of --force", &a->load},
-           {"--theory", "analytic|msa|both", "by which theory (default both)", &a->theory},
+           {"--theory", "analytic|msa|both", "theory to use (default both)", &a->theory},
            {"--length", "LENGTH",
-            "characteristic length, with unit, that makes rotations comparable to displacements in the isotropy "
-            "(default: "
-            "the platform's radius, or the machine's extent)",
+            "characteristic length, with unit, that turns rotations into displacements in the isotropy (default: the "
+            "platform's radius, or the machine's extent)",
             &a->length},
-           {"--threads", "N", "threads of a process (default 0: all cores); the result does not depend on it",
-            &a->threads},
-           {"--json", "FILE", "write summary and arrays", &a->json},
+           {"--threads", "N", "threads per process (default 0: all cores); they do not change the result", &a->threads},
+           {"--json", "FILE", "write the summary and the arrays", &a->json},
            report_option(&a->report),
            {"--out", "DIR",
             "write fig11 and stiffness-vs-length as SVG, PDF, PNG with their captions, and map.csv, map.vtu", &a->out}},

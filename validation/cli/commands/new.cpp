@@ -91,7 +91,7 @@ std::string text_of(const Template& source, const fs::path& out, const std::vect
       !stem.empty() && stem.size() < 100 && std::isalpha(static_cast<unsigned char>(stem.front())) &&
       std::all_of(stem.begin(), stem.end(), [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; });
   if (!plain) stem = source.file.stem().string();
-  std::string head = "# Change it, and try:\n";
+  std::string head = "# Edit this file and try:\n";
   for (const std::string& command : commands) head += fmt::format("#   {}\n", command);
   head += fmt::format("# All keys: deflect {} --schema\n#\n", source.frame ? "frame" : "devices");
   return head + text.substr(0, at) + mark + stem + text.substr(end);
@@ -101,7 +101,7 @@ void run(const NewArguments& a) {
   const Template source = template_of(a.like);
   std::error_code error;
   if (!a.force && fs::is_regular_file(a.out, error))
-    throw InputError(fmt::format("{}: is there already: name another file, or write over it with --force", a.out));
+    throw InputError(fmt::format("{}: exists already: name another file, or overwrite it with --force", a.out));
   const std::vector<std::string> commands = first_commands(source, quoted(a.out));
   const std::string text = text_of(source, a.out, commands);
   if (source.frame)
@@ -121,12 +121,12 @@ Command new_command() {
   for (const Likeness& each : likenesses) words.emplace_back(each.word);
   return {
       "new",
-      "A first file of a machine of one's own, to be changed: a commented device or frame that runs as it is, with "
-      "the commands to try above it",
+      "Write a first file for your own machine: a commented device or frame to edit. It runs unchanged, and the "
+      "comments at its top list commands to try",
       "deflect new --like scara -o mine.yaml",
       {{"--like", "NAME", fmt::format("{}, or any built-in device or frame", fmt::join(words, ", ")), &a->like, true},
        {"-o,--output", "FILE", "file to write", &a->out, true},
-       {"--force", "", "write over a file that is there", &a->force}},
+       {"--force", "", "overwrite an existing file", &a->force}},
       [a] { run(*a); }};
 }
 

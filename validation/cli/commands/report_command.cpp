@@ -42,19 +42,18 @@ void run(const ReportArguments& a) {
 Command report_command() {
   auto a = std::make_shared<ReportArguments>();
   return {"report",
-          "One page of several results (--json of diagnose, compare, history, solve, validate, map, frame, check, "
-          "show): pictures with "
-          "their numbers, self-contained. With --device and --data the machine is drawn with its residuals, and what a "
-          "diagnosis among the results found is put into it",
+          "Write one self-contained page from several results (--json of diagnose, compare, history, solve, validate, "
+          "map, frame, check, show): pictures with their numbers. With --device and --data the page draws the machine "
+          "with its residuals and adds the effects that a diagnosis among the results found",
           "deflect report diagnosis.json solve.json --device haptic-6psu-ideal-joints --data measurements.csv "
           "-o report.html",
-          {{"results", "RESULT.json", "results of deflect", &a->results, true},
+          {{"results", "RESULT.json", "results written by --json", &a->results, true},
            {"--device", "DEVICE", "built-in device or device file", &a->device},
            {"--data", "DATA", "measurements (CSV)", &a->data},
-           {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->effects},
-           {"--sigma", "MM", "standard deviation of one translation in mm, where the file has none", &a->sigma_mm},
-           {"--sigma-rotation", "RAD", "the same of one rotation in rad", &a->sigma_rad},
-           {"--threads", "N", "threads (default 0: all cores); the result does not depend on it", &a->threads},
+           {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->effects},
+           {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
+           {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
            {"-o,--output", "FILE.html", "file to write", &a->output, true}},
           [a] { run(*a); }};
 }

@@ -34,7 +34,7 @@ bool is_frame(const std::string& name) {
 
 MachineDrawing drawing(const ShowArguments& a, bool frame) {
   if (frame) {
-    if (!a.pose.empty() || !a.joints.empty()) throw InputError("--pose and --joints are of devices: a frame has none");
+    if (!a.pose.empty() || !a.joints.empty()) throw InputError("--pose and --joints apply to devices, not to frames");
     return drawing_of(frame::read_frame(frame_file(a.file)));
   }
   const Mechanism m = read_device(a.file);
@@ -63,18 +63,18 @@ Command show_command() {
   auto a = std::make_shared<ShowArguments>();
   return {
       "show",
-      "The machine or frame as its file draws it, unloaded and before any solution: members with their sections and "
-      "lengths, joints with their axes, what is driven, in a table, a picture (--out) and in 3D (--report). Also "
-      "where it cannot stand: every motion that nothing resists is drawn, and moves on the page; and where its loops "
-      "do not close: then each leg stands alone",
+      "Draw the machine or frame of a file, unloaded and before any solution: members with their sections and lengths, "
+      "joints with their axes, actuators. The result is a table, a picture (--out) and a 3D page (--report). If the "
+      "structure cannot stand, every motion that nothing resists is drawn too, and moves on the page. If its loops do "
+      "not close, each leg is drawn alone",
       "deflect show mine.yaml --report drawing.html",
       with_figures({{"file", "FILE", "device or frame: a file, or a built-in name", &a->file, true},
-                    {"--pose", "x,y,z,roll,pitch,yaw", "of a device, in mm and deg (default: its home pose)", &a->pose},
+                    {"--pose", "x,y,z,roll,pitch,yaw", "pose of a device in mm and deg (default: home pose)", &a->pose},
                     {"--joints", "q1,...,qn",
                      "joint coordinates instead of --pose: slides in mm, turns in rad, or "
                      "with unit",
                      &a->joints},
-                    {"--json", "FILE", "write what is drawn", &a->json},
+                    {"--json", "FILE", "write the contents of the drawing", &a->json},
                     report_option(&a->report),
                     {"--out", "DIR", "write the picture as SVG, PDF and PNG with its caption", &a->out}},
                    &a->figures),

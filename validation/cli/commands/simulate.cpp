@@ -81,21 +81,21 @@ Geometry geometry_of_data(const std::string& text) {
 SimulationOptions options_of(const SimulateArguments& a) {
   SimulationOptions o;
   if (!(a.seed >= 0 && a.seed < 9e15) || a.seed != std::floor(a.seed))
-    throw InputError(fmt::format("--seed {}: a whole number is wanted", a.seed));
+    throw InputError(fmt::format("--seed {}: give a whole number of at least zero", a.seed));
   o.seed = static_cast<std::uint64_t>(a.seed);
   if (!(a.noise_mm >= 0 && a.noise_mm <= most_noise_mm))
-    throw InputError(fmt::format("--noise {}: mm, from 0 to {}, are wanted", a.noise_mm, most_noise_mm));
+    throw InputError(fmt::format("--noise {}: give a value from 0 to {} mm", a.noise_mm, most_noise_mm));
   o.sigma_u = a.noise_mm / 1e3;
   if (!a.noise_rad.empty()) {
     o.sigma_th = parse_list("--noise-rotation", a.noise_rad, {1}, "rad")[0];
     if (!(*o.sigma_th >= 0 && *o.sigma_th <= 1))
-      throw InputError(fmt::format("--noise-rotation {}: rad, from 0 to 1, are wanted", a.noise_rad));
+      throw InputError(fmt::format("--noise-rotation {}: give a value from 0 to 1 rad", a.noise_rad));
   }
   if (!(a.tolerances >= 0 && a.tolerances <= most_tolerances))
-    throw InputError(fmt::format("--tolerances {}: a factor from 0 to {} is wanted", a.tolerances, most_tolerances));
+    throw InputError(fmt::format("--tolerances {}: give a factor from 0 to {}", a.tolerances, most_tolerances));
   o.tolerances = a.tolerances;
   if (!(a.outliers >= 0 && a.outliers < 0.5))
-    throw InputError(fmt::format("--outliers {}: a share from 0 to 0.5 is wanted", a.outliers));
+    throw InputError(fmt::format("--outliers {}: give a share from 0 to 0.5", a.outliers));
   o.outliers = a.outliers;
   if (!a.temperature.empty()) {
     const std::vector<double> t = parse_list("--temperature", a.temperature, {1, 2}, "mean or mean,swing in deg C");
@@ -115,7 +115,7 @@ Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64
                                  [&](const char* name) { return a.campaign == name; });
   if (!named && std::filesystem::exists(a.campaign)) return read_plan(a.campaign);
   if (!(std::isfinite(a.force) && a.force != 0))
-    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.force));
+    throw InputError(fmt::format("--force {}: give a force in N other than zero", a.force));
   return campaign(a.campaign, m, a.force, seed);
 }
 
@@ -143,7 +143,7 @@ void run(const SimulateArguments& a) {
     hidden += fmt::format("{}{} ({})", hidden.empty() ? "" : ", ", effect.effect->name, site_of(effect));
   }
   o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));
-  tell("campaign {}: {} readings; {} elements a member, geometry {}", a.campaign, plan.readings.size(), a.elements,
+  tell("campaign {}: {} readings; {} elements per member, geometry {}", a.campaign, plan.readings.size(), a.elements,
        a.geometry);
   const Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
     o.progress = told;
@@ -163,39 +163,35 @@ void run(const SimulateArguments& a) {
 
 Command simulate_command() {
   auto a = std::make_shared<SimulateArguments>();
-  return {"simulate",
-          "Measurements of a device as a laboratory would hand them over, with effects hidden in it, every part a "
-          "little off its "
-          "drawing within the device's tolerances, and reading noise; computed by the MSA in the deformed shape. The "
-          "same seed "
-          "gives the same file",
-          "deflect simulate haptic-6psu-ideal-joints --with joint_clearance,gap_mm=0.01 --campaign rich --seed 7 -o "
-          "hidden.csv",
-          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-           {"--with", "EFFECT,NAME=VALUE,...",
-            "hide an effect of the catalogue, with values for its parameters and, for one of a single leg, leg=4; "
-            "several times "
-            "for several effects",
-            &a->with},
-           {"--effects", "FILE", "effect files of your own, beside the catalogue", &a->files},
-           {"--campaign", "paper|cycle|rich|random|FILE",
-            "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280); or a "
-            "measurement "
-            "file whose poses, loads, sequence and temperatures are taken",
-            &a->campaign},
-           {"--force", "N", "largest force of a named campaign (default 50)", &a->force},
-           {"--noise", "MM", "standard deviation of a translation in mm (default 0.002)", &a->noise_mm},
-           {"--noise-rotation", "RAD", "measure rotations too, with this standard deviation", &a->noise_rad},
-           {"--tolerances", "FACTOR", "times the device's tolerances (default 1; 0: built as drawn)", &a->tolerances},
-           {"--outliers", "SHARE", "share of gross outliers, 10 to 30 standard deviations (default 0)", &a->outliers},
-           {"--temperature", "MEAN,SWING", "deg C: a slow wave about the mean over the campaign (default 20)",
-            &a->temperature},
-           {"--geometry", "linear|second-order|finite", "equilibrium in which shape (default finite)", &a->geometry},
-           {"--elements", "N", "elements per member (default 4)", &a->elements},
-           {"--seed", "N", "of everything drawn by lot (default 1)", &a->seed},
-           {"--threads", "N", "threads (default 0: all cores); the file does not depend on it", &a->threads},
-           {"-o,--output", "DATA", "file to write", &a->out, true}},
-          [a] { run(*a); }};
+  return {
+      "simulate",
+      "Simulate measurements of a device, as a laboratory would deliver them. The device contains hidden effects, its "
+      "parts deviate from the drawing within their tolerances, and the readings are noisy. The MSA computes them in "
+      "the deformed shape. The same seed gives the same file",
+      "deflect simulate haptic-6psu-ideal-joints --with joint_clearance,gap_mm=0.01 --campaign rich --seed 7 -o "
+      "hidden.csv",
+      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+       {"--with", "EFFECT,NAME=VALUE,...",
+        "hide an effect with values of its parameters, and leg=4 if it is of one leg; repeat for several effects",
+        &a->with},
+       {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
+       {"--campaign", "paper|cycle|rich|random|FILE",
+        "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280); or a "
+        "measurement file that gives poses, loads, sequence and temperatures",
+        &a->campaign},
+       {"--force", "N", "largest force of a named campaign (default 50)", &a->force},
+       {"--noise", "MM", "standard deviation of a translation in mm (default 0.002)", &a->noise_mm},
+       {"--noise-rotation", "RAD", "measure rotations too, with this standard deviation", &a->noise_rad},
+       {"--tolerances", "FACTOR", "factor on the device's tolerances (default 1; 0: built as drawn)", &a->tolerances},
+       {"--outliers", "SHARE", "share of gross outliers, 10 to 30 standard deviations (default 0)", &a->outliers},
+       {"--temperature", "MEAN,SWING", "deg C: mean, and amplitude of a slow wave about it (default 20)",
+        &a->temperature},
+       {"--geometry", "linear|second-order|finite", "shape in which forces balance (default finite)", &a->geometry},
+       {"--elements", "N", "elements per member (default 4)", &a->elements},
+       {"--seed", "N", "seed of all random numbers (default 1)", &a->seed},
+       {"--threads", "N", "threads (default 0: all cores); they do not change the file", &a->threads},
+       {"-o,--output", "DATA", "file to write", &a->out, true}},
+      [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli

@@ -48,7 +48,7 @@ void run(const SolveArguments& a) {
   if (!a.json.empty()) write_file(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));
   if (load.isZero(0) && r.msa.stiffness_mm.isZero(1e-9))
-    fmt::print("Without load the contacts have no stiffness; give --load for the stiffness under it.\n");
+    fmt::print("Without load the contacts have no stiffness; give --load to get the stiffness under that load.\n");
   if (!a.out.empty()) fmt::print("Deflected structure: {0}/deflected.msh, {0}/deflected.vtu\n", a.out);
   if (!a.report.empty())
     write_report_of_stands(a.report, a.device, m, {{"", at.pose_mm_deg, at.configuration}}, {load},
@@ -59,29 +59,28 @@ void run(const SolveArguments& a) {
 
 Command solve_command() {
   auto a = std::make_shared<SolveArguments>();
-  return {
-      "solve",
-      "One pose, one load: displacement and 6x6 stiffness of the tool point by both theories, the share of each part "
-      "in the compliance, the checks. Where nothing loads a play, how far the device floats in it; the displacement is "
-      "then the middle of the play",
-      "deflect solve haptic-6psu --pose 25,25,198.9,0,0,0 --load 50,0,0,0,0,0 --json result.json --out result",
-      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-       {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in the base frame, mm and deg", &a->pose},
-       {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
-        &a->joints},
-       {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
-       {"--geometry", "linear|second-order|finite",
-        "shape in which equilibrium is written (default linear). In the deformed shape, second order or finite, with "
-        "rotations of any size, K is the tangent there; a load past buckling is refused",
-        &a->geometry},
-       {"--element-size", "LENGTH",
-        "size of the MSA's elements, with unit (default: one element a member, which is exact at its ends; with --out "
-        "twenty, for the drawing; in the deformed shape at least eight)",
-        &a->element_size},
-       {"--json", "FILE", "write the result", &a->json},
-       report_option(&a->report),
-       {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
-      [a] { drawing_motions(a->out, [a] { run(*a); }); }};
+  return {"solve",
+          "Solve one pose under one load: displacement and 6x6 stiffness of the tool point by both theories, each "
+          "part's share of the compliance, the checks. If a play is unloaded, the report says how far the device can "
+          "move in it; the displacement is then the middle of the play",
+          "deflect solve haptic-6psu --pose 25,25,198.9,0,0,0 --load 50,0,0,0,0,0 --json result.json --out result",
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--pose", "x,y,z,roll,pitch,yaw", "pose of the tool frame in the base frame, mm and deg", &a->pose},
+           {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
+            &a->joints},
+           {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
+           {"--geometry", "linear|second-order|finite",
+            "shape in which forces balance: undeformed (linear, default) or deformed (second-order; finite: rotations "
+            "of any size). In the deformed shape K is the tangent, and loads past buckling are refused",
+            &a->geometry},
+           {"--element-size", "LENGTH",
+            "size of the MSA's elements, with unit (default: one per member, exact at its ends; twenty with --out, for "
+            "the drawing; at least eight in the deformed shape)",
+            &a->element_size},
+           {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report),
+           {"--out", "DIR", "write the deflected structure as .msh (Gmsh) and .vtu (ParaView)", &a->out}},
+          [a] { drawing_motions(a->out, [a] { run(*a); }); }};
 }
 
 }  // namespace deflect::cli

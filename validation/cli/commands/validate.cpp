@@ -46,7 +46,7 @@ void run(const ValidateArguments& a) {
   const Mechanism m = read_device(a.device);
   const std::set<Erratum> as_printed = parse_errata(a.as_printed);
   if (!std::isfinite(a.load_N) || a.load_N == 0)
-    throw InputError(fmt::format("--force {}: a force in N other than zero is wanted", a.load_N));
+    throw InputError(fmt::format("--force {}: give a force in N other than zero", a.load_N));
   const std::vector<ValidationPoint> points = a.points.empty() ? workspace_points(m) : read_points(a.points);
   const Validation v =
       timed(fmt::format("both theories at {} points: closed form; MSA, sparse Cholesky", points.size()),
@@ -80,30 +80,30 @@ void run(const ValidateArguments& a) {
 
 Command validate_command() {
   auto a = std::make_shared<ValidateArguments>();
-  std::string errata_help = "errata of the paper to take as printed, joined by commas, or all:";
+  std::string errata_help = "errata of the paper to use as printed, separated by commas, or all:";
   for (const ErratumInfo& e : errata()) errata_help += fmt::format("\n{} {}: {}", e.name, e.equations, e.as_printed);
-  return {"validate",
-          "Analytic theory against MSA at the points of the device's workspace, nine of a cube (or --points), for a "
-          "force along x, y and z: "
-          "table of errors, Fig. 10",
-          "deflect validate haptic-6psu --out figures --as-printed passive-joints,ujoint-parallel",
-          with_figures(
-              {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-               {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg",
-                &a->points},
-               {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
-               {"--as-printed", "ERRATA", errata_help, &a->as_printed},
-               {"--errata", "", "the price of each erratum, one at a time", &a->errata},
-               {"--mesh-study", "", "the difference of the theories for finer and finer meshes", &a->mesh_study},
-               {"--element-size", "LENGTH",
-                "size of the MSA's elements, with unit (default: one a member, exact at its ends)", &a->element_size},
-               {"--json", "FILE", "write the result", &a->json},
-               report_option(&a->report),
-               {"--out", "DIR",
-                "write Fig. 10 and, with --errata, their price as SVG, PDF, PNG with captions, and the tables as CSV",
-                &a->out}},
-              &a->figures),
-          [a] { run(*a); }};
+  return {
+      "validate",
+      "Compare the closed form with the MSA at points of the device's workspace, under a force along x, y and z: "
+      "table of errors, Fig. 10. The points of a cube are its centre and corners; --points gives others",
+      "deflect validate haptic-6psu --out figures --as-printed passive-joints,ujoint-parallel",
+      with_figures(
+          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+           {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg",
+            &a->points},
+           {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
+           {"--as-printed", "ERRATA", errata_help, &a->as_printed},
+           {"--errata", "", "show how much each erratum alone changes the result", &a->errata},
+           {"--mesh-study", "", "show the difference of the theories as the mesh is refined", &a->mesh_study},
+           {"--element-size", "LENGTH",
+            "size of the MSA's elements, with unit (default: one per member, exact at its ends)", &a->element_size},
+           {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report),
+           {"--out", "DIR",
+            "write Fig. 10 and, with --errata, a figure of the errata (SVG, PDF, PNG with captions), and tables (CSV)",
+            &a->out}},
+          &a->figures),
+      [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli
