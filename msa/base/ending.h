@@ -6,7 +6,7 @@
 
 namespace deflect {
 
-/// 0 done, 2 bad input or usage (InputError), 3 a model that cannot be (ModelError), 4 a numerical failure
+/// 0 done, 2 bad input or usage (InputError), 3 an impossible model (ModelError), 4 a numerical failure
 /// (NumericalError, out of memory), 70 a bug (everything else).
 struct Ending {
   int code = 0;

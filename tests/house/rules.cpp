@@ -47,8 +47,8 @@ const std::vector<std::pair<std::string, Rooms>>& table() {
         "validation/prediction", "validation/recording", "validation/statistics"}},
       {"validation/effects", {"msa/base", "msa/fields", "msa/mechanism", "analytic"}},
       {"validation/diagnosis",
-       {"msa/base", "msa/mechanism", "validation/measurement", "validation/parallel", "validation/prediction",
-        "validation/statistics", "validation/compare", "validation/effects"}},
+       {"msa/base", "msa/fields", "msa/mechanism", "validation/measurement", "validation/parallel",
+        "validation/prediction", "validation/statistics", "validation/compare", "validation/effects"}},
       {"validation/matrix", {"msa/base"}},
       {"validation/report",
        {"msa/base", "msa/fields", "msa/mechanism", "msa/frame/structure", "msa/frame/file", "validation/measurement",
@@ -65,9 +65,9 @@ const std::vector<std::pair<std::string, Rooms>>& table() {
         "validation/measurement", "validation/parallel", "validation/theories", "validation/compare",
         "validation/effects", "validation/diagnosis", "validation/report", "validation/figures", "validation/page"}},
       {"validation/cli/commands",
-       {"msa/base", "msa/fields", "msa/mechanism", "msa/frame/file", "meshes", "validation/theories",
-        "validation/prediction", "validation/compare", "validation/effects", "validation/diagnosis",
-        "validation/report", "validation/figures", "validation/page", "validation/cli"}},
+       {"msa/base", "msa/fields", "msa/mechanism", "msa/frame/file", "meshes", "validation/parallel",
+        "validation/theories", "validation/prediction", "validation/compare", "validation/effects",
+        "validation/diagnosis", "validation/report", "validation/figures", "validation/page", "validation/cli"}},
   };
   return rooms;
 }
@@ -141,12 +141,12 @@ std::string judge_own(const std::string& from, const Include& include, const std
     return "there is no such file; an own header is named by its path from the root, others stand in <>";
   if (!include.quoted) return "an own header is included with quotes";
   const std::string to = room_of(include.name);
+  if (from.empty() || to.empty()) return "one of the two files is in no room of the table";
   if (from == to) return "";
   if (to == "tests") return "nothing includes tests";
   if (from == "tests" && !to.empty()) return "";
   if (from == "analytic" && to.starts_with("msa/frame/"))
     return "the two theories never include each other: analytic may include " + list(*allowed_in(from));
-  if (from.empty() || to.empty()) return "one of the two files is in no room of the table";
   return allowed_in(from)->contains(to) ? "" : from + " may include " + list(*allowed_in(from));
 }
 

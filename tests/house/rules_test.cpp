@@ -104,10 +104,10 @@ TEST(Includes, ThirdPartyLibrariesKeepTheirPlace) {
 TEST(Includes, ALibraryOfOneFileIsRefusedInASecond) {
   const std::string use = "#include <cholmod.h>\n";
   EXPECT_TRUE(include_violations({{"msa/frame/structure/a.cpp", use + use}}).empty());
-  EXPECT_EQ(
-      include_violations({{"msa/frame/structure/a.cpp", use}, {"msa/frame/structure/b.cpp", "\n\n" + use}}),
-      Messages{"msa/frame/structure/b.cpp:3: includes cholmod.h: CHOLMOD belongs into one .cpp file of msa/frame, and "
-               "msa/frame/structure/a.cpp includes it already"});
+  EXPECT_EQ(include_violations({{"msa/frame/structure/a.cpp", use}, {"msa/frame/structure/b.cpp", "\n\n" + use}}),
+            Messages{"msa/frame/structure/b.cpp:3: includes cholmod.h: CHOLMOD belongs into one .cpp file of "
+                     "msa/frame/structure, and "
+                     "msa/frame/structure/a.cpp includes it already"});
 }
 
 TEST(Length, CountsAnUnfinishedLastLine) {

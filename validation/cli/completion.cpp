@@ -108,6 +108,7 @@ Choices choices_of(const std::string& value) {
       names = device_names();
     } else if (piece == "FRAME") {
       names = names_in("cases");
+      for (const std::string& frame : names_in("frames")) names.push_back(frame);
     } else if (split(piece, ',').front() == "EFFECT") {
       names = names_in("effects/catalogue");
     } else if (piece == "ERRATA") {

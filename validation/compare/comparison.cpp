@@ -78,29 +78,6 @@ double expected_rmse(const ResidualStudy& s, const PartedColumns& A, const std::
 
 }  // namespace
 
-bool rotations_alone(const std::vector<MeasuredValue>& values) {
-  return std::all_of(values.begin(), values.end(), [](const MeasuredValue& v) { return v.component >= 3; });
-}
-
-double rms_of_kept(const std::vector<MeasuredValue>& values, const VectorX& x, const std::vector<bool>& set_aside) {
-  std::vector<MeasuredValue> kept;
-  std::vector<Eigen::Index> rows;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!set_aside[values[i].reading]) kept.push_back(values[i]), rows.push_back(static_cast<Eigen::Index>(i));
-  return rms_of_errors(kept, x(rows));
-}
-
-double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x) {
-  const bool rotations = rotations_alone(values);
-  double squares = 0, n = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if ((values[i].component >= 3) == rotations) {
-      squares += x(static_cast<Eigen::Index>(i)) * x(static_cast<Eigen::Index>(i));
-      n += 1;
-    }
-  return n > 0 ? std::sqrt(squares / n) : 0;
-}
-
 namespace {
 
 /// Everything but the mistakes of recording, step by step.
@@ -188,7 +165,8 @@ class Comparing {
     const ResidualStudy& s = c.study;
     const Uncertainty& u = *uncertainty_;
     for (std::size_t i = 0; i < patterns_.size(); ++i) {
-      PatternTest t{patterns_[i].id, patterns_[i].title, found_.alone[i], 0};
+      const PatternRow& row = row_of(patterns_[i].id);
+      PatternTest t{row.name, row.title, found_.alone[i], 0};
       t.size = rms_of_errors(s.values, columns_[i] * t.alone.amplitude);
       c.patterns.push_back(std::move(t));
     }

@@ -8,48 +8,13 @@
 
 #include "validation/compare/contrasts.h"
 #include "validation/compare/elongation.h"
-#include "validation/compare/patterns.h"
+#include "validation/compare/errors_by_group.h"
+#include "validation/compare/findings.h"
 #include "validation/compare/plausibility.h"
 #include "validation/prediction/prediction.h"
 #include "validation/statistics/uncertainty.h"
 
 namespace deflect {
-
-/// Whether no translation was measured: the errors are then those of rotations, in rad where m is said below.
-bool rotations_alone(const std::vector<MeasuredValue>&);
-
-/// Root mean square over the numbers that errors speak of: m, or rad of rotations alone; 0 without any.
-double rms_of_errors(const std::vector<MeasuredValue>&, const VectorX&);
-
-/// The same over the readings that are not set aside.
-double rms_of_kept(const std::vector<MeasuredValue>&, const VectorX&, const std::vector<bool>& set_aside);
-
-/// Of residuals measured − predicted: translations in m, or rotations in rad where none were measured.
-struct Errors {
-  std::string group;  ///< "pose 3", "fx > 0", "30 … 50 N"; empty for all
-  std::size_t readings = 0;
-  double rmse = 0;  ///< root mean square of |r| by component
-  Vector3 bias = Vector3::Zero();
-  double worst = 0;            ///< largest |component|
-  std::size_t worst_line = 0;  ///< of the file
-  double measured = 0;         ///< root mean square of the measured components
-};
-
-/// A pattern that the residual holds, in the order found: each given those before it.
-struct Finding {
-  std::string pattern;   ///< id (patterns.h), or "elastic at SITE"
-  std::string sentence;  ///< what, where, how large, with numbers
-  std::vector<std::string> columns;
-  VectorX amplitude, deviation;  ///< with standard deviations; in `unit`
-  std::string unit;
-  double size = 0;   ///< m: root mean square of what it adds to readings
-  double share = 0;  ///< of the misfit beyond noise and tolerances (χ²) that it explains
-  double gain = 0;   ///< χ² taken away
-  int freedoms = 0;
-  double p_value = 1;
-  MatrixX shape;                     ///< columns over the measured numbers
-  std::vector<std::string> instead;  ///< other patterns that would do nearly as well
-};
 
 /// The residual regressed on one pattern alone.
 struct PatternTest {

@@ -1,5 +1,7 @@
 #include "validation/compare/errors_by_group.h"
 
+#include "validation/compare/comparison.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -53,6 +55,29 @@ std::string direction_of(const Vector6& F) {
 }
 
 }  // namespace
+
+bool rotations_alone(const std::vector<MeasuredValue>& values) {
+  return std::all_of(values.begin(), values.end(), [](const MeasuredValue& v) { return v.component >= 3; });
+}
+
+double rms_of_kept(const std::vector<MeasuredValue>& values, const VectorX& x, const std::vector<bool>& set_aside) {
+  std::vector<MeasuredValue> kept;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!set_aside[values[i].reading]) kept.push_back(values[i]), rows.push_back(static_cast<Eigen::Index>(i));
+  return rms_of_errors(kept, x(rows));
+}
+
+double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x) {
+  const bool rotations = rotations_alone(values);
+  double squares = 0, n = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if ((values[i].component >= 3) == rotations) {
+      squares += x(static_cast<Eigen::Index>(i)) * x(static_cast<Eigen::Index>(i));
+      n += 1;
+    }
+  return n > 0 ? std::sqrt(squares / n) : 0;
+}
 
 void add_errors(Comparison& c) {
   const Measurements& data = *c.study.data;

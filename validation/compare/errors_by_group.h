@@ -1,9 +1,35 @@
 // How large residuals are, in all and by group.
 #pragma once
 
-#include "validation/compare/comparison.h"
+#include <string>
+#include <vector>
+
+#include "msa/base/spatial.h"
+#include "validation/measurement/replicates.h"
 
 namespace deflect {
+
+/// Whether no translation was measured: the errors are then those of rotations, in rad where m is said below.
+bool rotations_alone(const std::vector<MeasuredValue>&);
+
+/// Root mean square over the numbers that errors speak of: m, or rad of rotations alone; 0 without any.
+double rms_of_errors(const std::vector<MeasuredValue>&, const VectorX&);
+
+/// The same over the readings that are not set aside.
+double rms_of_kept(const std::vector<MeasuredValue>&, const VectorX&, const std::vector<bool>& set_aside);
+
+/// Of residuals measured − predicted: translations in m, or rotations in rad where none were measured.
+struct Errors {
+  std::string group;  ///< "pose 3", "fx > 0", "30 … 50 N"; empty for all
+  std::size_t readings = 0;
+  double rmse = 0;  ///< root mean square of |r| by component
+  Vector3 bias = Vector3::Zero();
+  double worst = 0;            ///< largest |component|
+  std::size_t worst_line = 0;  ///< of the file
+  double measured = 0;         ///< root mean square of the measured components
+};
+
+struct Comparison;
 
 /// Fills `all`, `by_axis`, `by_pose`, `by_direction`, `by_magnitude` and, with a sequence, `by_heading`.
 void add_errors(Comparison&);

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "msa/base/number_words.h"
+#include "validation/compare/exponents.h"
+#include "validation/compare/slides.h"
 
 namespace deflect {
 namespace {
@@ -23,7 +26,7 @@ std::string by_column(const Finding& f, double scale, const char* unit) {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& parts) {
+std::string sentence_from(const std::vector<std::string>& parts) {
   std::string out;
   for (const std::string& p : parts) out += (out.empty() ? "" : "; ") + p;
   return out;
@@ -32,8 +35,8 @@ std::string joined(const std::vector<std::string>& parts) {
 /// How much a site of this geometry yields in the pattern found, which grows as a root's or a guide's does across
 /// slides.
 double weight_of(const Finding& found, double mean_extension, const Site& site) {
-  if (found.pattern == "elastic along slides") return site.along;
-  if (found.pattern != "elastic across slides") return 1;
+  if (found.id == PatternId::elastic_along_slides) return site.along;
+  if (found.id != PatternId::elastic_across_slides) return 1;
   const double L = site.extension / mean_extension;
   double weight = 0, power = 1;
   for (Eigen::Index k = 0; k < found.amplitude.size(); ++k, power *= L) weight += found.amplitude(k) * power;
@@ -64,72 +67,42 @@ std::string elastic(const Finding& f, const ResidualStudy& s, const Uncertainty&
   const bool rotation = s.sites.front().front().rotation;
   const bool softer = f.columns.size() != 1 || f.amplitude(0) > 0;
   std::string first = softer ? "an elastic compliance is missing" : "the machine is stiffer than the model";
-  if (f.pattern.starts_with("elastic at ")) first += fmt::format(" at {} alone", f.pattern.substr(11));
-  if (f.pattern == "elastic along slides") first += " along the slides";
-  if (f.pattern == "elastic across slides") first += " across the slides";
+  if (f.id == PatternId::elastic_at) first += fmt::format(" at {} alone", f.site);
+  if (f.id == PatternId::elastic_along_slides) first += " along the slides";
+  if (f.id == PatternId::elastic_across_slides) first += " across the slides";
   if (f.columns.size() == 1)
     first += rotation
                  ? fmt::format(": {} under each moment", plus_minus(f.amplitude(0), f.deviation(0), 1e3, "µrad/Nmm"))
                  : fmt::format(": {}", plus_minus(f.amplitude(0), f.deviation(0), 1e6, "µm/N"));
-  else if (f.pattern == "elastic by site")
+  else if (f.id == PatternId::elastic_by_site)
     first += ": " + (rotation ? by_column(f, 1e3, "µrad/Nmm") : by_column(f, 1e6, "µm/N"));
   parts.push_back(first);
   const auto weight = [&, mean = mean_extension(s)](const Site& site) { return weight_of(f, mean, site); };
   const Regressions regressions(u, r, beside);
-  if (const auto p = force_exponent(s, regressions, weight); p && !f.pattern.starts_with("elastic at ")) {
+  if (const auto p = force_exponent(s, regressions, weight); p && f.id != PatternId::elastic_at) {
     const double power = as_printed(p->value, 2), deviation = as_printed(p->deviation, 2);
     parts.push_back(fmt::format("odd in the load and {} (it grows as the force to the {:.2f} ± {:.2f})",
                                 std::abs(power - 1) < 3 * deviation + 0.05 ? "proportional" : "not quite proportional",
                                 power, deviation));
   }
-  if (!f.pattern.starts_with("elastic at "))
-    if (const auto p = extension_exponent(s, regressions); p && f.pattern == "elastic across slides")
+  if (f.id != PatternId::elastic_at)
+    if (const auto p = extension_exponent(s, regressions); p && f.id == PatternId::elastic_across_slides)
       parts.push_back(fmt::format("the excess grows as their length to the {:.1f} ± {:.1f}", p->value, p->deviation));
-  if (!f.pattern.starts_with("elastic at ") && f.pattern != "elastic by site")
+  if (f.id != PatternId::elastic_at && f.id != PatternId::elastic_by_site)
     if (const std::string same = alike(f, s, u, r, beside); !same.empty()) parts.push_back(same);
-  return joined(parts);
+  return sentence_from(parts);
+}
+
+std::string power(const ResidualStudy& s, const Regressions& regressions) {
+  const auto p = force_exponent(s, regressions, [](const Site&) { return 1.0; });
+  const bool less = !p || as_printed(p->value, 2) < 1;
+  return fmt::format(
+      "the misfit is odd in the load and grows {} than in proportion{}: {}", less ? "less" : "no less",
+      p ? fmt::format(" (as the force to the {:.2f} ± {:.2f})", p->value, p->deviation) : "",
+      less ? "a contact that stiffens under load" : "near a contact that stiffens under load, but not that alone");
 }
 
 }  // namespace
-
-bool has_slides(const ResidualStudy& s) {
-  for (const auto& sites : s.sites)
-    for (const Site& site : sites)
-      if (site.along < 0.999) return true;
-  return false;
-}
-
-bool varies_in_extension(const ResidualStudy& s) {
-  double low = INFINITY, high = 0;
-  for (const auto& sites : s.sites)
-    for (const Site& site : sites) low = std::min(low, site.extension), high = std::max(high, site.extension);
-  return low > 0 && high > 1.2 * low;
-}
-
-double mean_extension(const ResidualStudy& s) {
-  double sum = 0, n = 0;
-  for (const auto& sites : s.sites)
-    for (const Site& site : sites) sum += site.extension, n += 1;
-  return n > 0 && sum > 0 ? sum / n : 1;
-}
-
-VectorX elastic_along(const ResidualStudy& s) {
-  return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
-    return s.force[i](static_cast<Eigen::Index>(k)) * s.sites[s.data->readings[i].pose][k].along;
-  });
-}
-
-VectorX elastic_across(const ResidualStudy& s, double power) {
-  const double mean = mean_extension(s);
-  std::vector<std::vector<double>> weight;  // by pose and site
-  for (const std::vector<Site>& sites : s.sites) {
-    weight.emplace_back();
-    for (const Site& site : sites) weight.back().push_back((1 - site.along) * std::pow(site.extension / mean, power));
-  }
-  return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
-    return s.force[i](static_cast<Eigen::Index>(k)) * weight[s.data->readings[i].pose][k];
-  });
-}
 
 std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
                         const MatrixX& beside) {
@@ -138,57 +111,56 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertai
   const auto amplitude = [&](double scale, const char* unit) {
     return plus_minus(std::abs(f.amplitude(0)), f.deviation(0), scale, unit);
   };
-  if (f.pattern.starts_with("elastic")) return elastic(f, s, u, r, beside);
-  if (f.pattern == "step")
-    return fmt::format(
-        "the misfit does not grow with the load: every site {} {} as soon as it is loaded, in the sense of its "
-        "force: free travel",
-        f.amplitude(0) > 0 ? "gives way by" : "holds back by",
-        rotation ? amplitude(1e6, "µrad") : amplitude(1e6, "µm"));
-  if (f.pattern == "power") {
-    const auto p = force_exponent(s, Regressions(u, r, beside), [](const Site&) { return 1.0; });
-    const bool less = !p || as_printed(p->value, 2) < 1;
-    return fmt::format(
-        "the misfit is odd in the load and grows {} than in proportion{}: {}", less ? "less" : "no less",
-        p ? fmt::format(" (as the force to the {:.2f} ± {:.2f})", p->value, p->deviation) : "",
-        less ? "a contact that stiffens under load" : "near a contact that stiffens under load, but not that alone");
+  switch (f.id) {
+    case PatternId::elastic:
+    case PatternId::elastic_by_site:
+    case PatternId::elastic_at:
+    case PatternId::elastic_along_slides:
+    case PatternId::elastic_across_slides:
+      return elastic(f, s, u, r, beside);
+    case PatternId::step:
+      return fmt::format(
+          "the misfit does not grow with the load: every site {} {} as soon as it is loaded, in the sense of its "
+          "force: free travel",
+          f.amplitude(0) > 0 ? "gives way by" : "holds back by",
+          rotation ? amplitude(1e6, "µrad") : amplitude(1e6, "µm"));
+    case PatternId::power:
+      return power(s, Regressions(u, r, beside));
+    case PatternId::one_sided:
+      return fmt::format("the misfit is even in the load: sites give {} where they are {}, not in the other sense",
+                         rotation ? amplitude(2e3, "µrad/Nmm") : amplitude(2e6, "µm/N"),
+                         f.amplitude(0) > 0 ? "pulled" : "pushed");
+    case PatternId::hysteresis:
+      return "the misfit depends on the way the load was reached and lags behind it: hysteresis, friction";
+    case PatternId::base_tilt:
+      return fmt::format("the whole machine tilts under the load's moment about its base: {}; no single leg does this",
+                         by_column(f, 1e3, "µrad/Nmm"));
+    case PatternId::tool:
+      return "the point measured moves against the platform: " + by_column(f, 1e6, "µm/N");
+    case PatternId::weight:
+      return fmt::format(
+          "the misfit does not depend on the load and points where a constant force of {} {} would push: even",
+          amplitude(1, "N"), f.amplitude(0) > 0 ? "downwards" : "upwards");
+    case PatternId::offset:
+      return "every reading is displaced alike, whatever pose and load: " + by_column(f, 1e6, "µm");
+    case PatternId::drift:
+      return "readings drift with time, over the sequence by " + by_column(f, 1e6, "µm");
+    case PatternId::temperature:
+      return "readings follow the temperature: " + by_column(f, 1e6, "µm/K");
+    case PatternId::load_gain:
+      return fmt::format(
+          "all displacements are {} than predicted by one factor, {}: the modulus of everything, or the load cell's "
+          "gain",
+          f.amplitude(0) > 0 ? "larger" : "smaller", plus_minus_words(1 + f.amplitude(0), f.deviation(0)));
+    case PatternId::load_axes:
+      return "the misfit is perpendicular to the model's answer and not reciprocal: loads are recorded in axes turned "
+             "by " +
+             by_column(f, 1e3, "mrad") + ": misaligned";
+    case PatternId::sensor_axes:
+      return "the misfit is perpendicular to the displacement and not reciprocal: the sensor's axes are turned by " +
+             by_column(f, 1e3, "mrad") + ": misaligned";
   }
-  if (f.pattern == "one-sided")
-    return fmt::format("the misfit is even in the load: sites give {} where they are {}, not in the other sense",
-                       rotation ? amplitude(2e3, "µrad/Nmm") : amplitude(2e6, "µm/N"),
-                       f.amplitude(0) > 0 ? "pulled" : "pushed");
-  if (f.pattern == "hysteresis")
-    return "the misfit depends on the way the load was reached and lags behind it: hysteresis, friction";
-  if (f.pattern == "base tilt")
-    return fmt::format("the whole machine tilts under the load's moment about its base: {}; no single leg does this",
-                       by_column(f, 1e3, "µrad/Nmm"));
-  if (f.pattern == "tool") return "the point measured moves against the platform: " + by_column(f, 1e6, "µm/N");
-  if (f.pattern == "weight")
-    return fmt::format(
-        "the misfit does not depend on the load and points where a constant force of {} {} would push: even",
-        amplitude(1, "N"), f.amplitude(0) > 0 ? "downwards" : "upwards");
-  if (f.pattern == "offset")
-    return "every reading is displaced alike, whatever pose and load: " + by_column(f, 1e6, "µm");
-  if (f.pattern == "drift") return "readings drift with time, over the sequence by " + by_column(f, 1e6, "µm");
-  if (f.pattern == "temperature") return "readings follow the temperature: " + by_column(f, 1e6, "µm/K");
-  if (f.pattern == "load gain")
-    return fmt::format(
-        "all displacements are {} than predicted by one factor, {}: the modulus of everything, or the load cell's gain",
-        f.amplitude(0) > 0 ? "larger" : "smaller", plus_minus_words(1 + f.amplitude(0), f.deviation(0)));
-  if (f.pattern == "load axes")
-    return "the misfit is perpendicular to the model's answer and not reciprocal: loads are recorded in axes turned "
-           "by " +
-           by_column(f, 1e3, "mrad") + ": misaligned";
-  if (f.pattern == "sensor axes")
-    return "the misfit is perpendicular to the displacement and not reciprocal: the sensor's axes are turned by " +
-           by_column(f, 1e3, "mrad") + ": misaligned";
-  std::string sizes;
-  for (std::size_t i = 0; i < f.columns.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    sizes += fmt::format("{}{} {} {}", i ? ", " : "", f.columns[i], plus_minus_words(f.amplitude(k), f.deviation(k)),
-                         f.unit);
-  }
-  return fmt::format("the misfit has the pattern '{}': {}", f.pattern, sizes);
+  throw std::logic_error("a pattern without a sentence");
 }
 
 }  // namespace deflect

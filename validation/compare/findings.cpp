@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "validation/compare/errors_by_group.h"
 #include "validation/compare/finding_text.h"
+#include "validation/compare/slides.h"
 #include "validation/parallel/cases.h"
 
 namespace deflect {
@@ -16,11 +18,14 @@ constexpr double least_score = 10, close_call = 10, least_p = 1e-4;
 constexpr std::size_t most_findings = 4;
 
 struct Candidate {
-  std::string id;
+  PatternId id;
+  std::string site;  // of a single one
   std::vector<std::string> names;
   std::string unit;
   MatrixX columns;
   bool is_pattern = false;  // of the list, in its order
+
+  std::string name() const { return site.empty() ? row_of(id).name : fmt::format("{} {}", row_of(id).name, site); }
 };
 
 /// What one site alone can do: yield along its line; where it has a slide, along this, across it, and across as a bent
@@ -36,8 +41,11 @@ void add_single_sites(const ResidualStudy& s, const Pattern& p, const MatrixX& c
                    : 0.0;
       });
     };
-    Candidate c{
-        "elastic at " + p.columns[site], {p.columns[site]}, p.unit, columns.col(static_cast<Eigen::Index>(site))};
+    Candidate c{PatternId::elastic_at,
+                p.columns[site],
+                {p.columns[site]},
+                p.unit,
+                columns.col(static_cast<Eigen::Index>(site))};
     if (slides) {
       c.columns.resize(Eigen::NoChange, 3);
       c.columns.col(0) = only([](const Site& x) { return x.along; });
@@ -55,10 +63,10 @@ std::vector<Candidate> candidates_of(const ResidualStudy& s, const std::vector<P
   std::vector<Candidate> out;
   for (std::size_t i = 0; i < patterns.size(); ++i) {
     const Pattern& p = patterns[i];
-    if (p.id == "elastic by site") add_single_sites(s, p, columns[i], out);
-    out.push_back({p.id, p.columns, p.unit, columns[i], true});
-    if (p.id == "elastic" && has_slides(s)) {
-      out.push_back({"elastic along slides", {"all"}, p.unit, elastic_along(s)});
+    if (p.id == PatternId::elastic_by_site) add_single_sites(s, p, columns[i], out);
+    out.push_back({p.id, "", p.columns, p.unit, columns[i], true});
+    if (p.id == PatternId::elastic && has_slides(s)) {
+      out.push_back({PatternId::elastic_along_slides, "", {"all"}, p.unit, elastic_along(s)});
       const int powers = varies_in_extension(s) ? 4 : 1;  // a carriage, its guide's clamp tilting, the guide bending
       MatrixX across(columns[i].rows(), powers);
       std::vector<std::string> names;
@@ -66,7 +74,7 @@ std::vector<Candidate> candidates_of(const ResidualStudy& s, const std::vector<P
         names.push_back(fmt::format("L^{}", power));
         across.col(power) = elastic_across(s, power);
       }
-      out.push_back({"elastic across slides", names, p.unit, across});
+      out.push_back({PatternId::elastic_across_slides, "", names, p.unit, across});
     }
   }
   return out;
@@ -77,33 +85,6 @@ MatrixX joined(const MatrixX& a, const MatrixX& b) {
   if (a.cols() > 0) out.leftCols(a.cols()) = a;
   out.rightCols(b.cols()) = b;
   return out;
-}
-
-/// The exponent that takes most χ² away: grid, then a parabola through the best three. `column(p)`: of the exponent.
-std::optional<Exponent> best_exponent(double low, double high, double step, const Regressions& regressions,
-                                      const std::function<VectorX(double)>& column) {
-  std::vector<double> at;
-  for (double p = low; p <= high + 1e-9; p += step) at.push_back(p);
-  std::vector<double> gains(at.size());
-  constexpr std::size_t some = 8;  // columns that are whitened together
-  for_each_case((at.size() + some - 1) / some, 1, regressions.threads(), [&](std::size_t part) {
-    const std::size_t first = part * some, end = std::min(first + some, at.size());
-    MatrixX columns;
-    for (std::size_t i = first; i < end; ++i) {
-      const VectorX one = column(at[i]);
-      if (i == first) columns.resize(one.size(), static_cast<Eigen::Index>(end - first));
-      columns.col(static_cast<Eigen::Index>(i - first)) = one;
-    }
-    columns = regressions.whitened(columns);
-    for (std::size_t i = first; i < end; ++i)
-      gains[i] = regressions.on_whitened(columns.col(static_cast<Eigen::Index>(i - first))).gain;
-  });
-  const auto best = static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
-  if (best == 0 || best + 1 == at.size() || gains[best] < 25) return std::nullopt;
-  const double curvature = (gains[best - 1] - 2 * gains[best] + gains[best + 1]) / (step * step);
-  if (!(curvature < 0)) return std::nullopt;
-  const double slope = (gains[best + 1] - gains[best - 1]) / (2 * step);
-  return Exponent{at[best] - slope / curvature, std::sqrt(-2 / curvature)};
 }
 
 /// Whitened, by candidate.
@@ -121,21 +102,6 @@ std::vector<Regression> fits_of(const Regressions& regressions, const std::vecto
 }
 
 }  // namespace
-
-std::optional<Exponent> force_exponent(const ResidualStudy& s, const Regressions& regressions,
-                                       const std::function<double(const Site&)>& weight) {
-  return best_exponent(-0.5, 2.5, 0.1, regressions, [&](double p) {
-    return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
-      const double f = s.force[i](static_cast<Eigen::Index>(k));
-      return f == 0 ? 0 : weight(s.sites[s.data->readings[i].pose][k]) * std::copysign(std::pow(std::abs(f), p), f);
-    });
-  });
-}
-
-std::optional<Exponent> extension_exponent(const ResidualStudy& s, const Regressions& regressions) {
-  if (!varies_in_extension(s)) return std::nullopt;
-  return best_exponent(-2, 5, 0.1, regressions, [&](double p) { return elastic_across(s, p); });
-}
 
 Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
                        const std::vector<Pattern>& patterns, const std::vector<MatrixX>& columns, bool in_words) {
@@ -161,7 +127,9 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
     if (scores[best] < least_score || fit.p_value * static_cast<double>(candidates.size()) > least_p) break;
     found[best] = true;
     Finding f;
-    f.pattern = c.id;
+    f.id = c.id;
+    f.pattern = c.name();
+    f.site = c.site;
     f.columns = c.names;
     f.unit = c.unit;
     f.amplitude = fit.amplitude;
@@ -172,7 +140,8 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
     f.size = rms_of_errors(s.values, c.columns * fit.amplitude);
     f.share = fit.gain / std::max(chi2 - freedoms, fit.gain);
     for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (i != best && scores[i] > scores[best] - close_call && scores[i] > 0) f.instead.push_back(candidates[i].id);
+      if (i != best && scores[i] > scores[best] - close_call && scores[i] > 0)
+        f.instead.push_back(candidates[i].name());
     f.shape = c.columns;
     if (in_words) f.sentence = sentence_of(f, s, u, r, out.columns);
     out.columns = joined(out.columns, c.columns);

@@ -1,9 +1,28 @@
 // Which patterns a residual holds, said in words.
 #pragma once
 
-#include "validation/compare/comparison.h"
+#include "validation/compare/patterns.h"
+#include "validation/statistics/uncertainty.h"
 
 namespace deflect {
+
+/// A pattern that the residual holds, in the order found: each given those before it.
+struct Finding {
+  PatternId id = PatternId::elastic;
+  std::string pattern;   ///< its name (patterns.h), "elastic at SITE" of a single one
+  std::string site;      ///< of a single one its name
+  std::string sentence;  ///< what, where, how large, with numbers
+  std::vector<std::string> columns;
+  VectorX amplitude, deviation;  ///< with standard deviations; in `unit`
+  std::string unit;
+  double size = 0;   ///< m: root mean square of what it adds to readings
+  double share = 0;  ///< of the misfit beyond noise and tolerances (χ²) that it explains
+  double gain = 0;   ///< χ² taken away
+  int freedoms = 0;
+  double p_value = 1;
+  MatrixX shape;                     ///< columns over the measured numbers
+  std::vector<std::string> instead;  ///< other patterns that would do nearly as well
+};
 
 struct Findings {
   std::vector<Finding> findings;
@@ -18,15 +37,5 @@ struct Findings {
 /// measured numbers. `in_words`: whether sentences are wanted, which take longer than the findings.
 Findings find_patterns(const ResidualStudy&, const Uncertainty&, const VectorX& residual, const std::vector<Pattern>&,
                        const std::vector<MatrixX>& columns, bool in_words = true);
-
-/// The exponent p of e ∝ x^p that fits best, x a site's force (odd in it; each site with a weight) or the extension of
-/// slides across which it yields, with its standard deviation;
-/// empty where the data do not determine it.
-struct Exponent {
-  double value = 0, deviation = 0;
-};
-std::optional<Exponent> force_exponent(const ResidualStudy&, const Regressions&,
-                                       const std::function<double(const Site&)>& weight);
-std::optional<Exponent> extension_exponent(const ResidualStudy&, const Regressions&);
 
 }  // namespace deflect

@@ -2,12 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace deflect {
 namespace {
 
 using Block = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+constexpr PatternRow pattern_rows[] = {
+    {PatternId::elastic, "elastic", "a compliance is missing, alike everywhere"},
+    {PatternId::elastic_by_site, "elastic by site", "a compliance is missing, not alike"},
+    {PatternId::step, "step", "free travel, whatever the force"},
+    {PatternId::power, "power", "contact that stiffens under load"},
+    {PatternId::one_sided, "one-sided", "gives in one sense only"},
+    {PatternId::hysteresis, "hysteresis", "lags behind the load: friction"},
+    {PatternId::base_tilt, "base tilt", "the whole machine tilts on its base"},
+    {PatternId::tool, "tool", "the tool yields on its platform"},
+    {PatternId::weight, "weight", "a constant load pulls downwards"},
+    {PatternId::offset, "offset", "every reading is displaced alike"},
+    {PatternId::drift, "drift", "readings drift with time"},
+    {PatternId::temperature, "temperature", "readings follow the temperature"},
+    {PatternId::load_gain, "load gain", "loads are recorded with a wrong factor"},
+    {PatternId::load_axes, "load axes", "loads are recorded in turned axes"},
+    {PatternId::sensor_axes, "sensor axes", "displacements are recorded in turned axes"},
+    {PatternId::elastic_at, "elastic at", "a compliance is missing at one site"},
+    {PatternId::elastic_along_slides, "elastic along slides", "a compliance is missing along slides"},
+    {PatternId::elastic_across_slides, "elastic across slides", "a compliance is missing across slides"},
+};
+constexpr bool in_order() {
+  for (std::size_t i = 0; i < std::size(pattern_rows); ++i)
+    if (static_cast<std::size_t>(pattern_rows[i].id) != i) return false;
+  return true;
+}
+static_assert(in_order() && std::size(pattern_rows) == static_cast<std::size_t>(PatternId::elastic_across_slides) + 1);
 
 const std::vector<std::string> axes = {"x", "y", "z"};
 
@@ -51,7 +79,7 @@ std::vector<double> ranks(const Measurements& m) {
 }
 
 Pattern base_tilt(const ResidualStudy& s) {
-  return {"base tilt", "the whole machine tilts on its base", {"rx", "ry"}, "rad/Nm", by_reading(s, [&](std::size_t i) {
+  return {PatternId::base_tilt, {"rx", "ry"}, "rad/Nm", by_reading(s, [&](std::size_t i) {
             const Configuration& c = s.machines[s.data->readings[i].pose];
             Block out(6, 2);
             for (std::size_t k = 0; k < 2; ++k) {
@@ -65,7 +93,7 @@ Pattern base_tilt(const ResidualStudy& s) {
 }
 
 Pattern tool(const ResidualStudy& s) {
-  return {"tool", "the tool yields on its platform", axes, "m/N", by_reading(s, [&](std::size_t i) {
+  return {PatternId::tool, axes, "m/N", by_reading(s, [&](std::size_t i) {
             const Matrix3& R = s.machines[s.data->readings[i].pose].pose.R_WT;
             Block out = Block::Zero(6, 3);
             for (Eigen::Index k = 0; k < 3; ++k) out.col(k).head<3>() = R.col(k) * R.col(k).dot(load(s, i).head<3>());
@@ -100,11 +128,9 @@ std::vector<MatrixX> stop_forces(const ResidualStudy& s) {
 }
 
 Pattern hysteresis(const ResidualStudy& s, bool rotation) {
-  Pattern p{"hysteresis",
-            "lags behind the load: friction",
-            {"lag"},
-            rotation ? "rad" : "m",
-            site_column(s, [&](std::size_t i, std::size_t k) { return -s.heading[i](static_cast<Eigen::Index>(k)); })};
+  Pattern p{PatternId::hysteresis, {"lag"}, rotation ? "rad" : "m", site_column(s, [&](std::size_t i, std::size_t k) {
+              return -s.heading[i](static_cast<Eigen::Index>(k));
+            })};
   if (s.sites.front().front().s.isZero(0)) return p;
   const std::vector<MatrixX> stopped = stop_forces(s);
   for (const double r : stops) p.columns.push_back("stop at " + std::to_string(static_cast<int>(100 * r)) + " %");
@@ -121,6 +147,8 @@ Pattern hysteresis(const ResidualStudy& s, bool rotation) {
 }
 
 }  // namespace
+
+const PatternRow& row_of(PatternId id) { return pattern_rows[static_cast<std::size_t>(id)]; }
 
 Columns site_column(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
   return by_reading(s, [&](std::size_t i) {
@@ -167,50 +195,41 @@ std::vector<Pattern> patterns_of(const ResidualStudy& s) {
   const std::string per_force = alike && sites[0].rotation ? "rad/Nm" : "m/N";
   const bool rotation = alike && sites[0].rotation;
   if (alike) {
-    out.push_back({"elastic", "a compliance is missing, alike everywhere", {"all"}, per_force, site_column(s, f)});
-    if (names.size() > 1)
-      out.push_back({"elastic by site", "a compliance is missing, not alike", names, per_force, site_columns(s, f)});
-    out.push_back({"step",
-                   "free travel, whatever the force",
-                   {"all"},
-                   rotation ? "rad" : "m",
-                   site_column(s, [&](std::size_t i, std::size_t k) { return sign(f(i, k)); })});
-    out.push_back({"power",
-                   "contact that stiffens under load",
+    out.push_back({PatternId::elastic, {"all"}, per_force, site_column(s, f)});
+    if (names.size() > 1) out.push_back({PatternId::elastic_by_site, names, per_force, site_columns(s, f)});
+    out.push_back({PatternId::step, {"all"}, rotation ? "rad" : "m", site_column(s, [&](std::size_t i, std::size_t k) {
+                     return sign(f(i, k));
+                   })});
+    out.push_back({PatternId::power,
                    {"all"},
                    rotation ? "rad/Nm^2/3" : "m/N^2/3",
                    site_column(s, [&](std::size_t i, std::size_t k) {
                      return sign(f(i, k)) * std::pow(std::abs(f(i, k)), 2.0 / 3);
                    })});
-    out.push_back(
-        {"one-sided", "gives in one sense only", {"all"}, per_force, site_column(s, [&](std::size_t i, std::size_t k) {
-           return std::abs(f(i, k));
-         })});
+    out.push_back({PatternId::one_sided, {"all"}, per_force, site_column(s, [&](std::size_t i, std::size_t k) {
+                     return std::abs(f(i, k));
+                   })});
     if (s.sequence) out.push_back(hysteresis(s, rotation));
   }
   out.push_back(base_tilt(s));
   out.push_back(tool(s));
-  out.push_back({"weight", "a constant load pulls downwards", {"-z"}, "N", by_reading(s, [&](std::size_t i) {
+  out.push_back({PatternId::weight, {"-z"}, "N", by_reading(s, [&](std::size_t i) {
                    return Block(-s.compliance[s.data->readings[i].pose].col(2));
                  })});
-  out.push_back({"offset", "every reading is displaced alike", axes, "m",
-                 by_reading(s, [&](std::size_t) { return translations(1); })});
+  out.push_back({PatternId::offset, axes, "m", by_reading(s, [&](std::size_t) { return translations(1); })});
   if (s.sequence) {
     const std::vector<double> rank = ranks(*s.data);
-    out.push_back({"drift", "readings drift with time", axes, "m",
-                   by_reading(s, [&](std::size_t i) { return translations(rank[i]); })});
+    out.push_back({PatternId::drift, axes, "m", by_reading(s, [&](std::size_t i) { return translations(rank[i]); })});
   }
   if (s.data->temperature_recorded)
-    out.push_back({"temperature", "readings follow the temperature", axes, "m/K",
+    out.push_back({PatternId::temperature, axes, "m/K",
                    by_reading(s, [&](std::size_t i) { return translations(s.data->readings[i].temperature_C - 20); })});
   out.push_back(
-      {"load gain", "loads are recorded with a wrong factor", {"gain"}, "1", by_reading(s, [&](std::size_t i) {
-         return Block(s.predicted[i]);
-       })});
-  out.push_back({"load axes", "loads are recorded in turned axes", axes, "rad", by_reading(s, [&](std::size_t i) {
+      {PatternId::load_gain, {"gain"}, "1", by_reading(s, [&](std::size_t i) { return Block(s.predicted[i]); })});
+  out.push_back({PatternId::load_axes, axes, "rad", by_reading(s, [&](std::size_t i) {
                    return turned(s.compliance[s.data->readings[i].pose], load(s, i));
                  })});
-  out.push_back({"sensor axes", "displacements are recorded in turned axes", axes, "rad",
+  out.push_back({PatternId::sensor_axes, axes, "rad",
                  by_reading(s, [&](std::size_t i) { return turned(Matrix6::Identity(), s.predicted[i]); })});
   return out;
 }

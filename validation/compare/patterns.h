@@ -24,30 +24,42 @@
 #include <string>
 #include <vector>
 
-#include "validation/compare/sites.h"
-#include "validation/measurement/replicates.h"
+#include "validation/compare/residual_study.h"
 
 namespace deflect {
 
-/// Everything that patterns are made of: SI, base axes; by reading where not said otherwise.
-struct ResidualStudy {
-  const Mechanism* mechanism = nullptr;
-  const Measurements* data = nullptr;
-  std::vector<Configuration> machines;   ///< by pose, as drawn
-  std::vector<MeasuredValue> values;     ///< the measured numbers
-  std::vector<Vector6> predicted;        ///< as recorded
-  std::vector<Vector6> deformed_shape;   ///< finite − linear geometry; empty where it is predicted or unknown
-  std::vector<std::vector<Site>> sites;  ///< by pose
-  std::vector<Matrix6> compliance;       ///< by pose: tangent at T at rest (contacts as under 1 N)
-  std::vector<VectorX> force;            ///< of each site, N or Nm
-  std::vector<VectorX> heading;          ///< of each site: sign of the last change of its force, 0 before the first
-  bool sequence = false;                 ///< the readings' order is known
-};
-
 using Columns = std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>;  ///< by reading
 
+enum class PatternId {
+  elastic,
+  elastic_by_site,
+  step,
+  power,
+  one_sided,
+  hysteresis,
+  base_tilt,
+  tool,
+  weight,
+  offset,
+  drift,
+  temperature,
+  load_gain,
+  load_axes,
+  sensor_axes,
+  elastic_at,  ///< one site alone
+  elastic_along_slides,
+  elastic_across_slides,
+};
+
+/// What a pattern is called in JSON and tables, and the physics that leaves it. Its sentence is in finding_text.cpp.
+struct PatternRow {
+  PatternId id;
+  const char *name, *title;
+};
+const PatternRow& row_of(PatternId);
+
 struct Pattern {
-  std::string id, title;
+  PatternId id;
   std::vector<std::string> columns;  ///< what each amplitude belongs to
   std::string unit;                  ///< of the amplitudes
   Columns by_reading;

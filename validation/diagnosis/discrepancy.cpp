@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validation/compare/finding_text.h"
+#include "validation/compare/slides.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"

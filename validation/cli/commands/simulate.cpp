@@ -144,7 +144,7 @@ void run(const SimulateArguments& a) {
   }
   o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));
   tell("campaign {}: {} readings; {} elements per member, geometry {}", a.campaign, plan.readings.size(), a.elements,
-       a.geometry);
+       geometry_names[static_cast<std::size_t>(o.geometry)]);
   const Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
     o.progress = told;
     try {
