@@ -10,6 +10,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/maps.h"
 #include "validation/figures/fig11.h"
+#include "validation/figures/stiffness_length.h"
 #include "validation/report/map_correlation.h"
 #include "validation/report/map_results.h"
 #include "validation/theories/solve_result.h"

@@ -1,5 +1,4 @@
 #include "validation/cli/devices.h"
-#include "msa/mechanism/device_schema.h"
 
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@
 #include "msa/base/units.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/device_schema.h"
 #include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"

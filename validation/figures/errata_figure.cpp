@@ -31,26 +31,42 @@ constexpr Mark marks[] = {{1e-4, "÷10⁴"}, {1e-3, "÷1000"}, {0.01, "÷100"}, 
 
 bool drawable(double ratio) { return std::isfinite(ratio) && ratio > 0; }
 
-}  // namespace
+struct Ends {
+  double low, high;  // of the axis, as place()
+};
 
-Figure errata_figure(const std::vector<ErratumPrice>& prices, const Validation& v, const FigureStyle& style) {
-  Sheet s("errata", style, 160);
-  double low_end = place(0.9), high_end = place(1.1);
-  std::size_t longest = 1;
-  for (const ErratumPrice& p : prices) {
-    longest = std::max(longest, letters(info(p.erratum).name));
+Ends ends_of(const std::vector<ErratumPrice>& prices) {
+  Ends e{place(0.9), place(1.1)};
+  for (const ErratumPrice& p : prices)
     for (int axis = 0; axis < 3; ++axis)
       for (const double ratio : {p.smallest(axis), p.largest(axis)})
         if (p.refused.empty() && drawable(ratio))
-          low_end = std::min(low_end, place(ratio)), high_end = std::max(high_end, place(ratio));
-  }
-  const double beside = 0.04 * (high_end - low_end);
-  low_end -= beside, high_end += beside;
+          e.low = std::min(e.low, place(ratio)), e.high = std::max(e.high, place(ratio));
+  const double beside = 0.04 * (e.high - e.low);
+  return {e.low - beside, e.high + beside};
+}
 
-  double y = s.heading(
-      "Price of the errata: deflection as printed / corrected",
-      {fmt::format("{}, {} along x, y, z, smallest to largest of the points", clip(v.device, 40), load_text(v))});
-  y += 0.4 * s.line();
+/// As many marks as have room on an axis of w mm, outwards from none.
+std::string tics_of(const Sheet& s, const Ends& e, double w) {
+  std::string tics;
+  const auto add_marks = [&](auto chosen) {
+    double last = -INFINITY, half = 0;
+    for (const Mark& mark : chosen) {
+      const double at = place(mark.ratio), offset = w * std::abs(at) / (e.high - e.low),
+                   own = s.text_mm(letters(mark.name)) / 2;
+      if (at < e.low || at > e.high || offset - last < half + own + 0.6 * s.line()) continue;
+      last = offset, half = own;
+      tics += fmt::format("{}{} {:.6g}", tics.empty() ? "" : ", ", gnuplot_tic_label(mark.name), at);
+    }
+  };
+  const auto none = std::find_if(std::begin(marks), std::end(marks), [](const Mark& m) { return m.ratio == 1; });
+  add_marks(std::vector<Mark>(none, std::end(marks)));
+  add_marks(std::vector<Mark>(std::make_reverse_iterator(none), std::rend(marks)));
+  return tics;
+}
+
+/// Which mark stands for which direction of the load; how high it is.
+double put_directions(Sheet& s, double y) {
   double x = 3;
   for (int axis = 0; axis < 3; ++axis) {
     s.label((s.narrow() ? "load " : "load along ") + std::string(axis_names[axis]), x + 3, y, "left");
@@ -58,19 +74,18 @@ Figure errata_figure(const std::vector<ErratumPrice>& prices, const Validation& 
           (x + 1.2) / s.width(), y, shapes[axis], colours[axis]);
     x += s.text_mm(12) + 5;
   }
-  y += 1.9 * s.line();
+  return 1.9 * s.line();
+}
 
-  const double left = s.text_mm(longest) + 3, w = s.width() - left - 4;
-  const double row = 1.9 * s.line(), height = row * static_cast<double>(prices.size());
-  s.label("← too stiff", left, y - 0.7 * s.line(), "left textcolor rgb '#505050'");
-  s.label("too soft →", left + w, y - 0.7 * s.line(), "right textcolor rgb '#505050'");
-  std::string names, data = "$data << EOD\n", tics;
+/// Rows of the data: axis, row, smallest, largest, the end with the larger effect. What cannot be drawn is said in its
+/// row; `x`: the middle of the panel, `y`: its top.
+std::string rows_of(Sheet& s, const std::vector<ErratumPrice>& prices, double x, double y, double row) {
+  std::string data;
   for (std::size_t i = 0; i < prices.size(); ++i) {
     const ErratumPrice& p = prices[i];
-    names += fmt::format("{}{} {}", i ? ", " : "", gnuplot_tic_label(info(p.erratum).name), i);
     const auto in_row = [&](int axis) { return static_cast<double>(i) + 0.24 * (axis - 1); };
     const auto note = [&](const std::string& text, int axis) {
-      s.label(text, left + w / 2, y + row * (in_row(axis) + 0.5),
+      s.label(text, x, y + row * (in_row(axis) + 0.5),
               "center " + s.font(0.8) + (axis == 1 ? "" : fmt::format(" textcolor rgb '{}'", colours[axis])));
     };
     if (!p.refused.empty()) {
@@ -88,25 +103,36 @@ Figure errata_figure(const std::vector<ErratumPrice>& prices, const Validation& 
           fmt::format("{} {:.6g} {:.6g} {:.6g} {:.6g}\n", axis, in_row(axis), a, b, std::abs(a) > std::abs(b) ? a : b);
     }
   }
-  // As many marks as have room, outwards from none.
-  const auto add_marks = [&](auto chosen) {
-    double last = -INFINITY, half = 0;
-    for (const Mark& mark : chosen) {
-      const double at = place(mark.ratio), offset = w * std::abs(at) / (high_end - low_end),
-                   own = s.text_mm(letters(mark.name)) / 2;
-      if (at < low_end || at > high_end || offset - last < half + own + 0.6 * s.line()) continue;
-      last = offset, half = own;
-      tics += fmt::format("{}{} {:.6g}", tics.empty() ? "" : ", ", gnuplot_tic_label(mark.name), at);
-    }
-  };
-  const auto none = std::find_if(std::begin(marks), std::end(marks), [](const Mark& m) { return m.ratio == 1; });
-  add_marks(std::vector<Mark>(none, std::end(marks)));
-  add_marks(std::vector<Mark>(std::make_reverse_iterator(none), std::rend(marks)));
-  s.put("{}EOD\nunset key", data);
+  return data;
+}
+
+}  // namespace
+
+Figure errata_figure(const std::vector<ErratumPrice>& prices, const Validation& v, const FigureStyle& style) {
+  Sheet s("errata", style, 160);
+  const Ends e = ends_of(prices);
+  std::size_t longest = 1;
+  std::string names;
+  for (std::size_t i = 0; i < prices.size(); ++i) {
+    const char* name = info(prices[i].erratum).name;
+    longest = std::max(longest, letters(name));
+    names += fmt::format("{}{} {}", i ? ", " : "", gnuplot_tic_label(name), i);
+  }
+  double y = s.heading(
+      "Price of the errata: deflection as printed / corrected",
+      {fmt::format("{}, {} along x, y, z, smallest to largest of the points", clip(v.device, 40), load_text(v))});
+  y += 0.4 * s.line();
+  y += put_directions(s, y);
+
+  const double left = s.text_mm(longest) + 3, w = s.width() - left - 4;
+  const double row = 1.9 * s.line(), height = row * static_cast<double>(prices.size());
+  s.label("← too stiff", left, y - 0.7 * s.line(), "left textcolor rgb '#505050'");
+  s.label("too soft →", left + w, y - 0.7 * s.line(), "right textcolor rgb '#505050'");
+  s.put("$data << EOD\n{}EOD\nunset key", rows_of(s, prices, left + w / 2, y, row));
   s.panel(left, y, w, height);
   s.axis_names("change of the deflection by the erratum", "", {});
-  s.put("set xrange [{0}:{1}]\nset yrange [{2}:-0.5]\nset xtics ({3}) noenhanced\nset ytics ({4}) noenhanced", low_end,
-        high_end, static_cast<double>(prices.size()) - 0.5, tics, names);
+  s.put("set xrange [{0}:{1}]\nset yrange [{2}:-0.5]\nset xtics ({3}) noenhanced\nset ytics ({4}) noenhanced", e.low,
+        e.high, static_cast<double>(prices.size()) - 0.5, tics_of(s, e, w), names);
   s.put("set arrow 1 from 0,graph 0 to 0,graph 1 nohead lc rgb '#404040' lw 0.8 back");
   std::string series;
   for (int axis = 0; axis < 3; ++axis)

@@ -1,11 +1,11 @@
 #include "validation/figures/load_curves.h"
-#include "validation/report/text.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "validation/figures/sheet.h"
 #include "validation/report/compare_words.h"
+#include "validation/report/text.h"
 
 namespace deflect {
 namespace {

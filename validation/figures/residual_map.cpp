@@ -1,5 +1,4 @@
 #include "validation/figures/residual_map.h"
-#include "validation/report/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,7 @@
 
 #include "validation/figures/sheet.h"
 #include "validation/report/compare_words.h"
+#include "validation/report/text.h"
 
 namespace deflect {
 namespace {
@@ -81,126 +81,166 @@ std::vector<SignedResidual> signed_residuals(const Comparison& c) {
   return out;
 }
 
-Figure residual_map(const Comparison& c, const FigureStyle& style) {
-  const ErrorUnit unit = error_unit(c);
-  const std::vector<SignedResidual> values = signed_residuals(c);
-  const Box box = box_of(c);
-  Sheet s("residual-map", style, 160);
+namespace {
 
-  // What there is to draw, and its scale.
-  double most = 0;
-  bool any[2][3] = {};
-  for (const SignedResidual& v : values)
-    for (int k = 0; k < 3; ++k)
-      for (const int kind : {0, 1}) {
-        const double x = (kind == 0 ? v.along : v.mean)(k);
-        if (!std::isfinite(x)) continue;
-        any[kind][k] = true;
-        most = std::max(most, um * std::abs(x));
-      }
-  most = std::max(most, 1e-3);
-  std::vector<int> kinds, components;
-  for (const int kind : {0, 1})
-    if (any[kind][0] || any[kind][1] || any[kind][2]) kinds.push_back(kind);
-  for (int k = 0; k < 3; ++k)
-    if (any[0][k] || any[1][k]) components.push_back(k);
-
-  // From behind to the front.
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return c.study.machines[a].pose.p_WT.y() > c.study.machines[b].pose.p_WT.y();
-  });
-  s.put("{}$data << EOD", frame_of(box));
-  for (const std::size_t p : order) {
-    const Vector3 at = mm * c.study.machines[p].pose.p_WT, foot(at.x(), at.y(), box.low.z());
-    std::string row = fmt::format("{:.5g} {:.5g} {:.5g}", box.across(at), box.up(at), box.up(foot));
-    for (const Vector3& v : {values[p].along, values[p].mean})
-      for (int k = 0; k < 3; ++k) row += fmt::format(" {:.5g}", um * v(k));
-    s.put("{}", row);
+/// The figure: one panel for each component and quantity, every pose a mark where the tool point stands.
+class SignedMap {
+ public:
+  SignedMap(const Comparison& c, const FigureStyle& style)
+      : c_(c), unit_(error_unit(c)), values_(signed_residuals(c)), box_(box_of(c)), s_("residual-map", style, 160) {
+    find_scale();
+    seen_ = fmt::format("x to the right {}, y into the page {}, z up {} mm", range(0), range(1), range(2));
   }
-  s.put("EOD\nset multiplot\nunset key\nunset border\nunset tics\n{}\nset cbrange [{}:{}]", diverging_palette, -most,
-        most);
 
-  // One row for each quantity, or on narrow paper one column.
-  const bool upright = s.narrow();
-  const std::size_t columns = upright ? kinds.size() : components.size(),
-                    rows = upright ? components.size() : kinds.size();
-  const double margin = 3, gap = 3, bar = upright ? 0 : 6 + s.text_mm(5) + 1.5 * s.line();
-  const double w = std::min(
-      (s.width() - 2 * margin - bar - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns), 60.0);
-  const Vector3 extent = box.high - box.low;
-  const double wide = extent.x() + depth_x * extent.y(), tall = extent.z() + depth_z * extent.y();
-  const double h = std::clamp(w * tall / wide, 0.45 * w, 1.3 * w);
-  const double room = 1.03 * std::max(tall / h, wide / w);  // mm of the machine for one on paper
-  s.put("set xrange [{}:{}]\nset yrange [{}:{}]", box.low.x() + wide / 2 - room * w / 2,
-        box.low.x() + wide / 2 + room * w / 2, box.low.z() + tall / 2 - room * h / 2,
-        box.low.z() + tall / 2 + room * h / 2);
+  Figure figure() {
+    put_data();
+    lay_out();
+    const double top = s_.heading("Signed residual by pose", {subjects(c_), seen_ + "; circles > 0, squares < 0"});
+    for (std::size_t i = 0; i < rows_ * columns_; ++i) draw(i, top);
+    s_.put("unset multiplot");
+    return s_.figure(top + static_cast<double>(rows_) * row_ + (upright() ? 3.2 * s_.line() : 0.5 * s_.line()),
+                     caption());
+  }
 
-  const auto range = [&](int k) {
+ private:
+  bool upright() const { return s_.narrow(); }  // one column, else one row for each quantity
+
+  /// What there is to draw, and how large it is.
+  void find_scale() {
+    for (const SignedResidual& v : values_)
+      for (int k = 0; k < 3; ++k)
+        for (const int kind : {0, 1}) {
+          const double x = (kind == 0 ? v.along : v.mean)(k);
+          if (!std::isfinite(x)) continue;
+          any_[kind][k] = true;
+          most_ = std::max(most_, um * std::abs(x));
+        }
+    most_ = std::max(most_, 1e-3);
+    for (const int kind : {0, 1})
+      if (any_[kind][0] || any_[kind][1] || any_[kind][2]) kinds_.push_back(kind);
+    for (int k = 0; k < 3; ++k)
+      if (any_[0][k] || any_[1][k]) components_.push_back(k);
+  }
+
+  std::string range(int k) const {
     double low = INFINITY, high = -INFINITY;
-    for (const Configuration& m : c.study.machines)
+    for (const Configuration& m : c_.study.machines)
       low = std::min(low, mm * m.pose.p_WT(k)), high = std::max(high, mm * m.pose.p_WT(k));
     return low == high ? fmt::format("{:.4g}", low + 0.0) : fmt::format("{:.4g} … {:.4g}", low + 0.0, high + 0.0);
-  };
-  const std::string seen =
-      fmt::format("x to the right {}, y into the page {}, z up {} mm", range(0), range(1), range(2));
-  const double top = s.heading("Signed residual by pose", {subjects(c), seen + "; circles > 0, squares < 0"});
-  const double row = h + 1.9 * s.line(),
-               marker =
-                   std::clamp(0.048 * w / std::sqrt(std::max(1.0, static_cast<double>(values.size()) / 12)), 0.5, 2.0);
-  for (std::size_t i = 0; i < rows * columns; ++i) {
-    const int kind = kinds[upright ? i % columns : i / columns], k = components[upright ? i / columns : i % columns];
-    const double x = margin + static_cast<double>(i % columns) * (w + gap),
-                 y = top + static_cast<double>(i / columns) * row + 1.6 * s.line();
-    s.panel(x, y, w, h);
-    s.label(kind == 0 ? fmt::format("{} in the sense of {}", unit.components[k], unit.loads[k])
-                      : fmt::format("{}, mean", unit.components[k]),
-            x + w / 2, y - 0.6 * s.line(), "center");
-    const bool last = i + 1 == rows * columns;
-    const Tics tics = s.tics(-most, most, upright ? 0.7 * s.width() : 40, !upright);
-    if (last && upright)
-      s.put("set colorbox horizontal user {} size screen {:.4f},{:.4f}/H\nset cbtics {} scale 0.4",
-            "origin " + s.at(0.15 * s.width(), y + h + 1.2 * s.line() + 3).substr(3), 0.7, 3.0, tics.step);
-    else if (last)
-      s.put("set colorbox vertical user {} size screen {:.4f},{:.4f}/H\nset cbtics {} scale 0.4",
-            "origin " + s.at(s.width() - bar, y + h).substr(3), 3.5 / s.width(), y + h - top - 1.6 * s.line(),
-            tics.step);
+  }
+
+  /// The poses, from behind to the front.
+  void put_data() {
+    std::vector<std::size_t> order(values_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return c_.study.machines[a].pose.p_WT.y() > c_.study.machines[b].pose.p_WT.y();
+    });
+    s_.put("{}$data << EOD", frame_of(box_));
+    for (const std::size_t p : order) {
+      const Vector3 at = mm * c_.study.machines[p].pose.p_WT, foot(at.x(), at.y(), box_.low.z());
+      std::string row = fmt::format("{:.5g} {:.5g} {:.5g}", box_.across(at), box_.up(at), box_.up(foot));
+      for (const Vector3& v : {values_[p].along, values_[p].mean})
+        for (int k = 0; k < 3; ++k) row += fmt::format(" {:.5g}", um * v(k));
+      s_.put("{}", row);
+    }
+    s_.put("EOD\nset multiplot\nunset key\nunset border\nunset tics\n{}\nset cbrange [{}:{}]", diverging_palette,
+           -most_, most_);
+  }
+
+  void lay_out() {
+    columns_ = upright() ? kinds_.size() : components_.size();
+    rows_ = upright() ? components_.size() : kinds_.size();
+    bar_ = upright() ? 0 : 6 + s_.text_mm(5) + 1.5 * s_.line();
+    const auto count = static_cast<double>(columns_);
+    w_ = std::min((s_.width() - 2 * margin - bar_ - gap * (count - 1)) / count, 60.0);
+    const Vector3 extent = box_.high - box_.low;
+    const double wide = extent.x() + depth_x * extent.y(), tall = extent.z() + depth_z * extent.y();
+    h_ = std::clamp(w_ * tall / wide, 0.45 * w_, 1.3 * w_);
+    row_ = h_ + 1.9 * s_.line();
+    const double room = 1.03 * std::max(tall / h_, wide / w_);  // mm of the machine for one on paper
+    s_.put("set xrange [{}:{}]\nset yrange [{}:{}]", box_.low.x() + wide / 2 - room * w_ / 2,
+           box_.low.x() + wide / 2 + room * w_ / 2, box_.low.z() + tall / 2 - room * h_ / 2,
+           box_.low.z() + tall / 2 + room * h_ / 2);
+  }
+
+  void draw(std::size_t i, double top) {
+    const int kind = kinds_[upright() ? i % columns_ : i / columns_],
+              k = components_[upright() ? i / columns_ : i % columns_];
+    const double x = margin + static_cast<double>(i % columns_) * (w_ + gap),
+                 y = top + static_cast<double>(i / columns_) * row_ + 1.6 * s_.line();
+    s_.panel(x, y, w_, h_);
+    s_.label(kind == 0 ? fmt::format("{} in the sense of {}", unit_.components[k], unit_.loads[k])
+                       : fmt::format("{}, mean", unit_.components[k]),
+             x + w_ / 2, y - 0.6 * s_.line(), "center");
+    if (i + 1 == rows_ * columns_)
+      put_colours(top, y);
     else
-      s.put("unset colorbox");
-    if (last && upright)
-      s.label(unit.micro, 0.85 * s.width() + 2, y + h + 1.2 * s.line() + 1.5, "left");
-    else if (last)
-      s.label(fmt::format("measured − predicted ({})", unit.micro), s.width() - 0.6 * s.line(),
-              (top + 1.6 * s.line() + y + h) / 2, "center rotate by 90");
+      s_.put("unset colorbox");
+    const double marker =
+        std::clamp(0.048 * w_ / std::sqrt(std::max(1.0, static_cast<double>(values_.size()) / 12)), 0.5, 2.0);
     const int column = 4 + 3 * kind + k;
     const std::string some = fmt::format("'' using (${0}>=0?$1:NaN):2", column),
                       less = fmt::format("'' using (${0}<0?$1:NaN):2", column);
-    s.plot(fmt::format(
+    s_.plot(fmt::format(
         "plot $box with lines lc rgb '#B0B0B0' lw 0.5, $data using 1:2:(0):($3-$2) with vectors nohead lc rgb "
         "'#B0B0B0' "
         "lw 0.5, {0} with points pt 7 ps {2:.3f} lc rgb '#404040', {0}:{4} with points pt 7 ps {3:.3f} lc palette, "
         "{1} with points pt 5 ps {2:.3f} lc rgb '#404040', {1}:{4} with points pt 5 ps {3:.3f} lc palette",
         some, less, marker, 0.86 * marker, column));
   }
-  s.put("unset multiplot");
-  const double height = top + static_cast<double>(rows) * row + (upright ? 3.2 * s.line() : 0.5 * s.line());
-  std::string meaning;
-  if (any[0][0] || any[0][1] || any[0][2])
-    meaning = fmt::format(
-        "In the sense of {0}: the mean of the residual with the sign of the load's component ({1}), weighed by its "
-        "size, "
-        "so that positive means that the machine yields more than predicted. ",
-        unit.loads[0] + std::string(", ") + unit.loads[1] + ", " + unit.loads[2], unit.load);
-  return s.figure(
-      height,
-      fmt::format("Signed residual of each component at every pose, in {0}, on one scale of ±{1:.3g} {0} "
-                  "(blue and squares negative, red and circles positive). {2}Mean: over all readings of the "
-                  "pose, what does not change its sign with the load.{3} The workspace is seen obliquely, {4}. "
-                  "{5} {6} {7}",
-                  unit.micro, most, meaning,
-                  c.set_aside.empty() ? "" : fmt::format(" {} gross outliers are left out.", c.set_aside.size()), seen,
-                  axes_sentence(c), data_sentence(c), noise_sentence(c)));
-}
+
+  /// The bar of colours: beside the panels, on narrow paper below the last one, whose top is y.
+  void put_colours(double top, double y) {
+    const Tics tics = s_.tics(-most_, most_, upright() ? 0.7 * s_.width() : 40, !upright());
+    if (upright()) {
+      s_.put("set colorbox horizontal user {} size screen {:.4f},{:.4f}/H\nset cbtics {} scale 0.4",
+             "origin " + s_.at(0.15 * s_.width(), y + h_ + 1.2 * s_.line() + 3).substr(3), 0.7, 3.0, tics.step);
+      s_.label(unit_.micro, 0.85 * s_.width() + 2, y + h_ + 1.2 * s_.line() + 1.5, "left");
+      return;
+    }
+    s_.put("set colorbox vertical user {} size screen {:.4f},{:.4f}/H\nset cbtics {} scale 0.4",
+           "origin " + s_.at(s_.width() - bar_, y + h_).substr(3), 3.5 / s_.width(), y + h_ - top - 1.6 * s_.line(),
+           tics.step);
+    s_.label(fmt::format("measured − predicted ({})", unit_.micro), s_.width() - 0.6 * s_.line(),
+             (top + 1.6 * s_.line() + y + h_) / 2, "center rotate by 90");
+  }
+
+  std::string caption() const {
+    std::string meaning;
+    if (any_[0][0] || any_[0][1] || any_[0][2])
+      meaning = fmt::format(
+          "In the sense of {0}: the mean of the residual with the sign of the load's component ({1}), weighed by its "
+          "size, "
+          "so that positive means that the machine yields more than predicted. ",
+          unit_.loads[0] + std::string(", ") + unit_.loads[1] + ", " + unit_.loads[2], unit_.load);
+    return fmt::format(
+        "Signed residual of each component at every pose, in {0}, on one scale of ±{1:.3g} {0} "
+        "(blue and squares negative, red and circles positive). {2}Mean: over all readings of the "
+        "pose, what does not change its sign with the load.{3} The workspace is seen obliquely, {4}. "
+        "{5} {6} {7}",
+        unit_.micro, most_, meaning,
+        c_.set_aside.empty() ? "" : fmt::format(" {} gross outliers are left out.", c_.set_aside.size()), seen_,
+        axes_sentence(c_), data_sentence(c_), noise_sentence(c_));
+  }
+
+  static constexpr double margin = 3, gap = 3;  // mm
+
+  const Comparison& c_;
+  ErrorUnit unit_;
+  std::vector<SignedResidual> values_;
+  Box box_;
+  Sheet s_;
+  bool any_[2][3] = {};                  // by quantity (in the sense of the load, mean) and component
+  std::vector<int> kinds_, components_;  // of which there are any
+  double most_ = 0;                      // the end of the scale
+  std::string seen_;
+  std::size_t rows_ = 0, columns_ = 0;
+  double bar_ = 0, w_ = 0, h_ = 0, row_ = 0;  // mm: room of the bar of colours, a panel, a row of panels
+};
+
+}  // namespace
+
+Figure residual_map(const Comparison& c, const FigureStyle& style) { return SignedMap(c, style).figure(); }
 
 }  // namespace deflect

@@ -1,11 +1,11 @@
 #include "validation/page/page_residuals.h"
-#include "validation/report/text.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "validation/measurement/random.h"
 #include "validation/report/compare_results.h"
+#include "validation/report/text.h"
 
 namespace deflect {
 namespace {

@@ -1,5 +1,4 @@
 #include "validation/report/schema_results.h"
-#include "msa/mechanism/device_schema.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "msa/mechanism/device_schema.h"
 #include "validation/report/json_text.h"
 
 namespace deflect {

@@ -12,6 +12,7 @@
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/figures/fig11.h"
+#include "validation/figures/stiffness_length.h"
 #include "validation/parallel/progress.h"
 #include "validation/report/map_results.h"
 #include "validation/theories/map.h"

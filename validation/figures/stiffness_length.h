@@ -1,0 +1,15 @@
+// Stiffness over the position of the slides.
+#pragma once
+
+#include <vector>
+
+#include "validation/figures/gnuplot.h"
+#include "validation/theories/map.h"
+
+namespace deflect {
+
+/// The paper's finding: 1/C_ii at every pose against the mean length of the guideways there, by direction, with the
+/// median over poses of like length. Named "stiffness-vs-length". Empty where no pose is reached.
+std::vector<Figure> stiffness_against_length(const StiffnessMap&, const FigureStyle& = {});
+
+}  // namespace deflect
