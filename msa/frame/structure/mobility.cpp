@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "msa/base/error.h"
+#include "msa/frame/structure/motions.h"
 #include "msa/frame/structure/pieces.h"
 #include "msa/frame/structure/sparse_cholesky.h"
 
@@ -176,21 +177,6 @@ class Motions {
   const Model& m_;
   const Pieces& p_;
 };
-
-/// Columns combined so that each is 1 in a row (returned) in which the others rest.
-std::vector<Eigen::Index> take_apart(MatrixX& U) {
-  std::vector<Eigen::Index> leads;
-  for (Eigen::Index j = 0; j < U.cols(); ++j) {
-    Eigen::Index row = 0, column = 0;
-    U.rightCols(U.cols() - j).cwiseAbs().maxCoeff(&row, &column);
-    U.col(j).swap(U.col(j + column));
-    U.col(j) /= U(row, j);
-    for (Eigen::Index k = 0; k < U.cols(); ++k)
-      if (k != j) U.col(k) -= U(row, k) * U.col(j);
-    leads.push_back(row);
-  }
-  return leads;
-}
 
 /// Idle motions, rows for the given freedoms. Each is held along its own direction at the node where it leads, where no
 /// other one moves that way, else by the one freedom in which the others rest.

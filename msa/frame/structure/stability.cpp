@@ -8,6 +8,7 @@
 
 #include "msa/frame/structure/assembly.h"
 #include "msa/frame/structure/elimination.h"
+#include "msa/frame/structure/motions.h"
 
 namespace deflect::frame {
 namespace {
@@ -53,19 +54,6 @@ std::string body_name(const Model& m, const std::vector<int>& nodes) {
   if (names.empty())
     for (const int node : nodes) add(fmt::format("node '{}'", m.nodes[static_cast<std::size_t>(node)].name));
   return listed(names, 3);
-}
-
-/// Columns combined so that each leads in a freedom in which the others rest: motions come apart.
-MatrixX taken_apart(MatrixX U) {
-  for (Eigen::Index j = 0; j < U.cols(); ++j) {
-    Eigen::Index row = 0, column = 0;
-    U.rightCols(U.cols() - j).cwiseAbs().maxCoeff(&row, &column);
-    U.col(j).swap(U.col(j + column));
-    U.col(j) /= U(row, j);
-    for (Eigen::Index k = 0; k < U.cols(); ++k)
-      if (k != j) U.col(k) -= U(row, k) * U.col(j);
-  }
-  return U;
 }
 
 FreeMotion motion_of(const Model& m, const VectorX& u, const std::vector<int>& body_of) {
@@ -165,7 +153,8 @@ VectorX normalised(const Model& m, VectorX u) {
 }
 
 std::vector<FreeMotion> free_motions_of(const Model& m, const MatrixX& free) {
-  const MatrixX U = taken_apart(free);
+  MatrixX U = free;
+  take_apart(U);
   const std::vector<int> body_of = bodies(m);
   std::vector<FreeMotion> motions;
   for (Eigen::Index j = 0; j < U.cols(); ++j) motions.push_back(motion_of(m, normalised(m, U.col(j)), body_of));
