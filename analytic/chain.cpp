@@ -6,12 +6,13 @@
 #include <cmath>
 
 #include "analytic/member.h"
+#include "msa/base/index.h"
 
 namespace deflect::analytic {
 namespace {
 
-Step step_of(const SteppedLaw& law, double force, const Circumstances& c) {
-  const auto n = static_cast<std::size_t>(law.number);
+Step step_of(const SteppedLaw& law, double force, const ChainConditions& c) {
+  const auto n = as_size(law.number);
   return law.number >= 0 && n < c.steps.size() ? c.steps[n] : law.at_force(force);
 }
 
@@ -54,7 +55,7 @@ void add_member(Chain& chain, const PlacedMember& m, const Vector3& p_W, bool fi
 void add_joint(Chain& chain, const PlacedJoint& j, const Vector3& p_W, const AsPrinted& p) {
   if (j.stiffness) {
     Matrix6 J;
-    for (std::size_t i = 0; i < 6; ++i) J.col(static_cast<Eigen::Index>(i)) = freedom_twist(j, i, p_W);
+    for (std::size_t i = 0; i < 6; ++i) J.col(as_index(i)) = freedom_twist(j, i, p_W);
     const Eigen::LLT<Matrix6> L(*j.stiffness);  // K = L Lᵀ
     add_root(chain, L.matrixL().solve(J.transpose()).transpose(), j.part);
     return;
@@ -64,7 +65,7 @@ void add_joint(Chain& chain, const PlacedJoint& j, const Vector3& p_W, const AsP
     if (!j.elastic(i)) continue;
     ElasticFreedom freedom{freedom_twist(j, i, p_W), {{}, j.preload[i]}, j.part, {}, i >= 3};
     for (const Law& law : j.laws[i])
-      if (is_stepped(law))
+      if (deflect::jumps(law))
         freedom.stepped.push_back({law, j.preload[i], i >= 3, j.part});
       else
         freedom.spring.laws.push_back(law);
@@ -94,7 +95,7 @@ void add_parallel(Chain& chain, const PlacedParallel& parallel, const Vector3& p
 }  // namespace
 
 Vector6 freedom_twist(const PlacedJoint& j, std::size_t i, const Vector3& p_W) {
-  const Vector3 axis = j.R_WJ.col(static_cast<Eigen::Index>(i % 3));
+  const Vector3 axis = j.R_WJ.col(as_index(i % 3));
   Vector6 twist = Vector6::Zero();
   if (i < 3)
     twist.head<3>() = axis;
@@ -122,7 +123,7 @@ Chain chain_of(const PlacedLeg& leg, const Vector3& p_W, double length, const As
   return chain;
 }
 
-Response Chain::respond(const Vector6& F, double least, const Circumstances& c) const {
+Response Chain::respond(const Vector6& F, double least, const ChainConditions& c) const {
   Response r;
   r.d = misfit + c.warmer * expansion + C * F;
   r.tangent = {C, roots, rooted, c.printed.count(Erratum::passive_joints) ? Matrix6X(6, 0) : J_q, N};
@@ -157,7 +158,7 @@ Response Chain::respond(const Vector6& F, double least, const Circumstances& c) 
   return r;
 }
 
-Vector6 Chain::deflection(const Vector6& F, const Circumstances& c) const {
+Vector6 Chain::deflection(const Vector6& F, const ChainConditions& c) const {
   Vector6 d = misfit + c.warmer * expansion + C * F;
   for (const ElasticFreedom& f : freedoms) {
     const double force = f.twist.dot(F);
@@ -171,17 +172,17 @@ Vector6 Chain::deflection(const Vector6& F, const Circumstances& c) const {
   return d;
 }
 
-Matrix6 Chain::stiffness(const Vector6& F, const Circumstances& c) const {
+Matrix6 Chain::stiffness(const Vector6& F, const ChainConditions& c) const {
   return analytic::stiffness(respond(F, 0, c).tangent, length, name);
 }
 
-Resistance Chain::resistance(const Vector6& F, const Circumstances& c) const {
+Resistance Chain::resistance(const Vector6& F, const ChainConditions& c) const {
   return analytic::resistance(respond(F, 0, c).tangent, length);
 }
 
 bool Chain::linear() const {
   const auto linear_spring = [](const ElasticFreedom& f) {
-    return f.stepped.empty() && std::all_of(f.spring.laws.begin(), f.spring.laws.end(), is_linear);
+    return f.stepped.empty() && std::all_of(f.spring.laws.begin(), f.spring.laws.end(), deflect::is_linear);
   };
   return std::all_of(freedoms.begin(), freedoms.end(), linear_spring) &&
          std::all_of(groups.begin(), groups.end(), [](const Group& g) { return g.linear(); });
@@ -191,7 +192,7 @@ bool Chain::fits() const {
   return misfit.isZero(0) && std::all_of(groups.begin(), groups.end(), [](const Group& g) { return g.fits(); });
 }
 
-void Chain::add_energies(const Vector6& F, const Circumstances& c, std::map<std::string, double>& sums) const {
+void Chain::add_energies(const Vector6& F, const ChainConditions& c, std::map<std::string, double>& sums) const {
   for (const FlexiblePart& m : members) sums[m.part] += 0.5 * F.dot(m.C * F);
   for (const ElasticFreedom& f : freedoms) {
     const double force = f.twist.dot(F);
@@ -206,7 +207,7 @@ void Chain::add_energies(const Vector6& F, const Circumstances& c, std::map<std:
 
 void Chain::bent_laws_to_steps() {
   for (ElasticFreedom& f : freedoms) {
-    const auto linear = std::stable_partition(f.spring.laws.begin(), f.spring.laws.end(), is_linear);
+    const auto linear = std::stable_partition(f.spring.laws.begin(), f.spring.laws.end(), deflect::is_linear);
     for (auto law = linear; law != f.spring.laws.end(); ++law)
       f.stepped.push_back({*law, f.spring.preload, f.rotation, f.part});
     f.spring.laws.erase(linear, f.spring.laws.end());
@@ -225,7 +226,7 @@ void Chain::number_steps(std::vector<SteppedLaw>& all) {
     for (Chain& branch : g.branches) branch.number_steps(all);
 }
 
-void Chain::add_step_forces(const Vector6& F, const Circumstances& c, VectorX& forces) const {
+void Chain::add_step_forces(const Vector6& F, const ChainConditions& c, VectorX& forces) const {
   for (const ElasticFreedom& f : freedoms)
     for (const SteppedLaw& law : f.stepped) forces(law.number) = f.twist.dot(F);
   for (const Group& g : groups) {

@@ -26,9 +26,9 @@ struct ElasticFreedom {
   bool rotation = false;
 };
 
-/// What a mechanism is asked under, beside its load.
-struct Circumstances {
-  Circumstances(AsPrinted p = {}) : printed(std::move(p)) {}
+/// Conditions under which a chain moves, other than its load: errata, warmth, phases of its laws that jump.
+struct ChainConditions {
+  ChainConditions(AsPrinted p = {}) : printed(std::move(p)) {}
   AsPrinted printed;
   double warmer = 0;        ///< K
   std::vector<Step> steps;  ///< by SteppedLaw::number; none: each as its force alone says
@@ -70,23 +70,23 @@ struct Chain {
 
   /// Motion under F but for J_q θ; the tangent's compliance takes a force below `least` (N, Nm) for `least`, so that
   /// unloaded contacts stay finite; with least = 0 they let go, and so do released steps.
-  Response respond(const Vector6& F, double least, const Circumstances&) const;
-  Vector6 deflection(const Vector6& F, const Circumstances&) const;
+  Response respond(const Vector6& F, double least, const ChainConditions&) const;
+  Vector6 deflection(const Vector6& F, const ChainConditions&) const;
   /// Tangent stiffness K_c. Contacts without load do not resist. Throws ModelError where it is infinite.
-  Matrix6 stiffness(const Vector6& F, const Circumstances&) const;
-  Resistance resistance(const Vector6& F, const Circumstances&) const;
+  Matrix6 stiffness(const Vector6& F, const ChainConditions&) const;
+  Resistance resistance(const Vector6& F, const ChainConditions&) const;
   /// No law's stiffness depends on its load.
   bool linear() const;
   bool fits() const;  ///< neither the chain nor a branch of it has a misfit
   /// Adds the strain energy of each part, J.
-  void add_energies(const Vector6& F, const Circumstances&, std::map<std::string, double>&) const;
+  void add_energies(const Vector6& F, const ChainConditions&, std::map<std::string, double>&) const;
   /// Laws that bend become steps too, so that what is left between the steps is linear.
   void bent_laws_to_steps();
   /// Adds its laws that jump, and those of its groups, to the list and numbers them by it.
   void number_steps(std::vector<SteppedLaw>&);
   bool has_steps() const;
   /// Their forces under F.
-  void add_step_forces(const Vector6& F, const Circumstances&, VectorX&) const;
+  void add_step_forces(const Vector6& F, const ChainConditions&, VectorX&) const;
 };
 
 /// Chains side by side between two rigid bodies. Equilibrium under F: Σ F_i = F, with F_i = N_i λ_i and
@@ -111,18 +111,18 @@ struct Group {
 
   /// Newton on the branches' forces. F is one that the branches together carry, JᵀF = 0. Throws ModelError where rigid
   /// branches cannot be assembled.
-  State solve(const Vector6& F, const Circumstances&) const;
-  std::optional<State> solve_by_statics(const Vector6& F, const Circumstances&) const;
+  State solve(const Vector6& F, const ChainConditions&) const;
+  std::optional<State> solve_by_statics(const Vector6& F, const ChainConditions&) const;
   /// Tangent in a state; `least` as for a chain.
-  Flexibility flexibility(const std::vector<Vector6>& wrenches, double least, const Circumstances&) const;
+  Flexibility flexibility(const std::vector<Vector6>& wrenches, double least, const ChainConditions&) const;
   /// Σ K_c. Throws ModelError naming the branch that is rigid.
-  Matrix6 stiffness(const std::vector<Vector6>& wrenches, const Circumstances&) const;
-  Resistance resistance(const std::vector<Vector6>& wrenches, const Circumstances&) const;
+  Matrix6 stiffness(const std::vector<Vector6>& wrenches, const ChainConditions&) const;
+  Resistance resistance(const std::vector<Vector6>& wrenches, const ChainConditions&) const;
   bool linear() const;  ///< of every branch
   bool fits() const;
 
  private:
-  void settle(State&, double least, const Circumstances&) const;
+  void settle(State&, double least, const ChainConditions&) const;
 };
 
 /// The chain of a leg, referred to the point p_W (T, unless (46) is taken as printed).

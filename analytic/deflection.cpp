@@ -125,18 +125,6 @@ double belt_stiffness(const BeltLaw& l) {
   return l.pulley_radius ? k * *l.pulley_radius * *l.pulley_radius : k;
 }
 
-bool is_linear(const Law& law) {
-  const auto* power = std::get_if<PowerLaw>(&law);
-  return power ? power->exponent == 1
-               : !std::holds_alternative<HertzPointLaw>(law) && !std::holds_alternative<HertzLineBulkLaw>(law) &&
-                     !std::holds_alternative<HardeningLaw>(law) && !is_stepped(law);
-}
-
-bool is_stepped(const Law& law) {
-  return std::holds_alternative<OneSidedLaw>(law) || std::holds_alternative<ClearanceLaw>(law) ||
-         std::holds_alternative<FrictionLaw>(law);
-}
-
 double power_deflection(const PowerLaw& l, double force) {
   return std::copysign(l.deflection * std::pow(std::abs(force) / l.force, l.exponent), force);
 }

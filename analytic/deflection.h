@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analytic/erratum.h"
-#include "msa/mechanism/law.h"
+#include "msa/mechanism/law_table.h"
 
 namespace deflect::analytic {
 
@@ -53,12 +53,6 @@ double hardening_compliance(const HardeningLaw&, double force);
 double deflection(const Law&, double force, const AsPrinted& = {});
 double compliance(const Law&, double force, const AsPrinted& = {});
 double stored_energy(const Law&, double force, const AsPrinted& = {});
-
-/// Whether the deflection is proportional to the force.
-bool is_linear(const Law&);
-
-/// Whether force alone does not say the deflection, or its derivative jumps: one-sided, clearance, friction (steps.h).
-bool is_stepped(const Law&);
 
 /// Laws of one freedom in series; contact and bending of a universal joint's pin as if in parallel where (33) is taken
 /// as printed.

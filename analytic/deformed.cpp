@@ -11,6 +11,7 @@
 #include "analytic/beam_column.h"
 #include "analytic/flexibility.h"
 #include "analytic/rotation_vector.h"
+#include "msa/base/index.h"
 
 namespace deflect::analytic {
 namespace {
@@ -24,10 +25,9 @@ constexpr double settled = 1e-12;    // of the last step of Newton's method
 constexpr double nearly = 1e-6;      // from a step of which the next one is likely to be the last
 
 std::size_t legs_step(const VirtualChain& whole) {
-  return static_cast<std::size_t>(
-      std::find_if(whole.steps.begin(), whole.steps.end(),
-                   [](const VirtualStep& s) { return std::holds_alternative<VirtualGroup>(s); }) -
-      whole.steps.begin());
+  return as_size(std::find_if(whole.steps.begin(), whole.steps.end(),
+                              [](const VirtualStep& s) { return std::holds_alternative<VirtualGroup>(s); }) -
+                 whole.steps.begin());
 }
 
 const VirtualGroup& legs_of(const VirtualChain& whole) { return std::get<VirtualGroup>(whole.steps[legs_step(whole)]); }
@@ -79,7 +79,7 @@ struct Tangent {
 
 /// Newton's method in finite motions needs the stiffness by spins of a dead moment; second order solves by K_E + K_G.
 Vector3 turning_moment(const Deformed& d) {
-  return d.outlook.geometry == Geometry::finite ? Vector3(d.whole.F.tail<3>()) : Vector3::Zero();
+  return d.conditions.geometry == Geometry::finite ? Vector3(d.whole.F.tail<3>()) : Vector3::Zero();
 }
 
 /// What the last step of Newton's method knows of the state that it leaves, where it was looked at whether that is
@@ -91,7 +91,7 @@ struct LastStep {
 
 /// Newton's method under the wrench F and a share of the misfits.
 bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<LastStep>& last) {
-  Outlook& c = d.outlook;
+  ShapeConditions& c = d.conditions;
   VirtualChain& whole = d.whole;
   whole.F = F;
   c.misfit = misfit;
@@ -102,7 +102,7 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
   c.least = !at_rest ? 1e-9 * largest : largest > 0 ? largest : 1;
   for (int i = 0; i < 50; ++i) {
     ++d.iterations;
-    Outlook here = c;
+    ShapeConditions here = c;
     here.judged = i > 0 && d.residual <= nearly;
     Linearised l = whole.linearise(here);
     const Tangent tangent(l, turning_moment(d));
@@ -131,9 +131,9 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
 
 /// Reads off the state what is asked of it; false where it is not stable.
 bool conclude(Deformed& d, std::optional<LastStep> last) {
-  const Geometry geometry = d.outlook.geometry;
+  const Geometry geometry = d.conditions.geometry;
   if (!last) {
-    Outlook asked = d.outlook;
+    ShapeConditions asked = d.conditions;
     asked.judged = true;
     last = LastStep{d.whole.linearise(asked)};
   }
@@ -206,7 +206,7 @@ void find_bends(const VirtualChain& chain, Geometry geometry, std::vector<double
 /// By member, what the law of its pieces leaves out under the whole load; from the load that the state carries.
 std::vector<double> bends_of(const Deformed& d) {
   std::vector<double> bends(d.pieces.size(), 0.0);
-  find_bends(d.whole, d.outlook.geometry, bends);
+  find_bends(d.whole, d.conditions.geometry, bends);
   for (double& bend : bends) bend /= d.load_factor > 0 ? std::pow(d.load_factor, 4) : 1;
   return bends;
 }
@@ -234,7 +234,7 @@ Deformed unloaded(const Configuration& c, Geometry geometry, std::vector<int> pi
   Pieces of_members{d.pieces};
   const PlacedParallel legs{"legs", Vector3::Zero(), c.pose.p_WT, c.legs};
   d.whole = virtual_chain_of({"the mechanism", {c.base, legs, c.tool}}, c.pose.p_WT, c.pose.p_WT, c.size, of_members);
-  d.outlook.geometry = geometry;
+  d.conditions.geometry = geometry;
   d.leg_wrenches.assign(c.legs.size(), Vector6::Zero());
   return d;
 }
@@ -248,7 +248,7 @@ Deformed loaded(Deformed d, const Configuration& c, const Vector6& F) {
 
 /// `coarser`: with fewer pieces, whose state is taken for the beginning where it is one.
 Deformed with_pieces(const Configuration& c, const Vector6& F, std::vector<int> pieces, const Deformed& coarser) {
-  Deformed d = unloaded(c, coarser.outlook.geometry, std::move(pieces));
+  Deformed d = unloaded(c, coarser.conditions.geometry, std::move(pieces));
   if (coarser.converged) {
     Deformed same = d;
     take_state(same.whole, coarser.whole);
@@ -269,7 +269,7 @@ Deformed at_rest(const Configuration& c, Geometry geometry, bool linear) {
   Deformed d = unloaded(c, geometry, std::vector<int>(members, 1));
   if (linear && all_fit(c.legs)) {
     auto& legs = std::get<VirtualGroup>(d.whole.steps[legs_step(d.whole)]);
-    legs.known = legs.restrain(d.outlook);
+    legs.known = legs.restrain(d.conditions);
   }
   return d;
 }
@@ -279,7 +279,7 @@ Deformed deform(const Deformed& rest, const Configuration& c, const Vector6& F) 
   const std::vector<double> bends = bends_of(d);
   const double most = bends.empty() ? 0 : *std::max_element(bends.begin(), bends.end());
   d.discretisation = {most * d.translation.norm(), most * d.rotation_vector.norm()};
-  if (most <= small_error || d.outlook.geometry != Geometry::finite)
+  if (most <= small_error || d.conditions.geometry != Geometry::finite)
     return d;  // what one piece leaves is known by its order
   for (double left = 1; left > small_error;) {
     std::vector<int> pieces = divided(d.pieces, bends, d.converged);
@@ -303,7 +303,7 @@ Deformed deform(const Deformed& rest, const Configuration& c, const Vector6& F) 
 
 Matrix6 stiffness(const Deformed& d) {
   VirtualChain whole = d.whole;
-  const Tangent tangent(whole.linearise(d.outlook), d.whole.F.tail<3>());
+  const Tangent tangent(whole.linearise(d.conditions), d.whole.F.tail<3>());
   if (tangent.J.cols() == 6) {  // as when base and tool are rigid: no digits are lost by inverting twice
     const Eigen::FullPivLU<Matrix6> lu(tangent.J.transpose());
     if (lu.isInvertible()) {
@@ -319,14 +319,14 @@ Matrix6 stiffness(const Deformed& d) {
 
 Matrix6 compliance(const Deformed& d) {
   VirtualChain whole = d.whole;
-  const Tangent tangent(whole.linearise(d.outlook), d.whole.F.tail<3>());
+  const Tangent tangent(whole.linearise(d.conditions), d.whole.F.tail<3>());
   return tangent.J * tangent.solve(tangent.J.transpose());
 }
 
 Matrix6 leg_stiffness(const Deformed& d, std::size_t leg) {
   VirtualChain whole = d.whole;
-  whole.linearise(d.outlook);
-  const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), d.outlook.geometry));
+  whole.linearise(d.conditions);
+  const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), d.conditions.geometry));
   return axes * legs_of(whole).branches[leg].restraint().K * axes.transpose();
 }
 

@@ -27,7 +27,7 @@ namespace deflect::analytic {
 
 struct Deformed {
   VirtualChain whole;  ///< base joint, legs, tool joint; F is the outer wrench
-  Outlook outlook;
+  ShapeConditions conditions;
   Vector3 translation = Vector3::Zero();      ///< of T from the drawing
   Matrix3 turning = Matrix3::Zero();          ///< of T, rotation less identity; finite
   Vector3 rotation_vector = Vector3::Zero();  ///< second order: small

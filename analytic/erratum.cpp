@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/base/units.h"
 
 namespace deflect {
@@ -49,7 +50,7 @@ std::set<Erratum> parse_errata(std::string_view list) {
     if (word == "all")
       for (const ErratumInfo& i : errata()) out.insert(i.erratum);
     else if (found != names.end())
-      out.insert(errata()[static_cast<std::size_t>(found - names.begin())].erratum);
+      out.insert(nth(errata(), found - names.begin()).erratum);
     else
       throw InputError(fmt::format("--as-printed: there is no erratum '{}'{}; known: all, none, {}", word,
                                    nearest(word, names).empty() ? "" : ", did you mean '" + nearest(word, names) + "'?",

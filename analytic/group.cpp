@@ -7,6 +7,7 @@
 
 #include "analytic/chain.h"
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 
 namespace deflect::analytic {
 namespace {
@@ -82,8 +83,8 @@ class Parallel {
       S.bottomLeftCorner(k, r) = A.transpose();
       MatrixX yields = MatrixX::Zero(k, k);
       for (Eigen::Index i = 0; i < k; ++i) {
-        S(r + i, r + i) = -kept_[static_cast<std::size_t>(i)].g;
-        yields(i, i) = kept_[static_cast<std::size_t>(i)].g > 0 ? 1 : 0;
+        S(r + i, r + i) = -nth(kept_, i).g;
+        yields(i, i) = nth(kept_, i).g > 0 ? 1 : 0;
       }
       const auto cancelling = [&](const MatrixX& columns) {
         MatrixX rows(k, r + k);
@@ -105,7 +106,7 @@ class Parallel {
     for (const LinearisedBranch& b : branches_)
       for (Eigen::Index j = 0; j < b.g.size(); ++j)
         if (eliminated(b, j)) right.head(r) += R_.transpose() * b.N.col(j) * (b.e(j) / b.g(j));
-    for (Eigen::Index i = 0; i < k; ++i) right(r + i) = kept_[static_cast<std::size_t>(i)].e;
+    for (Eigen::Index i = 0; i < k; ++i) right(r + i) = nth(kept_, i).e;
     size = std::max(size, F.norm());
     for (const LinearisedBranch& b : branches_) size = std::max(size, b.e.norm() / c_);
     if (k > 0 && (Y_.transpose() * right.tail(k)).norm() > 1e-9 * size)
@@ -193,7 +194,7 @@ Group legs_of(const Configuration& c, const AsPrinted& as_printed) {
 }
 
 /// Rᵀ Σ N_i λ_i = RᵀF, then N_iᵀ t = N_iᵀ d_i; nothing where a branch has let go.
-std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const Circumstances& c) const {
+std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const ChainConditions& c) const {
   const VectorX lambda = determinate->solve(R.transpose() * F);
   State s;
   s.iterations = 1;
@@ -213,7 +214,7 @@ std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const Circ
   return s;
 }
 
-Group::State Group::solve(const Vector6& F, const Circumstances& c) const {
+Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   // A chain alone is asked directly: stiffness is needed to share forces only.
   if (branches.size() == 1) {
     const Response r = branches[0].respond(F, 0, c);
@@ -275,7 +276,7 @@ Group::State Group::solve(const Vector6& F, const Circumstances& c) const {
 }
 
 /// Whether the branches' ends are where the far body is.
-void Group::settle(State& s, double least, const Circumstances& c) const {
+void Group::settle(State& s, double least, const ChainConditions& c) const {
   double size = 0, largest = 0;
   for (const Vector6& wrench : s.wrenches) largest = std::max(largest, weighed(wrench, length).norm());
   s.misfit = 0;
@@ -296,7 +297,7 @@ void Group::settle(State& s, double least, const Circumstances& c) const {
   s.converged = s.converged && s.misfit < 1e-9;
 }
 
-Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double least, const Circumstances& c) const {
+Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double least, const ChainConditions& c) const {
   if (branches.size() == 1) return branches[0].respond(wrenches[0], least, c).tangent;
   std::vector<Flexibility> tangents;
   bool released = false;
@@ -318,13 +319,13 @@ Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double leas
   return f;
 }
 
-Matrix6 Group::stiffness(const std::vector<Vector6>& wrenches, const Circumstances& c) const {
+Matrix6 Group::stiffness(const std::vector<Vector6>& wrenches, const ChainConditions& c) const {
   Matrix6 K = Matrix6::Zero();
   for (std::size_t i = 0; i < branches.size(); ++i) K += branches[i].stiffness(wrenches[i], c);
   return K;
 }
 
-Resistance Group::resistance(const std::vector<Vector6>& wrenches, const Circumstances& c) const {
+Resistance Group::resistance(const std::vector<Vector6>& wrenches, const ChainConditions& c) const {
   std::vector<Resistance> parts;
   for (std::size_t i = 0; i < branches.size(); ++i) parts.push_back(branches[i].resistance(wrenches[i], c));
   return side_by_side(parts, length);

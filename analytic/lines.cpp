@@ -1,4 +1,5 @@
 #include "analytic/lines.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
@@ -78,7 +79,7 @@ Shared share(const FrictionLaw& law, double slip, double lambda, double beta, co
 }
 
 Step& step_at(std::vector<Step>& steps, int number) {
-  const auto n = static_cast<std::size_t>(number);
+  const auto n = as_size(number);
   if (steps.size() <= n) steps.resize(n + 1);
   return steps[n];
 }
@@ -119,7 +120,7 @@ std::optional<Lines> Lines::of(const Group& g) {
 }
 
 std::optional<Lines::Answer> Lines::solve(const Group& g, const Vector6& F, const std::vector<double>& slips,
-                                          const Circumstances& c) const {
+                                          const ChainConditions& c) const {
   Answer out;
   Group::State& s = out.state;
   s.iterations = 1;
@@ -129,14 +130,14 @@ std::optional<Lines::Answer> Lines::solve(const Group& g, const Vector6& F, cons
   VectorX e(lambda.size());
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const Line& line = lines_[i];
-    const auto at = static_cast<Eigen::Index>(i);
+    const auto at = as_index(i);
     const Chain& leg = g.branches[line.leg];
     const Vector6 w = leg.N.col(0);
     const auto lengthens = [&](double force) { return w.dot(leg.deflection(w * force, c)); };
     double own = lambda(at);
     if (line.friction) {
       const Beside& b = *line.friction;
-      const auto number = static_cast<std::size_t>(std::max(b.law.number, 0));
+      const auto number = as_size(std::max(b.law.number, 0));
       const double slip = number < slips.size() ? slips[number] : 0;
       const Shared shared = share(b.law, slip, own, b.beta, [&](double x) { return b.beta * lengthens(x); });
       own = shared.leg;

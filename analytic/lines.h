@@ -25,7 +25,7 @@ class Lines {
   };
   /// `slips` before the load; empty: relaxed. Nothing where a leg has let go.
   std::optional<Answer> solve(const Group&, const Vector6& F, const std::vector<double>& slips,
-                              const Circumstances&) const;
+                              const ChainConditions&) const;
 
  private:
   struct Beside {

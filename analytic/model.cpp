@@ -23,31 +23,43 @@ void refuse_motion(const Matrix6X& J, double length) {
 }
 
 /// The same for what no erratum is about: base and tool.
-Circumstances drawn(Circumstances c) {
+ChainConditions drawn(ChainConditions c) {
   c.printed.clear();
   return c;
 }
 
-/// Laws that jump taken out: gaps are closed, frictions let go, the sides of a one-sided law yield alike.
-Configuration without_steps(Configuration c) {
-  const auto strip = [](PlacedJoint& joint) {
+/// Laws that jump taken out, where the legs carry `wrenches` and base and tool F: gaps are closed, frictions beside
+/// legs let go and others stick, a one-sided law yields as on the side on which it is. Within groups, whose branches'
+/// wrenches are not known here, its sides yield alike.
+Configuration without_steps(Configuration c, const std::vector<Vector6>& wrenches, const Vector6& F) {
+  const auto strip = [&](PlacedJoint& joint, bool beside, const Vector6* wrench) {
     for (std::size_t i = 0; i < 6; ++i) {
       std::vector<Law> smooth;
       for (const Law& law : joint.laws[i]) {
-        if (std::holds_alternative<FrictionLaw>(law)) joint.freedoms[i] = Freedom::free;
-        if (!is_stepped(law)) smooth.push_back(law);
-        if (const auto* l = std::get_if<OneSidedLaw>(&law))
-          if (const double both = l->pull.value_or(0) + l->push.value_or(0); both > 0)
-            smooth.push_back(LinearLaw{2 / both});
+        const auto* friction = std::get_if<FrictionLaw>(&law);
+        if (friction && beside) joint.freedoms[i] = Freedom::free;
+        if (friction && !beside) smooth.push_back(LinearLaw{friction->stiffness});
+        if (!deflect::jumps(law)) smooth.push_back(law);
+        const auto* sides = std::get_if<OneSidedLaw>(&law);
+        if (!sides) continue;
+        const double pull = sides->pull.value_or(0), push = sides->push.value_or(0);
+        const double force = wrench ? freedom_twist(joint, i, c.pose.p_WT).dot(*wrench) + joint.preload[i] : 0;
+        const double yields = !wrench ? (pull + push) / 2 : force < 0 ? push : pull;
+        if (yields > 0) smooth.push_back(LinearLaw{1 / yields});
       }
       joint.laws[i] = std::move(smooth);
     }
   };
-  for_each_part(c.legs, [&](auto& part) {
-    if constexpr (requires { part.laws; }) strip(part);
-  });
-  strip(c.base);
-  strip(c.tool);
+  for (std::size_t l = 0; l < c.legs.size(); ++l)
+    for (PlacedPart& part : c.legs[l].parts) {
+      if (auto* joint = std::get_if<PlacedJoint>(&part)) strip(*joint, c.legs[l].beside, &wrenches[l]);
+      if (auto* group = std::get_if<PlacedParallel>(&part))
+        for_each_part(group->branches, [&](auto& inner) {
+          if constexpr (requires { inner.laws; }) strip(inner, c.legs[l].beside, nullptr);
+        });
+    }
+  strip(c.base, false, &F);
+  strip(c.tool, false, &F);
   return c;
 }
 
@@ -84,12 +96,12 @@ AnalyticModel::AnalyticModel(const Configuration& given, const AsPrinted& as_pri
 }
 
 /// Displacements from the drawing.
-AnalyticSolution AnalyticModel::equilibrium_under(const Vector6& F, const Circumstances& under) const {
+AnalyticSolution AnalyticModel::equilibrium_under(const Vector6& F, const ChainConditions& under) const {
   return solution(legs_.solve(F, under), F, under);
 }
 
 AnalyticSolution AnalyticModel::solution(const Group::State& state, const Vector6& F,
-                                         const Circumstances& under) const {
+                                         const ChainConditions& under) const {
   AnalyticSolution s;
   s.displacement = state.t + through_.deflection(F, drawn(under));
   s.load = F;
@@ -107,7 +119,7 @@ AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& 
   const bool driven =
       (legs_.J.transpose() * F).norm() > 1e-9 * (F.head<3>().norm() + F.tail<3>().norm() / legs_.length);
   if (driven || !as_printed_.count(Erratum::tcp_transfer)) refuse_motion(legs_.J, legs_.length);
-  Circumstances under = as_printed_;
+  ChainConditions under = as_printed_;
   under.warmer = conditions.warmer;
   if (conditions.geometry != Geometry::linear && !(F.isZero(0) && legs_.fits()))
     return deformed_equilibrium(F, conditions.geometry);
@@ -129,7 +141,7 @@ AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& 
       [&](const std::vector<Step>& steps) {
         under.steps = steps;
         const AnalyticSolution s = equilibrium_under(F, under);
-        const auto n = static_cast<Eigen::Index>(stepped_.size());
+        const auto n = std::ssize(stepped_);
         SteppedForces out{VectorX::Zero(n), s.displacement, std::max(size(F), held), length, s.converged};
         for (std::size_t i = 0; i < s.leg_wrenches.size(); ++i) {
           legs_.branches[i].add_step_forces(s.leg_wrenches[i], under, out.forces);
@@ -151,7 +163,7 @@ AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& 
 
 AnalyticSolution AnalyticModel::deformed_equilibrium(const Vector6& F, Geometry geometry) const {
   AnalyticSolution s;
-  if (!rest_ || rest_->outlook.geometry != geometry)
+  if (!rest_ || rest_->conditions.geometry != geometry)
     rest_ = std::make_shared<const Deformed>(at_rest(configuration_, geometry, linear()));
   s.deformed = std::make_shared<const Deformed>(deform(*rest_, configuration_, F));
   const Deformed& d = *s.deformed;
@@ -175,9 +187,11 @@ AnalyticSolution AnalyticModel::solve_in_part(const Vector6& F, const Conditions
   Conditions linear = conditions;
   linear.geometry = Geometry::linear;
   AnalyticSolution s = solve(F, linear);
-  const AnalyticModel smooth(without_steps(configuration_));
+  if (!s.converged) return s;
+  const AnalyticModel smooth(without_steps(configuration_, s.leg_wrenches, F + weight_));
   const AnalyticSolution deformed = smooth.solve(F, conditions.geometry), straight = smooth.solve(F);
-  s.displacement += deformed.displacement - straight.displacement;
+  s.shape = deformed.displacement - straight.displacement;
+  s.displacement += s.shape;
   s.discretisation = deformed.discretisation;
   s.converged = s.converged && deformed.converged && straight.converged;
   if (s.message.empty()) s.message = deformed.message;
@@ -247,7 +261,7 @@ Matrix6 AnalyticModel::compliance(const AnalyticSolution& s) const {
 
 std::vector<std::pair<std::string, double>> AnalyticModel::energies(const AnalyticSolution& s) const {
   std::map<std::string, double> sums;
-  if (s.deformed) s.deformed->whole.add_energies(s.deformed->outlook, sums);
+  if (s.deformed) s.deformed->whole.add_energies(s.deformed->conditions, sums);
   for (std::size_t i = 0; !s.deformed && i < s.leg_wrenches.size(); ++i)
     legs_.branches[i].add_energies(s.leg_wrenches[i], s.under, sums);
   if (!s.deformed) through_.add_energies(s.load + weight_, drawn(s.under), sums);

@@ -35,10 +35,12 @@ struct AnalyticSolution {
   std::vector<std::string> loose;
   Matrix6X free = Matrix6X(6, 0);
   Vector6 least = Vector6::Zero(), most = Vector6::Zero();
-  Circumstances under;  ///< warmth, and the phases of laws that jump (steps.h)
-  std::string message;  ///< where not converged: why, when a law that jumps or the geometry is to blame
+  ChainConditions under;  ///< warmth, and the phases of laws that jump (steps.h)
+  std::string message;    ///< where not converged: why, when a law that jumps or the geometry is to blame
   Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();  ///< of T, m and rad: about what dividing members leaves
   std::shared_ptr<const Deformed> deformed;  ///< the state in a geometry that is not linear (deformed.h)
+  /// Where laws jump in the deformed shape: what of the displacement is the shape's. All else is linear geometry.
+  Vector6 shape = Vector6::Zero();
 };
 
 /// A mechanism at one pose.
@@ -80,8 +82,8 @@ class AnalyticModel {
 
  private:
   AnalyticSolution equilibrium(const Vector6& F, const Conditions&) const;
-  AnalyticSolution equilibrium_under(const Vector6& F, const Circumstances&) const;
-  AnalyticSolution solution(const Group::State&, const Vector6& F, const Circumstances&) const;
+  AnalyticSolution equilibrium_under(const Vector6& F, const ChainConditions&) const;
+  AnalyticSolution solution(const Group::State&, const Vector6& F, const ChainConditions&) const;
   AnalyticSolution deformed_equilibrium(const Vector6& F, Geometry) const;
   AnalyticSolution solve_in_part(const Vector6& F, const Conditions&) const;
   Flexibility flexibility(const AnalyticSolution&) const;

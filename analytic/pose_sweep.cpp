@@ -6,6 +6,7 @@
 
 #include "analytic/chain.h"
 #include "analytic/member.h"
+#include "msa/base/index.h"
 
 namespace deflect::analytic {
 namespace {
@@ -46,9 +47,9 @@ void carried_by(const std::array<Vector6, most_passive>& twists, std::size_t cou
       for (std::size_t k = rank + 1; k < 6; ++k) row[i][k] -= factor * row[rank][k];
     }
   }
-  N.setZero(6, static_cast<Eigen::Index>(6 - rank));
+  N.setZero(6, as_index(6 - rank));
   for (std::size_t k = rank; k < 6; ++k) {
-    auto column = N.col(static_cast<Eigen::Index>(k - rank));
+    auto column = N.col(as_index(k - rank));
     column(freedom[k]) = 1;
     for (std::size_t r = 0; r < rank; ++r) column(freedom[r]) = -row[r][k];
     column.normalize();
@@ -79,11 +80,11 @@ PoseSweep::PoseSweep(const Configuration& c) {
         if (joint->free(i)) leg.passive.emplace_back(p, i);
         if (!joint->elastic(i)) continue;
         const std::vector<Law>& laws = joint->laws[i];
-        applies_ = std::none_of(laws.begin(), laws.end(), is_stepped);
-        linear_ = linear_ && std::all_of(laws.begin(), laws.end(), is_linear);
-        const bool cable =
-            std::any_of(laws.begin(), laws.end(), [](const Law& law) { return std::holds_alternative<CableLaw>(law); });
-        leg.springs.push_back({p, i, shared(joint->part), {laws, joint->preload[i]}, cable});
+        applies_ = std::none_of(laws.begin(), laws.end(), deflect::jumps);
+        linear_ = linear_ && std::all_of(laws.begin(), laws.end(), deflect::is_linear);
+        const bool by_pose =
+            std::any_of(laws.begin(), laws.end(), [](const Law& law) { return row_of(law).length_from_pose; });
+        leg.springs.push_back({p, i, shared(joint->part), {laws, joint->preload[i]}, by_pose});
       }
     }
     applies_ = applies_ && leg.passive.size() <= most_passive;
@@ -119,7 +120,7 @@ void PoseSweep::carry(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, do
     const auto& joint = std::get<PlacedJoint>(placed.parts[f.part]);
     if (f.given_by_pose) f.spring.laws = joint.laws[f.index];
     const Vector6 twist = freedom_twist(joint, f.index, p_WT);
-    for (Eigen::Index k = 0; k < n; ++k) f.twist[static_cast<std::size_t>(k)] = twist.dot(leg.N.col(k));
+    for (Eigen::Index k = 0; k < n; ++k) nth(f.twist, k) = twist.dot(leg.N.col(k));
   }
 }
 
@@ -242,9 +243,9 @@ double PoseSweep::energy() const {
 
 Matrix6X PoseSweep::passive_twists(const Configuration& c, std::size_t leg) const {
   const Leg& l = legs_[leg];
-  Matrix6X out(6, static_cast<Eigen::Index>(l.passive.size()));
+  Matrix6X out(6, std::ssize(l.passive));
   for (std::size_t k = 0; k < l.passive.size(); ++k)
-    out.col(static_cast<Eigen::Index>(k)) =
+    out.col(as_index(k)) =
         freedom_twist(std::get<PlacedJoint>(c.legs[leg].parts[l.passive[k].first]), l.passive[k].second, c.pose.p_WT);
   return out;
 }

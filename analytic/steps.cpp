@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "analytic/deflection.h"
+#include "msa/base/index.h"
 #include "msa/base/set_valued_laws.h"
 
 namespace deflect::analytic {
@@ -95,7 +96,7 @@ ScalarLaw scalar_law(const SteppedLaw& stepped, double slip) {
             slip - P / k,
             std::max(F / k, 1e-15)};
   }
-  if (!is_stepped(stepped.law)) return bent(stepped.law, P);
+  if (!deflect::jumps(stepped.law)) return bent(stepped.law, P);
   const OneSidedLaw one = std::get<OneSidedLaw>(stepped.law);
   const double rest = compliance(one, P) * P;
   const auto slope = [one, rest](double d) {
@@ -124,18 +125,18 @@ double at_sum(const ScalarLaw& law, double c, double p) {
 }
 
 Phase phase_at_rest(const Law& law) {
-  if (!is_stepped(law)) return Phase::bends;
+  if (!deflect::jumps(law)) return Phase::bends;
   return std::holds_alternative<FrictionLaw>(law) ? Phase::sticks : Phase::plus;
 }
 
 class Balance {
  public:
   Balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask, Imposed& imposed)
-      : ask_(ask), imposed_(imposed), n_(static_cast<Eigen::Index>(laws.size())) {
+      : ask_(ask), imposed_(imposed), n_(std::ssize(laws)) {
     for (const SteppedLaw& l : laws) {
       members_.push_back({&l});
       if (const auto* friction = std::get_if<FrictionLaw>(&l.law)) {
-        const auto n = static_cast<std::size_t>(friction->number);
+        const auto n = as_size(friction->number);
         if (friction->number >= 0 && n < slips.size()) members_.back().slip = slips[n];
       }
       laws_.push_back(scalar_law(l, members_.back().slip));
@@ -156,7 +157,7 @@ class Balance {
       const MatrixX P = MatrixX::Identity(n_, n_) - MatrixX(imposed_.c.asDiagonal() * imposed_.S);
       sizes_ = VectorX::Constant(n_, at.largest);
       for (Eigen::Index i = 0; i < n_; ++i)
-        if (members_[static_cast<std::size_t>(i)].stepped->rotation) sizes_(i) *= at.length;
+        if (nth(members_, i).stepped->rotation) sizes_(i) *= at.length;
       found = solve({imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_}, laws_, imposed_.T);
       if (found.outcome != SetValuedSolution::Outcome::solved) return failed(found);
       // Where other laws bend, no further than brings the forces nearer, along p = δ + c f, of which every law has one.
@@ -172,7 +173,7 @@ class Balance {
         if ((at.converged && lacking < (1 - 1e-4 * part) * before) || part < 1e-4 || p.size() == 0) break;
         for (Eigen::Index i = 0; i < n_; ++i) {
           const double c = imposed_.c(i), here = p(i) + part / 2 * (target(i) - p(i));
-          const double d = at_sum(laws_[static_cast<std::size_t>(i)], c, here);
+          const double d = at_sum(nth(laws_, i), c, here);
           s(i) = (here - d) / c;
           o(i) = d - c * s(i);
         }
@@ -200,7 +201,7 @@ class Balance {
     imposed_.c.resize(n_);
     const double length = ask_({}).length;
     for (Eigen::Index i = 0; i < n_; ++i)
-      imposed_.c(i) = members_[static_cast<std::size_t>(i)].stepped->rotation ? 1e-10 / (length * length) : 1e-10;
+      imposed_.c(i) = nth(members_, i).stepped->rotation ? 1e-10 / (length * length) : 1e-10;
     linearise(VectorX::Zero(n_), answer(VectorX::Zero(n_)), 1e3);
     for (Eigen::Index i = 0; i < n_; ++i)
       if (imposed_.S(i, i) * imposed_.c(i) > 1e-12) imposed_.c(i) = 1 / imposed_.S(i, i);
@@ -213,7 +214,7 @@ class Balance {
     imposed_.T.resize(6, n_);
     const double force = at.largest > 0 ? at.largest : 1;
     for (Eigen::Index i = 0; i < n_; ++i) {
-      const bool rotation = members_[static_cast<std::size_t>(i)].stepped->rotation;
+      const bool rotation = nth(members_, i).stepped->rotation;
       VectorX moved = o;
       const double h = change * force * (rotation ? at.length : 1) * imposed_.c(i);
       moved(i) += h;
@@ -233,7 +234,7 @@ class Balance {
 
   BalancedSteps result(const SetValuedSolution& found) {
     for (Eigen::Index i = 0; i < n_; ++i) {
-      const auto at = static_cast<std::size_t>(i);
+      const auto at = as_size(i);
       Member& m = members_[at];
       m.imposed = found.d(i);
       m.force = found.s(i);
@@ -241,15 +242,14 @@ class Balance {
         m.phase = found.end[at] > 0 ? Phase::plus : found.end[at] < 0 ? Phase::minus : Phase::open;
       else if (std::holds_alternative<FrictionLaw>(m.law()))
         m.phase = found.end[at] > 0 ? Phase::plus : found.end[at] < 0 ? Phase::minus : Phase::sticks;
-      else if (!is_stepped(m.law()))
+      else if (!deflect::jumps(m.law()))
         m.phase = std::abs(found.s(i) + m.stepped->preload) <= no_force * sizes_(i) ? Phase::open : Phase::bends;
       else
         m.phase = found.s(i) + m.stepped->preload < -no_force * sizes_(i) ? Phase::minus : Phase::plus;
     }
     BalancedSteps out = conclude();
     for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)
-      if (found.loose.row(i).cwiseAbs().maxCoeff() > 0)
-        out.loose.push_back(members_[static_cast<std::size_t>(i)].stepped->part);
+      if (found.loose.row(i).cwiseAbs().maxCoeff() > 0) out.loose.push_back(nth(members_, i).stepped->part);
     out.twists = imposed_.T * found.loose;
     out.least = found.least, out.most = found.most;
     if (own_) imposed_ = Imposed();  // belongs to this load alone
@@ -263,7 +263,7 @@ class Balance {
       out.steps.push_back(m.step());
       const auto* friction = std::get_if<FrictionLaw>(&m.law());
       if (!friction) continue;
-      const auto n = static_cast<std::size_t>(std::max(friction->number, 0));
+      const auto n = as_size(std::max(friction->number, 0));
       out.slips.resize(std::max(out.slips.size(), n + 1));
       const double known = (m.phase == Phase::plus ? friction->force : -friction->force) - m.stepped->preload;
       out.slips[n] = m.released() ? m.imposed - known / friction->stiffness : m.slip;
@@ -280,10 +280,10 @@ class Balance {
     if (found.outcome == SetValuedSolution::Outcome::no_fit)
       out.reason = "the parts cannot be assembled: their misfits are larger than the play, and nothing yields";
     for (Eigen::Index i = 0; i < found.along.size(); ++i)
-      if (const auto* l = std::get_if<FrictionLaw>(&members_[static_cast<std::size_t>(i)].law());
+      if (const auto* l = std::get_if<FrictionLaw>(&nth(members_, i).law());
           l && std::abs(found.along(i)) > 1e-3 * largest(found.along))
         out.reason = fmt::format("a friction slips at {:.6g} {} and nothing else holds what it lets go", l->force,
-                                 members_[static_cast<std::size_t>(i)].stepped->rotation ? "Nm" : "N");
+                                 nth(members_, i).stepped->rotation ? "Nm" : "N");
     if (own_) imposed_ = Imposed();
     return out;
   }
@@ -302,7 +302,7 @@ class Balance {
 Step SteppedLaw::at_force(double f) const {
   Member m{this};
   m.force = f;
-  m.phase = !is_stepped(law)                           ? Phase::bends
+  m.phase = !deflect::jumps(law)                       ? Phase::bends
             : std::holds_alternative<FrictionLaw>(law) ? Phase::sticks
             : f + preload < 0                          ? Phase::minus
                                                        : Phase::plus;
@@ -312,7 +312,8 @@ Step SteppedLaw::at_force(double f) const {
 
 double SteppedLaw::stored_energy(double f, const Step& s) const {
   const double own = f + preload, d = s.offset + s.compliance * f;
-  if (!is_stepped(law)) return analytic::stored_energy(law, own) - analytic::stored_energy(law, preload) - preload * d;
+  if (!deflect::jumps(law))
+    return analytic::stored_energy(law, own) - analytic::stored_energy(law, preload) - preload * d;
   if (const auto* l = std::get_if<FrictionLaw>(&law)) return own * own / (2 * l->stiffness);
   const auto* l = std::get_if<OneSidedLaw>(&law);
   const auto stored = [&](double force) { return l ? compliance(*l, force) * force * force / 2 : 0; };

@@ -8,6 +8,7 @@
 #include "analytic/beam_column.h"
 #include "analytic/flexibility.h"
 #include "analytic/rotation_vector.h"
+#include "msa/base/index.h"
 
 namespace deflect::analytic {
 namespace {
@@ -18,8 +19,7 @@ RigidMotion turn(const Matrix3& D, const Vector3& about) { return {D, -D * about
 RigidMotion motion_of(const VirtualJoint& v) {
   const Matrix3& A = v.joint.R_WJ;
   Matrix3 D = Matrix3::Zero();
-  for (Eigen::Index i = 0; i < 3; ++i)
-    D = combined(D, turning(v.x[static_cast<std::size_t>(3 + i)] * Vector3::Unit(i)));
+  for (Eigen::Index i = 0; i < 3; ++i) D = combined(D, turning(nth(v.x, 3 + i) * Vector3::Unit(i)));
   return shift(A * Vector3(v.x[0], v.x[1], v.x[2])) * turn(A * D * A.transpose(), v.joint.p_W);
 }
 
@@ -40,7 +40,7 @@ void add_columns(const VirtualJoint& v, const RigidMotion& before, std::vector<C
   const Vector3 point = before(v.joint.p_W + v.joint.R_WJ * Vector3(v.x[0], v.x[1], v.x[2]));
   std::size_t next = 0;
   for (std::size_t i = 0; i < 6; ++i) {
-    const Vector3 axis = axes.col(static_cast<Eigen::Index>(i % 3));
+    const Vector3 axis = axes.col(as_index(i % 3));
     if (next < v.freedoms.size() && v.freedoms[next] == i) {
       columns.push_back(i < 3 ? Column{Vector3::Zero(), axis} : Column{axis, point});
       ++next;
@@ -57,20 +57,79 @@ void add_columns(const Tip& tip, const RigidMotion& before, std::vector<Column>&
   for (Eigen::Index i = 0; i < 3; ++i) columns.push_back({axes.col(i), point, number});
 }
 
+/// The freedoms of steps in series.
+struct Freedoms {
+  std::vector<Column> columns;
+  std::vector<Eigen::Index> first;  // by step its first freedom, and one behind the last
+  std::vector<double> x;
+  RigidMotion end;  // as the steps move it, where the shape is finite
+};
+
+/// Columns in the shape of the state where that is `finite`, else in the undeformed one.
+Freedoms freedoms_of(const std::vector<VirtualStep>& steps, bool finite) {
+  Freedoms out;
+  for (const VirtualStep& step : steps) {
+    out.first.push_back(std::ssize(out.columns));
+    if (const auto* joint = std::get_if<VirtualJoint>(&step)) {
+      VirtualJoint there = *joint;
+      if (!finite) there.x = {};
+      add_columns(there, out.end, out.columns);
+      for (const std::size_t i : joint->freedoms) out.x.push_back(joint->x[i]);
+    } else {
+      Tip tip = std::holds_alternative<VirtualMember>(step) ? std::get<VirtualMember>(step).tip
+                                                            : std::get<VirtualGroup>(step).tip;
+      const Vector6 moved = tip.x;
+      if (!finite) tip = {tip.p, tip.A};
+      add_columns(tip, out.end, out.columns);
+      out.x.insert(out.x.end(), moved.data(), moved.data() + 6);
+    }
+    if (finite) out.end = out.end * motion_of(step);
+  }
+  out.first.push_back(std::ssize(out.columns));
+  return out;
+}
+
+/// J at the end, whose place is given; the columns then have their velocities.
+Matrix6X twists_at(const Vector3& end, std::vector<Column>& columns) {
+  Matrix6X J(6, std::ssize(columns));
+  for (Eigen::Index i = 0; i < J.cols(); ++i) {
+    Column& column = nth(columns, i);
+    if (!column.omega.isZero(0)) column.v = column.omega.cross(end - column.v);
+    J.col(i) << column.v, column.omega;
+  }
+  return J;
+}
+
+/// H of the wrench F at the end.
+MatrixX second_derivative(const std::vector<Column>& columns, const Vector6& F) {
+  const auto n = std::ssize(columns);
+  const Vector3 f = F.head<3>(), m = F.tail<3>();
+  MatrixX H = MatrixX::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = i; j < n; ++j) {
+      const Column &a = nth(columns, i), &b = nth(columns, j);
+      H(i, j) = a.tip >= 0 && a.tip == b.tip ? 0.5 * f.dot(a.omega.cross(b.v) + b.omega.cross(a.v))
+                : i < j                      ? f.dot(a.omega.cross(b.v)) + 0.5 * m.dot(a.omega.cross(b.omega))
+                                             : f.dot(a.omega.cross(b.v));
+      H(j, i) = H(i, j);
+    }
+  return H;
+}
+
 /// Adds the joint's laws under the forces s at its freedoms.
-void add_laws(const VirtualJoint& v, const Outlook& c, Eigen::Ref<VectorX> s, Eigen::Ref<MatrixX> K,
+void add_laws(const VirtualJoint& v, const ShapeConditions& c, Eigen::Ref<VectorX> s, Eigen::Ref<MatrixX> K,
               std::vector<bool>& kept) {
   const VectorX static_force = s;
   s.setZero();
   for (std::size_t k = 0; k < v.freedoms.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
+    const auto at = as_index(k);
     const std::size_t i = v.freedoms[k];
     kept.push_back(!v.joint.elastic(i));
     if (kept.back()) continue;
     if (v.joint.stiffness) {
       for (std::size_t j = 0; j < 6; ++j) {
-        K(at, static_cast<Eigen::Index>(j)) = (*v.joint.stiffness)(at, static_cast<Eigen::Index>(j));
-        s(at) += K(at, static_cast<Eigen::Index>(j)) * v.x[j];
+        K(at, as_index(j)) = (*v.joint.stiffness)(at, as_index(j));
+        s(at) += K(at, as_index(j)) * v.x[j];
       }
       continue;
     }
@@ -80,12 +139,52 @@ void add_laws(const VirtualJoint& v, const Outlook& c, Eigen::Ref<VectorX> s, Ei
   }
 }
 
+/// Adds s, K and Z by the laws of all steps, with `first` as in Freedoms and statics' forces `along` the freedoms. By
+/// column of Z: the step of a joint, −1 of members and groups.
+std::vector<int> add_all_laws(std::vector<VirtualStep>& steps, const std::vector<Eigen::Index>& first,
+                              const VectorX& along, const ShapeConditions& c, double length, Linearised& l) {
+  const Eigen::Index n = along.size();
+  l.K = MatrixX::Zero(n, n);
+  MatrixX Z = MatrixX::Identity(n, n);
+  l.offset = VectorX::Zero(n);
+  std::vector<Eigen::Index> allowed;  // columns of Z that remain
+  std::vector<int> joint_of;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const Eigen::Index at = first[k], size = first[k + 1] - at;
+    if (auto* joint = std::get_if<VirtualJoint>(&steps[k])) {
+      add_laws(*joint, c, l.s.segment(at, size), l.K.block(at, at, size, size), l.kept);
+      for (Eigen::Index i = 0; i < size; ++i) allowed.push_back(at + i);
+    } else if (auto* member = std::get_if<VirtualMember>(&steps[k])) {
+      const TipLaw law = tip_law(member->member, member->tip.x, along.segment<3>(at), c.geometry);
+      l.s.segment<6>(at) = law.s;
+      l.K.block<6, 6>(at, at) = law.K;
+      l.stable = l.stable && law.stable;
+      l.kept.insert(l.kept.end(), 6, false);
+      for (Eigen::Index i = 0; i < 6; ++i) allowed.push_back(at + i);
+    } else {
+      const Restraint held = std::get<VirtualGroup>(steps[k]).restrain(c);
+      l.s.segment<6>(at) = held.F0;
+      l.K.block<6, 6>(at, at) = held.K;
+      l.stable = l.stable && held.stable;
+      l.all = l.all && held.B.cols() == 0;
+      const Matrix6X free = held.B.cols() == 0 ? Matrix6X(Matrix6::Identity()) : free_twists(held.B, length);
+      if (held.B.cols() > 0)
+        l.offset.segment<6>(at) = VectorX(MatrixX(held.B.transpose()).completeOrthogonalDecomposition().solve(held.b));
+      Z.block(at, at, 6, free.cols()) = free;
+      l.kept.insert(l.kept.end(), as_size(free.cols()), true);
+      for (Eigen::Index i = 0; i < free.cols(); ++i) allowed.push_back(at + i);
+    }
+    joint_of.resize(allowed.size(), std::holds_alternative<VirtualJoint>(steps[k]) ? static_cast<int>(k) : -1);
+  }
+  l.Z = Z(Eigen::all, allowed);
+  return joint_of;
+}
+
 /// Takes out of Z the motions of passive joints that do not move the end and let all between turn about one line, or
 /// slide along one. `step`: of each column of Z that belongs to a joint; −1 of members and groups.
 void hold_idle(Linearised& l, const std::vector<int>& step, double length) {
   std::vector<Eigen::Index> passive, others;
-  for (std::size_t i = 0; i < l.kept.size(); ++i)
-    (l.kept[i] && step[i] >= 0 ? passive : others).push_back(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < l.kept.size(); ++i) (l.kept[i] && step[i] >= 0 ? passive : others).push_back(as_index(i));
   if (passive.empty()) return;
   const MatrixX Z = l.Z(Eigen::all, passive) * l.scale(passive).asDiagonal();
   MatrixX twists = l.J * Z;
@@ -94,9 +193,9 @@ void hold_idle(Linearised& l, const std::vector<int>& step, double length) {
   const MatrixX still = complement(twists.transpose());
   for (Eigen::Index k = 0; k < still.cols(); ++k) {
     // Twists of what stands behind each step.
-    MatrixX between = MatrixX::Zero(6, step[static_cast<std::size_t>(passive.back())] + 1);
+    MatrixX between = MatrixX::Zero(6, nth(step, passive.back()) + 1);
     for (Eigen::Index i = 0; i < twists.cols(); ++i) {
-      const int from = step[static_cast<std::size_t>(passive[static_cast<std::size_t>(i)])];
+      const int from = nth(step, nth(passive, i));
       between.rightCols(between.cols() - from).colwise() += still(i, k) * twists.col(i);
     }
     const VectorX sizes = between.jacobiSvd().singularValues();
@@ -107,8 +206,8 @@ void hold_idle(Linearised& l, const std::vector<int>& step, double length) {
   if (idle.cols() == 0) return;
   const MatrixX moving = Z * complement(idle), rest = l.Z(Eigen::all, others);
   std::vector<bool> kept;
-  for (const Eigen::Index i : others) kept.push_back(l.kept[static_cast<std::size_t>(i)]);
-  kept.resize(static_cast<std::size_t>(rest.cols() + moving.cols()), true);
+  for (const Eigen::Index i : others) kept.push_back(nth(l.kept, i));
+  kept.resize(as_size(rest.cols() + moving.cols()), true);
   VectorX scale = VectorX::Ones(rest.cols() + moving.cols());
   scale.head(rest.cols()) = l.scale(others);
   l.all = false;
@@ -186,95 +285,32 @@ VirtualChain virtual_chain_of(const PlacedLeg& leg, const Vector3& p_E, const Ve
   return chain;
 }
 
-Linearised VirtualChain::linearise(const Outlook& c) {
+Linearised VirtualChain::linearise(const ShapeConditions& c) {
   Linearised out;
   const bool finite = c.geometry == Geometry::finite;
-  std::vector<Column> columns;
-  std::vector<Eigen::Index> first;
-  std::vector<double> x;
-  for (const VirtualStep& step : steps) {
-    first.push_back(static_cast<Eigen::Index>(columns.size()));
-    if (const auto* joint = std::get_if<VirtualJoint>(&step)) {
-      VirtualJoint there = *joint;
-      if (!finite) there.x = {};
-      add_columns(there, out.end, columns);
-      for (const std::size_t i : joint->freedoms) x.push_back(joint->x[i]);
-    } else {
-      Tip tip = std::holds_alternative<VirtualMember>(step) ? std::get<VirtualMember>(step).tip
-                                                            : std::get<VirtualGroup>(step).tip;
-      const Vector6 moved = tip.x;
-      if (!finite) tip = {tip.p, tip.A};
-      add_columns(tip, out.end, columns);
-      x.insert(x.end(), moved.data(), moved.data() + 6);
-    }
-    if (finite) out.end = out.end * motion_of(step);
-  }
+  Freedoms freedoms = freedoms_of(steps, finite);
+  out.end = freedoms.end;
   if (finite) out.end = out.end * shift(c.misfit * misfit.head<3>()) * turn(turning(c.misfit * misfit.tail<3>()), p_E);
-  const auto n = static_cast<Eigen::Index>(columns.size());
-  const Vector3 end = out.end(p_E), f = F.head<3>(), m = F.tail<3>();
-  out.J.resize(6, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    Column& column = columns[static_cast<std::size_t>(i)];
-    if (!column.omega.isZero(0)) column.v = column.omega.cross(end - column.v);
-    out.J.col(i) << column.v, column.omega;
-  }
-  out.H = MatrixX::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = i; j < n; ++j) {
-      const Column &a = columns[static_cast<std::size_t>(i)], &b = columns[static_cast<std::size_t>(j)];
-      out.H(i, j) = a.tip >= 0 && a.tip == b.tip ? 0.5 * f.dot(a.omega.cross(b.v) + b.omega.cross(a.v))
-                    : i < j                      ? f.dot(a.omega.cross(b.v)) + 0.5 * m.dot(a.omega.cross(b.omega))
-                                                 : f.dot(a.omega.cross(b.v));
-      out.H(j, i) = out.H(i, j);
-    }
+  const auto n = std::ssize(freedoms.columns);
+  out.J = twists_at(out.end(p_E), freedoms.columns);
+  out.H = second_derivative(freedoms.columns, F);
   if (!finite)
     for (std::size_t k = 0; k < steps.size(); ++k)
-      if (std::holds_alternative<VirtualMember>(steps[k])) out.H.row(first[k]).setZero(), out.H.col(first[k]).setZero();
-  out.x = Eigen::Map<const VectorX>(x.data(), n);
+      if (const Eigen::Index at = freedoms.first[k]; std::holds_alternative<VirtualMember>(steps[k]))
+        out.H.row(at).setZero(), out.H.col(at).setZero();
+  out.x = Eigen::Map<const VectorX>(freedoms.x.data(), n);
   // Forces that statics puts on the freedoms; then what the laws make of them.
   const VectorX along = out.J.transpose() * F;
   out.turned = VectorX::Zero(n);
   if (!finite) {  // the misfit is the motion of a last tip, which H sees too
+    const Vector3 f = F.head<3>(), m = F.tail<3>();
     const Vector6 beside = c.misfit * misfit;
     const Vector3 moment = beside.head<3>().cross(f) + 0.5 * beside.tail<3>().cross(m);
     out.turned = out.H * out.x + out.J.bottomRows<3>().transpose() * moment;
   }
   out.s = along + out.turned;
-  out.K = MatrixX::Zero(n, n);
-  MatrixX Z = MatrixX::Identity(n, n);
-  out.offset = VectorX::Zero(n);
-  std::vector<Eigen::Index> allowed;  // columns of Z that remain
-  std::vector<int> joint_of;          // by column: the step of a joint
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    const Eigen::Index at = first[k], size = (k + 1 < steps.size() ? first[k + 1] : n) - at;
-    if (auto* joint = std::get_if<VirtualJoint>(&steps[k])) {
-      add_laws(*joint, c, out.s.segment(at, size), out.K.block(at, at, size, size), out.kept);
-      for (Eigen::Index i = 0; i < size; ++i) allowed.push_back(at + i);
-    } else if (auto* member = std::get_if<VirtualMember>(&steps[k])) {
-      const TipLaw law = tip_law(member->member, member->tip.x, along.segment<3>(at), c.geometry);
-      out.s.segment<6>(at) = law.s;
-      out.K.block<6, 6>(at, at) = law.K;
-      out.stable = out.stable && law.stable;
-      out.kept.insert(out.kept.end(), 6, false);
-      for (Eigen::Index i = 0; i < 6; ++i) allowed.push_back(at + i);
-    } else {
-      const Restraint held = std::get<VirtualGroup>(steps[k]).restrain(c);
-      out.s.segment<6>(at) = held.F0;
-      out.K.block<6, 6>(at, at) = held.K;
-      out.stable = out.stable && held.stable;
-      out.all = out.all && held.B.cols() == 0;
-      const Matrix6X free = held.B.cols() == 0 ? Matrix6X(Matrix6::Identity()) : free_twists(held.B, length);
-      if (held.B.cols() > 0)
-        out.offset.segment<6>(at) =
-            VectorX(MatrixX(held.B.transpose()).completeOrthogonalDecomposition().solve(held.b));
-      Z.block(at, at, 6, free.cols()) = free;
-      out.kept.insert(out.kept.end(), static_cast<std::size_t>(free.cols()), true);
-      for (Eigen::Index i = 0; i < free.cols(); ++i) allowed.push_back(at + i);
-    }
-    joint_of.resize(allowed.size(), std::holds_alternative<VirtualJoint>(steps[k]) ? static_cast<int>(k) : -1);
-  }
+  const std::vector<int> joint_of = add_all_laws(steps, freedoms.first, along, c, length, out);
   out.s -= out.turned;
-  out.Z = Z(Eigen::all, allowed);
   out.scale = VectorX::Ones(out.Z.cols());
   for (Eigen::Index i = 0; i < out.Z.cols(); ++i) {
     // A freedom turns when it turns the end.
@@ -292,7 +328,7 @@ Matrix3 VirtualChain::axes_before(std::size_t step, Geometry geometry) const {
   return motion.R();
 }
 
-void VirtualChain::add_energies(const Outlook& c, std::map<std::string, double>& sums) const {
+void VirtualChain::add_energies(const ShapeConditions& c, std::map<std::string, double>& sums) const {
   VirtualChain copy = *this;
   const Linearised l = copy.linearise(c);
   const VectorX s = l.J.transpose() * F + l.turned;
@@ -315,7 +351,7 @@ void VirtualChain::add_energies(const Outlook& c, std::map<std::string, double>&
     }
 }
 
-Progress VirtualChain::advance(const Linearised& at, const VectorX& delta, const Outlook& c) {
+Progress VirtualChain::advance(const Linearised& at, const VectorX& delta, const ShapeConditions& c) {
   const VectorX s = at.J.transpose() * F + at.H * delta + at.turned;
   Progress progress;
   const auto count = [&](std::size_t freedom, double x, double step) {
@@ -334,8 +370,7 @@ Progress VirtualChain::advance(const Linearised& at, const VectorX& delta, const
       Tip& tip = std::holds_alternative<VirtualMember>(step) ? std::get<VirtualMember>(step).tip
                                                              : std::get<VirtualGroup>(step).tip;
       tip.move(increment, c.geometry);
-      for (std::size_t i = 0; i < 6; ++i)
-        count(i, tip.x(static_cast<Eigen::Index>(i)), increment(static_cast<Eigen::Index>(i)));
+      for (std::size_t i = 0; i < 6; ++i) count(i, tip.x(as_index(i)), increment(as_index(i)));
       if (auto* group = std::get_if<VirtualGroup>(&step)) progress.add(group->follow(increment, s.segment<6>(next), c));
       next += 6;
     }

@@ -65,8 +65,8 @@ struct Tip {
   void move(const Vector6& increment, Geometry);  ///< [δ; ψ]
 };
 
-/// How the state is to be looked at.
-struct Outlook {
+/// Conditions under which a shape is linearised.
+struct ShapeConditions {
   Geometry geometry = Geometry::finite;
   double least = 0;     ///< N, Nm: forces below count as this in the compliance of contacts
   double misfit = 1;    ///< share of the misfits that is in place
@@ -80,7 +80,7 @@ struct Restraint {
   Matrix6X B = Matrix6X(6, 0);
   VectorX b = VectorX(0);
   Vector3 m = Vector3::Zero();  ///< moment of the state: by spins the stiffness is K − ½[m]×
-  bool stable = true;           ///< while the body is held still; known where the outlook asks for it
+  bool stable = true;           ///< while the body is held still; known where the conditions ask for it
 };
 
 /// How far freedoms have moved, and in the last step; the largest of them, rotations times length (m).
@@ -109,12 +109,12 @@ struct VirtualGroup {
   std::string part;
   Tip tip;
   std::vector<VirtualChain> branches;
-  /// About the state as it is, the branches' too, where no outlook changes it but one that is judged.
+  /// About the state as it is, the branches' too, where no condition changes but whether it is judged.
   std::optional<Restraint> known = {};
 
-  Restraint restrain(const Outlook&);
+  Restraint restrain(const ShapeConditions&);
   /// The body moves further by t under the wrench F.
-  Progress follow(const Vector6& t, const Vector6& F, const Outlook&);
+  Progress follow(const Vector6& t, const Vector6& F, const ShapeConditions&);
 };
 
 using VirtualStep = std::variant<VirtualJoint, VirtualMember, VirtualGroup>;
@@ -143,18 +143,18 @@ struct VirtualChain {
   Vector6 F = Vector6::Zero();       ///< on the end about the end, in the axes of the start
 
   /// About the state under F.
-  Linearised linearise(const Outlook&);
+  Linearised linearise(const ShapeConditions&);
   /// The freedoms move by δ; groups by the wrenches JᵀF + H δ that then pass through them.
-  Progress advance(const Linearised&, const VectorX& delta, const Outlook&);
+  Progress advance(const Linearised&, const VectorX& delta, const ShapeConditions&);
 
   /// For an end that is held by another body, at `end`; then that body moves further by t under a wrench that B μ
   /// completes, and freedoms and F follow.
-  Restraint restrain(const Tip& end, const Outlook&);
-  Progress follow(const Vector6& t, const VectorX& mu, const Outlook&);
+  Restraint restrain(const Tip& end, const ShapeConditions&);
+  Progress follow(const Vector6& t, const VectorX& mu, const ShapeConditions&);
 
   const Restraint& restraint() const { return restraint_; }  ///< as last asked for
   /// Adds the strain energy of each part in an equilibrium, J.
-  void add_energies(const Outlook&, std::map<std::string, double>&) const;
+  void add_energies(const ShapeConditions&, std::map<std::string, double>&) const;
   /// Axes of the start as the steps before `step` have turned them.
   Matrix3 axes_before(std::size_t step, Geometry) const;
 

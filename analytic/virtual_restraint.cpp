@@ -7,6 +7,7 @@
 #include "analytic/flexibility.h"
 #include "analytic/rotation_vector.h"
 #include "analytic/virtual_chain.h"
+#include "msa/base/index.h"
 
 namespace deflect::analytic {
 namespace {
@@ -55,6 +56,35 @@ ByFreeMotions by_free_motions(const Linearised& l) {
   return {l.J * l.Z, l.Z.transpose() * difference * l.Z, l.Z.transpose() * (l.s + difference * l.offset)};
 }
 
+/// The free motions E, which are eliminated, and Q, which stay.
+struct Elimination {
+  std::vector<Eigen::Index> E, Q;
+  MatrixX J_E, J_Q, A_EE, A_EQ, A_QQ;
+  VectorX r_Q;
+  MatrixX yields, A_EE_EQ;  // A_EE⁻¹ J_Eᵀ and A_EE⁻¹ A_EQ
+  VectorX A_EE_r;           // A_EE⁻¹ r_E
+};
+
+/// `kept`: the motions that stay.
+Elimination elimination_of(const ByFreeMotions& by_z, const std::vector<bool>& kept) {
+  Elimination out;
+  for (std::size_t i = 0; i < kept.size(); ++i) (kept[i] ? out.Q : out.E).push_back(as_index(i));
+  const std::vector<Eigen::Index> six = {0, 1, 2, 3, 4, 5};
+  out.J_E = pick(by_z.J, six, out.E), out.J_Q = pick(by_z.J, six, out.Q);
+  out.A_EE = pick(by_z.A, out.E, out.E), out.A_EQ = pick(by_z.A, out.E, out.Q), out.A_QQ = pick(by_z.A, out.Q, out.Q);
+  out.r_Q = by_z.r(out.Q);
+  const Eigen::Index stay = std::ssize(out.Q);
+  MatrixX solved(std::ssize(out.E), 7 + stay);
+  solved.leftCols(6) = out.J_E.transpose();
+  solved.middleCols(6, stay) = out.A_EQ;
+  solved.rightCols(1) = by_z.r(out.E);
+  if (!out.E.empty()) solved = Eigen::PartialPivLU<MatrixX>(out.A_EE).solve(solved).eval();
+  out.yields = solved.leftCols(6);
+  out.A_EE_EQ = solved.middleCols(6, stay);
+  out.A_EE_r = solved.col(6 + stay);
+  return out;
+}
+
 }  // namespace
 
 // With A = K − H, δ = offset + Z z and z split into E, which is eliminated, and Q, which stays,
@@ -65,42 +95,28 @@ ByFreeMotions by_free_motions(const Linearised& l) {
 // where they are (smallest solution). The chain is stable while its end is held if A is positive definite on Jδ = 0,
 // which by Sylvester's law means: as many positive eigenvalues of the matrix and negative ones of A_EE as f has
 // entries.
-Restraint VirtualChain::restrain(const Tip& end, const Outlook& outlook) {
-  held_ = linearise(outlook);
+Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditions) {
+  held_ = linearise(conditions);
   const Linearised& l = held_;
-  const bool finite = outlook.geometry == Geometry::finite;
+  const bool finite = conditions.geometry == Geometry::finite;
   Vector6& c = lack_;
   if (finite)
     c << end.x.head<3>() - l.end.displacement(p_E), rotation_vector(combined(end.D, l.end.D.transpose()));
   else
-    c = end.x - outlook.misfit * misfit - l.J * l.x;
-  const auto [J, A, r] = by_free_motions(l);
+    c = end.x - conditions.misfit * misfit - l.J * l.x;
   if (!l.all) c -= l.J * l.offset;
-  std::vector<Eigen::Index> E, Q;
-  for (std::size_t i = 0; i < l.kept.size(); ++i) (l.kept[i] ? Q : E).push_back(static_cast<Eigen::Index>(i));
-  const std::vector<Eigen::Index> six = {0, 1, 2, 3, 4, 5};
-  const MatrixX J_E = pick(J, six, E), J_Q = pick(J, six, Q), A_EE = pick(A, E, E), A_EQ = pick(A, E, Q);
-  const VectorX r_E = r(E), r_Q = r(Q), scale = l.scale(Q);
-  const Eigen::PartialPivLU<MatrixX> lu = [&] {
-    return E.empty() ? Eigen::PartialPivLU<MatrixX>() : Eigen::PartialPivLU<MatrixX>(A_EE);
-  }();
-  const Eigen::Index kept = std::ssize(Q);
-  MatrixX solved(std::ssize(E), 7 + kept);
-  solved.leftCols(6) = J_E.transpose();
-  solved.middleCols(6, kept) = A_EQ;
-  solved.rightCols(1) = r_E;
-  if (!E.empty()) solved = lu.solve(solved).eval();
-  const MatrixX yields = solved.leftCols(6), A_EE_EQ = solved.middleCols(6, kept);
-  const VectorX A_EE_r = solved.col(6 + kept);
+  const ByFreeMotions by_z = by_free_motions(l);
+  const auto [E, Q, J_E, J_Q, A_EE, A_EQ, A_QQ, r_Q, yields, A_EE_EQ, A_EE_r] = elimination_of(by_z, l.kept);
+  const VectorX scale = l.scale(Q);
   const Vector6 e = J_E * A_EE_r;
 
   const Vector6 W = weights(length);
-  const MatrixX J_weighed = W.asDiagonal() * J * l.scale.asDiagonal();
+  const MatrixX J_weighed = W.asDiagonal() * by_z.J * l.scale.asDiagonal();
   const MatrixX B = complement(J_weighed), P = complement(B);
   const Eigen::Index rank = P.cols(), passive = J_Q.cols();
   const MatrixX C = P.transpose() * W.asDiagonal() * (J_E * yields) * W.asDiagonal() * P;
   const MatrixX J_hat = P.transpose() * W.asDiagonal() * (J_Q - J_E * A_EE_EQ) * scale.asDiagonal();
-  const MatrixX A_hat = scale.asDiagonal() * (pick(A, Q, Q) - A_EQ.transpose() * A_EE_EQ) * scale.asDiagonal();
+  const MatrixX A_hat = scale.asDiagonal() * (A_QQ - A_EQ.transpose() * A_EE_EQ) * scale.asDiagonal();
   // In units in which the compliance is 1, so that ranks can be told.
   const double stiffest = A_hat.size() > 0 ? A_hat.cwiseAbs().maxCoeff() : 0;
   double unit = C.size() > 0 ? C.cwiseAbs().maxCoeff() : 0;
@@ -113,7 +129,7 @@ Restraint VirtualChain::restrain(const Tip& end, const Outlook& outlook) {
   right.bottomRightCorner(passive, 1) = scale.cwiseProduct(r_Q - A_EQ.transpose() * A_EE_r);
   const MatrixX solution = smallest_solution(M, right);
   const MatrixX forces = W.asDiagonal() * P * solution.topRows(rank);  // F by [t + c; 1]
-  response_.resize(J.cols(), 7);
+  response_.resize(by_z.J.cols(), 7);
   const MatrixX z_Q = unit * (scale.asDiagonal() * solution.bottomRows(passive));
   MatrixX z_E = yields * forces - A_EE_EQ * z_Q;
   z_E.col(6) -= A_EE_r;
@@ -129,19 +145,20 @@ Restraint VirtualChain::restrain(const Tip& end, const Outlook& outlook) {
   held.B = W.asDiagonal() * B;
   held.b = -held.B.transpose() * c;
   held.stable = l.stable;
-  if (outlook.judged && held.stable) held.stable = negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
+  if (conditions.judged && held.stable)
+    held.stable = negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
   return held;
 }
 
-Progress VirtualChain::follow(const Vector6& t, const VectorX& mu, const Outlook& outlook) {
+Progress VirtualChain::follow(const Vector6& t, const VectorX& mu, const ShapeConditions& conditions) {
   F = restraint_.F0 + restraint_.K * t + restraint_.B * mu;
   F.tail<3>() -= 0.5 * restraint_.m.cross(t.tail<3>());
   Eigen::Matrix<double, 7, 1> driving;
   driving << t + lack_, 1;
-  return advance(held_, held_.offset + held_.Z * (response_ * driving), outlook);
+  return advance(held_, held_.offset + held_.Z * (response_ * driving), conditions);
 }
 
-Restraint VirtualGroup::restrain(const Outlook& c) {
+Restraint VirtualGroup::restrain(const ShapeConditions& c) {
   if (known && !c.judged) return *known;
   Restraint all;
   for (VirtualChain& branch : branches) {
@@ -159,7 +176,7 @@ Restraint VirtualGroup::restrain(const Outlook& c) {
   return all;
 }
 
-Progress VirtualGroup::follow(const Vector6& t, const Vector6& F, const Outlook& c) {
+Progress VirtualGroup::follow(const Vector6& t, const Vector6& F, const ShapeConditions& c) {
   known.reset();
   // What rigid branches carry is what the others leave of F.
   Vector6 rest = F;

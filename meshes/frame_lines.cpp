@@ -1,4 +1,5 @@
 #include "meshes/frame_lines.h"
+#include "msa/base/index.h"
 
 #include <cmath>
 #include <unordered_map>
@@ -23,7 +24,7 @@ FieldData fields_of(const frame::FrameModel& m, const frame::CaseResult& r) {
   FieldData out;
   out.points = {{"displacement_mm", {}}, {"rotation_rad", {}}};
   for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(6 * i);
+    const auto at = as_index(6 * i);
     out.points[0].values.push_back(1e3 * r.u.segment<3>(at));
     out.points[1].values.push_back(r.u.segment<3>(at + 3));
   }
@@ -33,7 +34,7 @@ FieldData fields_of(const frame::FrameModel& m, const frame::CaseResult& r) {
     const Vector6 start = -r.end_forces[e].head<6>(), end = r.end_forces[e].tail<6>();
     out.cells[0].values.push_back((start(0) + end(0)) / 2);
     for (std::size_t i = 1; i < 4; ++i) {
-      const auto moment = static_cast<Eigen::Index>(i + 2);
+      const auto moment = as_index(i + 2);
       out.cells[i].values.push_back(1e3 * larger(start(moment), end(moment)));
     }
   }

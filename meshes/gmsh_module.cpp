@@ -1,6 +1,7 @@
 // The module deflect_gmsh. Gmsh keeps its state in globals, is left unusable by a failed mesh, and throws std::string:
 // every call here is one session, begun with defaults and ended whatever happens.
 #include "meshes/gmsh_module.h"
+#include "msa/base/index.h"
 
 #include <gmsh.h>
 
@@ -132,10 +133,10 @@ void add_mesh(const LineMesh& mesh) {
   std::vector<std::vector<std::size_t>> cells(groups), ends(groups);
   for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
     const LineCell& cell = mesh.cells[i];
-    const auto group = static_cast<std::size_t>(cell.group);
+    const auto group = as_size(cell.group);
     cells[group].push_back(i + 1);
     for (const int point : {cell.a, cell.b}) {
-      const auto p = static_cast<std::size_t>(point);
+      const auto p = as_size(point);
       ends[group].push_back(p + 1);
       if (owner[p] == groups) owner[p] = group;
     }

@@ -1,4 +1,5 @@
 #include "meshes/line_mesh.h"
+#include "msa/base/index.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ void check_finite(bool finite, const std::string& what, std::size_t index) {
 }
 
 void check_index(int index, std::size_t count, const char* what, std::size_t cell) {
-  if (index < 0 || static_cast<std::size_t>(index) >= count)
+  if (index < 0 || as_size(index) >= count)
     refuse(fmt::format("cell {} names {} {}, there are {}", cell, what, index, count));
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "meshes/gmsh.h"
+#include "msa/base/index.h"
 
 namespace deflect {
 
@@ -13,11 +14,11 @@ frame::MemberDivision divide_members(const Configuration& c, double element_size
   for_each_part(c.legs, [&](const auto& part) {
     if constexpr (requires { part.length(); }) {
       const auto at = std::find(parts.begin(), parts.end(), part.part) - parts.begin();
-      if (static_cast<std::size_t>(at) == parts.size()) {
+      if (as_size(at) == parts.size()) {
         parts.push_back(part.part);
         lengths.push_back(0);
       }
-      double& longest = lengths[static_cast<std::size_t>(at)];
+      double& longest = nth(lengths, at);
       longest = std::max(longest, part.length());
     }
   });
@@ -47,7 +48,7 @@ LineMesh lines_of(const frame::Model& m, const std::vector<std::pair<int, int>>&
 std::vector<PointField> motion_of(const frame::Model& m, const VectorX& u, double scale) {
   std::vector<PointField> fields = {{"displacement_mm", {}}, {"rotation_rad", {}}};
   for (std::size_t i = 0; i < m.nodes.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(6 * i);
+    const auto at = as_index(6 * i);
     fields[0].values.push_back(1e3 * scale * u.segment<3>(at));
     fields[1].values.push_back(scale * u.segment<3>(at + 3));
   }
@@ -62,8 +63,7 @@ LineMesh lines_of(const frame::Model& m) { return lines_of(m, m.welds); }
 
 FieldData fields_of_motion(const frame::Model& m, const VectorX& u) {
   double largest = 0;
-  for (std::size_t i = 0; i < m.nodes.size(); ++i)
-    largest = std::max(largest, u.segment<3>(static_cast<Eigen::Index>(6 * i)).norm());
+  for (std::size_t i = 0; i < m.nodes.size(); ++i) largest = std::max(largest, u.segment<3>(as_index(6 * i)).norm());
   return {motion_of(m, u, largest > 0 ? 0.1 * characteristic_length(m) / largest : 1), {}};
 }
 

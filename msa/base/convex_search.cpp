@@ -1,4 +1,5 @@
 #include "msa/base/convex_search.h"
+#include "msa/base/index.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -16,7 +17,7 @@ class Search {
   Search(const ConvexProblem& problem, const VectorX& from) : p_(problem), rows_(problem.B.rows()) {
     out_.x = from;
     out_.push = VectorX::Zero(rows_);
-    out_.side.assign(static_cast<std::size_t>(rows_), 0);
+    out_.side.assign(as_size(rows_), 0);
     for (Eigen::Index i = 0; i < rows_; ++i)
       if (row(i).low == row(i).high) side(i) = 1;
   }
@@ -40,8 +41,8 @@ class Search {
   }
 
  private:
-  const ConvexRow& row(Eigen::Index i) const { return p_.rows[static_cast<std::size_t>(i)]; }
-  int& side(Eigen::Index i) { return out_.side[static_cast<std::size_t>(i)]; }
+  const ConvexRow& row(Eigen::Index i) const { return nth(p_.rows, i); }
+  int& side(Eigen::Index i) { return nth(out_.side, i); }
 
   /// y, the gradient of f, and the size of what it is summed from.
   void evaluate() {
@@ -63,9 +64,9 @@ class Search {
     active_.clear();
     for (Eigen::Index i = 0; i < rows_; ++i)
       if (side(i) != 0) active_.push_back(i);
-    const auto k = static_cast<Eigen::Index>(active_.size());
+    const auto k = std::ssize(active_);
     normals_.resize(p_.a.size(), k);
-    for (Eigen::Index j = 0; j < k; ++j) normals_.col(j) = p_.B.row(active_[static_cast<std::size_t>(j)]).transpose();
+    for (Eigen::Index j = 0; j < k; ++j) normals_.col(j) = p_.B.row(nth(active_, j)).transpose();
     Z_ = MatrixX::Identity(p_.a.size(), p_.a.size());
     if (k > 0 && p_.a.size() > 0) {
       Eigen::ColPivHouseholderQR<MatrixX> qr;
@@ -109,7 +110,7 @@ class Search {
     double wrong = 0;
     for (std::size_t j = 0; j < active_.size(); ++j) {
       const Eigen::Index i = active_[j];
-      out_.push(i) = push(static_cast<Eigen::Index>(j));
+      out_.push(i) = push(as_index(j));
       if (row(i).low == row(i).high) continue;
       const double here = -side(i) * out_.push(i) * p_.B.row(i).norm();
       if (here > 1e-12 * size_ + noise_ && here > wrong) {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/base/part_file.h"
 
 namespace deflect {
@@ -49,7 +50,7 @@ void write_all(int descriptor, std::string_view text) {
     const ssize_t n = ::write(descriptor, text.data(), text.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) throw std::system_error(errno, std::generic_category());
-    text.remove_prefix(static_cast<std::size_t>(n));
+    text.remove_prefix(as_size(n));
   }
 }
 
@@ -121,18 +122,31 @@ bool take_after(int descriptor, const struct stat& old) {
   return ::fchmod(descriptor, old.st_mode & 07777) == 0;
 }
 
+/// What the system said to work(): 0 where it did it.
+template <class F>
+int system_error_of(const F& work) {
+  try {
+    work();
+    return 0;
+  } catch (const std::system_error& e) {
+    return e.code().value();
+  }
+}
+
 /// False where no file can be put in the place of this one.
-bool replace(const Target& t, const std::string& text) try {
+bool replace(const Target& t, const std::string& text) {
   if (t.there && t.there->st_nlink > 1) return false;
-  PartFile part(t.path, "", t.there ? 0600 : 0666);
-  if (t.there && !take_after(part.descriptor(), *t.there)) return false;
-  write_all(part.descriptor(), text);
-  part.rename_to(t.path);
-  return true;
-} catch (const std::system_error& e) {
-  const int reason = e.code().value();
-  if (t.there && (reason == EACCES || reason == EPERM || reason == EROFS || reason == EBUSY)) return false;
-  throw;
+  bool replaced = false;
+  const int reason = system_error_of([&] {
+    PartFile part(t.path, "", t.there ? 0600 : 0666);
+    if (t.there && !take_after(part.descriptor(), *t.there)) return;
+    write_all(part.descriptor(), text);
+    part.rename_to(t.path);
+    replaced = true;
+  });
+  const bool elsewhere = reason == EACCES || reason == EPERM || reason == EROFS || reason == EBUSY;
+  if (reason != 0 && !(t.there && elsewhere)) throw std::system_error(reason, std::generic_category());
+  return replaced;
 }
 
 }  // namespace
@@ -149,7 +163,7 @@ std::string read_text(const fs::path& path) {
   if (ends) text.reserve(fs::file_size(path, ignored) + 1);
   std::vector<char> piece(std::size_t{1} << 16);
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())), in.gcount() > 0) {
-    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    text.append(piece.data(), as_size(in.gcount()));
     if (!ends && text.size() > most_of_a_stream)
       throw InputError(fmt::format("{}: does not end: {} MB were read, and it is no regular file; name a file",
                                    path.string(), most_of_a_stream >> 20));
@@ -157,29 +171,34 @@ std::string read_text(const fs::path& path) {
   return text;
 }
 
-void write_text(const fs::path& path, const std::string& text) try {
-  const Target t = target_of(path);
-  require_writable(path, t);
-  if (t.own) return write_to_descriptor(*t.own, text);
-  std::error_code ignored;  // a folder that is missing is told where the file is opened
-  if (!t.there) fs::create_directories(folder_of(t.path), ignored);
-  if (!t.regular() || !replace(t, text)) write_in_place(t, text);
-} catch (const std::system_error& e) {
-  refuse(path, std::strerror(e.code().value()));
+void write_text(const fs::path& path, const std::string& text) {
+  const int reason = system_error_of([&] {
+    const Target t = target_of(path);
+    require_writable(path, t);
+    if (t.own) return write_to_descriptor(*t.own, text);
+    std::error_code ignored;  // a folder that is missing is told where the file is opened
+    if (!t.there) fs::create_directories(folder_of(t.path), ignored);
+    if (!t.regular() || !replace(t, text)) write_in_place(t, text);
+  });
+  if (reason != 0) refuse(path, std::strerror(reason));
 }
 
 std::string text_written_by(const fs::path& path, const std::string& suffix,
-                            const std::function<void(const fs::path&)>& write) try {
-  const Target t = target_of(path);
-  require_writable(path, t);
-  std::error_code ignored;
-  if (!t.there && !t.own) fs::create_directories(folder_of(t.path), ignored);
-  const bool beside = t.regular() && ::access(folder_of(t.path).c_str(), W_OK) == 0;
-  const PartFile part(beside ? t.path : fs::temp_directory_path() / ("deflect-" + t.path.filename().string()), suffix);
-  write(part.path());
-  return read_text(part.path());
-} catch (const std::system_error& e) {
-  refuse(path, std::strerror(e.code().value()));
+                            const std::function<void(const fs::path&)>& write) {
+  std::string text;
+  const int reason = system_error_of([&] {
+    const Target t = target_of(path);
+    require_writable(path, t);
+    std::error_code ignored;
+    if (!t.there && !t.own) fs::create_directories(folder_of(t.path), ignored);
+    const bool beside = t.regular() && ::access(folder_of(t.path).c_str(), W_OK) == 0;
+    const PartFile part(beside ? t.path : fs::temp_directory_path() / ("deflect-" + t.path.filename().string()),
+                        suffix);
+    write(part.path());
+    text = read_text(part.path());
+  });
+  if (reason != 0) refuse(path, std::strerror(reason));
+  return text;
 }
 
 std::string safe_file_name(std::string_view name) {

@@ -1,4 +1,5 @@
 #include "msa/base/part_file.h"
+#include "msa/base/index.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ std::optional<pid_t> maker(std::string_view name, std::string_view target) {
   pid_t process = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
   if (error != std::errc() || process <= 0) return {};
-  name.remove_prefix(static_cast<std::size_t>(end - name.data()));
+  name.remove_prefix(as_size(end - name.data()));
   if (name.starts_with('-')) {  // several of one process are counted
     name.remove_prefix(1);
     const std::size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msa/base/convex_search.h"
+#include "msa/base/index.h"
 
 namespace deflect {
 namespace {
@@ -31,13 +32,13 @@ class Laws {
     std::vector<Eigen::Index> moving;
     for (Eigen::Index j = 0; j < n_; ++j)
       if (eigen.eigenvalues()(j) > rounding) moving.push_back(j);
-    const auto k = static_cast<Eigen::Index>(moving.size());
+    const auto k = std::ssize(moving);
     problem_.a.resize(k), problem_.b.resize(k), problem_.B.resize(n_, k);
     start_.resize(k);
     problem_.e = d0;
     if (n_ > 0) problem_.rounding = 1e-15 * r.size.cwiseProduct(unit_).maxCoeff();
     for (Eigen::Index m = 0; m < k; ++m) {
-      const Eigen::Index j = moving[static_cast<std::size_t>(m)];
+      const Eigen::Index j = nth(moving, m);
       const double p = std::min(eigen.eigenvalues()(j), 1.0), root = std::sqrt(p);
       problem_.a(m) = 1 - p > rounding ? 1 - p : 0;
       problem_.b(m) = root * along(j);
@@ -99,7 +100,7 @@ class Laws {
   }
 
  private:
-  static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+  static std::size_t at(Eigen::Index i) { return as_size(i); }
 
   /// Moves the start to where d is within all bounds; false where there is no such place.
   bool feasible() {
@@ -208,7 +209,7 @@ class Laws {
     MatrixX moves = problem_.B * N;  // of d
     for (Eigen::Index i = 0; i < n_; ++i)
       if (moves.row(i).norm() <= 1e-8 * problem_.B.row(i).norm()) moves.row(i).setZero();
-    const auto k = static_cast<Eigen::Index>(loose.size());
+    const auto k = std::ssize(loose);
     if (N.cols() == 0) return;
     MatrixX relative(k, N.cols());
     middle.e.resize(k);

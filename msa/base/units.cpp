@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/base/spatial.h"
 
 namespace deflect {
@@ -114,7 +115,7 @@ bool leading_number(std::string_view text, double& value, std::string_view& rest
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || !std::isfinite(value)) return false;
-  rest = trim(text.substr(static_cast<std::size_t>(end - text.data())));
+  rest = trim(text.substr(as_size(end - text.data())));
   return true;
 }
 

@@ -20,4 +20,7 @@ struct Edit {
   Action action = Action::set;
 };
 
+/// "edit 'materials.steel.E *= 0.9'": begins the messages about it.
+std::string origin_of(const Edit&);
+
 }  // namespace deflect

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/fields/field_examples.h"
 
 namespace deflect {
@@ -122,13 +124,13 @@ const std::string& FieldReader::scalar(const YamlNode& node, LaterText path, Lat
 
 double FieldReader::number(const YamlNode& node, LaterText path, const Quantity& q, LaterText sample) const {
   const std::string& text = scalar(node, path, sample);
-  double value = 0;
-  try {
-    value = parse_quantity(text, q.dimension);
-    require_usable_size(value, q.dimension, text);
-  } catch (const InputError& e) {
-    fail(node, path(), e.what());
-  }
+  const auto parsed = outcome_of<InputError>([&] {
+    const double found = parse_quantity(text, q.dimension);
+    require_usable_size(found, q.dimension, text);
+    return found;
+  });
+  if (!parsed) fail(node, path(), parsed.why);
+  const double value = *parsed;
   if (!q.range.holds(value)) fail(node, path(), fmt::format("'{}' must be {}", text, words(q.range, q.dimension)));
   return value;
 }
@@ -171,7 +173,7 @@ void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const ch
   if (node->kind != Kind::list || node->children.size() != 3)
     fail(*node, path(), fmt::format("a list of three values is wanted: write for example '{}'", sample()));
   for (int i = 0; i < 3; ++i) {
-    const YamlNode& item = node->children[static_cast<std::size_t>(i)];
+    const YamlNode& item = nth(node->children, i);
     const auto item_path = [&] { return joined(path(), std::to_string(i)); };
     if (item.ours) note(item, item_path());
     value(i) = number(item, item_path, {d, {}, std::nullopt}, sample);
@@ -181,7 +183,7 @@ void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const ch
 }
 
 void FieldReader::matrix(const char* key, MatrixX& value, Eigen::Index size, Need need, const char* about) {
-  std::vector<std::string> zeros(static_cast<std::size_t>(size), "0");
+  std::vector<std::string> zeros(as_size(size), "0");
   const std::string sample = example(key, fmt::format("[[{}], ...]", fmt::join(zeros, ", ")));
   value.resize(0, 0);
   const YamlNode* node = find(key, need == Need::required, sample, about);
@@ -192,15 +194,15 @@ void FieldReader::matrix(const char* key, MatrixX& value, Eigen::Index size, Nee
          fmt::format("{0} rows of {0} numbers are wanted: write for example '{1}'",
                      size > 0 ? std::to_string(size) : "as many", sample));
   };
-  const auto rows = static_cast<Eigen::Index>(node->children.size());
+  const auto rows = std::ssize(node->children);
   if (node->kind != Kind::list || rows == 0 || (size > 0 && rows != size)) refuse(*node, path);
   value.resize(rows, rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const YamlNode& row = node->children[static_cast<std::size_t>(i)];
+    const YamlNode& row = nth(node->children, i);
     const std::string row_path = joined(path, std::to_string(i));
-    if (row.kind != Kind::list || static_cast<Eigen::Index>(row.children.size()) != rows) refuse(row, row_path);
+    if (row.kind != Kind::list || std::ssize(row.children) != rows) refuse(row, row_path);
     for (Eigen::Index j = 0; j < rows; ++j) {
-      const YamlNode& item = row.children[static_cast<std::size_t>(j)];
+      const YamlNode& item = nth(row.children, j);
       const std::string item_path = joined(row_path, std::to_string(j));
       note(item, item_path);
       value(i, j) = number(item, item_path, {Dimension::none, {}, std::nullopt}, sample);

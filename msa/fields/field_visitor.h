@@ -2,13 +2,16 @@
 // go through describe(visitor, struct), one list of fields for every struct: a field added there is known to all.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "msa/base/index.h"
 #include "msa/base/spatial.h"
 #include "msa/base/units.h"
 #include "msa/fields/named.h"
@@ -104,6 +107,15 @@ class FieldVisitor {
 
   Surroundings surroundings;
 };
+
+/// One of an enumeration by its name, the first where absent. `names` in the order of the enumeration.
+template <class Enum>
+void choice(FieldVisitor& v, const char* key, Enum& value, const char* what, std::span<const char* const> names,
+            const char* about) {
+  std::string name = nth(names, value);
+  v.word(key, name, {what, {names.begin(), names.end()}, names[0]}, about);
+  value = static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+}
 
 /// `name`, required: one line that a report, a file's name and a picture can carry.
 void describe_name(FieldVisitor&, std::string& name, const char* about);

@@ -1,4 +1,5 @@
 #include "msa/fields/plain_yaml.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +19,7 @@ bool is_alnum(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') 
 bool is_plain(char c) {
   static const std::array<bool, 256> plain = [] {
     std::array<bool, 256> table{};
-    for (int i = 0; i < 128; ++i) table[static_cast<std::size_t>(i)] = is_alnum(static_cast<char>(i));
+    for (int i = 0; i < 128; ++i) nth(table, i) = is_alnum(static_cast<char>(i));
     for (const char other : std::string_view(" _.+-*/^%()=<>")) table[static_cast<unsigned char>(other)] = true;
     return table;
   }();
@@ -58,7 +59,7 @@ class Scanner {
   /// The plain text at the start of line_, without spaces behind it; empty where there is none.
   std::string_view plain() {
     const auto stop = std::find_if_not(line_.begin(), line_.end(), is_plain);
-    std::string_view text = line_.substr(0, static_cast<std::size_t>(stop - line_.begin()));
+    std::string_view text = line_.substr(0, as_size(stop - line_.begin()));
     line_.remove_prefix(text.size());
     text = text.substr(0, text.find_last_not_of(' ') + 1);
     const bool number = text.size() > 1 && (text[0] == '-' || text[0] == '+' || text[0] == '.') && is_alnum(text[1]);

@@ -9,6 +9,7 @@
 #include <typeindex>
 #include <utility>
 
+#include "msa/base/index.h"
 #include "msa/fields/yaml_tree.h"
 
 namespace deflect {
@@ -100,7 +101,7 @@ class SchemaVisitor final : public FieldVisitor {
     add(key, FieldKind::vector3, false, about).dimension = d;
   }
   void matrix(const char* key, MatrixX&, Eigen::Index size, Need need, const char* about) override {
-    add(key, FieldKind::matrix, need == Need::required, about).size = static_cast<std::size_t>(size);
+    add(key, FieldKind::matrix, need == Need::required, about).size = as_size(size);
   }
   void text(const char* key, std::string&, Need need, const char* about) override {
     add(key, FieldKind::text, need == Need::required, about);
@@ -141,7 +142,7 @@ class SchemaVisitor final : public FieldVisitor {
   void keys(const std::vector<std::string>&) override {}
   std::size_t alternative(const std::vector<std::string>& keys, std::size_t) override {
     const std::string chosen = choose(fmt::format("{}", fmt::join(keys, "|")), keys, keys.front());
-    return static_cast<std::size_t>(std::find(keys.begin(), keys.end(), chosen) - keys.begin());
+    return as_size(std::find(keys.begin(), keys.end(), chosen) - keys.begin());
   }
   /// Of the conditions only those on words are known here: `law: cable` is refused on a rotation.
   void require(bool holds, const char* key, const std::string&) override {

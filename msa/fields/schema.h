@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "msa/base/index.h"
 #include "msa/fields/field_visitor.h"
 
 namespace deflect {
@@ -31,7 +32,7 @@ struct SchemaField {
   bool plain = false;              ///< entries of one value each, which is the field "" of the level
   bool or_word = false;            ///< an object that can be written as one of the words too
 
-  static constexpr std::size_t no_level = static_cast<std::size_t>(-1);
+  static constexpr std::size_t no_level = as_size(-1);
 };
 
 /// Fields that go with these words, by key: {"law": {"belt"}}. Of several keys of which one is there the name is both,

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 
 namespace deflect {
 namespace {
@@ -29,7 +31,7 @@ class Search {
       const YamlNode* child = node.child(segment);
       if (!child)
         fail(joined(walked, segment), fmt::format("there is no '{}'{}", segment, suggestion(segment, node.keys)));
-      step(node, static_cast<std::size_t>(child - node.children.data()), depth + 1, walked);
+      step(node, as_size(child - node.children.data()), depth + 1, walked);
     } else if (node.kind == Kind::list) {
       from_list(node, depth, walked);
     } else {
@@ -56,13 +58,16 @@ class Search {
     std::string first_error = fmt::format("{}{}: there are no entries", where_, joined(walked, "*"));
     bool failed = false;
     const Place here = place_;
-    for (std::size_t i = 0; i < node.children.size(); ++i) try {
+    for (std::size_t i = 0; i < node.children.size(); ++i) {
+      const auto went = outcome_of<InputError>([&] {
         step(node, i, depth + 1, walked);
-      } catch (const InputError& e) {
-        place_ = here;
-        if (!failed) first_error = e.what();
-        failed = true;
-      }
+        return true;
+      });
+      if (went) continue;
+      place_ = here;
+      if (!failed) first_error = went.why;
+      failed = true;
+    }
     if (found.size() == before) throw InputError(first_error);
   }
 
@@ -119,12 +124,7 @@ void append(YamlNode& node, const YamlNode& value, const std::string& here) {
 void multiply(YamlNode& node, const YamlNode& value, const std::string& here) {
   if (!node.number) throw InputError(here + "is not a number that is there to be multiplied");
   if (value.kind != Kind::scalar) throw InputError(here + "a plain number is wanted as factor");
-  double factor = 0;
-  try {
-    factor = parse_number(value.text);
-  } catch (const InputError& e) {
-    throw InputError(here + e.what());
-  }
+  const double factor = told_at<InputError>([&] { return here; }, [&] { return parse_number(value.text); });
   node.number = *node.number * factor;
   if (!std::isfinite(*node.number)) throw InputError(here + "the product is not finite");
   node.text = format_quantity(*node.number, node.dimension);
@@ -134,14 +134,24 @@ void multiply(YamlNode& node, const YamlNode& value, const std::string& here) {
 void add(YamlNode& node, const YamlNode& value, const std::string& here) {
   if (!node.number) throw InputError(here + "is not a number that is there to be added to");
   if (value.kind != Kind::scalar) throw InputError(here + "a single value is wanted as summand");
-  try {
-    node.number = *node.number + parse_quantity(value.text, node.dimension);
-  } catch (const InputError& e) {
-    throw InputError(here + e.what());
-  }
+  *node.number += told_at<InputError>([&] { return here; }, [&] { return parse_quantity(value.text, node.dimension); });
   if (!std::isfinite(*node.number)) throw InputError(here + "the sum is not finite");
   node.text = format_quantity(*node.number, node.dimension);
   node.ours = false;
+}
+
+const char* sign(Edit::Action action) {
+  switch (action) {
+    case Edit::Action::set:
+      return "=";
+    case Edit::Action::append:
+      return "+=";
+    case Edit::Action::multiply:
+      return "*=";
+    case Edit::Action::add:
+      return "+";
+  }
+  return "";
 }
 
 }  // namespace
@@ -196,6 +206,17 @@ void change(YamlNode& root, const Place& place, Edit::Action action, const YamlN
       add(node, value, here);
       break;
   }
+}
+
+std::string origin_of(const Edit& edit) {
+  return fmt::format("edit '{} {} {}'", edit.path, sign(edit.action), edit.value);
+}
+
+void apply(YamlNode& root, const Edit& edit, const std::string& origin) {
+  const std::string where = origin + ": ";
+  YamlNode value = parse_yaml(edit.value, origin);
+  set_line(value, 0);
+  for (const Place& place : places(root, edit.path, where)) change(root, place, edit.action, value, where);
 }
 
 }  // namespace deflect

@@ -30,4 +30,7 @@ const YamlNode& at(const YamlNode& root, const Place&);
 /// are not edited. InputError, beginning with `where`, when the action does not fit what stands there.
 void change(YamlNode& root, const Place&, Edit::Action, const YamlNode& value, const std::string& where);
 
+/// An edit at every place that its path means. InputError beginning with `origin`, as origin_of() of the edit.
+void apply(YamlNode& root, const Edit&, const std::string& origin);
+
 }  // namespace deflect

@@ -1,4 +1,5 @@
 #include "msa/fields/yaml_tree.h"
+#include "msa/base/index.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +10,7 @@ namespace deflect {
 
 YamlNode* YamlNode::child(std::string_view key) {
   const auto at = std::find(keys.begin(), keys.end(), key);
-  return at == keys.end() ? nullptr : &children[static_cast<std::size_t>(at - keys.begin())];
+  return at == keys.end() ? nullptr : &nth(children, at - keys.begin());
 }
 
 void YamlNode::add(std::string key, YamlNode node) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "msa/base/index.h"
 #include "msa/fields/yaml_tree.h"
 
 namespace deflect {
@@ -81,7 +82,7 @@ bool leaf(const YamlNode& node) {
 }
 
 void block(std::string& out, const YamlNode& map, int depth) {
-  const std::string margin(static_cast<std::size_t>(2 * depth), ' ');
+  const std::string margin(as_size(2 * depth), ' ');
   for (std::size_t i = 0; i < map.children.size(); ++i) {
     const YamlNode& node = shown(map.children[i]);
     const bool leaves = std::all_of(node.children.begin(), node.children.end(), leaf);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/base/motion_text.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/configuration.h"
@@ -45,8 +46,8 @@ Closed close_all(Assembly& a) {
   const Closed closed = close_loops(a.legs, all, std::nullopt, a.length);
   auto from = all.begin();
   for (auto& states : a.states) {
-    std::copy(from, from + static_cast<std::ptrdiff_t>(states.size()), states.begin());
-    from += static_cast<std::ptrdiff_t>(states.size());
+    std::copy(from, from + as_index(states.size()), states.begin());
+    from += as_index(states.size());
   }
   a.pose = {closed.trace.legs[0].end.p, closed.trace.legs[0].end.R};
   return closed;
@@ -82,9 +83,13 @@ void check_limits(const Assembly& a) {
         if (!low && !high) continue;
         const Dimension d = i < 3 ? Dimension::length : Dimension::angle;
         const double scale = i < 3 ? 1e3 : 180 / pi;
-        throw ModelError(fmt::format("{}{} {} would stand at {:.6g} {}, {} its limit of {}", leg_name(a, leg), name,
-                                     freedom_names[i], scale * q, i < 3 ? "mm" : "deg", low ? "below" : "above",
-                                     format_quantity(low ? *joint->min[i] : *joint->max[i], d)));
+        const char *unit = i < 3 ? "mm" : "deg", *side = low ? "below" : "above";
+        throw ModelError(
+            fmt::format("{}{} {} would stand at {:.6g} {}, {} its limit of {}", leg_name(a, leg), name,
+                        freedom_names[i], scale * q, unit, side,
+                        format_quantity(low ? *joint->min[i] : *joint->max[i], d)),
+            {fmt::format("{} {} would stand at … {}, {} its limit of … {}", name, freedom_names[i], unit, side, unit),
+             static_cast<int>(leg) + 1});
       }
     }
   }
@@ -118,7 +123,8 @@ void refuse_singular(const Assembly& a, const Assembly& home) {
     Vector6 lost = here.cannot * svd.matrixV().col(0);
     lost.tail<3>() /= a.length;  // from weighed coordinates
     throw ModelError(
-        fmt::format("{}singular pose: it cannot move in {}", leg_name(a, leg), motion_text(lost, a.length)));
+        fmt::format("{}singular pose: it cannot move in {}", leg_name(a, leg), motion_text(lost, a.length)),
+        {"singular pose", static_cast<int>(leg) + 1});
   }
 }
 
@@ -171,7 +177,8 @@ void move_to(Assembly& a, const Pose& pose) {
   if (!(shift.norm() <= farthest * a.length))
     throw ModelError(
         fmt::format("the tool point would be {:.3g} times the mechanism's size of {:.4g} mm away from home",
-                    shift.norm() / a.length, 1e3 * a.length));
+                    shift.norm() / a.length, 1e3 * a.length),
+        {"the tool point would be … times the mechanism's size of … mm away from home"});
   const int steps = steps_along(std::max(shift.norm() / a.length, std::abs(turn.angle())));
   for (int i = 1; i <= steps; ++i) {
     const double s = static_cast<double>(i) / steps;
@@ -181,7 +188,8 @@ void move_to(Assembly& a, const Pose& pose) {
     for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {
       const Closed c = close_leg(a, leg, a.pose);
       if (i == steps && !c.closed)
-        throw ModelError(fmt::format("{}does not take this pose: {} at the nearest", leg_name(a, leg), left_open(c)));
+        throw ModelError(fmt::format("{}does not take this pose: {} at the nearest", leg_name(a, leg), left_open(c)),
+                         {"does not take this pose", static_cast<int>(leg) + 1});
     }
   }
   check_limits(a);
@@ -194,7 +202,7 @@ void move_to_coordinates(Assembly& a, const VectorX& wanted) {
   VectorX way(from.size());
   double largest = 0;
   for (Eigen::Index i = 0; i < from.size(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
+    const auto at = as_size(i);
     const double size = home.rotation[at] ? 1 : a.length;
     require_reachable(wanted(i), home.rotation[at], a.length, home.names[at]);
     way(i) = way_to(wanted(i), from(i), home.rotation[at]);
@@ -208,7 +216,8 @@ void move_to_coordinates(Assembly& a, const VectorX& wanted) {
       for (const Coordinate& c : walk(one(a.legs[leg]), a.states[leg]).coordinates)
         if (c.actuated) a.states[leg][c.joint].q[c.freedom] = q(n++);
     const Closed c = close_all(a);
-    if (i == steps && !c.closed) throw ModelError(fmt::format("the loops do not close: {}", left_open(c)));
+    if (i == steps && !c.closed)
+      throw ModelError(fmt::format("the loops do not close: {}", left_open(c)), {"the loops do not close"});
   }
   check_limits(a);
 }
@@ -229,7 +238,7 @@ ActuatedCoordinates actuated(const Assembly& a) {
       out.rotation.push_back(c.freedom >= 3);
     }
   }
-  out.values = Eigen::Map<VectorX>(values.data(), static_cast<Eigen::Index>(values.size()));
+  out.values = Eigen::Map<VectorX>(values.data(), std::ssize(values));
   return out;
 }
 

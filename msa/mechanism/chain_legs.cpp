@@ -4,8 +4,11 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/chain_kinematics.h"
 #include "msa/mechanism/family.h"
+#include "msa/mechanism/law_table.h"
 #include "msa/mechanism/place.h"
 
 namespace deflect {
@@ -62,11 +65,10 @@ class Placer {
     PlacedLeg out;
     out.name = name;
     const double actuator = extension(steps);
-    for (const Step& step : steps) try {
-        std::visit([&](const auto& part) { place(part, step, name, actuator, out.parts); }, *step.part);
-      } catch (const InputError& e) {
-        throw InputError(fmt::format("{}: {}: {}: {}", m_.name, name, *step.name, e.what()));
-      }
+    for (const Step& step : steps)
+      told_at<InputError>(
+          [&] { return fmt::format("{}: {}: {}: ", m_.name, name, *step.name); },
+          [&] { std::visit([&](const auto& part) { place(part, step, name, actuator, out.parts); }, *step.part); });
     return out;
   }
 
@@ -87,11 +89,11 @@ class Placer {
              std::vector<PlacedPart>& out) const {
     for (const auto& laws : joint.laws)
       for (const Law& law : laws)
-        if (const auto* cable = std::get_if<CableLaw>(&law); cable && !cable->length && !(actuator > 0))
+        if (lacks_length(law) && !(actuator > 0))
           throw InputError(
-              fmt::format("the cable has no length: no slide before it is driven and extended ({:.6g} mm); "
+              fmt::format("the {} has no length: no slide before it is driven and extended ({:.6g} mm); "
                           "give it a length",
-                          1e3 * actuator));
+                          row_of(law).name, 1e3 * actuator));
     place_joint(step, joint, actuator, m_, out);
   }
 
@@ -139,7 +141,7 @@ PlacedMechanism placed_assembly(const Mechanism& m, const Assembly& a) {
   VectorX given = q.values;
   if (controller.size() > 0) given = controller.partialPivLu().solve(q.values);
   for (std::size_t i = 0; i < q.names.size(); ++i)
-    out.actuators.push_back({q.names[i], given(static_cast<Eigen::Index>(i)), q.rotation[i]});
+    out.actuators.push_back({q.names[i], given(as_index(i)), q.rotation[i]});
   return out;
 }
 

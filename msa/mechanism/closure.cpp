@@ -1,4 +1,5 @@
 #include "msa/mechanism/closure.h"
+#include "msa/base/index.h"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -93,10 +94,10 @@ Closed close_loops(std::span<const LegParts> legs, std::vector<JointState>& stat
     Eigen::Index count = 0;
     const std::vector<Eigen::Index> column = columns(out.trace, !platform, count);
     if (count == 0) return out;
-    MatrixX J = MatrixX::Zero(6 * static_cast<Eigen::Index>(all.size()), count);
+    MatrixX J = MatrixX::Zero(6 * std::ssize(all), count);
     VectorX r(J.rows());
     for (std::size_t e = 0; e < all.size(); ++e) {
-      const auto row = static_cast<Eigen::Index>(6 * e);
+      const auto row = as_index(6 * e);
       add_columns(J, row, out.trace, all[e].path_b, all[e].a.p, column, 1, length);
       add_columns(J, row, out.trace, all[e].path_a, all[e].a.p, column, -1, length);
       r.segment<6>(row) = gap(all[e]);
@@ -124,9 +125,9 @@ Closed close_loops(std::span<const LegParts> legs, std::vector<JointState>& stat
 Reach reach(const Trace& t, std::size_t leg, const Vector3& p_W, double length) {
   Eigen::Index count = 0;
   const std::vector<Eigen::Index> column = columns(t, false, count);
-  MatrixX inner = MatrixX::Zero(6 * static_cast<Eigen::Index>(t.closures.size()), count), end = MatrixX::Zero(6, count);
+  MatrixX inner = MatrixX::Zero(6 * std::ssize(t.closures), count), end = MatrixX::Zero(6, count);
   for (std::size_t e = 0; e < t.closures.size(); ++e) {
-    const auto row = static_cast<Eigen::Index>(6 * e);
+    const auto row = as_index(6 * e);
     add_columns(inner, row, t, t.closures[e].path_b, t.closures[e].a.p, column, 1, length);
     add_columns(inner, row, t, t.closures[e].path_a, t.closures[e].a.p, column, -1, length);
   }

@@ -113,6 +113,10 @@ void for_each_law(Placed& c, const F& f) {
   of(c.tool);
 }
 
+/// Whether no law's stiffness depends on its force, and whether any law jumps (law_table.h).
+bool all_linear(const Configuration&);
+bool any_jumps(const Configuration&);
+
 /// Numbers the frictions in the order of for_each_law; returns how many there are.
 int number_slips(Configuration&);
 

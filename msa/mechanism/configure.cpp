@@ -5,7 +5,10 @@
 #include <optional>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/family.h"
+#include "msa/mechanism/law_table.h"
 #include "msa/mechanism/place.h"
 
 namespace deflect {
@@ -38,9 +41,9 @@ void complete(Configuration& c, const std::vector<Seats>& seats, const Mechanism
   c.tool.R_WJ = c.pose.R_WT;
   c.size = extent(c.legs, c.pose.p_WT);
   if (!(c.size > 0)) c.size = 1;
-  for (const Misfit& misfit : m.misfits) c.legs[static_cast<std::size_t>(misfit.leg - 1)].misfit.setZero();
+  for (const Misfit& misfit : m.misfits) nth(c.legs, misfit.leg - 1).misfit.setZero();
   for (const Misfit& misfit : m.misfits) {
-    const auto leg = static_cast<std::size_t>(misfit.leg - 1);
+    const auto leg = as_size(misfit.leg - 1);
     const Seats& s = seats.at(leg);
     c.legs[leg].misfit += twist_at(c.pose.p_WT, misfit.base, s.p_W_base, Matrix3::Identity()) -
                           twist_at(c.pose.p_WT, misfit.platform, s.p_W_platform, c.pose.R_WT);
@@ -60,13 +63,25 @@ Configuration completed(PlacedMechanism& placed, const Mechanism& m) {
   return c;
 }
 
-std::string at_pose(const Mechanism& m, const Pose& pose, const ModelError& e) {
+std::string at_pose(const Mechanism& m, const Pose& pose) {
   const Vector3 p = 1e3 * pose.p_WT, a = rpy_from_rotation(pose.R_WT) * 180 / pi;
-  return fmt::format("{} at ({:.6g}, {:.6g}, {:.6g}) mm, ({:.6g}, {:.6g}, {:.6g}) deg: {}", m.name, p.x(), p.y(), p.z(),
-                     a.x(), a.y(), a.z(), e.what());
+  return fmt::format("{} at ({:.6g}, {:.6g}, {:.6g}) mm, ({:.6g}, {:.6g}, {:.6g}) deg: ", m.name, p.x(), p.y(), p.z(),
+                     a.x(), a.y(), a.z());
 }
 
 }  // namespace
+
+bool all_linear(const Configuration& c) {
+  bool all = true;
+  for_each_law(c, [&](const Law& law) { all = all && is_linear(law); });
+  return all;
+}
+
+bool any_jumps(const Configuration& c) {
+  bool any = false;
+  for_each_law(c, [&](const Law& law) { any = any || jumps(law); });
+  return any;
+}
 
 int number_slips(Configuration& c) {
   int count = 0;
@@ -81,11 +96,13 @@ int leg_count(const Mechanism& m) {
   return std::max(1, static_cast<int>(m.mounts.size()));
 }
 
-Configuration configure(const Mechanism& m, const Pose& pose) try {
-  PlacedMechanism placed = std::visit([&](const auto& k) { return place(k, m, pose); }, m.kinematics);
-  return completed(placed, m);
-} catch (const ModelError& e) {
-  throw ModelError(at_pose(m, pose, e));
+Configuration configure(const Mechanism& m, const Pose& pose) {
+  return told_at<ModelError>([&] { return at_pose(m, pose); },
+                             [&] {
+                               PlacedMechanism placed =
+                                   std::visit([&](const auto& k) { return place(k, m, pose); }, m.kinematics);
+                               return completed(placed, m);
+                             });
 }
 
 struct Posing::Impl {
@@ -103,31 +120,32 @@ const Configuration& Posing::at(const Pose& pose) {
   Configuration& c = impl_->configuration;
   const auto* k = std::get_if<SixPsu>(&m.kinematics);
   if (!k) return c = configure(m, pose);
-  try {
-    if (!impl_->moves) {
-      PlacedMechanism placed = place(*k, m, pose);
-      c = completed(placed, m);
-      impl_->seats = std::move(placed.seats);
-      impl_->moves.emplace(*k, m);
-      return c;
-    }
-    impl_->moves->move(*k, pose, c.legs, c.actuators, impl_->seats);
-    c.pose = pose;
-    complete(c, impl_->seats, m);
-    return c;
-  } catch (const ModelError& e) {
-    throw ModelError(at_pose(m, pose, e));
-  }
+  told_at<ModelError>([&] { return at_pose(m, pose); },
+                      [&] {
+                        if (impl_->moves) {
+                          impl_->moves->move(*k, pose, c.legs, c.actuators, impl_->seats);
+                          c.pose = pose;
+                          return complete(c, impl_->seats, m);
+                        }
+                        PlacedMechanism placed = place(*k, m, pose);
+                        c = completed(placed, m);
+                        impl_->seats = std::move(placed.seats);
+                        impl_->moves.emplace(*k, m);
+                      });
+  return c;
 }
 
-Configuration configure_joints(const Mechanism& m, const VectorX& q) try {
-  if (const std::size_t wanted = actuators_of(m).size(); static_cast<std::size_t>(q.size()) != wanted)
+Configuration configure_joints(const Mechanism& m, const VectorX& q) {
+  if (const std::size_t wanted = actuators_of(m).size(); as_size(q.size()) != wanted)
     throw InputError(fmt::format("{} has {} joint coordinates, {} are given", m.name, wanted, q.size()));
-  PlacedMechanism placed = std::visit([&](const auto& k) { return place_joints(k, m, q); }, m.kinematics);
-  return completed(placed, m);
-} catch (const ModelError& e) {
-  throw ModelError(fmt::format("{} at joint coordinates ({:.6g}) (m, rad): {}", m.name,
-                               fmt::join(q.data(), q.data() + q.size(), ", "), e.what()));
+  const auto at_coordinates = [&] {
+    return fmt::format("{} at joint coordinates ({:.6g}) (m, rad): ", m.name,
+                       fmt::join(q.data(), q.data() + q.size(), ", "));
+  };
+  return told_at<ModelError>(at_coordinates, [&] {
+    PlacedMechanism placed = std::visit([&](const auto& k) { return place_joints(k, m, q); }, m.kinematics);
+    return completed(placed, m);
+  });
 }
 
 Pose home_pose(const Mechanism& m) {

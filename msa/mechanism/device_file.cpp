@@ -5,6 +5,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "msa/fields/field_reader.h"
 #include "msa/fields/field_writer.h"
 #include "msa/fields/file_kind.h"
@@ -20,7 +21,7 @@ void check_controller(const Mechanism& m, const YamlNode& tree, const std::strin
   const auto* chains = std::get_if<Chains>(&m.kinematics);
   if (!chains || chains->controller.size() == 0) return;
   const std::vector<std::string> names = actuated_at_home(m).names;
-  const auto rows = static_cast<std::size_t>(chains->controller.rows());
+  const auto rows = as_size(chains->controller.rows());
   if (rows == names.size()) return;
   const int line = tree.child("kinematics")->child("controller")->line;
   const std::string place = line > 0 ? fmt::format("{}:{}: ", origin, line) : origin + ": ";

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/fields/field_reader.h"
 #include "msa/fields/field_writer.h"
 #include "msa/fields/tree_edit.h"
@@ -47,14 +48,12 @@ void put(YamlNode& variations, YamlNode added) {
 }
 
 /// A leg whose parts stand in its mount, not in the leg that the others share.
-bool has_own_parts(const Mechanism& m, int leg) {
-  return !m.mounts.empty() && !m.mounts[static_cast<std::size_t>(leg - 1)].leg.empty();
-}
+bool has_own_parts(const Mechanism& m, int leg) { return !m.mounts.empty() && !nth(m.mounts, leg - 1).leg.empty(); }
 
 MarkedLeg marked_leg(const Mechanism& m, int leg) {
   if (leg < 1 || leg > leg_count(m))
     throw InputError(fmt::format("{}: there is no leg {}, legs are 1 to {}", m.name, leg, leg_count(m)));
-  if (has_own_parts(m, leg)) return {m.mounts[static_cast<std::size_t>(leg - 1)].leg, {}};
+  if (has_own_parts(m, leg)) return {nth(m.mounts, leg - 1).leg, {}};
   const bool varies =
       std::any_of(m.variations.begin(), m.variations.end(), [&](const auto& v) { return v.leg == leg; });
   if (!varies) return {m.leg, m.ours};
@@ -73,24 +72,6 @@ void edit_one_leg(YamlNode& tree, const Mechanism& m, const Edit& edit, const Ya
     put(*tree.child("variations"), variation_node(number, path_of(parts, place), stripped(at(parts, place))));
 }
 
-const char* sign(Edit::Action action) {
-  switch (action) {
-    case Edit::Action::set:
-      return "=";
-    case Edit::Action::append:
-      return "+=";
-    case Edit::Action::multiply:
-      return "*=";
-    case Edit::Action::add:
-      return "+";
-  }
-  return "";
-}
-
-std::string origin_of(const Edit& edit) {
-  return fmt::format("edit '{} {} {}'", edit.path, sign(edit.action), edit.value);
-}
-
 /// "mounts.3.leg.guideway" for a leg that has parts of its own.
 std::string path_in_file(const Mechanism& m, const Edit& edit) {
   if (!edit.path.starts_with("leg[")) return edit.path;
@@ -100,12 +81,11 @@ std::string path_in_file(const Mechanism& m, const Edit& edit) {
 
 /// The edit in the tree of `m`.
 void apply(YamlNode& tree, const Mechanism& m, const Edit& edit) {
-  const std::string where = origin_of(edit) + ": ";
+  const std::string path = path_in_file(m, edit);
+  if (!path.starts_with("leg[")) return deflect::apply(tree, {path, edit.value, edit.action}, origin_of(edit));
   YamlNode value = parse_yaml(edit.value, origin_of(edit));
   set_line(value, 0);
-  const std::string path = path_in_file(m, edit);
-  if (path.starts_with("leg[")) return edit_one_leg(tree, m, edit, value, where);
-  for (const Place& place : places(tree, path, where)) change(tree, place, edit.action, value, where);
+  edit_one_leg(tree, m, edit, value, origin_of(edit) + ": ");
 }
 
 }  // namespace
@@ -142,7 +122,7 @@ std::map<int, MarkedLeg> varied_legs(const Mechanism& m, const YamlNode* variati
 
 Named<Part> leg_parts(const Mechanism& m, int leg) {
   if (m.legs.empty()) return marked_leg(m, leg).parts;
-  return m.legs.at(static_cast<std::size_t>(leg - 1));
+  return m.legs.at(as_size(leg - 1));
 }
 
 Mechanism resolved(const Mechanism& m) {

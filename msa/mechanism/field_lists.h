@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "msa/base/index.h"
 #include "msa/mechanism/fields.h"
 
 namespace deflect {
@@ -24,7 +25,7 @@ std::vector<std::string> names(const Named<T>* list) {
 }
 
 inline std::size_t index_of(std::span<const char* const> all, const std::string& name) {
-  return static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin());
+  return as_size(std::find(all.begin(), all.end(), name) - all.begin());
 }
 
 /// The alternative of that index, made anew where the variant holds another.

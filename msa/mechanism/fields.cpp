@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "msa/base/index.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/field_lists.h"
 
@@ -70,14 +71,23 @@ void describe_tolerances(FieldVisitor& v, Tolerances& t) {
 
 }  // namespace
 
-void describe(FieldVisitor& v, Material& m) {
-  const Range poisson{-1, 0.5, true};
+constexpr Range poisson{-1, 0.5, true};
+
+void describe_elastic(FieldVisitor& v, Material& m) {
   v.quantity("E", m.E, required(Dimension::stress), "Young's modulus");
   v.quantity_if_given("nu", m.nu, required(Dimension::none, poisson), "Poisson's ratio");
   v.quantity_if_given("G", m.G, required(Dimension::stress), "shear modulus");
-  v.quantity("expansion", m.expansion, optional(0, Dimension::thermal_expansion, {}), "strain per kelvin");
   v.require(m.nu.has_value() != m.G.has_value(), m.nu ? "G" : "nu",
             m.nu ? "nu and G are both given: E = 2G(1 + nu), remove one" : "is missing: give nu or G, as in 'nu: 0.3'");
+}
+
+void describe_geometry(FieldVisitor& v, Geometry& geometry) {
+  choice(v, "geometry", geometry, "geometry", geometry_names, "shape in which equilibrium is found");
+}
+
+void describe(FieldVisitor& v, Material& m) {
+  describe_elastic(v, m);
+  v.quantity("expansion", m.expansion, optional(0, Dimension::thermal_expansion, {}), "strain per kelvin");
   if (m.nu || !m.G) return;
   v.require(poisson.holds(m.poisson()), "G",
             fmt::format("gives Poisson's ratio {}: it must lie between -1 and 0.5", m.poisson()));
@@ -153,10 +163,7 @@ void describe(FieldVisitor& v, Mechanism& m) {
   ListElements<Misfit> misfits(m.misfits);
   v.list("misfits", misfits, "legs that are assembled beside their drawing");
 
-  std::string geometry = geometry_names[static_cast<std::size_t>(m.geometry)];
-  v.word("geometry", geometry, {"geometry", {std::begin(geometry_names), std::end(geometry_names)}, geometry_names[0]},
-         "shape in which equilibrium is found");
-  m.geometry = static_cast<Geometry>(index_of(geometry_names, geometry));
+  describe_geometry(v, m.geometry);
 
   describe_workspace(v, m.workspace);
   describe_rig(v, m.load_cell, m.sensor);

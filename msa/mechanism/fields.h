@@ -27,6 +27,12 @@ void describe(FieldVisitor&, LegDeviation&);
 void describe(FieldVisitor&, Placement&);
 void describe(FieldVisitor&, PolygonSpace::Corner&);
 
+/// E, and nu or G.
+void describe_elastic(FieldVisitor&, Material&);
+void describe_geometry(FieldVisitor&, Geometry&);
+/// Beam theory of a member; the section, where it is known, must have what the theory needs.
+void describe_beam_theory(FieldVisitor&, BeamTheory&, const Section*, const std::string& section_name);
+
 /// Only the field `leg` of a mechanism whose other parts are in `surroundings`.
 void describe_leg(FieldVisitor&, Named<Part>&);
 Surroundings surroundings_of(const Mechanism&);

@@ -1,9 +1,8 @@
 // Parameters of the laws that an elastic freedom of a joint can follow: force along (or moment about) one axis
 // against relative displacement. Data only: `analytic/deflection.h` and `msa/frame/component.h` each turn the
-// parameters into mechanics by their own route.
+// parameters into mechanics by their own route. What each of them can do is a row of `law_table.h`.
 #pragma once
 
-#include <iterator>
 #include <optional>
 #include <string>
 #include <variant>
@@ -17,6 +16,7 @@ struct Material {
   std::optional<double> nu, G;
   double expansion = 0;
 
+  bool operator==(const Material&) const = default;
   double poisson() const { return nu ? *nu : E / (2 * *G) - 1; }
   double shear_modulus() const { return G ? *G : E / (2 * (1 + *nu)); }
 };
@@ -24,6 +24,7 @@ struct Material {
 /// Constant stiffness: N/m on a translation, Nm/rad on a rotation.
 struct LinearLaw {
   double stiffness = 0;
+  bool operator==(const LinearLaw&) const = default;
 };
 
 /// Hertz point contact of two bodies of one material; acts in both senses (a ball in its housing).
@@ -32,6 +33,7 @@ struct HertzPointLaw {
   std::string material;
   double radius = 0;
   Material solid;  ///< resolved from the name by configure()
+  bool operator==(const HertzPointLaw&) const = default;
 };
 
 /// Hertz line contact, linearised as in the paper's (28)–(30): no bulk term.
@@ -40,6 +42,7 @@ struct HertzLineLaw {
   std::string material;
   double radius = 0, length = 0;
   Material solid;
+  bool operator==(const HertzLineLaw&) const = default;
 };
 
 /// Line contact of two cylinders of one material with the bulk of both, from their centres (K. L. Johnson, Contact
@@ -48,6 +51,7 @@ struct HertzLineBulkLaw {
   std::string material;
   double radius_1 = 0, radius_2 = 0, length = 0;
   Material solid;
+  bool operator==(const HertzLineBulkLaw&) const = default;
 };
 
 /// A round pin, simply supported at its ends and loaded in the middle (31)–(32). Diameter and length in m.
@@ -55,6 +59,7 @@ struct PinBendingLaw {
   std::string material;
   double diameter = 0, length = 0;
   Material solid;
+  bool operator==(const PinBendingLaw&) const = default;
 };
 
 /// Torsion of a solid round motor shaft (4), felt along a prismatic joint through a pulley of `pulley_radius` (5).
@@ -62,6 +67,7 @@ struct MotorShaftLaw {
   std::string material;
   double diameter = 0, length = 0, pulley_radius = 0;
   Material solid;
+  bool operator==(const MotorShaftLaw&) const = default;
 };
 
 /// A drive cable (7): cross-section `area` (m²) of a material, or its EA (N) itself; free length in m, or the
@@ -72,6 +78,7 @@ struct CableLaw {
   std::optional<double> length;
   Material solid;
   std::optional<double> EA = std::nullopt;
+  bool operator==(const CableLaw&) const = default;
 };
 
 /// Two cables of a rotational transmission, side by side (8).
@@ -79,6 +86,7 @@ struct CablePairLaw {
   std::string material;
   double area_1 = 0, length_1 = 0, area_2 = 0, length_2 = 0;
   Material solid;
+  bool operator==(const CablePairLaw&) const = default;
 };
 
 /// Timing belt (9)–(10): specific stiffness c_sp (stiffness of a belt of unit width and unit length, N/m), width b,
@@ -87,6 +95,7 @@ struct CablePairLaw {
 struct BeltLaw {
   double specific_stiffness = 0, width = 0, tight_length = 0, slack_length = 0;
   std::optional<double> pulley_radius = std::nullopt;
+  bool operator==(const BeltLaw&) const = default;
 };
 
 // The laws below act on translations and on rotations: m and N, or rad and Nm. f is the force that the joint transmits
@@ -95,39 +104,38 @@ struct BeltLaw {
 /// δ = deflection · sign(f) |f/force|^exponent, 0 < exponent ≤ 1: Hertz contact has 2/3.
 struct PowerLaw {
   double deflection = 0, force = 0, exponent = 1;
+  bool operator==(const PowerLaw&) const = default;
 };
 
 /// δ = pull · f where f > 0, push · f where f < 0; a compliance of zero, or one that is not given, is rigid. A contact
 /// or a cable without preload has one.
 struct OneSidedLaw {
   std::optional<double> pull, push;
+  bool operator==(const OneSidedLaw&) const = default;
 };
 
 /// f = stiffness · δ (1 + (δ/reference)²).
 struct HardeningLaw {
   double stiffness = 0, reference = 0;
+  bool operator==(const HardeningLaw&) const = default;
 };
 
 /// Free travel ±gap: δ = +gap under f > 0, −gap under f < 0, between them f = 0. What carries nothing (below 1e-9 of
 /// the largest force) stays in the middle.
 struct ClearanceLaw {
   double gap = 0;
+  bool operator==(const ClearanceLaw&) const = default;
 };
 
 /// Elastic–Coulomb friction (a Jenkins element): f = stiffness · (δ − slip), |f| ≤ force; where more would be needed,
 /// the slip moves until |f| = force. The slip is history: conditions.h.
 struct FrictionLaw {
   double force = 0, stiffness = 0;
-  int number = -1;  ///< among the frictions of a configuration, see number_slips()
+  int number = -1;  ///< among the frictions of a configuration, see number_slips(); no part of what the law is
+  bool operator==(const FrictionLaw& other) const { return force == other.force && stiffness == other.stiffness; }
 };
 
 using Law = std::variant<LinearLaw, HertzPointLaw, HertzLineLaw, PinBendingLaw, MotorShaftLaw, CableLaw, CablePairLaw,
                          BeltLaw, HertzLineBulkLaw, PowerLaw, OneSidedLaw, HardeningLaw, ClearanceLaw, FrictionLaw>;
-
-/// The name of each alternative in device files, in the order of the variant.
-inline constexpr const char* law_names[] = {"linear",    "hertz_point", "hertz_line", "pin_bending",     "motor_shaft",
-                                            "cable",     "cable_pair",  "belt",       "hertz_line_bulk", "power",
-                                            "one_sided", "hardening",   "clearance",  "friction"};
-static_assert(std::size(law_names) == std::variant_size_v<Law>);
 
 }  // namespace deflect

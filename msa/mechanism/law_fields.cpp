@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "msa/mechanism/field_lists.h"
+#include "msa/mechanism/law_table.h"
 
 namespace deflect {
 namespace {
@@ -106,26 +108,23 @@ void fields(FieldVisitor& v, FrictionLaw& l) {
   v.quantity("stiffness", l.stiffness, required(stiffness(v)), "stiffness before it slips");
 }
 
-/// Whether a law is one of machine elements that act along a line.
-bool only_along(const Law& law) {
-  return std::visit(
-      [](const auto& l) {
-        using L = std::decay_t<decltype(l)>;
-        return !(std::is_same_v<L, LinearLaw> || std::is_same_v<L, PowerLaw> || std::is_same_v<L, OneSidedLaw> ||
-                 std::is_same_v<L, HardeningLaw> || std::is_same_v<L, ClearanceLaw> || std::is_same_v<L, FrictionLaw> ||
-                 std::is_same_v<L, BeltLaw>);
-      },
-      law);
+/// "'linear', 'belt', … or 'friction'": the laws that a rotation takes.
+std::string laws_about() {
+  std::vector<std::string> names;
+  for (const LawRow& law : law_rows)
+    if (law.about) names.push_back(fmt::format("'{}'", law.name));
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
 }
 
 }  // namespace
 
 void describe(FieldVisitor& v, Law& law) {
   tagged(v, law, "law", "law", law_names, "force against relative displacement", [&v](auto& l) { fields(v, l); });
-  v.require(!v.surroundings.rotation || !only_along(law), "law",
-            fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes 'linear', 'belt', 'power', "
-                        "'one_sided', 'hardening', 'clearance' or 'friction'",
-                        law_names[law.index()]));
+  const LawRow& is = row_of(law);
+  v.require(!v.surroundings.rotation || is.about, "law",
+            fmt::format("'{}' acts along a translation (tx, ty, tz); a rotation takes {}", is.name, laws_about()));
 }
 
 }  // namespace deflect

@@ -3,8 +3,10 @@
 
 #include <Eigen/Cholesky>
 
+#include "msa/base/index.h"
 #include "msa/mechanism/field_lists.h"
 #include "msa/mechanism/joint_table.h"
+#include "msa/mechanism/law_table.h"
 
 namespace deflect {
 namespace {
@@ -90,7 +92,7 @@ void describe_laws(FieldVisitor& v, Joint& joint) {
     v.require(joint.preload[i] == 0 || !joint.laws[i].empty(), "preload",
               fmt::format("acts in the laws of a freedom: {} has none", freedom_names[i]));
   for (std::size_t i = 0; i < 6; ++i) {
-    const auto slips = [](const Law& law) { return std::holds_alternative<FrictionLaw>(law); };
+    const auto slips = [](const Law& law) { return row_of(law).has_history; };
     v.require(joint.preload[i] == 0 || std::none_of(joint.laws[i].begin(), joint.laws[i].end(), slips), "preload",
               fmt::format("{} has friction, which keeps no force by itself", freedom_names[i]));
   }
@@ -227,7 +229,7 @@ void describe_from(FieldVisitor& v, Member& member) {
   const char* about = "earlier part of the leg where the member begins";
   const Words parts{"earlier part of the leg", v.surroundings.earlier_parts, std::nullopt};
   const bool more = member.from_point != PartPoint::usual;
-  std::string at = part_point_names[static_cast<std::size_t>(member.from_point)];
+  std::string at = nth(part_point_names, member.from_point);
   member.from_point = PartPoint::usual;
   const auto fields = [&] {
     v.word("part", member.from, parts, about);
@@ -260,20 +262,24 @@ void describe_ends(FieldVisitor& v, Member& member) {
   v.require(member.from != member.to, "to", "must be another point than 'from'");
 }
 
+}  // namespace
+
+void describe_beam_theory(FieldVisitor& v, BeamTheory& beam, const Section* section, const std::string& section_name) {
+  choice(v, "beam", beam, "beam theory", beam_theory_names, "beam theory");
+  const auto* given = section ? std::get_if<GivenSection>(&section->shape) : nullptr;
+  v.require(beam != BeamTheory::timoshenko || !given || (given->As_y && given->As_z), "beam",
+            fmt::format("timoshenko needs As_y and As_z in section '{}'", section_name));
+}
+
+namespace {
+
 void fields(FieldVisitor& v, Member& member) {
   v.word("member", member.section, {"section", names(v.surroundings.sections), std::nullopt}, "name of a section");
   material_of(v, member.material);
   describe_ends(v, member);
 
-  std::string beam = beam_theory_names[static_cast<std::size_t>(member.beam)];
-  v.word("beam", beam,
-         {"beam theory", {std::begin(beam_theory_names), std::end(beam_theory_names)}, beam_theory_names[0]},
-         "beam theory");
-  member.beam = static_cast<BeamTheory>(index_of(beam_theory_names, beam));
   const Section* section = v.surroundings.sections ? find(*v.surroundings.sections, member.section) : nullptr;
-  const auto* given = section ? std::get_if<GivenSection>(&section->shape) : nullptr;
-  v.require(member.beam != BeamTheory::timoshenko || !given || (given->As_y && given->As_z), "beam",
-            fmt::format("timoshenko needs As_y and As_z in section '{}'", member.section));
+  describe_beam_theory(v, member.beam, section, member.section);
 
   v.quantity("bending_factor", member.bending_factor, optional(1, Dimension::ratio, positive),
              "multiplies the bending stiffness");

@@ -23,14 +23,14 @@ Vector3 across(const Vector3& axis, const Vector3& reference, const Vector3& oth
 Law resolved(Law law, const Mechanism& m, double actuator) {
   std::visit(
       [&](auto& l) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(l)>, CableLaw>) {
-          if (!l.EA) l.solid = look_up(m.materials, l.material, "material");
-          if (!l.length) l.length = actuator;
-        } else if constexpr (requires { l.solid; }) {
-          l.solid = look_up(m.materials, l.material, "material");
-        }
+        bool of_material = false;
+        if constexpr (requires { l.solid; }) of_material = true;
+        if constexpr (requires { l.EA; }) of_material = !l.EA;
+        if constexpr (requires { l.solid; })
+          if (of_material) l.solid = look_up(m.materials, l.material, "material");
       },
       law);
+  if (lacks_length(law)) *length_from_pose(law) = actuator;
   return law;
 }
 
@@ -76,7 +76,8 @@ void place_between(PlacedMember& m, const Vector3& p_W_start, const Vector3& p_W
   m.p_W_start = p_W_start;
   m.p_W_end = p_W_end;
   const Vector3 along = p_W_end - p_W_start;
-  if (!(along.norm() > 1e-9)) throw ModelError(fmt::format("{}: the member has no length", m.part));
+  if (!(along.norm() > 1e-9))
+    throw ModelError(fmt::format("{}: the member has no length", m.part), {"a member has no length"});
   m.R_WM = axes_along_x(along, across(along, reference, otherwise));
 }
 

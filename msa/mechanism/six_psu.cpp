@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 
 namespace deflect {
 namespace {
@@ -52,15 +53,17 @@ SixPsuLeg leg_at(const SixPsu& k, const SixPsuDrawing& drawn, const Pose& pose) 
   const Vector3 d = g.p_WC - g.p_WA;
   const double beside = std::hypot(d.x(), d.y()), L2 = drawn.link_length;
   if (!(beside <= L2))
-    throw ModelError(fmt::format(
-        "leg {}: the link does not reach: its platform joint is {:.6g} mm beside the guideway, the link is {:.6g} mm "
-        "long",
-        drawn.leg, 1e3 * beside, 1e3 * L2));
+    throw ModelError(fmt::format("leg {}: the link does not reach: its platform joint is {:.6g} mm beside the "
+                                 "guideway, the link is {:.6g} mm "
+                                 "long",
+                                 drawn.leg, 1e3 * beside, 1e3 * L2),
+                     {"the link does not reach", drawn.leg});
   g.slider = d.z() - std::sqrt(L2 * L2 - beside * beside);
   if (g.slider < k.slider_min || g.slider > k.slider_max)
     throw ModelError(
         fmt::format("leg {}: the slider would stand at {:.6g} mm, outside its range of {:.6g} to {:.6g} mm", drawn.leg,
-                    1e3 * g.slider, 1e3 * k.slider_min, 1e3 * k.slider_max));
+                    1e3 * g.slider, 1e3 * k.slider_min, 1e3 * k.slider_max),
+        {"the slider would stand at … mm, outside its range of … to … mm", drawn.leg});
   g.p_WB = g.p_WA + g.slider * Vector3::UnitZ();
   return g;
 }
@@ -91,7 +94,7 @@ ForwardKinematics forward_kinematics(const SixPsu& k, const std::array<double, 6
     for (int i = 0; i < 6; ++i) {
       const double L = link_length(k, i + 1);
       const Vector3 c = result.pose.R_WT * platform_joint(k, i + 1);
-      const Vector3 b = base_joint(k, i + 1) + sliders[static_cast<std::size_t>(i)] * Vector3::UnitZ();
+      const Vector3 b = base_joint(k, i + 1) + nth(sliders, i) * Vector3::UnitZ();
       const Vector3 link = result.pose.p_WT + c - b;
       r(i) = (link.squaredNorm() - L * L) / (2 * L);
       J.row(i) << link.transpose() / L, c.cross(link).transpose() / L;

@@ -4,8 +4,10 @@
 #include <array>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/family.h"
+#include "msa/mechanism/law_table.h"
 #include "msa/mechanism/place.h"
 #include "msa/mechanism/six_psu.h"
 
@@ -49,29 +51,31 @@ PlacedPart placed_part(const Part& part, const std::string& name, const LegFrame
   return placed(joint, name, {point(joint.at), f.axes[number_of(joint.axes, axes_names, "set of axes")], f.slider}, m);
 }
 
+/// Refusals of work() are that leg's.
+template <class F>
+void of_leg(int leg, const F& work) {
+  told_at<ModelError>([&] { return fmt::format("leg {}: ", leg); }, work);
+}
+
 PlacedLeg placed_leg(const SixPsu& k, const Mechanism& m, const Named<Part>& parts, int leg, const Pose& pose) {
   const LegFrames f = frames(k, drawing_of(k, leg), pose);
   PlacedLeg out;
   out.name = fmt::format("leg {}", leg);
-  for (const auto& [name, part] : parts) try {
-      out.parts.push_back(placed_part(part, name, f, m));
-    } catch (const InputError& e) {
-      throw InputError(fmt::format("{}: leg.{}: {}", m.name, name, e.what()));
-    } catch (const ModelError& e) {
-      throw ModelError(fmt::format("leg {}: {}", leg, e.what()));
-    }
+  for (const auto& [name, part] : parts)
+    told_at<InputError>(
+        [&, &name = name] { return fmt::format("{}: leg.{}: ", m.name, name); },
+        [&, &name = name, &part = part] { of_leg(leg, [&] { out.parts.push_back(placed_part(part, name, f, m)); }); });
   return out;
 }
 
 PlacedLeg placed_beside(const SixPsu& k, const Mechanism& m, const std::string& name, const Joint& joint, int leg,
-                        const Pose& pose) try {
+                        const Pose& pose) {
   PlacedLeg out;
   out.name = fmt::format("leg {} {}", leg, name);
-  out.parts.push_back(placed_part(joint, name, frames(k, drawing_of(k, leg), pose), m));
+  told_at<InputError>([&] { return fmt::format("{}: beside.{}: ", m.name, name); },
+                      [&] { out.parts.push_back(placed_part(joint, name, frames(k, drawing_of(k, leg), pose), m)); });
   out.beside = true;
   return out;
-} catch (const InputError& e) {
-  throw InputError(fmt::format("{}: beside.{}: {}", m.name, name, e.what()));
 }
 
 }  // namespace
@@ -98,8 +102,7 @@ SixPsuMoves::SixPsuMoves(const SixPsu& k, const Mechanism& m) {
     Move move{leg, number_of(joint.at, point_names, "point"), number_of(joint.axes, axes_names, "set of axes"), {}};
     for (std::size_t i = 0; i < 6; ++i)
       for (std::size_t n = 0; n < joint.laws[i].size(); ++n)
-        if (const auto* cable = std::get_if<CableLaw>(&joint.laws[i][n]); cable && !cable->length)
-          move.cables.emplace_back(i, n);
+        if (lacks_length(joint.laws[i][n])) move.cables.emplace_back(i, n);
     return move;
   };
   for (int leg = 1; leg <= legs; ++leg) {
@@ -124,17 +127,14 @@ void SixPsuMoves::move(const SixPsu& k, const Pose& pose, std::vector<PlacedLeg>
       const Move& how = moves_[l][p];
       const LegFrames& f = all[how.leg];
       if (auto* member = std::get_if<PlacedMember>(&placed[l].parts[p])) {
-        try {
-          place_between(*member, f.points[how.first], f.points[how.second], f.radial, Vector3::UnitZ());
-        } catch (const ModelError& e) {
-          throw ModelError(fmt::format("leg {}: {}", how.leg + 1, e.what()));
-        }
+        of_leg(static_cast<int>(how.leg) + 1,
+               [&] { place_between(*member, f.points[how.first], f.points[how.second], f.radial, Vector3::UnitZ()); });
         continue;
       }
       auto& joint = std::get<PlacedJoint>(placed[l].parts[p]);
       joint.p_W = f.points[how.first];
       joint.R_WJ = f.axes[how.second];
-      for (const auto& [freedom, law] : how.cables) std::get<CableLaw>(joint.laws[freedom][law]).length = f.slider;
+      for (const auto& [freedom, law] : how.cables) *length_from_pose(joint.laws[freedom][law]) = f.slider;
     }
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/place.h"
@@ -13,7 +14,7 @@ namespace deflect {
 namespace {
 
 Matrix3 rotation_about(std::size_t axis, double angle) {
-  return Eigen::AngleAxisd(angle, Vector3::Unit(static_cast<Eigen::Index>(axis))).toRotationMatrix();
+  return Eigen::AngleAxisd(angle, Vector3::Unit(as_index(axis))).toRotationMatrix();
 }
 
 Frame turned(std::size_t axis, double angle) { return {Vector3::Zero(), rotation_about(axis, angle)}; }
@@ -102,7 +103,7 @@ class Walker {
       add(step, 0, freedoms, step.joint.R.col(0), Vector3::Zero());
     } else {
       for (std::size_t i = 0; i < 3; ++i)
-        if (movable(freedoms[i])) add(step, i, freedoms, axes.col(static_cast<Eigen::Index>(i)), Vector3::Zero());
+        if (movable(freedoms[i])) add(step, i, freedoms, axes.col(as_index(i)), Vector3::Zero());
     }
     const Vector3 p = step.joint.p + axes * shift;
     const bool ball = is_ball(freedoms);
@@ -111,7 +112,7 @@ class Walker {
     bool first = true;
     for (std::size_t i = 0; i < 3; ++i) {
       if (movable(freedoms[3 + i])) {
-        const Vector3 w = axes * (ball ? Matrix3::Identity() : turning).col(static_cast<Eigen::Index>(i));
+        const Vector3 w = axes * (ball ? Matrix3::Identity() : turning).col(as_index(i));
         add(step, 3 + i, freedoms, p.cross(w), w);
       }
       turning = turning * rotation_about(i, s.q[3 + i]);
@@ -198,7 +199,7 @@ bool is_ball(const std::array<Freedom, 6>& f) {
 std::vector<LegParts> legs_of(const Mechanism& m) {
   std::vector<LegParts> legs;
   for (int leg = 1; leg <= leg_count(m); ++leg) {
-    const Mount mount = m.mounts.empty() ? Mount() : m.mounts[static_cast<std::size_t>(leg - 1)];
+    const Mount mount = m.mounts.empty() ? Mount() : nth(m.mounts, leg - 1);
     legs.push_back({mount, leg_parts(m, leg)});
   }
   return legs;

@@ -7,6 +7,7 @@
 #include "analytic/model.h"
 #include "msa/base/stiffness_checks.h"
 #include "tests/support/devices.h"
+#include "tests/support/laws.h"
 
 namespace deflect::analytic {
 namespace {
@@ -47,46 +48,31 @@ TEST(Member, AsPrintedDiffersWhereThePaperErrs) {
   EXPECT_THROW(link_axes_as_printed(vertical), ModelError);
 }
 
-const Law every_law[] = {
-    LinearLaw{4e5},
-    HertzPointLaw{"", 0.004, {210e9, 0.3, {}}},
-    HertzLineLaw{"", 0.0015, 0.01, {210e9, 0.3, {}}},
-    PinBendingLaw{"", 0.003, 0.01, {210e9, 0.3, {}}},
-    MotorShaftLaw{"", 0.006, 0.05, 0.01, {210e9, 0.3, {}}},
-    CableLaw{"", 1e-6, 0.08, {150e9, 0.3, {}}},
-    CablePairLaw{"", 1e-6, 0.08, 2e-6, 0.3, {150e9, 0.3, {}}},
-    BeltLaw{2e6, 0.01, 0.1, 0.3},
-    BeltLaw{2e6, 0.01, 0.1, 0.3, 0.02},
-    HertzLineBulkLaw{"", 0.003, 0.004, 0.01, {210e9, 0.3, {}}},
-    PowerLaw{2.5e-6, 1, 2.0 / 3},
-    HardeningLaw{5e5, 1e-4},
-};
-
 /// A pulley of radius r feels k r² of the belt.
 TEST(Belt, TurnsAPulley) {
   EXPECT_DOUBLE_EQ(belt_stiffness(BeltLaw{2e6, 0.01, 0.1, 0.3, 0.02}),
                    0.02 * 0.02 * belt_stiffness(BeltLaw{2e6, 0.01, 0.1, 0.3}));
 }
 
-class EveryLaw : public ::testing::TestWithParam<Law> {};
+class EveryLaw : public ::testing::TestWithParam<test::LawSite> {};
 
 TEST_P(EveryLaw, ComplianceIsTheDerivativeAndEnergyTheWorkStored) {
-  EXPECT_EQ(deflection(GetParam(), 0), 0);
+  const Law law = test::resolved_law(GetParam());
+  if (jumps(law)) GTEST_SKIP() << "takes its phases from steps.h";
+  EXPECT_EQ(deflection(law, 0), 0);
   for (const double f : {-200.0, -3.0, 0.02, 7.0, 50.0}) {
     const double h = 1e-5 * std::abs(f);
-    EXPECT_NEAR((deflection(GetParam(), f + h) - deflection(GetParam(), f - h)) / (2 * h), compliance(GetParam(), f),
-                1e-8 * compliance(GetParam(), f));
+    EXPECT_NEAR((deflection(law, f + h) - deflection(law, f - h)) / (2 * h), compliance(law, f),
+                1e-8 * compliance(law, f));
     // dU = f dδ
-    EXPECT_NEAR((stored_energy(GetParam(), f + h) - stored_energy(GetParam(), f - h)) / (2 * h),
-                f * compliance(GetParam(), f), 1e-8 * std::abs(f) * compliance(GetParam(), f));
-    EXPECT_DOUBLE_EQ(deflection(GetParam(), -f), -deflection(GetParam(), f));
+    EXPECT_NEAR((stored_energy(law, f + h) - stored_energy(law, f - h)) / (2 * h), f * compliance(law, f),
+                1e-8 * std::abs(f) * compliance(law, f));
+    EXPECT_DOUBLE_EQ(deflection(law, -f), -deflection(law, f));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Family, EveryLaw, ::testing::ValuesIn(every_law), [](const auto& law) {
-  const auto* belt = std::get_if<BeltLaw>(&law.param);
-  return law_names[law.param.index()] + std::string(belt && belt->pulley_radius ? "_on_a_pulley" : "");
-});
+INSTANTIATE_TEST_SUITE_P(Table, EveryLaw, ::testing::ValuesIn(test::law_sites()),
+                         [](const auto& site) { return test::name_of(site.param); });
 
 TEST(Laws, UniversalJointOfTheDeviceIs39kNPerMmInSeriesAnd1850AsPrinted) {
   const Material steel{210e9, 0.3, {}};

@@ -18,8 +18,8 @@
 #include "msa/mechanism/device_file.h"
 #include "tests/attack/count.h"
 #include "tests/support/apart.h"
-#include "validation/theories/solve_result.h"
-#include "validation/theories/theories.h"
+#include "tests/support/theories.h"
+#include "validation/studies/solve.h"
 
 namespace deflect::attack {
 namespace {
@@ -61,7 +61,7 @@ double known_to(const std::vector<std::string>& notes) {
 void compare(DeviceJudgement& out, const SolveResult& r, const DeviceTruth& truth, const RandomDevice& random,
              double size) {
   const Vector6 right = truth.flexibility * random.load;
-  for (const TheorySolution* theory : {&r.analytic, &r.msa}) {
+  for (const TheorySolution* theory : {&test::analytic(r), &test::msa(r)}) {
     const double error =
         displacement_error(in_m(theory->displacement_mm_rad), right, truth.flexibility, random.load, size);
     out.error = std::isfinite(error) ? std::max(out.error, error) : 1e300;
@@ -69,8 +69,8 @@ void compare(DeviceJudgement& out, const SolveResult& r, const DeviceTruth& trut
     const Matrix6 K = stiffness_from_mm(theory->stiffness_mm);
     out.stiffness_error = std::max(out.stiffness_error, test::apart(K, truth.stiffness, size));
   }
-  out.displacement = in_m(r.msa.displacement_mm_rad);
-  out.between = test::apart(in_m(r.analytic.displacement_mm_rad), out.displacement, size);
+  out.displacement = in_m(test::msa(r).displacement_mm_rad);
+  out.between = test::apart(in_m(test::analytic(r).displacement_mm_rad), out.displacement, size);
 }
 
 /// Where the program refuses because theories differ or fail a check: how far each is off.
@@ -172,7 +172,8 @@ DeviceJudgement judge_agreement(const RandomDevice& random) {
     Vector6 load = random.load;
     load.tail<3>() *= 1e3;
     const SolveResult r = solve(random.mechanism, at, load, {});
-    out.between = test::apart(in_m(r.analytic.displacement_mm_rad), in_m(r.msa.displacement_mm_rad), random.unit);
+    out.between =
+        test::apart(in_m(test::analytic(r).displacement_mm_rad), in_m(test::msa(r).displacement_mm_rad), random.unit);
     if (!(out.between <= 1e-6)) out.outcome = Outcome::answered_wrongly;
     out.words = fmt::format("theories {:.1e} apart", out.between);
   } catch (const ModelError& e) {

@@ -7,11 +7,11 @@
 #include <regex>
 
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/stand.h"
 #include "tests/attack/device_oracle.h"
 #include "tests/support/apart.h"
 #include "tests/support/program.h"
 #include "tests/support/stiffnesses.h"
-#include "validation/theories/theories.h"
 
 namespace deflect::attack {
 namespace {

@@ -12,7 +12,7 @@
 #include "tests/attack/device_oracle.h"
 #include "tests/support/apart.h"
 #include "tests/support/program.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
 
 namespace deflect {
 namespace {

@@ -8,7 +8,6 @@
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/campaign.h"
-#include "validation/theories/theories.h"
 
 namespace deflect::benchmark {
 namespace {
@@ -42,13 +41,12 @@ VectorX translations(const std::vector<Vector6>& all) {
   return out;
 }
 
-VectorX predicted_elsewhere(const Plan& plan, const Mechanism& m, Theory theory, Geometry geometry) {
+VectorX predicted_elsewhere(const Plan& plan, const Mechanism& m, const Theory& theory, Geometry geometry) {
   PredictionOptions o;
-  o.theory = theory;
+  o.theory = &theory;
   o.geometry = geometry;
   o.division = plan.simulation.division;
-  o.threads = 1;
-  return translations(predict(m, configure_all(m, plan.elsewhere), plan.elsewhere, o));
+  return translations(predict(m, configure_all(m, plan.elsewhere), plan.elsewhere, o, alone));
 }
 
 /// Sets of values at which the effect's parameters act one at a time; at the start together where one shapes others.
@@ -82,18 +80,15 @@ Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::st
   simulation.sigma_u = sigma_u;
   if (temperature) simulation.temperature = 22, simulation.swing = 2;
   simulation.division = frame::equal_division(configure(m, home_pose(m)), elements);
-  simulation.threads = 1;
   readings = campaign(name, m, force, seed);
-  healthy = simulate(m, readings, simulation);
-  ComparisonOptions comparison;
-  comparison.threads = 1;
-  observations = std::make_unique<Observations>(m, healthy, comparison);
+  healthy = simulate(m, readings, simulation, alone);
+  observations = std::make_unique<Observations>(m, healthy, ComparisonOptions(), alone);
   signatures = deflect::signatures(*observations, effects, 1);
   const VectorX rest = observations->residual(m);
   nominal = numbers_of(healthy) - rest;
   elsewhere = new_poses(m, seed + 1);
-  nominal_elsewhere = predict_elsewhere(*this, m, Theory::analytic);
-  const VectorX linear = predicted_elsewhere(*this, m, Theory::analytic, Geometry::linear);
+  nominal_elsewhere = predict_elsewhere(*this, m, theory("analytic"));
+  const VectorX linear = predicted_elsewhere(*this, m, theory("analytic"), Geometry::linear);
   for (const Signature& s : signatures) {
     const std::vector<VectorX> values = one_at_a_time(*s.effect.effect);
     const auto columns = static_cast<Eigen::Index>(values.size());
@@ -101,7 +96,7 @@ Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::st
     for (Eigen::Index i = 0; i < columns; ++i) {
       const Mechanism with = with_effect(m, *s.effect.effect, values[static_cast<std::size_t>(i)], s.effect.leg);
       c.measured.col(i) = rest - observations->residual(with);
-      c.elsewhere.col(i) = predicted_elsewhere(*this, with, Theory::analytic, Geometry::linear) - linear;
+      c.elsewhere.col(i) = predicted_elsewhere(*this, with, theory("analytic"), Geometry::linear) - linear;
     }
     changes.push_back(std::move(c));
   }
@@ -113,7 +108,7 @@ VectorX Plan::whitened_change(const EffectInstance& e) const {
   return observations->null_residual() - observations->whitened_residual(with_effect(observations->device(), e));
 }
 
-VectorX predict_elsewhere(const Plan& plan, const Mechanism& m, Theory theory) {
+VectorX predict_elsewhere(const Plan& plan, const Mechanism& m, const Theory& theory) {
   return predicted_elsewhere(plan, m, theory, Geometry::finite);
 }
 

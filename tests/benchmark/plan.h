@@ -48,7 +48,7 @@ struct Plan {
 };
 
 /// Translations of a device at the plan's new poses in the deformed shape, m. NumericalError where there is none.
-VectorX predict_elsewhere(const Plan&, const Mechanism&, Theory);
+VectorX predict_elsewhere(const Plan&, const Mechanism&, const Theory&);
 
 /// Plans of all campaigns, made when first asked for; from any thread.
 class Plans {

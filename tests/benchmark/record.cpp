@@ -77,7 +77,7 @@ double error(const VectorX& prediction, const VectorX& truth) {
 VectorX predicted_by(const Diagnosis& d, const Mechanism& m, const Plan& plan) {
   if (d.missing.empty()) return plan.nominal_elsewhere;
   try {
-    return predict_elsewhere(plan, PreparedEffects(m, d.missing)(d.fit.values), Theory::analytic);
+    return predict_elsewhere(plan, PreparedEffects(m, d.missing).machine(d.fit.values), theory("analytic"));
   } catch (const NumericalError&) {
     return VectorX::Constant(plan.nominal_elsewhere.size(), std::numeric_limits<double>::quiet_NaN());
   }
@@ -93,9 +93,7 @@ HiddenEffect names_of(const EffectInstance& e) {
 void diagnose_all(const MeasuredSet& set, const Mechanism& m, Record& record) {
   const Plan& plan = *set.plan;
   const auto start = std::chrono::steady_clock::now();
-  DiagnosisOptions o;
-  o.threads = o.comparison.threads = 1;
-  const Diagnosis d = diagnose(m, set.data, set.known, o);
+  const Diagnosis d = diagnose(m, set.data, set.known, {}, alone);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.answers.push_back(answer_of(d));
   count_intervals(d, set.hidden, record);
@@ -107,7 +105,7 @@ void diagnose_all(const MeasuredSet& set, const Mechanism& m, Record& record) {
   if (set.hidden.empty() || set.truth.unknown) return;
   VectorX truth;
   try {
-    truth = predict_elsewhere(plan, set.machine, Theory::msa);
+    truth = predict_elsewhere(plan, set.machine, theory("msa"));
   } catch (const NumericalError&) {  // no equilibrium at one of the new poses
     return;
   }

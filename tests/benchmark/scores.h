@@ -3,7 +3,7 @@
 
 #include "tests/benchmark/record.h"
 #include "validation/figures/gnuplot.h"
-#include "validation/report/json_text.h"
+#include "validation/json/json_text.h"
 
 namespace deflect::benchmark {
 

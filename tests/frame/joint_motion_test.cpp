@@ -114,7 +114,7 @@ TEST(JointMotion, AtRestItIsTheLinearFormOfTheModel) {
   m.fix(0, "ground");
   m.connect(0, 1, {0.5, 0.6, 0.2}, rotation_from_rpy(0.3, 0.7, -1.2), freedoms, "joint", "joint");
   m.join(0, 1, "weld");
-  const Circumstances none{{}, VectorX::Zero(static_cast<Eigen::Index>(m.springs.size())), m.constraints.size()};
+  const StructureConditions none{{}, VectorX::Zero(static_cast<Eigen::Index>(m.springs.size())), m.constraints.size()};
   const Linearisation at = linearise_finite(m, Shape(m), none);
   for (std::size_t k = 0; k < m.constraints.size(); ++k) {
     VectorX linear = VectorX::Zero(m.dofs()), finite = linear;

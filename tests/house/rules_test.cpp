@@ -1,5 +1,6 @@
 // The rules themselves, on made-up trees that keep and break them.
 #include "tests/house/rules.h"
+#include "tests/house/counts.h"
 
 #include <gtest/gtest.h>
 
@@ -122,6 +123,20 @@ TEST(TopLevel, OnlyFixedHiddenAndIgnoredNames) {
           .empty());
   EXPECT_EQ(top_level_violations({"msa", "docs", "builder"}, gitignore),
             (Messages{"docs: does not belong to the top level", "builder: does not belong to the top level"}));
+}
+
+TEST(Counts, SeeNamesLongFunctionsCastsAndCatches) {
+  const Source source{"validation/compare/x.cpp",
+                      "// a Mechanism\nvoid f(const Mechanism& m) {\n  g();\n  try {\n  } catch (...) {\n  }\n}\n"
+                      "int i = static_cast<int>(n) + static_cast<double>(n);\n"};
+  EXPECT_EQ(named_in({source}, {"validation/compare"}, {"Mechanism"}),
+            std::vector<std::string>{"validation/compare/x.cpp:2: names Mechanism"});
+  EXPECT_TRUE(named_in({source}, {"validation/page"}, {"Mechanism"}).empty());
+  EXPECT_EQ(long_functions({source}, 5, {}), std::vector<std::string>{"validation/compare/x.cpp:2: 6 lines"});
+  EXPECT_TRUE(long_functions({source}, 6, {}).empty());
+  EXPECT_TRUE(long_functions({source}, 5, {"validation/compare/x.cpp: f("}).empty());
+  EXPECT_EQ(index_casts({source}), 1);
+  EXPECT_EQ(catches({source}), std::vector<std::string>{"validation/compare/x.cpp:5"});
 }
 
 }  // namespace

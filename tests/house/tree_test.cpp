@@ -8,6 +8,7 @@
 #include <set>
 
 #include "msa/base/files.h"
+#include "tests/house/counts.h"
 #include "tests/house/rules.h"
 
 namespace deflect::house {
@@ -34,6 +35,49 @@ TEST(Tree, IncludesKeepToTheTableOfRooms) {
 TEST(Tree, RoomsLookDownOnlyAndAreSmall) {
   EXPECT_EQ(lines(table_violations()), "");
   EXPECT_EQ(lines(crowded_rooms(read_sources(root, {".cpp"}), 20)), "");
+}
+
+TEST(Tree, WhatIsComparedIsASubject) {
+  const std::vector<Source> sources = read_sources(root, {".h", ".cpp"});
+  EXPECT_EQ(lines(named_in(sources,
+                           {"validation/statistics", "validation/compare", "validation/diagnosis", "validation/report",
+                            "validation/result_files", "validation/page"},
+                           {"Mechanism", "Configuration"})),
+            "");
+}
+
+/// Rows of a table, in the form of a function.
+const std::vector<std::string> tables = {"msa/base/units.cpp: table()", "validation/matrix/mistakes.cpp: table()",
+                                         "validation/result_files/result_kinds.cpp: result_kinds()"};
+
+TEST(Tree, FunctionsHaveAtMost60Lines) {
+  std::vector<Source> sources = read_sources(root, {".h", ".cpp"});
+  std::erase_if(sources, [](const Source& s) { return s.path.starts_with("tests/"); });
+  EXPECT_EQ(lines(long_functions(sources, 60, tables)), "");
+}
+
+TEST(Tree, IndicesAreCastInOnePlace) {
+  std::vector<Source> sources = read_sources(root, {".h", ".cpp"});
+  std::erase_if(sources, [](const Source& s) { return s.path.starts_with("tests/"); });
+  EXPECT_LT(index_casts(sources), 150);
+}
+
+// An error ends the work. It becomes a value in outcome.h alone; beside that it is caught at the borders of libraries
+// and where the program ends.
+TEST(Tree, ErrorsAreCaughtWhereThereIsAReason) {
+  const std::set<std::string> where = {
+      "msa/base/outcome.h",                  // errors become values, are told with their place, and change threads
+      "msa/base/ending.cpp",                 // the end of a program or of one of its processes
+      "msa/fields/yaml_reader.cpp",          // the border of yaml-cpp: a line for what it says
+      "validation/json/json_text.cpp",       // the border of JSON: likewise
+      "msa/base/files.cpp",                  // the border of the file system: what the system said
+      "meshes/gmsh_module.cpp",              // the border of Gmsh, which throws texts: nothing leaves a module
+      "validation/parallel/mpi_ranks.cpp"};  // the border of MPI: nothing leaves a module
+  std::vector<Source> sources = read_sources(root, {".h", ".cpp"});
+  std::erase_if(sources, [&](const Source& s) {
+    return s.path.starts_with("tests/") || s.path.starts_with("validation/cli/") || where.contains(s.path);
+  });
+  EXPECT_EQ(lines(catches(sources)), "");
 }
 
 TEST(Tree, SourcesAreCppAndHAndLiveInRooms) {

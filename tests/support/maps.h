@@ -1,7 +1,7 @@
 // Small grids of poses for tests.
 #pragma once
 
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect::test {
 

@@ -27,7 +27,7 @@ Signature to_one_side(Signature s) {
 }
 
 double chance(const std::vector<Signature>& all, double p, int sets = 100'000) {
-  return chance_of_any(all, p, {sets, 0, nullptr, {}});
+  return chance_of_any(all, p, sets, {});
 }
 
 /// Five standard deviations of a share of that many draws.
@@ -66,11 +66,11 @@ TEST(Bootstrap, IsResolvedToTheNumberOfSets) {
 
 TEST(Bootstrap, IsTheSameForAnyNumberOfThreadsAndRanks) {
   const std::vector<Signature> all = {along_axes(0), along_axes(3, 2), to_one_side(along_axes(7))};
-  const double alone = chance_of_any(all, 0.05, {12'345, 1, nullptr, {}});
-  EXPECT_EQ(chance_of_any(all, 0.05, {12'345, 3, nullptr, {}}), alone);
+  const double alone = chance_of_any(all, 0.05, 12'345, {1});
+  EXPECT_EQ(chance_of_any(all, 0.05, 12'345, {3}), alone);
   for (const int size : {2, 3})
     test::ThreadRanks(size).run([&](Ranks& ranks) {
-      EXPECT_EQ(chance_of_any(all, 0.05, {12'345, 1, &ranks, {}}), alone) << "rank " << ranks.rank();
+      EXPECT_EQ(chance_of_any(all, 0.05, 12'345, {1, &ranks}), alone) << "rank " << ranks.rank();
     });
 }
 

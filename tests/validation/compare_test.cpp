@@ -13,6 +13,7 @@
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/prediction.h"
 #include "validation/report/compare_results.h"
+#include "validation/subject/machine_sites.h"
 
 namespace deflect {
 namespace {
@@ -119,14 +120,12 @@ TEST(Compare, FindsNothingWhereNothingIsMissing) {
 TEST(Compare, TellsHowFarItHasCome) {
   const Measurements data = made(ideal(), "paper", nothing);
   double last = 0;
-  ComparisonOptions o;
-  o.threads = 1;
-  o.progress = [&](double share) {
+  const auto told = [&](double share) {
     EXPECT_GE(share, last);
     EXPECT_LE(share, 1);
     last = share;
   };
-  compare(ideal(), data, o);
+  compare(ideal(), data, {}, {1, nullptr, told});
   EXPECT_GE(last, 0.9);
 }
 
@@ -258,10 +257,7 @@ TEST(Compare, WithoutSigmaScatterComesFromTheResiduals) {
 TEST(Compare, ResultsDoNotDependOnThreads) {
   const Mechanism m = ideal();
   const Measurements data = made(m, "random", nothing);
-  ComparisonOptions one, four;
-  one.threads = 1;
-  four.threads = 4;
-  const Comparison a = compare(m, data, one), b = compare(m, data, four);
+  const Comparison a = compare(m, data, {}, {1}), b = compare(m, data, {}, {4});
   EXPECT_EQ(a.residual, b.residual);
   EXPECT_EQ(compare_json(a), compare_json(b));
 }
@@ -270,10 +266,10 @@ TEST(Compare, TheDeformedShapeUnderOtherLoadsGoesWithTheirSquare) {
   const Mechanism m = ideal();
   Measurements data = made(m, "random", nothing), half = data;
   for (Reading& r : half.readings) r.load /= 2;
-  ResidualStudy whole = residual_study(m, data, 0), less = residual_study(m, half, 0);
+  ResidualStudy whole = residual_study(m, data), less = residual_study(m, half);
   EXPECT_EQ(deformed_shape_under(whole, 0, half.readings[0].load), Vector6::Zero());
-  whole.deformed_shape = deformed_shape_of(whole, 0);
-  less.deformed_shape = deformed_shape_of(less, 0);
+  whole.deformed_shape = deformed_shape_of(whole);
+  less.deformed_shape = deformed_shape_of(less);
   double apart = 0, size = 0;
   for (std::size_t i = 0; i < half.readings.size(); ++i) {
     const Vector6 wanted = less.deformed_shape[i];

@@ -9,7 +9,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
-#include "validation/theories/points_file.h"
+#include "validation/studies/points_file.h"
 
 namespace deflect {
 namespace {

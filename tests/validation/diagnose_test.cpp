@@ -9,12 +9,12 @@
 #include <numbers>
 
 #include "msa/base/files.h"
+#include "msa/mechanism/stand.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
 #include "validation/report/diagnosis_results.h"
-#include "validation/theories/theories.h"
 
 namespace deflect {
 namespace {
@@ -170,11 +170,8 @@ TEST(Diagnose, WhatActsTheWrongWayDoesNotHideOthers) {
 
 TEST(Diagnose, DoesNotDependOnTheNumberOfThreads) {
   const Measurements data = measured(with("leg_defect", {0.9}, 2), 17);
-  DiagnosisOptions one, three;
-  one.threads = one.comparison.threads = 1;
-  three.threads = three.comparison.threads = 3;
-  EXPECT_EQ(diagnosis_json(diagnose(ideal(), data, test::all_effects(), one)),
-            diagnosis_json(diagnose(ideal(), data, test::all_effects(), three)));
+  EXPECT_EQ(diagnosis_json(diagnose(ideal(), data, test::all_effects(), {}, {1})),
+            diagnosis_json(diagnose(ideal(), data, test::all_effects(), {}, {3})));
 }
 
 TEST(Diagnose, DoesNotDependOnTheUnitsOfTheDevice) {

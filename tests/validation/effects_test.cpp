@@ -227,13 +227,13 @@ TEST(PreparedEffects, GiveTheSameNumbersAsEdits) {
       if (why_not(e, m)) continue;
       const PreparedEffects prepared(m, {{&e, some_leg(e)}});
       VectorX x = start_values(e);
-      expect_equal(prepared(x), resolved(with_effect(m, e, x, some_leg(e))), e.name);
+      expect_equal(prepared.machine(x), resolved(with_effect(m, e, x, some_leg(e))), e.name);
       for (std::size_t i = 0; i < e.parameters.size(); ++i)
         x(static_cast<Eigen::Index>(i)) += 0.3 * (e.parameters[i].high - e.parameters[i].start);
-      expect_equal(prepared(x), resolved(with_effect(m, e, x, some_leg(e))), e.name);
+      expect_equal(prepared.machine(x), resolved(with_effect(m, e, x, some_leg(e))), e.name);
       for (std::size_t i = 0; i < e.parameters.size(); ++i)
         if (e.parameters[i].vanishes) x(static_cast<Eigen::Index>(i)) = *e.parameters[i].vanishes;
-      if (!e.parameters.empty()) expect_equal(prepared(x), resolved(m), e.name);
+      if (!e.parameters.empty()) expect_equal(prepared.machine(x), resolved(m), e.name);
     }
 }
 
@@ -251,7 +251,7 @@ TEST(PreparedEffects, HoldSeveralEffectsAtOnce) {
   for (std::size_t i = 0; i < all.size(); ++i)
     slow = with_effect(slow, *all[i].effect, x.segment(static_cast<Eigen::Index>(i), 1), all[i].leg);
   EXPECT_NEAR(slow.payload, 0.5, 1e-15);
-  expect_equal(prepared(x), resolved(slow), "five");
+  expect_equal(prepared.machine(x), resolved(slow), "five");
 }
 
 TEST(PreparedEffects, GoTheLongWayWhereTheDescriptionCannotHoldAllValues) {
@@ -268,7 +268,7 @@ pages: {machine: a, data: b, bench: c, cure: d}
 )",
                                     "young.yaml");
   const PreparedEffects prepared(m, {{&young, {}}});
-  expect_equal(prepared(values({0.9})), resolved(with_effect(m, young, values({0.9}))), "young");
+  expect_equal(prepared.machine(values({0.9})), resolved(with_effect(m, young, values({0.9}))), "young");
   EXPECT_THROW(prepared(values({1.2})), InputError);
 }
 
@@ -284,7 +284,7 @@ TEST(Catalogue, TheModulusIsBothModuliWhereBothAreGiven) {
 
 TEST(PreparedEffects, AreForModelsAndStandAtEveryPose) {
   const Mechanism m = device("haptic-6psu");
-  const Mechanism with = PreparedEffects(m, {{&effect("leg_defect"), 4}})(values({0.5}));
+  const Mechanism with = PreparedEffects(m, {{&effect("leg_defect"), 4}}).machine(values({0.5}));
   const Configuration quick = configure(with, test::home(m)),
                       slow = configure(with_effect(m, effect("leg_defect"), values({0.5}), 4), test::home(m));
   for (std::size_t leg = 0; leg < 6; ++leg)

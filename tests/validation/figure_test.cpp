@@ -11,6 +11,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "tests/support/theories.h"
 #include "validation/figures/child_process.h"
 #include "validation/figures/fig10.h"
 #include "validation/figures/gnuplot.h"
@@ -44,6 +45,7 @@ Validation validation(int points, bool as_printed, double difference) {
       {0.026865, 0.055196, 0.098311, 0.098311, 0.055196, 0.009520, 0.019823, 0.019823, 0.009520}};
   Validation v;
   v.device = "haptic-6psu";
+  v.theories = all_theories();
   if (as_printed) v.as_printed = {Erratum::passive_joints};
   for (int p = 0; p < points; ++p)
     for (int axis = 0; axis < 3; ++axis) {
@@ -51,10 +53,10 @@ Validation validation(int points, bool as_printed, double difference) {
       row.point.label = std::to_string(p);
       row.axis = axis;
       row.load_N = 50;
-      row.msa = Vector6::Zero();
-      row.msa[axis] = along[axis][p % 9] * (1 + p / 9);
-      row.analytic = row.msa * (1 + difference * std::sin(3.1 * p + axis));
-      if (as_printed) row.as_printed = row.msa / 2.1;
+      row.displacements.assign(2, Vector6::Zero());
+      test::msa(row)[axis] = along[axis][p % 9] * (1 + p / 9);
+      test::analytic(row) = test::msa(row) * (1 + difference * std::sin(3.1 * p + axis));
+      if (as_printed) row.as_printed = test::msa(row) / 2.1;
       v.rows.push_back(row);
     }
   return v;
@@ -269,7 +271,7 @@ TEST_F(FigureTest, TextThatDoesNotFitOrIsNotInstalledIsRefused) {
 TEST_F(FigureTest, Fig10RefusesWhatCannotBeDrawn) {
   EXPECT_THROW(fig10(Validation{}), std::invalid_argument);
   Validation v = validation(1, false, 0);
-  v.rows[1].msa[1] = std::numeric_limits<double>::quiet_NaN();
+  test::msa(v.rows[1])[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(fig10(v), std::invalid_argument);
   v.rows[1].axis = 3;
   EXPECT_THROW(fig10(v), std::invalid_argument);

@@ -7,6 +7,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/maps.h"
 #include "tests/support/program.h"
+#include "tests/support/theories.h"
 #include "validation/report/map_results.h"
 
 namespace deflect {
@@ -55,7 +56,7 @@ TEST(MapCsv, NamesUnitsAndHasARowForEveryPose) {
     EXPECT_EQ(cell("reached"), p.reached() ? "1" : "0");
     EXPECT_EQ(cell("analytic_cxx_mm_per_N").empty(), !p.reached());
     if (p.reached()) {
-      EXPECT_EQ(std::stod(cell("msa_czz_mm_per_N")), p.msa->compliance_mm_N(2, 2));
+      EXPECT_EQ(std::stod(cell("msa_czz_mm_per_N")), test::msa(p).compliance_mm_N(2, 2));
     }
   }
   EXPECT_FALSE(std::getline(lines, line));
@@ -77,8 +78,8 @@ TEST(MapJson, HasSummaryAndArraysInTheGridsOrder) {
   for (std::size_t i = 0; i < array.size(); ++i) {
     ASSERT_EQ(array[i].is_null(), !map.poses[i].reached());
     if (map.poses[i].reached()) {
-      EXPECT_EQ(array[i], map.poses[i].msa->stiffness_N_mm(0));
-      smallest = std::min(smallest, map.poses[i].msa->stiffness_N_mm(0));
+      EXPECT_EQ(array[i], test::msa(map.poses[i]).stiffness_N_mm(0));
+      smallest = std::min(smallest, test::msa(map.poses[i]).stiffness_N_mm(0));
     }
   }
   EXPECT_EQ(j["ranges"]["msa"]["stiffness_x_N_per_mm"]["smallest"], smallest);

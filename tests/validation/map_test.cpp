@@ -1,5 +1,5 @@
 // Maps on small grids: values against single solutions, symmetry, threads, reach.
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 
 #include "tests/support/devices.h"
 #include "tests/support/maps.h"
+#include "tests/support/theories.h"
 #include "validation/figures/fig11.h"
 #include "validation/figures/stiffness_length.h"
 #include "validation/report/map_correlation.h"
 #include "validation/report/map_results.h"
-#include "validation/theories/solve_result.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
 
 namespace deflect {
 namespace {
@@ -52,7 +52,8 @@ TEST(Map, SaysWhatSolveSaysAtEveryCornerByBothTheories) {
       EXPECT_LT(p.relative_difference, 1e-9);
       for (int axis = 0; axis < 3; ++axis) {
         const SolveResult s = solve(m, stand(m, p.pose_mm_deg), 50 * Vector6::Unit(axis), {});
-        for (const auto& [v, theory] : {std::pair{*p.analytic, s.analytic}, std::pair{*p.msa, s.msa}}) {
+        for (const auto& [v, theory] :
+             {std::pair{test::analytic(p), test::analytic(s)}, std::pair{test::msa(p), test::msa(s)}}) {
           EXPECT_NEAR(v.compliance_mm_N.col(axis).norm() / (theory.displacement_mm_rad.head<3>().norm() / 50), 1, 1e-9);
           EXPECT_NEAR(v.stiffness_N_mm(axis) * theory.displacement_mm_rad(axis), 50, 50 * 1e-9);
           for (const int i : {axis, axis + 3}) EXPECT_NEAR(v.K_ii(i) / theory.stiffness_mm(i, i), 1, 1e-7);
@@ -65,7 +66,7 @@ TEST(Map, SaysWhatSolveSaysAtEveryCornerByBothTheories) {
 TEST(Map, CentreOfTheIdealDeviceIsTheClosedForm) {
   const Mechanism m = device("haptic-6psu-ideal-joints");
   const MapPose p = map_stiffness(m, cube(m, 1, 1, 1)).poses.front();
-  for (const MapValues* v : {&*p.analytic, &*p.msa}) {
+  for (const MapValues* v : {&test::analytic(p), &test::msa(p)}) {
     EXPECT_NEAR(50 * v->compliance_mm_N(0, 0), 0.084092, 0.51e-6);
     EXPECT_NEAR(50 * v->compliance_mm_N(2, 2), 0.026865, 0.51e-6);
     EXPECT_NEAR(v->smallest_N_mm, 50 / 0.084092, 0.01) << "x and y couple with rotations only";
@@ -78,7 +79,7 @@ TEST(Map, DirectionsLieBetweenTheExtremes) {
   const Mechanism m = device("haptic-6psu-ideal-joints");
   const StiffnessMap map = map_stiffness(m, cube(m, 3, 3, 3));
   for (const MapPose& p : map.poses) {
-    const MapValues& v = *p.msa;
+    const MapValues& v = test::msa(p);
     EXPECT_GE(v.stiffness_N_mm.minCoeff(), v.smallest_N_mm * (1 - 1e-9));
     EXPECT_LE(v.stiffness_N_mm.maxCoeff(), v.largest_N_mm * (1 + 1e-9));
     EXPECT_GE(v.K_ii(0), v.stiffness_N_mm(0) * (1 - 1e-9)) << "holding the other displacements stiffens";
@@ -90,11 +91,11 @@ TEST(Map, DirectionsLieBetweenTheExtremes) {
 TEST(Map, WithoutContactsSecantIsTangentAndTheLoadDoesNotMatter) {
   const Mechanism m = device("haptic-6psu-ideal-joints");
   MapOptions o = one_pose(m, {12, -7, 180}, {3, -2, 5});
-  const MapValues secant = *map_stiffness(m, o).poses.front().msa;
+  const MapValues secant = map_stiffness(m, o).poses.front().values.at(1);
   o.force_N = -3;
-  const MapValues pulled = *map_stiffness(m, o).poses.front().msa;
+  const MapValues pulled = map_stiffness(m, o).poses.front().values.at(1);
   o.load_N_Nmm = (Vector6() << 1, 2, 3, 40, 50, 60).finished();
-  const MapValues tangent = *map_stiffness(m, o).poses.front().msa;
+  const MapValues tangent = map_stiffness(m, o).poses.front().values.at(1);
   EXPECT_LT(difference(pulled.compliance_mm_N, secant.compliance_mm_N), 1e-9);
   EXPECT_LT(difference(tangent.compliance_mm_N, secant.compliance_mm_N), 1e-9);
   EXPECT_NEAR(tangent.isotropy / secant.isotropy, 1, 1e-9);
@@ -103,11 +104,11 @@ TEST(Map, WithoutContactsSecantIsTangentAndTheLoadDoesNotMatter) {
 TEST(Map, ContactsStiffenUnderLoadSoThatTheTangentIsAboveTheSecant) {
   const Mechanism m = device("haptic-6psu");
   MapOptions o = one_pose(m, {12, -7, 180});
-  const double at_50 = map_stiffness(m, o).poses.front().msa->stiffness_N_mm(2);
+  const double at_50 = map_stiffness(m, o).poses.front().values.at(1).stiffness_N_mm(2);
   o.force_N = 500;
-  EXPECT_GT(map_stiffness(m, o).poses.front().msa->stiffness_N_mm(2), at_50);
+  EXPECT_GT(map_stiffness(m, o).poses.front().values.at(1).stiffness_N_mm(2), at_50);
   o.load_N_Nmm = 50 * Vector6::Unit(2);
-  EXPECT_GT(map_stiffness(m, o).poses.front().msa->stiffness_N_mm(2), at_50);
+  EXPECT_GT(map_stiffness(m, o).poses.front().values.at(1).stiffness_N_mm(2), at_50);
 }
 
 TEST(Map, TurnsWithTheDeviceByAThirdOfATurn) {
@@ -118,7 +119,8 @@ TEST(Map, TurnsWithTheDeviceByAThirdOfATurn) {
       const MapPose a = map_stiffness(m, one_pose(m, p)).poses.front();
       const MapPose b = map_stiffness(m, one_pose(m, R * p)).poses.front();
       EXPECT_NEAR(b.slide_mean_mm, a.slide_mean_mm, 1e-9);
-      for (const auto& [u, v] : {std::pair{*a.analytic, *b.analytic}, std::pair{*a.msa, *b.msa}}) {
+      for (const auto& [u, v] :
+           {std::pair{test::analytic(a), test::analytic(b)}, std::pair{test::msa(a), test::msa(b)}}) {
         EXPECT_NEAR(v.stiffness_N_mm(2) / u.stiffness_N_mm(2), 1, 1e-9);
         if (std::string(name) == "haptic-6psu") continue;  // there the forces along x and y load other legs
         EXPECT_LT(difference(v.compliance_mm_N, R * u.compliance_mm_N * R.transpose()), 1e-9);
@@ -139,8 +141,8 @@ TEST(Map, StiffWhereTheGuidewaysAreShortInEveryDirection) {
       for (int j = 0; j < 5; ++j)
         for (int i = 0; i < 5; ++i)
           for (int k = 1; k < 5; ++k)  // the guideways lengthen with the height
-            EXPECT_LT(map.poses[map.options.grid.index(i, j, k)].analytic->stiffness_N_mm(axis),
-                      map.poses[map.options.grid.index(i, j, k - 1)].analytic->stiffness_N_mm(axis));
+            EXPECT_LT(test::analytic(map.poses[map.options.grid.index(i, j, k)]).stiffness_N_mm(axis),
+                      test::analytic(map.poses[map.options.grid.index(i, j, k - 1)]).stiffness_N_mm(axis));
     }
   }
 }
@@ -150,8 +152,7 @@ TEST(Map, HasTheSameBitsForAnyNumberOfThreads) {
   MapOptions o = too_wide(m);
   std::set<std::string> results;
   for (const int threads : {1, 2, 5}) {
-    o.threads = threads;
-    const StiffnessMap map = map_stiffness(m, o);
+    const StiffnessMap map = map_stiffness(m, o, {threads});
     results.insert(map_csv(map) + map_json(map) + map_vtu(map));
   }
   EXPECT_EQ(results.size(), 1u);
@@ -171,7 +172,7 @@ TEST(Map, CountsPosesOutOfReachByReason) {
     }
     expected += reached ? 0 : 1;
     EXPECT_EQ(p.reached(), reached);
-    EXPECT_EQ(p.analytic.has_value() && p.msa.has_value(), reached);
+    EXPECT_EQ(p.values.size(), reached ? 2u : 0u);
   }
   const std::vector<OutOfReach> reasons = out_of_reach(map);
   ASSERT_EQ(reasons.size(), 2u);
@@ -218,9 +219,8 @@ TEST(Map, OtherErrorsEndItWithTheFirstPoseInOrderWhateverTheThreads) {
   MapOptions o = cube(m, 4, 4, 4);
   std::set<std::string> messages;
   for (const int threads : {1, 2, 4}) {
-    o.threads = threads;
     try {
-      map_stiffness(m, o);
+      map_stiffness(m, o, {threads});
       ADD_FAILURE() << "a machine on passive sliders stood";
     } catch (const ModelError& e) {
       messages.insert(e.what());
@@ -231,24 +231,24 @@ TEST(Map, OtherErrorsEndItWithTheFirstPoseInOrderWhateverTheThreads) {
 
 TEST(Map, TellsItsProgressToTheEnd) {
   const Mechanism m = device("haptic-6psu-ideal-joints");
-  MapOptions o = cube(m, 3, 3, 3);
-  std::atomic<std::size_t> most = 0, calls = 0;
-  o.progress = [&](std::size_t done) {
+  std::atomic<double> most = 0;
+  std::atomic<std::size_t> calls = 0;
+  const auto told = [&](double share) {
     ++calls;
-    for (std::size_t seen = most; done > seen && !most.compare_exchange_weak(seen, done);) {
+    for (double seen = most; share > seen && !most.compare_exchange_weak(seen, share);) {
     }
   };
-  map_stiffness(m, o);
-  EXPECT_EQ(most, 27u);
+  map_stiffness(m, cube(m, 3, 3, 3), {0, nullptr, told});
+  EXPECT_EQ(most, 1.0);
   EXPECT_GT(calls, 1u);
 }
 
 TEST(Map, OneTheoryAlone) {
   const Mechanism m = device("haptic-6psu");
   MapOptions o = cube(m, 2, 1, 2);
-  o.msa = false;
+  o.theories = theories_named("analytic");
   const StiffnessMap map = map_stiffness(m, o);
-  EXPECT_FALSE(map.poses[0].msa);
+  EXPECT_EQ(map.poses[0].values.size(), 1u);
   EXPECT_EQ(map_csv(map).find("msa_"), std::string::npos);
   EXPECT_EQ(map_csv(map).find("relative_difference"), std::string::npos);
   EXPECT_FALSE(json::parse(map_json(map)).contains("max_relative_difference"));

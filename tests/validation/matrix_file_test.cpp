@@ -169,7 +169,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"OpenBracket", "K = [1 2 3; 4 5 6", "not closed"},
         BadFile{"TwoMatrices", "K = [1 2; 3 4]; J = [1 2];", "follows the matrix"},
         BadFile{"ThreeDeep", "[[[1, 2]]]", "three deep"}, BadFile{"BadFactor", "2x *\n1 2\n", "'2x ' is not a finite"},
-        BadFile{"NotJson", "{\"K\": [NaN]}", "not JSON"},
+        BadFile{"NotJson", "{\"K\": [NaN]}", "not valid JSON: JSON has no NaN"},
         BadFile{"OtherJson", "{\"displacement\": [1]}", "there is no 'analytic' on the way"},
         BadFile{"JsonOfNumber", "{\"analytic\": {\"stiffness\": 1}}", "is not a matrix"},
         BadFile{"JsonOfWords", "{\"analytic\": {\"stiffness\": [[\"a\"]]}}", "'\"a\"' is not a finite number"}),

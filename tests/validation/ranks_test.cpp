@@ -15,7 +15,7 @@
 #include "validation/parallel/pack.h"
 #include "validation/parallel/shared_cases.h"
 #include "validation/report/map_results.h"
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect {
 namespace {
@@ -130,10 +130,7 @@ TEST(Ranks, AMapIsTheSame) {
   EXPECT_GT(std::ranges::count_if(alone.poses, [](const MapPose& p) { return !p.reached(); }), 0);
   for (const int size : {2, 3}) {
     const std::vector<Ending> ends = test::ThreadRanks(size).run([&](Ranks& ranks) {
-      MapOptions shared = o;
-      shared.ranks = &ranks;
-      shared.threads = 1;
-      const StiffnessMap map = map_stiffness(m, shared);
+      const StiffnessMap map = map_stiffness(m, o, {1, &ranks});
       if (!ranks.first()) return;
       EXPECT_EQ(map_csv(map), csv);
       EXPECT_EQ(map_json(map), json);

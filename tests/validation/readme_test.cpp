@@ -10,10 +10,10 @@
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/frames.h"
+#include "tests/support/theories.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/measurements.h"
-#include "validation/theories/solve_result.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
 
 namespace deflect {
 namespace {
@@ -38,7 +38,7 @@ TEST(Readme, ItsFirstDeviceHasAtMostTwentyLinesAndIsSolvedByBothTheories) {
   const Configuration c = configure_joints(m, Eigen::Vector2d(0.3, 1.2));
   const SolveResult r = solve(m, {mm_deg_from(c.pose), c}, load, {});
   EXPECT_LT(r.relative_difference, 1e-9);
-  EXPECT_LT(r.msa.displacement_mm_rad(2), 0);
+  EXPECT_LT(test::msa(r).displacement_mm_rad(2), 0);
 }
 
 TEST(Readme, ItsFrameIsSolved) {

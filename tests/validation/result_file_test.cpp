@@ -1,5 +1,5 @@
 // Results read back: what is none, or lacks what a page shows, is refused with the place.
-#include "validation/report/result_file.h"
+#include "validation/result_files/result_file.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include "msa/base/error.h"
 #include "tests/support/program.h"
-#include "validation/report/result_file.h"
+#include "validation/result_files/result_file.h"
 
 namespace deflect {
 namespace {

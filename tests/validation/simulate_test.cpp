@@ -53,8 +53,7 @@ TEST(Simulate, SeedInSameFileOut) {
   o.geometry = Geometry::linear;
   const auto text = [&](std::uint64_t seed, int threads) {
     o.seed = seed;
-    o.threads = threads;
-    return measurements_text(simulate(m, campaign("random", m, 50, 1), o));
+    return measurements_text(simulate(m, campaign("random", m, 50, 1), o, {threads}));
   };
   EXPECT_EQ(text(5, 1), text(5, 3));
   EXPECT_NE(text(5, 1), text(6, 1));

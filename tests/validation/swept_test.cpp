@@ -1,12 +1,11 @@
 // Theories from pose to pose against those made for one pose, with every effect of the catalogue in the device: laws of
 // all kinds, joints anywhere, legs of their own.
-#include "validation/theories/swept.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/support/apart.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "validation/theories/theory.h"
 
 namespace deflect {
 namespace {
@@ -16,15 +15,20 @@ double apart(const Answer& a, const Answer& b, double length) {
 }
 
 void expect_equal(const Mechanism& m) {
-  SweptTheories swept(m);
+  std::vector<std::unique_ptr<TheoryAt>> swept;
   const Vector6 F = (Vector6() << 30, -20, 35, 0.4, 0.3, -0.5).finished();
   for (const Vector3& step : {Vector3(0, 0, 0), Vector3(0.012, -0.007, 0.009)}) {
     Pose pose = home_pose(m);
     pose.p_WT += step;
     const Configuration c = configure(m, pose);
-    swept.at(pose);
-    EXPECT_LT(apart(swept.analytic(F), AnalyticAtPose(c, m.name).solve(F), c.size), 1e-9);
-    EXPECT_LT(apart(swept.msa(F), MsaAtPose(c, {}, m.name).solve(F), c.size), 1e-9);
+    TheoryOptions condensed{m.name};
+    condensed.condense = true;
+    for (std::size_t t = 0; t < all_theories().size(); ++t) {
+      const Theory& theory = *all_theories()[t];
+      if (swept.size() == t) swept.push_back(theory.at(c, condensed));
+      swept[t]->move_to(c);
+      EXPECT_LT(apart(swept[t]->answer(F), theory.at(c, {m.name})->answer(F), c.size), 1e-9) << theory.name;
+    }
   }
 }
 

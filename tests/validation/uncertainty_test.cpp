@@ -147,12 +147,12 @@ TEST(ToleranceModel, AMachineOfSofterSteelMovesInProportion) {
   std::vector<MeasuredValue> values;
   for (std::size_t i = 0; i < data.readings.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) values.push_back({i, k, 0, {}});
-  const std::vector<Configuration> drawn = configure_all(m, data);
-  const ToleranceModel t = tolerance_model(m, drawn, data, values);
+  const std::shared_ptr<const Standing> standing = Subject(m).stand(data);
+  const ToleranceModel t = tolerance_model(*standing, data, values);
   // One modulus; per leg a diameter, two joints, a link; per pose six sliders.
   EXPECT_EQ(t.nuisances.size(), 1u + 6 * (1 + 6 + 1) + 9 * 6);
   EXPECT_EQ(t.nuisances[0].name, "modulus");
-  const VectorX d = rows_of(values, predict(m, drawn, data, {}));
+  const VectorX d = rows_of(values, standing->predict(data));
   // d ∝ 1/E: a step of 1 % changes it by 1/1.01 − 1.
   EXPECT_LT((t.A.shared.col(0) - d * (1 / 1.01 - 1)).norm(), 1e-9 * d.norm());
   // A pose's sliders move its own readings only.
@@ -171,10 +171,9 @@ TEST(ToleranceModel, ADriftingSensorChangesNothing) {
   std::vector<MeasuredValue> values;
   for (std::size_t i = 0; i < data.readings.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) values.push_back({i, k, 0, {}});
-  const std::vector<Configuration> drawn = configure_all(m, data);
-  const MatrixX still = tolerance_model(m, drawn, data, values).A.dense();
+  const MatrixX still = tolerance_model(*Subject(m).stand(data), data, values).A.dense();
   m.sensor.drift = Vector3(1e-3, -2e-3, 1e-3);
-  EXPECT_EQ((tolerance_model(m, drawn, data, values).A.dense() - still).norm(), 0);
+  EXPECT_EQ((tolerance_model(*Subject(m).stand(data), data, values).A.dense() - still).norm(), 0);
 }
 
 }  // namespace

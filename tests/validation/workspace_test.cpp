@@ -1,5 +1,5 @@
 // The regions of poses that device files state.
-#include "validation/theories/workspace.h"
+#include "validation/studies/workspace.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "tests/support/devices.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/campaign.h"
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect {
 namespace {
@@ -85,8 +85,7 @@ TEST(Workspace, MapsLeaveOutWhatIsOutside) {
   o.region = region_of(m);
   o.length_mm = 300;
   o.force_N = 10;
-  o.threads = 1;
-  const StiffnessMap map = map_stiffness(m, o);
+  const StiffnessMap map = map_stiffness(m, o, alone);
   ASSERT_EQ(map.poses.size(), 25u);
   std::size_t reached = 0;
   for (const MapPose& p : map.poses) {

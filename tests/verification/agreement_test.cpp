@@ -5,8 +5,10 @@
 #include "analytic/model.h"
 #include "msa/frame/mechanism/msa.h"
 #include "tests/support/random_mechanisms.h"
-#include "validation/theories/at_pose.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
+#include "validation/theories/agreement.h"
+#include "validation/theories/analytic_theory.h"
+#include "validation/theories/msa_theory.h"
 
 namespace deflect {
 namespace {
@@ -24,8 +26,8 @@ TEST_P(Agreement, HoldsAllOverTheWorkspace) {
   for (const Pose& pose : poses) {
     const Configuration c = configure(m, pose);
     const Vector6 F = test::random_wrench(random);
-    const Answer analytic = AnalyticAtPose(c, m.name).solve(F), msa = MsaAtPose(c, {}, m.name).solve(F);
-    if (!AnalyticAtPose(c, m.name).model().linear()) bound = 1e-7;
+    const Answer analytic = AnalyticAt(c).answer(F), msa = MsaAt(c).answer(F);
+    if (!all_linear(c)) bound = 1e-7;
     worst = std::max({worst, relative_difference(twist_in_mm(analytic.displacement), twist_in_mm(msa.displacement)),
                       test::stiffness_difference(analytic.stiffness, msa.stiffness, c.size)});
   }

@@ -5,7 +5,8 @@
 
 #include "tests/support/elastica.h"
 #include "tests/support/mechanisms.h"
-#include "validation/theories/at_pose.h"
+#include "validation/theories/analytic_theory.h"
+#include "validation/theories/msa_theory.h"
 
 namespace deflect {
 namespace {
@@ -27,7 +28,7 @@ double stiffness_across(const Configuration& c) {
 }
 
 Answer by_msa(const Configuration& c, const Vector6& F) {
-  return MsaAtPose(c, frame::equal_division(c, 8), "blade").solve(F, Geometry::finite);
+  return MsaAt(c, {"blade", frame::equal_division(c, 8)}).answer(F, Geometry::finite);
 }
 
 // The stretch of the real blade is left: N/EA is 4e-5 at P L²/EI = 10, on the way of a chain that does not stretch.
@@ -39,7 +40,7 @@ TEST(BentMembers, BothTheoriesMeetTheElastica) {
     F(2) = P * stiffness_across(c) / (length * length);
     const test::Elastica exact = test::elastica(P, pi / 2);
     const double stretch = F(2) / (210e9 * 0.02 * 0.001);
-    for (const Answer& answer : {AnalyticAtPose(c, "blade").solve(F, Geometry::finite), by_msa(c, F)}) {
+    for (const Answer& answer : {AnalyticAt(c).answer(F, Geometry::finite), by_msa(c, F)}) {
       EXPECT_NEAR(answer.displacement(2) / length, exact.y, answer.discretisation(0) / length + stretch);
       EXPECT_NEAR(1 + answer.displacement(0) / length, exact.x, answer.discretisation(0) / length + stretch);
       EXPECT_NEAR(-answer.displacement(4), exact.angle, answer.discretisation(1) + stretch);
@@ -58,7 +59,7 @@ TEST(BentMembers, InSpaceTheTheoriesDifferByNoMoreThanTheyLeave) {
       const Configuration c = blade(theory);
       Vector6 F;
       F << 0.5, 1, 0.5, 0.02, 0.05, 0.2;
-      const Answer a = AnalyticAtPose(c, "blade").solve(size * F, Geometry::finite), f = by_msa(c, size * F);
+      const Answer a = AnalyticAt(c).answer(size * F, Geometry::finite), f = by_msa(c, size * F);
       const Eigen::Vector2d left = 2 * (a.discretisation + f.discretisation);
       EXPECT_LE((a.displacement - f.displacement).head<3>().norm(), left(0));
       EXPECT_LE((a.displacement - f.displacement).tail<3>().norm(), left(1));
@@ -71,9 +72,9 @@ TEST(BentMembers, AStraightPullLeavesNothingToDivide) {
   const Configuration c = blade();
   Vector6 F = Vector6::Zero();
   F(0) = 0.1;
-  EXPECT_LE(AnalyticAtPose(c, "blade").solve(F, Geometry::finite).discretisation(0), 1e-30);
-  MsaAtPose msa(c, frame::equal_division(c, 8), "blade");
-  EXPECT_LE(msa.solve(F, Geometry::finite).discretisation(0), 1e-6 * length);
+  EXPECT_LE(AnalyticAt(c).answer(F, Geometry::finite).discretisation(0), 1e-30);
+  MsaAt msa(c, {"blade", frame::equal_division(c, 8)});
+  EXPECT_LE(msa.answer(F, Geometry::finite).discretisation(0), 1e-6 * length);
   EXPECT_EQ(msa.mechanism().model.beams.size(), 8u);
 }
 

@@ -9,8 +9,7 @@
 #include "analytic/model.h"
 #include "msa/frame/mechanism/msa.h"
 #include "tests/support/chains.h"
-#include "validation/theories/solve_result.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
 
 namespace deflect {
 namespace {

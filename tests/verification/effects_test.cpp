@@ -4,13 +4,14 @@
 
 #include <cmath>
 
+#include "msa/mechanism/stand.h"
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/prediction/prediction.h"
-#include "validation/theories/theories.h"
+#include "validation/theories/agreement.h"
 
 namespace deflect {
 namespace {
@@ -80,7 +81,7 @@ TEST_P(EveryEffect, ActsAlikeInBothTheories) {
   std::mt19937 random(static_cast<unsigned>(GetParam()) + 1);
   const Measurements data = plan(bare, random);
   PredictionOptions closed, matrix;
-  matrix.theory = Theory::msa;
+  matrix.theory = &theory("msa");
   if (e.name == "geometric_nonlinearity")
     for (const char* part : {"guideway", "link"}) matrix.division[part] = {0, 0.25, 0.5, 0.75, 1};
   double worst = 0;

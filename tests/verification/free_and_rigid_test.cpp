@@ -7,9 +7,10 @@
 #include "msa/frame/mechanism/msa.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/support/mechanisms.h"
+#include "validation/studies/solve.h"
 #include "validation/theories/agreement.h"
-#include "validation/theories/at_pose.h"
-#include "validation/theories/theories.h"
+#include "validation/theories/analytic_theory.h"
+#include "validation/theories/msa_theory.h"
 
 namespace deflect {
 namespace {
@@ -19,9 +20,9 @@ struct Answers {
 };
 
 Answers both_of(const Configuration& c, const Vector6& F) {
-  const AnalyticAtPose analytic(c, "here");
-  MsaAtPose msa(c, {}, "here");
-  return {analytic.solve(F), msa.solve(F)};
+  AnalyticAt analytic(c);
+  MsaAt msa(c);
+  return {analytic.answer(F), msa.answer(F)};
 }
 
 Vector6 wrench(double fx, double fy, double fz, double mx, double my, double mz) {
@@ -70,7 +71,7 @@ TEST(RigidDirections, AreSaidAndTheOthersAnswered) {
     }
     const Vector6 F = wrench(30, -20, 10, 1, 2, 3), d = C * F;
     const Answers both = both_of(c, F);
-    require_agreement(both.closed_form, both.msa, c.size, 1e-9, "here");
+    require_agreement(all_theories(), {both.closed_form, both.msa}, F, c, "here");
     EXPECT_EQ(both.closed_form.rigid_motions.size(), 4u);
     for (const Answer& a : {both.closed_form, both.msa}) {
       EXPECT_EQ(a.rigid, 4);
@@ -83,8 +84,8 @@ TEST(RigidDirections, AreSaidAndTheOthersAnswered) {
 
 TEST(RigidDirections, ADeviceThatNothingLetsMoveIsRefused) {
   PlacedLeg leg{"arm", {test::joint("weld", Vector3::Zero(), "rrrrrr")}};
-  const AnalyticAtPose analytic(test::configuration(Vector3(0.5, 0, 0), {leg}, 1), "here");
-  EXPECT_THROW(analytic.solve(wrench(1, 0, 0, 0, 0, 0)), ModelError);
+  const Configuration c = test::configuration(Vector3(0.5, 0, 0), {leg}, 1);
+  EXPECT_THROW(AnalyticAt(c).answer(wrench(1, 0, 0, 0, 0, 0)), ModelError);
 }
 
 // F against a spring with play in series: gap + F/k, in any geometry.

@@ -8,8 +8,10 @@
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
-#include "validation/theories/at_pose.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
+#include "validation/theories/agreement.h"
+#include "validation/theories/analytic_theory.h"
+#include "validation/theories/msa_theory.h"
 
 namespace deflect {
 namespace {
@@ -322,19 +324,19 @@ TEST(Beside, IsNoOverConstraintWhereItYields) {
   EXPECT_EQ(analytic::redundant_constraints(configure(rigid, test::home(haptic()))), 6);
 }
 
-// The checks of at_pose.h hold from rest, along a sequence and where it is warm.
+// The checks of answer.h hold from rest, along a sequence and where it is warm.
 TEST(Checks, HoldWithLawsThatJumpAndWithHistory) {
   std::mt19937 random(11);
   Mechanism m = test::with(with_friction(2, 1e4), "leg.ball_joint.tz", "{law: clearance, gap: 0.02 mm}");
   m = test::with(m, "materials.steel.expansion", "12e-6 1/K");
   for (const Pose& pose : test::random_poses(m, 3, 5)) {
     const Configuration c = configure(m, pose);
-    AnalyticAtPose analytic(c, "analytic");
-    MsaAtPose msa(c, {}, "msa");
+    AnalyticAt analytic(c);
+    MsaAt msa(c);
     Conditions conditions;
     for (int load = 0; load < 4; ++load) {
       const Vector6 F = test::random_wrench(random);
-      const Answer a = analytic.solve(F, conditions), f = msa.solve(F, conditions);
+      const Answer a = analytic.answer(F, conditions), f = msa.answer(F, conditions);
       EXPECT_LE(difference(a.displacement, f.displacement), 1e-9);
       conditions.slips = a.slips;
       if (load == 1) conditions.warmer = 15;

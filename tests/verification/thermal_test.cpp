@@ -6,7 +6,8 @@
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
+#include "validation/theories/agreement.h"
 
 namespace deflect {
 namespace {

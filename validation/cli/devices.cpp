@@ -8,6 +8,7 @@
 #include "meshes/structure.h"
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
@@ -16,7 +17,6 @@
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"
 #include "validation/report/schema_results.h"
-#include "validation/theories/theories.h"
 
 namespace deflect::cli {
 namespace fs = std::filesystem;
@@ -86,7 +86,7 @@ fs::path frame_file(const std::string& name) {
 Mechanism read_device(const std::string& name) {
   const fs::path file = device_file(name);
   Mechanism m = read_mechanism(file);
-  tell("device {}: {}, geometry {}", m.name, file.string(), geometry_names[static_cast<std::size_t>(m.geometry)]);
+  tell("device {}: {}, geometry {}", m.name, file.string(), nth(geometry_names, m.geometry));
   for (const auto& [each, material] : m.materials)
     if (const auto question = question_about(each, material)) remark(fmt::format("{}: {}", file.string(), *question));
   return m;
@@ -187,13 +187,13 @@ VectorX parse_joints(const Mechanism& m, const std::string& text) {
   if (items.size() != actuators.size())
     throw InputError(fmt::format("--joints '{}': {} coordinate{}; write {}: {}", text, items.size(),
                                  items.size() == 1 ? "" : "s", actuators.size(), fmt::join(names, ", ")));
-  VectorX q(static_cast<Eigen::Index>(items.size()));
+  VectorX q(std::ssize(items));
   for (std::size_t i = 0; i < items.size(); ++i) try {
       const bool unit = items[i].find_first_of("dmr") != std::string::npos;
       const double value = unit ? parse_quantity(items[i], actuators[i].rotation ? Dimension::angle : Dimension::length)
                                 : parse_number(items[i]) / (actuators[i].rotation ? 1 : 1e3);
       if (actuators[i].rotation) require_digits_of_angle(value, items[i]);
-      q(static_cast<Eigen::Index>(i)) = value;
+      q(as_index(i)) = value;
     } catch (const InputError& e) {
       throw InputError(fmt::format("--joints '{}': {}: {}", text, names[i], e.what()));
     }
@@ -201,6 +201,23 @@ VectorX parse_joints(const Mechanism& m, const std::string& text) {
 }
 
 }  // namespace
+
+Geometry parse_geometry(const std::string& text) {
+  for (std::size_t i = 0; i < std::size(geometry_names); ++i)
+    if (text == geometry_names[i]) return static_cast<Geometry>(i);
+  throw InputError(fmt::format("--geometry '{}': write {}", text, fmt::join(geometry_names, ", ")));
+}
+
+Theories parse_theories(const std::string& list) try { return theories_named(list); } catch (const InputError& e) {
+  throw InputError(fmt::format("--theories {}: {}", list, e.what()));
+}
+
+Option theories_option(std::string* list) {
+  std::vector<std::string> names;
+  for (const Theory* theory : all_theories()) names.push_back(theory->name);
+  return {"--theories", "NAMES", fmt::format("theories, separated by commas (default {})", fmt::join(names, ",")),
+          list};
+}
 
 Stand parse_stand(const Mechanism& m, const std::string& pose, const std::string& joints, bool or_home) {
   if (pose.empty() && joints.empty() && (or_home || actuators_of(m).empty()))

@@ -8,9 +8,11 @@
 
 #include "msa/frame/mechanism/build.h"
 #include "msa/mechanism/description.h"
+#include "msa/mechanism/stand.h"
+#include "validation/cli/command.h"
 #include "validation/measurement/measurements.h"
 #include "validation/parallel/ranks.h"
-#include "validation/theories/theories.h"
+#include "validation/theories/theory.h"
 
 namespace deflect::cli {
 
@@ -61,6 +63,13 @@ Vector6 parse_six(const std::string& option, const std::string& text, const std:
 /// `or_home` or if it has no actuators. Throws InputError for both options, and for none if one is needed; ModelError
 /// if the mechanism cannot assemble there.
 Stand parse_stand(const Mechanism&, const std::string& pose, const std::string& joints, bool or_home);
+
+/// --geometry linear, second-order or finite.
+Geometry parse_geometry(const std::string& text);
+
+/// --theories analytic,msa: of the table; all where the text is empty.
+Theories parse_theories(const std::string& list);
+Option theories_option(std::string* list);
 
 /// The wrench of --load in N and Nmm; zero if empty.
 Vector6 parse_load(const std::string& load);

@@ -8,16 +8,17 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/mechanism/stand.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/talk.h"
+#include "validation/compare/history.h"
 #include "validation/diagnosis/found_effects.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
-#include "validation/figures/history_results.h"
 #include "validation/measurement/column_names.h"
+#include "validation/measurement/configure_all.h"
 #include "validation/report/compare_results.h"
-#include "validation/report/result_file.h"
-#include "validation/theories/theories.h"
+#include "validation/result_files/result_file.h"
 
 namespace deflect::cli {
 namespace {
@@ -64,7 +65,7 @@ void write_page(const std::string& file, const PageContents& page) {
 }
 
 /// Poses of the measurements, of many those where the residual is largest, in their order.
-std::vector<SceneStand> stands_of(const Comparison& c) {
+std::vector<SceneStand> stands_of(const Comparison& c, const std::vector<Configuration>& machines) {
   std::vector<std::size_t> shown(c.by_pose.size());
   std::iota(shown.begin(), shown.end(), std::size_t{0});
   std::stable_sort(shown.begin(), shown.end(),
@@ -73,7 +74,7 @@ std::vector<SceneStand> stands_of(const Comparison& c) {
   std::sort(shown.begin(), shown.end());
   std::vector<SceneStand> out;
   for (const std::size_t p : shown) {
-    const Configuration& machine = c.study.machines[p];
+    const Configuration& machine = machines[p];
     out.push_back({c.study.data->poses[p].label, mm_deg_from(machine.pose), machine});
   }
   return out;
@@ -125,15 +126,17 @@ void write_report(const std::string& file, const std::string& device, const std:
   const std::string origin = page.results.empty() ? first.data : page.results.front().origin;
   if (versions.size() > 1 && origin != "history") page.results.push_back({origin, history_json(history(versions))});
   for (const Comparison& c : versions) page.versions.push_back(&c);
-  page.scene = scene_json(*first.study.mechanism, stands_of(first), loads_of(*first.study.data),
-                          changed_parts(first.study.machines.front(), last.study.machines.front()),
-                          first.study.mechanism->geometry);
+  const Mechanism &m = *first.study.subject->machine(), &latest = *last.study.subject->machine();
+  const std::vector<Configuration> machines = configure_all(m, *first.study.data);
+  const Configuration changed = configure_all(latest, one_pose(*first.study.data, 0)).front();
+  page.scene = scene_json(m, stands_of(first, machines), loads_of(*first.study.data),
+                          changed_parts(machines.front(), changed), m.geometry);
   write_page(file, page);
 }
 
 void write_report_of_diagnosis(const std::string& file, const std::string& device, const Mechanism& m,
                                const Measurements& data, const std::vector<Effect>& effects,
-                               const ComparisonOptions& options, std::vector<PageResult> results) {
+                               const ComparisonOptions& options, int threads, std::vector<PageResult> results) {
   std::vector<Mechanism> devices = {m};
   for (const PageResult& result : results) try {
       for (const EffectInstance& e : found_in(result, m.name, effects)) {
@@ -147,7 +150,7 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
     }
   std::vector<Comparison> versions;
   for (const Mechanism& each : devices)
-    versions.push_back(timed("compare with " + each.name, [&] { return compare(each, data, options); }));
+    versions.push_back(timed("compare with " + each.name, [&] { return compare(each, data, options, {threads}); }));
   write_report(file, device, versions, std::move(results));
 }
 

@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "msa/mechanism/stand.h"
 #include "validation/cli/command.h"
 #include "validation/compare/comparison.h"
 #include "validation/effects/effect.h"
 #include "validation/page/page.h"
-#include "validation/page/page_scene.h"
+#include "validation/scene/machine_scene.h"
 
 namespace deflect::cli {
 
@@ -26,7 +27,7 @@ void write_report(const std::string& file, const std::string& device, const std:
 /// The page of results. If one is a diagnosis, the versions are the device and the device with each effect found, added
 /// one after the other.
 void write_report_of_diagnosis(const std::string& file, const std::string& device, const Mechanism&,
-                               const Measurements&, const std::vector<Effect>&, const ComparisonOptions&,
+                               const Measurements&, const std::vector<Effect>&, const ComparisonOptions&, int threads,
                                std::vector<PageResult> results);
 
 /// The page of a device at its stands, under loads (N, Nmm).

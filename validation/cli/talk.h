@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "msa/base/index.h"
 #include "validation/parallel/progress.h"
 
 namespace deflect::cli {

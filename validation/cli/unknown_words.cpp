@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "msa/base/index.h"
 #include "msa/base/units.h"
 
 namespace deflect::cli {
@@ -54,8 +55,7 @@ std::string unknown_word(const std::vector<Command>& commands, const std::vector
     return arguments.empty() ? fmt::format("give a command: {}; 'deflect --help' explains them", fmt::join(names, ", "))
                              : "";
   for (const Command& command : commands)
-    if (command.name == *typed)
-      return unknown_option(command, arguments, static_cast<std::size_t>(typed - arguments.begin()) + 1);
+    if (command.name == *typed) return unknown_option(command, arguments, as_size(typed - arguments.begin()) + 1);
   return with_nearest(fmt::format("there is no command '{}'", *typed), *typed, names);
 }
 

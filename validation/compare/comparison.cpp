@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "validation/compare/errors_by_group.h"
 #include "validation/compare/findings.h"
 #include "validation/compare/held_out.h"
@@ -49,7 +51,7 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
   double squares[2] = {0, 0}, n[2] = {0, 0};
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const std::size_t kind = s.values[i].component < 3 ? 0 : 1;
-    squares[kind] += left(static_cast<Eigen::Index>(i)) * left(static_cast<Eigen::Index>(i));
+    squares[kind] += left(as_index(i)) * left(as_index(i));
     n[kind] += 1;
   }
   const auto count = static_cast<double>(s.values.size());
@@ -69,8 +71,8 @@ double expected_rmse(const ResidualStudy& s, const PartedColumns& A, const std::
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const MeasuredValue& v = s.values[i];
     if ((v.component >= 3) != rotations) continue;
-    const double load = s.mechanism->tolerances.load * s.predicted[v.reading](static_cast<Eigen::Index>(v.component));
-    squares += sigma[i] * sigma[i] + load * load + tolerances(static_cast<Eigen::Index>(i));
+    const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.component));
+    squares += sigma[i] * sigma[i] + load * load + tolerances(as_index(i));
     n += 1;
   }
   return n > 0 ? std::sqrt(squares / n) : 0;
@@ -85,31 +87,29 @@ class Comparing {
  public:
   Comparison c;
 
-  Comparing(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) : options_(o) {
+  Comparing(const Subject& subject, const Measurements& data, const ComparisonOptions& o, const Work& work)
+      : options_(o), work_(work) {
     if (data.readings.size() < 2)
       throw InputError(fmt::format("{}: one reading says nothing of a model: two or more are wanted", data.origin));
-    c.device = m.name;
+    c.device = subject.name();
     c.data = data.origin;
     c.readings = data.readings.size();
     c.poses = data.poses.size();
-    c.study = residual_study(m, data, o.threads, part_of(o.progress, 0, 0.05));
+    c.study = residual_study(subject, data, work.part(0, 0.05));
     const ResidualStudy& s = c.study;
     c.numbers = s.values.size();
     c.pure_error = rotations_alone(s.values) ? pure_error(data).th : pure_error(data).u;
-    VectorX measured(static_cast<Eigen::Index>(s.values.size()));
-    for (std::size_t i = 0; i < s.values.size(); ++i) measured(static_cast<Eigen::Index>(i)) = s.values[i].value;
+    VectorX measured(std::ssize(s.values));
+    for (std::size_t i = 0; i < s.values.size(); ++i) measured(as_index(i)) = s.values[i].value;
     c.residual = measured - rows_of(s.values, s.predicted);
     add_errors(c);
   }
 
-  void add_deformed_shape() {
-    c.study.deformed_shape = deformed_shape_of(c.study, options_.threads, part_of(options_.progress, 0.05, 0.5));
-  }
+  void add_deformed_shape() { c.study.deformed_shape = deformed_shape_of(c.study, work_.part(0.05, 0.5)); }
 
   void add_tolerances() {
     const ResidualStudy& s = c.study;
-    c.tolerances = tolerance_model(*s.mechanism, s.machines, *s.data, s.values, options_.threads,
-                                   part_of(options_.progress, 0.5, 0.8));
+    c.tolerances = tolerance_model(*s.standing, *s.data, s.values, work_.part(0.5, 0.8));
     patterns_ = patterns_of(s);
     for (Pattern& p : patterns_) {
       columns_.push_back(rows_of(s.values, p.by_reading));
@@ -133,7 +133,7 @@ class Comparing {
     const std::optional<std::vector<double>> sigma = sigma_of(s.values, options_);
     c.sigma_from_residuals = !sigma;
     c.sigma = sigma ? *sigma : scatter(s, left_, all);
-    Outliers outliers = gross_outliers(s, c.tolerances.A, c.sigma, left_, all, options_.threads);
+    Outliers outliers = gross_outliers(s, c.tolerances.A, c.sigma, left_, all, work_.threads);
     aside_ = std::move(outliers.aside);
     uncertainty_ = std::move(outliers.uncertainty);
     c.set_aside.clear();
@@ -144,8 +144,7 @@ class Comparing {
     const auto freedoms = static_cast<double>(uncertainty_->count());
     c.chi2_per_dof = chi2 / freedoms;
     c.p_value = chi_squared_tail(freedoms, chi2);
-    c.sigma_u =
-        rms_of_errors(s.values, Eigen::Map<const VectorX>(c.sigma.data(), static_cast<Eigen::Index>(c.sigma.size())));
+    c.sigma_u = rms_of_errors(s.values, Eigen::Map<const VectorX>(c.sigma.data(), std::ssize(c.sigma)));
     c.noise_and_tolerances = expected_rmse(s, c.tolerances.A, c.sigma);
   }
 
@@ -178,14 +177,14 @@ class Comparing {
         [&] {
           if (shape_.size() > 0) c.deformed_shape_fit = regress(u, c.residual, shape_, found_.columns);
         }};
-    for_each_case(std::size(tests), 1, options_.threads, [&](std::size_t i) { tests[i](); });
+    for_each_case(std::size(tests), 1, work_.threads, [&](std::size_t i) { tests[i](); });
     for (Eigen::Index i = 0; i < eta.size(); ++i)
-      if (std::abs(eta(i)) > 2)
-        c.strained.emplace_back(c.tolerances.nuisances[static_cast<std::size_t>(i)].name, eta(i));
+      if (std::abs(eta(i)) > 2) c.strained.emplace_back(nth(c.tolerances.nuisances, i).name, eta(i));
   }
 
  private:
   ComparisonOptions options_;
+  Work work_;
   std::vector<Pattern> patterns_;
   std::vector<MatrixX> columns_;  // of the patterns, over the measured numbers
   VectorX left_, shape_;          // the residual without the deformed shape
@@ -194,12 +193,13 @@ class Comparing {
   Findings found_;
 };
 
-Comparison compared_as_recorded(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) {
-  Comparing comparing(m, data, o);
+Comparison compared_as_recorded(const Subject& subject, const Measurements& data, const ComparisonOptions& o,
+                                const Work& work) {
+  Comparing comparing(subject, data, o, work);
   comparing.add_deformed_shape();
   comparing.add_tolerances();
   comparing.weigh();
-  if (o.progress) o.progress(0.9);
+  if (work.progress) work.progress(0.9);
   comparing.find(true);
   comparing.test();
   return std::move(comparing.c);
@@ -207,7 +207,7 @@ Comparison compared_as_recorded(const Mechanism& m, const Measurements& data, co
 
 /// The deformed shape of readings as it follows from that of others: with the square of the predicted displacement.
 std::vector<Vector6> supposed_shape(const ResidualStudy& known, const ResidualStudy& s) {
-  const double size = s.machines.front().size;
+  const double size = s.standing->size();
   const auto squared = [size](const Vector6& d) {
     return d.head<3>().squaredNorm() + size * size * d.tail<3>().squaredNorm();
   };
@@ -223,8 +223,9 @@ std::vector<Vector6> supposed_shape(const ResidualStudy& known, const ResidualSt
 /// data. Where the corrected ones are not right then, even if it is off by a fifth and half of what else speaks against
 /// them is its doing, they are not.
 std::optional<MisfitAccount> compared_again(const Comparison& recorded, const Measurements& data,
-                                            const ComparisonOptions& o, const CanBeRight& can_be_right) {
-  Comparing comparing(*recorded.study.mechanism, data, o);
+                                            const ComparisonOptions& o, const Work& work,
+                                            const CanBeRight& can_be_right) {
+  Comparing comparing(*recorded.study.subject, data, o, work);
   MisfitAccount at_best;
   at_best.numbers = static_cast<double>(comparing.c.numbers);
   at_best.share = comparing.c.all.measured > 0 ? comparing.c.all.rmse / comparing.c.all.measured : 0;
@@ -250,20 +251,16 @@ std::optional<MisfitAccount> compared_again(const Comparison& recorded, const Me
 
 bool is_mistaken(const Comparison& c) { return !c.mistakes.empty() && c.mistakes.front().certain; }
 
-Comparison compare(const Mechanism& m, const Measurements& data, const ComparisonOptions& o) {
-  Comparison c;
-  try {
-    c = compared_as_recorded(m, data, o);
-  } catch (const ModelError& e) {
-    throw ModelError(e.what() + within_reach_hint(m, data));
-  }
-  if (o.as_recorded) return c;
-  ComparisonOptions quiet = o;
-  quiet.progress = {};
-  c.mistakes = recording_mistakes(m, c, o.threads, [&](const Measurements& other, const CanBeRight& can_be_right) {
-    return compared_again(c, other, quiet, can_be_right);
-  });
-  return c;
+Comparison compare(const Subject& subject, const Measurements& data, const ComparisonOptions& o, const Work& work) {
+  auto compared = outcome_of<ModelError>([&] { return compared_as_recorded(subject, data, o, work); });
+  if (!compared) throw ModelError(compared.why + within_reach_hint(subject, data), compared.cause);
+  Comparison& c = *compared;
+  if (o.as_recorded) return std::move(c);
+  c.mistakes =
+      recording_mistakes(subject, c, work.threads, [&](const Measurements& other, const CanBeRight& can_be_right) {
+        return compared_again(c, other, o, work.quiet(), can_be_right);
+      });
+  return std::move(c);
 }
 
 }  // namespace deflect

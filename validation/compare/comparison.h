@@ -55,14 +55,12 @@ struct Comparison {
 struct ComparisonOptions {
   std::optional<double> sigma_u, sigma_th;  ///< m, rad: where the file has none
   bool as_recorded = false;                 ///< no mistakes of recording are looked for
-  int threads = 0;
-  Told progress = {};
 };
 
 /// Whether the first thing to be said of the data is a mistake of recording: no verdict on the machine has a ground.
 bool is_mistaken(const Comparison&);
 
 /// Throws InputError where the data are too few, ModelError, NumericalError as predict() does.
-Comparison compare(const Mechanism&, const Measurements&, const ComparisonOptions& = {});
+Comparison compare(const Subject&, const Measurements&, const ComparisonOptions& = {}, const Work& = {});
 
 }  // namespace deflect

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "msa/base/index.h"
 #include "validation/statistics/tail.h"
 
 namespace deflect {
@@ -66,8 +67,8 @@ class Contrasts {
   Contrasts(const ResidualStudy& s, const std::vector<bool>& set_aside) : aside_(set_aside) {
     row_.assign(s.data->readings.size(), {-1, -1, -1});
     for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (s.values[i].component < 3) row_[s.values[i].reading][s.values[i].component] = static_cast<Eigen::Index>(i);
-    columns_ = static_cast<Eigen::Index>(s.values.size());
+      if (s.values[i].component < 3) row_[s.values[i].reading][s.values[i].component] = as_index(i);
+    columns_ = std::ssize(s.values);
   }
 
   void add(const Weights& w) {
@@ -99,10 +100,10 @@ class Contrasts {
     }
     t.contrasts = rows.size();
     if (rows.empty()) return t;
-    Sparse T(static_cast<Eigen::Index>(rows.size()), columns_);
+    Sparse T(std::ssize(rows), columns_);
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t i = 0; i < rows.size(); ++i)
-      for (const auto& [column, weight] : rows[i]) entries.emplace_back(static_cast<Eigen::Index>(i), column, weight);
+      for (const auto& [column, weight] : rows[i]) entries.emplace_back(as_index(i), column, weight);
     T.setFromTriplets(entries.begin(), entries.end());
     const VectorX z = T * r;
     const Uncertainty::OfContrasts of = u.of_contrasts(T);
@@ -131,7 +132,7 @@ class Contrasts {
 /// A load to 1e-9 N and Nm, so that equal ones meet.
 std::array<long long, 6> key(const Vector6& F) {
   std::array<long long, 6> out;
-  for (std::size_t i = 0; i < 6; ++i) out[i] = std::llround(1e9 * F(static_cast<Eigen::Index>(i)));
+  for (std::size_t i = 0; i < 6; ++i) out[i] = std::llround(1e9 * F(as_index(i)));
   return out;
 }
 
@@ -220,7 +221,7 @@ void add_drift(Contrasts& c, const ResidualStudy& s, const ByLoad& loads) {
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return s.data->readings[a].sequence < s.data->readings[b].sequence;
     });
-    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+    const auto middle = order.begin() + as_index(order.size() / 2);
     c.add(mean({middle, order.end()}, 1) + mean({order.begin(), middle}, -1));
   }
 }
@@ -232,9 +233,9 @@ void add_reciprocity(Contrasts& c, const ResidualStudy& s, const PoseGroup& grou
     if (s.data->readings[i].load.tail<3>().isZero(0) && c.usable(i, 0) && c.usable(i, 1) && c.usable(i, 2))
       readings.push_back(i);
   if (readings.size() < 4) return;
-  MatrixX X(static_cast<Eigen::Index>(readings.size()), 4);
+  MatrixX X(std::ssize(readings), 4);
   for (std::size_t i = 0; i < readings.size(); ++i)
-    X.row(static_cast<Eigen::Index>(i)) << s.data->readings[readings[i]].load.head<3>().transpose(), 0;
+    X.row(as_index(i)) << s.data->readings[readings[i]].load.head<3>().transpose(), 0;
   const double force = X.norm() / std::sqrt(static_cast<double>(readings.size()));
   X.col(3).setConstant(force);
   const Eigen::ColPivHouseholderQR<MatrixX> qr(X);
@@ -244,8 +245,8 @@ void add_reciprocity(Contrasts& c, const ResidualStudy& s, const PoseGroup& grou
     std::vector<std::array<double, 3>> weights(readings.size(), {0, 0, 0});
     for (std::size_t i = 0; i < readings.size(); ++i) {
       // In metres at the plan's force.
-      weights[i][k] = 0.5 * force * pseudo(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(i));
-      weights[i][l] = -0.5 * force * pseudo(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
+      weights[i][k] = 0.5 * force * pseudo(as_index(l), as_index(i));
+      weights[i][l] = -0.5 * force * pseudo(as_index(k), as_index(i));
     }
     c.add(weights, readings);
   }

@@ -7,9 +7,9 @@
 #include <map>
 #include <tuple>
 
-#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "validation/compare/residual_study.h"
-#include "validation/measurement/configure_all.h"
 #include "validation/prediction/prediction.h"
 #include "validation/recording/recording_mistakes.h"
 
@@ -53,8 +53,8 @@ double quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-CorrectionScreen::CorrectionScreen(const Mechanism& m, const Comparison& c, int threads)
-    : mechanism_(&m), study_(&c.study), threads_(threads), size_(c.study.machines.front().size) {
+CorrectionScreen::CorrectionScreen(const Subject& subject, const Comparison& c, int threads)
+    : subject_(subject), study_(&c.study), threads_(threads), size_(c.study.standing->size()) {
   if (!c.sigma_from_residuals) {
     std::array<double, 2> sum{}, count{};
     for (std::size_t i = 0; i < study_->values.size(); ++i) {
@@ -78,8 +78,7 @@ CorrectionScreen::CorrectionScreen(const Mechanism& m, const Comparison& c, int 
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
     const MeasuredValue& v = study_->values[i];
     const double weight = v.component < 3 ? 1 : size_, s = scale.at({v.reading, v.component});
-    const double variance =
-        (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) + tolerances(static_cast<Eigen::Index>(i));
+    const double variance = (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) + tolerances(as_index(i));
     noise += s > 0 ? std::log1p(weight * weight * variance / (s * s)) + std::log(s) : 0;
   }
   noise /= static_cast<double>(study_->values.size());
@@ -98,7 +97,7 @@ std::vector<CorrectionScreen::Difference> CorrectionScreen::differences(const Me
     for (std::size_t k = 0; k < 6; ++k) {
       const Reading& r = data.readings[i];
       if (!r.displacement[k]) continue;
-      const double weight = k < 3 ? 1 : size_, p = weight * predicted[i](static_cast<Eigen::Index>(k));
+      const double weight = k < 3 ? 1 : size_, p = weight * predicted[i](as_index(k));
       const double sigma = weight * (k < 3 ? r.sigma_u.value_or(sigma_[0]) : r.sigma_th.value_or(sigma_[1]));
       out.push_back({i, k, weight * *r.displacement[k] - p, std::hypot(sigma, usually, of_predicted * p)});
     }
@@ -129,17 +128,11 @@ double CorrectionScreen::loss(const Correction& c) const {
 
 std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const Correction& c) const {
   const Measurements data = corrected(sample_, c);
-  PredictionOptions o;
-  o.threads = threads_;
-  try {
-    std::vector<Vector6> predicted = predict(*mechanism_, configure_all(*mechanism_, data), data, o);
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      predicted[i] += deformed_shape_under(*study_, rows_[i], data.readings[i].load);
-    return predicted;
-  } catch (const ModelError&) {      // does not reach it
-  } catch (const NumericalError&) {  // does not stand there
-  }
-  return std::nullopt;
+  // The subject may not reach a pose, or not stand there.
+  auto predicted = outcome_of([&] { return subject_.stand(data)->predict(data, {}, {threads_}); });
+  for (std::size_t i = 0; predicted && i < rows_.size(); ++i)
+    (*predicted)[i] += deformed_shape_under(*study_, rows_[i], data.readings[i].load);
+  return std::move(predicted.value);
 }
 
 double CorrectionScreen::loss_elsewhere(const Correction& c) const {
@@ -159,7 +152,7 @@ std::optional<Correction> CorrectionScreen::best_shift(int axis) const {
     double along = 0, squares = 0;
     for (const Difference& d : differences(sample_, *here)) {
       if (!(d.scale > 0)) continue;
-      const auto k = static_cast<Eigen::Index>(d.component);
+      const auto k = as_index(d.component);
       const double z = d.left / d.scale;
       const double slope = (d.component < 3 ? 1 : size_) * ((*beside)[d.row](k) - (*here)[d.row](k)) / 0.1 / d.scale;
       along += slope * z / (1 + z * z);
@@ -195,7 +188,7 @@ std::optional<Correction> CorrectionScreen::best_point() const {
     Vector3 along = Vector3::Zero();
     for (const Difference& d : all) {
       const Reading& r = sample_.readings[d.row];
-      const auto k = static_cast<Eigen::Index>(d.component);
+      const auto k = as_index(d.component);
       // C [0; p × f] = −C_·θ [f]× p
       const Vector3 slope =
           -(d.component < 3 ? 1 : size_) / scale *

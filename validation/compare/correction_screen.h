@@ -18,7 +18,7 @@ namespace deflect {
 class CorrectionScreen {
  public:
   /// All must outlive it.
-  CorrectionScreen(const Mechanism&, const Comparison&, int threads);
+  CorrectionScreen(const Subject&, const Comparison&, int threads);
 
   double as_recorded() const { return as_recorded_; }
   /// Below this a correction takes a good part away of what noise does not explain.
@@ -46,7 +46,7 @@ class CorrectionScreen {
   double loss(const Measurements&, const std::vector<Vector6>& predicted, const Rewritten& displacement) const;
   std::optional<std::vector<Vector6>> predicted_with(const Correction&) const;
 
-  const Mechanism* mechanism_;
+  Subject subject_;
   const ResidualStudy* study_;
   int threads_;
   Measurements sample_;

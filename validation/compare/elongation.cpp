@@ -1,4 +1,5 @@
 #include "validation/compare/elongation.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,15 +27,15 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const Unc
   std::vector<ElongationCurve> out;
   const std::size_t sites = s.sites.front().size();
   if (sites == 0) return out;
-  VectorX most = VectorX::Zero(static_cast<Eigen::Index>(sites));
+  VectorX most = VectorX::Zero(as_index(sites));
   for (const VectorX& f : s.force) most = most.cwiseMax(f.cwiseAbs());
-  const Eigen::Index columns = static_cast<Eigen::Index>(sites) * knots;
+  const Eigen::Index columns = as_index(sites) * knots;
   VectorX weight = VectorX::Zero(columns);  // how often a knot was near
   MatrixX hats(columns, std::ssize(s.force));
   for (std::size_t i = 0; i < s.force.size(); ++i) {
-    const auto reading = static_cast<Eigen::Index>(i);
+    const auto reading = as_index(i);
     for (std::size_t k = 0; k < sites; ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
+      const auto at = as_index(k);
       const double x = most(at) > 0 ? s.force[i](at) / most(at) : 0;
       for (int j = 0; j < knots; ++j) hats(at * knots + j, reading) = hat(x, j, knots);
     }
@@ -45,9 +46,7 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const Unc
     const MeasuredValue& v = s.values[n];
     const std::vector<Site>& own = s.sites[s.data->readings[v.reading].pose];
     for (Eigen::Index c = 0; c < columns; ++c)
-      shapes(static_cast<Eigen::Index>(n), c) =
-          hats(c, static_cast<Eigen::Index>(v.reading)) *
-          own[static_cast<std::size_t>(c / knots)].g(static_cast<Eigen::Index>(v.component));
+      shapes(as_index(n), c) = hats(c, as_index(v.reading)) * nth(own, c / knots).g(as_index(v.component));
   }
   hats.resize(0, 0);
   const Regression fit = regress(u, r, shapes);
@@ -55,9 +54,9 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const Unc
     const Site& site = s.sites.front()[k];
     ElongationCurve curve{site.name, site.rotation, {}, {}, {}};
     for (int j = 0; j < knots; ++j) {
-      const Eigen::Index column = static_cast<Eigen::Index>(k) * knots + j;
+      const Eigen::Index column = as_index(k) * knots + j;
       if (weight(column) < 0.5) continue;
-      curve.force.push_back(most(static_cast<Eigen::Index>(k)) * knot(j, knots));
+      curve.force.push_back(most(as_index(k)) * knot(j, knots));
       curve.elongation.push_back(fit.amplitude(column));
       curve.deviation.push_back(std::sqrt(std::max(0.0, fit.covariance(column, column))));
     }

@@ -1,5 +1,6 @@
 #include "validation/compare/errors_by_group.h"
 
+#include "msa/base/index.h"
 #include "validation/compare/comparison.h"
 
 #include <fmt/format.h>
@@ -25,12 +26,12 @@ Errors errors_of(const Comparison& c, const std::string& group, bool rotations, 
   for (const std::size_t i : values) {
     const MeasuredValue& v = c.study.values[i];
     if ((v.component >= 3) != rotations || !belongs(v)) continue;
-    const double r = c.residual(static_cast<Eigen::Index>(i));
+    const double r = c.residual(as_index(i));
     squares += r * r;
     measured += v.value * v.value;
     n += 1;
-    sum(static_cast<Eigen::Index>(v.component % 3)) += r;
-    count(static_cast<Eigen::Index>(v.component % 3)) += 1;
+    sum(as_index(v.component % 3)) += r;
+    count(as_index(v.component % 3)) += 1;
     if (v.reading != last) ++e.readings;
     last = v.reading;
     if (std::abs(r) > e.worst) e.worst = std::abs(r), e.worst_line = c.study.data->readings[v.reading].line;
@@ -64,7 +65,7 @@ double rms_of_kept(const std::vector<MeasuredValue>& values, const VectorX& x, c
   std::vector<MeasuredValue> kept;
   std::vector<Eigen::Index> rows;
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (!set_aside[values[i].reading]) kept.push_back(values[i]), rows.push_back(static_cast<Eigen::Index>(i));
+    if (!set_aside[values[i].reading]) kept.push_back(values[i]), rows.push_back(as_index(i));
   return rms_of_errors(kept, x(rows));
 }
 
@@ -73,7 +74,7 @@ double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x)
   double squares = 0, n = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
     if ((values[i].component >= 3) == rotations) {
-      squares += x(static_cast<Eigen::Index>(i)) * x(static_cast<Eigen::Index>(i));
+      squares += x(as_index(i)) * x(as_index(i));
       n += 1;
     }
   return n > 0 ? std::sqrt(squares / n) : 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/compare/slides.h"
 #include "validation/parallel/cases.h"
 
@@ -21,14 +22,13 @@ std::optional<Exponent> best_exponent(double low, double high, double step, cons
     MatrixX columns;
     for (std::size_t i = first; i < end; ++i) {
       const VectorX one = column(at[i]);
-      if (i == first) columns.resize(one.size(), static_cast<Eigen::Index>(end - first));
-      columns.col(static_cast<Eigen::Index>(i - first)) = one;
+      if (i == first) columns.resize(one.size(), as_index(end - first));
+      columns.col(as_index(i - first)) = one;
     }
     columns = regressions.whitened(columns);
-    for (std::size_t i = first; i < end; ++i)
-      gains[i] = regressions.on_whitened(columns.col(static_cast<Eigen::Index>(i - first))).gain;
+    for (std::size_t i = first; i < end; ++i) gains[i] = regressions.on_whitened(columns.col(as_index(i - first))).gain;
   });
-  const auto best = static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
+  const auto best = as_size(std::max_element(gains.begin(), gains.end()) - gains.begin());
   if (best == 0 || best + 1 == at.size() || gains[best] < 25) return std::nullopt;
   const double curvature = (gains[best - 1] - 2 * gains[best] + gains[best + 1]) / (step * step);
   if (!(curvature < 0)) return std::nullopt;
@@ -42,7 +42,7 @@ std::optional<Exponent> force_exponent(const ResidualStudy& s, const Regressions
                                        const std::function<double(const Site&)>& weight) {
   return best_exponent(-0.5, 2.5, 0.1, regressions, [&](double p) {
     return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
-      const double f = s.force[i](static_cast<Eigen::Index>(k));
+      const double f = s.force[i](as_index(k));
       return f == 0 ? 0 : weight(s.sites[s.data->readings[i].pose][k]) * std::copysign(std::pow(std::abs(f), p), f);
     });
   });

@@ -1,4 +1,5 @@
 #include "validation/compare/file_oddities.h"
+#include "msa/base/index.h"
 
 #include <fmt/format.h>
 
@@ -33,7 +34,7 @@ struct ByComponent {
   explicit ByComponent(const Comparison& c) {
     for (std::size_t i = 0; i < c.study.values.size(); ++i) {
       const MeasuredValue& v = c.study.values[i];
-      const double p = c.study.predicted[v.reading](static_cast<Eigen::Index>(v.component));
+      const double p = c.study.predicted[v.reading](as_index(v.component));
       measured[v.component] += v.value * v.value;
       predicted[v.component] += p * p;
       sigma[v.component] += c.sigma[i] * c.sigma[i];
@@ -96,7 +97,7 @@ void add_identical_rows(const Comparison& c, std::vector<RecordingMistake>& out)
   std::size_t copies = 0, line = 0, of = 0;
   for (const Reading& r : data.readings) {
     std::array<double, 6> load;
-    for (std::size_t k = 0; k < 6; ++k) load[k] = r.load(static_cast<Eigen::Index>(k));
+    for (std::size_t k = 0; k < 6; ++k) load[k] = r.load(as_index(k));
     const auto [same, is_new] = first.emplace(Row{r.pose, load, r.displacement, r.temperature_C}, r.line);
     if (is_new) continue;
     if (++copies == 1) line = r.line, of = same->second;
@@ -133,7 +134,7 @@ void add_sigma(const Comparison& c, std::vector<RecordingMistake>& out) {
       const MeasuredValue& v = c.study.values[i];
       const Reading& r = c.study.data->readings[v.reading];
       if ((v.component >= 3) != rotation || !(rotation ? r.sigma_th : r.sigma_u)) continue;
-      const double left = c.residual(static_cast<Eigen::Index>(i));
+      const double left = c.residual(as_index(i));
       sigma += c.sigma[i] * c.sigma[i], residual += left * left, n += 1;
     }
     if (n < static_cast<double>(least_numbers)) continue;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "msa/base/index.h"
 #include "msa/base/number_words.h"
 #include "validation/compare/exponents.h"
 #include "validation/compare/slides.h"
@@ -20,7 +21,7 @@ std::string plus_minus(double value, double deviation, double scale, const char*
 std::string by_column(const Finding& f, double scale, const char* unit) {
   std::string out;
   for (std::size_t i = 0; i < f.columns.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
+    const auto k = as_index(i);
     out += fmt::format("{}{} {}", i ? ", " : "", f.columns[i], plus_minus(f.amplitude(k), f.deviation(k), scale, unit));
   }
   return out;
@@ -50,7 +51,7 @@ std::string alike(const Finding& found, const ResidualStudy& s, const Uncertaint
   if (sites.size() < 2) return "";
   const double mean = mean_extension(s);
   const auto shape = [&](std::size_t i, std::size_t k) {
-    return weight_of(found, mean, s.sites[s.data->readings[i].pose][k]) * s.force[i](static_cast<Eigen::Index>(k));
+    return weight_of(found, mean, s.sites[s.data->readings[i].pose][k]) * s.force[i](as_index(k));
   };
   const MatrixX own = rows_of(s.values, site_columns(s, shape));
   MatrixX both(r.size(), beside.cols() + found.shape.cols());

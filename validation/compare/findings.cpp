@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "msa/base/index.h"
 #include "validation/compare/errors_by_group.h"
 #include "validation/compare/finding_text.h"
 #include "validation/compare/slides.h"
@@ -36,16 +37,10 @@ void add_single_sites(const ResidualStudy& s, const Pattern& p, const MatrixX& c
   for (std::size_t site = 0; site < p.columns.size(); ++site) {
     const auto only = [&](const auto& e) {
       return rows_of_sites(s, [&](std::size_t reading, std::size_t k) {
-        return k == site
-                   ? e(s.sites[s.data->readings[reading].pose][k]) * s.force[reading](static_cast<Eigen::Index>(k))
-                   : 0.0;
+        return k == site ? e(s.sites[s.data->readings[reading].pose][k]) * s.force[reading](as_index(k)) : 0.0;
       });
     };
-    Candidate c{PatternId::elastic_at,
-                p.columns[site],
-                {p.columns[site]},
-                p.unit,
-                columns.col(static_cast<Eigen::Index>(site))};
+    Candidate c{PatternId::elastic_at, p.columns[site], {p.columns[site]}, p.unit, columns.col(as_index(site))};
     if (slides) {
       c.columns.resize(Eigen::NoChange, 3);
       c.columns.col(0) = only([](const Site& x) { return x.along; });
@@ -121,7 +116,7 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
     std::vector<double> scores;
     for (std::size_t i = 0; i < fits.size(); ++i)
       scores.push_back(found[i] ? -std::numeric_limits<double>::infinity() : fits[i].gain - penalty * fits[i].freedoms);
-    const auto best = static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
+    const auto best = as_size(std::max_element(scores.begin(), scores.end()) - scores.begin());
     const Candidate& c = candidates[best];
     const Regression& fit = fits[best];
     if (scores[best] < least_score || fit.p_value * static_cast<double>(candidates.size()) > least_p) break;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/compare/comparison.h"
 
 namespace deflect {
@@ -12,7 +13,7 @@ HeldOut::HeldOut(const ResidualStudy& s, const Uncertainty& u, const std::vector
   const MatrixX& B = u.whitening()->shared();
   if (folds_ < 2 || B.cols() == 0) return;
   std::vector<std::vector<Eigen::Index>> rows(folds_);
-  for (std::size_t i = 0; i < s.values.size(); ++i) rows[fold_of(i)].push_back(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < s.values.size(); ++i) rows[fold_of(i)].push_back(as_index(i));
   std::vector<MatrixX> taught;
   for (const std::vector<Eigen::Index>& own : rows) {
     const MatrixX part = B(own, Eigen::all);
@@ -36,15 +37,14 @@ double HeldOut::rmse(const VectorX& residual) const {
   std::vector<VectorX> eta(folds_, VectorX::Zero(B.cols()));
   if (!others_.empty()) {  // where there is one pose, nothing is learnt at others
     // z in the rows of one fold alone.
-    MatrixX by_fold = MatrixX::Zero(residual.size(), static_cast<Eigen::Index>(folds_));
+    MatrixX by_fold = MatrixX::Zero(residual.size(), as_index(folds_));
     const VectorX z = white.within_groups(residual);
-    for (std::size_t i = 0; i < study_->values.size(); ++i)
-      by_fold(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(fold_of(i))) = z(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < study_->values.size(); ++i) by_fold(as_index(i), as_index(fold_of(i))) = z(as_index(i));
     const MatrixX score = B.transpose() * by_fold;
     for (std::size_t fold = 0; fold < folds_; ++fold) {
       VectorX all = VectorX::Zero(B.cols());
       for (std::size_t other = 0; other < folds_; ++other)
-        if (other != fold) all += score.col(static_cast<Eigen::Index>(other));
+        if (other != fold) all += score.col(as_index(other));
       eta[fold] = others_[fold].solve(all);
     }
   }
@@ -53,7 +53,7 @@ double HeldOut::rmse(const VectorX& residual) const {
   std::size_t n = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
     if (set_aside_[study_->values[i].reading] || (study_->values[i].component >= 3) != rotations) continue;
-    const auto row = static_cast<Eigen::Index>(i);
+    const auto row = as_index(i);
     const double left = residual(row) - uncertainty_->tolerances().shared.row(row).dot(eta[fold_of(i)]);
     squares += left * left;
     ++n;

@@ -1,4 +1,5 @@
 #include "validation/compare/outliers.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,7 @@ constexpr double limit = 4.5;
 Outliers gross_outliers(const ResidualStudy& s, const PartedColumns& A, const std::vector<double>& sigma,
                         const VectorX& residual, const MatrixX& patterns, int threads) {
   const auto without = [&](const std::vector<bool>& aside) {
-    return Uncertainty(A, s.values, sigma, s.predicted, s.mechanism->tolerances.load, aside, threads);
+    return Uncertainty(A, s.values, sigma, s.predicted, s.subject->load_tolerance(), aside, threads);
   };
   std::vector<bool> aside(s.data->readings.size(), false);
   std::optional<Uncertainty> uncertainty;
@@ -24,12 +25,11 @@ Outliers gross_outliers(const ResidualStudy& s, const PartedColumns& A, const st
     std::vector<double> worst(aside.size(), 0);
     for (std::size_t i = 0; i < s.values.size(); ++i) {
       const MeasuredValue& v = s.values[i];
-      const double load = s.mechanism->tolerances.load * s.predicted[v.reading](static_cast<Eigen::Index>(v.component));
-      worst[v.reading] =
-          std::max(worst[v.reading], std::abs(left(static_cast<Eigen::Index>(i))) / std::hypot(sigma[i], load));
+      const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.component));
+      worst[v.reading] = std::max(worst[v.reading], std::abs(left(as_index(i))) / std::hypot(sigma[i], load));
     }
     std::vector<double> sorted = worst;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    std::nth_element(sorted.begin(), sorted.begin() + as_index(sorted.size() / 2), sorted.end());
     const double typical = sorted[sorted.size() / 2];  // about 1.2 for three Gaussian numbers
     std::vector<bool> next(aside.size());
     for (std::size_t i = 0; i < worst.size(); ++i) next[i] = worst[i] > limit * std::max(1.0, typical / 1.2);

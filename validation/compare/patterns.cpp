@@ -1,4 +1,5 @@
 #include "validation/compare/patterns.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,13 +81,15 @@ std::vector<double> ranks(const Measurements& m) {
 
 Pattern base_tilt(const ResidualStudy& s) {
   return {PatternId::base_tilt, {"rx", "ry"}, "rad/Nm", by_reading(s, [&](std::size_t i) {
-            const Configuration& c = s.machines[s.data->readings[i].pose];
+            const std::size_t pose = s.data->readings[i].pose;
+            const BodyFrame base = s.standing->base(pose);
+            const Vector3 arm = s.standing->tool(pose).p_W - base.p_W;
             Block out(6, 2);
             for (std::size_t k = 0; k < 2; ++k) {
               Vector6 t;
-              const Vector3 axis = c.base.R_WJ.col(static_cast<Eigen::Index>(k));
-              t << axis.cross(c.pose.p_WT - c.base.p_W), axis;
-              out.col(static_cast<Eigen::Index>(k)) = t * t.dot(load(s, i));
+              const Vector3 axis = base.R_W.col(as_index(k));
+              t << axis.cross(arm), axis;
+              out.col(as_index(k)) = t * t.dot(load(s, i));
             }
             return out;
           })};
@@ -94,7 +97,7 @@ Pattern base_tilt(const ResidualStudy& s) {
 
 Pattern tool(const ResidualStudy& s) {
   return {PatternId::tool, axes, "m/N", by_reading(s, [&](std::size_t i) {
-            const Matrix3& R = s.machines[s.data->readings[i].pose].pose.R_WT;
+            const Matrix3 R = s.standing->tool(s.data->readings[i].pose).R_W;
             Block out = Block::Zero(6, 3);
             for (Eigen::Index k = 0; k < 3; ++k) out.col(k).head<3>() = R.col(k) * R.col(k).dot(load(s, i).head<3>());
             return out;
@@ -129,7 +132,7 @@ std::vector<MatrixX> stop_forces(const ResidualStudy& s) {
 
 Pattern hysteresis(const ResidualStudy& s, bool rotation) {
   Pattern p{PatternId::hysteresis, {"lag"}, rotation ? "rad" : "m", site_column(s, [&](std::size_t i, std::size_t k) {
-              return -s.heading[i](static_cast<Eigen::Index>(k));
+              return -s.heading[i](as_index(k));
             })};
   if (s.sites.front().front().s.isZero(0)) return p;
   const std::vector<MatrixX> stopped = stop_forces(s);
@@ -138,7 +141,7 @@ Pattern hysteresis(const ResidualStudy& s, bool rotation) {
     const std::size_t pose = s.data->readings[i].pose;
     Block moved = Block::Zero(6, std::ssize(stops));
     for (std::size_t k = 0; k < s.sites[pose].size(); ++k)
-      moved -= (s.compliance[pose] * s.sites[pose][k].s) * stopped[i].row(static_cast<Eigen::Index>(k));
+      moved -= (s.compliance[pose] * s.sites[pose][k].s) * stopped[i].row(as_index(k));
     Block both(6, 1 + moved.cols());
     both << p.by_reading[i], moved;
     p.by_reading[i] = both;
@@ -148,7 +151,7 @@ Pattern hysteresis(const ResidualStudy& s, bool rotation) {
 
 }  // namespace
 
-const PatternRow& row_of(PatternId id) { return pattern_rows[static_cast<std::size_t>(id)]; }
+const PatternRow& row_of(PatternId id) { return nth(pattern_rows, id); }
 
 Columns site_column(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
   return by_reading(s, [&](std::size_t i) {
@@ -160,7 +163,7 @@ Columns site_column(const ResidualStudy& s, const std::function<double(std::size
 }
 
 VectorX rows_of_sites(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
-  VectorX out(static_cast<Eigen::Index>(s.values.size()));
+  VectorX out(std::ssize(s.values));
   Vector6 moved;
   for (std::size_t n = 0; n < s.values.size(); ++n) {
     const std::size_t i = s.values[n].reading;
@@ -169,7 +172,7 @@ VectorX rows_of_sites(const ResidualStudy& s, const std::function<double(std::si
       moved.setZero();
       for (std::size_t k = 0; k < sites.size(); ++k) moved += sites[k].g * elongation(i, k);
     }
-    out(static_cast<Eigen::Index>(n)) = moved(static_cast<Eigen::Index>(s.values[n].component));
+    out(as_index(n)) = moved(as_index(s.values[n].component));
   }
   return out;
 }
@@ -177,9 +180,8 @@ VectorX rows_of_sites(const ResidualStudy& s, const std::function<double(std::si
 Columns site_columns(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
   return by_reading(s, [&](std::size_t i) {
     const std::vector<Site>& sites = s.sites[s.data->readings[i].pose];
-    Block out(6, static_cast<Eigen::Index>(sites.size()));
-    for (std::size_t k = 0; k < sites.size(); ++k)
-      out.col(static_cast<Eigen::Index>(k)) = sites[k].g * elongation(i, k);
+    Block out(6, std::ssize(sites));
+    for (std::size_t k = 0; k < sites.size(); ++k) out.col(as_index(k)) = sites[k].g * elongation(i, k);
     return out;
   });
 }
@@ -187,7 +189,7 @@ Columns site_columns(const ResidualStudy& s, const std::function<double(std::siz
 std::vector<Pattern> patterns_of(const ResidualStudy& s) {
   std::vector<Pattern> out;
   const auto& sites = s.sites.front();
-  const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](static_cast<Eigen::Index>(k)); };
+  const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](as_index(k)); };
   std::vector<std::string> names;
   for (const Site& site : sites) names.push_back(site.name);
   const bool alike = !sites.empty() && std::all_of(sites.begin(), sites.end(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/measurement/random.h"
 
 namespace deflect {
@@ -19,13 +20,13 @@ double placebo_rmse(const Comparison& before, const Comparison& after) {
     for (double& each : sign) each = random.normal() < 0 ? -1 : 1;
     VectorX x = change;
     for (std::size_t i = 0; i < s.values.size(); ++i)
-      x(static_cast<Eigen::Index>(i)) *= sign[s.data->readings[s.values[i].reading].pose];
+      x(as_index(i)) *= sign[s.data->readings[s.values[i].reading].pose];
     const double own = x.squaredNorm();
     const VectorX left = own > 0 ? VectorX(r - x * (x.dot(r) / own)) : r;
     double squares = 0, n = 0;
     for (std::size_t i = 0; i < s.values.size(); ++i)
       if ((s.values[i].component >= 3) == rotations) {
-        squares += left(static_cast<Eigen::Index>(i)) * left(static_cast<Eigen::Index>(i));
+        squares += left(as_index(i)) * left(as_index(i));
         n += 1;
       }
     reached.push_back(n > 0 ? std::sqrt(squares / n) : 0);

@@ -7,11 +7,10 @@
 #include <limits>
 #include <unordered_set>
 
-#include "msa/base/error.h"
 #include "msa/base/number_words.h"
+#include "msa/base/outcome.h"
 #include "validation/compare/correction_screen.h"
 #include "validation/compare/file_oddities.h"
-#include "validation/measurement/configure_all.h"
 #include "validation/recording/recording_mistakes.h"
 
 namespace deflect {
@@ -158,18 +157,15 @@ class MistakeSearch {
   }
 
   void try_one(const std::vector<Tried>& all, std::size_t from, std::size_t to, const Correction& correction) {
-    std::optional<MisfitAccount> compared;
-    try {
-      compared = again_(corrected(*c_.study.data, correction), [&](const MisfitAccount& at_best) {
+    const auto compared = outcome_of([&] {
+      return again_(corrected(*c_.study.data, correction), [&](const MisfitAccount& at_best) {
         const double gain =
             at_best.left > 0 ? shorter_by(at_best, correction) : std::numeric_limits<double>::infinity();
         return cures(before_, at_best, correction.fitted, gain);
       });
-    } catch (const std::runtime_error&) {
-      return;  // the corrected data ask for what the machine cannot do
-    }
-    if (!compared) return;
-    const MisfitAccount& after = *compared;
+    });
+    if (!compared || !*compared) return;  // the corrected data ask for what the machine cannot do, or cannot be right
+    const MisfitAccount& after = **compared;
     const double gain = shorter_by(after, correction);
     if (!cures(before_, after, correction.fitted, gain)) return;
     if (found_ && gain <= most_) return;
@@ -216,7 +212,7 @@ MisfitAccount account_of(const Comparison& c) {
   return a;
 }
 
-std::vector<RecordingMistake> recording_mistakes(const Mechanism& m, const Comparison& c, int threads,
+std::vector<RecordingMistake> recording_mistakes(const Subject& subject, const Comparison& c, int threads,
                                                  const ComparedAgain& again) {
   std::vector<RecordingMistake> out = file_oddities(c);
   const MisfitAccount before = account_of(c);
@@ -224,7 +220,7 @@ std::vector<RecordingMistake> recording_mistakes(const Mechanism& m, const Compa
   const std::vector<RecordingMistake> sigma = sigma_oddities(c);
   if (out.empty() && before.share < gross_misfit) out = sigma;
   if (out.empty() && fits_badly(c, before)) {
-    const CorrectionScreen screen(m, c, threads);
+    const CorrectionScreen screen(subject, c, threads);
     MistakeSearch search(c, before, screen.equal_within(), again);
     search.look_among(promising_readings(c, screen));
     if (!search.right()) search.look_among(promising_poses(c, screen));
@@ -235,14 +231,12 @@ std::vector<RecordingMistake> recording_mistakes(const Mechanism& m, const Compa
   return out;
 }
 
-std::string within_reach_hint(const Mechanism& m, const Measurements& data) {
+std::string within_reach_hint(const Subject& subject, const Measurements& data) {
   std::string words;
   for (const auto& corrections : {mistaken_pose_lengths(data), mistaken_poses(data)})
-    for (const Correction& correction : corrections) try {
-        configure_all(m, corrected(data, correction));
+    for (const Correction& correction : corrections)
+      if (outcome_of<ModelError>([&] { return subject.stand(corrected(data, correction)); }))
         words += (words.empty() ? "" : "; or ") + correction.sentence;
-      } catch (const ModelError&) {  // not this one
-      }
   return words.empty() ? "" : "; all poses could be reached if these data were " + words;
 }
 

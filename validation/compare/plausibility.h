@@ -21,7 +21,7 @@
 namespace deflect {
 
 struct Comparison;
-struct Mechanism;
+class Subject;
 
 /// Something about a file that comes before what it says of the machine.
 struct RecordingMistake {
@@ -49,11 +49,10 @@ using CanBeRight = std::function<bool(const MisfitAccount&)>;
 using ComparedAgain = std::function<std::optional<MisfitAccount>(const Measurements&, const CanBeRight&)>;
 
 /// The first is the headline where it is certain.
-std::vector<RecordingMistake> recording_mistakes(const Mechanism&, const Comparison&, int threads,
-                                                 const ComparedAgain&);
+std::vector<RecordingMistake> recording_mistakes(const Subject&, const Comparison&, int threads, const ComparedAgain&);
 
 /// What to add to the message about a pose that cannot be reached: which corrections of the poses bring all of them
 /// within reach; empty where none does.
-std::string within_reach_hint(const Mechanism&, const Measurements&);
+std::string within_reach_hint(const Subject&, const Measurements&);
 
 }  // namespace deflect

@@ -1,4 +1,5 @@
 #include "validation/compare/slides.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,7 @@ double mean_extension(const ResidualStudy& s) {
 
 VectorX elastic_along(const ResidualStudy& s) {
   return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
-    return s.force[i](static_cast<Eigen::Index>(k)) * s.sites[s.data->readings[i].pose][k].along;
+    return s.force[i](as_index(k)) * s.sites[s.data->readings[i].pose][k].along;
   });
 }
 
@@ -39,9 +40,8 @@ VectorX elastic_across(const ResidualStudy& s, double power) {
     weight.emplace_back();
     for (const Site& site : sites) weight.back().push_back((1 - site.along) * std::pow(site.extension / mean, power));
   }
-  return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
-    return s.force[i](static_cast<Eigen::Index>(k)) * weight[s.data->readings[i].pose][k];
-  });
+  return rows_of_sites(
+      s, [&](std::size_t i, std::size_t k) { return s.force[i](as_index(k)) * weight[s.data->readings[i].pose][k]; });
 }
 
 }  // namespace deflect

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "msa/base/index.h"
 #include "validation/measurement/random.h"
 #include "validation/parallel/pack.h"
 #include "validation/parallel/shared_cases.h"
@@ -30,7 +31,8 @@ double gain(const Signature& s, const Components& z) {
 
 }  // namespace
 
-double chance_of_any(const std::vector<Signature>& all, double least_p, const Bootstrap& o) {
+double chance_of_any(const std::vector<Signature>& all, double least_p, int sets_drawn, const Work& work,
+                     const Counted& counted) {
   if (all.empty() || !(least_p < 1)) return 1;
   std::vector<double> wanted;
   for (const Signature& s : all)
@@ -39,13 +41,13 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, const Bo
   const Eigen::Index columns = axes.eigenvalues().size();
   const MatrixX root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 
-  const auto sets = static_cast<std::size_t>(o.sets);
+  const auto sets = as_size(sets_drawn);
   std::vector<int> as_good((sets + block - 1) / block);
   SharedCases blocks;
   blocks.count = as_good.size();
   blocks.work = [&](std::size_t k) {
     Random random(seed + k);
-    MatrixX xi(columns, static_cast<Eigen::Index>(std::min(block, sets - k * block)));
+    MatrixX xi(columns, as_index(std::min(block, sets - k * block)));
     for (double& x : xi.reshaped()) x = random.normal();
     const MatrixX z = root * xi;
     as_good[k] = 0;
@@ -61,10 +63,10 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, const Bo
   };
   blocks.result = [&](std::size_t k) { return pack(as_good[k]); };
   blocks.take = [&](std::size_t k, const std::string& bytes) { as_good[k] = unpack<int>(bytes); };
-  const auto told = [&](std::size_t done) { o.told(done, as_good.size()); };
-  for_each_case(blocks, o.ranks, o.threads, o.told ? std::function<void(std::size_t)>(told) : nullptr);
-  double chance = (std::accumulate(as_good.begin(), as_good.end(), 0.0) + 1) / (o.sets + 1.0);
-  if (o.ranks) chance = unpack<double>(o.ranks->meet("", pack(chance)).said);
+  const auto told = [&](std::size_t done) { counted(done, as_good.size()); };
+  for_each_case(blocks, work.ranks, work.threads, counted ? std::function<void(std::size_t)>(told) : nullptr);
+  double chance = (std::accumulate(as_good.begin(), as_good.end(), 0.0) + 1) / (sets_drawn + 1.0);
+  if (work.ranks) chance = unpack<double>(work.ranks->meet("", pack(chance)).said);
   return chance;
 }
 

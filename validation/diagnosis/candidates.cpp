@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
@@ -26,7 +27,7 @@ std::vector<std::size_t> classes_of(const std::vector<Signature>& all) {
     out[i] = i;
     for (std::size_t k = 0; k < i; ++k)
       if (all[i].amplitudes() == all[k].amplitudes() && all[i].shaped == all[k].shaped &&
-          between(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) > alike) {
+          between(as_index(i), as_index(k)) > alike) {
         out[i] = out[k];
         break;
       }
@@ -68,10 +69,9 @@ bool same(const PlacedEffect& a, const PlacedEffect& b) { return a.effect == b.e
 
 }  // namespace
 
-Candidates::Candidates(const Observations& o, const std::vector<Signature>& all, int threads,
+Candidates::Candidates(const std::vector<Signature>& all, int threads,
                        std::function<void(std::size_t, std::size_t)> progress)
-    : observations_(o),
-      signatures_(all),
+    : signatures_(all),
       threads_(threads),
       progress_(std::move(progress)),
       classes_(classes_of(all)),
@@ -112,7 +112,8 @@ void Candidates::note_left_out(const std::vector<Candidate>& all) const {
   }
 }
 
-std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& so_far, double least) const {
+std::vector<Candidate> Candidates::beside(const Observations& observations, const Hypothesis& before, const Fit& so_far,
+                                          double least) const {
   std::vector<Candidate> out(signatures_.size());
   std::vector<char> allowed(out.size(), 1);
   const MatrixX fitted = orthonormal(so_far.signature);
@@ -133,11 +134,11 @@ std::vector<Candidate> Candidates::beside(const Hypothesis& before, const Fit& s
     Candidate& c = out[i];
     const Signature& s = signatures_[i];
     if (allowed[i] && c.gain >= enough && log_odds(i, 1.2 * c.gain + bent, class_priors_[i]) > least) {
-      c.fit = fit(observations_, c.hypothesis, so_far.values, guess(s, so_far.residual));
+      c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual));
       c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
     }
     c.log_odds = allowed[i] ? log_odds(i, c.gain, priors_[i]) : out_of_question;
-    c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations_.numbers());
+    c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations.numbers());
     if (progress_) progress_(++done, out.size());
   });
   add_up_classes(out);

@@ -26,13 +26,12 @@ struct Candidate {
 
 class Candidates {
  public:
-  /// All must outlive it. progress(done, all): of one round.
-  Candidates(const Observations&, const std::vector<Signature>&, int threads,
-             std::function<void(std::size_t, std::size_t)> progress = {});
+  /// The signatures must outlive it. progress(done, all): of one round.
+  Candidates(const std::vector<Signature>&, int threads, std::function<void(std::size_t, std::size_t)> progress = {});
 
   /// Every effect beside others that are fitted: in the order of the signatures. Fits are made for those that can come
   /// near the best and whose log_odds can reach `least`; of two that do all but the same only one can be there.
-  std::vector<Candidate> beside(const Hypothesis&, const Fit&, double least) const;
+  std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least) const;
 
   /// Those so far that could not be fitted beside what was there, and why: each once.
   const std::vector<LeftOut>& left_out() const { return left_out_; }
@@ -47,7 +46,6 @@ class Candidates {
   void add_up_classes(std::vector<Candidate>&) const;
   void note_left_out(const std::vector<Candidate>&) const;
 
-  const Observations& observations_;
   const std::vector<Signature>& signatures_;
   int threads_;
   std::function<void(std::size_t, std::size_t)> progress_;

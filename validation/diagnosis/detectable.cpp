@@ -1,4 +1,5 @@
 #include "validation/diagnosis/detectable.h"
+#include "msa/base/index.h"
 
 #include <cmath>
 
@@ -12,7 +13,7 @@ std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
     Detectable d{s.effect, s.at_start.norm(), {}, "", 0};
     const VectorX start = start_values(*s.effect.effect);
     for (Eigen::Index k = 0; k < start.size(); ++k) {
-      const EffectParameter& p = s.effect.effect->parameters[static_cast<std::size_t>(k)];
+      const EffectParameter& p = nth(s.effect.effect->parameters, k);
       if (!p.vanishes) continue;
       // The signature grows with the distance from where the effect vanishes, for stiffnesses with the compliance.
       const double value = std::isinf(*p.vanishes) ? start(k) * d.lambda_at_start / 4
@@ -21,7 +22,7 @@ std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
     }
     for (std::size_t k = 0; k < all.size(); ++k)
       if (all[k].effect.effect != s.effect.effect)
-        if (const double c = between(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)); c > d.cosine)
+        if (const double c = between(as_index(i), as_index(k)); c > d.cosine)
           d.cosine = c, d.mistaken_for = name_of(all[k].effect);
     if (d.cosine < 0.9) d.mistaken_for.clear();
     out.push_back(std::move(d));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "msa/base/index.h"
 #include "validation/compare/findings.h"
 #include "validation/diagnosis/bootstrap.h"
 #include "validation/diagnosis/discrepancy.h"
@@ -22,20 +23,20 @@ constexpr double left_over_evidence = 2, left_over_p = 3e-3;
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
   q.chi2_per_dof = f.chi2 / std::max(1.0, static_cast<double>(o.numbers()) - static_cast<double>(f.values.size()));
-  const Mechanism m = device_with(o, h, f.values);
-  q.rmse = o.rmse(m);
-  q.held_out = o.held_out_rmse(m);
+  const Subject subject = subject_with(o, h, f.values);
+  q.rmse = o.rmse(subject);
+  q.held_out = o.held_out_rmse(subject);
   return q;
 }
 
 /// What is left, in words.
-std::string left_over_pattern(const Observations& o, const Mechanism& m) {
+std::string left_over_pattern(const Observations& o, const Subject& subject) {
   const ResidualStudy& s = o.comparison().study;
   const std::vector<Pattern> patterns = patterns_of(s);
   std::vector<MatrixX> columns;
   for (const Pattern& p : patterns) columns.push_back(rows_of(s.values, p.by_reading));
   std::string out;
-  for (const Finding& f : find_patterns(s, o.uncertainty(), o.residual(m), patterns, columns).findings)
+  for (const Finding& f : find_patterns(s, o.uncertainty(), o.residual(subject), patterns, columns).findings)
     out += (out.empty() ? "" : "; then ") + f.sentence;
   return out.empty() ? "no pattern that was looked for" : out;
 }
@@ -64,30 +65,31 @@ double log_weight(const std::vector<Candidate>& all) {
 }
 
 /// Those of the effects that are called for even where the discrepancy takes what it can.
-Selection beside_unknown(Observations& o, const Candidates& candidates, Selection s) {
-  const Discrepancy all(o.whitened_patterns());
-  const Discrepancy left(o.whitened_patterns(), s.fit.signature);
+Selection beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns, const Candidates& candidates,
+                         Selection s) {
+  const Discrepancy all(patterns);
+  const Discrepancy left(patterns, s.fit.signature);
   const Discrepancy::Size size = left.likeliest(s.fit.residual);
   for (std::size_t i = s.effects.size(); i-- > 0;) {
     auto [others, values] = without(s.effects, s.fit.values, i);
-    Fit rest = fit_of_all(o, others, values);
+    Fit rest = fit_of_all(s.observations, others, values);
     if (!rest.found) continue;  // the others need it
     const double gain = all.chi2(rest.residual, size) - all.chi2(s.fit.residual, size);
     if (candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
     s.effects = std::move(others);
     s.fit = std::move(rest);
-    if (i < s.ties.size()) s.ties.erase(s.ties.begin() + static_cast<std::ptrdiff_t>(i));
+    if (i < s.ties.size()) s.ties.erase(s.ties.begin() + as_index(i));
   }
   return s;
 }
 
 /// Of what is left unexplained: its size, its pattern, where it acts, the entry that comes nearest.
-void describe_left_over(Diagnosis& d, const Observations& o, const std::vector<Signature>& all, const Selection& found,
-                        int threads) {
+void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const Selection& found, int threads) {
+  const Observations& o = found.observations;
   const auto numbers = static_cast<double>(o.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
-  d.pattern = left_over_pattern(o, device_with(o, found.effects, found.fit.values));
+  d.pattern = left_over_pattern(o, subject_with(o, found.effects, found.fit.values));
   d.localised = scan(o, found.fit, threads);
   const MatrixX fitted = orthonormal(found.fit.signature);
   for (const Signature& s : all)
@@ -150,13 +152,11 @@ Diagnosis only_mistakes(Diagnosis d, const Observations& o) {
 
 bool is_mistaken(const Diagnosis& d) { return !d.mistakes.empty() && d.mistakes.front().certain; }
 
-Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vector<Effect>& effects,
-                   const DiagnosisOptions& options) {
-  ComparisonOptions comparison = options.comparison;
-  comparison.progress = part_of(options.progress, 0, 0.2);
-  Observations o(m, data, comparison);
+Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::vector<Effect>& effects,
+                   const DiagnosisOptions& options, const Work& work) {
+  const Observations o(subject, data, options.comparison, work.part(0, 0.2));
   Diagnosis d;
-  d.device = m.name;
+  d.device = subject.name();
   d.how_read = data.how_read;
   d.mistakes = o.comparison().mistakes;
   d.readings = o.comparison().readings;
@@ -165,14 +165,15 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   d.noise_floor = o.comparison().sigma_u;
   d.tolerance_scale = o.tolerance_scale();
   if (is_mistaken(d)) return only_mistakes(std::move(d), o);
-  const std::vector<Signature> all = signatures(o, effects, options.threads, &d.left_out);
-  Rounds rounds(options.progress, 0.3);
-  const Candidates candidates(o, all, options.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); });
+  const std::vector<Signature> all = signatures(o, effects, work.threads, &d.left_out);
+  Rounds rounds(work.progress, 0.3);
+  const Candidates candidates(all, work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); });
   d.detectable = detectable_sizes(all);
   const Fit null = fit_of_all(o, {}, VectorX(0));
   d.baseline = quality(o, {}, null);
-  d.candidates = candidates.beside({}, null, -1e6);
-  const Discrepancy discrepancy(o.whitened_patterns());
+  d.candidates = candidates.beside(o, {}, null, -1e6);
+  std::shared_ptr<const WhitenedFamilies> patterns = o.whitened_patterns();
+  const Discrepancy discrepancy(patterns);
   constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
   weigh(d, probability_of_unknown(discrepancy.log_evidence(null.residual) - log_weight(d.candidates),
                                   missing_odds * Candidates::prior_unknown));
@@ -180,25 +181,24 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
   for (std::size_t i = 0; i < all.size(); ++i)
     least_p = std::min(least_p, single_p_value(all[i], d.candidates[i].gain));
   d.bootstrap_sets = options.bootstrap_sets;
-  d.chance = chance_of_any(all, least_p,
-                           {options.bootstrap_sets, options.threads, options.ranks,
-                            [&](std::size_t done, std::size_t of) { rounds(done, of); }});
+  d.chance = chance_of_any(all, least_p, options.bootstrap_sets, work,
+                           [&](std::size_t done, std::size_t of) { rounds(done, of); });
   const bool missing = (d.chance < alarm && d.probability_nothing < 0.6) ||
                        (d.probability_unknown > sure && discrepancy.p_value(null.residual) < left_over_p);
   const std::vector<Candidate> first = d.candidates;
   sort_candidates(d, o);
 
-  Selection found;
-  found.fit = null;
-  if (missing) found = select(o, candidates, first);
-  const Discrepancy left(o.whitened_patterns(), found.fit.signature);
+  Selection found = missing ? select(o, candidates, first) : Selection{o, {}, null, {}};
+  const Observations& seen = found.observations;
+  if (!found.effects.empty()) patterns = seen.whitened_patterns();
+  const Discrepancy left(patterns, found.fit.signature);
   const double evidence_left = left.log_evidence(found.fit.residual);
   d.unexplained = missing && evidence_left > left_over_evidence && left.p_value(found.fit.residual) < left_over_p;
   if (!found.effects.empty())
     weigh(d, probability_of_unknown(evidence_left, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
   if (d.unexplained) {
-    found = beside_unknown(o, candidates, std::move(found));
-    describe_left_over(d, o, all, found, options.threads);
+    found = beside_unknown(patterns, candidates, std::move(found));
+    describe_left_over(d, all, found, work.threads);
   }
   d.missing = found.effects;
   d.fit = found.fit;
@@ -209,9 +209,9 @@ Diagnosis diagnose(const Mechanism& m, const Measurements& data, const std::vect
               : d.missing.empty()           ? Verdict::nothing_missing
               : d.indistinguishable.empty() ? Verdict::effect
                                             : Verdict::ambiguous;
-  d.final = quality(o, d.missing, d.fit);
-  d.strained = o.strained(device_with(o, d.missing, d.fit.values));
-  d.set_aside = o.set_aside();
+  d.final = quality(seen, d.missing, d.fit);
+  d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));
+  d.set_aside = seen.set_aside();
   return d;
 }
 

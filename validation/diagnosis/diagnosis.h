@@ -62,15 +62,13 @@ struct Diagnosis {
 struct DiagnosisOptions {
   ComparisonOptions comparison;
   int bootstrap_sets = 1999;  ///< bootstrap.h
-  int threads = 0;
-  Ranks* ranks = nullptr;                      ///< that share the bootstrap; all have the result
-  std::function<void(double share)> progress;  ///< of the work, as far as it can be told; from any thread
 };
 
 /// Whether a mistake of recording took the place of a diagnosis.
 bool is_mistaken(const Diagnosis&);
 
-/// The effects must outlive the result.
-Diagnosis diagnose(const Mechanism&, const Measurements&, const std::vector<Effect>&, const DiagnosisOptions& = {});
+/// The effects must outlive the result. Ranks share the bootstrap alone; all have the result.
+Diagnosis diagnose(const Subject&, const Measurements&, const std::vector<Effect>&, const DiagnosisOptions& = {},
+                   const Work& = {});
 
 }  // namespace deflect

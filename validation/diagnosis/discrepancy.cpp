@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/compare/slides.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/parallel/cases.h"
@@ -22,7 +23,7 @@ MatrixX by_sites(const ResidualStudy& s) {
   std::vector<MatrixX> parts;
   for (const Pattern& p : patterns_of(s)) parts.push_back(rows_of(s.values, p.by_reading));
   if (!s.sites.front().empty()) {
-    const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](static_cast<Eigen::Index>(k)); };
+    const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](as_index(k)); };
     const auto site = [&](std::size_t i, std::size_t k) -> const Site& { return s.sites[s.data->readings[i].pose][k]; };
     const auto add = [&](const auto& e) { parts.push_back(rows_of(s.values, site_columns(s, e))); };
     add([&](std::size_t i, std::size_t k) { return f(i, k) == 0 ? 0 : std::copysign(1, f(i, k)); });
@@ -37,25 +38,24 @@ MatrixX by_sites(const ResidualStudy& s) {
           return f(i, k) * (1 - site(i, k).along) * std::pow(site(i, k).extension / mean, power);
         });
     }
-    if (s.sequence) add([&](std::size_t i, std::size_t k) { return s.heading[i](static_cast<Eigen::Index>(k)); });
+    if (s.sequence) add([&](std::size_t i, std::size_t k) { return s.heading[i](as_index(k)); });
   }
-  return side_by_side(parts, static_cast<Eigen::Index>(s.values.size()));
+  return side_by_side(parts, std::ssize(s.values));
 }
 
 /// At each pose and for each component (b · 6 + c): as much as 10 N do, and what is in proportion to each force.
 PartedColumns by_poses(const ResidualStudy& s) {
-  PartedColumns out(MatrixX(static_cast<Eigen::Index>(s.values.size()), 0));
+  PartedColumns out(MatrixX(std::ssize(s.values), 0));
   out.groups.resize(s.data->poses.size());
   for (std::size_t i = 0; i < s.values.size(); ++i)
-    out.groups[s.data->readings[s.values[i].reading].pose].rows.push_back(static_cast<Eigen::Index>(i));
+    out.groups[s.data->readings[s.values[i].reading].pose].rows.push_back(as_index(i));
   for (GroupColumns& g : out.groups) {
     g.columns = MatrixX::Zero(std::ssize(g.rows), 24);
     for (std::size_t i = 0; i < g.rows.size(); ++i) {
-      const MeasuredValue& v = s.values[static_cast<std::size_t>(g.rows[i])];
+      const MeasuredValue& v = nth(s.values, g.rows[i]);
       const Vector6& load = s.data->readings[v.reading].load;
       for (Eigen::Index b = 0; b < 4; ++b)
-        g.columns(static_cast<Eigen::Index>(i), 6 * b + static_cast<Eigen::Index>(v.component)) =
-            b == 0 ? 10 : load(b - 1);
+        g.columns(as_index(i), 6 * b + as_index(v.component)) = b == 0 ? 10 : load(b - 1);
     }
   }
   return out;
@@ -81,11 +81,10 @@ MatrixX by_loads(const ResidualStudy& s) {
     basis[i].tail<3>() << time * time, time * time * time, warmer * warmer;
   }
   // Columns of all measured components c: basis(reading, b) in column b · 6 + c.
-  MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(s.values.size()), 6 * basis.front().size());
+  MatrixX out = MatrixX::Zero(std::ssize(s.values), 6 * basis.front().size());
   for (std::size_t i = 0; i < s.values.size(); ++i)
     for (Eigen::Index b = 0; b < basis.front().size(); ++b)
-      out(static_cast<Eigen::Index>(i), 6 * b + static_cast<Eigen::Index>(s.values[i].component)) =
-          basis[s.values[i].reading](b);
+      out(as_index(i), 6 * b + as_index(s.values[i].component)) = basis[s.values[i].reading](b);
   return out;
 }
 
@@ -102,9 +101,8 @@ WhitenedFamilies::WhitenedFamilies(const Families& all, std::shared_ptr<const Wh
     // A few columns at a time: their number does not depend on the threads, lest sums do.
     constexpr Eigen::Index some = 16;
     out.columns.resize(family.shared.rows(), family.shared.cols());
-    for_each_case(static_cast<std::size_t>((family.shared.cols() + some - 1) / some), 1, threads, [&](std::size_t k) {
-      const Eigen::Index first = static_cast<Eigen::Index>(k) * some,
-                         count = std::min(some, family.shared.cols() - first);
+    for_each_case(as_size((family.shared.cols() + some - 1) / some), 1, threads, [&](std::size_t k) {
+      const Eigen::Index first = as_index(k) * some, count = std::min(some, family.shared.cols() - first);
       MatrixX X = (*whitening)(family.shared.middleCols(first, count));
       for (auto column : X.colwise()) column *= factor(column.norm());
       out.columns.middleCols(first, count) = X;

@@ -3,33 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "msa/fields/yaml_tree.h"
+#include "validation/json/json_text.h"
 #include "validation/measurement/column_names.h"
 
 namespace deflect {
 namespace {
 
-using nlohmann::json;
+using json = Json;
 
 class Reader {
  public:
-  Reader(const std::string& text, const std::string& origin) : file_(origin) {
-    try {
-      root_ = json::parse(text);
-    } catch (const json::parse_error& e) {
-      throw InputError(
-          fmt::format("{}: not valid JSON at byte {}: give the file of 'deflect diagnose --json'", file_, e.byte));
-    } catch (const json::out_of_range&) {
-      throw InputError(
-          fmt::format("{}: a number is beyond what a double holds: give the file of 'deflect diagnose "
-                      "--json' as it was written",
-                      file_));
-    }
-  }
+  Reader(const std::string& text, const std::string& origin)
+      : file_(origin), root_(parse_json(text, origin, "give the file of 'deflect diagnose --json'")) {}
 
   FoundEffects read() const {
     FoundEffects out;
@@ -147,7 +137,7 @@ EffectInstance instance(const Effect& e, const FoundEffect& found) {
       throw InputError(fmt::format("effect '{}' needs a value: --set {}={:g} ({}; between {:g} and {:g})", e.name,
                                    p.name, p.start, p.about, p.low, p.high));
     require_in_bounds(fmt::format("{}={:g}", p.name, at->second), e, p, at->second);
-    out.values(static_cast<Eigen::Index>(i)) = at->second;
+    out.values(as_index(i)) = at->second;
   }
   return out;
 }

@@ -8,7 +8,8 @@
 #include <memory>
 #include <unsupported/Eigen/NonLinearOptimization>
 
-#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 
 namespace deflect {
 namespace {
@@ -28,35 +29,25 @@ class Problem {
   Problem(const Observations& o, const Hypothesis& h)
       : observations_(o),
         parameters_(parameters_of(h)),
-        prepared_(o.device(), h),
+        prepared_(o.subject(), h),
         wall_(VectorX::Constant(o.null_residual().size(), 1e6 * std::max(1.0, o.null_residual().norm()))) {}
 
   VectorX values(const VectorX& x) const {
     VectorX out(x.size());
-    for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*parameters_[static_cast<std::size_t>(i)], x(i));
+    for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*nth(parameters_, i), x(i));
     return out;
   }
   VectorX coordinates(const VectorX& values) const {
     VectorX out(values.size());
-    for (Eigen::Index i = 0; i < out.size(); ++i)
-      out(i) = coordinate(*parameters_[static_cast<std::size_t>(i)], values(i));
+    for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = coordinate(*nth(parameters_, i), values(i));
     return out;
   }
 
   /// Nothing where the device cannot have these values or cannot be predicted with them.
   std::optional<VectorX> residual(const VectorX& x) const {
-    std::string reason = "the prediction is no number";
-    try {
-      VectorX r = observations_.whitened_residual(prepared_(values(x)));
-      if (r.allFinite()) return r;
-    } catch (const ModelError& e) {
-      reason = e.what();
-    } catch (const NumericalError& e) {
-      reason = e.what();
-    } catch (const InputError& e) {
-      reason = e.what();
-    }
-    if (first_failure_.empty()) first_failure_ = reason;
+    auto predicted = outcome_of([&] { return observations_.whitened_residual(prepared_(values(x))); });
+    if (predicted && predicted->allFinite()) return std::move(predicted.value);
+    if (first_failure_.empty()) first_failure_ = predicted ? "the prediction is no number" : predicted.why;
     return std::nullopt;
   }
 
@@ -96,7 +87,7 @@ struct Functor {
     J = MatrixX::Zero(rows, columns);
     for (Eigen::Index i = 0; i < columns; ++i) {
       // Towards the inside where a bound is near, else away from what cannot be predicted.
-      const EffectParameter& p = *problem->parameters()[static_cast<std::size_t>(i)];
+      const EffectParameter& p = *nth(problem->parameters(), i);
       double step = 1e-5 * std::max(1.0, std::abs(x(i)));
       if (!(value_at(p, x(i) + step) < p.high)) step = -step;
       for (const double each : {step, -step}) {
@@ -116,7 +107,7 @@ struct Functor {
 /// signs are open the value at which it vanishes.
 std::vector<VectorX> starts(const PlacedEffect& e) {
   const std::vector<EffectParameter>& all = e.effect->parameters;
-  std::vector<VectorX> out = {VectorX(static_cast<Eigen::Index>(all.size()))};
+  std::vector<VectorX> out = {VectorX(std::ssize(all))};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const EffectParameter& p = all[i];
     std::vector<double> tries;
@@ -137,7 +128,7 @@ std::vector<VectorX> starts(const PlacedEffect& e) {
     for (const VectorX& begun : out)
       for (const double value : tries) {
         more.push_back(begun);
-        more.back()(static_cast<Eigen::Index>(i)) = value;
+        more.back()(as_index(i)) = value;
       }
     out = std::move(more);
   }
@@ -217,22 +208,20 @@ Fit not_found(std::string why) {
 
 }  // namespace
 
-Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess) try {
-  const Problem problem(o, h);
-  std::optional<Start> start;
-  if (guess) start = best_start(problem, {*guess}, from);
-  if (!start) start = best_start(problem, starts(h.back()), from);
-  if (start) return search_from(problem, *start, o.null_residual().size());
-  return not_found(problem.first_failure());
-} catch (const InputError& e) {  // the effects do not go together in this device
-  return not_found(e.what());
-} catch (const ModelError& e) {
-  return not_found(e.what());
+Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess) {
+  const auto fitted = outcome_of([&] {
+    const Problem problem(o, h);
+    std::optional<Start> start;
+    if (guess) start = best_start(problem, {*guess}, from);
+    if (!start) start = best_start(problem, starts(h.back()), from);
+    return start ? search_from(problem, *start, o.null_residual().size()) : not_found(problem.first_failure());
+  });
+  return fitted ? *fitted : not_found(fitted.why);  // the effects may not go together in this subject
 }
 
 Fit fit_of_all(const Observations& o, const Hypothesis& h, const VectorX& values) {
   if (!h.empty()) {
-    const auto own = static_cast<Eigen::Index>(h.back().effect->parameters.size());
+    const auto own = std::ssize(h.back().effect->parameters);
     return fit(o, h, values.head(values.size() - own), VectorX(values.tail(own)));
   }
   Fit null;
@@ -247,22 +236,22 @@ std::pair<Hypothesis, VectorX> without(Hypothesis h, const VectorX& values, std:
   const auto sizes = [&](std::size_t first, std::size_t last) {
     std::size_t sum = 0;
     for (std::size_t k = first; k < last; ++k) sum += h[k].effect->parameters.size();
-    return static_cast<Eigen::Index>(sum);
+    return as_index(sum);
   };
   const Eigen::Index before = sizes(0, i), after = sizes(i + 1, h.size());
   VectorX rest(before + after);
   rest << values.head(before), values.tail(after);
-  h.erase(h.begin() + static_cast<std::ptrdiff_t>(i));
+  h.erase(h.begin() + as_index(i));
   return {std::move(h), std::move(rest)};
 }
 
-Mechanism device_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
-  return h.empty() ? o.device() : PreparedEffects(o.device(), h)(values);
+Subject subject_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
+  return h.empty() ? o.subject() : PreparedEffects(o.subject(), h)(values);
 }
 
 std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::size_t i) {
   const EffectParameter& p = *parameters_of(h).at(i);
-  const auto at = static_cast<Eigen::Index>(i);
+  const auto at = as_index(i);
   const double x = coordinate(p, f.values(at)), half = 1.959964 * std::sqrt(std::max(0.0, f.covariance(at, at)));
   return {value_at(p, x - half), value_at(p, x + half)};
 }
@@ -270,9 +259,9 @@ std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::siz
 bool runs_to_a_bound(const Hypothesis& h, const Fit& f) {
   const std::vector<EffectParameter>& own = h.back().effect->parameters;
   if (own.size() < 2 || !f.found) return false;
-  const Eigen::Index first = f.values.size() - static_cast<Eigen::Index>(own.size());
+  const Eigen::Index first = f.values.size() - std::ssize(own);
   for (std::size_t i = 0; i < own.size(); ++i) {
-    const double x = coordinate(own[i], f.values(first + static_cast<Eigen::Index>(i)));
+    const double x = coordinate(own[i], f.values(first + as_index(i)));
     const double low = coordinate(own[i], own[i].low), high = coordinate(own[i], own[i].high);
     if (std::min(x - low, high - x) < 1e-3 * (high - low)) return true;
   }

@@ -36,8 +36,8 @@ Fit fit_of_all(const Observations&, const Hypothesis&, const VectorX& values);
 /// What is left when effect i is taken away, and the values of that.
 std::pair<Hypothesis, VectorX> without(Hypothesis, const VectorX& values, std::size_t i);
 
-/// The device with the effects at those values.
-Mechanism device_with(const Observations&, const Hypothesis&, const VectorX& values);
+/// The subject with the effects at those values.
+Subject subject_with(const Observations&, const Hypothesis&, const VectorX& values);
 
 /// 95 % interval of parameter i: in the logarithm for a logarithmic scale, within the bounds.
 std::pair<double, double> interval95(const Hypothesis&, const Fit&, std::size_t i);

@@ -1,6 +1,7 @@
 // What a diagnosis has to explain: the measured numbers with all that is known of their scatter.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "validation/compare/comparison.h"
@@ -14,51 +15,49 @@ namespace deflect {
 /// shape adds is known to a fifth of it, one more nuisance.
 class Observations {
  public:
-  Observations(const Mechanism&, const Measurements&, const ComparisonOptions&);
-  Observations(const Observations&) = delete;
-  Observations& operator=(const Observations&) = delete;
+  Observations(const Subject&, const Measurements&, const ComparisonOptions&, const Work& = {});
 
-  const Mechanism& device() const { return *device_; }
-  const Comparison& comparison() const { return comparison_; }
-  const Uncertainty& uncertainty() const { return uncertainty_; }
-  std::size_t numbers() const { return uncertainty_.count(); }
+  const Subject& subject() const { return subject_; }
+  const Comparison& comparison() const { return *comparison_; }
+  const Uncertainty& uncertainty() const { return *uncertainty_; }
+  std::size_t numbers() const { return uncertainty_->count(); }
   double tolerance_scale() const { return tolerance_scale_; }
   std::size_t set_aside() const;  ///< readings
 
-  /// Measured − predicted, m and rad, of a device, small displacements, the deformed shape's share added (see below).
-  VectorX residual(const Mechanism&) const;
+  /// Measured − predicted, m and rad, of a subject, small displacements, the deformed shape's share added (see below).
+  VectorX residual(const Subject&) const;
   /// Σ^(−1/2) of it.
-  VectorX whitened_residual(const Mechanism&) const;
-  /// The same for a device in which nothing is missing.
+  VectorX whitened_residual(const Subject&) const;
+  /// The same for one in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
-  /// All patterns that a residual can have (discrepancy.h), white by the uncertainty as it is now.
-  std::shared_ptr<const WhitenedFamilies> whitened_patterns();
+  /// All patterns that a residual can have (discrepancy.h), white by the uncertainty. Worked out at every call.
+  std::shared_ptr<const WhitenedFamilies> whitened_patterns() const;
 
   /// Root mean square of measured − predicted, translations, m (or rotations alone, rad), of the readings that are not
   /// set aside.
-  double rmse(const Mechanism&) const;
+  double rmse(const Subject&) const;
   /// The same at each pose with the tolerances learnt at the others (in ten folds at most).
-  double held_out_rmse(const Mechanism&) const;
-  /// Tolerances beyond two declared standard deviations where that device is right, with them.
-  std::vector<std::pair<std::string, double>> strained(const Mechanism&) const;
+  double held_out_rmse(const Subject&) const;
+  /// Tolerances beyond two declared standard deviations where that subject is right, with them.
+  std::vector<std::pair<std::string, double>> strained(const Subject&) const;
 
-  /// From now on what equilibrium in the deformed shape adds to the prediction is that of this device, and readings
+  /// The same where what equilibrium in the deformed shape adds to the prediction is that of this subject, and readings
   /// that are gross outliers to it are set aside, unless they are more than one in twenty.
-  void take_for_granted(const Mechanism&);
+  Observations granted(const Subject&) const;
 
  private:
   void weigh(const std::vector<bool>& aside);
   void count_shape();
 
-  const Mechanism* device_;
-  Comparison comparison_;
-  Families patterns_;
-  std::shared_ptr<const WhitenedFamilies> whitened_patterns_;  // made when first asked for
+  Subject subject_;
+  // Shared by all that grew out of one another.
+  std::shared_ptr<const Comparison> comparison_;
+  std::shared_ptr<const Families> patterns_;
   int threads_;
   PartedColumns A_;  // the last of the shared columns: of the deformed shape
   double tolerance_scale_ = 1;
   std::vector<bool> aside_;
-  Uncertainty uncertainty_;
+  std::shared_ptr<const Uncertainty> uncertainty_;
   std::optional<HeldOut> held_out_;
   VectorX measured_, shape_, null_;
 };

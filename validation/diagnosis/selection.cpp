@@ -16,29 +16,29 @@ constexpr double never = -1e6;
 
 class Search {
  public:
-  Search(Observations& o, const Candidates& c) : o_(o), candidates_(c) { s_.fit = fit_of_all(o, {}, VectorX(0)); }
+  Search(const Observations& o, const Candidates& c) : s_{o, {}, fit_of_all(o, {}, VectorX(0)), {}}, candidates_(c) {}
 
   /// The best candidate beside what is there, if it is called for.
   bool add(const std::vector<Candidate>& all, double least) {
     const auto best = std::max_element(all.begin(), all.end(), less_likely);
     if (best == all.end() || !(best->class_log_odds > least)) return false;
-    if (!s_.effects.empty() && o_.held_out_rmse(device_with(o_, best->hypothesis, best->fit.values)) >
-                                   o_.held_out_rmse(device_with(o_, s_.effects, s_.fit.values)))
+    if (!s_.effects.empty() && seen().held_out_rmse(subject_with(seen(), best->hypothesis, best->fit.values)) >
+                                   seen().held_out_rmse(subject_with(seen(), s_.effects, s_.fit.values)))
       return false;
     grant(best->hypothesis, best->fit.values);
     return true;
   }
 
-  std::vector<Candidate> further() const { return candidates_.beside(s_.effects, s_.fit, called_for); }
+  std::vector<Candidate> further() const { return candidates_.beside(seen(), s_.effects, s_.fit, called_for); }
 
   /// Each effect asked again beside the others; true when one was dropped or exchanged.
   bool reconsider() {
     s_.ties.assign(s_.effects.size(), {});
     for (std::size_t i = 0; i < s_.effects.size(); ++i) {
       const auto [others, values] = without(s_.effects, s_.fit.values, i);
-      const Fit rest = fit_of_all(o_, others, values);
+      const Fit rest = fit_of_all(seen(), others, values);
       if (!rest.found) continue;  // the others need it
-      const std::vector<Candidate> all = candidates_.beside(others, rest, never);
+      const std::vector<Candidate> all = candidates_.beside(seen(), others, rest, never);
       const auto own = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
         return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
       });
@@ -62,14 +62,16 @@ class Search {
   std::size_t size() const { return s_.effects.size(); }
 
  private:
+  const Observations& seen() const { return s_.observations; }
+
   /// By what is the same to these data, then by the entry's own.
   static bool less_likely(const Candidate& a, const Candidate& b) {
     return std::pair(a.class_log_odds, a.log_odds) < std::pair(b.class_log_odds, b.log_odds);
   }
 
   void grant(const Hypothesis& h, const VectorX& values) {
-    o_.take_for_granted(device_with(o_, h, values));
-    Fit again = fit_of_all(o_, h, values);
+    s_.observations = seen().granted(subject_with(seen(), h, values));
+    Fit again = fit_of_all(seen(), h, values);
     if (!again.found) throw std::logic_error("a fit that was found is not found again");
     s_.effects = h;
     s_.fit = std::move(again);
@@ -102,14 +104,13 @@ class Search {
     return group.size() > 1 ? group : std::vector<std::string>{};
   }
 
-  Observations& o_;
-  const Candidates& candidates_;
   Selection s_;
+  const Candidates& candidates_;
 };
 
 }  // namespace
 
-Selection select(Observations& o, const Candidates& candidates, const std::vector<Candidate>& first) {
+Selection select(const Observations& o, const Candidates& candidates, const std::vector<Candidate>& first) {
   Search search(o, candidates);
   if (!search.add(first, 0)) return search.result();
   for (std::size_t round = 0; round < most_rounds; ++round) {

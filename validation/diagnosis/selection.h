@@ -7,8 +7,9 @@
 namespace deflect {
 
 struct Selection {
-  Hypothesis effects;  ///< in the order in which they were added
-  Fit fit;             ///< of all of them; without effects: the null
+  Observations observations;  ///< with what was found granted
+  Hypothesis effects;         ///< in the order in which they were added
+  Fit fit;                    ///< of all of them; without effects: the null
   /// Per effect what does nearly as well in its place: names, best first, where together they have 95 % of the
   /// probability there; empty where one has more than 90 %.
   std::vector<std::vector<std::string>> ties;
@@ -17,7 +18,7 @@ struct Selection {
 /// ln of the odds from which a further effect is called for.
 inline constexpr double called_for = 4;
 
-/// What is right so far becomes granted for the observations (take_for_granted). `first`: candidates of the first step.
-Selection select(Observations&, const Candidates&, const std::vector<Candidate>& first);
+/// What is right so far becomes granted (Observations::granted). `first`: candidates of the first step.
+Selection select(const Observations&, const Candidates&, const std::vector<Candidate>& first);
 
 }  // namespace deflect

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
@@ -23,7 +24,7 @@ std::vector<VectorX> shapes(const std::vector<EffectParameter>& all, const Vecto
     if (!all[i].log) continue;
     for (const double times : {0.01, 0.1, 10.0, 100.0}) {
       out.push_back(start);
-      double& value = out.back()(static_cast<Eigen::Index>(i));
+      double& value = out.back()(as_index(i));
       value = std::clamp(times * value, all[i].low, all[i].high);
     }
   }
@@ -33,7 +34,7 @@ std::vector<VectorX> shapes(const std::vector<EffectParameter>& all, const Vecto
 /// Parameter by parameter where each can vanish alone, else all at the start; parameters that only shape the effect
 /// are tried at several values.
 MatrixX directions(const Observations& o, const PlacedEffect& e, const VectorX& start, bool& shaped) {
-  const PreparedEffects prepared(o.device(), {e});
+  const PreparedEffects prepared(o.subject(), {e});
   const std::vector<EffectParameter>& all = e.effect->parameters;
   const auto change = [&](const VectorX& values) {
     return VectorX(o.whitened_residual(prepared(values)) - o.null_residual());
@@ -46,13 +47,13 @@ MatrixX directions(const Observations& o, const PlacedEffect& e, const VectorX& 
     for (Eigen::Index i = 0; i < start.size(); ++i) {
       VectorX values = start;
       for (Eigen::Index k = 0; k < start.size(); ++k)
-        if (k != i) values(k) = *all[static_cast<std::size_t>(k)].vanishes;
+        if (k != i) values(k) = *nth(all, k).vanishes;
       columns.push_back(change(values));
     }
   else
     for (const VectorX& values : shapes(all, start)) columns.push_back(change(values));
-  MatrixX out(o.null_residual().size(), static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = columns[i];
+  MatrixX out(o.null_residual().size(), std::ssize(columns));
+  for (std::size_t i = 0; i < columns.size(); ++i) out.col(as_index(i)) = columns[i];
   return out;
 }
 
@@ -95,11 +96,11 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
   std::vector<PlacedEffect> places;
   for (const Effect& e : effects) {
     if (is_geometry(e)) continue;
-    const std::vector<PlacedEffect> own = places_of(e, o.device());
+    const std::vector<PlacedEffect> own = places_of(e, o.subject());
     places.insert(places.end(), own.begin(), own.end());
     if (left_out && own.empty()) {
       const auto leg = e.scope == Scope::one_leg ? std::optional(1) : std::nullopt;
-      left_out->push_back({e.name, why_not(e, o.device(), leg).value_or("")});
+      left_out->push_back({e.name, why_not(e, o.subject(), leg).value_or("")});
     }
   }
   std::vector<Signature> all(places.size());
@@ -107,7 +108,7 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
   for_each_case(places.size(), 1, threads, [&](std::size_t i) {
     Signature& s = all[i];
     s.effect = places[i];
-    try {
+    const auto looked_at = outcome_of([&] {
       const VectorX start = start_values(*places[i].effect);
       const MatrixX columns = directions(o, places[i], start, s.shaped);
       s.at_start =
@@ -119,13 +120,10 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
         s.basis = s.shaped ? unit_columns(columns) : orthonormal(columns);
       else
         why[i] = "changes nothing that was measured";
-    } catch (const ModelError& e) {  // the device cannot stand with it
-      why[i] = e.what();
-    } catch (const NumericalError& e) {
-      why[i] = e.what();
-    } catch (const InputError& e) {  // wants what the file does not have, a sequence
-      why[i] = e.what();
-    }
+      return true;
+    });
+    // The subject cannot stand with it, or it wants what the file does not have: a sequence.
+    if (!looked_at) why[i] = looked_at.why;
   });
   for (std::size_t i = 0; left_out && i < all.size(); ++i)
     if (all[i].basis.cols() == 0) left_out->push_back({name_of(places[i]), why[i]});
@@ -197,7 +195,7 @@ MatrixX cosines(const std::vector<Signature>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     Eigen::Index column = 0;
     for (std::size_t k = 0; k < all.size(); ++k) {
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+      out(as_index(i), as_index(k)) =
           cosine(all[i], all[k], inner.block(row, column, all[i].basis.cols(), all[k].basis.cols()));
       column += all[k].basis.cols();
     }

@@ -6,6 +6,8 @@
 #include <set>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/fields/field_writer.h"
 #include "msa/fields/tree_edit.h"
 #include "msa/mechanism/configuration.h"
@@ -121,8 +123,7 @@ void require_there(const YamlNode& tree, const std::string& path, const Mechanis
 bool inside(const std::string& path, const std::string& variation) {
   const std::vector<std::string> at = segments_of(path), outer = segments_of(variation);
   const auto same = [](const std::string& a, const std::string& b) { return a == b || a == "*"; };
-  return outer.size() <= at.size() &&
-         std::equal(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(outer.size()), outer.begin(), same);
+  return outer.size() <= at.size() && std::equal(at.begin(), at.begin() + as_index(outer.size()), outer.begin(), same);
 }
 
 /// An edit of every leg does not reach a leg whose variation holds the whole field: there it is made once more.
@@ -142,13 +143,15 @@ std::vector<std::string> first_alternative(const EffectEdit& edit, const Mechani
   if (edit.paths.size() == 1) return selected(edit.paths.front(), m, leg);
   const YamlNode tree = tree_of(m);
   std::string first_error;
-  for (const std::string& path : edit.paths) try {
+  for (const std::string& path : edit.paths) {
+    auto found = outcome_of<InputError>([&] {
       std::vector<std::string> all = selected(path, m, leg);
       for (const std::string& each : all) require_there(tree, each, m);
       return all;
-    } catch (const InputError& e) {
-      if (first_error.empty()) first_error = e.what();
-    }
+    });
+    if (found) return std::move(*found);
+    if (first_error.empty()) first_error = found.why;
+  }
   throw InputError(first_error);
 }
 

@@ -7,6 +7,8 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "msa/fields/field_reader.h"
 #include "msa/fields/file_kind.h"
@@ -40,11 +42,9 @@ void describe(FieldVisitor& v, EffectParameter& p) {
   if (vanishes == "infinity") {
     p.vanishes = std::numeric_limits<double>::infinity();
   } else if (!vanishes.empty()) {
-    try {
-      p.vanishes = parse_number(vanishes);
-    } catch (const InputError& e) {
-      v.require(false, "vanishes", fmt::format("{}: a number or 'infinity' is wanted", e.what()));
-    }
+    const auto parsed = outcome_of<InputError>([&] { return parse_number(vanishes); });
+    v.require(bool(parsed), "vanishes", fmt::format("{}: a number or 'infinity' is wanted", parsed.why));
+    p.vanishes = parsed.value;
   }
   v.text("about", p.about, Need::required, "what it is, with its unit");
   v.require(p.low < p.high, "high", fmt::format("{} must be above low, {}", p.high, p.low));
@@ -99,7 +99,7 @@ void describe(FieldVisitor& v, Effect& e) {
   v.require(std::all_of(e.name.begin(), e.name.end(), in_name), "name",
             "consists of letters, digits, '_' and '-': it is written on command lines");
   v.text("title", e.title, Need::required, "the effect in one line");
-  std::string scope = scope_names[static_cast<std::size_t>(e.scope)];
+  std::string scope = nth(scope_names, e.scope);
   const std::vector<std::string> scopes{std::begin(scope_names), std::end(scope_names)};
   v.word("scope", scope, {"scope", scopes, std::nullopt}, "what the effect sits in");
   e.scope = static_cast<Scope>(std::find(scopes.begin(), scopes.end(), scope) - scopes.begin());
@@ -126,7 +126,7 @@ class ValueCheck {
   void check(const YamlNode& edits) {
     std::vector<bool> used(effect_.parameters.size());
     for (std::size_t i = 0; i < effect_.edits.size(); ++i) {
-      const char* key = action_keys[static_cast<std::size_t>(effect_.edits[i].action)];
+      const char* key = nth(action_keys, effect_.edits[i].action);
       const YamlNode& value = *edits.children[i].child(key);
       const std::string path = fmt::format("edits.{}.{}", i, key);
       check_names(value, path);
@@ -169,16 +169,18 @@ class ValueCheck {
     Named<Material> materials;
     if (const YamlNode* material = node.child("material")) materials.emplace_back(material->text, Material{});
     std::string first_error;
-    for (const bool rotation : motions_of(paths)) try {
+    for (const bool rotation : motions_of(paths)) {
+      const auto read = outcome_of<InputError>([&] {
         FieldReader reader(effect_.origin, path);
         reader.surroundings.materials = &materials;
         reader.surroundings.rotation = rotation;
         Law law;
         reader.read(node, [&] { describe(reader, law); });
-        return;
-      } catch (const InputError& e) {
-        if (first_error.empty()) first_error = e.what();
-      }
+        return true;
+      });
+      if (read) return;
+      if (first_error.empty()) first_error = read.why;
+    }
     throw InputError(first_error);
   }
 
@@ -219,8 +221,8 @@ Effect parse_effect(std::string_view yaml, const std::string& origin) {
     throw InputError(fmt::format("{}: {}: an effect has no !ours", origin, path));
   e.line = tree.child("name")->line;
   const YamlNode& edits = *tree.child("edits");
-  VectorX start(static_cast<Eigen::Index>(e.parameters.size()));
-  for (std::size_t i = 0; i < e.parameters.size(); ++i) start(static_cast<Eigen::Index>(i)) = e.parameters[i].start;
+  VectorX start(std::ssize(e.parameters));
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) start(as_index(i)) = e.parameters[i].start;
   ValueCheck(e, start).check(edits);
   for (std::size_t i = 0; i < e.edits.size(); ++i) e.edits[i].line = edits.children[i].line;
   for (std::string* text : {&e.title, &e.pages.machine, &e.pages.data, &e.pages.bench, &e.pages.cure, &e.see})

@@ -1,4 +1,5 @@
 #include "validation/effects/effect_value.h"
+#include "msa/base/index.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@ namespace {
 std::size_t index_of(const Effect& e, const std::string& name) {
   const auto at =
       std::find_if(e.parameters.begin(), e.parameters.end(), [&](const EffectParameter& p) { return p.name == name; });
-  return static_cast<std::size_t>(at - e.parameters.begin());
+  return as_size(at - e.parameters.begin());
 }
 
 void mark_used(const YamlNode& node, const Effect& e, std::vector<bool>& used) {
@@ -26,7 +27,7 @@ ParameterUse parameter_use(std::string_view text) {
   if (!text.starts_with('$')) return {};
   const auto name_end = std::find_if(text.begin() + 1, text.end(),
                                      [](unsigned char c) { return !(std::isalnum(c) || c == '_' || c == '-'); });
-  std::string_view unit(name_end, static_cast<std::size_t>(text.end() - name_end));
+  std::string_view unit(name_end, as_size(text.end() - name_end));
   while (unit.starts_with(' ')) unit.remove_prefix(1);
   return {std::string(text.begin() + 1, name_end), std::string(unit)};
 }
@@ -36,7 +37,7 @@ YamlNode filled_in(const YamlNode& value, const Effect& e, const VectorX& values
   const ParameterUse use = parameter_use(value.kind == YamlNode::Kind::scalar ? value.text : "");
   if (const std::size_t i = index_of(e, use.name); i < e.parameters.size()) {
     const std::string& unit = use.unit.empty() ? e.parameters[i].unit : use.unit;
-    out.text = fmt::format("{:.17g}{}{}", values(static_cast<Eigen::Index>(i)), unit.empty() ? "" : " ", unit);
+    out.text = fmt::format("{:.17g}{}{}", values(as_index(i)), unit.empty() ? "" : " ", unit);
     out.quoted = false;
   }
   for (YamlNode& child : out.children) child = filled_in(child, e, values);

@@ -1,4 +1,5 @@
 #include "validation/effects/parameter_unit.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 #include <array>
@@ -64,9 +65,7 @@ std::size_t unit_words(std::string_view name) {
   return count;
 }
 
-std::size_t words(std::string_view name) {
-  return 1 + static_cast<std::size_t>(std::count(name.begin(), name.end(), '_'));
-}
+std::size_t words(std::string_view name) { return 1 + as_size(std::count(name.begin(), name.end(), '_')); }
 
 }  // namespace
 

@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/device_file.h"
 #include "validation/effects/number_walk.h"
 #include "validation/effects/with_effect.h"
@@ -20,21 +22,20 @@ double beside(const EffectParameter& p, double part) {
 
 }  // namespace
 
-PreparedEffects::PreparedEffects(const Mechanism& m, std::vector<PlacedEffect> effects)
-    : bare_(m), effects_(std::move(effects)) {
+PreparedEffects::PreparedEffects(const Subject& subject, std::vector<PlacedEffect> effects)
+    : effects_(std::move(effects)) {
+  if (!subject.machine()) throw InputError(subject.name() + ": effects act on parts of machines, this is a frame");
+  bare_ = *subject.machine();
   for (const PlacedEffect& p : effects_)
     for (const EffectParameter& each : p.effect->parameters) parameters_.push_back(&each);
   with_ = edited_one_by_one(probe(0));  // throws where an effect has no place
-  try {
-    affine_ = find_slots() && slots_hold();
-  } catch (const InputError&) {  // the description cannot hold all values that were tried
-    affine_ = false;
-  }
+  const auto seen = outcome_of<InputError>([&] { return find_slots() && slots_hold(); });
+  affine_ = seen && *seen;  // the description may not hold all values that were tried
 }
 
 VectorX PreparedEffects::probe(double part) const {
   VectorX out(parameter_count());
-  for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = beside(*parameters_[static_cast<std::size_t>(i)], part);
+  for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = beside(*nth(parameters_, i), part);
   return out;
 }
 
@@ -49,7 +50,7 @@ bool PreparedEffects::find_slots() {
     if (there.size() != at_base.size()) return false;
     for (std::size_t k = 0; k < at_base.size(); ++k) {
       if (there[k] == at_base[k]) continue;
-      Slot slot{k, static_cast<std::size_t>(i), 0, at_base[k] / base(i)};
+      Slot slot{k, as_size(i), 0, at_base[k] / base(i)};
       if (!close(slot.factor * moved(i), there[k])) {
         slot.factor = (there[k] - at_base[k]) / (moved(i) - base(i));
         slot.offset = at_base[k] - slot.factor * base(i);
@@ -64,7 +65,7 @@ bool PreparedEffects::find_slots() {
 
 bool PreparedEffects::slots_hold() const {
   const VectorX x = probe(0.71);
-  const std::vector<double> quick = numbers_of((*this)(x)), slow = numbers_of(edited_one_by_one(x));
+  const std::vector<double> quick = numbers_of(machine(x)), slow = numbers_of(edited_one_by_one(x));
   return std::equal(quick.begin(), quick.end(), slow.begin(), slow.end(), close);
 }
 
@@ -72,23 +73,25 @@ Mechanism PreparedEffects::edited_one_by_one(const VectorX& values) const {
   Mechanism out = bare_;
   Eigen::Index from = 0;
   for (const PlacedEffect& p : effects_) {
-    const auto count = static_cast<Eigen::Index>(p.effect->parameters.size());
+    const auto count = std::ssize(p.effect->parameters);
     out = with_effect(out, *p.effect, values.segment(from, count), p.leg);
     from += count;
   }
   return resolved(out);
 }
 
-Mechanism PreparedEffects::operator()(const VectorX& values) const {
+Subject PreparedEffects::operator()(const VectorX& values) const { return machine(values); }
+
+Mechanism PreparedEffects::machine(const VectorX& values) const {
   bool vanishes = false;
   for (std::size_t i = 0; i < parameters_.size(); ++i)
-    vanishes = vanishes || parameters_[i]->vanishes == values(static_cast<Eigen::Index>(i));
+    vanishes = vanishes || parameters_[i]->vanishes == values(as_index(i));
   if (!affine_ || vanishes) return edited_one_by_one(values);
   Mechanism out = with_;
   auto slot = slots_.begin();
   for_each_number(out, [&](std::size_t at, double& x) {
     if (slot == slots_.end() || slot->at != at) return;
-    x = slot->offset + slot->factor * values(static_cast<Eigen::Index>(slot->parameter));
+    x = slot->offset + slot->factor * values(as_index(slot->parameter));
     ++slot;
   });
   return out;

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "validation/effects/edit_paths.h"
@@ -19,7 +21,7 @@ std::vector<Edit> edits_of(const Effect& e, const EffectEdit& edit, const Mechan
   const YamlNode value = parse_yaml(edit.value, e.origin);
   const std::vector<bool> used = parameters_used(value, e);
   for (std::size_t i = 0; i < used.size(); ++i)
-    if (used[i] && e.parameters[i].vanishes == values(static_cast<Eigen::Index>(i))) return {};
+    if (used[i] && e.parameters[i].vanishes == values(as_index(i))) return {};
   static_assert(static_cast<int>(Edit::Action::add) == static_cast<int>(EffectEdit::Action::add) &&
                 static_cast<int>(Edit::Action::multiply) == static_cast<int>(EffectEdit::Action::multiply));
   const std::string text = flow_yaml(filled_in(value, e, values));
@@ -30,7 +32,7 @@ std::vector<Edit> edits_of(const Effect& e, const EffectEdit& edit, const Mechan
 }
 
 void check_arguments(const Effect& e, const Mechanism& m, const VectorX& values, std::optional<int> leg) {
-  if (static_cast<std::size_t>(values.size()) != e.parameters.size())
+  if (as_size(values.size()) != e.parameters.size())
     throw InputError(fmt::format("effect '{}' has {} parameter{}, {} values are given", e.name, e.parameters.size(),
                                  e.parameters.size() == 1 ? "" : "s", values.size()));
   const int legs = leg_count(m);
@@ -50,11 +52,9 @@ std::string line_of(const Effect& e, std::size_t edit) {
 /// Edit by edit, so that a message can name the line that does not fit, and an edit can reach into the one before.
 Mechanism one_by_one(const Mechanism& m, const Effect& e, const VectorX& values, std::optional<int> leg) {
   Mechanism so_far = m;
-  for (std::size_t i = 0; i < e.edits.size(); ++i) try {
-      so_far = edited_in_turn(so_far, edits_of(e, e.edits[i], so_far, values, leg));
-    } catch (const InputError& error) {
-      throw InputError(line_of(e, i) + error.what());
-    }
+  for (std::size_t i = 0; i < e.edits.size(); ++i)
+    so_far = told_at<InputError>([&] { return line_of(e, i); },
+                                 [&] { return edited_in_turn(so_far, edits_of(e, e.edits[i], so_far, values, leg)); });
   return so_far;
 }
 
@@ -71,51 +71,52 @@ std::string reason(const std::string& message, const Effect& e) {
 }  // namespace
 
 std::string site_of(const PlacedEffect& p) {
-  return p.leg ? fmt::format("leg {}", *p.leg) : scope_names[static_cast<std::size_t>(p.effect->scope)];
+  return p.leg ? fmt::format("leg {}", *p.leg) : nth(scope_names, p.effect->scope);
 }
 
 VectorX start_values(const Effect& e) {
-  VectorX out(static_cast<Eigen::Index>(e.parameters.size()));
-  for (std::size_t i = 0; i < e.parameters.size(); ++i) out(static_cast<Eigen::Index>(i)) = e.parameters[i].start;
+  VectorX out(std::ssize(e.parameters));
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) out(as_index(i)) = e.parameters[i].start;
   return out;
 }
 
 Mechanism with_effect(const Mechanism& m, const Effect& e, const VectorX& values, std::optional<int> leg) {
   check_arguments(e, m, values, leg);
-  try {
+  auto at_once = outcome_of<InputError>([&] {
     std::vector<Edit> all;
     for (const EffectEdit& edit : e.edits)
       for (Edit& each : edits_of(e, edit, m, values, leg)) all.push_back(std::move(each));
     return edited_in_turn(m, all);
-  } catch (const InputError&) {
-    return one_by_one(m, e, values, leg);
-  }
+  });
+  return at_once ? std::move(*at_once) : one_by_one(m, e, values, leg);
 }
 
 Mechanism with_effect(const Mechanism& m, const EffectInstance& i) {
   return with_effect(m, *i.effect, i.values, i.leg);
 }
 
-std::optional<std::string> why_not(const Effect& e, const Mechanism& m, std::optional<int> leg) {
+std::optional<std::string> why_not(const Effect& e, const Subject& subject, std::optional<int> leg) {
+  if (!subject.machine()) return "acts on parts of machines: this is a frame";
+  const Mechanism& m = *subject.machine();
   std::optional<std::string> first;
   const bool each = e.scope == Scope::one_leg && !leg;
-  for (int i = 1; i <= (each ? leg_count(m) : 1); ++i) try {
-      with_effect(m, e, start_values(e), each ? std::optional(i) : leg);
-      return std::nullopt;
-    } catch (const InputError& error) {
-      if (!first) first = reason(error.what(), e);
-    }
+  for (int i = 1; i <= (each ? leg_count(m) : 1); ++i) {
+    const auto with =
+        outcome_of<InputError>([&] { return with_effect(m, e, start_values(e), each ? std::optional(i) : leg); });
+    if (with) return std::nullopt;
+    if (!first) first = reason(with.why, e);
+  }
   return first;
 }
 
-std::vector<PlacedEffect> places_of(const Effect& e, const Mechanism& m) {
+std::vector<PlacedEffect> places_of(const Effect& e, const Subject& subject) {
   std::vector<PlacedEffect> out;
   if (e.scope != Scope::one_leg) {
-    if (!why_not(e, m)) out.push_back({&e, {}});
+    if (!why_not(e, subject)) out.push_back({&e, {}});
     return out;
   }
-  for (int leg = 1; leg <= leg_count(m); ++leg)
-    if (!why_not(e, m, leg)) out.push_back({&e, leg});
+  for (int leg = 1; leg <= subject.legs(); ++leg)
+    if (!why_not(e, subject, leg)) out.push_back({&e, leg});
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "msa/mechanism/description.h"
 #include "validation/effects/effect.h"
+#include "validation/subject/subject.h"
 
 namespace deflect {
 
@@ -36,23 +37,26 @@ VectorX start_values(const Effect&);
 Mechanism with_effect(const Mechanism&, const Effect&, const VectorX& values, std::optional<int> leg = {});
 Mechanism with_effect(const Mechanism&, const EffectInstance&);
 
-/// Why the effect has no place in the mechanism (or in that leg of it), in words; nothing when it has one.
-std::optional<std::string> why_not(const Effect&, const Mechanism&, std::optional<int> leg = {});
+/// Why the effect has no place in the subject (or in that leg of it), in words; nothing when it has one.
+std::optional<std::string> why_not(const Effect&, const Subject&, std::optional<int> leg = {});
 
-/// Every place the effect has in the mechanism: one, or one per leg, or none.
-std::vector<PlacedEffect> places_of(const Effect&, const Mechanism&);
+/// Every place the effect has in the subject: one, or one per leg, or none.
+std::vector<PlacedEffect> places_of(const Effect&, const Subject&);
 
-/// Effects placed in one mechanism, for many values in a row: the edits are worked out once, so that a call only sets
+/// Effects placed in one subject, for many values in a row: the edits are worked out once, so that a call only sets
 /// numbers, and the legs are resolved (see `resolved` in device_file.h): for models, not for files.
 class PreparedEffects {
  public:
   /// The effects must outlive this object. InputError as with_effect.
-  PreparedEffects(const Mechanism&, std::vector<PlacedEffect>);
+  PreparedEffects(const Subject&, std::vector<PlacedEffect>);
 
   /// Values of all effects one after the other.
-  Mechanism operator()(const VectorX& values) const;
+  Subject operator()(const VectorX& values) const;
 
-  Eigen::Index parameter_count() const { return static_cast<Eigen::Index>(parameters_.size()); }
+  /// The machine with the effects.
+  Mechanism machine(const VectorX& values) const;
+
+  Eigen::Index parameter_count() const { return std::ssize(parameters_); }
 
  private:
   /// Number `at` of the description is offset + factor · parameter.

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 
 namespace deflect {
 namespace {
@@ -34,7 +35,7 @@ class MemoryFile {
       const ssize_t n = ::write(fd_, text.data(), text.size());
       if (n < 0 && errno == EINTR) continue;
       if (n < 0) fail();
-      text.remove_prefix(static_cast<std::size_t>(n));
+      text.remove_prefix(as_size(n));
     }
     ::lseek(fd_, 0, SEEK_SET);
   }
@@ -47,7 +48,7 @@ class MemoryFile {
       const ssize_t n = ::read(fd_, block.data(), block.size());
       if (n < 0 && errno == EINTR) continue;
       if (n <= 0) return text;
-      text.append(block.data(), static_cast<std::size_t>(n));
+      text.append(block.data(), as_size(n));
     }
   }
 

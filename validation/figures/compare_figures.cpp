@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/figures/load_curves.h"
 #include "validation/figures/residual_map.h"
 #include "validation/figures/sheet.h"
@@ -29,7 +30,7 @@ Figure residuals(const Comparison& c, const FigureStyle& style) {
       const double r = um * cells[i].residual(k);
       data += fmt::format(" {}", r);
       if (!std::isfinite(r)) continue;
-      measured[static_cast<std::size_t>(k)] = true;
+      nth(measured, k) = true;
       low(k) = std::min(low(k), r), high(k) = std::max(high(k), r);
     }
     data += "\n";
@@ -43,8 +44,8 @@ Figure residuals(const Comparison& c, const FigureStyle& style) {
   for (int k = 0; k < 3; ++k) {
     const double room = 0.06 * std::max(high(k) - low(k), 1e-6);
     low(k) -= room, high(k) += room;
-    tics[static_cast<std::size_t>(k)] = s.tics(low(k), high(k), height, true);
-    widest.letters = std::max(widest.letters, tics[static_cast<std::size_t>(k)].letters);
+    nth(tics, k) = s.tics(low(k), high(k), height, true);
+    widest.letters = std::max(widest.letters, nth(tics, k).letters);
   }
   const double left = s.left_of(widest), w = s.width() - left - 4;
   s.put("set xrange [0:{}]\nset xtics {}\nset xzeroaxis lt 1 lc rgb '#404040' lw 0.7", 1.01 * std::max(last, 1.0),
@@ -52,13 +53,13 @@ Figure residuals(const Comparison& c, const FigureStyle& style) {
   const auto below =
       static_cast<int>(std::find(measured.rbegin(), measured.rend(), true).base() - measured.begin()) - 1;
   for (int k = 0; k < 3; ++k) {
-    if (!measured[static_cast<std::size_t>(k)]) continue;
+    if (!nth(measured, k)) continue;
     s.panel(left, y, w, height);
     s.axis_names(k == below ? "reading" : "", fmt::format("{} ({})", unit.components[k], unit.micro), widest);
     s.put("set object 1 rectangle from graph 0,first {} to graph 1,first {} fc rgb '#E8E8E8' fs solid noborder behind",
           -band, band);
-    s.put("set yrange [{}:{}]\nset ytics {}\nset format x '{}'", low(k), high(k),
-          tics[static_cast<std::size_t>(k)].step, k == below ? "%g" : "");
+    s.put("set yrange [{}:{}]\nset ytics {}\nset format x '{}'", low(k), high(k), nth(tics, k).step,
+          k == below ? "%g" : "");
     s.plot(fmt::format("plot $data using 1:{} with points pt 7 ps 0.3 lc rgb '{}'", k + 2, colours[k]));
     y += height + gap;
   }
@@ -114,69 +115,99 @@ struct CurveRange {
   double low_force = 0, high_force = 0, low = 0, high = 0;
 };
 
-std::optional<Figure> elongation(const Comparison& c, const FigureStyle& style) {
-  if (c.curves.empty()) return std::nullopt;
-  Sheet s("elongation", style, 160);
-  CurveRange ranges[2];
-  bool there[2] = {false, false};
-  for (std::size_t k = 0; k < c.curves.size(); ++k) {
-    const ElongationCurve& curve = c.curves[k];
-    CurveRange& r = ranges[curve.rotation];
-    there[curve.rotation] = true;
-    s.put("$c{} << EOD", k);
+/// A panel for each site's curve with its band of one standard deviation. Curves of a kind, forces or moments, share
+/// their range; where both are there every panel has numbers of its own.
+class ElongationPanels {
+ public:
+  ElongationPanels(const Comparison& c, const FigureStyle& style)
+      : c_(c), s_("elongation", style, 160), columns_(std::min<std::size_t>(s_.narrow() ? 2 : 3, c.curves.size())) {}
+
+  Figure figure() {
+    for (std::size_t k = 0; k < c_.curves.size(); ++k) put_curve(k);
+    mixed_ = there_[0] && there_[1];
+    measure();
+    s_.put("set multiplot\nunset key");
+    top_ = s_.heading("Force–elongation of the sites beyond the model", {subjects(c_)}) + 0.6 * s_.line();
+    s_.put("set xzeroaxis lt 1 lc rgb '#808080' lw 0.6\nset yzeroaxis lt 1 lc rgb '#808080' lw 0.6");
+    for (std::size_t k = 0; k < c_.curves.size(); ++k) draw(k);
+    s_.put("unset multiplot");
+    const std::size_t rows = (c_.curves.size() + columns_ - 1) / columns_;
+    const double height = top_ + static_cast<double>(rows) * row_ + (mixed_ ? 0 : s_.below() - 1.1 * s_.line());
+    return s_.figure(height, caption());
+  }
+
+ private:
+  /// The data of a curve; its kind's range grows with it.
+  void put_curve(std::size_t k) {
+    const ElongationCurve& curve = c_.curves[k];
+    CurveRange& r = ranges_[curve.rotation];
+    there_[curve.rotation] = true;
+    s_.put("$c{} << EOD", k);
     for (std::size_t i = 0; i < curve.force.size(); ++i) {
       const double e = um * curve.elongation[i], deviation = um * curve.deviation[i];
-      s.put("{} {} {}", curve.force[i], e, deviation);
+      s_.put("{} {} {}", curve.force[i], e, deviation);
       r.low_force = std::min(r.low_force, curve.force[i]), r.high_force = std::max(r.high_force, curve.force[i]);
       r.low = std::min(r.low, e - deviation), r.high = std::max(r.high, e + deviation);
     }
-    s.put("EOD");
+    s_.put("EOD");
   }
-  const bool mixed = there[0] && there[1];
-  const std::size_t columns = std::min<std::size_t>(s.narrow() ? 2 : 3, c.curves.size()),
-                    rows = (c.curves.size() + columns - 1) / columns;
-  const double n = static_cast<double>(columns), guess = s.width() / n - 4 * s.line();
-  Tics across[2], up[2];
-  for (const int kind : {0, 1}) {
-    CurveRange& r = ranges[kind];
-    const double x = std::max(0.05 * (r.high_force - r.low_force), 1e-6), z = std::max(0.06 * (r.high - r.low), 1e-6);
-    r.low_force -= x, r.high_force += x, r.low -= z, r.high += z;
-    across[kind] = s.tics(r.low_force, r.high_force, guess);
-    up[kind] = s.tics(r.low, r.high, std::min(guess, 45.0), true);
+
+  /// Room around the curves, tics and the size of a panel.
+  void measure() {
+    const double n = static_cast<double>(columns_), guess = s_.width() / n - 4 * s_.line();
+    for (const int kind : {0, 1}) {
+      CurveRange& r = ranges_[kind];
+      const double x = std::max(0.05 * (r.high_force - r.low_force), 1e-6), z = std::max(0.06 * (r.high - r.low), 1e-6);
+      r.low_force -= x, r.high_force += x, r.low -= z, r.high += z;
+      across_[kind] = s_.tics(r.low_force, r.high_force, guess);
+      up_[kind] = s_.tics(r.low, r.high, std::min(guess, 45.0), true);
+    }
+    widest_ = {1, std::max(there_[0] ? up_[0].letters : 1, there_[1] ? up_[1].letters : 1)};
+    left_ = s_.left_of(widest_), gap_ = mixed_ ? left_ : 1.2 * s_.line();
+    w_ = (s_.width() - left_ - 4 - gap_ * (n - 1)) / n, h_ = std::clamp(0.97 * w_, 6 * s_.line(), 45.0);
+    row_ = h_ + (mixed_ ? s_.below() : 0) + 1.1 * s_.line();
   }
-  const Tics widest{1, std::max(there[0] ? up[0].letters : 1, there[1] ? up[1].letters : 1)};
-  const double left = s.left_of(widest), gap = mixed ? left : 1.2 * s.line();
-  const double w = (s.width() - left - 4 - gap * (n - 1)) / n, h = std::clamp(0.97 * w, 6 * s.line(), 45.0);
-  s.put("set multiplot\nunset key");
-  const double top = s.heading("Force–elongation of the sites beyond the model", {subjects(c)}) + 0.6 * s.line();
-  const double row = h + (mixed ? s.below() : 0) + 1.1 * s.line();
-  s.put("set xzeroaxis lt 1 lc rgb '#808080' lw 0.6\nset yzeroaxis lt 1 lc rgb '#808080' lw 0.6");
-  for (std::size_t k = 0; k < c.curves.size(); ++k) {
-    const bool turn = c.curves[k].rotation, bottom = mixed || k + columns >= c.curves.size(),
-               first = mixed || k % columns == 0;
-    s.panel(left + static_cast<double>(k % columns) * (w + gap), top + static_cast<double>(k / columns) * row, w, h);
-    s.axis_names(bottom ? (turn ? "moment (Nm)" : "force (N)") : "",
-                 first ? (turn ? "turn (µrad)" : "elongation (µm)") : "", widest);
-    s.put("set xrange [{}:{}]\nset xtics {}", ranges[turn].low_force, ranges[turn].high_force, across[turn].step);
-    s.put("set yrange [{}:{}]\nset ytics {}", ranges[turn].low, ranges[turn].high, up[turn].step);
-    s.put("set format x '{}'\nset format y '{}'", bottom ? "%g" : "", first ? "%g" : "");
-    s.put("set label 50 {} at graph 0.04,0.92 noenhanced", gnuplot_quote(c.curves[k].site));
-    s.plot(fmt::format(
+
+  void draw(std::size_t k) {
+    const bool turn = c_.curves[k].rotation, bottom = mixed_ || k + columns_ >= c_.curves.size(),
+               first = mixed_ || k % columns_ == 0;
+    s_.panel(left_ + static_cast<double>(k % columns_) * (w_ + gap_), top_ + static_cast<double>(k / columns_) * row_,
+             w_, h_);
+    s_.axis_names(bottom ? (turn ? "moment (Nm)" : "force (N)") : "",
+                  first ? (turn ? "turn (µrad)" : "elongation (µm)") : "", widest_);
+    s_.put("set xrange [{}:{}]\nset xtics {}", ranges_[turn].low_force, ranges_[turn].high_force, across_[turn].step);
+    s_.put("set yrange [{}:{}]\nset ytics {}", ranges_[turn].low, ranges_[turn].high, up_[turn].step);
+    s_.put("set format x '{}'\nset format y '{}'", bottom ? "%g" : "", first ? "%g" : "");
+    s_.put("set label 50 {} at graph 0.04,0.92 noenhanced", gnuplot_quote(c_.curves[k].site));
+    s_.plot(fmt::format(
         "plot $c{0} using 1:($2-$3):($2+$3) with filledcurves fc rgb '#C6DBEF', '' using 1:2 with linespoints "
         "pt 7 ps 0.4 lw 1.4 lc rgb '#0072B2'",
         k));
   }
-  s.put("unset multiplot");
-  const double height = top + static_cast<double>(rows) * row + (mixed ? 0 : s.below() - 1.1 * s.line());
-  const std::string what =
-      !there[1]   ? "elongation (µm, positive where pulled longer) over the force (N, positive where it pulls)"
-      : !there[0] ? "turn (µrad) over the moment (Nm), both positive about the joint's axis"
-                  : "elongation (µm) over the force (N), or turn (µrad) over the moment (Nm)";
-  return s.figure(
-      height, fmt::format("What the sites ({} to {}) yield beyond the model, read off the residuals without a law: {}. "
-                          "Band: one standard deviation. {} {} {}",
-                          c.curves.front().site, c.curves.back().site, what, axes_sentence(c), data_sentence(c),
-                          noise_sentence(c)));
+
+  std::string caption() const {
+    const std::string what =
+        !there_[1]   ? "elongation (µm, positive where pulled longer) over the force (N, positive where it pulls)"
+        : !there_[0] ? "turn (µrad) over the moment (Nm), both positive about the joint's axis"
+                     : "elongation (µm) over the force (N), or turn (µrad) over the moment (Nm)";
+    return fmt::format(
+        "What the sites ({} to {}) yield beyond the model, read off the residuals without a law: {}. "
+        "Band: one standard deviation. {} {} {}",
+        c_.curves.front().site, c_.curves.back().site, what, axes_sentence(c_), data_sentence(c_), noise_sentence(c_));
+  }
+
+  const Comparison& c_;
+  Sheet s_;
+  std::size_t columns_;
+  CurveRange ranges_[2];  // of forces and of moments, as all pairs below
+  bool there_[2] = {false, false}, mixed_ = false;
+  Tics across_[2], up_[2], widest_;
+  double left_ = 0, gap_ = 0, w_ = 0, h_ = 0, top_ = 0, row_ = 0;  // mm
+};
+
+std::optional<Figure> elongation(const Comparison& c, const FigureStyle& style) {
+  if (c.curves.empty()) return std::nullopt;
+  return ElongationPanels(c, style).figure();
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/frame/file/frame_build.h"
 #include "msa/frame/file/member_axes.h"
 #include "msa/frame/mechanism/build.h"
@@ -14,7 +16,7 @@
 #include "msa/mechanism/chain_kinematics.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/place.h"
-#include "validation/theories/theories.h"
+#include "msa/mechanism/stand.h"
 
 namespace deflect {
 namespace {
@@ -50,7 +52,7 @@ void set_motions(MachineDrawing& d, const frame::Model& model, std::size_t point
     DrawnMotion drawn{describe(model, motion), {}};
     double largest = 0;
     for (std::size_t i = 0; i < points; ++i) {
-      drawn.displacements.push_back(motion.u.segment<3>(static_cast<Eigen::Index>(6 * i)));
+      drawn.displacements.push_back(motion.u.segment<3>(as_index(6 * i)));
       largest = std::max(largest, drawn.displacements.back().norm());
     }
     const double scale = largest > 0 ? shown_motion * d.size() / largest : 0;
@@ -211,11 +213,8 @@ MachineDrawing open_legs(const Mechanism& m, const std::string& why) {
 }
 
 /// Where the device stands at home, or why it does not.
-std::optional<Configuration> at_home(const Mechanism& m, std::string& why) try {
-  return configure(m, home_pose(m));
-} catch (const ModelError& e) {
-  why = e.what();
-  return {};
+Outcome<Configuration> at_home(const Mechanism& m) {
+  return outcome_of<ModelError>([&] { return configure(m, home_pose(m)); });
 }
 
 }  // namespace
@@ -231,10 +230,9 @@ double MachineDrawing::size() const {
 }
 
 MachineDrawing drawing_of(const Mechanism& m, const std::optional<Configuration>& at) {
-  std::string why;
-  const std::optional<Configuration> c = at ? at : at_home(m, why);
-  if (!c && !std::holds_alternative<Chains>(m.kinematics)) throw ModelError(why);
-  MachineDrawing d = c ? standing(m, *c) : open_legs(m, why);
+  const Outcome<Configuration> c = at ? Outcome<Configuration>{at, ""} : at_home(m);
+  if (!c && !std::holds_alternative<Chains>(m.kinematics)) throw ModelError(c.why, c.cause);
+  MachineDrawing d = c ? standing(m, *c) : open_legs(m, c.why);
   d.name = m.name;
   d.about = m.about;
   return d;
@@ -252,12 +250,12 @@ MachineDrawing drawing_of(const frame::FrameDescription& f) {
     DrawnMember m;
     m.part = name;
     m.material = member.material;
-    m.start = f.nodes[static_cast<std::size_t>(built.nodes.find(member.from))].second;
-    m.end = f.nodes[static_cast<std::size_t>(built.nodes.find(member.to))].second;
+    m.start = nth(f.nodes, built.nodes.find(member.from)).second;
+    m.end = nth(f.nodes, built.nodes.find(member.to)).second;
     m.axes = frame::member_axes(m.end - m.start, member.y_axis);
     set_section(m, f.sections, member.section);
     for (int e = built.first_element[i]; e < built.first_element[i + 1]; ++e) {
-      const frame::Beam& beam = built.model.beams[static_cast<std::size_t>(e)];
+      const frame::Beam& beam = nth(built.model.beams, e);
       d.lines.push_back({beam.a, beam.b, static_cast<int>(i)});
     }
     d.members.push_back(std::move(m));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "msa/base/index.h"
 #include "validation/figures/drawing_results.h"
 #include "validation/report/text.h"
 
@@ -94,7 +95,7 @@ class DrawnView {
   std::string series_;
 };
 
-Vector3 point_of(const MachineDrawing& d, int i) { return d.points[static_cast<std::size_t>(i)]; }
+Vector3 point_of(const MachineDrawing& d, int i) { return nth(d.points, i); }
 
 /// Members as wide as their sections, rigid pieces as thin lines.
 void draw_bodies(DrawnView& v, const MachineDrawing& d, const std::string& id) {
@@ -167,7 +168,7 @@ void draw_motion(DrawnView& v, const MachineDrawing& d, const std::string& id) {
   std::vector<std::pair<Vector3, Vector3>> moved;
   const std::vector<Vector3>& u = d.motions.front().displacements;
   for (const MachineDrawing::Line& line : d.lines) {
-    const auto a = static_cast<std::size_t>(line.a), b = static_cast<std::size_t>(line.b);
+    const auto a = as_size(line.a), b = as_size(line.b);
     moved.emplace_back(d.points[a] + u[a], d.points[b] + u[b]);
   }
   v.lines("moved" + id, moved);

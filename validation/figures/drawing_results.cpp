@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "msa/mechanism/joint_table.h"
-#include "validation/report/json_text.h"
+#include "validation/json/json_text.h"
 #include "validation/report/text.h"
 
 namespace deflect {

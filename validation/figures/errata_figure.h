@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "validation/figures/gnuplot.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/errata_prices.h"
+#include "validation/studies/validate.h"
 
 namespace deflect {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 
 #include "validation/figures/sheet.h"
@@ -20,6 +21,7 @@ struct Look {
   int filled, open;  // gnuplot's point types
 };
 constexpr Look looks[] = {{"#0072B2", "#8CC4E8", 7, 6}, {"#D55E00", "#F3B587", 5, 4}, {"#009E73", "#8ED6BF", 13, 12}};
+constexpr int further_shapes[] = {2, 1, 3};  // of the third theory and those after it: crosses, alike on all axes
 constexpr const char* capitals[] = {"X", "Y", "Z"};
 
 constexpr double right = 3, panel = 0.3875, strip = 0.1375;  // mm; heights in widths of the figure
@@ -46,10 +48,14 @@ double along(const ValidationRow& row, const Vector6& displacement) {
   return value;
 }
 
-/// Columns of the inline data: point's index, then analytic, MSA, as printed, residual (in `unit`) for x, y,
-/// z.
-enum class Series { analytic, msa, as_printed, residual };
-int column(Series series, std::size_t axis) { return 2 + 3 * static_cast<int>(series) + static_cast<int>(axis); }
+/// Columns of the inline data for x, y, z each: point's index, then every theory, as printed, and the residuals of the
+/// first theory against each other one (in `unit`).
+struct Columns {
+  std::size_t theories;
+  std::size_t as_printed() const { return theories; }
+  std::size_t residual(std::size_t theory) const { return theories + theory; }
+  int number(std::size_t series, std::size_t axis) const { return static_cast<int>(2 + 3 * series + axis); }
+};
 
 struct Data {
   std::string block;
@@ -58,37 +64,53 @@ struct Data {
   Unit unit = units[0];
 };
 
-Data data_of(const std::vector<PointRows>& points) {
+void widen(Data& data, const ValidationRow& row) {
+  const double first = along(row, row.displacements.front());
+  for (const Vector6& displacement : row.displacements) {
+    const double value = along(row, displacement);
+    data.residual = std::max(data.residual, std::abs(first - value));
+    data.low = std::min(data.low, value);
+    data.high = std::max(data.high, value);
+  }
+  if (!row.as_printed) return;
+  data.low = std::min(data.low, along(row, *row.as_printed));
+  data.high = std::max(data.high, along(row, *row.as_printed));
+}
+
+/// The cells of one series at one point; NaN where there is no row, or the series has no number.
+template <class Value>
+std::string cells(const PointRows& p, const Value& value) {
+  std::string text;
+  for (const ValidationRow* row : p.rows) {
+    const std::optional<double> v = row ? value(*row) : std::nullopt;
+    text += v ? fmt::format(" {}", *v) : " NaN";
+  }
+  return text;
+}
+
+Data data_of(const std::vector<PointRows>& points, std::size_t theories) {
   Data data;
   for (const PointRows& p : points)
-    for (const ValidationRow* row : p.rows) {
-      if (!row) continue;
-      const double analytic = along(*row, row->analytic), msa = along(*row, row->msa);
-      data.residual = std::max(data.residual, std::abs(analytic - msa));
-      data.low = std::min({data.low, analytic, msa});
-      data.high = std::max({data.high, analytic, msa});
-      if (!row->as_printed) continue;
-      data.low = std::min(data.low, along(*row, *row->as_printed));
-      data.high = std::max(data.high, along(*row, *row->as_printed));
-    }
+    for (const ValidationRow* row : p.rows)
+      if (row) widen(data, *row);
   const auto readable = [&](const Unit& unit) { return data.residual * unit.per_mm >= 1; };
   const auto found = std::find_if(std::begin(units), std::end(units), readable);
   data.unit = data.residual == 0 ? units[2] : found == std::end(units) ? *std::prev(found) : *found;
 
+  using Value = std::optional<double>;
   data.block = "$data << EOD\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
-    std::string analytic, msa, as_printed, residual;
-    for (const ValidationRow* row : points[i].rows) {
-      const auto cell = [](bool there, double value) {
-        return there ? fmt::format(" {}", value) : std::string(" NaN");
-      };
-      const double a = row ? along(*row, row->analytic) : 0, m = row ? along(*row, row->msa) : 0;
-      analytic += cell(row, a);
-      msa += cell(row, m);
-      as_printed += cell(row && row->as_printed, row && row->as_printed ? along(*row, *row->as_printed) : 0);
-      residual += cell(row, (a - m) * data.unit.per_mm);
-    }
-    data.block += fmt::format("{}{}{}{}{}\n", i, analytic, msa, as_printed, residual);
+    data.block += fmt::format("{}", i);
+    for (std::size_t t = 0; t < theories; ++t)
+      data.block += cells(points[i], [&](const ValidationRow& r) -> Value { return along(r, r.displacements[t]); });
+    data.block += cells(points[i], [&](const ValidationRow& r) -> Value {
+      return r.as_printed ? Value(along(r, *r.as_printed)) : std::nullopt;
+    });
+    for (std::size_t t = 1; t < theories; ++t)
+      data.block += cells(points[i], [&](const ValidationRow& r) -> Value {
+        return (along(r, r.displacements[0]) - along(r, r.displacements[t])) * data.unit.per_mm;
+      });
+    data.block += "\n";
   }
   data.block += "EOD\n";
   return data;
@@ -124,33 +146,38 @@ bool there(const std::vector<PointRows>& points, std::size_t axis, bool as_print
 
 /// How a series is drawn.
 struct Stroke {
-  const char *colour, *name;
+  std::size_t series;  ///< of Columns
+  const char* colour;
+  std::string name;
   int shape;
   double marker, width;
 };
 
-std::vector<Stroke> strokes_of(const std::vector<PointRows>& points, std::size_t axis) {
+std::vector<Stroke> strokes_of(const Theories& theories, const std::vector<PointRows>& points, std::size_t axis) {
   const Look& look = looks[axis];
   std::vector<Stroke> out;
-  if (there(points, axis, true)) out.push_back({look.light, "As printed", look.filled, 0.7, 0.8});
+  if (there(points, axis, true))
+    out.push_back({Columns{theories.size()}.as_printed(), look.light, "As printed", look.filled, 0.7, 0.8});
   if (!there(points, axis, false)) return out;
-  out.push_back({look.colour, "Analytical", look.filled, 0.5, 0.8});
-  out.push_back({look.colour, "MSA", look.open, 1.1, 0.8});
+  for (std::size_t t = 0; t < theories.size(); ++t) {
+    const int shape = t == 0 ? look.filled : t == 1 ? look.open : further_shapes[(t - 2) % std::size(further_shapes)];
+    out.push_back({t, look.colour, theories[t]->legend, shape, t == 0 ? 0.5 : 1.1, 0.8});
+  }
   return out;
 }
 
 /// A column for each axis, where the paper is too narrow a row for each, or all below each other; y below it.
-double put_legend(Sheet& s, const std::vector<PointRows>& points, double top, double left) {
+double put_legend(Sheet& s, const Theories& theories, const std::vector<PointRows>& points, double top, double left) {
   const double line = s.line(), mark = 0.6 * line, entry = mark + 1 + 0.9 * s.text_mm(12) + 2;
   std::size_t most = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) most = std::max(most, strokes_of(points, axis).size());
+  for (std::size_t axis = 0; axis < 3; ++axis) most = std::max(most, strokes_of(theories, points, axis).size());
   const double room = s.width() - left;
   const bool beside = 3 * entry <= room + 2, in_rows = !beside && static_cast<double>(most) * entry <= room + 2;
   double foot = top;
   std::size_t at = 0;
   int tag = 60;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::vector<Stroke> strokes = strokes_of(points, axis);
+    const std::vector<Stroke> strokes = strokes_of(theories, points, axis);
     for (std::size_t i = 0; i < strokes.size(); ++i, ++at, ++tag) {
       const std::size_t column = beside ? axis : in_rows ? i : 0, row = beside ? i : in_rows ? axis : at;
       const double x = left + static_cast<double>(column) * entry,
@@ -179,98 +206,142 @@ std::string poses_text(const std::vector<PointRows>& points) {
   return out;
 }
 
+/// "analytic − MSA", "analytic − others".
+std::string residual_name(const Theories& theories) {
+  return theories[0]->title + " − " + (theories.size() == 2 ? theories[1]->title : "others");
+}
+
 std::string caption_of(const Validation& validation, const std::vector<PointRows>& points, const Data& data) {
+  std::vector<std::string> captions;
+  for (const Theory* theory : validation.theories) captions.push_back(theory->caption);
+  const std::string below =
+      validation.theories.size() < 2
+          ? ""
+          : fmt::format("Below: {} along the force in {}, at most {:.2g} {}. ", residual_name(validation.theories),
+                        data.unit.name, data.residual * data.unit.per_mm, data.unit.name);
   return fmt::format(
       "Linear deflection of the tool point of {} along a force of {} on it in x, y and z in turn (mm, base axes, "
       "positive "
-      "along a positive force) at {} points of the workspace ({}), by the closed form (analytical) and by matrix "
-      "structural analysis (MSA){}. Below: analytic − MSA along the force in {}, at most {:.2g} {}. Computed, no "
-      "measurements and no noise.",
-      validation.device, load_text(validation), points.size(), poses_text(points),
+      "along a positive force) at {} points of the workspace ({}), by {}{}. {}Computed, no measurements and no noise.",
+      validation.device, load_text(validation), points.size(), poses_text(points), fmt::join(captions, " and by "),
       has_as_printed(validation) ? ", and by the closed form with " + errata_text(validation) + " as printed" : "",
-      data.unit.name, data.residual * data.unit.per_mm, data.unit.name);
+      below);
 }
+
+/// The deflections above, what the theories differ by below.
+class Fig10 {
+ public:
+  Fig10(const Validation& v, const FigureStyle& style)
+      : v_(v), points_(by_point(v)), data_(data_of(points_, v.theories.size())), s_("fig10", style, 160) {}
+
+  Figure draw() {
+    const double line = s_.line();
+    measure();
+    s_.put("{}set multiplot\nunset key", data_.block);
+    s_.put("set xrange [-0.5:{}]", static_cast<double>(points_.size()) - 0.5);
+    std::vector<std::string> notes = {"Force at the tool point, its displacement along the force, base axes"};
+    if (has_as_printed(v_)) notes.push_back("As printed: analytic theory with " + errata_text(v_));
+    const double x = s_.narrow() ? 2 : left_;
+    const double keys = s_.heading(
+        fmt::format("{}: linear deflection under {} in x, y, z", clip(v_.device, 50), load_text(v_)), notes, x);
+    const double top = put_legend(s_, v_.theories, points_, keys + 0.2 * line, x) + 0.6 * line;
+    double foot = top + std::max(panel * s_.width(), 10 * line);
+    deflections(top, foot - top);
+    for (int tag = 60; tag < 90; ++tag) s_.put("unset label {}", tag);
+    if (v_.theories.size() > 1) {
+      const double below = foot + 1.25 * line, height = std::max(strip * s_.width(), 5.5 * line);
+      residuals(below, height);
+      foot = below + height;
+    }
+    s_.put("unset multiplot");
+    return s_.figure(foot + 1.9 * line + tics_.height, caption_of(v_, points_, data_));
+  }
+
+ private:
+  /// Two per cent of margin, so that no marker sits on the frame; whole steps at both ends.
+  void measure() {
+    const double span = data_.high > data_.low ? data_.high - data_.low : 1;
+    step_ = nice_below(span / 3.5);
+    low_ = std::floor((data_.low - 0.02 * span) / step_) * step_;
+    high_ = std::ceil((data_.high + 0.02 * span) / step_) * step_;
+    residual_ = data_.residual > 0 ? data_.residual * data_.unit.per_mm : 1;
+    widest_ = {step_, 1};
+    for (const double number : {low_, high_, -nice_below(residual_)})
+      widest_.letters = std::max(widest_.letters, letters(fmt::format("{:.6g}", number)));
+    left_ = s_.left_of(widest_) + s_.line();  // two lines name the strip's axis
+    w_ = s_.width() - left_ - right;
+    const double room = w_ / static_cast<double>(points_.size());
+    tics_ = labels_of(points_, room, s_);
+    // Markers shrink where points are many; x, y, z stand side by side, or those that coincide would hide each other.
+    marker_ = std::clamp(room / 8, 0.35, 1.0);
+    aside_ = std::min(2.5 / room, 0.22);
+  }
+
+  std::string place(std::size_t series, std::size_t axis) const {
+    return fmt::format("$data using ($1{:+.4f}):{}", aside_ * (static_cast<double>(axis) - 1),
+                       columns().number(series, axis));
+  }
+
+  Columns columns() const { return {v_.theories.size()}; }
+
+  void deflections(double top, double height) {
+    const bool alone = v_.theories.size() < 2;
+    s_.panel(left_, top, w_, height);
+    s_.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", low_, high_, step_);
+    s_.put("set xtics ({})", alone ? tics_.labels : tics_.bare);
+    s_.axis_names("", s_.narrow() ? "deflection (mm)" : "deflection along the load (mm)", widest_);
+    if (alone) name_points(top + height);
+    std::vector<std::string> series;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const Stroke& stroke : strokes_of(v_.theories, points_, axis))
+        series.push_back(fmt::format("{} with points lc rgb '{}' pt {} ps {:.2f} lw {} notitle",
+                                     place(stroke.series, axis), stroke.colour, stroke.shape, stroke.marker * marker_,
+                                     stroke.width));
+    s_.plot(fmt::format("plot {}", fmt::join(series, ", \\\n  ")));
+  }
+
+  void name_points(double foot) {
+    s_.label("point of the workspace", left_ + w_ / 2, foot + 1.2 * s_.line() + tics_.height, "center");
+  }
+
+  /// Points of the workspace are no series: no line joins them. Residuals are stems.
+  void residuals(double top, double height) {
+    const double line = s_.line(), foot = top + height;
+    s_.panel(left_, top, w_, height);
+    s_.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", -1.15 * residual_, 1.15 * residual_,
+           nice_below(residual_));
+    s_.put("set xtics ({}) {} noenhanced", tics_.labels, tics_.turned ? "rotate by 90 right" : "norotate");
+    s_.put("set xzeroaxis lt 1 lc rgb '#404040' lw 0.7");
+    const double name = left_ - s_.left_of(widest_) - 0.4 * line;
+    s_.label(residual_name(v_.theories), name, foot - height / 2, "center rotate by 90");
+    s_.label(fmt::format("({})", data_.unit.name), name + line, foot - height / 2, "center rotate by 90");
+    name_points(foot);
+    std::vector<std::string> stems;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!there(points_, axis, false)) continue;
+      for (std::size_t t = 1; t < v_.theories.size(); ++t) {
+        const std::string where = place(columns().residual(t), axis);
+        const int shape = t == 1 ? looks[axis].filled : further_shapes[(t - 2) % std::size(further_shapes)];
+        stems.push_back(
+            fmt::format("{} with impulses lc rgb '{}' lw {:.2f}", where, looks[axis].colour, 1.2 * marker_));
+        stems.push_back(
+            fmt::format("{} with points lc rgb '{}' pt {} ps {:.2f}", where, looks[axis].colour, shape, 0.5 * marker_));
+      }
+    }
+    s_.plot(fmt::format("plot {}", fmt::join(stems, ", \\\n  ")));
+  }
+
+  const Validation& v_;
+  std::vector<PointRows> points_;
+  Data data_;
+  Sheet s_;
+  PointLabels tics_;
+  Tics widest_;
+  double step_ = 1, low_ = 0, high_ = 1, residual_ = 1, left_ = 0, w_ = 0, marker_ = 1, aside_ = 0;
+};
 
 }  // namespace
 
-Figure fig10(const Validation& validation, const FigureStyle& style) {
-  const std::vector<PointRows> points = by_point(validation);
-  const Data data = data_of(points);
-  const bool printed = has_as_printed(validation);
-  Sheet s("fig10", style, 160);
-  const double line = s.line(), panel_height = std::max(panel * s.width(), 10 * line),
-               strip_height = std::max(strip * s.width(), 5.5 * line);
-
-  // Two per cent of margin, so that no marker sits on the frame; whole steps at both ends.
-  const double span = data.high > data.low ? data.high - data.low : 1;
-  const double step = nice_below(span / 3.5);
-  const double low = std::floor((data.low - 0.02 * span) / step), high = std::ceil((data.high + 0.02 * span) / step);
-  const double residual = data.residual > 0 ? data.residual * data.unit.per_mm : 1;
-  const double residual_step = nice_below(residual);
-  Tics widest{step, 1};
-  for (const double number : {low * step, high * step, -residual_step})
-    widest.letters = std::max(widest.letters, letters(fmt::format("{:.6g}", number)));
-  const double left = s.left_of(widest) + line;  // two lines name the strip's axis
-  const double w = s.width() - left - right, room = w / static_cast<double>(points.size());
-  const PointLabels tics = labels_of(points, room, s);
-
-  // Markers shrink where points are many; x, y, z stand side by side, or those that coincide would hide each
-  // other.
-  const double marker = std::clamp(room / 8, 0.35, 1.0);
-  const double aside = std::min(2.5 / room, 0.22);
-  const auto place = [&](Series series, std::size_t axis) {
-    return fmt::format("$data using ($1{:+.4f}):{}", aside * (static_cast<double>(axis) - 1), column(series, axis));
-  };
-  s.put("{}set multiplot\nunset key", data.block);
-  s.put("set xrange [-0.5:{}]", static_cast<double>(points.size()) - 0.5);
-  std::vector<std::string> notes = {"Force at the tool point, its displacement along the force, base axes"};
-  if (printed) notes.push_back("As printed: analytic theory with " + errata_text(validation));
-  const double keys = s.heading(
-      fmt::format("{}: linear deflection under {} in x, y, z", clip(validation.device, 50), load_text(validation)),
-      notes, s.narrow() ? 2 : left);
-
-  const double top = put_legend(s, points, keys + 0.2 * line, s.narrow() ? 2 : left) + 0.6 * line;
-
-  s.panel(left, top, w, panel_height);
-  s.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", low * step, high * step, step);
-  s.put("set xtics ({})", tics.bare);
-  s.axis_names("", s.narrow() ? "deflection (mm)" : "deflection along the load (mm)", widest);
-  std::vector<std::string> series;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::vector<Stroke> strokes = strokes_of(points, axis);
-    for (std::size_t i = 0; i < strokes.size(); ++i) {
-      const Stroke& stroke = strokes[i];
-      const Series which = strokes.size() == 3 && i == 0 ? Series::as_printed
-                           : i + 1 == strokes.size()     ? Series::msa
-                                                         : Series::analytic;
-      series.push_back(fmt::format("{} with points lc rgb '{}' pt {} ps {:.2f} lw {} notitle", place(which, axis),
-                                   stroke.colour, stroke.shape, stroke.marker * marker, stroke.width));
-    }
-  }
-  s.plot(fmt::format("plot {}", fmt::join(series, ", \\\n  ")));
-
-  // Points of the workspace are no series: no line joins them. Residuals are stems.
-  const double below = top + panel_height + 1.25 * line, foot = below + strip_height;
-  for (int tag = 60; tag < 69; ++tag) s.put("unset label {}", tag);
-  s.panel(left, below, w, strip_height);
-  s.put("set yrange [{:.12g}:{:.12g}]\nset ytics {:.12g}", -1.15 * residual, 1.15 * residual, residual_step);
-  s.put("set xtics ({}) {} noenhanced", tics.labels, tics.turned ? "rotate by 90 right" : "norotate");
-  s.put("set xzeroaxis lt 1 lc rgb '#404040' lw 0.7");
-  const double name = left - s.left_of(widest) - 0.4 * line;
-  s.label("analytic − MSA", name, foot - strip_height / 2, "center rotate by 90");
-  s.label(fmt::format("({})", data.unit.name), name + line, foot - strip_height / 2, "center rotate by 90");
-  s.label("point of the workspace", left + w / 2, foot + 0.6 * line + tics.height + 0.6 * line, "center");
-  std::vector<std::string> stems;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!there(points, axis, false)) continue;
-    const std::string where = place(Series::residual, axis);
-    stems.push_back(fmt::format("{} with impulses lc rgb '{}' lw {:.2f}", where, looks[axis].colour, 1.2 * marker));
-    stems.push_back(fmt::format("{} with points lc rgb '{}' pt {} ps {:.2f}", where, looks[axis].colour,
-                                looks[axis].filled, 0.5 * marker));
-  }
-  s.plot(fmt::format("plot {}", fmt::join(stems, ", \\\n  ")));
-  s.put("unset multiplot");
-  return s.figure(foot + 1.9 * line + tics.height, caption_of(validation, points, data));
-}
+Figure fig10(const Validation& validation, const FigureStyle& style) { return Fig10(validation, style).draw(); }
 
 }  // namespace deflect

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "validation/figures/gnuplot.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/validate.h"
 
 namespace deflect {
 

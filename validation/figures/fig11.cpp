@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "msa/base/index.h"
 #include "validation/figures/contours.h"
 #include "validation/figures/map_scale.h"
 #include "validation/figures/map_words.h"
@@ -47,9 +48,9 @@ std::vector<Slice> slices_of(const MapGrid& g) {
 
 const MapPose& at(const StiffnessMap& map, const Slice& s, int i, int j) {
   std::array<int, 3> index{};
-  index[static_cast<std::size_t>(s.across)] = i;
-  index[static_cast<std::size_t>(s.up)] = j;
-  index[static_cast<std::size_t>(s.fixed())] = s.at;
+  nth(index, s.across) = i;
+  nth(index, s.up) = j;
+  nth(index, s.fixed()) = s.at;
   return map.poses[map.options.grid.index(index[0], index[1], index[2])];
 }
 
@@ -57,7 +58,7 @@ const MapPose& at(const StiffnessMap& map, const Slice& s, int i, int j) {
 /// are reached. Nothing where no cell is whole.
 std::optional<GridField> surface(const StiffnessMap& map, const Slice& s, int axis) {
   const MapGrid& g = map.options.grid;
-  const int n = g.counts[static_cast<std::size_t>(s.across)], m = g.counts[static_cast<std::size_t>(s.up)];
+  const int n = nth(g.counts, s.across), m = nth(g.counts, s.up);
   const auto steps = [](int count) { return std::max(1, static_cast<int>(std::ceil(60.0 / (count - 1)))); };
   const int fine_x = steps(n), fine_y = steps(m);
   const auto log_value = [&](int i, int j) {
@@ -98,8 +99,8 @@ std::optional<GridField> surface(const StiffnessMap& map, const Slice& s, int ax
 /// The mean positions of the slides that occur in a slice; briefly for narrow paper.
 std::string slide_text(const StiffnessMap& map, const Slice& s, bool brief) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (int j = 0; j < map.options.grid.counts[static_cast<std::size_t>(s.up)]; ++j)
-    for (int i = 0; i < map.options.grid.counts[static_cast<std::size_t>(s.across)]; ++i)
+  for (int j = 0; j < nth(map.options.grid.counts, s.up); ++j)
+    for (int i = 0; i < nth(map.options.grid.counts, s.across); ++i)
       if (const MapPose& p = at(map, s, i, j); p.reached()) {
         low = std::min(low, p.slide_mean_mm);
         high = std::max(high, p.slide_mean_mm);
@@ -200,7 +201,7 @@ class Slices {
   void draw(std::size_t r, int axis, double y) {
     const Slice& s = slices_[r];
     const double h = height_of(s), x = left_ + axis * (panel_ + gap_);
-    const std::size_t series = 3 * r + static_cast<std::size_t>(axis);
+    const std::size_t series = 3 * r + as_size(axis);
     script_.panel(x, y, panel_, h);
     script_.put("set xrange [{:.8g}:{:.8g}]\nset yrange [{:.8g}:{:.8g}]", g_.low_mm(s.across), g_.high_mm(s.across),
                 g_.low_mm(s.up), g_.high_mm(s.up));

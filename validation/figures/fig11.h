@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "validation/figures/gnuplot.h"
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/figures/sheet.h"
 #include "validation/report/compare_words.h"
 #include "validation/report/text.h"
@@ -90,9 +91,9 @@ std::optional<Figure> secant(const Comparison& c, const FigureStyle& style) {
       std::sort(order.begin(), order.end(),
                 [&](std::size_t a, std::size_t b) { return cells[a].load(k) < cells[b].load(k); });
       for (const std::size_t i : order)
-        curves[static_cast<std::size_t>(k)].add(cells[i].load(k), micro * cells[i].measured(k) / cells[i].load(k),
-                                                micro * cells[i].predicted(k) / cells[i].load(k));
-      if (!order.empty()) curves[static_cast<std::size_t>(k)].data += "\n";
+        nth(curves, k).add(cells[i].load(k), micro * cells[i].measured(k) / cells[i].load(k),
+                           micro * cells[i].predicted(k) / cells[i].load(k));
+      if (!order.empty()) nth(curves, k).data += "\n";
     }
   const std::string per = fmt::format("{}/{}", unit.micro, unit.load);
   return panels(
@@ -111,7 +112,7 @@ std::optional<Figure> loops(const Comparison& c, const FigureStyle& style) {
   const std::vector<ReadingCells> cells = cells_of(c);
   const auto worst = std::max_element(c.by_pose.begin(), c.by_pose.end(),
                                       [](const Errors& a, const Errors& b) { return a.rmse < b.rmse; });
-  const PoseGroup& group = c.study.data->poses[static_cast<std::size_t>(worst - c.by_pose.begin())];
+  const PoseGroup& group = nth(c.study.data->poses, worst - c.by_pose.begin());
   std::vector<std::size_t> order = group.readings;
   if (c.study.sequence)
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -125,8 +126,7 @@ std::optional<Figure> loops(const Comparison& c, const FigureStyle& style) {
       continue;
     for (const std::size_t i : order)
       if ((loaded(i) || (cells[i].pure && cells[i].load.isZero(0))) && std::isfinite(cells[i].measured(k)))
-        curves[static_cast<std::size_t>(k)].add(cells[i].load(k), micro * cells[i].measured(k),
-                                                micro * cells[i].predicted(k));
+        nth(curves, k).add(cells[i].load(k), micro * cells[i].measured(k), micro * cells[i].predicted(k));
   }
   return panels(
       c, curves,

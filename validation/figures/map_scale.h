@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "validation/figures/sheet.h"
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect {
 

@@ -13,11 +13,12 @@ namespace deflect {
 namespace {
 
 std::string theory_text(const StiffnessMap& map) {
-  std::string theory = fmt::format("{} theory", shown_theory(map));
-  if (map.options.analytic && map.options.msa) {
+  std::string theory = fmt::format("{} theory", shown_theory(map).title);
+  if (const Theories& all = map.options.theories; all.size() > 1) {
     double largest = 1e-15;
     for (const MapPose& p : map.poses) largest = std::max(largest, p.relative_difference);
-    theory += fmt::format(", MSA within {:.0e} of it", std::pow(10, std::ceil(std::log10(largest))));
+    const std::string others = titles_of(Theories(all.begin() + 1, all.end()));
+    theory += fmt::format(", {} within {:.0e} of it", others, std::pow(10, std::ceil(std::log10(largest))));
   }
   return theory;
 }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "validation/figures/sheet.h"
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect {
 

@@ -27,9 +27,10 @@ struct Box {
 
 Box box_of(const Comparison& c) {
   Vector3 low = Vector3::Constant(INFINITY), high = -low;
-  for (const Configuration& machine : c.study.machines) {
-    low = low.cwiseMin(mm * machine.pose.p_WT);
-    high = high.cwiseMax(mm * machine.pose.p_WT);
+  for (std::size_t p = 0; p < c.study.standing->poses(); ++p) {
+    const Vector3 at = mm * c.study.standing->tool(p).p_W;
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
   }
   const double least = std::max(0.1 * (high - low).maxCoeff(), 1.0);
   for (int k = 0; k < 3; ++k) {
@@ -122,10 +123,12 @@ class SignedMap {
       if (any_[0][k] || any_[1][k]) components_.push_back(k);
   }
 
+  Vector3 at_mm(std::size_t pose) const { return mm * c_.study.standing->tool(pose).p_W; }
+
   std::string range(int k) const {
     double low = INFINITY, high = -INFINITY;
-    for (const Configuration& m : c_.study.machines)
-      low = std::min(low, mm * m.pose.p_WT(k)), high = std::max(high, mm * m.pose.p_WT(k));
+    for (std::size_t p = 0; p < c_.study.standing->poses(); ++p)
+      low = std::min(low, at_mm(p)(k)), high = std::max(high, at_mm(p)(k));
     return low == high ? fmt::format("{:.4g}", low + 0.0) : fmt::format("{:.4g} … {:.4g}", low + 0.0, high + 0.0);
   }
 
@@ -133,12 +136,11 @@ class SignedMap {
   void put_data() {
     std::vector<std::size_t> order(values_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return c_.study.machines[a].pose.p_WT.y() > c_.study.machines[b].pose.p_WT.y();
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return at_mm(a).y() > at_mm(b).y(); });
     s_.put("{}$data << EOD", frame_of(box_));
     for (const std::size_t p : order) {
-      const Vector3 at = mm * c_.study.machines[p].pose.p_WT, foot(at.x(), at.y(), box_.low.z());
+      const Vector3 at = at_mm(p), foot(at.x(), at.y(), box_.low.z());
       std::string row = fmt::format("{:.5g} {:.5g} {:.5g}", box_.across(at), box_.up(at), box_.up(foot));
       for (const Vector3& v : {values_[p].along, values_[p].mean})
         for (int k = 0; k < 3; ++k) row += fmt::format(" {:.5g}", um * v(k));

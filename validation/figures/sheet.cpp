@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "msa/base/index.h"
 #include "validation/report/text.h"
 
 namespace deflect {

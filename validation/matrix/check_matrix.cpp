@@ -7,6 +7,7 @@
 #include <array>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/base/motion_text.h"
 
 namespace deflect {
@@ -28,7 +29,7 @@ std::string words(const Vector6& twist, double unit_m, double length) {
 }
 
 MatrixDiagnosis asymmetric(const Matrix6& K, const JudgedMatrix& m) {
-  const auto i = static_cast<std::size_t>(m.row), j = static_cast<std::size_t>(m.column);
+  const auto i = as_size(m.row), j = as_size(m.column);
   MatrixDiagnosis d{"asymmetric",
                     fmt::format("it is not symmetric in {} of 15 pairs, most at {} {} ({:.6g}) against {} {} ({:.6g})",
                                 m.asymmetric_pairs, wrench_axes[i], displacement_axes[j], K(m.row, m.column),
@@ -73,11 +74,11 @@ std::vector<MatrixDiagnosis> motions(const MatrixCheckOptions& o, const JudgedMa
   }
   for (std::size_t j = 0; j < m.passive.size(); ++j)
     if (!m.passive[j].passes())
-      list.push_back({"passive_joint_resists",
-                      fmt::format("it resists passive joint {}, {}, with {:.3g} of its stiffness", j + 1,
-                                  words(o.passive_twists->values.col(static_cast<Eigen::Index>(j)), o.unit_m, length),
-                                  *m.passive[j].measured),
-                      "release the passive joints: K − K J (Jᵀ K J)⁻¹ Jᵀ K; check point, order and units of J"});
+      list.push_back(
+          {"passive_joint_resists",
+           fmt::format("it resists passive joint {}, {}, with {:.3g} of its stiffness", j + 1,
+                       words(o.passive_twists->values.col(as_index(j)), o.unit_m, length), *m.passive[j].measured),
+           "release the passive joints: K − K J (Jᵀ K J)⁻¹ Jᵀ K; check point, order and units of J"});
   return list;
 }
 

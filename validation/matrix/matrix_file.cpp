@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/outcome.h"
 #include "msa/base/units.h"
+#include "validation/json/json_text.h"
 #include "validation/matrix/matrix_text.h"
 
 namespace deflect {
@@ -48,15 +48,15 @@ Number number(const MatrixRow& row, std::size_t column, const MatrixText& layout
   };
   if (cell.empty()) refuse("the cell is empty; a finite number is wanted, 0 where there is no stiffness");
   Number n;
-  try {
-    n.value = parse_number(text);
-  } catch (const InputError&) {
+  const auto parsed = outcome_of<InputError>([&] { return parse_number(text); });
+  if (parsed)
+    n.value = *parsed;
+  else
     refuse(number_like(cell) && text.find_first_of("0123456789") == text.npos
                ? fmt::format("'{}' is not a finite number; it usually comes from the inverse of a singular matrix, or "
                              "from 0/0 at a singular pose",
                              cell)
                : fmt::format("'{}' is not a finite number; write one such as -12.5 or 1.25e-3", cell));
-  }
   if (std::abs(n.value) > largest_number) refuse(fmt::format("'{}' is too large for a stiffness", cell));
   const std::size_t e = std::min(text.find('e'), text.size());
   const std::string_view mantissa = std::string_view(text).substr(0, e);
@@ -151,13 +151,8 @@ PrintedMatrix numbers_of(MatrixText layout, const std::string& file) {
 }
 
 /// The member "analytic.stiffness" of a JSON object, printed again: with the digits that it has.
-std::string json_member(const std::string& text, const std::string& key, const std::string& file) {
-  nlohmann::json at;
-  try {
-    at = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& e) {
-    throw InputError(fmt::format("{}: not JSON: {}; JSON has no NaN and no infinity", file, e.what()));
-  }
+std::string json_member(const Json& root, const std::string& key, const std::string& file) {
+  Json at = root;
   for (std::size_t from = 0; from <= key.size();) {
     const std::size_t to = std::min(key.find('.', from), key.size());
     const std::string name = key.substr(from, to - from);
@@ -169,7 +164,7 @@ std::string json_member(const std::string& text, const std::string& key, const s
                                    file, name, key,
                                    known.empty() ? "nothing" : fmt::format("{}", fmt::join(known, ", "))));
     }
-    at = nlohmann::json(at[name]);
+    at = Json(at[name]);
     from = to + 1;
   }
   if (!at.is_array()) throw InputError(fmt::format("{}: '{}' is not a matrix; name it with --key", file, key));
@@ -206,8 +201,11 @@ PrintedMatrix read_stiffness(const std::filesystem::path& path, const MatrixConv
   const std::string text = read_text(path);
   const auto first = text.find_first_not_of(" \t\r\n");
   const bool is_json = first != text.npos && text[first] == '{';
-  const bool is_result = is_json && (key == "analytic.stiffness" || key == "msa.stiffness");
-  PrintedMatrix K = is_json ? parse_matrix(json_member(text, key, path.string()), path.string() + " (" + key + ")")
+  const Json json = is_json ? parse_json(text, path.string(), "JSON has no NaN and no infinity") : Json();
+  // What `solve --json` wrote has its own units and order; older results do not say their kind.
+  const bool is_result = is_json && (json.contains("kind") ? json["kind"] == "solve"
+                                                           : key == "analytic.stiffness" || key == "msa.stiffness");
+  PrintedMatrix K = is_json ? parse_matrix(json_member(json, key, path.string()), path.string() + " (" + key + ")")
                             : parse_matrix(text, path.string());
   if (K.values.rows() != 6 || K.values.cols() != 6)
     throw InputError(fmt::format("{}: the matrix is {}×{}, a stiffness is 6×6; {}", path.string(), K.values.rows(),

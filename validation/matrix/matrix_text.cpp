@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "msa/base/units.h"
 
 namespace deflect {
@@ -165,11 +166,9 @@ MatrixText lines_laid_out(std::string_view text, const std::string& file) {
     const std::string_view words = stripped(line);
     if (words.empty() || (words.ends_with('=') && lines.empty())) continue;  // "K ="
     if (words.ends_with('*') && lines.empty()) {
-      try {
-        out.factor = parse_number(words.substr(0, words.size() - 1));
-      } catch (const InputError& e) {
-        refuse(file, number + 1, fmt::format("{} as a factor of the matrix", e.what()));
-      }
+      const auto factor = outcome_of<InputError>([&] { return parse_number(words.substr(0, words.size() - 1)); });
+      if (!factor) refuse(file, number + 1, fmt::format("{} as a factor of the matrix", factor.why));
+      out.factor = *factor;
       continue;
     }
     lines.emplace_back(line, number + 1);

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "msa/base/motion_text.h"
 #include "validation/matrix/elastic_structure.h"
 #include "validation/matrix/matrix_checks.h"
@@ -120,10 +121,8 @@ std::optional<Undone> worst_pair_copied(const Matrix6& K, const MistakeContext&)
   Eigen::Index a = 0, b = 0;
   (w - w.transpose()).cwiseAbs().maxCoeff(&a, &b);
   const Eigen::Index i = std::min(a, b), j = std::max(a, b);
-  Undone out{
-      K, fmt::format(": {} {} is {:.6g}, {} {} is {:.6g}", wrench_axes[static_cast<std::size_t>(i)],
-                     displacement_axes[static_cast<std::size_t>(j)], K(i, j), wrench_axes[static_cast<std::size_t>(j)],
-                     displacement_axes[static_cast<std::size_t>(i)], K(j, i))};
+  Undone out{K, fmt::format(": {} {} is {:.6g}, {} {} is {:.6g}", nth(wrench_axes, i), nth(displacement_axes, j),
+                            K(i, j), nth(wrench_axes, j), nth(displacement_axes, i), K(j, i))};
   out.K(j, i) = K(i, j);
   return out;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/stand.h"
 #include "validation/measurement/measurement_columns.h"
 
@@ -25,13 +26,16 @@ std::vector<Configuration> configure_all(const Mechanism& mechanism, const Measu
   if (m.by_joints()) check_joints(mechanism, m);
   std::vector<Configuration> configurations;
   configurations.reserve(m.poses.size());
-  for (const PoseGroup& group : m.poses) try {
-      configurations.push_back(m.by_joints() ? configure_joints(mechanism, group.joints)
-                                             : configure(mechanism, pose_from(group.pose_mm_deg)));
-    } catch (const ModelError& e) {
-      throw ModelError(fmt::format("{}:{}: column 'pose': '{}': {}", m.origin,
-                                   m.readings.at(group.readings.front()).line, excerpt(group.label), e.what()));
-    }
+  for (const PoseGroup& group : m.poses) {
+    const auto place = [&] {
+      return fmt::format("{}:{}: column 'pose': '{}': ", m.origin, m.readings.at(group.readings.front()).line,
+                         excerpt(group.label));
+    };
+    configurations.push_back(told_at<ModelError>(place, [&] {
+      return m.by_joints() ? configure_joints(mechanism, group.joints)
+                           : configure(mechanism, pose_from(group.pose_mm_deg));
+    }));
+  }
   return configurations;
 }
 

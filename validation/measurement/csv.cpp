@@ -10,6 +10,8 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "validation/measurement/column_names.h"
 
@@ -226,7 +228,7 @@ class CsvParser {
       double ignored = 0;
       return finite_number(view(cell), ignored) || decimal_comma_number(view(cell), ignored);
     };
-    if (2 * std::count_if(cells_.begin(), cells_.end(), is_a_number) > static_cast<std::ptrdiff_t>(cells_.size()))
+    if (2 * std::count_if(cells_.begin(), cells_.end(), is_a_number) > as_index(cells_.size()))
       refuse(start_, fmt::format("there is no header: this line holds numbers; write the names of the columns above "
                                  "it{}",
                                  table_.comments_.empty()
@@ -252,8 +254,7 @@ class CsvParser {
     const std::size_t begin = at_, line = line_;
     if (hash) {  // quotes in a comment mean nothing
       const std::size_t end = std::min(bytes().find('\n', at_), bytes().size());
-      if (std::count(bytes().begin() + static_cast<std::ptrdiff_t>(at_),
-                     bytes().begin() + static_cast<std::ptrdiff_t>(end), '"') > 0) {
+      if (std::count(bytes().begin() + as_index(at_), bytes().begin() + as_index(end), '"') > 0) {
         table_.comments_.push_back(line_);
         skip_line();
         return true;
@@ -299,7 +300,7 @@ class CsvParser {
 std::optional<std::size_t> CsvTable::column(std::string_view name) const {
   const auto found = std::find(header_.begin(), header_.end(), name);
   if (found == header_.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - header_.begin());
+  return as_size(found - header_.begin());
 }
 
 std::string_view CsvTable::text(std::size_t row, std::size_t column) const {
@@ -309,11 +310,11 @@ std::string_view CsvTable::text(std::size_t row, std::size_t column) const {
 
 double CsvTable::angle(std::size_t row, std::size_t column, double rad) const {
   const double value = rad * number(row, column);
-  try {
+  const auto has_digits = outcome_of<InputError>([&] {
     require_digits_of_angle(value, excerpt(text(row, column)));
-  } catch (const InputError& e) {
-    refuse(row, column, e.what());
-  }
+    return true;
+  });
+  if (!has_digits) refuse(row, column, has_digits.why);
   return value;
 }
 

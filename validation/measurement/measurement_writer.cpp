@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "validation/measurement/measurement_columns.h"
 #include "validation/measurement/measurements.h"
 
@@ -53,7 +54,7 @@ std::vector<Column> columns_of(const Measurements& m) {
   if (any([](const Reading& r) { return r.sequence.has_value(); }))
     columns.push_back({"sequence", [](const Reading& r) { return number_text(r.sequence); }});
   for (std::size_t i = 0; i < (m.by_joints() ? m.joint_rotates.size() : 6); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
+    const auto at = as_index(i);
     if (m.by_joints()) {
       const double per_SI = m.joint_rotates[i] ? 1 : 1e3;
       columns.push_back({joint_column(i, m.joint_rotates[i]), [&m, at, per_SI](const Reading& r) {
@@ -65,7 +66,7 @@ std::vector<Column> columns_of(const Measurements& m) {
     }
   }
   for (std::size_t i = 0; i < 6; ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
+    const auto at = as_index(i);
     if (i < 3 || any([at](const Reading& r) { return r.load(at) != 0; }))
       columns.push_back(
           {load_columns[i], [at](const Reading& r) { return number_text(r.load(at), at < 3 ? 1 : 1e3); }});

@@ -11,6 +11,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "msa/base/spatial.h"
 #include "validation/measurement/csv.h"
 #include "validation/measurement/measurement_columns.h"
@@ -59,8 +60,7 @@ class Reader {
     r.line = table_.line(row);
     r.pose = group(row);
     for (std::size_t i = 0; i < 6; ++i) {
-      if (const auto& column = columns_.load[i])
-        r.load(static_cast<Eigen::Index>(i)) = number(row, *column) / (i < 3 ? 1 : 1e3);
+      if (const auto& column = columns_.load[i]) r.load(as_index(i)) = number(row, *column) / (i < 3 ? 1 : 1e3);
       if (const auto value = measured(row, columns_.displacement[i])) r.displacement[i] = *value / (i < 3 ? 1e3 : 1);
     }
     r.sigma_u = sigma(row, columns_.sigma_u, 1e3);
@@ -95,9 +95,9 @@ class Reader {
     PoseGroup group;
     group.label = table_.text(row, columns_.pose);
     const std::vector<ReadColumn>& columns = columns_.command;
-    if (m_.by_joints()) group.joints.resize(static_cast<Eigen::Index>(columns.size()));
+    if (m_.by_joints()) group.joints.resize(std::ssize(columns));
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
+      const auto at = as_index(i);
       const double value = number(row, columns[i]);
       if (turns(i)) table_.angle(row, columns[i].index, columns[i].factor * (m_.by_joints() ? 1 : pi / 180));
       if (m_.by_joints())
@@ -123,8 +123,8 @@ class Reader {
                         excerpt(table_.text(row, column)), excerpt(table_.text(first, column)), table_.line(first),
                         excerpt(table_.text(row, columns_.pose)), scatter_mm, scatter_deg));
       VectorX& sum = beside_first_[group];
-      if (sum.size() == 0) sum = VectorX::Zero(static_cast<Eigen::Index>(columns.size()));
-      sum(static_cast<Eigen::Index>(i)) += beside;
+      if (sum.size() == 0) sum = VectorX::Zero(std::ssize(columns));
+      sum(as_index(i)) += beside;
       double& most = turns(i) ? most_turned_ : most_moved_;
       most = std::max(most, std::abs(beside));
     }
@@ -138,7 +138,7 @@ class Reader {
       for (Eigen::Index i = 0; i < sum.size(); ++i) {
         const double mean = sum(i) / static_cast<double>(pose.readings.size());
         if (m_.by_joints())
-          pose.joints(i) += m_.joint_rotates[static_cast<std::size_t>(i)] ? mean : mean / 1e3;
+          pose.joints(i) += nth(m_.joint_rotates, i) ? mean : mean / 1e3;
         else
           pose.pose_mm_deg(i) += mean;
       }

@@ -1,4 +1,5 @@
 #include "validation/measurement/replicates.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,7 @@ using Six = std::array<double, 6>;
 
 Six to_1e9(const Vector6& load) {
   Six rounded;
-  for (std::size_t i = 0; i < 6; ++i) rounded[i] = std::round(load(static_cast<Eigen::Index>(i)) * 1e9);
+  for (std::size_t i = 0; i < 6; ++i) rounded[i] = std::round(load(as_index(i)) * 1e9);
   return rounded;
 }
 

@@ -18,7 +18,7 @@ function historyHeadline(history) {
 }
 
 function solveHeadline(solve) {
-  return {words: `The tool point moves by ${micro(Math.hypot(...solve.msa.displacement.slice(0, 3)))} under ${loadWords(solve.load)}; both theories agree to ${num(solve.relative_difference, 2)}, relative.`};
+  return {words: `The tool point moves by ${micro(Math.hypot(...solve[solve.reference].displacement.slice(0, 3)))} under ${loadWords(solve.load)}${solve.theories.length > 1 ? `; ${solve.theories.length === 2 ? 'both' : 'the'} theories agree to ${num(solve.relative_difference, 2)}, relative` : ''}.`};
 }
 
 /** What was found: `words` that a person reads, and in small the ids and values that belong to them. */

@@ -5,9 +5,10 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "validation/page/page_residuals.h"
 #include "validation/page/page_template.h"
-#include "validation/report/result_file.h"
+#include "validation/result_files/result_file.h"
 
 namespace deflect {
 namespace {
@@ -19,14 +20,14 @@ constexpr const char* data_mark = "@DEFLECT_DATA@";
 
 /// Matrices pose by pose would make a page of many megabytes: ranged columns stay.
 void keep_what_is_shown(Json& map) {
-  for (const char* theory : {"analytic", "msa"}) {
-    if (!map["arrays"].contains(theory)) continue;
+  for (auto& [theory, arrays] : map["arrays"].items()) {
+    if (!arrays.is_object()) continue;
     Json kept = Json::object();
-    for (const auto& [name, values] : map["arrays"][theory].items())
+    for (const auto& [name, values] : arrays.items())
       if (name.starts_with("stiffness") || name.starts_with("smallest") || name.starts_with("largest") ||
           name == "isotropy")
         kept[name] = values;
-    map["arrays"][theory] = std::move(kept);
+    arrays = std::move(kept);
   }
 }
 
@@ -38,7 +39,7 @@ void keep_first_rows(Json& frame) {
     for (const char* list : {"displacements", "reactions", "springs", "constraints", "members", "shares"}) {
       if (!of_case.contains(list) || of_case[list].size() <= most) continue;
       of_case["left_out"][list] = of_case[list].size() - most;
-      of_case[list].erase(of_case[list].begin() + static_cast<std::ptrdiff_t>(most), of_case[list].end());
+      of_case[list].erase(of_case[list].begin() + as_index(most), of_case[list].end());
     }
 }
 

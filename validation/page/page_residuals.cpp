@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/measurement/random.h"
 #include "validation/report/compare_results.h"
 #include "validation/report/text.h"
@@ -17,7 +18,7 @@ std::vector<double> rmse_by_pose(const Comparison& c, const VectorX& residual, b
     const MeasuredValue& v = c.study.values[i];
     if ((v.component >= 3) != rotations) continue;
     const std::size_t pose = c.study.data->readings[v.reading].pose;
-    const double r = residual(static_cast<Eigen::Index>(i));
+    const double r = residual(as_index(i));
     squares[pose] += r * r;
     count[pose] += 1;
   }
@@ -34,9 +35,8 @@ VectorX with_nothing_missing(const Comparison& c, std::uint64_t seed) {
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
     const MeasuredValue& v = c.study.values[i];
     if (i == 0 || v.reading != c.study.values[i - 1].reading)
-      load = c.study.mechanism->tolerances.load * random.normal();
-    r(static_cast<Eigen::Index>(i)) +=
-        c.sigma[i] * random.normal() + load * c.study.predicted[v.reading](static_cast<Eigen::Index>(v.component));
+      load = c.study.subject->load_tolerance() * random.normal();
+    r(as_index(i)) += c.sigma[i] * random.normal() + load * c.study.predicted[v.reading](as_index(v.component));
   }
   return r;
 }
@@ -48,7 +48,7 @@ Json poses_json(const Comparison& c, bool rotations) {
     healthy.push_back(rmse_by_pose(c, with_nothing_missing(c, seed), rotations));
   Json out = Json::array();
   for (std::size_t p = 0; p < c.by_pose.size(); ++p) {
-    const Vector3 at = mm * c.study.machines[p].pose.p_WT;
+    const Vector3 at = mm * c.study.standing->tool(p).p_W;
     const Errors& e = c.by_pose[p];
     Json pose = {{"label", c.study.data->poses[p].label},
                  {"at_mm", {at.x(), at.y(), at.z()}},
@@ -83,7 +83,7 @@ Json readings_json(const Comparison& c, std::size_t most) {
     if (v.reading >= out.size()) continue;
     const double unit = v.component < 3 ? mm : 1;
     out[v.reading]["measured"][v.component] = unit * v.value;
-    out[v.reading]["residual"][v.component] = unit * c.residual(static_cast<Eigen::Index>(i));
+    out[v.reading]["residual"][v.component] = unit * c.residual(as_index(i));
   }
   return out;
 }

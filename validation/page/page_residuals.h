@@ -2,7 +2,7 @@
 #pragma once
 
 #include "validation/compare/comparison.h"
-#include "validation/report/json_text.h"
+#include "validation/json/json_text.h"
 
 namespace deflect {
 

@@ -98,21 +98,24 @@ export function strained(d) {
     numbers('strained-tolerances', () => ({columns: ['tolerance', 'sigmas'], rows: list.map((t) => [t.name, t.sigmas])})));
 }
 
+const against = (result, words) => (result.theories.length > 1 ? words : '');
+
 export function solved(s) {
-  const scale = (i, j) => Math.sqrt(Math.abs(s.msa.stiffness[i][i] * s.msa.stiffness[j][j])) || 1;
-  const displacement = [...places.map((name, i) => [`${name} (${i < 3 ? 'mm' : 'rad'})`, s.analytic.displacement[i], s.msa.displacement[i]])];
-  const stiffness = s.msa.stiffness.map((row, i) => [efforts[i], ...row.map((x, j) => (Math.abs(x) < 1e-10 * scale(i, j) ? 0 : x))]);
+  const shown = s.theories.find((t) => t.name === s.reference), K = s[shown.name].stiffness;
+  const scale = (i, j) => Math.sqrt(Math.abs(K[i][i] * K[j][j])) || 1;
+  const displacement = places.map((name, i) => [`${name} (${i < 3 ? 'mm' : 'rad'})`, ...s.theories.map((t) => s[t.name].displacement[i])]);
+  const stiffness = K.map((row, i) => [efforts[i], ...row.map((x, j) => (Math.abs(x) < 1e-10 * scale(i, j) ? 0 : x))]);
   const shares = [...s.shares].sort((a, b) => b.share - a.share);
   const picture = shares.length ? chart('Share of each part in the elastic energy', 60 + 28 * shares.length, (t) => ({
     type: 'bar', data: {labels: shares.map((x) => inLines(x.part)), datasets: [{label: 'share', data: shares.map((x) => 100 * x.share), backgroundColor: t.blue, maxBarThickness: 18, minBarLength: 2}]},
     options: {indexAxis: 'y', scales: {x: axis('% of the elastic energy', t, {min: 0, max: 100}), y: axis('', t, {grid: {display: false}})}, plugins: {legend: {display: false}, tooltip: labelled('%', (item) => item.parsed.x)}},
   })) : null;
   return [
-    figure('displacement', 'Displacement by both theories', `They differ by ${num(s.relative_difference, 2)}, relative.`, table(['', 'analytic', 'MSA'], displacement, {show: (x) => num(x, 7)}),
-      numbers('displacement', () => ({columns: ['component', 'analytic', 'msa'], rows: displacement}))),
+    figure('displacement', s.theories.length === 2 ? 'Displacement by both theories' : 'Displacement', against(s, `They differ by ${num(s.relative_difference, 2)}, relative.`), table(['', ...s.theories.map((t) => t.title)], displacement, {show: (x) => num(x, 7)}),
+      numbers('displacement', () => ({columns: ['component', ...s.theories.map((t) => t.name)], rows: displacement}))),
     picture ? figure('shares', 'What yields', 'Share of each part in the elastic energy.', picture, numbers('shares', () => ({columns: ['part', 'share'], rows: shares.map((x) => [x.part, x.share])}))) : null,
-    figure('stiffness', 'Stiffness of the tool point', 'By the MSA, base axes; N/mm, N, Nmm. The stronger the colour, the larger against √(K_ii K_jj).', table(['', ...places], stiffness, {shade: (i, j) => (j ? Math.abs(stiffness[i][j]) / scale(i, j - 1) : null)}),
-      numbers('stiffness', () => ({columns: ['theory', 'effort', ...places], rows: ['analytic', 'msa'].flatMap((theory) => s[theory].stiffness.map((row, i) => [theory, efforts[i], ...row]))}))),
+    figure('stiffness', 'Stiffness of the tool point', `By ${shown.spoken}, base axes; N/mm, N, Nmm. The stronger the colour, the larger against √(K_ii K_jj).`, table(['', ...places], stiffness, {shade: (i, j) => (j ? Math.abs(stiffness[i][j]) / scale(i, j - 1) : null)}),
+      numbers('stiffness', () => ({columns: ['theory', 'effort', ...places], rows: s.theories.flatMap((theory) => s[theory.name].stiffness.map((row, i) => [theory.name, efforts[i], ...row]))}))),
   ];
 }
 
@@ -120,18 +123,18 @@ export function validated(v) {
   const points = [...new Set(v.points.map((p) => p.point))], axes = ['x', 'y', 'z'];
   const at = (point, axisName) => v.points.find((p) => p.point === point && p.load_axis === axisName);
   const along = (row, theory) => (row ? 1e3 * row[theory][axes.indexOf(row.load_axis)] : null);
-  const picture = chart('Deflection along the load at each point by both theories', 330, (t) => ({
+  const looks = [{pointStyle: 'circle', pointRadius: 7, backgroundColor: 'transparent'}, {pointStyle: 'cross', pointRadius: 5}, {pointStyle: 'rect', pointRadius: 5, backgroundColor: 'transparent'}, {pointStyle: 'triangle', pointRadius: 5, backgroundColor: 'transparent'}];
+  const picture = chart('Deflection along the load at each point by each theory', 330, (t) => ({
     type: 'line', data: {labels: points.map(String), datasets: axes.flatMap((name, k) => {
       const colour = [t.blue, t.orange, t.green][k];
-      return [{label: `${name}, analytic`, data: points.map((p) => along(at(p, name), 'analytic')), showLine: false, pointStyle: 'circle', pointRadius: 7, borderColor: colour, borderWidth: 2, backgroundColor: 'transparent'},
-              {label: `${name}, MSA`, data: points.map((p) => along(at(p, name), 'msa')), showLine: false, pointStyle: 'cross', pointRadius: 5, borderColor: colour, borderWidth: 2}];
+      return v.theories.map((theory, i) => ({label: `${name}, ${theory.title}`, data: points.map((p) => along(at(p, name), theory.name)), showLine: false, borderColor: colour, borderWidth: 2, ...looks[i % looks.length]}));
     })},
     options: {scales: {x: axis('point', t), y: axis(`µm along ${num(v.points[0].load_N)} N`, t)}, plugins: {legend: {position: 'bottom', labels: {usePointStyle: true}}, tooltip: labelled('µm')}},
   }));
-  const validation = figure('validation', 'Two theories at the same points', `Largest relative difference ${num(v.max_relative_difference, 2)}, rms ${num(v.rms_relative_difference, 2)}.`, picture,
+  const validation = figure('validation', v.theories.length === 2 ? 'Two theories at the same points' : 'Deflection at the points', against(v, `Largest relative difference ${num(v.max_relative_difference, 2)}, rms ${num(v.rms_relative_difference, 2)}.`), picture,
     numbers('validation', () => ({
-      columns: ['point', 'x_mm', 'y_mm', 'z_mm', 'roll_deg', 'pitch_deg', 'yaw_deg', 'load_axis', 'load_N', ...places.map((n) => 'analytic_' + n), ...places.map((n) => 'msa_' + n)],
-      rows: v.points.map((p) => [p.point, ...p.pose, p.load_axis, p.load_N, ...p.analytic, ...p.msa]),
+      columns: ['point', 'x_mm', 'y_mm', 'z_mm', 'roll_deg', 'pitch_deg', 'yaw_deg', 'load_axis', 'load_N', ...v.theories.flatMap((t) => places.map((n) => t.name + '_' + n))],
+      rows: v.points.map((p) => [p.point, ...p.pose, p.load_axis, p.load_N, ...v.theories.flatMap((t) => p[t.name])]),
     })));
   return v.errata ? [validation, errata(v)] : validation;
 }
@@ -152,12 +155,12 @@ function errata(v) {
 export function mapped(m) {
   const {x_mm, y_mm, z_mm} = m.grid, points = [];
   for (const z of z_mm) for (const y of y_mm) for (const x of x_mm) points.push({label: `pose ${points.length + 1}`, at_mm: [x, y, z]});
-  const theory = m.arrays.analytic ? 'analytic' : 'msa', values = m.arrays[theory];
+  const theory = m.theories[0], values = m.arrays[theory.name];
   const shown = Object.keys(values).filter((k) => /^(stiffness|smallest|largest|isotropy)/.test(k));
   const holder = el('div');
   const draw = (key) => holder.replaceChildren(attempt('The map', () => workspace('map-view', points, [{title: key.replace(/_/g, ' ').replace(' N per mm', ', N/mm'), values: values[key]}], {unit: key === 'isotropy' ? '' : 'N/mm', low: null})));
   draw(shown[0]);
-  return figure('map', 'Stiffness over the workspace', `${m.reached} of ${m.poses} poses reached; ${theory === 'msa' ? 'MSA' : 'analytic'} theory.`,
+  return figure('map', 'Stiffness over the workspace', `${m.reached} of ${m.poses} poses reached; ${theory.title} theory.`,
     el('label', {}, 'Shown ', el('select', {id: 'map-quantity', onchange: (event) => draw(event.target.value)}, shown.map((key) => el('option', {value: key}, key)))), holder,
     numbers('map', () => ({columns: ['x_mm', 'y_mm', 'z_mm', ...shown], rows: points.map((p, i) => [...p.at_mm, ...shown.map((k) => values[k][i])])}), {most: 60}));
 }

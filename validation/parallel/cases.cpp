@@ -1,4 +1,5 @@
 #include "validation/parallel/cases.h"
+#include "msa/base/outcome.h"
 
 #include <algorithm>
 #include <atomic>
@@ -18,18 +19,20 @@ void for_each_case(std::size_t n, std::size_t chunk, int threads, const std::fun
   std::mutex mutex;
   std::exception_ptr error;
   const auto run = [&] {
-    for (std::size_t c = next++; c < failed; c = next++) try {
+    for (std::size_t c = next++; c < failed; c = next++) {
+      const std::exception_ptr thrown = thrown_by([&] {
         const std::size_t end = std::min((c + 1) * chunk, n);
         for (std::size_t i = c * chunk; i < end; ++i) work(i);
         const std::size_t now = done += end - c * chunk;
         if (told) told(now);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (c < failed) {
-          failed = c;
-          error = std::current_exception();
-        }
+      });
+      if (!thrown) continue;
+      const std::lock_guard lock(mutex);
+      if (c < failed) {
+        failed = c;
+        error = thrown;
       }
+    }
   };
   const unsigned wanted = threads > 0 ? static_cast<unsigned>(threads) : std::thread::hardware_concurrency();
   {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "msa/base/index.h"
 #include "validation/parallel/mpi_module.h"
 
 namespace deflect::mpi {
@@ -27,7 +28,7 @@ int processors() {
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
   int here = 1;
   MPI_Comm_size(node, &here);
-  std::vector<cpu_set_t> all(static_cast<std::size_t>(here));
+  std::vector<cpu_set_t> all(as_size(here));
   MPI_Allgather(&own, sizeof own, MPI_BYTE, all.data(), sizeof own, MPI_BYTE, node);
   MPI_Comm_free(&node);
   const auto sharing = std::count_if(all.begin(), all.end(), [&](const cpu_set_t& other) {
@@ -46,7 +47,7 @@ class MpiRanks : public Ranks {
  protected:
   std::vector<std::string> gather(const std::string& mine) override {
     const unsigned long long bytes = mine.size();
-    std::vector<unsigned long long> sizes(first() ? static_cast<std::size_t>(size()) : 0);
+    std::vector<unsigned long long> sizes(first() ? as_size(size()) : 0);
     MPI_Gather(&bytes, 1, MPI_UNSIGNED_LONG_LONG, sizes.data(), 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
     if (!first()) {
       in_pieces(bytes, [&](std::size_t at, int n) { MPI_Send(mine.data() + at, n, MPI_BYTE, 0, tag, MPI_COMM_WORLD); });
@@ -89,7 +90,7 @@ std::string library() noexcept {
   char text[MPI_MAX_LIBRARY_VERSION_STRING];
   int length = 0;
   MPI_Get_library_version(text, &length);
-  const std::string all(text, static_cast<std::size_t>(length));
+  const std::string all(text, as_size(length));
   return all.substr(0, all.find_first_of(",\n"));
 }
 

@@ -11,12 +11,14 @@
 #include <sstream>
 #include <string>
 
+#include "msa/base/index.h"
+
 namespace Eigen {
 
 template <class Archive, int rows, int cols>
 void serialize(Archive& a, Matrix<double, rows, cols>& x) {
   static_assert(rows > 0 && cols > 0);
-  a(cereal::binary_data(x.data(), static_cast<std::size_t>(x.size()) * sizeof(double)));
+  a(cereal::binary_data(x.data(), deflect::as_size(x.size()) * sizeof(double)));
 }
 
 }  // namespace Eigen

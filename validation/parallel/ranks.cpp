@@ -7,6 +7,7 @@
 #include <string>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "validation/parallel/mpi_module.h"
 #include "validation/parallel/pack.h"
 
@@ -72,15 +73,13 @@ std::unique_ptr<Ranks> launched_ranks() {
     throw InputError(
         fmt::format("this process was started as one of {}, and {}", size > 0 ? std::to_string(size) : "some", why));
   };
-  const mpi::Module* module = nullptr;
-  try {
-    module = static_cast<const mpi::Module*>(&load_module(mpi::module_kind));
-  } catch (const ModelError& e) {
+  const auto loaded = outcome_of<ModelError>([] { return &load_module(mpi::module_kind); });
+  if (!loaded)
     refuse(
         fmt::format("deflect has no MPI to find the others: build it where libopenmpi-dev is installed, or start "
                     "it without mpirun ({})",
-                    e.what()));
-  }
+                    loaded.why));
+  const auto* module = static_cast<const mpi::Module*>(*loaded);
   std::string failure;
   std::unique_ptr<Ranks> ranks = module->start(failure);
   if (!ranks) refuse("MPI does not start: " + failure);
@@ -92,20 +91,14 @@ std::unique_ptr<Ranks> launched_ranks() {
 
 int run_on_ranks(const std::function<void(Ranks*)>& work, const std::function<void(const Ending&)>& tell) {
   std::unique_ptr<Ranks> ranks;  // ends after everything was told: MPI's launcher stops all with the first that fails
-  std::exception_ptr error;
-  try {
+  std::exception_ptr error = thrown_by([&] {
     ranks = launched_ranks();
     work(ranks.get());
     if (ranks) ranks->meet("");
-    return 0;
-  } catch (...) {
-    error = std::current_exception();
-  }
-  if (ranks && !ranks->parted()) try {
-      ranks->meet_with(error);
-    } catch (...) {
-      error = std::current_exception();
-    }
+  });
+  if (!error) return 0;
+  if (ranks && !ranks->parted())
+    if (const std::exception_ptr later = thrown_by([&] { ranks->meet_with(error); })) error = later;
   const Ending end = ending_of(error);
   if (launched().rank == 0) tell(end);
   return end.code;

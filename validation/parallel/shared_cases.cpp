@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <mutex>
 
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "validation/parallel/pack.h"
 
 namespace deflect {
@@ -19,7 +21,7 @@ struct Share {
 };
 
 Share share_of(int rank, const Ranks& ranks, std::size_t begin, std::size_t end) {
-  const auto size = static_cast<std::size_t>(ranks.size()), r = static_cast<std::size_t>(rank);
+  const auto size = as_size(ranks.size()), r = as_size(rank);
   return {begin + r, size, end - begin > r ? (end - begin - r + size - 1) / size : 0};
 }
 
@@ -28,29 +30,24 @@ void work_on(const SharedCases& cases, const Share& own, Ranks& ranks, int threa
              const std::function<void(std::size_t)>& told) {
   std::mutex mutex;
   std::size_t failed = cases.count;
-  try {
-    for_each_case(
-        own.count, 1, threads,
-        [&](std::size_t k) {
-          try {
-            cases.work(own[k]);
-          } catch (...) {
-            const std::lock_guard lock(mutex);
-            failed = std::min(failed, own[k]);
-            throw;
-          }
-        },
-        told);
-  } catch (...) {
-    ranks.meet_with(std::current_exception(), failed);
-  }
+  const auto one = [&](std::size_t k) {
+    const std::exception_ptr thrown = thrown_by([&] { cases.work(own[k]); });
+    if (!thrown) return;
+    {
+      const std::lock_guard lock(mutex);
+      failed = std::min(failed, own[k]);
+    }
+    std::rethrow_exception(thrown);
+  };
+  if (const std::exception_ptr thrown = thrown_by([&] { for_each_case(own.count, 1, threads, one, told); }))
+    ranks.meet_with(thrown, failed);
 }
 
 }  // namespace
 
 void for_each_case(const SharedCases& cases, Ranks* ranks, int threads, const std::function<void(std::size_t)>& told) {
   if (!ranks) return for_each_case(cases.count, 1, threads, cases.work, told);
-  const auto size = static_cast<std::size_t>(ranks->size());
+  const auto size = as_size(ranks->size());
   const std::size_t round = size * std::max(least, cases.count / (rounds * size) + 1);
   for (std::size_t begin = 0, end = 0; begin < cases.count; begin = end) {
     end = std::min(cases.count, begin + round);

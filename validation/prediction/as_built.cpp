@@ -1,4 +1,5 @@
 #include "validation/prediction/as_built.h"
+#include "msa/base/index.h"
 
 namespace deflect {
 namespace {
@@ -46,9 +47,9 @@ Mechanism with_geometry(const Mechanism& drawn, const AsBuilt& built) {
 
 Configuration configure_as_built(const Mechanism& geometry, const AsBuilt& built, const Configuration& drawn,
                                  const VectorX& actuator_errors) {
-  VectorX q(static_cast<Eigen::Index>(drawn.actuators.size()));
+  VectorX q(std::ssize(drawn.actuators));
   for (Eigen::Index i = 0; i < q.size(); ++i)
-    q(i) = drawn.actuators[static_cast<std::size_t>(i)].value + (actuator_errors.size() > 0 ? actuator_errors(i) : 0);
+    q(i) = nth(drawn.actuators, i).value + (actuator_errors.size() > 0 ? actuator_errors(i) : 0);
   Configuration c = configure_joints(geometry, q);
   for (std::size_t i = 0; i < std::min(built.legs.size(), c.legs.size()); ++i)
     scale_first_member(c.legs[i], 1 + built.legs[i].guide_diameter);

@@ -6,9 +6,11 @@
 #include <iterator>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/configuration.h"
+#include "msa/mechanism/stand.h"
 #include "validation/measurement/random.h"
-#include "validation/theories/workspace.h"
+#include "validation/studies/workspace.h"
 
 namespace deflect {
 namespace {
@@ -47,12 +49,9 @@ class Plan {
         const Vector3 tilt = random_.uniform3(-most_tilt_deg, most_tilt_deg);
         if (tilts) at.tail<3>() += tilt;
         at = as_written(at);
-        try {
-          configure(mechanism_, pose_from(at));
-        } catch (const ModelError&) {
-          if (tries < most_tries) continue;
-          throw;
-        }
+        const auto configured = outcome_of<ModelError>([&] { return configure(mechanism_, pose_from(at)); });
+        if (!configured && tries < most_tries) continue;
+        if (!configured) throw ModelError(configured.why, configured.cause);
         pose(label, at);
         break;
       }

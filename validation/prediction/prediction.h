@@ -14,25 +14,22 @@
 #include "msa/frame/mechanism/build.h"
 #include "msa/mechanism/configuration.h"
 #include "validation/measurement/measurements.h"
-#include "validation/parallel/cases.h"
+#include "validation/parallel/work.h"
+#include "validation/theories/theory.h"
 
 namespace deflect {
 
-enum class Theory { analytic, msa };
-
 struct PredictionOptions {
-  Theory theory = Theory::analytic;
+  const Theory* theory = all_theories().front();
   std::optional<Geometry> geometry;  ///< absent: the device's
   frame::MemberDivision division;    ///< of members in the MSA
-  int threads = 0;                   ///< 0: all; the numbers do not depend on it
-  Told progress = {};
 };
 
 /// d_T_W as recorded, per reading, all six components (m, rad). `machines`: where the device stands, one per pose of
 /// the measurements (configure_all, configure_as_built). Throws NumericalError "file:line: …" where the theory finds no
 /// equilibrium, InputError where the device needs a sequence that the file does not have.
 std::vector<Vector6> predict(const Mechanism&, const std::vector<Configuration>& machines, const Measurements&,
-                             const PredictionOptions&);
+                             const PredictionOptions& = {}, const Work& = {});
 
 /// The true load of a recorded one, and the recorded displacement of a true one without drift.
 Vector6 true_load(const LoadCell&, const Vector6& recorded);

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/as_built.h"
@@ -28,9 +29,9 @@ AsBuilt draw(const Mechanism& m, double scale, Random& random) {
 
 /// Repeatability is a length: of slides.
 VectorX draw_errors(const std::vector<Actuator>& actuators, double sigma, Random& random) {
-  VectorX errors = VectorX::Zero(static_cast<Eigen::Index>(actuators.size()));
+  VectorX errors = VectorX::Zero(std::ssize(actuators));
   for (std::size_t i = 0; i < actuators.size(); ++i)
-    if (!actuators[i].rotation) errors(static_cast<Eigen::Index>(i)) = sigma * random.normal();
+    if (!actuators[i].rotation) errors(as_index(i)) = sigma * random.normal();
   return errors;
 }
 
@@ -42,7 +43,7 @@ double rounded(double value, double sigma, double per_SI) {
 
 }  // namespace
 
-Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOptions& o) {
+Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOptions& o, const Work& work) {
   Random random(o.seed);
   const AsBuilt built = draw(m, o.tolerances, random);
   const Mechanism geometry = o.tolerances > 0 ? with_geometry(m, built) : m;
@@ -63,12 +64,10 @@ Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOpt
   for (Reading& r : loaded.readings) r.load *= 1 + o.tolerances * m.tolerances.load * random.normal();
 
   PredictionOptions p;
-  p.theory = Theory::msa;
+  p.theory = &theory("msa");
   p.geometry = o.geometry;
   p.division = o.division;
-  p.threads = o.threads;
-  p.progress = o.progress;
-  const std::vector<Vector6> exact = predict(m, machines, loaded, p);
+  const std::vector<Vector6> exact = predict(m, machines, loaded, p, work);
 
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
     Reading& r = plan.readings[i];
@@ -78,7 +77,7 @@ Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOpt
       if (k >= 3 && !o.sigma_th) continue;
       double value = exact[i](k) + sigma * random.normal();
       if (gross) value += (random.uniform(0, 1) < 0.5 ? -1 : 1) * random.uniform(10, 30) * sigma;
-      r.displacement[static_cast<std::size_t>(k)] = sigma > 0 ? rounded(value, sigma, k < 3 ? 1e3 : 1) : value;
+      nth(r.displacement, k) = sigma > 0 ? rounded(value, sigma, k < 3 ? 1e3 : 1) : value;
     }
     if (o.sigma_u > 0) r.sigma_u = o.sigma_u;
     if (o.sigma_th && *o.sigma_th > 0) r.sigma_th = o.sigma_th;
@@ -89,20 +88,14 @@ Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOpt
 double share_carried(const Mechanism& m, const Measurements& plan, const SimulationOptions& o) {
   const std::vector<Configuration> machines = configure_all(m, plan);
   PredictionOptions p;
-  p.theory = Theory::msa;
+  p.theory = &theory("msa");
   p.geometry = o.geometry;
   p.division = o.division;
-  p.threads = 1;
   for (std::size_t pose = 0; pose < machines.size(); ++pose) {
     const auto carries = [&](double share) {
       Measurements some = one_pose(plan, pose);
       for (Reading& r : some.readings) r.load *= share;
-      try {
-        predict(m, {machines[pose]}, some, p);
-        return true;
-      } catch (const NumericalError&) {
-        return false;
-      }
+      return bool(outcome_of<NumericalError>([&] { return predict(m, {machines[pose]}, some, p, alone); }));
     };
     if (carries(1)) continue;
     double low = 1e-6, high = 1;

@@ -8,7 +8,7 @@
 #include "msa/base/geometry.h"
 #include "msa/frame/mechanism/build.h"
 #include "validation/measurement/measurements.h"
-#include "validation/parallel/cases.h"
+#include "validation/parallel/work.h"
 
 namespace deflect {
 
@@ -21,14 +21,12 @@ struct SimulationOptions {
   double temperature = 20, swing = 0;    ///< °C; slow wave about it over the sequence, K
   Geometry geometry = Geometry::finite;  ///< equilibrium in which shape
   frame::MemberDivision division;
-  int threads = 0;
-  Told progress = {};
 };
 
 /// The plan with displacements. One machine is drawn by lot within the device's tolerances (as_built.h), its actuators
 /// once for every pose; every true load differs from the recorded one by the load's tolerance; then the reading's
 /// noise. The same seed gives the same file. Readings are rounded to a thousandth of σ.
-Measurements simulate(const Mechanism&, Measurements plan, const SimulationOptions&);
+Measurements simulate(const Mechanism&, Measurements plan, const SimulationOptions&, const Work& = {});
 
 /// How many times the plan's loads the machine as drawn carries, to a percent, at the first of its poses where it does
 /// not carry all; 1 where it carries all, 0 where it does not carry a millionth.

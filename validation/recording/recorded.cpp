@@ -1,4 +1,5 @@
 #include "validation/recording/recorded.h"
+#include "msa/base/index.h"
 
 #include <cmath>
 
@@ -6,8 +7,7 @@ namespace deflect {
 
 Vector6 Rewritten::of(const Vector6& x) const {
   Vector6 out;
-  for (std::size_t k = 0; k < 6; ++k)
-    out(static_cast<Eigen::Index>(k)) = factor[k] * x(static_cast<Eigen::Index>(from[k]));
+  for (std::size_t k = 0; k < 6; ++k) out(as_index(k)) = factor[k] * x(as_index(from[k]));
   return out;
 }
 
@@ -16,7 +16,7 @@ Measurements corrected(const Measurements& data, const Correction& c) {
   for (Reading& r : out.readings) {
     for (std::size_t k = 0; k < 6; ++k) {
       const std::optional<double>& recorded =
-          data.readings[static_cast<std::size_t>(&r - out.readings.data())].displacement[c.displacement.from[k]];
+          nth(data.readings, &r - out.readings.data()).displacement[c.displacement.from[k]];
       r.displacement[k] = recorded ? std::optional(c.displacement.factor[k] * *recorded) : std::nullopt;
     }
     if (c.sigma_too && r.sigma_u) *r.sigma_u *= std::abs(c.displacement.factor[0]);

@@ -1,4 +1,5 @@
 #include "validation/recording/recording_mistakes.h"
+#include "msa/base/index.h"
 
 #include <fmt/format.h>
 
@@ -201,7 +202,7 @@ std::vector<Correction> mistaken_joints(const Measurements& data) {
   degrees.sentence = "joint coordinates in degrees: q1_rad … want rad";
   degrees.pose = [rotates = data.joint_rotates](PoseGroup& group) {
     for (std::size_t i = 0; i < rotates.size(); ++i)
-      if (rotates[i]) group.joints(static_cast<Eigen::Index>(i)) *= pi / 180;
+      if (rotates[i]) group.joints(as_index(i)) *= pi / 180;
   };
   turned.id = "joints_sign";
   turned.sentence = "joint coordinates of the opposite sign: turn the columns q… back";

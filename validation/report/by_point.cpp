@@ -1,4 +1,5 @@
 #include "validation/report/by_point.h"
+#include "msa/base/index.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@ std::vector<PointRows> by_point(const Validation& validation) {
   for (const ValidationRow& row : validation.rows) {
     if (row.axis < 0 || row.axis > 2)
       throw std::invalid_argument(fmt::format("point {}: load axis {} is not 0, 1 or 2", row.point.label, row.axis));
-    const auto axis = static_cast<std::size_t>(row.axis);
+    const auto axis = as_size(row.axis);
     const bool same = !points.empty() && points.back().point->label == row.point.label && !points.back().rows[axis];
     if (!same) points.push_back({&row.point, {}});
     points.back().rows[axis] = &row;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/theories/theories.h"
+#include "validation/studies/validate.h"
 
 namespace deflect {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validation/report/json_text.h"
+#include "validation/json/json_text.h"
 #include "validation/report/text.h"
 
 namespace deflect {

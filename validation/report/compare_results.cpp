@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "msa/base/index.h"
+#include "validation/json/json_text.h"
 #include "validation/report/compare_words.h"
-#include "validation/report/json_text.h"
 #include "validation/report/short_lists.h"
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
@@ -107,6 +110,79 @@ Json errors_json(const std::vector<Errors>& groups) {
 
 std::vector<double> list_of(const VectorX& x) { return {x.data(), x.data() + x.size()}; }
 
+Json baseline_json(const Comparison& c) {
+  return {{"rmse_mm", json_number(mm * c.all.rmse, "rmse")},
+          {"held_out_rmse_mm", json_number(mm * c.held_out, "held-out rmse")},
+          {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")},
+          {"p_value", c.p_value},
+          {"measured_rms_mm", mm * c.all.measured},
+          {"worst_mm", mm * c.all.worst}};
+}
+
+Json findings_json(const std::vector<Finding>& findings) {
+  Json out = Json::array();
+  for (const Finding& f : findings)
+    out.push_back({{"pattern", f.pattern},
+                   {"sentence", f.sentence},
+                   {"columns", f.columns},
+                   {"amplitude_SI", list_of(f.amplitude)},
+                   {"deviation_SI", list_of(f.deviation)},
+                   {"unit_SI", f.unit},
+                   {"size_mm", mm * f.size},
+                   {"share_of_misfit", f.share},
+                   {"chi2_gain", f.gain},
+                   {"p_value", f.p_value},
+                   {"instead", f.instead}});
+  return out;
+}
+
+Json contrasts_json(const std::vector<ContrastTest>& tests) {
+  Json out = Json::array();
+  for (const ContrastTest& t : tests) {
+    Json test = {{"test", t.id}, {"question", t.question}, {"numbers", t.contrasts}};
+    if (t.contrasts > 0)
+      test["size_mm"] = mm * t.size, test["p_value"] = t.p_value;
+    else
+      test["needs"] = t.missing;
+    out.push_back(test);
+  }
+  return out;
+}
+
+Json patterns_json(const std::vector<PatternTest>& tests) {
+  Json out = Json::array();
+  for (const PatternTest& t : tests)
+    out.push_back({{"pattern", t.pattern},
+                   {"title", t.title},
+                   {"size_mm", mm * t.size},
+                   {"chi2_gain", t.alone.gain},
+                   {"columns", t.alone.freedoms},
+                   {"p_value", t.alone.p_value}});
+  return out;
+}
+
+/// Tolerances with their size in standard deviations.
+Json strained_json(const std::vector<std::pair<std::string, double>>& strained) {
+  Json out = Json::array();
+  for (const auto& [name, eta] : strained) out.push_back({{"name", name}, {"sigmas", eta}});
+  return out;
+}
+
+/// Of the contrasts, those that noise does not explain.
+std::vector<std::string> failing_tests(const Comparison& c) {
+  std::vector<std::string> out;
+  for (const ContrastTest& t : c.contrasts)
+    if (t.contrasts > 0 && t.p_value < significant) out.push_back(t.id);
+  return out;
+}
+
+/// The patterns of the findings.
+std::vector<std::string> found_patterns(const Comparison& c) {
+  std::vector<std::string> out;
+  for (const Finding& f : c.findings) out.push_back(f.pattern);
+  return out;
+}
+
 }  // namespace
 
 std::string compare_report(const Comparison& c) {
@@ -144,12 +220,7 @@ std::string compare_json(const Comparison& c) {
   j["readings"] = c.readings;
   j["poses"] = c.poses;
   j["unit"] = error_unit(c).milli;  // of what ends with _mm
-  j["baseline"] = {{"rmse_mm", json_number(mm * c.all.rmse, "rmse")},
-                   {"held_out_rmse_mm", json_number(mm * c.held_out, "held-out rmse")},
-                   {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")},
-                   {"p_value", c.p_value},
-                   {"measured_rms_mm", mm * c.all.measured},
-                   {"worst_mm", mm * c.all.worst}};
+  j["baseline"] = baseline_json(c);
   j["noise_floor_mm"] = json_number(mm * c.noise_and_tolerances, "noise floor");
   j["sigma_u_mm"] = mm * c.sigma_u;
   j["sigma_from_residuals"] = c.sigma_from_residuals;
@@ -158,48 +229,20 @@ std::string compare_json(const Comparison& c) {
                        {"degrees_of_freedom", c.pure_error->degrees_of_freedom}};
   j["verdict"] = verdict_words(c);
   j["notes"] = c.study.data->how_read;
-  j["findings"] = Json::array();
-  for (const Finding& f : c.findings)
-    j["findings"].push_back({{"pattern", f.pattern},
-                             {"sentence", f.sentence},
-                             {"columns", f.columns},
-                             {"amplitude_SI", list_of(f.amplitude)},
-                             {"deviation_SI", list_of(f.deviation)},
-                             {"unit_SI", f.unit},
-                             {"size_mm", mm * f.size},
-                             {"share_of_misfit", f.share},
-                             {"chi2_gain", f.gain},
-                             {"p_value", f.p_value},
-                             {"instead", f.instead}});
+  j["findings"] = findings_json(c.findings);
   j["unexplained_chi2_per_dof"] = json_number(c.unexplained_chi2_per_dof, "unexplained chi2");
   if (c.deformed_shape_fit)
     j["deformed_shape"] = {{"size_mm", mm * c.deformed_shape},
                            {"amplitude", c.deformed_shape_fit->amplitude(0)},
                            {"deviation", std::sqrt(c.deformed_shape_fit->covariance(0, 0))}};
-  j["tests"] = Json::array();
-  for (const ContrastTest& t : c.contrasts) {
-    Json test = {{"test", t.id}, {"question", t.question}, {"numbers", t.contrasts}};
-    if (t.contrasts > 0)
-      test["size_mm"] = mm * t.size, test["p_value"] = t.p_value;
-    else
-      test["needs"] = t.missing;
-    j["tests"].push_back(test);
-  }
-  j["patterns"] = Json::array();
-  for (const PatternTest& t : c.patterns)
-    j["patterns"].push_back({{"pattern", t.pattern},
-                             {"title", t.title},
-                             {"size_mm", mm * t.size},
-                             {"chi2_gain", t.alone.gain},
-                             {"columns", t.alone.freedoms},
-                             {"p_value", t.alone.p_value}});
+  j["tests"] = contrasts_json(c.contrasts);
+  j["patterns"] = patterns_json(c.patterns);
   j["errors"] = {{"by_axis", errors_json(c.by_axis)},
                  {"by_pose", errors_json(c.by_pose)},
                  {"by_direction", errors_json(c.by_direction)},
                  {"by_magnitude", errors_json(c.by_magnitude)},
                  {"by_heading", errors_json(c.by_heading)}};
-  j["strained_tolerances"] = Json::array();
-  for (const auto& [name, eta] : c.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});
+  j["strained_tolerances"] = strained_json(c.strained);
   j["looks_like"] = Json::array();
   for (const RecordingMistake& mistake : c.mistakes) j["looks_like"].push_back(mistake.sentence);
   j["mistakes"] = mistakes_json(c.mistakes);
@@ -215,7 +258,7 @@ std::string residuals_csv(const Comparison& c) {
     const MeasuredValue& v = s.values[i];
     const Reading& r = s.data->readings[v.reading];
     const double unit = v.component < 3 ? mm : 1;
-    const double residual = c.residual(static_cast<Eigen::Index>(i));
+    const double residual = c.residual(as_index(i));
     out += fmt::format("{},\"{}\",{},{},{:.9g},{:.9g},{:.9g},{:.4g}\n", r.line, s.data->poses[r.pose].label,
                        names[v.component], v.component < 3 ? "mm" : "rad", unit * v.value, unit * (v.value - residual),
                        unit * residual, unit * c.sigma[i]);
@@ -243,6 +286,75 @@ std::string tests_csv(const Comparison& c) {
     out += fmt::format("contrast,{},{},{:.6g},{:.6g}\n", t.id, t.contrasts, um * t.size, t.p_value);
   for (const PatternTest& t : c.patterns)
     out += fmt::format("pattern,{},{},{:.6g},{:.6g}\n", t.pattern, t.alone.freedoms, um * t.size, t.alone.p_value);
+  return out;
+}
+
+std::string history_report(const History& h) {
+  const std::vector<Comparison>& all = h.versions;
+  std::vector<std::vector<std::string>> rows = {{"device", fmt::format("rms {}", error_unit(all.front()).micro),
+                                                 "placebo", "held-out", "chi2/n", "noise and tolerances", "strained",
+                                                 "tests that fail", "patterns left"}};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Comparison& c = all[i];
+    const std::optional<double> wrong = h.placebo[i];
+    const std::vector<std::string> tests = failing_tests(c), patterns = found_patterns(c);
+    rows.push_back({c.device, fmt::format("{:.2f}", um * c.all.rmse), wrong ? fmt::format("{:.2f}", um * *wrong) : "",
+                    fmt::format("{:.2f}", um * c.held_out), fmt::format("{:.2f}", c.chi2_per_dof),
+                    fmt::format("{:.2f}", um * c.noise_and_tolerances), std::to_string(c.strained.size()),
+                    tests.empty() ? "none" : fmt::format("{}", fmt::join(tests, ", ")),
+                    patterns.empty() ? "none" : fmt::format("{}", fmt::join(patterns, ", "))});
+  }
+  std::string out =
+      fmt::format("{}: {} readings at {} poses\n\n", all.front().data, all.front().readings, all.front().poses) +
+      aligned(rows);
+  for (const Comparison& c : all) {
+    std::vector<std::pair<std::string, double>> worst = c.strained;
+    std::stable_sort(worst.begin(), worst.end(),
+                     [](const auto& a, const auto& b) { return std::abs(a.second) > std::abs(b.second); });
+    if (worst.empty()) continue;
+    out += fmt::format("{}: beyond two standard deviations by itself:", c.device);
+    for (std::size_t i = 0; i < std::min<std::size_t>(5, worst.size()); ++i)
+      out += fmt::format("{} {} {:+.1f}", i ? "," : "", worst[i].first, worst[i].second);
+    out += worst.size() > 5 ? fmt::format(" and {} more\n", worst.size() - 5) : "\n";
+  }
+  return out;
+}
+
+std::string history_json(const History& h) {
+  const std::vector<Comparison>& all = h.versions;
+  Json j;
+  j["kind"] = "history";
+  j["data"] = all.front().data;
+  j["unit"] = error_unit(all.front()).milli;  // of what ends with _mm
+  j["versions"] = Json::array();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Comparison& c = all[i];
+    const std::optional<double> wrong = h.placebo[i];
+    j["versions"].push_back({{"device", c.device},
+                             {"rmse_mm", json_number(mm * c.all.rmse, "rmse")},
+                             {"placebo_rmse_mm", wrong ? json_number(mm * *wrong, "placebo") : Json()},
+                             {"held_out_rmse_mm", json_number(mm * c.held_out, "held-out rmse")},
+                             {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")},
+                             {"noise_floor_mm", mm * c.noise_and_tolerances},
+                             {"failing_tests", failing_tests(c)},
+                             {"patterns", found_patterns(c)},
+                             {"strained_tolerances", strained_json(c.strained)}});
+  }
+  return json_text(j);
+}
+
+std::string history_csv(const History& h) {
+  const std::vector<Comparison>& all = h.versions;
+  std::string out =
+      fmt::format("device,rmse_{0},placebo_rmse_{0},held_out_rmse_{0},chi2_per_dof,noise_and_tolerances_{0},strained\n",
+                  error_unit(all.front()).column);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Comparison& c = all[i];
+    const std::optional<double> wrong = h.placebo[i];
+    out += fmt::format("\"{}\",{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", c.device, um * c.all.rmse,
+                       wrong ? fmt::format("{:.6g}", um * *wrong) : "", um * c.held_out, c.chi2_per_dof,
+                       um * c.noise_and_tolerances, c.strained.size());
+  }
   return out;
 }
 

@@ -1,9 +1,10 @@
-// A comparison as a report for a person, JSON and tables.
+// A comparison, and the history of a device in versions, as a report for a person, JSON and tables.
 #pragma once
 
 #include <string>
 
 #include "validation/compare/comparison.h"
+#include "validation/compare/history.h"
 
 namespace deflect {
 
@@ -18,5 +19,11 @@ std::string compare_json(const Comparison&);
 std::string residuals_csv(const Comparison&);
 std::string errors_csv(const Comparison&);
 std::string tests_csv(const Comparison&);
+
+/// One row per device, in order: rms of fitted and held-out poses, χ², what noise and tolerances give, tests that fail,
+/// findings, tolerances beyond two standard deviations.
+std::string history_report(const History&);
+std::string history_json(const History&);
+std::string history_csv(const History&);
 
 }  // namespace deflect

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/report/text.h"
 
 namespace deflect {
@@ -56,10 +57,10 @@ std::vector<ReadingCells> cells_of(const Comparison& c) {
   }
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
     const MeasuredValue& v = c.study.values[i];
-    const Eigen::Index k = static_cast<Eigen::Index>(v.component) - first;
+    const Eigen::Index k = as_index(v.component) - first;
     if (k < 0 || k >= 3) continue;
     out[v.reading].measured(k) = v.value;
-    out[v.reading].residual(k) = c.residual(static_cast<Eigen::Index>(i));
+    out[v.reading].residual(k) = c.residual(as_index(i));
   }
   return out;
 }
@@ -70,9 +71,10 @@ std::string subjects(const Comparison& c) {
 
 std::string data_sentence(const Comparison& c) {
   Vector3 low = Vector3::Constant(INFINITY), high = -low;
-  for (const Configuration& machine : c.study.machines) {
-    low = low.cwiseMin(1e3 * machine.pose.p_WT);
-    high = high.cwiseMax(1e3 * machine.pose.p_WT);
+  for (std::size_t p = 0; p < c.poses; ++p) {
+    const Vector3 at = 1e3 * c.study.standing->tool(p).p_W;
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
   }
   return fmt::format("Device {}, measurements {}: {} readings at {} poses (tool point x {}, y {}, z {} mm), {}.",
                      c.device, file_of(c), c.readings, c.poses, range(low.x(), high.x()), range(low.y(), high.y()),

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validation/report/json_text.h"
+#include "msa/base/index.h"
+#include "validation/json/json_text.h"
 #include "validation/report/short_lists.h"
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
@@ -47,8 +48,7 @@ Json parameters_json(const Hypothesis& h, const Fit& f, std::size_t from, std::s
   const std::vector<const EffectParameter*> all = parameters_of(h);
   for (std::size_t i = from; i < from + count && f.found; ++i) {
     const auto [low, high] = interval95(h, f, i);
-    out.push_back(
-        {{"name", all[i]->name}, {"value", f.values(static_cast<Eigen::Index>(i))}, {"low95", low}, {"high95", high}});
+    out.push_back({{"name", all[i]->name}, {"value", f.values(as_index(i))}, {"low95", low}, {"high95", high}});
   }
   return out;
 }
@@ -57,6 +57,57 @@ Json parameters_json(const Hypothesis& h, const Fit& f, std::size_t from, std::s
 Json place_json(const PlacedEffect& e) {
   Json out = {{"effect", e.effect->name}, {"title", e.effect->title}, {"site", site_of(e)}};
   if (e.leg) out["leg"] = *e.leg;
+  return out;
+}
+
+Json candidates_json(const std::vector<Candidate>& candidates) {
+  Json out = Json::array();
+  for (const Candidate& c : candidates) {
+    Json one = place_json(c.added());
+    one["probability"] = c.probability;
+    one["parameters"] = parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size());
+    one["rmse_mm"] = mm * c.rmse;
+    one["held_out_rmse_mm"] = mm * c.held_out;
+    one["chi2_per_dof"] = json_number(c.chi2_per_dof, "chi2");
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+/// What is left of the misfit, and where it acts.
+Json unexplained_json(const Diagnosis& d) {
+  Json localised = Json::array();
+  for (const Localised& l : d.localised) localised.push_back({{"what", l.what}, {"share", l.share}});
+  return {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained},
+          {"pattern", d.pattern},         {"localised", localised},
+          {"nearest", d.nearest},         {"nearest_share", d.nearest_share}};
+}
+
+/// The effects of "missing", fitted together.
+Json found_json(const Diagnosis& d) {
+  Json out = Json::array();
+  std::size_t from = 0;
+  for (const PlacedEffect& e : d.missing) {
+    Json one = place_json(e);
+    one["parameters"] = parameters_json(d.missing, d.fit, from, e.effect->parameters.size());
+    out.push_back(std::move(one));
+    from += e.effect->parameters.size();
+  }
+  return out;
+}
+
+Json detectable_json(const std::vector<Detectable>& detectable) {
+  Json out = Json::array();
+  for (const Detectable& e : detectable) {
+    Json names = Json::array();
+    for (const EffectParameter& p : e.effect.effect->parameters) names.push_back(p.name);
+    Json one = place_json(e.effect);
+    one["parameters"] = names;
+    one["smallest"] = e.smallest;
+    one["mistaken_for"] = e.mistaken_for;
+    one["cosine"] = e.cosine;
+    out.push_back(std::move(one));
+  }
   return out;
 }
 
@@ -90,7 +141,7 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
 std::string diagnosis_json(const Diagnosis& d) {
   Json j;
   j["kind"] = "diagnosis";
-  j["verdict"] = verdict_names[static_cast<int>(d.verdict)];
+  j["verdict"] = nth(verdict_names, d.verdict);
   j["device"] = d.device;
   j["notes"] = d.how_read;
   j["sentence"] = verdict_words(d);
@@ -98,34 +149,14 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["mistakes"] = mistakes_json(d.mistakes);
   j["missing"] = Json::array();
   for (const PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
-  j["candidates"] = Json::array();
-  for (const Candidate& c : d.candidates) {
-    Json one = place_json(c.added());
-    one["probability"] = c.probability;
-    one["parameters"] = parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size());
-    one["rmse_mm"] = mm * c.rmse;
-    one["held_out_rmse_mm"] = mm * c.held_out;
-    one["chi2_per_dof"] = json_number(c.chi2_per_dof, "chi2");
-    j["candidates"].push_back(std::move(one));
-  }
+  j["candidates"] = candidates_json(d.candidates);
   j["indistinguishable"] = d.indistinguishable;
   j["baseline"] = quality_json(d.baseline);
   j["final"] = quality_json(d.final);
   j["unit"] = d.rotations ? "mrad" : "mm";  // of what ends with _mm
   j["noise_floor_mm"] = json_number(mm * d.noise_floor, "noise floor");
-  Json localised = Json::array();
-  for (const Localised& l : d.localised) localised.push_back({{"what", l.what}, {"share", l.share}});
-  j["unexplained"] = {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained},
-                      {"pattern", d.pattern},         {"localised", localised},
-                      {"nearest", d.nearest},         {"nearest_share", d.nearest_share}};
-  j["found"] = Json::array();  // the effects of "missing", fitted together
-  std::size_t from = 0;
-  for (const PlacedEffect& e : d.missing) {
-    Json one = place_json(e);
-    one["parameters"] = parameters_json(d.missing, d.fit, from, e.effect->parameters.size());
-    j["found"].push_back(std::move(one));
-    from += e.effect->parameters.size();
-  }
+  j["unexplained"] = unexplained_json(d);
+  j["found"] = found_json(d);
   j["probability_nothing"] = d.probability_nothing;
   j["probability_unknown"] = d.probability_unknown;
   j["chance_of_any"] = d.chance;
@@ -135,17 +166,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["set_aside"] = d.set_aside;
   j["strained_tolerances"] = Json::array();
   for (const auto& [name, eta] : d.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});
-  j["detectable"] = Json::array();
-  for (const Detectable& e : d.detectable) {
-    Json names = Json::array();
-    for (const EffectParameter& p : e.effect.effect->parameters) names.push_back(p.name);
-    Json one = place_json(e.effect);
-    one["parameters"] = names;
-    one["smallest"] = e.smallest;
-    one["mistaken_for"] = e.mistaken_for;
-    one["cosine"] = e.cosine;
-    j["detectable"].push_back(std::move(one));
-  }
+  j["detectable"] = detectable_json(d.detectable);
   j["left_out"] = Json::array();
   for (const LeftOut& e : d.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});
   return json_text(j);

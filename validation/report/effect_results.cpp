@@ -5,8 +5,9 @@
 
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/effects/parameter_unit.h"
-#include "validation/report/json_text.h"
+#include "validation/json/json_text.h"
 #include "validation/report/text.h"
 
 namespace deflect {
@@ -14,8 +15,8 @@ namespace {
 
 constexpr const char* action_names[] = {"set", "append", "multiply", "add"};
 
-const char* scope_name(const Effect& e) { return scope_names[static_cast<std::size_t>(e.scope)]; }
-const char* action_name(const EffectEdit& e) { return action_names[static_cast<std::size_t>(e.action)]; }
+const char* scope_name(const Effect& e) { return nth(scope_names, e.scope); }
+const char* action_name(const EffectEdit& e) { return nth(action_names, e.action); }
 
 std::string parameter_names(const Effect& e) {
   std::string text;
@@ -27,7 +28,7 @@ std::string row(const std::string& name, const std::string& scope, const std::st
   return fmt::format("{:<24} {:<9} {}\n", name, scope, text);
 }
 
-std::string paragraph(const std::string& heading, const std::string& text) {
+std::string headed_paragraph(const std::string& heading, const std::string& text) {
   std::string out = heading + "\n";
   for (const std::string& line : wrap(text, line_length - 2)) out += "  " + line + "\n";
   return out;
@@ -70,10 +71,10 @@ std::string effect_table(const std::vector<Effect>& all) {
   return out;
 }
 
-std::string effects_in_device(const std::vector<Effect>& all, const Mechanism& m) {
-  std::string there = fmt::format("effects that {} can have\n", m.name), not_there;
+std::string effects_in_device(const std::vector<Effect>& all, const Subject& subject) {
+  std::string there = fmt::format("effects that {} can have\n", subject.name()), not_there;
   for (const Effect& e : all)
-    if (const auto reason = why_not(e, m))
+    if (const auto reason = why_not(e, subject))
       not_there += fmt::format("  {:<24} {}\n", e.name, *reason);
     else
       there += fmt::format("  {:<24} {:<9} {}\n", e.name, scope_name(e), parameter_names(e));
@@ -82,18 +83,18 @@ std::string effects_in_device(const std::vector<Effect>& all, const Mechanism& m
 
 std::string effect_page(const Effect& e) {
   std::string out = fmt::format("{}\n{}. Scope: {}.\n\n", e.name, e.title, scope_name(e));
-  out += paragraph("In the machine", e.pages.machine) + paragraph("In the data", e.pages.data) +
-         paragraph("On the bench", e.pages.bench) + paragraph("Cure", e.pages.cure);
+  out += headed_paragraph("In the machine", e.pages.machine) + headed_paragraph("In the data", e.pages.data) +
+         headed_paragraph("On the bench", e.pages.bench) + headed_paragraph("Cure", e.pages.cure);
   if (!e.parameters.empty()) out += "Parameters\n";
   for (const EffectParameter& p : e.parameters) out += parameter_text(p);
   out += "Edits of the description\n";
   for (const EffectEdit& edit : e.edits)
     out += fmt::format("  {} {} {}\n", fmt::join(edit.paths, " or "), action_name(edit), edit.value);
-  if (!e.see.empty()) out += paragraph("See", e.see);
+  if (!e.see.empty()) out += headed_paragraph("See", e.see);
   return out;
 }
 
-std::string effects_json(const std::vector<Effect>& all, const Mechanism* device) {
+std::string effects_json(const std::vector<Effect>& all, const std::optional<Subject>& device) {
   Json list = Json::array();
   for (const Effect& e : all) {
     Json j = effect_json(e);
@@ -111,8 +112,7 @@ std::string words(const EffectInstance& i) {
   std::string out = i.effect->name, values;
   if (i.leg) out += fmt::format(" of leg {}", *i.leg);
   for (std::size_t k = 0; k < i.effect->parameters.size(); ++k)
-    values += fmt::format("{}{} = {:.6g}", k > 0 ? ", " : "", i.effect->parameters[k].name,
-                          i.values(static_cast<Eigen::Index>(k)));
+    values += fmt::format("{}{} = {:.6g}", k > 0 ? ", " : "", i.effect->parameters[k].name, i.values(as_index(k)));
   return values.empty() ? out : fmt::format("{} ({})", out, values);
 }
 
@@ -122,7 +122,7 @@ std::string added_json(const std::string& device, const std::string& new_device,
   for (const EffectInstance& i : added) {
     Json parameters = Json::array();
     for (std::size_t k = 0; k < i.effect->parameters.size(); ++k)
-      parameters.push_back({{"name", i.effect->parameters[k].name}, {"value", i.values(static_cast<Eigen::Index>(k))}});
+      parameters.push_back({{"name", i.effect->parameters[k].name}, {"value", i.values(as_index(k))}});
     Json one = {{"effect", i.effect->name}, {"site", site_of(i)}};
     if (i.leg) one["leg"] = *i.leg;
     one["parameters"] = parameters;

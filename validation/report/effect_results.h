@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "msa/mechanism/description.h"
 #include "validation/effects/with_effect.h"
 
 namespace deflect {
@@ -13,7 +12,7 @@ namespace deflect {
 std::string effect_table(const std::vector<Effect>&);
 
 /// Which of them have a place in the device; of the others, why not.
-std::string effects_in_device(const std::vector<Effect>&, const Mechanism&);
+std::string effects_in_device(const std::vector<Effect>&, const Subject&);
 
 /// Everything about one effect.
 std::string effect_page(const Effect&);
@@ -21,7 +20,7 @@ std::string effect_page(const Effect&);
 /// [{"effect", "title", "scope", "parameters": [{"name", "unit", "start", "low", "high", "scale", "vanishes",
 /// "about"}], "edits": [{"at": […], "action", "value"}], "pages": {…}, "see"}]; with a device also "applies" and
 /// "reason". "vanishes" is a number, "infinity", or absent.
-std::string effects_json(const std::vector<Effect>&, const Mechanism* device);
+std::string effects_json(const std::vector<Effect>&, const std::optional<Subject>& device);
 
 /// "guide_root_compliance (stiffness_Nmm_per_rad = 5e+06)", "leg_defect of leg 4 (factor = 0.7)".
 std::string words(const EffectInstance&);

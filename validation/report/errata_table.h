@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/theories/theories.h"
+#include "validation/studies/errata_prices.h"
 
 namespace deflect {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "msa/base/index.h"
 #include "msa/frame/structure/elimination.h"
 #include "validation/report/frame_results.h"
 #include "validation/report/text.h"
@@ -119,7 +120,7 @@ std::string frame_report(const frame::FrameDescription& f, const frame::FrameRes
   std::string text = fmt::format("{}: {} nodes, {} members, {} load case{}\n", result.name, f.nodes.size(),
                                  f.members.size(), result.cases.size(), result.cases.size() == 1 ? "" : "s");
   const bool linear = result.geometry == Geometry::linear;
-  if (!linear) text += fmt::format("geometry: {}\n", geometry_names[static_cast<std::size_t>(result.geometry)]);
+  if (!linear) text += fmt::format("geometry: {}\n", nth(geometry_names, result.geometry));
   if (linear) text += equations(result.equations);
   for (const std::string& note : notes_of(f, result)) text += "note: " + note + "\n";
   const double size = 1e3 * frame::characteristic_length(result.structure.model);

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/frame/file/name_index.h"
-#include "validation/report/json_text.h"
+#include "validation/json/json_text.h"
 #include "validation/report/large_displacements.h"
 
 namespace deflect {
@@ -41,7 +42,7 @@ frame::Freedoms with_stiffness(const frame::FrameSpring& spring) {
 
 void put(Json& json, const Vector6& values, const Names& names, const frame::Freedoms& held, const std::string& what) {
   for (std::size_t i = 0; i < 6; ++i)
-    if (held[i]) json[names[i]] = json_number(values(static_cast<Eigen::Index>(i)), what + " " + names[i]);
+    if (held[i]) json[names[i]] = json_number(values(as_index(i)), what + " " + names[i]);
 }
 
 Json json_member(const std::string& name, const MemberForces& m, const std::string& where) {
@@ -145,7 +146,7 @@ std::string cell(double value, const std::string& what) {
 
 std::string cells(const Vector6& values, const std::string& what, const frame::Freedoms& held = all_held) {
   std::string text;
-  for (std::size_t i = 0; i < 6; ++i) text += held[i] ? cell(values(static_cast<Eigen::Index>(i)), what) : ",";
+  for (std::size_t i = 0; i < 6; ++i) text += held[i] ? cell(values(as_index(i)), what) : ",";
   return text;
 }
 
@@ -163,7 +164,7 @@ std::string frame_json(const FrameDescription& f, const FrameResult& result) {
   Json json;
   json["kind"] = "frame";
   json["frame"] = result.name;
-  json["geometry"] = geometry_names[static_cast<std::size_t>(result.geometry)];
+  json["geometry"] = nth(geometry_names, result.geometry);
   json["cases"] = Json::object();
   const bool linear = result.geometry == Geometry::linear;
   for (const CaseResult& c : result.cases) json["cases"][c.name] = json_case(f, c, linear);
@@ -178,8 +179,7 @@ std::vector<std::string> notes_of(const FrameDescription& f, const FrameResult& 
   Displacements d;
   for (const auto& [name, p] : f.nodes) d.points.push_back(p);
   const frame::NameIndex nodes(f.nodes);
-  for (const auto& [name, m] : f.members)
-    d.lines.emplace_back(static_cast<std::size_t>(nodes.find(m.from)), static_cast<std::size_t>(nodes.find(m.to)));
+  for (const auto& [name, m] : f.members) d.lines.emplace_back(as_size(nodes.find(m.from)), as_size(nodes.find(m.to)));
   for (const CaseResult& c : result.cases) {
     d.moved.clear();
     d.turned.clear();

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect {
 

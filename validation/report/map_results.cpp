@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <regex>
 
+#include "msa/base/index.h"
+#include "validation/json/json_text.h"
 #include "validation/report/by_point.h"
-#include "validation/report/json_text.h"
 #include "validation/report/map_correlation.h"
 #include "validation/report/text.h"
+#include "validation/report/theory_words.h"
 
 namespace deflect {
 namespace {
@@ -50,18 +51,7 @@ constexpr std::size_t first_ranged = 9, last_ranged = 14;  // what a person is t
 constexpr const char* ranged_names[] = {"along x, 1/Cxx", "along y, 1/Cyy", "along z, 1/Czz",
                                         "smallest",       "largest",        "isotropy"};
 
-struct TheoryColumns {
-  const char *name, *title;
-  std::optional<MapValues> MapPose::*values;
-};
-std::vector<TheoryColumns> theories_of(const StiffnessMap& map) {
-  std::vector<TheoryColumns> list;
-  if (map.options.analytic) list.push_back({"analytic", "analytic", &MapPose::analytic});
-  if (map.options.msa) list.push_back({"msa", "MSA", &MapPose::msa});
-  return list;
-}
-
-bool both(const StiffnessMap& map) { return map.options.analytic && map.options.msa; }
+bool several(const StiffnessMap& map) { return map.options.theories.size() > 1; }
 
 /// What belongs to a pose and to no theory.
 struct SlideColumn {
@@ -81,11 +71,11 @@ struct Spread {
   const MapPose *smallest_at = nullptr, *largest_at = nullptr;
 };
 
-Spread range_of(const StiffnessMap& map, std::optional<MapValues> MapPose::*theory, const Column& column) {
+Spread range_of(const StiffnessMap& map, std::size_t theory, const Column& column) {
   Spread r;
   for (const MapPose& p : map.poses) {
     if (!p.reached()) continue;
-    const double value = column.of(*(p.*theory));
+    const double value = column.of(p.values[theory]);
     if (!r.smallest_at || value < r.smallest) r.smallest = value, r.smallest_at = &p;
     if (!r.largest_at || value > r.largest) r.largest = value, r.largest_at = &p;
   }
@@ -93,22 +83,13 @@ Spread range_of(const StiffnessMap& map, std::optional<MapValues> MapPose::*theo
 }
 
 std::size_t reached(const StiffnessMap& map) {
-  return static_cast<std::size_t>(
-      std::count_if(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); }));
+  return as_size(std::count_if(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); }));
 }
 
 double largest_difference(const StiffnessMap& map) {
   double largest = 0;
   for (const MapPose& p : map.poses) largest = std::max(largest, p.relative_difference);
   return largest;
-}
-
-std::string reason_of(const std::string& message) {
-  std::string text = std::regex_replace(message, std::regex("^(.*: )?leg [0-9]+: "), "");
-  if (const std::size_t colon = text.find(": ");
-      colon != text.npos && text.find_first_of("0123456789", colon) != text.npos)
-    text.resize(colon);
-  return std::regex_replace(text, std::regex("-?[0-9][0-9.]*(e[-+]?[0-9]+)?"), "…");
 }
 
 std::string position(const MapPose& p) {
@@ -142,13 +123,116 @@ CellShape cell_shape(const MapGrid& g) {
   return shape;
 }
 
+/// The poses reached as points of a grid for VTK, and its cells of points by their numbers.
+struct VtkGrid {
+  std::vector<const MapPose*> points;
+  std::vector<std::vector<int>> cells;
+};
+
+/// Cells between neighbours that are all points; `point` is the number of each pose's, -1 where it has none.
+std::vector<std::vector<int>> whole_cells(const MapGrid& g, const std::vector<int>& point) {
+  const CellShape shape = cell_shape(g);
+  std::vector<std::vector<int>> cells;
+  const auto last = [&](int axis) { return std::max(1, nth(g.counts, axis) - 1); };
+  for (int k = 0; k < last(2); ++k)
+    for (int j = 0; j < last(1); ++j)
+      for (int i = 0; i < last(0); ++i) {
+        std::vector<int> cell;
+        for (const auto& [a, b, c] : shape.corners) cell.push_back(point[g.index(i + a, j + b, k + c)]);
+        if (std::find(cell.begin(), cell.end(), -1) == cell.end()) cells.push_back(std::move(cell));
+      }
+  return cells;
+}
+
+/// Points in no other cell are cells of their own, behind the others.
+VtkGrid vtk_grid(const StiffnessMap& map) {
+  VtkGrid grid;
+  std::vector<int> point(map.poses.size(), -1);
+  for (std::size_t i = 0; i < map.poses.size(); ++i)
+    if (map.poses[i].reached()) {
+      point[i] = static_cast<int>(grid.points.size());
+      grid.points.push_back(&map.poses[i]);
+    }
+  grid.cells = whole_cells(map.options.grid, point);
+  std::vector<char> used(grid.points.size(), 0);
+  for (const std::vector<int>& cell : grid.cells)
+    for (const int p : cell) nth(used, p) = 1;
+  for (std::size_t p = 0; p < used.size(); ++p)
+    if (!used[p]) grid.cells.push_back({static_cast<int>(p)});
+  return grid;
+}
+
+std::string number_text(double value) { return fmt::format("{}", value); }
+
+struct ArrayHead {
+  const char* type;
+  std::string name;
+  const char* more = "";  ///< further attributes
+};
+
+/// A DataArray of VTK with a line for each element.
+template <class Range, class Print>
+std::string vtk_array(const ArrayHead& head, const Range& range, Print print) {
+  std::string text =
+      fmt::format(R"(<DataArray type="{}" Name="{}"{} format="ascii">)", head.type, head.name, head.more) + "\n";
+  for (const auto& each : range) text += print(each) + "\n";
+  return text + "</DataArray>\n";
+}
+
+/// What holds for the whole map.
+std::string vtk_field_data(const MapOptions& o) {
+  std::string text = "<FieldData>\n";
+  text += vtk_array({"Float64", "length_mm", R"( NumberOfTuples="1")"}, std::vector{o.length_mm}, number_text);
+  if (o.load_N_Nmm)
+    text += vtk_array({"Float64", "load_N_Nmm", R"( NumberOfTuples="6")"}, *o.load_N_Nmm, number_text);
+  else
+    text += vtk_array({"Float64", "force_N", R"( NumberOfTuples="1")"}, std::vector{o.force_N}, number_text);
+  return text + "</FieldData>\n";
+}
+
+/// The columns of the CSV.
+std::string vtk_point_data(const StiffnessMap& map, const std::vector<const MapPose*>& points) {
+  std::string text = "<PointData>\n";
+  for (const SlideColumn& slide : slide_columns(map))
+    text += vtk_array({"Float64", slide.name}, points, [&](const MapPose* p) { return number_text(p->*slide.of); });
+  for (std::size_t t = 0; t < map.options.theories.size(); ++t)
+    for (const Column& column : columns())
+      text += vtk_array({"Float64", fmt::format("{}_{}", map.options.theories[t]->name, column.name)}, points,
+                        [&](const MapPose* p) { return number_text(column.of(p->values[t])); });
+  if (several(map))
+    text += vtk_array({"Float64", "relative_difference"}, points,
+                      [](const MapPose* p) { return number_text(p->relative_difference); });
+  return text + "</PointData>\n";
+}
+
+std::string vtk_points(const std::vector<const MapPose*>& points) {
+  return "<Points>\n" +
+         vtk_array({"Float64", "points_mm", R"( NumberOfComponents="3")"}, points,
+                   [](const MapPose* p) {
+                     return fmt::format("{} {} {}", p->pose_mm_deg(0), p->pose_mm_deg(1), p->pose_mm_deg(2));
+                   }) +
+         "</Points>\n";
+}
+
+/// Cells of several points are all of one type, VTK's number of it.
+std::string vtk_cells(const std::vector<std::vector<int>>& cells, int type) {
+  std::string text = "<Cells>\n";
+  text += vtk_array({"Int64", "connectivity"}, cells,
+                    [](const auto& cell) { return fmt::format("{}", fmt::join(cell, " ")); });
+  text += vtk_array({"Int64", "offsets"}, cells,
+                    [end = std::size_t{0}](const auto& cell) mutable { return fmt::format("{}", end += cell.size()); });
+  text += vtk_array({"UInt8", "types"}, cells,
+                    [&](const auto& cell) { return fmt::format("{}", cell.size() == 1 ? 1 : type); });
+  return text + "</Cells>\n";
+}
+
 }  // namespace
 
 std::vector<OutOfReach> out_of_reach(const StiffnessMap& map) {
   std::vector<OutOfReach> list;
   for (std::size_t i = 0; i < map.poses.size(); ++i) {
     if (map.poses[i].reached()) continue;
-    const std::string reason = reason_of(map.poses[i].out_of_reach);
+    const std::string& reason = map.poses[i].reason;
     const auto found = std::find_if(list.begin(), list.end(), [&](const OutOfReach& o) { return o.reason == reason; });
     if (found == list.end())
       list.push_back({reason, 1, i});
@@ -158,8 +242,8 @@ std::vector<OutOfReach> out_of_reach(const StiffnessMap& map) {
   return list;
 }
 
-const MapValues* shown(const MapPose& p) { return p.analytic ? &*p.analytic : p.msa ? &*p.msa : nullptr; }
-const char* shown_theory(const StiffnessMap& map) { return map.options.analytic ? "analytic" : "MSA"; }
+const MapValues* shown(const MapPose& p) { return p.values.empty() ? nullptr : &p.values.front(); }
+const Theory& shown_theory(const StiffnessMap& map) { return *map.options.theories.front(); }
 
 std::string map_load_text(const StiffnessMap& map) {
   if (!map.options.load_N_Nmm) return fmt::format("{:g} N along x, y, z in turn", map.options.force_N);
@@ -176,18 +260,20 @@ std::string map_report(const StiffnessMap& map) {
   const std::size_t n = reached(map);
   std::string text = fmt::format("{}: stiffness of the tool point over {}\nload: {}: {}\n", map.device,
                                  grid_text(map.options.grid), map_load_text(map), map_kind_text(map));
-  if (map.options.msa) text += "MSA: one element per member, which is exact at its nodes\n";
+  for (const Theory* theory : map.options.theories)
+    if (theory->divides)
+      text += fmt::format("{}: one element per member, which is exact at its nodes\n", theory->title);
   text += fmt::format("reached: {} of {} poses\n", n, map.poses.size());
   for (const OutOfReach& o : out_of_reach(map))
     text +=
         fmt::format("out of reach: {} poses: {}\n  first: {}\n", o.poses, o.reason, map.poses[o.example].out_of_reach);
   if (n == 0) return text;
-  std::vector<TheoryColumns> told = theories_of(map);
-  if (both(map) && largest_difference(map) < 1e-6) told.pop_back();  // the same digits again
-  for (const TheoryColumns& theory : told) {
-    std::vector<std::vector<std::string>> rows = {{theory.title, "from", "at x, y, z (mm)", "to", "at x, y, z (mm)"}};
+  const bool same_digits = largest_difference(map) < 1e-6;
+  for (std::size_t t = 0; t < (same_digits ? 1 : map.options.theories.size()); ++t) {
+    std::vector<std::vector<std::string>> rows = {
+        {map.options.theories[t]->title, "from", "at x, y, z (mm)", "to", "at x, y, z (mm)"}};
     for (std::size_t c = first_ranged; c <= last_ranged; ++c) {
-      const Spread r = range_of(map, theory.values, columns()[c]);
+      const Spread r = range_of(map, t, columns()[c]);
       const char* unit = c == last_ranged ? "" : " N/mm";
       rows.push_back({ranged_names[c - first_ranged], fmt::format("{:.4g}{}", r.smallest, unit),
                       position(*r.smallest_at), fmt::format("{:.4g}{}", r.largest, unit), position(*r.largest_at)});
@@ -209,8 +295,9 @@ std::string map_report(const StiffnessMap& map) {
     }
     text += "\n" + aligned(rows);
   }
-  if (both(map))
-    text += fmt::format("\nanalytic against MSA, displacements, relative: largest {:.1e}\n", largest_difference(map));
+  if (several(map))
+    text += fmt::format("\n{}, displacements, relative: largest {:.1e}\n", against_text(map.options.theories),
+                        largest_difference(map));
   return text;
 }
 
@@ -219,10 +306,10 @@ std::string map_csv(const StiffnessMap& map) {
   text += map.options.load_N_Nmm ? "fx_N,fy_N,fz_N,mx_Nmm,my_Nmm,mz_Nmm," : "force_N,";
   text += "compliance_kind,length_mm,reached,note_out_of_reach";
   for (const SlideColumn& slide : slide_columns(map)) text += "," + slide.name;
-  const std::vector<TheoryColumns> theories = theories_of(map);
-  for (const TheoryColumns& theory : theories)
-    for (const Column& column : columns()) text += fmt::format(",{}_{}", theory.name, column.name);
-  text += both(map) ? ",relative_difference\n" : "\n";
+  const Theories& theories = map.options.theories;
+  for (const Theory* theory : theories)
+    for (const Column& column : columns()) text += fmt::format(",{}_{}", theory->name, column.name);
+  text += several(map) ? ",relative_difference\n" : "\n";
   const std::string load = map.options.load_N_Nmm ? fmt::format("{},tangent", fmt::join(*map.options.load_N_Nmm, ","))
                                                   : fmt::format("{},secant", map.options.force_N);
   for (const MapPose& p : map.poses) {
@@ -231,10 +318,9 @@ std::string map_csv(const StiffnessMap& map) {
     for (std::size_t at = note.find('"'); at != note.npos; at = note.find('"', at + 2)) note.insert(at, 1, '"');
     if (!note.empty()) text += '"' + note + '"';
     for (const SlideColumn& slide : slide_columns(map)) text += p.reached() ? fmt::format(",{}", p.*slide.of) : ",";
-    for (const TheoryColumns& theory : theories)
-      for (const Column& column : columns())
-        text += p.reached() ? fmt::format(",{}", column.of(*(p.*theory.values))) : ",";
-    if (both(map)) text += p.reached() ? fmt::format(",{}", p.relative_difference) : ",";
+    for (std::size_t t = 0; t < theories.size(); ++t)
+      for (const Column& column : columns()) text += p.reached() ? fmt::format(",{}", column.of(p.values[t])) : ",";
+    if (several(map)) text += p.reached() ? fmt::format(",{}", p.relative_difference) : ",";
     text += "\n";
   }
   return text;
@@ -245,6 +331,7 @@ std::string map_json(const StiffnessMap& map) {
   Json result, grid, arrays;
   result["kind"] = "map";
   result["device"] = map.device;
+  result["theories"] = json_theories(o.theories);
   if (o.load_N_Nmm)
     result["load"] = json_numbers(*o.load_N_Nmm, "load");
   else
@@ -252,7 +339,7 @@ std::string map_json(const StiffnessMap& map) {
   result["compliance_kind"] = o.load_N_Nmm ? "tangent" : "secant";
   result["length_mm"] = o.length_mm;
   for (int axis = 0; axis < 3; ++axis)
-    for (int i = 0; i < o.grid.counts[static_cast<std::size_t>(axis)]; ++i)
+    for (int i = 0; i < nth(o.grid.counts, axis); ++i)
       grid[fmt::format("{}_mm", axis_names[axis])].push_back(o.grid.coordinate(axis, i));
   grid["roll_pitch_yaw_deg"] = {o.grid.tilt_deg(0), o.grid.tilt_deg(1), o.grid.tilt_deg(2)};
   grid["order"] = "x fastest";
@@ -270,14 +357,14 @@ std::string map_json(const StiffnessMap& map) {
   };
   for (const SlideColumn& slide : slide_columns(map))
     arrays[slide.name] = array(slide.name, [&](const MapPose& p) { return p.*slide.of; });
-  for (const TheoryColumns& theory : theories_of(map))
+  for (std::size_t t = 0; t < o.theories.size(); ++t)
     for (std::size_t c = 0; c < columns().size(); ++c) {
       const Column& column = columns()[c];
-      arrays[theory.name][column.name] =
-          array(column.name, [&](const MapPose& p) { return column.of(*(p.*theory.values)); });
+      const std::string& theory = o.theories[t]->name;
+      arrays[theory][column.name] = array(column.name, [&](const MapPose& p) { return column.of(p.values[t]); });
       if (c < first_ranged || c > last_ranged || reached(map) == 0) continue;
-      const Spread r = range_of(map, theory.values, column);
-      Json& range = result["ranges"][theory.name][column.name];
+      const Spread r = range_of(map, t, column);
+      Json& range = result["ranges"][theory][column.name];
       range["smallest"] = r.smallest;
       range["smallest_at"] = json_numbers(r.smallest_at->pose_mm_deg, "pose");
       range["largest"] = r.largest;
@@ -289,75 +376,22 @@ std::string map_json(const StiffnessMap& map) {
       result[fmt::format("correlation_with_{}_mean", map.slides.key)][axis_names[axis]] = {{"spearman", c.spearman},
                                                                                            {"pearson", c.pearson}};
     }
-  if (both(map)) result["max_relative_difference"] = json_number(largest_difference(map), "max_relative_difference");
+  if (several(map)) result["max_relative_difference"] = json_number(largest_difference(map), "max_relative_difference");
   result["arrays"] = std::move(arrays);
   return json_text(result);
 }
 
 std::string map_vtu(const StiffnessMap& map) {
-  const MapGrid& g = map.options.grid;
-  std::vector<int> point(map.poses.size(), -1);
-  std::vector<const MapPose*> points;
-  for (std::size_t i = 0; i < map.poses.size(); ++i)
-    if (map.poses[i].reached()) {
-      point[i] = static_cast<int>(points.size());
-      points.push_back(&map.poses[i]);
-    }
-  const CellShape shape = cell_shape(g);
-  std::vector<std::vector<int>> cells;
-  std::vector<char> used(points.size(), 0);
-  const auto last = [&](int axis) { return std::max(1, g.counts[static_cast<std::size_t>(axis)] - 1); };
-  for (int k = 0; k < last(2); ++k)
-    for (int j = 0; j < last(1); ++j)
-      for (int i = 0; i < last(0); ++i) {
-        std::vector<int> cell;
-        for (const auto& [a, b, c] : shape.corners) cell.push_back(point[g.index(i + a, j + b, k + c)]);
-        if (std::find(cell.begin(), cell.end(), -1) != cell.end()) continue;
-        for (const int p : cell) used[static_cast<std::size_t>(p)] = 1;
-        cells.push_back(std::move(cell));
-      }
-  for (std::size_t p = 0; p < points.size(); ++p)
-    if (!used[p]) cells.push_back({static_cast<int>(p)});
-
+  const VtkGrid grid = vtk_grid(map);
   std::string text = R"(<?xml version="1.0" encoding="UTF-8"?>
 <VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
 <UnstructuredGrid>
 )";
-  const auto array = [&](const char* type, const std::string& name, const char* more, const auto& range, auto print) {
-    text += fmt::format(R"(<DataArray type="{}" Name="{}"{} format="ascii">)", type, name, more) + "\n";
-    for (const auto& each : range) text += print(each) + "\n";
-    text += "</DataArray>\n";
-  };
-  const auto number = [](double value) { return fmt::format("{}", value); };
-  text += "<FieldData>\n";
-  array("Float64", "length_mm", R"( NumberOfTuples="1")", std::vector{map.options.length_mm}, number);
-  if (map.options.load_N_Nmm)
-    array("Float64", "load_N_Nmm", R"( NumberOfTuples="6")", *map.options.load_N_Nmm, number);
-  else
-    array("Float64", "force_N", R"( NumberOfTuples="1")", std::vector{map.options.force_N}, number);
-  text += fmt::format("</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n", points.size(),
-                      cells.size());
-  for (const SlideColumn& slide : slide_columns(map))
-    array("Float64", slide.name, "", points, [&](const MapPose* p) { return number(p->*slide.of); });
-  for (const TheoryColumns& theory : theories_of(map))
-    for (const Column& column : columns())
-      array("Float64", fmt::format("{}_{}", theory.name, column.name), "", points,
-            [&](const MapPose* p) { return number(column.of(*(p->*theory.values))); });
-  if (both(map))
-    array("Float64", "relative_difference", "", points,
-          [&](const MapPose* p) { return number(p->relative_difference); });
-  text += "</PointData>\n<Points>\n";
-  array("Float64", "points_mm", R"( NumberOfComponents="3")", points, [](const MapPose* p) {
-    return fmt::format("{} {} {}", p->pose_mm_deg(0), p->pose_mm_deg(1), p->pose_mm_deg(2));
-  });
-  text += "</Points>\n<Cells>\n";
-  array("Int64", "connectivity", "", cells, [](const auto& cell) { return fmt::format("{}", fmt::join(cell, " ")); });
-  array("Int64", "offsets", "", cells,
-        [end = std::size_t{0}](const auto& cell) mutable { return fmt::format("{}", end += cell.size()); });
-  array("UInt8", "types", "", cells,
-        [&](const auto& cell) { return fmt::format("{}", cell.size() == 1 ? 1 : shape.vtk_type); });
-  text += "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-  return text;
+  text += vtk_field_data(map.options);
+  text += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", grid.points.size(), grid.cells.size());
+  text += vtk_point_data(map, grid.points) + vtk_points(grid.points);
+  text += vtk_cells(grid.cells, cell_shape(map.options.grid).vtk_type);
+  return text + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
 }
 
 }  // namespace deflect

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect {
 
-/// A reason for which poses are out of reach: the kinematics' words without the leg and the numbers.
+/// A reason for which poses are out of reach: without the leg and the numbers.
 struct OutOfReach {
   std::string reason;
   std::size_t poses = 0;
@@ -17,9 +17,9 @@ struct OutOfReach {
 };
 std::vector<OutOfReach> out_of_reach(const StiffnessMap&);
 
-/// What the figures show: the analytic theory where it was asked for, the MSA otherwise; null at a pose out of reach.
+/// What the figures show: the first of the theories; null at a pose out of reach.
 const MapValues* shown(const MapPose&);
-const char* shown_theory(const StiffnessMap&);
+const Theory& shown_theory(const StiffnessMap&);
 
 /// "50 N along x, y, z in turn" or the wrench; and what is secant and what is tangent under it.
 std::string map_load_text(const StiffnessMap&);

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "msa/mechanism/device_schema.h"
-#include "validation/report/json_text.h"
+#include "validation/json/json_text.h"
 
 namespace deflect {
 namespace {

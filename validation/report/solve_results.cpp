@@ -1,24 +1,28 @@
 #include "validation/report/solve_results.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "validation/report/json_text.h"
+#include "msa/base/index.h"
+#include "validation/json/json_text.h"
 #include "validation/report/large_displacements.h"
 #include "validation/report/text.h"
+#include "validation/report/theory_words.h"
 
 namespace deflect {
 namespace {
 
-constexpr const char* displacement_names[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
-constexpr const char* wrench_names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+constexpr const char* tool_displacements[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
+constexpr const char* tool_wrench[] = {"fx", "fy", "fz", "mx", "my", "mz"};
 
-Json json_theory(const TheorySolution& theory, const std::string& name) {
+Json json_theory(const TheorySolution& solution, const std::string& name, Geometry geometry) {
   Json json;
-  json["displacement"] = json_numbers(theory.displacement_mm_rad, name + ".displacement");
-  json["stiffness"] = json_rows(theory.stiffness_mm, name + ".stiffness");
+  json["displacement"] = json_numbers(solution.displacement_mm_rad, name + ".displacement");
+  json["stiffness"] = json_rows(solution.stiffness_mm, name + ".stiffness");
+  if (geometry != Geometry::linear) json["from_linear"] = json_number(solution.from_linear, name + ".from_linear");
   return json;
 }
 
@@ -35,55 +39,61 @@ double scale(const Matrix6& K, int i, int j) { return std::sqrt(std::abs(K(i, i)
 /// Entries that are only rounding are shown as 0, so that the pattern can be seen.
 std::string stiffness_table(const Matrix6& K) {
   std::vector<std::vector<std::string>> rows = {{""}};
-  rows.front().insert(rows.front().end(), std::begin(displacement_names), std::end(displacement_names));
+  rows.front().insert(rows.front().end(), std::begin(tool_displacements), std::end(tool_displacements));
   for (int i = 0; i < 6; ++i) {
-    rows.push_back({std::string("  ") + wrench_names[i]});
+    rows.push_back({std::string("  ") + tool_wrench[i]});
     for (int j = 0; j < 6; ++j)
       rows.back().push_back(std::abs(K(i, j)) < 1e-10 * scale(K, i, j) ? "0" : fmt::format("{:.6g}", K(i, j)));
   }
   return aligned(rows);
 }
 
-std::string stiffness_difference(const Matrix6& analytic, const Matrix6& msa) {
+/// How far one theory's stiffness is from the one that is shown.
+std::string stiffness_difference(const Theory& theory, const Matrix6& K, const Matrix6& shown) {
   Vector6 weight = Vector6::Ones();
   weight.tail<3>().setConstant(1e-3);  // rotations at 1 m
-  const double rounding = 1e-15 * (weight.asDiagonal() * msa * weight.asDiagonal()).cwiseAbs().maxCoeff();
+  const double rounding = 1e-15 * (weight.asDiagonal() * shown * weight.asDiagonal()).cwiseAbs().maxCoeff();
   double largest = -1;
   int row = 0, column = 0;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
-      double difference = std::abs(analytic(i, j) - msa(i, j));
+      double difference = std::abs(K(i, j) - shown(i, j));
       if (weight(i) * weight(j) * difference <= rounding) difference = 0;
-      const double relative = difference == 0 ? 0 : difference / scale(msa, i, j);
+      const double relative = difference == 0 ? 0 : difference / scale(shown, i, j);
       if (relative <= largest) continue;
       largest = relative, row = i, column = j;
-      if (std::isnan(relative)) return "the analytic stiffness cannot be compared: it is not a number throughout\n";
+      if (std::isnan(relative))
+        return fmt::format("the {} stiffness cannot be compared: it is not a number throughout\n", theory.title);
     }
-  if (largest == 0) return "the analytic stiffness is the same\n";
-  return fmt::format("the analytic stiffness differs by at most {:.1e} of √(K_ii K_jj), at {} {}\n", largest,
-                     wrench_names[row], displacement_names[column]);
+  if (largest == 0) return fmt::format("the {} stiffness is the same\n", theory.title);
+  return fmt::format("the {} stiffness differs by at most {:.1e} of √(K_ii K_jj), at {} {}\n", theory.title, largest,
+                     tool_wrench[row], tool_displacements[column]);
 }
 
 std::string displacement_table(const SolveResult& result) {
-  std::vector<std::vector<std::string>> rows = {{"displacement", "analytic", "MSA", ""}};
+  std::vector<std::vector<std::string>> rows = {{"displacement"}};
+  for (const Theory* theory : result.theories) rows.front().push_back(theory->title);
+  rows.front().push_back("");
   for (int i = 0; i < 6; ++i) {
     const auto number = [i](double value) {
       const std::string text = fmt::format("{:.{}f}", value, i < 3 ? 6 : 9);
       return text.find_first_not_of("-0.") == std::string::npos ? text.substr(text.front() == '-') : text;  // no -0
     };
-    rows.push_back({std::string("  ") + displacement_names[i], number(result.analytic.displacement_mm_rad[i]),
-                    number(result.msa.displacement_mm_rad[i]), i < 3 ? " mm" : "rad"});
+    rows.push_back({std::string("  ") + tool_displacements[i]});
+    for (const TheorySolution& s : result.solutions) rows.back().push_back(number(s.displacement_mm_rad[i]));
+    rows.back().push_back(i < 3 ? " mm" : "rad");
   }
   return aligned(rows);
 }
 
-const char* geometry_name(const SolveResult& result) { return geometry_names[static_cast<int>(result.geometry)]; }
+const char* geometry_name(const SolveResult& result) { return nth(geometry_names, result.geometry); }
 
 std::string geometry_line(const SolveResult& result) {
-  return fmt::format(
-      "equilibrium in the deformed shape ({}); from the linear one the displacement differs by {:.3g} % (analytic), "
-      "{:.3g} % (MSA)\n",
-      geometry_name(result), 100 * result.analytic_from_linear, 100 * result.msa_from_linear);
+  std::vector<std::string> shares;
+  for (std::size_t t = 0; t < result.theories.size(); ++t)
+    shares.push_back(fmt::format("{:.3g} % ({})", 100 * result.solutions[t].from_linear, result.theories[t]->title));
+  return fmt::format("equilibrium in the deformed shape ({}); from the linear one the displacement differs by {}\n",
+                     geometry_name(result), fmt::join(shares, ", "));
 }
 
 std::string shares_table(const SolveResult& result) {
@@ -102,9 +112,9 @@ std::string joints_line(const SolveResult& result) {
   return line + "\n";
 }
 
-std::string assembly_table(const Assembly& assembly) {
+std::string assembly_table(const Assembly& assembly, const Theories& theories) {
   std::vector<std::vector<std::string>> rows = {{"assembled, without load"}};
-  rows.front().insert(rows.front().end(), std::begin(wrench_names), std::end(wrench_names));
+  rows.front().insert(rows.front().end(), std::begin(tool_wrench), std::end(tool_wrench));
   double largest = 0;
   for (const auto& [leg, wrench] : assembly.leg_wrenches_N_Nmm)
     largest = std::max(largest, wrench.cwiseAbs().maxCoeff());
@@ -116,8 +126,13 @@ std::string assembly_table(const Assembly& assembly) {
   const auto offset = [](const Vector6& d) {
     return fmt::format("({:.6f}, {:.6f}, {:.6f}) mm, ({:.3g}, {:.3g}, {:.3g}) rad", d(0), d(1), d(2), d(3), d(4), d(5));
   };
-  return aligned(rows) + "tool point beside its place: analytic " + offset(assembly.analytic_mm_rad) + "\n" +
-         "                                  MSA " + offset(assembly.msa_mm_rad) + "\n";
+  std::string text = aligned(rows);
+  constexpr const char* what = "tool point beside its place: ";
+  const std::size_t indent = std::string(what).size() + theories.front()->title.size();
+  for (std::size_t t = 0; t < theories.size(); ++t)
+    text += (t == 0 ? what + theories[t]->title : fmt::format("{:>{}}", theories[t]->title, indent)) + " " +
+            offset(assembly.offsets_mm_rad[t]) + "\n";
+  return text;
 }
 
 /// "floats within its play by ux ±0.02 mm, …", the axes along which it does.
@@ -131,8 +146,8 @@ std::string floating_note(const FloatingPlay& play) {
     if (!(weight(i) * (most - least) > 1e-9 * std::min(size, 1e3))) continue;
     const char* unit = i < 3 ? "mm" : "rad";
     const bool even = std::isfinite(most) && std::abs(most + least) <= 1e-6 * (most - least);
-    ways.push_back(even ? fmt::format("{} ±{:.4g} {}", displacement_names[i], most, unit)
-                        : fmt::format("{} {:.4g} to {:+.4g} {}", displacement_names[i], least, most, unit));
+    ways.push_back(even ? fmt::format("{} ±{:.4g} {}", tool_displacements[i], most, unit)
+                        : fmt::format("{} {:.4g} to {:+.4g} {}", tool_displacements[i], least, most, unit));
   }
   const std::string parts = fmt::format("play of {} that nothing loads", fmt::join(play.parts, ", "));
   if (ways.empty())
@@ -142,7 +157,7 @@ std::string floating_note(const FloatingPlay& play) {
 }
 
 /// The result's own, and whether its geometry will do.
-std::vector<std::string> notes_of(const SolveResult& result) {
+std::vector<std::string> solve_notes(const SolveResult& result) {
   std::vector<std::string> notes = result.notes;
   if (!result.rigid_motions.empty())
     notes.insert(notes.begin(), fmt::format("held rigidly: nothing yields in {}: the stiffness is infinite there, and "
@@ -151,8 +166,7 @@ std::vector<std::string> notes_of(const SolveResult& result) {
   if (result.floating) notes.insert(notes.begin(), floating_note(*result.floating));
   Displacements d;
   d.points = result.mesh.points;
-  for (const LineCell& cell : result.mesh.cells)
-    d.lines.emplace_back(static_cast<std::size_t>(cell.a), static_cast<std::size_t>(cell.b));
+  for (const LineCell& cell : result.mesh.cells) d.lines.emplace_back(as_size(cell.a), as_size(cell.b));
   for (const PointField& field : result.fields.points) {
     if (field.name == "rotation_rad") d.turned = field.values;
     if (field.name != "displacement_mm") continue;
@@ -171,17 +185,18 @@ std::string solve_json(const SolveResult& result) {
   json["kind"] = "solve";
   json["pose"] = json_numbers(result.pose_mm_deg, "pose");
   json["load"] = json_numbers(result.load_N_Nmm, "load");
-  json["analytic"] = json_theory(result.analytic, "analytic");
-  json["msa"] = json_theory(result.msa, "msa");
-  json["relative_difference"] = json_number(result.relative_difference, "relative_difference");
+  json["theories"] = json_theories(result.theories);
+  json["reference"] = result.theories[reference_of(result.theories)]->name;
+  for (std::size_t t = 0; t < result.theories.size(); ++t)
+    json[result.theories[t]->name] = json_theory(result.solutions[t], result.theories[t]->name, result.geometry);
+  if (result.theories.size() > 1)
+    json["relative_difference"] = json_number(result.relative_difference, "relative_difference");
   json["checks"]["symmetric"] = result.symmetric;
   json["checks"]["positive"] = result.positive;
   if (result.geometry == Geometry::linear) {
     json["checks"]["passive_joints_free"] = result.passive_joints_free;
   } else {
     json["geometry"] = geometry_name(result);
-    json["analytic"]["from_linear"] = json_number(result.analytic_from_linear, "analytic.from_linear");
-    json["msa"]["from_linear"] = json_number(result.msa_from_linear, "msa.from_linear");
   }
   json["shares"] = Json::array();
   for (const auto& [part, share] : result.shares) {
@@ -196,8 +211,10 @@ std::string solve_json(const SolveResult& result) {
   json["redundant_constraints"] = result.redundant_constraints;
   if (result.assembly) {
     Json& assembly = json["assembly"];
-    assembly["analytic_offset"] = json_numbers(result.assembly->analytic_mm_rad, "assembly.analytic_offset");
-    assembly["msa_offset"] = json_numbers(result.assembly->msa_mm_rad, "assembly.msa_offset");
+    for (std::size_t t = 0; t < result.theories.size(); ++t) {
+      const std::string name = result.theories[t]->name + "_offset";
+      assembly[name] = json_numbers(result.assembly->offsets_mm_rad[t], "assembly." + name);
+    }
     for (const auto& [leg, wrench] : result.assembly->leg_wrenches_N_Nmm)
       assembly["leg_wrenches_N_Nmm"][leg] = json_numbers(wrench, "assembly wrench of " + leg);
   }
@@ -206,7 +223,7 @@ std::string solve_json(const SolveResult& result) {
     json["floating"] = {{"parts", result.floating->parts},
                         {"least", json_limits(result.floating->least_mm_rad)},
                         {"most", json_limits(result.floating->most_mm_rad)}};
-  if (const auto notes = notes_of(result); !notes.empty()) json["notes"] = notes;
+  if (const auto notes = solve_notes(result); !notes.empty()) json["notes"] = notes;
   return json_text(json);
 }
 
@@ -218,13 +235,18 @@ std::string solve_report(const SolveResult& result) {
   text += fmt::format("load   fx {}, fy {}, fz {} N; mx {}, my {}, mz {} Nmm\n\n", F[0], F[1], F[2], F[3], F[4], F[5]);
   if (!result.joints.empty()) text.insert(text.size() - 1, joints_line(result));
   text += displacement_table(result);
-  text += fmt::format("relative difference {:.1e}\n", result.relative_difference);
+  if (result.theories.size() > 1) text += fmt::format("relative difference {:.1e}\n", result.relative_difference);
   if (result.geometry != Geometry::linear) text += geometry_line(result);
   text += "\n";
-  text += "stiffness by MSA, base axes (N/mm, N, Nmm)\n" + stiffness_table(result.msa.stiffness_mm);
-  text += stiffness_difference(result.analytic.stiffness_mm, result.msa.stiffness_mm) + "\n";
+  const std::size_t shown = reference_of(result.theories);
+  const Matrix6& K = result.solutions[shown].stiffness_mm;
+  text += fmt::format("stiffness by {}, base axes (N/mm, N, Nmm)\n", result.theories[shown]->title);
+  text += stiffness_table(K);
+  for (std::size_t t = 0; t < result.theories.size(); ++t)
+    if (t != shown) text += stiffness_difference(*result.theories[t], result.solutions[t].stiffness_mm, K);
+  text += "\n";
   if (!result.shares.empty()) text += shares_table(result) + "\n";
-  if (result.assembly) text += assembly_table(*result.assembly) + "\n";
+  if (result.assembly) text += assembly_table(*result.assembly, result.theories) + "\n";
   std::vector<std::vector<std::string>> checks = {{"  stiffness symmetric", check(result.symmetric)},
                                                   {"  stiffness positive", check(result.positive)}};
   if (result.geometry == Geometry::linear)
@@ -234,7 +256,7 @@ std::string solve_report(const SolveResult& result) {
     text +=
         fmt::format("note: over-constrained: {} more constraint{} than hold it; parts yield, so that it is solved\n",
                     result.redundant_constraints, result.redundant_constraints == 1 ? "" : "s");
-  for (const std::string& note : notes_of(result)) text += "note: " + note + "\n";
+  for (const std::string& note : solve_notes(result)) text += "note: " + note + "\n";
   return text;
 }
 

@@ -1,4 +1,5 @@
 #include "validation/report/text.h"
+#include "msa/base/index.h"
 
 #include <algorithm>
 
@@ -9,9 +10,7 @@ bool starts_letter(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x
 
 }  // namespace
 
-std::size_t letters(std::string_view utf8) {
-  return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), starts_letter));
-}
+std::size_t letters(std::string_view utf8) { return as_size(std::count_if(utf8.begin(), utf8.end(), starts_letter)); }
 
 std::string clip(std::string_view utf8, std::size_t most) {
   if (letters(utf8) <= most) return std::string(utf8);

@@ -7,10 +7,11 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "validation/json/json_text.h"
 #include "validation/measurement/column_names.h"
 #include "validation/report/by_point.h"
-#include "validation/report/json_text.h"
 #include "validation/report/text.h"
+#include "validation/report/theory_words.h"
 
 namespace deflect {
 namespace {
@@ -40,41 +41,50 @@ std::string row_name(const ValidationRow& row) {
   return fmt::format("point {}, load along {}", row.point.label, axis_names[row.axis]);
 }
 
-std::string millimetres(const ValidationRow* row, const Vector6 ValidationRow::*theory) {
-  return row ? fmt::format("{:.6f}", (row->*theory)[row->axis]) : "–";
+std::string millimetres(const ValidationRow* row, std::size_t theory) {
+  return row ? fmt::format("{:.6f}", row->displacements[theory][row->axis]) : "–";
 }
 
 std::string difference(double value) { return fmt::format("{:.1e}", value); }
 
-std::vector<std::vector<std::string>> two_theories(const std::vector<PointRows>& points) {
-  std::vector<std::vector<std::string>> lines = {
-      {"point", "analytic x", "analytic y", "analytic z", "MSA x", "MSA y", "MSA z", "difference"}};
+std::vector<std::vector<std::string>> by_theory(const Validation& validation, const std::vector<PointRows>& points) {
+  const bool several = validation.theories.size() > 1;
+  std::vector<std::vector<std::string>> lines = {{"point"}};
+  for (const Theory* theory : validation.theories)
+    for (const char* axis : axis_names) lines.front().push_back(fmt::format("{} {}", theory->title, axis));
+  if (several) lines.front().push_back("difference");
   for (const PointRows& p : points) {
     std::vector<std::string> line = {p.point->label};
-    for (const ValidationRow* row : p.rows) line.push_back(millimetres(row, &ValidationRow::analytic));
-    for (const ValidationRow* row : p.rows) line.push_back(millimetres(row, &ValidationRow::msa));
+    for (std::size_t t = 0; t < validation.theories.size(); ++t)
+      for (const ValidationRow* row : p.rows) line.push_back(millimetres(row, t));
     double largest = 0;
     for (const ValidationRow* row : p.rows)
       if (row && (std::isnan(row->relative_difference) || row->relative_difference > largest))
         largest = row->relative_difference;  // nothing is larger than a NaN, so it stays
-    line.push_back(difference(largest));
+    if (several) line.push_back(difference(largest));
     lines.push_back(line);
   }
   return lines;
 }
 
-std::vector<std::vector<std::string>> with_printed(const std::vector<PointRows>& points) {
-  std::vector<std::vector<std::string>> lines = {
-      {"point", "load", "as printed", "corrected", "MSA", "corrected/printed", "difference"}};
+std::vector<std::vector<std::string>> with_printed(const Validation& validation, const std::vector<PointRows>& points) {
+  const std::size_t corrected = place_of(validation.theories, "analytic");
+  const bool several = validation.theories.size() > 1;
+  std::vector<std::vector<std::string>> lines = {{"point", "load", "as printed"}};
+  for (std::size_t t = 0; t < validation.theories.size(); ++t)
+    lines.front().push_back(t == corrected ? "corrected" : validation.theories[t]->title);
+  lines.front().push_back("corrected/printed");
+  if (several) lines.front().push_back("difference");
   for (const PointRows& p : points)
     for (const ValidationRow* row : p.rows) {
       if (!row) continue;
-      const double corrected = row->analytic[row->axis];
       const double printed = row->as_printed ? (*row->as_printed)[row->axis] : 0;
-      lines.push_back({p.point->label, axis_names[row->axis], row->as_printed ? fmt::format("{:.6f}", printed) : "–",
-                       millimetres(row, &ValidationRow::analytic), millimetres(row, &ValidationRow::msa),
-                       printed != 0 ? fmt::format("{:.3f}", corrected / printed) : "–",
-                       difference(row->relative_difference)});
+      std::vector<std::string> line = {p.point->label, axis_names[row->axis],
+                                       row->as_printed ? fmt::format("{:.6f}", printed) : "–"};
+      for (std::size_t t = 0; t < validation.theories.size(); ++t) line.push_back(millimetres(row, t));
+      line.push_back(printed != 0 ? fmt::format("{:.3f}", row->displacements[corrected][row->axis] / printed) : "–");
+      if (several) line.push_back(difference(row->relative_difference));
+      lines.push_back(line);
     }
   return lines;
 }
@@ -90,17 +100,22 @@ std::string validation_json(const Validation& validation, const std::vector<Erra
     entry["pose"] = json_numbers(row.point.pose_mm_deg, name + ", pose");
     entry["load_axis"] = axis_names[row.axis];
     entry["load_N"] = json_number(row.load_N, name + ", load_N");
-    entry["analytic"] = json_numbers(row.analytic, name + ", analytic");
-    entry["msa"] = json_numbers(row.msa, name + ", msa");
+    for (std::size_t t = 0; t < row.displacements.size(); ++t) {
+      const std::string& theory = validation.theories[t]->name;
+      entry[theory] = json_numbers(row.displacements[t], name + ", " + theory);
+    }
     if (row.as_printed) entry["as_printed"] = json_numbers(*row.as_printed, name + ", as_printed");
     points.push_back(std::move(entry));
   }
   Json result;
   result["kind"] = "validation";
   result["device"] = validation.device;
+  result["theories"] = json_theories(validation.theories);
   result["points"] = std::move(points);
-  result["max_relative_difference"] = json_number(validation.max_relative_difference, "max_relative_difference");
-  result["rms_relative_difference"] = json_number(validation.rms_relative_difference, "rms_relative_difference");
+  if (validation.theories.size() > 1) {
+    result["max_relative_difference"] = json_number(validation.max_relative_difference, "max_relative_difference");
+    result["rms_relative_difference"] = json_number(validation.rms_relative_difference, "rms_relative_difference");
+  }
   for (const ErratumPrice& p : prices) {
     Json price = {{"erratum", info(p.erratum).name}, {"equations", info(p.erratum).equations}};
     for (int axis = 0; axis < 3 && p.refused.empty(); ++axis) {
@@ -117,26 +132,29 @@ std::string validation_json(const Validation& validation, const std::vector<Erra
 std::string validation_csv(const Validation& validation) {
   const bool printed = has_as_printed(validation);
   std::string text = fmt::format("point,{},load_axis,load_N", fmt::join(pose_columns, ","));
-  const auto theories = printed ? std::vector{"analytic", "msa", "as_printed"} : std::vector{"analytic", "msa"};
-  for (const char* theory : theories)
-    for (const std::string& column : displacement_columns) text += fmt::format(",{}_{}", theory, column);
-  text += ",relative_difference\n";
+  const bool several = validation.theories.size() > 1;
+  std::vector<std::string> names;
+  for (const Theory* theory : validation.theories) names.push_back(theory->name);
+  if (printed) names.push_back("as_printed");
+  for (const std::string& name : names)
+    for (const std::string& column : displacement_columns) text += fmt::format(",{}_{}", name, column);
+  text += several ? ",relative_difference\n" : "\n";
 
   for (const ValidationRow& row : validation.rows) {
     const std::string name = row_name(row);
-    const auto numbers = [&](const Vector6& values, const char* what) {
+    const auto numbers = [&](const Vector6& values, const std::string& what) {
       for (const double value : values) text.append(",").append(csv_number(value, name + ", " + what));
     };
     text += csv_text(row.point.label);
     numbers(row.point.pose_mm_deg, "pose");
     text += fmt::format(",{},{}", axis_names[row.axis], csv_number(row.load_N, name + ", load_N"));
-    numbers(row.analytic, "analytic");
-    numbers(row.msa, "msa");
+    for (std::size_t t = 0; t < row.displacements.size(); ++t) numbers(row.displacements[t], names[t]);
     if (row.as_printed)
       numbers(*row.as_printed, "as_printed");
     else if (printed)
       text.append(6, ',');
-    text += fmt::format(",{}\n", csv_number(row.relative_difference, name + ", relative_difference"));
+    if (several) text += "," + csv_number(row.relative_difference, name + ", relative_difference");
+    text += "\n";
   }
   return text;
 }
@@ -151,8 +169,9 @@ std::string validation_table(const Validation& validation) {
         "as printed: analytic theory with {}\n"
         "corrected/printed: how many times too stiff the theory is as printed\n",
         errata_text(validation));
-  text.append("\n").append(aligned(printed ? with_printed(points) : two_theories(points)));
-  return text + fmt::format("\nanalytic against MSA, relative: largest {:.1e}, rms {:.1e}, {} cases\n",
+  text.append("\n").append(aligned(printed ? with_printed(validation, points) : by_theory(validation, points)));
+  if (validation.theories.size() < 2) return text;
+  return text + fmt::format("\n{}, relative: largest {:.1e}, rms {:.1e}, {} cases\n", against_text(validation.theories),
                             validation.max_relative_difference, validation.rms_relative_difference,
                             validation.rows.size());
 }

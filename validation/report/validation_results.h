@@ -5,21 +5,22 @@
 
 #include <string>
 
-#include "validation/theories/theories.h"
+#include "validation/studies/errata_prices.h"
+#include "validation/studies/validate.h"
 
 namespace deflect {
 
-/// {"device", "points": [{"point", "pose", "load_axis", "load_N", "analytic", "msa", "as_printed" where
-/// present}, …], "max_relative_difference", "rms_relative_difference"}. "point" is an integer where the label
-/// is one. With prices, "errata": [{"erratum", "equations", "smallest", "largest": ratios printed / corrected for loads
-/// along x, y, z, null where not finite, or "refused"; "failed_check"}, …].
+/// {"device", "theories": [{"name", "title"}, …], "points": [{"point", "pose", "load_axis", "load_N", a member for each
+/// theory, "as_printed" where present}, …], "max_relative_difference", "rms_relative_difference"}. "point" is an
+/// integer where the label is one. With prices, "errata": [{"erratum", "equations", "smallest", "largest": ratios
+/// printed / corrected for loads along x, y, z, null where not finite, or "refused"; "failed_check"}, …].
 std::string validation_json(const Validation&, const std::vector<ErratumPrice>& = {});
 
-/// One line per row: point, x_mm … yaw_deg, load_axis, load_N, analytic_ux_mm … analytic_thz_rad, msa_…,
+/// One line per row: point, x_mm … yaw_deg, load_axis, load_N, analytic_ux_mm … analytic_thz_rad, and so on by theory,
 /// as_printed_… (where any row has it; empty where that row has none), relative_difference.
 std::string validation_csv(const Validation&);
 
-/// One line per point: deflection along the load by both theories (mm) and the larger relative difference.
+/// One line per point: deflection along the load by each theory (mm) and the larger relative difference.
 /// With the theory as printed, one line per point and load: as printed, corrected, MSA and corrected / as
 /// printed, which is how many times too stiff the printed theory is. Ends with the largest and the rms
 /// difference.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "msa/base/number_words.h"
 #include "validation/report/compare_words.h"
 
@@ -178,8 +179,7 @@ std::string fitted_words(const Hypothesis& h, const Fit& f) {
   std::string out;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [low, high] = interval95(h, f, i);
-    out += fmt::format("{}{} = {}", i ? ", " : "", all[i]->name,
-                       interval_words(f.values(static_cast<Eigen::Index>(i)), low, high));
+    out += fmt::format("{}{} = {}", i ? ", " : "", all[i]->name, interval_words(f.values(as_index(i)), low, high));
   }
   return out;
 }

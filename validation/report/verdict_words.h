@@ -6,7 +6,7 @@
 
 #include "validation/compare/comparison.h"
 #include "validation/diagnosis/diagnosis.h"
-#include "validation/report/json_text.h"
+#include "validation/json/json_text.h"
 
 namespace deflect {
 

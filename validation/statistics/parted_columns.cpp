@@ -1,4 +1,5 @@
 #include "validation/statistics/parted_columns.h"
+#include "msa/base/index.h"
 
 namespace deflect {
 
@@ -13,7 +14,7 @@ VectorX PartedColumns::operator*(const VectorX& x) const {
   Eigen::Index at = shared.cols();
   for (const GroupColumns& g : groups) {
     const VectorX own = g.columns * x.segment(at, g.columns.cols());
-    for (std::size_t i = 0; i < g.rows.size(); ++i) out(g.rows[i]) += own(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < g.rows.size(); ++i) out(g.rows[i]) += own(as_index(i));
     at += g.columns.cols();
   }
   return out;
@@ -28,8 +29,7 @@ PartedColumns& PartedColumns::operator*=(double factor) {
 VectorX PartedColumns::squared_row_norms() const {
   VectorX out = shared.rowwise().squaredNorm();
   for (const GroupColumns& g : groups)
-    for (std::size_t i = 0; i < g.rows.size(); ++i)
-      out(g.rows[i]) += g.columns.row(static_cast<Eigen::Index>(i)).squaredNorm();
+    for (std::size_t i = 0; i < g.rows.size(); ++i) out(g.rows[i]) += g.columns.row(as_index(i)).squaredNorm();
   return out;
 }
 

@@ -34,7 +34,7 @@ template <class Groups, class Change>
 void change_groups(const Groups& groups, MatrixX& X, const Change& change) {
   for (const auto& group : groups) {
     if (group.rows.empty()) continue;
-    const auto first = group.rows.front(), size = static_cast<Eigen::Index>(group.rows.size());
+    const auto first = group.rows.front(), size = std::ssize(group.rows);
     if (group.rows.back() - first + 1 == size) {
       MatrixX part = X.middleRows(first, size);
       change(group, part);

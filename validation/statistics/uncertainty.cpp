@@ -1,163 +1,101 @@
 #include "validation/statistics/uncertainty.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 
+#include "msa/base/index.h"
 #include "validation/parallel/cases.h"
-#include "validation/prediction/as_built.h"
-#include "validation/prediction/prediction.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/scaled_groups.h"
 #include "validation/statistics/tail.h"
 
 namespace deflect {
-namespace {
-
-/// One tolerance, moved by a standard deviation: in every pose, or in one.
-struct Move {
-  Nuisance nuisance;
-  AsBuilt built;
-  std::ptrdiff_t pose = -1, actuator = -1;
-};
-
-std::vector<Move> shared_moves(const Mechanism& m) {
-  const Tolerances& t = m.tolerances;
-  const auto legs = static_cast<std::size_t>(leg_count(m));
-  std::vector<Move> moves;
-  const auto add = [&](const std::string& name, double sigma, const std::function<void(AsBuilt&)>& change) {
-    if (!(sigma > 0)) return;
-    Move move{{name, sigma}, {}};
-    move.built.legs.resize(legs);
-    change(move.built);
-    moves.push_back(std::move(move));
-  };
-  add("modulus", t.modulus, [&](AsBuilt& b) { b.modulus = t.modulus; });
-  const bool seats = std::holds_alternative<SixPsu>(m.kinematics) || !m.mounts.empty();
-  for (std::size_t i = 0; i < legs; ++i) {
-    const std::string leg = fmt::format("leg {} ", i + 1);
-    add(leg + "guide diameter", t.guide_diameter, [&](AsBuilt& b) { b.legs[i].guide_diameter = t.guide_diameter; });
-    if (!seats) continue;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      add(leg + "base joint " + "xyz"[axis], t.joint_position,
-          [&](AsBuilt& b) { b.legs[i].base_joint(axis) = t.joint_position; });
-      add(leg + "platform joint " + "xyz"[axis], t.joint_position,
-          [&](AsBuilt& b) { b.legs[i].platform_joint(axis) = t.joint_position; });
-    }
-    if (std::holds_alternative<SixPsu>(m.kinematics))
-      add(leg + "link length", t.link_length, [&](AsBuilt& b) { b.legs[i].link_length = t.link_length; });
-  }
-  return moves;
-}
-
-/// Sensitivities are those of the machine in linear geometry; the sensor's drift, which no tolerance changes, goes by
-/// the rank among all readings, where those of a pose are predicted alone.
-Mechanism simplified(const Mechanism& m) {
-  Mechanism out = m;
-  out.geometry = Geometry::linear;
-  out.sensor.drift.setZero();
-  return out;
-}
-
-}  // namespace
 
 MatrixX rows_of(const std::vector<MeasuredValue>& values,
                 const std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_reading) {
-  MatrixX out(static_cast<Eigen::Index>(values.size()), by_reading.empty() ? 0 : by_reading.front().cols());
+  MatrixX out(std::ssize(values), by_reading.empty() ? 0 : by_reading.front().cols());
   for (std::size_t i = 0; i < values.size(); ++i)
-    out.row(static_cast<Eigen::Index>(i)) =
-        by_reading[values[i].reading].row(static_cast<Eigen::Index>(values[i].component));
+    out.row(as_index(i)) = by_reading[values[i].reading].row(as_index(values[i].component));
   return out;
 }
 
 VectorX rows_of(const std::vector<MeasuredValue>& values, const std::vector<Vector6>& by_reading) {
-  VectorX out(static_cast<Eigen::Index>(values.size()));
+  VectorX out(std::ssize(values));
   for (std::size_t i = 0; i < values.size(); ++i)
-    out(static_cast<Eigen::Index>(i)) = by_reading[values[i].reading](static_cast<Eigen::Index>(values[i].component));
+    out(as_index(i)) = by_reading[values[i].reading](as_index(values[i].component));
   return out;
 }
 
-ToleranceModel tolerance_model(const Mechanism& device, const std::vector<Configuration>& drawn,
-                               const Measurements& data, const std::vector<MeasuredValue>& values, int threads,
-                               const Told& told) {
-  const Mechanism m = simplified(device);
-  PredictionOptions o;
-  o.threads = 1;
-  const VectorX nominal = rows_of(values, predict(m, drawn, data, o));
-  std::vector<Move> moves = shared_moves(m);
-  const std::size_t shared = moves.size();
-  if (m.tolerances.actuator_repeatability > 0)
-    for (std::size_t p = 0; p < drawn.size(); ++p)
-      for (std::size_t q = 0; q < drawn[p].actuators.size(); ++q) {
-        if (drawn[p].actuators[q].rotation) continue;
-        const double sigma = m.tolerances.actuator_repeatability;
-        moves.push_back({{fmt::format("pose {} {}", data.poses[p].label, drawn[p].actuators[q].name), sigma},
-                         {},
-                         static_cast<std::ptrdiff_t>(p),
-                         static_cast<std::ptrdiff_t>(q)});
-      }
+namespace {
 
+/// Where a pose has tolerances of its own: the rows of its numbers, with room for so many columns.
+std::vector<GroupColumns> room_of_poses(const Measurements& data, const std::vector<MeasuredValue>& values,
+                                        const std::vector<Eigen::Index>& columns) {
+  std::vector<GroupColumns> groups(columns.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    groups[data.readings[values[i].reading].pose].rows.push_back(as_index(i));
+  for (std::size_t p = 0; p < groups.size(); ++p) groups[p].columns.resize(std::ssize(groups[p].rows), columns[p]);
+  return groups;
+}
+
+/// Tolerances first … last − 1 of one pose, by its readings alone.
+void move_own(GroupColumns& own, const Deviations& off, std::size_t first, std::size_t last, std::size_t pose,
+              const Measurements& data, const std::vector<MeasuredValue>& values, const VectorX& nominal) {
+  const Measurements of_pose = one_pose(data, pose);
+  // Of the rows of this pose's readings, the reading in `of_pose`.
+  std::vector<std::size_t> reading;
+  for (const Eigen::Index row : own.rows) {
+    const std::vector<std::size_t>& all = data.poses[pose].readings;
+    reading.push_back(as_size(std::lower_bound(all.begin(), all.end(), nth(values, row).reading) - all.begin()));
+  }
+  for (std::size_t k = first; k < last; ++k) {
+    const std::vector<Vector6> d = off.with(k)->predict(of_pose, {}, alone);
+    for (std::size_t i = 0; i < own.rows.size(); ++i)
+      own.columns(as_index(i), as_index(k - first)) =
+          d[reading[i]](as_index(nth(values, own.rows[i]).component)) - nominal(own.rows[i]);
+  }
+}
+
+}  // namespace
+
+ToleranceModel tolerance_model(const Standing& standing, const Measurements& data,
+                               const std::vector<MeasuredValue>& values, const Work& work) {
+  const std::unique_ptr<const Deviations> off = standing.deviations(data);
+  const VectorX nominal = rows_of(values, off->drawn().predict(data, {}, alone));
   ToleranceModel out;
-  out.A.shared = MatrixX::Zero(nominal.size(), static_cast<Eigen::Index>(shared));
-  for (const Move& move : moves) out.nuisances.push_back(move.nuisance);
-  // Where a pose has nuisances of its own: its rows and columns, and which column each move fills.
-  std::vector<Eigen::Index> column(moves.size(), 0), count(drawn.size(), 0);
-  for (std::size_t k = shared; k < moves.size(); ++k) column[k] = count[static_cast<std::size_t>(moves[k].pose)]++;
-  if (moves.size() > shared) {
-    out.A.groups.resize(drawn.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      out.A.groups[data.readings[values[i].reading].pose].rows.push_back(static_cast<Eigen::Index>(i));
-    for (std::size_t p = 0; p < drawn.size(); ++p)
-      out.A.groups[p].columns.resize(std::ssize(out.A.groups[p].rows), count[p]);
-  }
-  const auto move_shared = [&](std::size_t k) {
-    const Mechanism geometry = with_geometry(m, moves[k].built);
-    std::vector<Configuration> moved;
-    for (const Configuration& c : drawn) moved.push_back(configure_as_built(geometry, moves[k].built, c));
-    out.A.shared.col(static_cast<Eigen::Index>(k)) = rows_of(values, predict(m, moved, data, o)) - nominal;
-  };
-  const auto move_own = [&](std::size_t p, std::size_t first, std::size_t last) {
-    const Measurements alone = one_pose(data, p);
-    const Mechanism geometry = with_geometry(m, moves[first].built);
-    // Of the rows of this pose's readings, the reading in `alone`.
-    GroupColumns& own = out.A.groups[p];
-    std::vector<std::size_t> reading;
-    for (const Eigen::Index row : own.rows) {
-      const std::vector<std::size_t>& all = data.poses[p].readings;
-      reading.push_back(static_cast<std::size_t>(
-          std::lower_bound(all.begin(), all.end(), values[static_cast<std::size_t>(row)].reading) - all.begin()));
-    }
-    for (std::size_t k = first; k < last; ++k) {
-      VectorX errors = VectorX::Zero(static_cast<Eigen::Index>(drawn[p].actuators.size()));
-      errors(moves[k].actuator) = moves[k].nuisance.sigma;
-      const std::vector<Vector6> d =
-          predict(m, {configure_as_built(geometry, moves[k].built, drawn[p], errors)}, alone, o);
-      for (std::size_t i = 0; i < own.rows.size(); ++i)
-        own.columns(static_cast<Eigen::Index>(i), column[k]) =
-            d[reading[i]](static_cast<Eigen::Index>(values[static_cast<std::size_t>(own.rows[i])].component)) -
-            nominal(own.rows[i]);
-    }
-  };
-  // First the moves of all poses, then pose by pose.
-  std::vector<std::pair<std::size_t, std::size_t>> of_pose;  // first and last move
-  for (std::size_t k = shared; k < moves.size(); ++k) {
-    if (k == shared || moves[k].pose != moves[k - 1].pose) of_pose.emplace_back(k, k);
+  out.nuisances = off->tolerances();
+  const auto own = std::find_if(out.nuisances.begin(), out.nuisances.end(), [](const Tolerance& t) { return t.pose; });
+  const auto shared = as_size(own - out.nuisances.begin());
+  out.A.shared = MatrixX::Zero(nominal.size(), as_index(shared));
+  // Of each pose with tolerances of its own, the first and the last of them.
+  std::vector<std::pair<std::size_t, std::size_t>> of_pose;
+  std::vector<Eigen::Index> columns(standing.poses(), 0);
+  for (std::size_t k = shared; k < out.nuisances.size(); ++k) {
+    if (k == shared || out.nuisances[k].pose != out.nuisances[k - 1].pose) of_pose.emplace_back(k, k);
     ++of_pose.back().second;
+    ++columns[*out.nuisances[k].pose];
   }
+  if (!of_pose.empty()) out.A.groups = room_of_poses(data, values, columns);
   const std::size_t cases = shared + of_pose.size();
-  const auto done = [&](std::size_t through) { told(static_cast<double>(through) / static_cast<double>(cases)); };
+  const auto done = [&](std::size_t through) {
+    work.progress(static_cast<double>(through) / static_cast<double>(cases));
+  };
   for_each_case(
-      cases, 1, threads,
+      cases, 1, work.threads,
       [&](std::size_t k) {
-        if (k < shared) return move_shared(k);
+        if (k < shared) {
+          out.A.shared.col(as_index(k)) = rows_of(values, off->with(k)->predict(data, {}, alone)) - nominal;
+          return;
+        }
         const auto [first, last] = of_pose[k - shared];
-        move_own(static_cast<std::size_t>(moves[first].pose), first, last);
+        const std::size_t pose = *out.nuisances[first].pose;
+        move_own(out.A.groups[pose], *off, first, last, pose, data, values, nominal);
       },
-      told ? std::function<void(std::size_t)>(done) : nullptr);
+      work.progress ? std::function<void(std::size_t)>(done) : nullptr);
   return out;
 }
 
@@ -168,18 +106,18 @@ Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<MeasuredValue
   for (std::size_t first = 0; first < values.size();) {
     std::size_t last = first;
     while (last < values.size() && values[last].reading == values[first].reading) ++last;
-    const auto size = static_cast<Eigen::Index>(last - first);
-    NoiseBlock block{static_cast<Eigen::Index>(first), size, {}};
+    const auto size = as_index(last - first);
+    NoiseBlock block{as_index(first), size, {}};
     if (set_aside.empty() || !set_aside[values[first].reading]) {
       VectorX d(size);
       block.covariance = MatrixX::Zero(size, size);
       for (Eigen::Index i = 0; i < size; ++i) {
-        const std::size_t at = first + static_cast<std::size_t>(i);
-        d(i) = load * predicted[values[at].reading](static_cast<Eigen::Index>(values[at].component));
+        const std::size_t at = first + as_size(i);
+        d(i) = load * predicted[values[at].reading](as_index(values[at].component));
         block.covariance(i, i) = sigma[at] * sigma[at];
       }
       block.covariance += d * d.transpose();
-      count_ += static_cast<std::size_t>(size);
+      count_ += as_size(size);
     }
     blocks_.push_back(std::move(block));
     first = last;
@@ -222,24 +160,23 @@ Uncertainty::OfContrasts Uncertainty::of_contrasts(const Eigen::SparseMatrix<dou
             i->weight * k->weight * b.covariance(i->number - b.first, k->number - b.first);
     entry = end;
   }
-  std::vector<std::size_t> group(static_cast<std::size_t>(A_.rows()), A_.groups.size());
+  std::vector<std::size_t> group(as_size(A_.rows()), A_.groups.size());
   std::vector<Eigen::Index> row(group.size(), 0);  // of the group
   for (std::size_t g = 0; g < A_.groups.size(); ++g)
     for (std::size_t i = 0; i < A_.groups[g].rows.size(); ++i) {
-      const auto number = static_cast<std::size_t>(A_.groups[g].rows[i]);
+      const auto number = as_size(A_.groups[g].rows[i]);
       group[number] = g;
-      row[number] = static_cast<Eigen::Index>(i);
+      row[number] = as_index(i);
     }
   std::vector<std::vector<Eigen::Index>> contrasts(A_.groups.size() + 1);
   for (Eigen::Index i = 0; i < T.rows(); ++i)
-    if (const Row first(T, i); first) contrasts[group[static_cast<std::size_t>(first.col())]].push_back(i);
+    if (const Row first(T, i); first) contrasts[nth(group, first.col())].push_back(i);
   for (std::size_t g = 0; g < A_.groups.size(); ++g) {
     const MatrixX& columns = A_.groups[g].columns;
     GroupColumns own{contrasts[g], MatrixX::Zero(std::ssize(contrasts[g]), columns.cols())};
     for (std::size_t i = 0; i < own.rows.size(); ++i)
       for (Row at(T, own.rows[i]); at; ++at)
-        own.columns.row(static_cast<Eigen::Index>(i)) +=
-            at.value() * columns.row(row[static_cast<std::size_t>(at.col())]);
+        own.columns.row(as_index(i)) += at.value() * columns.row(nth(row, at.col()));
     out.errors.groups.push_back(std::move(own));
   }
   return out;

@@ -1,9 +1,8 @@
 // What a residual may be without anything missing: the noise of readings and the tolerances of the machine.
 //
 // Measured numbers y (one per component that was measured) differ from the prediction by r = A η + ε:
-//   η  tolerances in standard deviations, η ~ N(0, 1): modulus, each leg's guideway diameter, joints on base and
-//      platform and link length, each pose's actuators; A by differences of the prediction (closed form, linear
-//      geometry) of machines as built (as_built.h);
+//   η  tolerances in standard deviations, η ~ N(0, 1), of all poses and of each; A by differences of the prediction in
+//      linear geometry of the subject that is off by one of them (subject.h);
 //   ε  reading noise σ, and within a reading the error of its load, relative, which moves along the prediction d:
 //      cov = diag(σ²) + t² d dᵀ.
 // So Σ = A Aᵀ + cov(ε), and everything below weighs by Σ⁻¹. Readings set aside weigh nothing. Errors of the load are of
@@ -18,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "msa/mechanism/configuration.h"
 #include "validation/measurement/replicates.h"
-#include "validation/parallel/cases.h"
+#include "validation/parallel/work.h"
 #include "validation/statistics/whitening.h"
+#include "validation/subject/subject.h"
 
 namespace deflect {
 
@@ -30,19 +29,13 @@ MatrixX rows_of(const std::vector<MeasuredValue>&,
                 const std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_reading);
 VectorX rows_of(const std::vector<MeasuredValue>&, const std::vector<Vector6>& by_reading);
 
-/// A tolerance as a nuisance parameter.
-struct Nuisance {
-  std::string name;  ///< "modulus", "leg 3 base joint x", "pose 4 leg 1 slider"
-  double sigma = 0;  ///< prior standard deviation: relative, or m
-};
-
-/// The machine's sensitivity to its tolerances.
+/// The subject's sensitivity to its tolerances, which are nuisance parameters with a prior.
 struct ToleranceModel {
-  std::vector<Nuisance> nuisances;  ///< of all poses, then pose by pose
-  PartedColumns A;                  ///< measured numbers × nuisances, per standard deviation; m, rad; groups: poses
+  std::vector<Tolerance> nuisances;  ///< of all poses, then pose by pose
+  PartedColumns A;                   ///< measured numbers × nuisances, per standard deviation; m, rad; groups: poses
 };
-ToleranceModel tolerance_model(const Mechanism&, const std::vector<Configuration>& drawn, const Measurements&,
-                               const std::vector<MeasuredValue>&, int threads = 0, const Told& = {});
+ToleranceModel tolerance_model(const Standing&, const Measurements&, const std::vector<MeasuredValue>&,
+                               const Work& = {});
 
 class Uncertainty {
  public:

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "msa/base/index.h"
 #include "validation/parallel/cases.h"
 
 namespace deflect {
@@ -15,9 +16,9 @@ MatrixX by_parts(const MatrixX& X, int threads, const F& f) {
   constexpr Eigen::Index some = 8, little = 200'000;  // numbers that are not worth a thread
   if (X.cols() <= some) return f(X);
   MatrixX out(X.rows(), X.cols());
-  const auto parts = static_cast<std::size_t>((X.cols() + some - 1) / some);
+  const auto parts = as_size((X.cols() + some - 1) / some);
   for_each_case(parts, 1, X.size() > little ? threads : 1, [&](std::size_t part) {
-    const Eigen::Index first = static_cast<Eigen::Index>(part) * some, count = std::min(some, X.cols() - first);
+    const Eigen::Index first = as_index(part) * some, count = std::min(some, X.cols() - first);
     out.middleCols(first, count) = f(X.middleCols(first, count));
   });
   return out;

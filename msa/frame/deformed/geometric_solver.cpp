@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/frame/deformed/geometric_work.h"
 #include "msa/frame/structure/relative.h"
 
@@ -23,17 +24,16 @@ void GeometricSolver::begin_jumps(Work& work, double factor) const {
     if (beam.relative < 0) loads.segment<3>(6 * beam.a) -= push;
     loads.segment<3>(beam.relative < 0 ? 6 * beam.b : beam.relative) += push;
   }
-  const Solution s =
-      linear_->solve(loads, VectorX(factor * padded(work.values, static_cast<Eigen::Index>(m.constraints.size()))));
+  const Solution s = linear_->solve(loads, VectorX(factor * padded(work.values, std::ssize(m.constraints))));
   work.jumping.o.setZero();
   work.shape = Shape(model_);
   if (s.converged) {
     work.shape.move(s.u.head(model_.dofs()));
     for (std::size_t j = 0; j < work.jumping.springs.size(); ++j) {
       const std::size_t spring = work.jumping.springs[j];
-      const auto i = static_cast<Eigen::Index>(j);
-      work.jumping.o(i) = evaluate(m.springs[spring].elongation, s.fine) -
-                          s.spring_forces(static_cast<Eigen::Index>(spring)) / work.jumping.k(i);
+      const auto i = as_index(j);
+      work.jumping.o(i) =
+          evaluate(m.springs[spring].elongation, s.fine) - s.spring_forces(as_index(spring)) / work.jumping.k(i);
     }
   }
   work.set_offsets();
@@ -51,7 +51,7 @@ void GeometricSolver::take_jumps(Work& work) const {
     work.jumping.laws.push_back(scalar_law(law));
     k.push_back(contact * (law.rotation ? work.length * work.length : 1));
   }
-  const auto n = static_cast<Eigen::Index>(k.size());
+  const auto n = std::ssize(k);
   work.jumping.k = Eigen::Map<const VectorX>(k.data(), n);
   work.jumping.o = work.jumping.d = work.jumping.s = VectorX::Zero(n);
   work.jumping.end.assign(k.size(), 0);
@@ -64,7 +64,7 @@ void GeometricSolver::release_jumps(Work& work, GeometricState& state) const {
   for (const Spring& spring : model_.springs) state.jumping.push_back(spring.law);
   for (std::size_t j = 0; j < work.jumping.springs.size(); ++j) {
     const std::size_t spring = work.jumping.springs[j];
-    const auto i = static_cast<Eigen::Index>(j);
+    const auto i = as_index(j);
     const SpringLaw& law = linear_->model().springs[spring].law;
     const double d = work.jumping.d(i), s = work.jumping.s(i);
     const int end = work.jumping.end[j];
@@ -76,7 +76,7 @@ void GeometricSolver::release_jumps(Work& work, GeometricState& state) const {
     linear = LinearSpring{work.jumping.k(i)};
     linear.preload = work.jumping.k(i) * d - s;
     if (const auto* friction = std::get_if<FrictionSpring>(&law); friction && friction->number >= 0) {
-      const auto number = static_cast<std::size_t>(friction->number);
+      const auto number = as_size(friction->number);
       state.slips.resize(std::max(state.slips.size(), number + 1));
       state.slips[number] = slip_at(*friction, law.at_rest, d, end);
     }
@@ -87,7 +87,7 @@ void GeometricSolver::release_jumps(Work& work, GeometricState& state) const {
 Model GeometricSolver::held(const GeometricState& state) const {
   Model m = constrained(state.forms);
   for (std::size_t i = 0; i < state.jumping.size(); ++i)
-    if (std::isinf(true_tangent(state.jumping[i], state.elongations(static_cast<Eigen::Index>(i)))))
+    if (std::isinf(true_tangent(state.jumping[i], state.elongations(as_index(i)))))
       m.constraints.push_back({state.spring_forms[i], 0, model_.springs[i].name});
   return m;
 }
@@ -97,10 +97,9 @@ GeometricSolver::GeometricSolver(Model given)
   give_contacts_stiffness(model_);
   std::vector<char> redundant(model_.constraints.size(), 0);
   for (const Redundancy& r : linear_->elimination().redundant)
-    if (const auto k = static_cast<std::size_t>(r.constraint); k < redundant.size()) redundant[k] = 1;
+    if (const auto k = as_size(r.constraint); k < redundant.size()) redundant[k] = 1;
   const std::vector<Constraint>& solved = linear_->model().constraints;
-  model_.constraints.insert(model_.constraints.end(),
-                            solved.end() - static_cast<std::ptrdiff_t>(linear_->idle_motions()), solved.end());
+  model_.constraints.insert(model_.constraints.end(), solved.end() - as_index(linear_->idle_motions()), solved.end());
   redundant.resize(model_.constraints.size(), 0);
   for (std::size_t k = 0; k < redundant.size(); ++k)
     if (!redundant[k]) active_.push_back(k);
@@ -118,9 +117,8 @@ Model GeometricSolver::constrained(const std::vector<LinearForm>& forms) const {
 /// The size of the forces that prescribed values bring, were nothing else to move.
 double GeometricSolver::driving_force(const Linearisation& rest, const VectorX& values) const {
   const Elimination e = eliminate(constrained(rest.forms));
-  VectorX active(static_cast<Eigen::Index>(active_.size())), ignored;
-  for (std::size_t k = 0; k < active_.size(); ++k)
-    active(static_cast<Eigen::Index>(k)) = values(static_cast<Eigen::Index>(active_[k]));
+  VectorX active(std::ssize(active_)), ignored;
+  for (std::size_t k = 0; k < active_.size(); ++k) active(as_index(k)) = values(as_index(active_[k]));
   return largest(internal_forces(model_, e.expand(VectorX::Zero(e.independent), active), ignored));
 }
 
@@ -128,9 +126,9 @@ double GeometricSolver::driving_force(const Linearisation& rest, const VectorX& 
 VectorX GeometricSolver::update_forces(Work& work, const Linearisation& at, const Elimination& e,
                                        const Model& constraints, double factor) const {
   const VectorX forces = Reactions(constraints, e).forces(at.forces - factor * work.loads);
-  VectorX gaps(static_cast<Eigen::Index>(active_.size()));
+  VectorX gaps(std::ssize(active_));
   for (std::size_t k = 0; k < active_.size(); ++k) {
-    const auto c = static_cast<Eigen::Index>(active_[k]), i = static_cast<Eigen::Index>(k);
+    const auto c = as_index(active_[k]), i = as_index(k);
     work.lambda(c) = forces(i);
     gaps(i) = factor * work.values(c) - at.values(c);
   }
@@ -177,7 +175,7 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
       ++a;
       continue;
     }
-    const auto c = static_cast<Eigen::Index>(k);
+    const auto c = as_index(k);
     if (std::abs(at.values(c) - state.load_factor * work.values(c)) > 1e-7 * work.length) {
       state.converged = false;
       state.message = fmt::format(
@@ -189,17 +187,17 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
 }
 
 GeometricState GeometricSolver::solve(const GeometricLoad& load, const GeometricOptions& options) {
-  const auto constraints = static_cast<Eigen::Index>(model_.constraints.size());
-  const auto held = static_cast<Eigen::Index>(linear_->idle_motions());
+  const auto constraints = std::ssize(model_.constraints);
+  const auto held = as_index(linear_->idle_motions());
   Work work(model_);
   work.loads = padded(load.forces, model_.dofs());
   work.values = load.values.size() ? padded(load.values, constraints) : constraint_values(model_);
   work.strains = load.strains;
   work.strains.resize(model_.beams.size(), 0);
   work.with.strains = work.strains;
-  work.with.first_hold = static_cast<std::size_t>(constraints - held);
+  work.with.first_hold = as_size(constraints - held);
   linear_->check(work.loads, work.values.head(constraints - held));
-  work.with.least_tangents = VectorX::Zero(static_cast<Eigen::Index>(model_.springs.size()));
+  work.with.least_tangents = VectorX::Zero(std::ssize(model_.springs));
   GeometricState state;
   state.geometry = options.geometry;
 
@@ -211,7 +209,7 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
   if (force == 0 && largest(work.values) > 0) force = driving_force(rest, work.values);
   work.force = force;
   work.least_tangents = 1e-8 * stiffness_at(model_, force);
-  for (const std::size_t i : work.jumping.springs) work.least_tangents(static_cast<Eigen::Index>(i)) = 0;
+  for (const std::size_t i : work.jumping.springs) work.least_tangents(as_index(i)) = 0;
 
   const bool driven = force > 0 || largest(work.values) > 0;
   state.converged = true;
@@ -229,13 +227,13 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
 
 Matrix6 GeometricSolver::stiffness(const GeometricState& state, int node) const {
   Model m = held(state);
-  const auto first = static_cast<Eigen::Index>(m.constraints.size());
+  const auto first = std::ssize(m.constraints);
   m.fix(node, "held");
   const Elimination e = eliminate(m);
   const Tangent tangent(e, state.K);
   if (!tangent.regular())
     throw ModelError(fmt::format("with node '{}' held, the rest of the structure has no stiffness in this state",
-                                 model_.nodes[static_cast<std::size_t>(node)].name));
+                                 nth(model_.nodes, node).name));
   MatrixX values = MatrixX::Zero(first + 6, 6);
   values.bottomRows<6>().setIdentity();
   const MatrixX moved = tangent.solve(MatrixX::Zero(m.dofs(), 6), values);
@@ -248,7 +246,7 @@ MatrixX GeometricSolver::response(const GeometricState& state, const MatrixX& lo
   if (!tangent.regular()) throw ModelError("in this state the structure has no stiffness against some motion");
   MatrixX all = MatrixX::Zero(m.dofs(), loads.cols());
   all.topRows(loads.rows()) = loads;
-  return tangent.solve(all, MatrixX::Zero(static_cast<Eigen::Index>(m.constraints.size()), loads.cols()));
+  return tangent.solve(all, MatrixX::Zero(std::ssize(m.constraints), loads.cols()));
 }
 
 }  // namespace deflect::frame

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "msa/base/index.h"
 #include "msa/frame/deformed/geometric_solver.h"
 #include "msa/frame/elements/jumping_springs.h"
 
@@ -16,14 +17,13 @@ namespace deflect::frame {
 inline double size_of(const VectorX& u, std::size_t nodes, double length) {
   double size = 0;
   for (Eigen::Index i = 0; i < u.size(); ++i)
-    size = std::max(size, std::abs(u(i)) * (i < static_cast<Eigen::Index>(6 * nodes) && i % 6 >= 3 ? length : 1));
+    size = std::max(size, std::abs(u(i)) * (i < as_index(6 * nodes) && i % 6 >= 3 ? length : 1));
   return size;
 }
 
 inline VectorX stiffness_at(const Model& m, double force) {
-  VectorX k(static_cast<Eigen::Index>(m.springs.size()));
-  for (std::size_t i = 0; i < m.springs.size(); ++i)
-    k(static_cast<Eigen::Index>(i)) = tangent_at_force(m.springs[i].law, force);
+  VectorX k(std::ssize(m.springs));
+  for (std::size_t i = 0; i < m.springs.size(); ++i) k(as_index(i)) = tangent_at_force(m.springs[i].law, force);
   return k;
 }
 
@@ -33,7 +33,7 @@ struct GeometricSolver::Work {
       : structure(m),
         jump(std::any_of(m.springs.begin(), m.springs.end(), [](const Spring& s) { return jumps(s.law); })),
         shape(m),
-        lambda(VectorX::Zero(static_cast<Eigen::Index>(m.constraints.size()))),
+        lambda(VectorX::Zero(std::ssize(m.constraints))),
         length(characteristic_length(m)) {}
 
   Model structure;  // springs that jump are linear in it: s = k (δ − o)
@@ -47,7 +47,7 @@ struct GeometricSolver::Work {
   } jumping;
   VectorX loads, values;  // in full
   std::vector<double> strains;
-  Circumstances with;
+  StructureConditions with;
   double force = 0;  // the largest that springs may see
   VectorX least_tangents;
   Shape shape;
@@ -67,13 +67,13 @@ struct GeometricSolver::Work {
     double sum = 0;
     for (const BeamState& beam : at.beams) sum += beam.energy;
     for (std::size_t i = 0; i < structure.springs.size(); ++i)
-      sum += stored_energy(structure.springs[i].law, at.elongations(static_cast<Eigen::Index>(i)));
+      sum += stored_energy(structure.springs[i].law, at.elongations(as_index(i)));
     return sum;
   }
   /// s = k (δ − o) to the structure's springs.
   void set_offsets() {
     for (std::size_t j = 0; j < jumping.springs.size(); ++j) {
-      const auto i = static_cast<Eigen::Index>(j);
+      const auto i = as_index(j);
       SpringLaw& law = structure.springs[jumping.springs[j]].law;
       const bool rotation = law.rotation;
       law = LinearSpring{jumping.k(i)};

@@ -4,6 +4,7 @@
 #include <deque>
 #include <iterator>
 
+#include "msa/base/index.h"
 #include "msa/frame/elements/joint_motion.h"
 #include "msa/frame/structure/assembly.h"
 
@@ -15,19 +16,19 @@ using Pair = std::array<int, 2>;
 Vector12 gather(const Pair& nodes, const VectorX& u) {
   Vector12 out = Vector12::Zero();
   for (int i = 0; i < 2; ++i)
-    if (const int node = nodes[static_cast<std::size_t>(i)]; node >= 0) out.segment<6>(6 * i) = u.segment<6>(6 * node);
+    if (const int node = nth(nodes, i); node >= 0) out.segment<6>(6 * i) = u.segment<6>(6 * node);
   return out;
 }
 
 void scatter(const Pair& nodes, const Vector12& f, VectorX& to) {
   for (int i = 0; i < 2; ++i)
-    if (const int node = nodes[static_cast<std::size_t>(i)]; node >= 0) to.segment<6>(6 * node) += f.segment<6>(6 * i);
+    if (const int node = nth(nodes, i); node >= 0) to.segment<6>(6 * node) += f.segment<6>(6 * i);
 }
 
 void scatter(const Pair& nodes, const Matrix12& K, std::vector<Eigen::Triplet<double>>& to) {
   for (int j = 0; j < 12; ++j)
     for (int i = 0; i < 12; ++i) {
-      const int a = nodes[static_cast<std::size_t>(i / 6)], b = nodes[static_cast<std::size_t>(j / 6)];
+      const int a = nth(nodes, i / 6), b = nth(nodes, j / 6);
       if (a >= 0 && b >= 0 && K(i, j) != 0) to.emplace_back(6 * a + i % 6, 6 * b + j % 6, K(i, j));
     }
 }
@@ -37,7 +38,7 @@ LinearForm with_gradient(const Model& m, const LinearForm& form, const Pair& nod
   LinearForm out;
   const auto nodal = static_cast<int>(6 * m.nodes.size());
   for (int i = 0; i < 12; ++i)
-    if (const int node = nodes[static_cast<std::size_t>(i / 6)]; node >= 0 && gradient(i) != 0)
+    if (const int node = nth(nodes, i / 6); node >= 0 && gradient(i) != 0)
       out.push_back({6 * node + i % 6, gradient(i)});
   std::copy_if(form.begin(), form.end(), std::back_inserter(out), [&](const Term& t) { return t.dof >= nodal; });
   return out;
@@ -59,21 +60,21 @@ struct Curved {
 
 class Linearising {
  public:
-  Linearising(const Model& model, const Shape& shape, const Circumstances& circumstances)
+  Linearising(const Model& model, const Shape& shape, const StructureConditions& circumstances)
       : m(model), s(shape), c(circumstances) {
     out.forces = VectorX::Zero(m.dofs());
     out.nodal = 6 * m.nodes.size();
-    out.values.resize(static_cast<Eigen::Index>(m.constraints.size()));
-    const auto springs = static_cast<Eigen::Index>(m.springs.size());
+    out.values.resize(std::ssize(m.constraints));
+    const auto springs = std::ssize(m.springs);
     out.elongations.resize(springs), out.spring_forces.resize(springs), out.spring_tangents.resize(springs);
     curved.resize(m.springs.size());
     for (std::size_t i = 0; i < m.springs.size(); ++i) {
       out.spring_forms.push_back(m.springs[i].elongation);
-      out.elongations(static_cast<Eigen::Index>(i)) = evaluate(out.spring_forms[i], s.path);
+      out.elongations(as_index(i)) = evaluate(out.spring_forms[i], s.path);
     }
     for (std::size_t k = 0; k < m.constraints.size(); ++k) {
       out.forms.push_back(m.constraints[k].form);
-      out.values(static_cast<Eigen::Index>(k)) = evaluate(out.forms[k], s.path);
+      out.values(as_index(k)) = evaluate(out.forms[k], s.path);
     }
   }
 
@@ -81,7 +82,7 @@ class Linearising {
   const JointMotion& motion(const Connection& joint, const BodyMotion& a, const BodyMotion& b) {
     std::array<bool, 6> wanted{};
     for (std::size_t i = 0; i < 6; ++i) wanted[i] = joint.constraint[i] >= 0 || joint.spring[i] >= 0;
-    const auto position = [&](int node) { return m.nodes[static_cast<std::size_t>(node)].position; };
+    const auto position = [&](int node) { return nth(m.nodes, node).position; };
     motions.push_back(
         joint_motion(joint.a < 0 ? joint.p : position(joint.a), a, position(joint.b), b, joint.p, joint.axes, wanted));
     return motions.back();
@@ -89,7 +90,7 @@ class Linearising {
 
   void add_spring_forces() {
     for (std::size_t i = 0; i < m.springs.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
+      const auto at = as_index(i);
       const double force = frame::force(m.springs[i].law, out.elongations(at));
       const double tangent = std::max(frame::tangent(m.springs[i].law, out.elongations(at)), c.least_tangents(at));
       out.spring_forces(at) = force;
@@ -105,7 +106,7 @@ class Linearising {
 
   const Model& m;
   const Shape& s;
-  const Circumstances& c;
+  const StructureConditions& c;
   Linearisation out;
   std::vector<Curved> curved;
   std::deque<JointMotion> motions;  // whose Hessians the forms point to
@@ -118,7 +119,7 @@ Shape::Shape(const Model& m) : nodes(m.nodes.size()), path(VectorX::Zero(m.dofs(
 void Shape::move(const VectorX& increment) {
   path += increment;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(6 * i);
+    const auto at = as_index(6 * i);
     nodes[i].u += increment.segment<3>(at);
     nodes[i].Q = (rotation_by(increment.segment<3>(at + 3)) * nodes[i].Q).normalized();
   }
@@ -126,39 +127,37 @@ void Shape::move(const VectorX& increment) {
 
 VectorX Shape::displacements() const {
   VectorX u = path;
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    u.segment<3>(static_cast<Eigen::Index>(6 * i + 3)) = rotation_vector(nodes[i].Q);
+  for (std::size_t i = 0; i < nodes.size(); ++i) u.segment<3>(as_index(6 * i + 3)) = rotation_vector(nodes[i].Q);
   return u;
 }
 
-Linearisation linearise_finite(const Model& m, const Shape& shape, const Circumstances& c) {
+Linearisation linearise_finite(const Model& m, const Shape& shape, const StructureConditions& c) {
   Linearising work(m, shape, c);
   Linearisation& out = work.out;
   for (std::size_t e = 0; e < m.beams.size(); ++e) {
     const Beam& beam = m.beams[e];
-    const DeformedBeam d = deformed(beam, shape.nodes[static_cast<std::size_t>(beam.a)],
-                                    shape.nodes[static_cast<std::size_t>(beam.b)], c.strains[e]);
+    const DeformedBeam d = deformed(beam, nth(shape.nodes, beam.a), nth(shape.nodes, beam.b), c.strains[e]);
     scatter({beam.a, beam.b}, d.forces, out.forces);
     scatter({beam.a, beam.b}, d.K, out.stiffness);
     out.beams.push_back({d.forces, d.A, d.B, d.energy});
   }
   for (const Connection& joint : m.connections) {
-    const BodyMotion a = joint.a < 0 ? BodyMotion{} : shape.nodes[static_cast<std::size_t>(joint.a)];
-    const JointMotion& motion = work.motion(joint, a, shape.nodes[static_cast<std::size_t>(joint.b)]);
+    const BodyMotion a = joint.a < 0 ? BodyMotion{} : nth(shape.nodes, joint.a);
+    const JointMotion& motion = work.motion(joint, a, nth(shape.nodes, joint.b));
     const Pair nodes{joint.a, joint.b};
     for (std::size_t i = 0; i < 6; ++i) {
-      const double component = motion.components(static_cast<Eigen::Index>(i));
+      const double component = motion.components(as_index(i));
       if (const int k = joint.constraint[i]; k >= 0) {
-        LinearForm& form = out.forms[static_cast<std::size_t>(k)];
+        LinearForm& form = nth(out.forms, k);
         out.values(k) = component + on_scalars(m, form, shape.path);
         form = with_gradient(m, form, nodes, motion.gradient[i]);
         out.curvatures.push_back({k, nodes, motion.hessian[i]});
       }
       if (const int k = joint.spring[i]; k >= 0) {
-        LinearForm& form = out.spring_forms[static_cast<std::size_t>(k)];
+        LinearForm& form = nth(out.spring_forms, k);
         out.elongations(k) = component + on_scalars(m, form, shape.path);
         form = with_gradient(m, form, nodes, motion.gradient[i]);
-        work.curved[static_cast<std::size_t>(k)] = {&motion.hessian[i], nodes};
+        nth(work.curved, k) = {&motion.hessian[i], nodes};
       }
     }
   }
@@ -167,15 +166,15 @@ Linearisation linearise_finite(const Model& m, const Shape& shape, const Circums
     const int node = form.front().dof / 6;
     Vector3 axis = Vector3::Zero();
     for (const Term& t : form) axis(t.dof % 6 - 3) = t.coefficient;
-    form = rotation_of(node, shape.nodes[static_cast<std::size_t>(node)].Q * axis);
-    out.values(static_cast<Eigen::Index>(k)) = 0;
+    form = rotation_of(node, nth(shape.nodes, node).Q * axis);
+    out.values(as_index(k)) = 0;
   }
   work.add_spring_forces();
   return std::move(out);
 }
 
 Linearisation linearise_second_order(const Model& m, const Shape& shape, const VectorX& lambda,
-                                     const Circumstances& c) {
+                                     const StructureConditions& c) {
   Linearising work(m, shape, c);
   Linearisation& out = work.out;
   for (std::size_t e = 0; e < m.beams.size(); ++e) {
@@ -204,9 +203,8 @@ Linearisation linearise_second_order(const Model& m, const Shape& shape, const V
         scatter(nodes, -lambda(k) * motion.hessian[i] * d, turned);
       }
       if (const int k = joint.spring[i]; k >= 0) {
-        work.curved[static_cast<std::size_t>(k)] = {&motion.hessian[i], nodes};
-        scatter(nodes, force(m.springs[static_cast<std::size_t>(k)].law, out.elongations(k)) * motion.hessian[i] * d,
-                turned);
+        nth(work.curved, k) = {&motion.hessian[i], nodes};
+        scatter(nodes, force(nth(m.springs, k).law, out.elongations(k)) * motion.hessian[i] * d, turned);
       }
     }
   }

@@ -57,16 +57,16 @@ struct Linearisation {
 };
 
 /// What the solver adds to a structure and its loads.
-struct Circumstances {
+struct StructureConditions {
   std::vector<double> strains;  ///< by beam: free strain of heat
   VectorX least_tangents;       ///< by spring: the stiffness takes no less
   /// Constraints from here on hold a node against spinning about its own axis, which turns with the node.
   std::size_t first_hold = 0;
 };
 
-Linearisation linearise_finite(const Model&, const Shape&, const Circumstances&);
+Linearisation linearise_finite(const Model&, const Shape&, const StructureConditions&);
 
 /// `lambda`: forces of constraints, as known so far.
-Linearisation linearise_second_order(const Model&, const Shape&, const VectorX& lambda, const Circumstances&);
+Linearisation linearise_second_order(const Model&, const Shape&, const VectorX& lambda, const StructureConditions&);
 
 }  // namespace deflect::frame

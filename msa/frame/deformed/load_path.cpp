@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "msa/base/index.h"
 #include "msa/frame/deformed/geometric_work.h"
 #include "msa/frame/structure/reactions.h"
 
@@ -22,16 +23,14 @@ double size_of_forces(const VectorX& loads, double length) {
 
 double largest_spin(const VectorX& u, std::size_t nodes) {
   double spin = 0;
-  for (std::size_t i = 0; i < nodes; ++i)
-    spin = std::max(spin, u.segment<3>(static_cast<Eigen::Index>(6 * i + 3)).norm());
+  for (std::size_t i = 0; i < nodes; ++i) spin = std::max(spin, u.segment<3>(as_index(6 * i + 3)).norm());
   return spin;
 }
 
 /// M of a damped fall, by freedom: 1, of rotations length².
 VectorX weights_of(const Model& m, double length) {
   VectorX weights = VectorX::Ones(m.dofs());
-  for (std::size_t i = 0; i < m.nodes.size(); ++i)
-    weights.segment<3>(static_cast<Eigen::Index>(6 * i + 3)).setConstant(length * length);
+  for (std::size_t i = 0; i < m.nodes.size(); ++i) weights.segment<3>(as_index(6 * i + 3)).setConstant(length * length);
   return weights;
 }
 
@@ -65,21 +64,20 @@ GeometricSolver::Step GeometricSolver::newton(Work& work, double factor, Geometr
 /// δ = δ0 + P o, P = Eᵀ K⁻¹ E k, E the forms of these springs and k their stiffness in K.
 void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const VectorX& loads, Step& step) const {
   Work::Jumping& j = work.jumping;
-  const auto n = static_cast<Eigen::Index>(j.springs.size());
+  const auto n = std::ssize(j.springs);
   MatrixX pushes = MatrixX::Zero(model_.dofs(), n);
   const auto elongation = [&](Eigen::Index i, const VectorX& u) {
-    return evaluate(at.spring_forms[j.springs[static_cast<std::size_t>(i)]], u);
+    return evaluate(at.spring_forms[nth(j.springs, i)], u);
   };
   for (Eigen::Index i = 0; i < n; ++i)
-    for (const Term& t : at.spring_forms[j.springs[static_cast<std::size_t>(i)]])
-      pushes(t.dof, i) += t.coefficient * j.k(i);
-  const MatrixX moved = step.tangent->solve(pushes, MatrixX::Zero(static_cast<Eigen::Index>(active_.size()), n));
+    for (const Term& t : at.spring_forms[nth(j.springs, i)]) pushes(t.dof, i) += t.coefficient * j.k(i);
+  const MatrixX moved = step.tangent->solve(pushes, MatrixX::Zero(std::ssize(active_), n));
   LinearRelation relation{j.k.cwiseInverse(), VectorX(n), MatrixX(n, n), VectorX(n)};
   const double driving = size_of_forces(loads, work.length);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const std::size_t spring = j.springs[static_cast<std::size_t>(i)];
+    const std::size_t spring = nth(j.springs, i);
     for (Eigen::Index other = 0; other < n; ++other) relation.P(i, other) = elongation(i, moved.col(other));
-    relation.d0(i) = at.elongations(static_cast<Eigen::Index>(spring)) + elongation(i, step.u);
+    relation.d0(i) = at.elongations(as_index(spring)) + elongation(i, step.u);
     relation.size(i) = driving * (model_.springs[spring].law.rotation ? work.length : 1);
   }
   relation.d0 -= relation.P * j.o;
@@ -157,7 +155,7 @@ bool GeometricSolver::drives(Work& work, double factor, const VectorX& towards) 
   const Step here = newton(work, factor, Geometry::finite);
   if (here.u.size() == 0) return false;
   const VectorX mass = weights_of(model_, work.length);
-  const VectorX none = VectorX::Zero(static_cast<Eigen::Index>(active_.size()));
+  const VectorX none = VectorX::Zero(std::ssize(active_));
   VectorX soft(mass.size());
   for (Eigen::Index i = 0; i < soft.size(); ++i) soft(i) = std::sin(1.0 + static_cast<double>(i));  // of all motions
   for (int i = 0; i < 20; ++i) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "msa/base/index.h"
 #include "msa/frame/deformed/geometric_solver.h"
 
 namespace deflect::frame {
@@ -36,7 +37,7 @@ std::vector<std::pair<std::string, double>> energies(const Model& m, const Geome
   Sums sums;
   for (std::size_t e = 0; e < m.beams.size(); ++e) sums.add(m.beams[e].part, state.beams[e].energy);
   for (std::size_t i = 0; i < m.springs.size(); ++i)
-    sums.add(m.springs[i].part, stored_energy(state.law(m, i), state.elongations(static_cast<Eigen::Index>(i))));
+    sums.add(m.springs[i].part, stored_energy(state.law(m, i), state.elongations(as_index(i))));
   return sums.by_part;
 }
 

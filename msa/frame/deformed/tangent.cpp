@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseLU>
 
+#include "msa/base/index.h"
 #include "msa/frame/structure/sparse_cholesky.h"
 
 namespace deflect::frame {
@@ -13,7 +14,7 @@ Sparse sparse(const std::vector<LinearForm>& rows, Eigen::Index columns) {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (const Term& t : rows[i]) entries.emplace_back(static_cast<int>(i), t.dof, t.coefficient);
-  Sparse out(static_cast<Eigen::Index>(rows.size()), columns);
+  Sparse out(std::ssize(rows), columns);
   out.setFromTriplets(entries.begin(), entries.end());
   return out;
 }
@@ -25,7 +26,7 @@ Sparse tangent_stiffness(const Linearisation& at, const VectorX& lambda, const V
   for (const Linearisation::Curvature& c : at.curvatures)
     for (int j = 0; j < 12; ++j)
       for (int i = 0; i < 12; ++i) {
-        const int a = c.nodes[static_cast<std::size_t>(i / 6)], b = c.nodes[static_cast<std::size_t>(j / 6)];
+        const int a = nth(c.nodes, i / 6), b = nth(c.nodes, j / 6);
         const double value = -lambda(c.constraint) * c.H(i, j);
         if (a >= 0 && b >= 0 && value != 0) entries.emplace_back(6 * a + i % 6, 6 * b + j % 6, value);
       }
@@ -50,7 +51,7 @@ struct Tangent::Impl {
 Tangent::Tangent(const Elimination& e, const Sparse& K) : impl_(std::make_unique<Impl>()) {
   Impl& s = *impl_;
   s.T = sparse(e.T, e.independent);
-  s.G = sparse(e.G, static_cast<Eigen::Index>(e.pivot.size()));
+  s.G = sparse(e.G, std::ssize(e.pivot));
   s.K = K;
   s.reduced = s.T.transpose() * K * s.T;
   s.reduced.makeCompressed();

@@ -1,4 +1,5 @@
 #include "msa/frame/elements/joint_motion.h"
+#include "msa/base/index.h"
 
 #include <cmath>
 
@@ -57,7 +58,7 @@ JointMotion joint_motion(const Vector3& X_a, const BodyMotion& a, const Vector3&
     const Vector3 arm_a = a.Q * (p - X_a), arm_b = b.Q * (p - X_b);
     const Vector3 apart = (b.u - a.u) + turned_away(b.Q, p - X_b) - turned_away(a.Q, p - X_a), v = arm_a + apart;
     for (int i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
+      const auto k = as_size(i);
       if (!wanted[k]) continue;
       out.components(i) = R_a.col(i).dot(apart);
       translation(R_a.col(i), v, arm_b, out.gradient[k], out.hessian[k]);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "msa/frame/iterative/linear_solution.h"
 
 namespace deflect::frame {
@@ -38,7 +39,7 @@ void find_member_forces(CaseResult& r, const FrameModel& m, Work& work) {
     MemberForces out;
     double from_start = 0;
     for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e) {
-      const auto k = static_cast<std::size_t>(e);
+      const auto k = as_size(e);
       const Beam& beam = m.model.beams[k];
       const ElementLoad& load = work.load.elements[k];
       const Vector12 d = end_displacements(beam, work.fine), f = end_forces(beam, d, load);
@@ -67,15 +68,15 @@ void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& 
   for (const std::array<int, 6>& constraints : m.support_constraint) {
     r.reactions.push_back(Vector6::Zero());
     for (std::size_t i = 0; i < 6; ++i)
-      if (constraints[i] >= 0) r.reactions.back()(static_cast<Eigen::Index>(i)) = lambda(constraints[i]);
+      if (constraints[i] >= 0) r.reactions.back()(as_index(i)) = lambda(constraints[i]);
   }
   for (const int constraint : m.constraint) r.constraints.push_back(lambda(constraint));
   for (std::size_t k = 0; k < f.springs.size(); ++k) {
     r.springs.push_back(Vector6::Zero());
     for (std::size_t i = 0; i < 6; ++i) {
       if (m.spring[k][i] < 0) continue;
-      const Spring& spring = m.model.springs[static_cast<std::size_t>(m.spring[k][i])];
-      r.springs.back()(static_cast<Eigen::Index>(i)) = -force(spring.law, evaluate(spring.elongation, work.fine));
+      const Spring& spring = nth(m.model.springs, m.spring[k][i]);
+      r.springs.back()(as_index(i)) = -force(spring.law, evaluate(spring.elongation, work.fine));
     }
   }
 }
@@ -90,18 +91,18 @@ double equilibrium(const FrameModel& m, const Work& work) {
     }
   };
   for (std::size_t k = 0; k < m.model.constraints.size(); ++k)
-    add(m.model.constraints[k].form, work.lambda(static_cast<Eigen::Index>(k)));
+    add(m.model.constraints[k].form, work.lambda(as_index(k)));
   for (const Spring& spring : m.model.springs)
     add(spring.elongation, -force(spring.law, evaluate(spring.elongation, work.fine)));
   Vector3 resultant = Vector3::Zero(), moment = Vector3::Zero();
   double forces = cancelling * work.gross.force, moments = 0;
   for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
-    const Vector6 wrench = external.segment<6>(static_cast<Eigen::Index>(6 * i));
+    const Vector6 wrench = external.segment<6>(as_index(6 * i));
     const Vector3 arm = m.model.nodes[i].position - m.model.nodes.front().position;
     resultant += wrench.head<3>();
     moment += wrench.tail<3>() + arm.cross(wrench.head<3>());
-    forces += unsigned_sum.segment<3>(static_cast<Eigen::Index>(6 * i)).sum();
-    moments += unsigned_sum.segment<3>(static_cast<Eigen::Index>(6 * i + 3)).sum();
+    forces += unsigned_sum.segment<3>(as_index(6 * i)).sum();
+    moments += unsigned_sum.segment<3>(as_index(6 * i + 3)).sum();
   }
   moments += forces * characteristic_length(m.model);
   return std::max(ratio(resultant.norm(), forces), ratio(moment.norm(), moments));
@@ -142,9 +143,8 @@ double reciprocity(const std::vector<CaseResult>& cases, const std::vector<Work>
 }
 
 VectorX elongations(const Model& m, const ExtendedVector& u) {
-  VectorX out(static_cast<Eigen::Index>(m.springs.size()));
-  for (std::size_t i = 0; i < m.springs.size(); ++i)
-    out(static_cast<Eigen::Index>(i)) = evaluate(m.springs[i].elongation, u);
+  VectorX out(std::ssize(m.springs));
+  for (std::size_t i = 0; i < m.springs.size(); ++i) out(as_index(i)) = evaluate(m.springs[i].elongation, u);
   return out;
 }
 
@@ -152,11 +152,11 @@ void analyse_linear(const FrameDescription& f, const EquationOptions& options, F
   FrameModel& m = out.structure;
   std::vector<Work> work;
   for (const auto& [name, load] : f.loads) work.push_back({load_of(f, m, name, load), {}, {}, {}, 0, 0});
-  const auto columns = static_cast<Eigen::Index>(work.size());
-  MatrixX loads(m.model.dofs(), columns), values(static_cast<Eigen::Index>(m.model.constraints.size()), columns);
+  const auto columns = std::ssize(work);
+  MatrixX loads(m.model.dofs(), columns), values(std::ssize(m.model.constraints), columns);
   for (Eigen::Index c = 0; c < columns; ++c) {
-    loads.col(c) = work[static_cast<std::size_t>(c)].load.forces;
-    values.col(c) = work[static_cast<std::size_t>(c)].load.values;
+    loads.col(c) = nth(work, c).load.forces;
+    values.col(c) = nth(work, c).load.values;
   }
 
   LinearSolution solution = solve_linear(std::move(m.model), loads, values, options);
@@ -168,10 +168,9 @@ void analyse_linear(const FrameDescription& f, const EquationOptions& options, F
   for (std::size_t c = 0; c < work.size(); ++c) {
     CaseResult r;
     r.name = f.loads[c].first;
-    r.u = solution.u.col(static_cast<Eigen::Index>(c));
-    for (std::size_t i = 0; i < f.nodes.size(); ++i)
-      r.displacements.push_back(r.u.segment<6>(static_cast<Eigen::Index>(6 * i)));
-    work[c].fine = solution.fine.col(static_cast<Eigen::Index>(c));
+    r.u = solution.u.col(as_index(c));
+    for (std::size_t i = 0; i < f.nodes.size(); ++i) r.displacements.push_back(r.u.segment<6>(as_index(6 * i)));
+    work[c].fine = solution.fine.col(as_index(c));
     work[c].lambda = constraint_forces(m.model, elimination, work[c].fine, padded(work[c].load.forces, m.model.dofs()));
     find_reactions(r, f, m, work[c]);
     find_member_forces(r, m, work[c]);
@@ -193,10 +192,10 @@ void find_energies(CaseResult& r, const FrameDescription& f, const FrameModel& m
   NameIndex sections(f.sections);
   std::vector<double> by_section(f.sections.size(), 0), by_spring(f.springs.size(), 0);
   for (std::size_t i = 0; i < f.members.size(); ++i)
-    by_section[static_cast<std::size_t>(sections.find(f.members[i].second.section))] += r.members[i].energy;
+    nth(by_section, sections.find(f.members[i].second.section)) += r.members[i].energy;
   for (std::size_t i = 0; i < f.springs.size(); ++i)
     for (const int s : m.spring[i])
-      if (s >= 0) by_spring[i] += energy(m.model.springs[static_cast<std::size_t>(s)].law, elongations(s));
+      if (s >= 0) by_spring[i] += energy(nth(m.model.springs, s).law, elongations(s));
   for (std::size_t i = 0; i < by_section.size(); ++i) r.energies.emplace_back(f.sections[i].first, by_section[i]);
   for (std::size_t i = 0; i < by_spring.size(); ++i) r.energies.emplace_back(f.springs[i].first, by_spring[i]);
   for (const auto& [group, part] : r.energies) r.energy += part;

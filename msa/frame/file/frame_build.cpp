@@ -7,6 +7,7 @@
 #include <map>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/frame/file/member_axes.h"
 
 namespace deflect::frame {
@@ -17,8 +18,11 @@ constexpr std::array<int, 6> nowhere = {-1, -1, -1, -1, -1, -1};
 std::size_t at(const NameIndex& index, const char* what, const std::string& name) {
   const int found = index.find(name);
   if (found < 0) throw InputError(fmt::format("there is no {} '{}'", what, name));
-  return static_cast<std::size_t>(found);
+  return as_size(found);
 }
+
+/// A node of the model: those of the description come first.
+int node_number(const NameIndex& nodes, const std::string& name) { return static_cast<int>(at(nodes, "node", name)); }
 
 /// Rigidities of a member, sections evaluated once for each material they are made of.
 class Rigidities {
@@ -62,7 +66,7 @@ int end_node(Model& m, int node, const Freedoms& released, const Matrix3& R_WM, 
   if (released == Freedoms{}) return node;
   Freedoms rigid{};
   std::transform(released.begin(), released.end(), rigid.begin(), [](bool free) { return !free; });
-  const Vector3 p = m.nodes[static_cast<std::size_t>(node)].position;
+  const Vector3 p = nth(m.nodes, node).position;
   const int end = m.add_node(name, p);
   m.connect(node, end, p, R_WM, rigid_where(rigid), name, name);
   return end;
@@ -71,10 +75,8 @@ int end_node(Model& m, int node, const Freedoms& released, const Matrix3& R_WM, 
 void add_member(FrameModel& out, const std::string& name, const FrameMember& member, const BeamRigidity& rigidity,
                 const std::vector<double>& fractions) {
   Model& m = out.model;
-  const auto a = static_cast<int>(at(out.nodes, "node", member.from)),
-             b = static_cast<int>(at(out.nodes, "node", member.to));
-  const Vector3 start = m.nodes[static_cast<std::size_t>(a)].position,
-                end = m.nodes[static_cast<std::size_t>(b)].position;
+  const auto a = node_number(out.nodes, member.from), b = node_number(out.nodes, member.to);
+  const Vector3 start = nth(m.nodes, a).position, end = nth(m.nodes, b).position;
   const Matrix3 R_WM = member_axes(end - start, member.y_axis);
   constexpr Freedoms hinged{false, false, false, true, true, true};
   int previous =
@@ -111,11 +113,11 @@ void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision
 
 void add_supports(FrameModel& out, const FrameDescription& f) {
   for (const auto& [name, freedoms] : f.supports) {
-    const auto node = static_cast<int>(at(out.nodes, "node", name));
+    const auto node = node_number(out.nodes, name);
     out.support_constraint.push_back(nowhere);
     Connection& record = out.model.grounded(node);
     for (int i = 0; i < 6; ++i) {
-      const auto k = static_cast<std::size_t>(i);
+      const auto k = as_size(i);
       if (!freedoms[k]) continue;
       record.constraint[k] = out.support_constraint.back()[k] = static_cast<int>(out.model.constraints.size());
       Constraint c;
@@ -129,12 +131,11 @@ void add_supports(FrameModel& out, const FrameDescription& f) {
 void add_links(FrameModel& out, const FrameDescription& f) {
   for (const auto& [name, link] : f.rigid_links)
     for (const std::string& follower : link.nodes) {
-      const auto a = static_cast<int>(at(out.nodes, "node", link.master)),
-                 b = static_cast<int>(at(out.nodes, "node", follower));
-      const Vector3 p = out.model.nodes[static_cast<std::size_t>(b)].position;
+      const auto a = node_number(out.nodes, link.master), b = node_number(out.nodes, follower);
+      const Vector3 p = nth(out.model.nodes, b).position;
       out.model.connect(a, b, p, Matrix3::Identity(), rigid_where(link.freedoms), fmt::format("{} {}", name, follower),
                         name);
-      if (p != out.model.nodes[static_cast<std::size_t>(a)].position) out.arms.emplace_back(a, b);
+      if (p != nth(out.model.nodes, a).position) out.arms.emplace_back(a, b);
     }
 }
 
@@ -143,7 +144,7 @@ void add_constraints(FrameModel& out, const FrameDescription& f) {
     Constraint c;
     c.name = name;
     for (const ConstraintTerm& t : constraint.terms)
-      c.form.push_back({6 * static_cast<int>(at(out.nodes, "node", t.node)) + t.freedom, t.factor * t.arm.value_or(1)});
+      c.form.push_back({6 * node_number(out.nodes, t.node) + t.freedom, t.factor * t.arm.value_or(1)});
     out.constraint.push_back(static_cast<int>(out.model.constraints.size()));
     out.model.constraints.push_back(std::move(c));
   }
@@ -152,8 +153,8 @@ void add_constraints(FrameModel& out, const FrameDescription& f) {
 void add_springs(FrameModel& out, const FrameDescription& f) {
   Model& m = out.model;
   for (const auto& [name, spring] : f.springs) {
-    const auto node = static_cast<int>(at(out.nodes, "node", spring.node));
-    const Vector3 p = m.nodes[static_cast<std::size_t>(node)].position;
+    const auto node = node_number(out.nodes, spring.node);
+    const Vector3 p = nth(m.nodes, node).position;
     std::array<ConnectionFreedom, 6> laws = rigid_where({});
     out.spring.push_back(nowhere);
     auto next = static_cast<int>(m.springs.size());
@@ -169,7 +170,7 @@ void add_springs(FrameModel& out, const FrameDescription& f) {
           {{{6 * node + static_cast<int>(i), 1}}, law, fmt::format("{} {}", name, node_freedoms[i]), name});
     }
     if (!spring.to.empty())
-      m.connect(static_cast<int>(at(out.nodes, "node", spring.to)), node, p, Matrix3::Identity(), laws, name, name);
+      m.connect(node_number(out.nodes, spring.to), node, p, Matrix3::Identity(), laws, name, name);
   }
 }
 
@@ -184,7 +185,7 @@ void hold_plane(Model& m, Plane plane) {
       if (!out_of_plane(plane, i)) continue;
       Constraint c;
       c.form = {{6 * static_cast<int>(node) + i, 1}};
-      c.name = fmt::format("plane {} at {}", plane_names[static_cast<std::size_t>(plane)], m.nodes[node].name);
+      c.name = fmt::format("plane {} at {}", nth(plane_names, plane), m.nodes[node].name);
       c.may_repeat = true;
       m.constraints.push_back(std::move(c));
     }
@@ -194,12 +195,12 @@ void hold_plane(Model& m, Plane plane) {
 void refuse_across_plane(const FrameDescription& f, const FrameModel& m, const std::string& name,
                          const VectorX& forces) {
   const double most = forces.cwiseAbs().maxCoeff();
-  for (Eigen::Index dof = 0; f.plane != Plane::none && dof < static_cast<Eigen::Index>(6 * m.model.nodes.size()); ++dof)
+  for (Eigen::Index dof = 0; f.plane != Plane::none && dof < as_index(6 * m.model.nodes.size()); ++dof)
     if (out_of_plane(f.plane, static_cast<int>(dof % 6)) && std::abs(forces(dof)) > 1e-9 * most)
-      throw InputError(fmt::format(
-          "load case '{}' acts at node '{}' along or about a direction that leaves the plane {}: "
-          "take it away, or leave 'plane' away",
-          name, m.model.nodes[static_cast<std::size_t>(dof / 6)].name, plane_names[static_cast<std::size_t>(f.plane)]));
+      throw InputError(
+          fmt::format("load case '{}' acts at node '{}' along or about a direction that leaves the plane {}: "
+                      "take it away, or leave 'plane' away",
+                      name, nth(m.model.nodes, dof / 6).name, nth(plane_names, f.plane)));
 }
 
 }  // namespace
@@ -221,12 +222,12 @@ FrameModel build_frame(const FrameDescription& f, const FrameDivision& division)
 CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::string& case_name, const LoadCase& c) {
   CaseLoad out;
   out.forces = out.thermal = VectorX::Zero(m.model.dofs());
-  out.values = VectorX::Zero(static_cast<Eigen::Index>(m.model.constraints.size()));
+  out.values = VectorX::Zero(std::ssize(m.model.constraints));
   out.elements.resize(m.model.beams.size());
 
   const auto elements_of = [&](std::size_t member, const auto& change) {
     for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e)
-      change(out.elements[static_cast<std::size_t>(e)], m.model.beams[static_cast<std::size_t>(e)]);
+      change(nth(out.elements, e), nth(m.model.beams, e));
   };
   for (const auto& [name, load] : c.members)
     elements_of(at(m.members, "member", name), [&load = load](ElementLoad& e, const Beam& beam) {
@@ -254,8 +255,7 @@ CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::stri
     if (heat.strain != 0 || !out.elements[e].q_M.isZero(0))
       add(out.forces, beam, equivalent_forces(beam.rigidity, beam.length, out.elements[e]));
   }
-  for (const auto& [name, wrench] : c.nodes)
-    out.forces.segment<6>(6 * static_cast<Eigen::Index>(at(m.nodes, "node", name))) += wrench;
+  for (const auto& [name, wrench] : c.nodes) out.forces.segment<6>(6 * as_index(at(m.nodes, "node", name))) += wrench;
   refuse_across_plane(f, m, case_name, out.forces);
 
   const NameIndex supports(f.supports);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "msa/frame/file/member_axes.h"
 
 namespace deflect::frame {
@@ -31,7 +32,7 @@ void describe_freedoms(FieldVisitor& v, const char* key, Freedoms& freedoms, con
   std::vector<std::string> known(names.begin(), names.end());
   if (support) known.insert(known.end(), {"clamped", "pinned"});
   for (const std::string& word : words) {
-    const auto i = static_cast<std::size_t>(std::find(known.begin(), known.end(), word) - known.begin());
+    const auto i = as_size(std::find(known.begin(), known.end(), word) - known.begin());
     if (i >= known.size()) {
       v.require(false, key, unknown_name("freedom", word, known));
     } else if (i < 6) {
@@ -45,12 +46,7 @@ void describe_freedoms(FieldVisitor& v, const char* key, Freedoms& freedoms, con
 }
 
 void describe_material(FieldVisitor& v, FrameMaterial& m) {
-  v.quantity("E", m.elastic.E, required(Dimension::stress), "Young's modulus");
-  v.quantity_if_given("nu", m.elastic.nu, required(Dimension::none, Range{-1, 0.5, true}), "Poisson's ratio");
-  v.quantity_if_given("G", m.elastic.G, required(Dimension::stress), "shear modulus");
-  const bool both = m.elastic.nu && m.elastic.G, none = !m.elastic.nu && !m.elastic.G;
-  v.require(!both, "G", "nu and G are both given: remove one");
-  v.require(!none, "nu", "is missing: give nu or G, as in 'nu: 0.3'");
+  describe_elastic(v, m.elastic);
   v.quantity_if_given("density", m.density, required(Dimension::density), "mass per volume, for gravity");
   v.quantity_if_given("expansion", m.expansion, required(Dimension::thermal_expansion, {}), "strain per kelvin");
 }
@@ -64,25 +60,14 @@ void describe_count(FieldVisitor& v, const char* key, int& count, const char* ab
 }
 
 void describe_geometry(FieldVisitor& v, FrameDescription& f) {
-  const std::vector<std::string> names{std::begin(geometry_names), std::end(geometry_names)};
-  std::string geometry = names[static_cast<std::size_t>(f.geometry)];
-  v.word("geometry", geometry, {"geometry", names, names[0]}, "the shape in which equilibrium is written");
-  f.geometry = static_cast<Geometry>(std::find(names.begin(), names.end(), geometry) - names.begin());
+  deflect::describe_geometry(v, f.geometry);
   describe_count(v, "load_steps", f.load_steps, "in how many steps the load comes, at least");
   v.require(f.load_steps == 1 || f.geometry == Geometry::finite, "load_steps", "goes with 'geometry: finite'");
 }
 
 void describe_theory(FieldVisitor& v, FrameMember& m, const Section* section, const FrameMaterial* material) {
-  static const Words theories{
-      "beam theory", {std::begin(beam_theory_names), std::end(beam_theory_names)}, beam_theory_names[0]};
-  std::string beam = theories.allowed[static_cast<std::size_t>(m.beam)];
-  v.word("beam", beam, theories, "beam theory");
-  m.beam = static_cast<BeamTheory>(std::find(theories.allowed.begin(), theories.allowed.end(), beam) -
-                                   theories.allowed.begin());
+  describe_beam_theory(v, m.beam, section, m.section);
   if (m.beam != BeamTheory::timoshenko || !section) return;
-  const auto* given = std::get_if<GivenSection>(&section->shape);
-  v.require(!given || (given->As_y && given->As_z), "beam",
-            fmt::format("timoshenko needs As_y and As_z in section '{}'", m.section));
   const bool tube = std::holds_alternative<TubeSection>(section->shape);
   if (!tube || !material || !(material->elastic.nu || material->elastic.G)) return;
   const double nu = material->elastic.poisson();
@@ -102,8 +87,8 @@ void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
   v.text("material", m.material, Need::required, "name of a material");
   const int section = require_known(v, "section", "section", m.section, names.sections, names.frame.sections);
   const int material = require_known(v, "material", "material", m.material, names.materials, names.frame.materials);
-  describe_theory(v, m, section < 0 ? nullptr : &names.frame.sections[static_cast<std::size_t>(section)].second,
-                  material < 0 ? nullptr : &names.frame.materials[static_cast<std::size_t>(material)].second);
+  describe_theory(v, m, section < 0 ? nullptr : &nth(names.frame.sections, section).second,
+                  material < 0 ? nullptr : &nth(names.frame.materials, material).second);
   v.vector3("y_axis", m.y_axis, Dimension::none, "local y lies in the plane of the member and this vector");
   describe_freedoms(v, "release_from", m.release_from, member_freedoms, Need::optional, false,
                     "freedoms that are not passed on at 'from', member axes");
@@ -118,8 +103,7 @@ void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
   describe_count(v, "elements", m.elements, "elements of equal length");
   if (a < 0 || b < 0) return;
 
-  const Vector3 along =
-      names.frame.nodes[static_cast<std::size_t>(b)].second - names.frame.nodes[static_cast<std::size_t>(a)].second;
+  const Vector3 along = nth(names.frame.nodes, b).second - nth(names.frame.nodes, a).second;
   const bool length = along.norm() > 1e-9 * names.extent;
   if (!length)
     v.require(false, "to",
@@ -159,7 +143,7 @@ void describe_link(FieldVisitor& v, RigidLink& link, const FrameNames& names) {
 void describe_term(FieldVisitor& v, ConstraintTerm& t, const FrameNames& names) {
   v.text("node", t.node, Need::required, "node");
   require_known(v, "node", "node", t.node, names.nodes, names.frame.nodes);
-  std::string freedom = node_freedoms[static_cast<std::size_t>(t.freedom)];
+  std::string freedom = nth(node_freedoms, t.freedom);
   v.word("freedom", freedom, {"freedom", {node_freedoms.begin(), node_freedoms.end()}, std::nullopt}, "freedom");
   const auto at = std::find(node_freedoms.begin(), node_freedoms.end(), freedom) - node_freedoms.begin();
   t.freedom = at < 6 ? static_cast<int>(at) : 0;
@@ -187,7 +171,7 @@ void describe_constraint(FieldVisitor& v, FrameConstraint& c, const FrameNames& 
   v.list("terms", terms, "what adds up to zero");
   v.require(!c.terms.empty(), "terms", "needs terms '- {node: N1, freedom: ux, factor: 1}'");
   const auto angle = [](const ConstraintTerm& t) { return t.freedom >= 3 && !t.arm; };
-  const auto angles = static_cast<std::size_t>(std::count_if(c.terms.begin(), c.terms.end(), angle));
+  const auto angles = as_size(std::count_if(c.terms.begin(), c.terms.end(), angle));
   v.require(angles == 0 || angles == c.terms.size(), "terms",
             "adds lengths and angles: give the rotations an arm, as in 'arm: 10 mm'");
 }
@@ -215,7 +199,7 @@ void describe(FieldVisitor& v, FrameDescription& f) {
   v.text("about", f.about, Need::optional, "one line about the frame");
   v.text("source", f.source, Need::optional, "where the numbers are from");
   describe_geometry(v, f);
-  std::string plane = plane_names[static_cast<std::size_t>(f.plane)];
+  std::string plane = nth(plane_names, f.plane);
   v.word("plane", plane, {"plane", {"xy", "xz", "yz", "none"}, "none"}, "the frame moves in this plane only");
   f.plane = static_cast<Plane>(std::find(plane_names.begin(), plane_names.end(), plane) - plane_names.begin());
   FrameNames names{f, {}, {}, {}, {}, {}, 0};

@@ -31,6 +31,7 @@
 #include <string>
 #include <string_view>
 
+#include "msa/fields/edit.h"
 #include "msa/frame/file/frame_description.h"
 
 namespace deflect::frame {
@@ -45,5 +46,9 @@ FrameDescription parse_frame(std::string_view yaml, const std::string& origin);
 
 /// The description as a frame file; reading it again gives an equal description, to the last bit of every number.
 std::string write_frame(const FrameDescription&);
+
+/// A new description with the edits in it one after the other, checked like a file. InputError naming the edit and what
+/// does not fit, with the nearest valid name.
+FrameDescription edited(const FrameDescription&, const std::vector<Edit>&);
 
 }  // namespace deflect::frame

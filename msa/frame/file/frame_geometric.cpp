@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "msa/frame/deformed/geometric_solver.h"
 #include "msa/frame/file/frame_case.h"
 
@@ -25,7 +26,7 @@ void find_member_forces(CaseResult& r, const FrameModel& m, const GeometricState
     MemberForces out;
     double from_start = 0;
     for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e) {
-      const auto k = static_cast<std::size_t>(e);
+      const auto k = as_size(e);
       const Beam& beam = m.model.beams[k];
       const ElementLoad line{r.loads[k].q_M, 0};
       const Vector12 carried = in_base_axes(beam, equivalent_forces(beam.rigidity, beam.length, line));
@@ -57,16 +58,16 @@ void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& 
     r.reactions.push_back(Vector6::Zero());
     for (const int k : m.support_constraint[i])
       if (k >= 0)
-        r.reactions.back() += on_node(state.forms[static_cast<std::size_t>(k)], state.constraint_forces(k),
-                                      m.nodes.find(f.supports[i].first));
+        r.reactions.back() +=
+            on_node(nth(state.forms, k), state.constraint_forces(k), m.nodes.find(f.supports[i].first));
   }
   for (const int k : m.constraint) r.constraints.push_back(state.constraint_forces(k));
   for (std::size_t i = 0; i < f.springs.size(); ++i) {
     r.springs.push_back(Vector6::Zero());
     for (const int s : m.spring[i])
       if (s >= 0)
-        r.springs.back() += on_node(state.spring_forms[static_cast<std::size_t>(s)], -state.spring_forces(s),
-                                    m.nodes.find(f.springs[i].second.node));
+        r.springs.back() +=
+            on_node(nth(state.spring_forms, s), -state.spring_forces(s), m.nodes.find(f.springs[i].second.node));
   }
 }
 
@@ -80,14 +81,13 @@ double equilibrium(const FrameModel& m, const GeometricState& state, const Vecto
       unsigned_sum(t.dof) += std::abs(t.coefficient * along);
     }
   };
-  for (std::size_t k = 0; k < state.forms.size(); ++k)
-    add(state.forms[k], state.constraint_forces(static_cast<Eigen::Index>(k)));
+  for (std::size_t k = 0; k < state.forms.size(); ++k) add(state.forms[k], state.constraint_forces(as_index(k)));
   for (std::size_t s = 0; s < state.spring_forms.size(); ++s)
-    add(state.spring_forms[s], -state.spring_forces(static_cast<Eigen::Index>(s)));
+    add(state.spring_forms[s], -state.spring_forces(as_index(s)));
   Vector3 resultant = Vector3::Zero(), moment = Vector3::Zero();
   double forces = 0, moments = 0;
   for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(6 * i);
+    const auto at = as_index(6 * i);
     const Vector6 wrench = external.segment<6>(at);
     const Vector3 arm = m.model.nodes[i].position + state.u.segment<3>(at) - m.model.nodes.front().position;
     resultant += wrench.head<3>();
@@ -122,8 +122,7 @@ void analyse_geometric(const FrameDescription& f, FrameResult& out) {
     r.u = state.u;
     r.loads = full.elements;
     for (ElementLoad& element : r.loads) element.q_M *= state.load_factor;
-    for (std::size_t i = 0; i < f.nodes.size(); ++i)
-      r.displacements.push_back(r.u.segment<6>(static_cast<Eigen::Index>(6 * i)));
+    for (std::size_t i = 0; i < f.nodes.size(); ++i) r.displacements.push_back(r.u.segment<6>(as_index(6 * i)));
     find_reactions(r, f, m, state);
     find_member_forces(r, m, state);
     find_energies(r, f, m, state.elongations);

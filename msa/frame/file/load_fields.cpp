@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "msa/base/index.h"
 #include "msa/frame/file/frame_fields.h"
 
 namespace deflect::frame {
@@ -12,15 +13,14 @@ Quantity or_zero(Dimension d) { return {d, {}, 0.0}; }
 
 void describe_wrench(FieldVisitor& v, Vector6& wrench) {
   for (std::size_t i = 0; i < 6; ++i)
-    v.quantity(wrench_names[i], wrench(static_cast<Eigen::Index>(i)),
-               or_zero(i < 3 ? Dimension::force : Dimension::moment), i < 3 ? "force" : "moment");
+    v.quantity(wrench_names[i], wrench(as_index(i)), or_zero(i < 3 ? Dimension::force : Dimension::moment),
+               i < 3 ? "force" : "moment");
 }
 
 void describe_line_load(FieldVisitor& v, LineLoad& load) {
   constexpr std::array<const char*, 3> keys = {"qx", "qy", "qz"};
   for (std::size_t i = 0; i < 3; ++i)
-    v.quantity(keys[i], load.q(static_cast<Eigen::Index>(i)), or_zero(Dimension::line_load),
-               "force per length of the member");
+    v.quantity(keys[i], load.q(as_index(i)), or_zero(Dimension::line_load), "force per length of the member");
   std::string axes = load.member_axes ? "member" : "base";
   v.word("axes", axes, {"axes", {"base", "member"}, "base"}, "axes of qx, qy, qz");
   load.member_axes = axes == "member";
@@ -28,7 +28,7 @@ void describe_line_load(FieldVisitor& v, LineLoad& load) {
 
 const FrameMaterial* material_of(const FrameNames& names, const FrameMember& member) {
   const int at = names.materials.find(member.material);
-  return at < 0 ? nullptr : &names.frame.materials[static_cast<std::size_t>(at)].second;
+  return at < 0 ? nullptr : &nth(names.frame.materials, at).second;
 }
 
 void require_densities(FieldVisitor& v, const FrameNames& names) {
@@ -46,7 +46,7 @@ void describe_temperature(FieldVisitor& v, const std::string& name, double& kelv
   const int at = require_known(v, "", "member", name, names.members, names.frame.members);
   v.quantity("", kelvin, {Dimension::temperature, {}, std::nullopt}, "temperature above the unstrained state");
   if (at < 0) return;
-  const FrameMember& member = names.frame.members[static_cast<std::size_t>(at)].second;
+  const FrameMember& member = nth(names.frame.members, at).second;
   const FrameMaterial* material = material_of(names, member);
   if (material && !material->expansion)
     v.require(false, "",
@@ -59,7 +59,7 @@ void describe_displacement(FieldVisitor& v, const std::string& node, FreedomValu
   require_known(v, "", "node", node, names.nodes, names.frame.nodes);
   describe_freedom_values(v, values, Dimension::length, Dimension::angle, {}, "displacement of the support");
   const int at = names.supports.find(node);
-  const Freedoms held = at < 0 ? Freedoms{} : names.frame.supports[static_cast<std::size_t>(at)].second;
+  const Freedoms held = at < 0 ? Freedoms{} : nth(names.frame.supports, at).second;
   bool any = false;
   for (std::size_t i = 0; i < 6; ++i) {
     any = any || values[i];

@@ -1,4 +1,5 @@
 #include "msa/frame/iterative/conjugate_gradients.h"
+#include "msa/base/index.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -14,11 +15,11 @@ constexpr int look_every = 20;
 struct Lanczos {
   std::vector<double> alpha, beta;
   std::array<double, 2> extremes() const {
-    const auto n = static_cast<Eigen::Index>(alpha.size());
+    const auto n = std::ssize(alpha);
     if (n == 0) return {1, 1};
     VectorX diagonal(n), beside(n - 1);
     for (Eigen::Index k = 0; k < n; ++k) {
-      const auto i = static_cast<std::size_t>(k);
+      const auto i = as_size(k);
       diagonal(k) = 1 / alpha[i] + (i ? beta[i - 1] / alpha[i - 1] : 0);
       if (k + 1 < n) beside(k) = std::sqrt(beta[i]) / alpha[i];
     }
@@ -27,6 +28,16 @@ struct Lanczos {
     return {eigen.eigenvalues()(0), eigen.eigenvalues()(n - 1)};
   }
 };
+
+/// The error after so many steps: rho = |r|², the energy is the square of the solution's size.
+void estimate(GradientSummary& s, const Lanczos& lanczos, const GradientOptions& o, double rho, double energy) {
+  std::tie(s.smallest, s.largest) = std::tuple_cat(lanczos.extremes());
+  if (o.smallest > 0) s.smallest = std::min(s.smallest, o.smallest);
+  s.residual = std::sqrt(rho);
+  s.size = std::sqrt(energy);
+  s.error = 2 * s.residual / std::sqrt(s.smallest) / (o.size > 0 ? o.size : s.size);
+  s.converged = s.error <= o.error;
+}
 
 }  // namespace
 
@@ -45,9 +56,7 @@ GradientSummary conjugate_gradients(const IncompleteCholesky& M, const VectorX& 
     return v.segment(6 * from, 6 * (to - from));
   };
   const auto turn = [&](int part) { slice(p, part) = slice(r, part) + beta * slice(p, part); };
-  const auto close = [&](int part) {
-    sums[static_cast<std::size_t>(part)] = slice(p, part).dot(slice(t, part) + slice(w, part));
-  };
+  const auto close = [&](int part) { nth(sums, part) = slice(p, part).dot(slice(t, part) + slice(w, part)); };
   const auto apply = [&](int part) {
     turn(part);
     M.sweep(part, p, t, w);
@@ -56,7 +65,7 @@ GradientSummary conjugate_gradients(const IncompleteCholesky& M, const VectorX& 
   const auto advance = [&](int part) {
     slice(s.x, part) += alpha * slice(p, part);
     slice(r, part) -= alpha * (slice(t, part) + slice(w, part));
-    sums[static_cast<std::size_t>(part)] = slice(r, part).squaredNorm();
+    nth(sums, part) = slice(r, part).squaredNorm();
   };
   const auto sum = [&sums] { return sums[0] + sums[1] + sums[2]; };
   const std::function<void()> apply_0 = [&] { apply(0); }, apply_1 = [&] { apply(1); }, advance_0 = [&] { advance(0); },
@@ -82,12 +91,7 @@ GradientSummary conjugate_gradients(const IncompleteCholesky& M, const VectorX& 
     const double relative_to = o.size > 0 ? o.size : std::sqrt(energy);
     const bool near = 2 * std::sqrt(rho / s.smallest) <= o.error * relative_to;
     if (s.iterations % look_every && !near) continue;
-    std::tie(s.smallest, s.largest) = std::tuple_cat(lanczos.extremes());
-    if (o.smallest > 0) s.smallest = std::min(s.smallest, o.smallest);
-    s.residual = std::sqrt(rho);
-    s.size = std::sqrt(energy);
-    s.error = 2 * s.residual / std::sqrt(s.smallest) / relative_to;
-    s.converged = s.error <= o.error;
+    estimate(s, lanczos, o, rho, energy);
     if (o.progress) o.progress(std::clamp(std::log(s.error) / std::log(o.error), 0.0, 1.0));
     if (!std::isfinite(s.error)) break;
   }

@@ -1,4 +1,5 @@
 #include "msa/frame/iterative/incomplete_cholesky.h"
+#include "msa/base/index.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -16,9 +17,9 @@ IncompleteCholesky::IncompleteCholesky(NodeBlocks blocks) : k_(std::move(blocks)
   C_.reserve(rows);
   for (std::size_t i = 0; i < rows; ++i) {
     Matrix6 pivot = k_.diagonal[i];
-    const auto from = static_cast<std::size_t>(k_.start[i]), to = static_cast<std::size_t>(k_.start[i + 1]);
+    const auto from = as_size(k_.start[i]), to = as_size(k_.start[i + 1]);
     for (std::size_t k = from; k < to; ++k) {
-      const Matrix6 turned = divided(C_[static_cast<std::size_t>(k_.column[k])], k_.lower[k].transpose());
+      const Matrix6 turned = divided(nth(C_, k_.column[k]), k_.lower[k].transpose());
       pivot.noalias() -= turned.transpose() * turned;
       k_.lower[k] = turned.transpose();
     }
@@ -47,9 +48,9 @@ IncompleteCholesky::Part IncompleteCholesky::part(int which) const {
 void IncompleteCholesky::forward(int from, int to, VectorX& w) const {
   for (int i = from; i < to; ++i) {
     Vector6 sum = w.segment<6>(6 * i);
-    const auto row = static_cast<std::size_t>(i);
+    const auto row = as_size(i);
     for (int k = k_.start[row]; k < k_.start[row + 1]; ++k) {
-      const auto block = static_cast<std::size_t>(k);
+      const auto block = as_size(k);
       sum.noalias() -= k_.lower[block] * w.segment<6>(6 * k_.column[block]);
     }
     w.segment<6>(6 * i) = sum;
@@ -60,9 +61,9 @@ void IncompleteCholesky::forward(int from, int to, VectorX& w) const {
 void IncompleteCholesky::backward(int from, int to, int least, VectorX& t) const {
   for (int i = to - 1; i >= from; --i) {
     const Vector6 known = t.segment<6>(6 * i);
-    const auto row = static_cast<std::size_t>(i);
+    const auto row = as_size(i);
     for (int k = k_.start[row + 1] - 1; k >= k_.start[row]; --k) {
-      const auto block = static_cast<std::size_t>(k);
+      const auto block = as_size(k);
       if (k_.column[block] < least) break;
       t.segment<6>(6 * k_.column[block]).noalias() -= k_.lower[block].transpose() * known;
     }
@@ -71,8 +72,7 @@ void IncompleteCholesky::backward(int from, int to, int least, VectorX& t) const
 
 VectorX IncompleteCholesky::forces_inside(const VectorX& by_q) const {
   VectorX w = k_.gathered(by_q);
-  for (int i = 0; i < rows(); ++i)
-    C_[static_cast<std::size_t>(i)].triangularView<Eigen::Lower>().solveInPlace(w.segment<6>(6 * i));
+  for (int i = 0; i < rows(); ++i) nth(C_, i).triangularView<Eigen::Lower>().solveInPlace(w.segment<6>(6 * i));
   forward(0, rows(), w);
   return w;
 }
@@ -81,7 +81,7 @@ VectorX IncompleteCholesky::motion_outside(const VectorX& inside) const {
   VectorX t = inside;
   backward(0, rows(), 0, t);
   for (int i = 0; i < rows(); ++i)
-    C_[static_cast<std::size_t>(i)].triangularView<Eigen::Lower>().transpose().solveInPlace(t.segment<6>(6 * i));
+    nth(C_, i).triangularView<Eigen::Lower>().transpose().solveInPlace(t.segment<6>(6 * i));
   return k_.scattered(t);
 }
 
@@ -95,9 +95,9 @@ void IncompleteCholesky::sweep(int which, const VectorX& p, VectorX& t, VectorX&
   const auto [from, to] = part(which);
   t.segment(6 * from, 6 * (to - from)) = p.segment(6 * from, 6 * (to - from));
   for (int i = rows() - 1; i >= k_.ends; --i) {
-    const auto row = static_cast<std::size_t>(i);
+    const auto row = as_size(i);
     for (int k = k_.start[row + 1] - 1; k >= k_.start[row]; --k) {
-      const auto block = static_cast<std::size_t>(k);
+      const auto block = as_size(k);
       const int column = k_.column[block];
       if (column >= from && column < to)
         t.segment<6>(6 * column).noalias() -= k_.lower[block].transpose() * t.segment<6>(6 * i);
@@ -107,7 +107,7 @@ void IncompleteCholesky::sweep(int which, const VectorX& p, VectorX& t, VectorX&
   for (int i = from; i < to; ++i) {
     const Vector6 known = t.segment<6>(6 * i);
     w.segment<6>(6 * i) = p.segment<6>(6 * i) - 2 * known;
-    w.segment<6>(6 * i).noalias() += k_.diagonal[static_cast<std::size_t>(i)] * known;
+    w.segment<6>(6 * i).noalias() += nth(k_.diagonal, i) * known;
   }
   forward(from, to, w);
 }
@@ -117,7 +117,7 @@ void IncompleteCholesky::finish(const VectorX& p, const VectorX& t, VectorX& w) 
   for (int i = from; i < to; ++i) {
     const Vector6 known = t.segment<6>(6 * i);
     w.segment<6>(6 * i) = p.segment<6>(6 * i) - 2 * known;
-    w.segment<6>(6 * i).noalias() += k_.diagonal[static_cast<std::size_t>(i)] * known;
+    w.segment<6>(6 * i).noalias() += nth(k_.diagonal, i) * known;
   }
   forward(from, to, w);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "msa/base/index.h"
 #include "msa/frame/iterative/conjugate_gradients.h"
 #include "msa/frame/structure/relative.h"
 #include "msa/frame/structure/standing.h"
@@ -17,8 +18,8 @@ constexpr double poor = 1e-9;  // reciprocal condition below which rounding may 
 constexpr double most_rounding = 100, half_last_place = 1.1e-16;
 
 VectorX spring_tangents(const Model& m) {
-  VectorX k(static_cast<Eigen::Index>(m.springs.size()));
-  for (std::size_t s = 0; s < m.springs.size(); ++s) k(static_cast<Eigen::Index>(s)) = tangent(m.springs[s].law, 0);
+  VectorX k(std::ssize(m.springs));
+  for (std::size_t s = 0; s < m.springs.size(); ++s) k(as_index(s)) = tangent(m.springs[s].law, 0);
   return k;
 }
 
@@ -54,8 +55,7 @@ VectorX rounding_of_forces(const Model& m, const VectorX& u, const VectorX& tang
   for (std::size_t s = 0; s < m.springs.size(); ++s)
     for (const Term& t : m.springs[s].elongation)
       for (const Term& other : m.springs[s].elongation)
-        sum(t.dof) +=
-            tangents(static_cast<Eigen::Index>(s)) * std::abs(t.coefficient * other.coefficient * u(other.dof));
+        sum(t.dof) += tangents(as_index(s)) * std::abs(t.coefficient * other.coefficient * u(other.dof));
   return last_places(sum);
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/frame/mechanism/component.h"
 
 namespace deflect::frame {
@@ -74,7 +75,7 @@ class Builder {
   }
 
   void finish(MechanismModel& out) {
-    const auto position = [this](int node) { return model.nodes[static_cast<std::size_t>(node)].position; };
+    const auto position = [this](int node) { return nth(model.nodes, node).position; };
     for (const Pending& p : pending_) {
       if ((position(p.a) - position(p.b)).norm() > 1e-9) out.arms.emplace_back(p.a, p.b);
       const std::size_t constraints = model.constraints.size(), springs = model.springs.size();
@@ -85,8 +86,7 @@ class Builder {
                       p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,
                       p.joint ? p.joint->part : "");
       if (!p.beside.isZero(0))
-        for (Eigen::Index i = 0; i < 6; ++i)
-          model.constraints[constraints + static_cast<std::size_t>(i)].value = p.beside(i);
+        for (Eigen::Index i = 0; i < 6; ++i) model.constraints[constraints + as_size(i)].value = p.beside(i);
       if (p.ends_leg) out.attachments.push_back({constraints, model.constraints.size(), springs, model.springs.size()});
     }
     out.model = std::move(model);
@@ -123,7 +123,7 @@ class Builder {
         at = member(leg, m, at);
       }
     }
-    attach(to, model.nodes[static_cast<std::size_t>(to)].position);
+    attach(to, nth(model.nodes, to).position);
   }
 
   int member(const PlacedLeg& leg, const PlacedMember& m, int start) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "msa/frame/mechanism/component.h"
+#include "msa/mechanism/law_table.h"
 
 namespace deflect::frame {
 namespace {
@@ -13,7 +15,7 @@ constexpr double idle = 1e-12;  // of a freedom's own stiffness, what is roundin
 
 /// Of the body at `at`, for a unit motion in freedom i of the joint.
 Vector6 motion(const PlacedJoint& j, std::size_t i, const Vector3& at) {
-  const Vector3 axis = j.R_WJ.col(static_cast<Eigen::Index>(i % 3));
+  const Vector3 axis = j.R_WJ.col(as_index(i % 3));
   Vector6 t = Vector6::Zero();
   if (i < 3)
     t.head<3>() = axis;
@@ -89,7 +91,7 @@ void CondensedLeg::add_freedoms(Step& step, const PlacedJoint& joint) {
   for (std::size_t i = 0; i < 6; ++i) {
     if (joint.free(i)) step.freedoms.push_back({i, -1});
     for (const Law& law : joint.laws[i]) {
-      if (std::holds_alternative<CableLaw>(law)) {
+      if (row_of(law).length_from_pose) {
         applies_ = false;
         return;
       }
@@ -99,7 +101,7 @@ void CondensedLeg::add_freedoms(Step& step, const PlacedJoint& joint) {
       if (is_linear(spring)) {
         step.freedoms.push_back({i, -1, tangent(spring, 0)});
       } else {
-        step.freedoms.push_back({i, static_cast<Eigen::Index>(springs_.size())});
+        step.freedoms.push_back({i, std::ssize(springs_)});
         springs_.push_back({spring});
       }
     }
@@ -118,7 +120,7 @@ bool CondensedLeg::condense(const PlacedLeg& placed, const Vector3& p_WT) {
       if (!step.member->condensed.set(rigidity(member), member.length())) return false;
       stiffest_ = std::max(stiffest_, step.member->condensed.stiffest());
     }
-  const auto n = static_cast<Eigen::Index>(springs_.size());
+  const auto n = std::ssize(springs_);
   Behind now;
   now.at = steps_[first_member_].member->p_W_start;  // what lies before it is referred to it
   now.G.setZero(6, n);
@@ -229,8 +231,8 @@ bool CondensedLeg::linearise() {
   p_.setZero();
   const Eigen::Index n = theta_.size();
   for (Eigen::Index i = 0; i < n; ++i) {
-    held_.A(i, i) += springs_[static_cast<std::size_t>(i)].k;
-    s_(i) = springs_[static_cast<std::size_t>(i)].s;
+    held_.A(i, i) += nth(springs_, i).k;
+    s_(i) = nth(springs_, i).s;
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     const double a = held_.A(i, i);
@@ -253,7 +255,7 @@ void CondensedLeg::stretch(const Vector6& d) {
     double pull = s_(i) + held_.G.col(i).dot(d);
     for (Eigen::Index j = i + 1; j < theta_.size(); ++j) pull += held_.A(i, j) * theta_(j);
     theta_(i) = -pull / held_.A(i, i);
-    Spring& spring = springs_[static_cast<std::size_t>(i)];
+    Spring& spring = nth(springs_, i);
     spring.elongation = theta_(i);
     spring.force = spring.s + spring.k * theta_(i);
   }

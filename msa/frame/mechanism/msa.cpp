@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/frame/elements/member_loads.h"
 
 namespace deflect::frame {
@@ -17,7 +18,7 @@ namespace {
 /// decides anew what stands.
 Model at_tangents(Model m, const VectorX& tangents) {
   for (std::size_t i = 0; i < m.springs.size(); ++i) {
-    const double k = tangents(static_cast<Eigen::Index>(i));
+    const double k = tangents(as_index(i));
     Spring& spring = m.springs[i];
     if (is_linear(spring.law)) continue;
     if (std::isinf(k)) m.constraints.push_back({spring.elongation, 0, spring.name});
@@ -39,7 +40,7 @@ MatrixX motions_of(const Model& m, int node, double length) {
   const Elimination e = eliminate(m);
   MatrixX rows = MatrixX::Zero(std::max(e.independent, 6), 6);  // a motion in each
   for (int i = 0; i < 6; ++i)
-    for (const Term& t : e.T[static_cast<std::size_t>(6 * node + i)]) rows(t.dof, i) += t.coefficient;
+    for (const Term& t : nth(e.T, 6 * node + i)) rows(t.dof, i) += t.coefficient;
   rows = (rows * weights(length).asDiagonal()).eval();
   const Eigen::HouseholderQR<MatrixX> qr(rows);
   const MatrixX R = qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>();
@@ -129,7 +130,7 @@ struct MsaModel::Held {
         length(size),
         motions(motions_of(model, held_node, size)),
         solver(held(model, held_node, motions, size)),
-        first(static_cast<Eigen::Index>(model.constraints.size())),
+        first(std::ssize(model.constraints)),
         supports(solver.model(), solver.elimination()) {}
 
   /// For these tangents, of the same kinds; then the reactions below are known.
@@ -137,7 +138,7 @@ struct MsaModel::Held {
     const Model& m = solver.model();
     tangents = where_finite(spring_tangents);
     const Eigen::Index n = motions.cols();
-    MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(m.constraints.size()), n);
+    MatrixX values = MatrixX::Zero(std::ssize(m.constraints), n);
     values.middleRows(first, n).setIdentity();
     U = solver.linear(tangents, MatrixX::Zero(m.dofs(), n), values);
     MatrixX pulls(m.dofs(), n);
@@ -163,17 +164,17 @@ struct MsaModel::Held {
         if (t.dof / 6 == node) K.row(t.dof % 6) += t.coefficient * pull;
     };
     for (std::size_t k = a.first_constraint; k < a.last_constraint; ++k)
-      add(m.constraints[k].form, -forces.row(static_cast<Eigen::Index>(k)));
+      add(m.constraints[k].form, -forces.row(as_index(k)));
     for (std::size_t s = a.first_spring; s < a.last_spring; ++s) {
       const Spring& spring = m.springs[s];
       if (spring.defined_by >= 0) {  // its pull reaches the bodies through the constraint that defines its elongation
-        const auto k = static_cast<std::size_t>(spring.defined_by);
+        const auto k = as_size(spring.defined_by);
         add(m.constraints[k].form, -forces.row(spring.defined_by));
         continue;
       }
       Eigen::RowVectorXd elongation(6);
       for (int i = 0; i < 6; ++i) elongation(i) = evaluate(spring.elongation, ExtendedVector(U.col(i)));
-      add(spring.elongation, tangents(static_cast<Eigen::Index>(s)) * elongation);
+      add(spring.elongation, tangents(as_index(s)) * elongation);
     }
     return above_rounding(K, m);
   }
@@ -340,13 +341,13 @@ MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
 
 VectorX MsaModel::tangents_of(const Model& leg, const Solution& state) const {
   // The leg's springs keep their names, so their state is found in the whole mechanism by name.
-  VectorX tangents(static_cast<Eigen::Index>(leg.springs.size()));
+  VectorX tangents(std::ssize(leg.springs));
   for (std::size_t i = 0; i < leg.springs.size(); ++i) {
     const auto& springs = built_.model.springs;
     const auto found =
         std::find_if(springs.begin(), springs.end(), [&](const Spring& s) { return s.name == leg.springs[i].name; });
     if (found == springs.end()) throw std::logic_error("a leg has a spring that its mechanism lacks");
-    tangents(static_cast<Eigen::Index>(i)) = state.spring_tangents(found - springs.begin());
+    tangents(as_index(i)) = state.spring_tangents(found - springs.begin());
   }
   return tangents;
 }
@@ -357,7 +358,7 @@ Matrix6X MsaModel::passive_twists(std::size_t leg) const {
     if (const auto* j = std::get_if<PlacedJoint>(&part))
       for (std::size_t i = 0; i < 6; ++i)
         if (j->free(i)) {
-          const Vector3 axis = j->R_WJ.col(static_cast<Eigen::Index>(i % 3));
+          const Vector3 axis = j->R_WJ.col(as_index(i % 3));
           Vector6 twist;
           if (i < 3)
             twist << axis, Vector3::Zero();
@@ -365,8 +366,8 @@ Matrix6X MsaModel::passive_twists(std::size_t leg) const {
             twist << axis.cross(configuration_.pose.p_WT - j->p_W), axis;
           twists.push_back(twist);
         }
-  Matrix6X J(6, static_cast<Eigen::Index>(twists.size()));
-  for (std::size_t k = 0; k < twists.size(); ++k) J.col(static_cast<Eigen::Index>(k)) = twists[k];
+  Matrix6X J(6, std::ssize(twists));
+  for (std::size_t k = 0; k < twists.size(); ++k) J.col(as_index(k)) = twists[k];
   return J;
 }
 

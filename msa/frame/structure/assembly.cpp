@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "msa/base/index.h"
 #include "msa/frame/elements/two_at_once.h"
 
 namespace deflect::frame {
@@ -14,7 +15,7 @@ namespace {
 LinearForm reduced(const LinearForm& form, const Elimination& e) {
   std::map<int, double> sum;
   for (const Term& t : form)
-    for (const Term& r : e.T[static_cast<std::size_t>(t.dof)]) sum[r.dof] += t.coefficient * r.coefficient;
+    for (const Term& r : nth(e.T, t.dof)) sum[r.dof] += t.coefficient * r.coefficient;
   LinearForm out;
   for (const auto& [q, c] : sum) out.push_back({q, c});
   return out;
@@ -39,7 +40,7 @@ std::vector<int> freedoms_of(const Beam& beam) {
 std::vector<int> reduced(const std::vector<int>& dofs, const Elimination& e) {
   std::vector<int> q;
   for (const int dof : dofs)
-    for (const Term& t : e.T[static_cast<std::size_t>(dof)]) q.push_back(t.dof);
+    for (const Term& t : nth(e.T, dof)) q.push_back(t.dof);
   std::sort(q.begin(), q.end());
   q.erase(std::unique(q.begin(), q.end()), q.end());
   return q;
@@ -49,13 +50,13 @@ ReducedBeam reduced(const Beam& beam, const Elimination& e) {
   const std::vector<int> dofs = freedoms_of(beam);
   ReducedBeam out;
   out.q = reduced(dofs, e);
-  MatrixX B = MatrixX::Zero(static_cast<Eigen::Index>(dofs.size()), static_cast<Eigen::Index>(out.q.size()));
+  MatrixX B = MatrixX::Zero(std::ssize(dofs), std::ssize(out.q));
   for (std::size_t i = 0; i < dofs.size(); ++i)
-    for (const Term& t : e.T[static_cast<std::size_t>(dofs[i])]) {
+    for (const Term& t : nth(e.T, dofs[i])) {
       const auto column = std::lower_bound(out.q.begin(), out.q.end(), t.dof) - out.q.begin();
-      B(static_cast<Eigen::Index>(i), column) += t.coefficient;
+      B(as_index(i), column) += t.coefficient;
     }
-  const auto ends = static_cast<Eigen::Index>(dofs.size());
+  const auto ends = std::ssize(dofs);
   out.K = B.transpose() * stiffness(beam).bottomRightCorner(ends, ends) * B;
   return out;
 }
@@ -71,26 +72,25 @@ struct Groups {
 
 /// Every two q of a group meet.
 SparsePattern pattern_of(int n, const Groups& groups) {
-  std::vector<int> first(static_cast<std::size_t>(n) + 1, 0), member(groups.q.size());  // groups by q
-  for (const int q : groups.q) ++first[static_cast<std::size_t>(q) + 1];
+  std::vector<int> first(as_size(n) + 1, 0), member(groups.q.size());  // groups by q
+  for (const int q : groups.q) ++first[as_size(q) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<int> next(first.begin(), first.end() - 1);
   for (std::size_t g = 0; g + 1 < groups.start.size(); ++g)
     for (int k = groups.start[g]; k < groups.start[g + 1]; ++k)
-      member[static_cast<std::size_t>(next[static_cast<std::size_t>(groups.q[static_cast<std::size_t>(k)])]++)] =
-          static_cast<int>(g);
+      nth(member, nth(next, nth(groups.q, k))++) = static_cast<int>(g);
   SparsePattern p{n, {0}, {}};
-  std::vector<int> met(static_cast<std::size_t>(n), -1);
+  std::vector<int> met(as_size(n), -1);
   for (int j = 0; j < n; ++j) {
-    const auto from = static_cast<std::ptrdiff_t>(p.row.size());
-    met[static_cast<std::size_t>(j)] = j;
+    const auto from = as_index(p.row.size());
+    nth(met, j) = j;
     p.row.push_back(j);
-    for (int k = first[static_cast<std::size_t>(j)]; k < first[static_cast<std::size_t>(j) + 1]; ++k) {
-      const auto g = static_cast<std::size_t>(member[static_cast<std::size_t>(k)]);
+    for (int k = nth(first, j); k < first[as_size(j) + 1]; ++k) {
+      const auto g = as_size(nth(member, k));
       for (int at = groups.start[g + 1] - 1; at >= groups.start[g]; --at) {
-        const int i = groups.q[static_cast<std::size_t>(at)];
+        const int i = nth(groups.q, at);
         if (i <= j) break;
-        if (std::exchange(met[static_cast<std::size_t>(i)], j) != j) p.row.push_back(i);
+        if (std::exchange(nth(met, i), j) != j) p.row.push_back(i);
       }
     }
     std::sort(p.row.begin() + from, p.row.end());
@@ -101,8 +101,8 @@ SparsePattern pattern_of(int n, const Groups& groups) {
 }
 
 int position(const SparsePattern& p, int row, int column) {
-  const auto from = p.row.begin() + p.column_start[static_cast<std::size_t>(column)];
-  const auto to = p.row.begin() + p.column_start[static_cast<std::size_t>(column) + 1];
+  const auto from = p.row.begin() + nth(p.column_start, column);
+  const auto to = p.row.begin() + p.column_start[as_size(column) + 1];
   return static_cast<int>(std::lower_bound(from, to, row) - p.row.begin());
 }
 
@@ -129,8 +129,7 @@ VectorX beam_forces(const Model& m, const Vector& u) {
 
 VectorX with_springs(const Model& m, VectorX f, const VectorX& spring_forces) {
   for (std::size_t s = 0; s < m.springs.size(); ++s)
-    for (const Term& t : m.springs[s].elongation)
-      f(t.dof) += t.coefficient * spring_forces(static_cast<Eigen::Index>(s));
+    for (const Term& t : m.springs[s].elongation) f(t.dof) += t.coefficient * spring_forces(as_index(s));
   return f;
 }
 
@@ -138,7 +137,7 @@ template <class Vector>
 VectorX forces_at(const Model& m, const Vector& u, const VectorX& spring_tangents) {
   VectorX pulls(spring_tangents.size());
   for (std::size_t s = 0; s < m.springs.size(); ++s) {
-    const auto i = static_cast<Eigen::Index>(s);
+    const auto i = as_index(s);
     pulls(i) = spring_tangents(i) * evaluate(m.springs[s].elongation, u);
   }
   return with_springs(m, beam_forces(m, u), pulls);
@@ -169,7 +168,7 @@ Assembly::Assembly(const Model& m, const Elimination& e, int threads) {
     for (std::size_t b = 0; b < to - from; ++b) {  // in the order of the beams, whatever the threads
       auto at = some[b].positions.begin();
       for (Eigen::Index j = 0; j < some[b].K.cols(); ++j)
-        for (Eigen::Index i = j; i < some[b].K.cols(); ++i) beams_[static_cast<std::size_t>(*at++)] += some[b].K(i, j);
+        for (Eigen::Index i = j; i < some[b].K.cols(); ++i) nth(beams_, *at++) += some[b].K(i, j);
     }
   }
   for (ReducedSpring& spring : springs_)
@@ -181,13 +180,12 @@ Assembly::Assembly(const Model& m, const Elimination& e, int threads) {
 std::vector<double> Assembly::values(const VectorX& spring_tangents) const {
   std::vector<double> values = beams_;
   for (std::size_t s = 0; s < springs_.size(); ++s) {
-    const double k = spring_tangents(static_cast<Eigen::Index>(s));
+    const double k = spring_tangents(as_index(s));
     const ReducedSpring& spring = springs_[s];
     std::size_t at = 0;
     for (std::size_t i = 0; i < spring.form.size(); ++i)
       for (std::size_t j = 0; j <= i; ++j)
-        values[static_cast<std::size_t>(spring.positions[at++])] +=
-            k * spring.form[i].coefficient * spring.form[j].coefficient;
+        nth(values, spring.positions[at++]) += k * spring.form[i].coefficient * spring.form[j].coefficient;
   }
   return values;
 }
@@ -212,20 +210,20 @@ double evaluate(const LinearForm& form, const ExtendedVector& u) {
 
 VectorX internal_forces(const Model& m, const VectorX& u, VectorX& spring_tangents) {
   VectorX f = beam_forces(m, u);
-  spring_tangents.resize(static_cast<Eigen::Index>(m.springs.size()));
+  spring_tangents.resize(std::ssize(m.springs));
   for (std::size_t s = 0; s < m.springs.size(); ++s) {
     const Spring& spring = m.springs[s];
     const double elongation = evaluate(spring.elongation, u), pull = force(spring.law, elongation);
     for (const Term& t : spring.elongation) f(t.dof) += t.coefficient * pull;
-    spring_tangents(static_cast<Eigen::Index>(s)) = tangent(spring.law, elongation);
+    spring_tangents(as_index(s)) = tangent(spring.law, elongation);
   }
   return f;
 }
 
 VectorX spring_forces(const Model& m, const ExtendedVector& u) {
-  VectorX forces(static_cast<Eigen::Index>(m.springs.size()));
+  VectorX forces(std::ssize(m.springs));
   for (std::size_t s = 0; s < m.springs.size(); ++s)
-    forces(static_cast<Eigen::Index>(s)) = force(m.springs[s].law, evaluate(m.springs[s].elongation, u));
+    forces(as_index(s)) = force(m.springs[s].law, evaluate(m.springs[s].elongation, u));
   return forces;
 }
 

@@ -1,4 +1,5 @@
 #include "msa/frame/structure/extended_structure.h"
+#include "msa/base/index.h"
 
 #include <map>
 
@@ -18,21 +19,21 @@ std::vector<std::vector<std::pair<int, Extended>>> strains_of(const Beam& beam) 
     for (int j = 0; j < 3; ++j) {
       const Extended along = entry(R, j, i);
       if (beam.relative >= 0) {
-        rows[static_cast<std::size_t>(i)].emplace_back(beam.relative + j, along);
-        rows[static_cast<std::size_t>(3 + i)].emplace_back(beam.relative + 3 + j, along);
+        nth(rows, i).emplace_back(beam.relative + j, along);
+        nth(rows, 3 + i).emplace_back(beam.relative + 3 + j, along);
         continue;
       }
-      rows[static_cast<std::size_t>(i)].emplace_back(6 * beam.b + j, along);
-      rows[static_cast<std::size_t>(i)].emplace_back(6 * beam.a + j, -along);
-      rows[static_cast<std::size_t>(3 + i)].emplace_back(6 * beam.b + 3 + j, along);
-      rows[static_cast<std::size_t>(3 + i)].emplace_back(6 * beam.a + 3 + j, -along);
+      nth(rows, i).emplace_back(6 * beam.b + j, along);
+      nth(rows, i).emplace_back(6 * beam.a + j, -along);
+      nth(rows, 3 + i).emplace_back(6 * beam.b + 3 + j, along);
+      nth(rows, 3 + i).emplace_back(6 * beam.a + 3 + j, -along);
       // −(θ_a × x)_j along axis i, x = L R e_x: the cross product of both with θ_a's coefficient k.
       for (int k = 0; k < 3; ++k) {
         if (k == j) continue;
         const int l = 3 - j - k;  // (θ × x)_j = ± θ_k x_l
         const Extended x = Extended(beam.length) * entry(R, l, 0);
         const bool plus = (j + 1) % 3 == k;
-        rows[static_cast<std::size_t>(i)].emplace_back(6 * beam.a + 3 + k, plus ? -along * x : along * x);
+        nth(rows, i).emplace_back(6 * beam.a + 3 + k, plus ? -along * x : along * x);
       }
     }
   return rows;
@@ -52,7 +53,7 @@ std::vector<std::pair<int, Extended>> through(const std::vector<std::pair<int, E
                                               const std::vector<std::vector<std::pair<int, Extended>>>& by) {
   std::map<int, Extended> sums;
   for (const auto& [dof, c] : form)
-    for (const auto& [i, b] : by[static_cast<std::size_t>(dof)]) sums[i] += c * b;
+    for (const auto& [i, b] : nth(by, dof)) sums[i] += c * b;
   return {sums.begin(), sums.end()};
 }
 
@@ -72,7 +73,7 @@ ExtendedStructure::ExtendedStructure(const Model& m, const Elimination& e, const
   for (std::size_t s = 0; s < m.springs.size(); ++s) {
     Form form;
     for (const Term& t : m.springs[s].elongation) form.emplace_back(t.dof, t.coefficient);
-    add({{form}, {}, MatrixX::Constant(1, 1, tangents(static_cast<Eigen::Index>(s)))});
+    add({{form}, {}, MatrixX::Constant(1, 1, tangents(as_index(s)))});
   }
   factor();
 }
@@ -104,11 +105,11 @@ void ExtendedStructure::eliminate_again(const Model& m, const Elimination& e) {
 }
 
 ExtendedVector ExtendedStructure::expand(const ExtendedVector& q, const VectorX& values) const {
-  ExtendedVector u(static_cast<Eigen::Index>(T_.size()));
+  ExtendedVector u(std::ssize(T_));
   for (std::size_t dof = 0; dof < T_.size(); ++dof) {
     Extended sum = at(T_[dof], q);
     for (const auto& [k, c] : G_[dof]) sum += c * Extended(values(k));
-    u(static_cast<Eigen::Index>(dof)) = sum;
+    u(as_index(dof)) = sum;
   }
   return u;
 }
@@ -118,8 +119,8 @@ void ExtendedStructure::add(Part part) {
   for (Eigen::Index i = 0; i < part.k.rows(); ++i)
     for (Eigen::Index j = 0; j < part.k.cols(); ++j) {
       if (part.k(i, j) == 0) continue;
-      for (const auto& [p, a] : part.of_q[static_cast<std::size_t>(i)])
-        for (const auto& [q, b] : part.of_q[static_cast<std::size_t>(j)])
+      for (const auto& [p, a] : nth(part.of_q, i))
+        for (const auto& [q, b] : nth(part.of_q, j))
           if (p >= q) L_(p, q) += a * Extended(part.k(i, j)) * b;
     }
   parts_.push_back(std::move(part));
@@ -145,13 +146,13 @@ std::optional<ExtendedVector> ExtendedStructure::solve(const VectorX& load, cons
   const ExtendedVector u0 = expand(ExtendedVector::Zero(n), values);
   ExtendedVector q = ExtendedVector::Zero(n);
   for (std::size_t dof = 0; dof < T_.size(); ++dof)
-    for (const auto& [i, c] : T_[dof]) q(i) += c * Extended(load(static_cast<Eigen::Index>(dof)));
+    for (const auto& [i, c] : T_[dof]) q(i) += c * Extended(load(as_index(dof)));
   for (const Part& part : parts_)
     for (Eigen::Index j = 0; j < part.k.cols(); ++j) {
-      const Extended strain = at(part.of_u[static_cast<std::size_t>(j)], u0);
+      const Extended strain = at(nth(part.of_u, j), u0);
       if (strain == 0) continue;
       for (Eigen::Index i = 0; i < part.k.rows(); ++i)
-        for (const auto& [p, a] : part.of_q[static_cast<std::size_t>(i)]) q(p) -= a * Extended(part.k(i, j)) * strain;
+        for (const auto& [p, a] : nth(part.of_q, i)) q(p) -= a * Extended(part.k(i, j)) * strain;
     }
   const Extended drives = Extended(no_load) * q.cwiseAbs().sum();
   for (Eigen::Index j = 0; j < n; ++j) {

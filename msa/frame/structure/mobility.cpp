@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/frame/structure/motions.h"
 #include "msa/frame/structure/pieces.h"
 #include "msa/frame/structure/sparse_cholesky.h"
@@ -32,7 +33,7 @@ MatrixX triangle(const MatrixX& M) {
 /// Small singular values of B and their vectors.
 class SoftBlock {
  public:
-  explicit SoftBlock(const Pieces& p) : B_(static_cast<Eigen::Index>(p.rows.size()), p.coordinates) {
+  explicit SoftBlock(const Pieces& p) : B_(std::ssize(p.rows), p.coordinates) {
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t i = 0; i < p.rows.size(); ++i)
       for (const Term& t : p.rows[i]) entries.emplace_back(static_cast<int>(i), t.dof, t.coefficient);
@@ -74,8 +75,7 @@ class SoftBlock {
   SparseCholesky factor() const {
     for (double shift = 1e-12; shift < 1e-3; shift *= 100) {
       std::vector<double> values = values_;
-      for (int j = 0; j < pattern_.n; ++j)
-        values[static_cast<std::size_t>(pattern_.column_start[static_cast<std::size_t>(j)])] += shift;
+      for (int j = 0; j < pattern_.n; ++j) nth(values, nth(pattern_.column_start, j)) += shift;
       SparseCholesky cholesky(pattern_);
       if (cholesky.factor(values) > 0) return cholesky;
     }
@@ -120,13 +120,13 @@ class Motions {
 
   /// A piece's motions x (columns, [u; size · θ] at its centre) at its nodes: six rows each, metres.
   MatrixX at_nodes(const Piece& piece, const MatrixX& x) const {
-    MatrixX out(static_cast<Eigen::Index>(6 * piece.nodes.size()), x.cols());
+    MatrixX out(as_index(6 * piece.nodes.size()), x.cols());
     for (std::size_t i = 0; i < piece.nodes.size(); ++i)
       for (Eigen::Index j = 0; j < x.cols(); ++j) {
         const Vector3 turned = x.col(j).tail<3>();
-        const Vector3 arm = m_.nodes[static_cast<std::size_t>(piece.nodes[i])].position - piece.centre;
-        out.block<3, 1>(static_cast<Eigen::Index>(6 * i), j) = x.col(j).head<3>() + turned.cross(arm) / piece.size;
-        out.block<3, 1>(static_cast<Eigen::Index>(6 * i + 3), j) = turned;
+        const Vector3 arm = nth(m_.nodes, piece.nodes[i]).position - piece.centre;
+        out.block<3, 1>(as_index(6 * i), j) = x.col(j).head<3>() + turned.cross(arm) / piece.size;
+        out.block<3, 1>(as_index(6 * i + 3), j) = turned;
       }
     return out;
   }
@@ -136,8 +136,7 @@ class Motions {
     std::vector<Eigen::Index> rows;
     for (std::size_t i = 0; i < piece.nodes.size(); ++i) {
       const bool all = m_.watched == piece.nodes[i];
-      for (Eigen::Index k = 0; k < (all ? 6 : m_.watched < 0 ? 3 : 0); ++k)
-        rows.push_back(static_cast<Eigen::Index>(6 * i) + k);
+      for (Eigen::Index k = 0; k < (all ? 6 : m_.watched < 0 ? 3 : 0); ++k) rows.push_back(as_index(6 * i) + k);
     }
     return at_nodes(rows, Eigen::all);
   }
@@ -148,19 +147,18 @@ class Motions {
     for (const Piece& piece : p_.pieces) {
       const MatrixX at = at_nodes(piece, piece.held * Y.middleRows(piece.first, piece.held.cols()));
       for (std::size_t i = 0; i < piece.nodes.size(); ++i)
-        out.middleRows<6>(6 * piece.nodes[i]) = at.middleRows<6>(static_cast<Eigen::Index>(6 * i));
+        out.middleRows<6>(6 * piece.nodes[i]) = at.middleRows<6>(as_index(6 * i));
     }
     for (std::size_t s = 0; s < m_.scalars.size(); ++s)
-      if (p_.y_of_scalar[s] >= 0)
-        out.row(static_cast<Eigen::Index>(6 * m_.nodes.size() + s)) = Y.row(p_.y_of_scalar[s]);
+      if (p_.y_of_scalar[s] >= 0) out.row(as_index(6 * m_.nodes.size() + s)) = Y.row(p_.y_of_scalar[s]);
     return out;
   }
 
   MatrixX observed(const MatrixX& all) const {
     if (m_.watched >= 0) return all.middleRows<6>(6 * m_.watched);
-    MatrixX out(static_cast<Eigen::Index>(3 * m_.nodes.size()), all.cols());
+    MatrixX out(as_index(3 * m_.nodes.size()), all.cols());
     for (std::size_t i = 0; i < m_.nodes.size(); ++i)
-      out.middleRows<3>(static_cast<Eigen::Index>(3 * i)) = all.middleRows<3>(static_cast<Eigen::Index>(6 * i));
+      out.middleRows<3>(as_index(3 * i)) = all.middleRows<3>(as_index(6 * i));
     return out;
   }
 
@@ -168,9 +166,9 @@ class Motions {
 
   /// By freedom: what turns rows in metres into the freedom's own unit.
   double unit(Eigen::Index dof) const {
-    const auto node = static_cast<std::size_t>(dof / 6);
-    if (node >= m_.nodes.size()) return p_.scalar_unit[static_cast<std::size_t>(dof) - 6 * m_.nodes.size()];
-    return dof % 6 < 3 ? 1 : 1 / p_.pieces[static_cast<std::size_t>(p_.of_node[node])].size;
+    const auto node = as_size(dof / 6);
+    if (node >= m_.nodes.size()) return p_.scalar_unit[as_size(dof) - 6 * m_.nodes.size()];
+    return dof % 6 < 3 ? 1 : 1 / nth(p_.pieces, p_.of_node[node]).size;
   }
 
  private:
@@ -183,9 +181,9 @@ class Motions {
 void append_idle(std::vector<IdleMotion>& out, const Motions& motions, MatrixX U, const std::vector<int>& dofs) {
   const std::vector<Eigen::Index> leads = take_apart(U);
   for (Eigen::Index j = 0; j < U.cols(); ++j) {
-    const Eigen::Index lead = leads[static_cast<std::size_t>(j)], first = lead / 3 * 3;
+    const Eigen::Index lead = nth(leads, j), first = lead / 3 * 3;
     std::vector<Eigen::Index> rows{lead};
-    if (first + 2 < U.rows() && motions.nodal(dofs[static_cast<std::size_t>(first + 2)])) {
+    if (first + 2 < U.rows() && motions.nodal(nth(dofs, first + 2))) {
       const Vector3 direction = U.block<3, 1>(first, j);
       VectorX others = U.middleRows<3>(first).transpose() * direction;
       others(j) = 0;
@@ -195,11 +193,11 @@ void append_idle(std::vector<IdleMotion>& out, const Motions& motions, MatrixX U
     double size = 0;
     for (const Eigen::Index row : rows) size += U(row, j) * U(row, j);
     for (const Eigen::Index row : rows) {
-      const int dof = dofs[static_cast<std::size_t>(row)];
+      const int dof = nth(dofs, row);
       if (std::abs(U(row, j)) > at_rest) idle.hold.push_back({dof, U(row, j) / size / motions.unit(dof)});
     }
     for (Eigen::Index i = 0; i < U.rows(); ++i) {
-      const int dof = dofs[static_cast<std::size_t>(i)];
+      const int dof = nth(dofs, i);
       if (std::abs(U(i, j)) > at_rest) idle.u.push_back({dof, U(i, j) * motions.unit(dof)});
     }
     out.push_back(std::move(idle));
@@ -223,7 +221,7 @@ void append_loose(const Model& m, const Pieces& p, const Motions& motions, std::
     for (Eigen::Index j = 0; j < moved.cols(); ++j) {
       moving.push_back(VectorX::Zero(m.dofs()));
       for (std::size_t i = 0; i < dofs.size(); ++i)
-        moving.back()(dofs[i]) = motions.unit(dofs[i]) * moved(static_cast<Eigen::Index>(i), j);
+        moving.back()(dofs[i]) = motions.unit(dofs[i]) * moved(as_index(i), j);
     }
   }
   for (std::size_t s = 0; s < m.scalars.size(); ++s) {
@@ -270,7 +268,7 @@ Mobility mobility_of(const Model& m, const std::vector<char>& resists) {
       out.largest_free = sigma(found - 1);
       const MatrixX U = motions.of_coordinates(Y.leftCols(found));
       const Split parts = split(motions.observed(U), U);
-      std::vector<int> dofs(static_cast<std::size_t>(m.dofs()));
+      std::vector<int> dofs(as_size(m.dofs()));
       std::iota(dofs.begin(), dofs.end(), 0);
       if (parts.idle.cols() > 0) append_idle(out.idle, motions, U * parts.idle, dofs);
       const MatrixX moved = in_own_units(U * parts.moving);
@@ -281,8 +279,8 @@ Mobility mobility_of(const Model& m, const std::vector<char>& resists) {
       if (sigma(found) < soft_below) out.softest = in_own_units(motions.of_coordinates(Y.col(found)));
     }
   }
-  out.free.resize(m.dofs(), static_cast<Eigen::Index>(moving.size()));
-  for (std::size_t j = 0; j < moving.size(); ++j) out.free.col(static_cast<Eigen::Index>(j)) = moving[j];
+  out.free.resize(m.dofs(), std::ssize(moving));
+  for (std::size_t j = 0; j < moving.size(); ++j) out.free.col(as_index(j)) = moving[j];
   return out;
 }
 

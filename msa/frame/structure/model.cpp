@@ -1,4 +1,5 @@
 #include "msa/frame/structure/model.h"
+#include "msa/base/index.h"
 
 #include <fmt/format.h>
 
@@ -22,15 +23,13 @@ LinearForm relative(const Model& m, int a, int b, const Vector3& p, const Vector
 
 std::string Model::dof_name(int dof) const {
   const auto n = static_cast<int>(6 * nodes.size());
-  if (dof >= n) return scalars[static_cast<std::size_t>(dof - n)];
-  return fmt::format("node '{}' {}", nodes[static_cast<std::size_t>(dof / 6)].name,
-                     dof_names[static_cast<std::size_t>(dof % 6)]);
+  if (dof >= n) return nth(scalars, dof - n);
+  return fmt::format("node '{}' {}", nth(nodes, dof / 6).name, nth(dof_names, dof % 6));
 }
 
 LinearForm translation_of(const Model& m, int node, const Vector3& p, const Vector3& axis, double factor) {
   LinearForm form;
-  const Vector3 turning =
-      (p - m.nodes[static_cast<std::size_t>(node)].position).cross(axis);  // axis·(θ × r) = θ·(r × axis)
+  const Vector3 turning = (p - nth(m.nodes, node).position).cross(axis);  // axis·(θ × r) = θ·(r × axis)
   for (int i = 0; i < 3; ++i)
     if (axis(i) != 0) form.push_back({6 * node + i, factor * axis(i)});
   for (int i = 0; i < 3; ++i)
@@ -53,27 +52,25 @@ int Model::add_node(std::string name, const Vector3& position) {
 
 void Model::add_beam(int a, int b, const Matrix3& R_WM, const BeamRigidity& rigidity, std::string name,
                      std::string part) {
-  const double length =
-      (nodes[static_cast<std::size_t>(b)].position - nodes[static_cast<std::size_t>(a)].position).norm();
+  const double length = (nth(nodes, b).position - nth(nodes, a).position).norm();
   beams.push_back({a, b, R_WM, length, rigidity, std::move(name), std::move(part)});
 }
 
 Connection& Model::grounded(int node) {
-  connections.push_back(
-      {-1, node, nodes[static_cast<std::size_t>(node)].position, {Matrix3::Identity(), Matrix3::Identity()}});
+  connections.push_back({-1, node, nth(nodes, node).position, {Matrix3::Identity(), Matrix3::Identity()}});
   return connections.back();
 }
 
 void Model::fix(int node, const std::string& name) {
   Connection& record = grounded(node);
   for (int i = 0; i < 6; ++i) {
-    record.constraint[static_cast<std::size_t>(i)] = static_cast<int>(constraints.size());
-    constraints.push_back({{{6 * node + i, 1}}, 0, fmt::format("{} {}", name, dof_names[static_cast<std::size_t>(i)])});
+    nth(record.constraint, i) = static_cast<int>(constraints.size());
+    constraints.push_back({{{6 * node + i, 1}}, 0, fmt::format("{} {}", name, nth(dof_names, i))});
   }
 }
 
 void Model::join(int a, int b, const std::string& name) {
-  connect(a, b, nodes[static_cast<std::size_t>(b)].position, Matrix3::Identity(), {}, name, name);
+  connect(a, b, nth(nodes, b).position, Matrix3::Identity(), {}, name, name);
 }
 
 void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std::array<ConnectionFreedom, 6>& freedoms,
@@ -87,7 +84,7 @@ void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std:
     const bool all_rigid = freedoms[half].rigid && freedoms[half + 1].rigid && freedoms[half + 2].rigid;
     if (all_rigid) record.axes[half / 3] = Matrix3::Identity();
     for (std::size_t i = half; i < half + 3; ++i) {
-      const auto column = static_cast<Eigen::Index>(i - half);
+      const auto column = as_index(i - half);
       const Vector3 axis = record.axes[half / 3].col(column);
       LinearForm form = relative(*this, a, b, p, axis, half == 3);
       const std::string label = fmt::format("{} {}", name, names[i]);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "msa/base/index.h"
 #include "msa/frame/structure/solver.h"
 
 namespace deflect::frame {
@@ -43,7 +44,7 @@ struct Solver::Work {
 void Solver::begin_slips(const std::vector<double>& slips) {
   for (Spring& s : model_->springs)
     if (auto* friction = std::get_if<FrictionSpring>(&s.law)) {
-      const auto n = static_cast<std::size_t>(friction->number);
+      const auto n = as_size(friction->number);
       friction->before = friction->number >= 0 && n < slips.size() ? slips[n] : 0;
     }
 }
@@ -52,30 +53,28 @@ void Solver::begin_slips(const std::vector<double>& slips) {
 /// at its load in two steps, however far away that is.
 void Solver::begin_by_forces(Work& w) {
   const std::vector<Spring>& springs = model_->springs;
-  const auto n = static_cast<Eigen::Index>(springs.size());
+  const auto n = std::ssize(springs);
   VectorX at = VectorX::Zero(n), force(n), k = w.loaded;
   for (Eigen::Index i = 0; i < n; ++i) {
-    force(i) = frame::force(springs[static_cast<std::size_t>(i)].law, 0);
+    force(i) = frame::force(nth(springs, i).law, 0);
   }
   for (int pass = 0; pass < 20; ++pass) {
     VectorX pulls(n), elongations(n);
     for (Eigen::Index i = 0; i < n; ++i)
-      pulls(i) = force(i) + k(i) * (evaluate(springs[static_cast<std::size_t>(i)].elongation, w.u) - at(i));
+      pulls(i) = force(i) + k(i) * (evaluate(nth(springs, i).elongation, w.u) - at(i));
     factor(k);
     w.q += cholesky_->solve(w.f - elimination_->reduce(forces_with(*model_, w.u, pulls)));
     w.u = elimination_->expand(w.q, w.values);
     for (Eigen::Index i = 0; i < n; ++i) {
-      elongations(i) = evaluate(springs[static_cast<std::size_t>(i)].elongation, w.u);
+      elongations(i) = evaluate(nth(springs, i).elongation, w.u);
       pulls(i) = force(i) + k(i) * (elongations(i) - at(i));
     }
-    const auto per_length = [&](Eigen::Index i) {
-      return springs[static_cast<std::size_t>(i)].law.rotation ? 1 / w.length : 1;
-    };
+    const auto per_length = [&](Eigen::Index i) { return nth(springs, i).law.rotation ? 1 / w.length : 1; };
     w.scale = 1e-3 * w.force;
     for (Eigen::Index i = 0; i < n; ++i) w.scale = std::max(w.scale, std::abs(pulls(i)) * per_length(i));
     double change = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const SpringLaw& law = springs[static_cast<std::size_t>(i)].law;
+      const SpringLaw& law = nth(springs, i).law;
       at(i) = elongation(law, pulls(i));
       k(i) = std::max(std::visit([&](const auto& l) { return l.at_force(pulls(i) + law.preload); }, law), w.floor(i));
       change = std::max(change, std::abs(pulls(i) - force(i)) * per_length(i) / w.scale);
@@ -132,11 +131,11 @@ void Solver::conclude(const Work& w, Solution& s) const {
   s.u = w.u;
   s.fine = w.u.cast<Extended>();
   const std::vector<Spring>& springs = model_->springs;
-  s.spring_tangents.resize(static_cast<Eigen::Index>(springs.size()));
+  s.spring_tangents.resize(std::ssize(springs));
   s.spring_forces = s.spring_tangents;
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const SpringLaw& law = springs[i].law;
-    const auto k = static_cast<Eigen::Index>(i);
+    const auto k = as_index(i);
     const double d = evaluate(springs[i].elongation, w.u);
     s.spring_forces(k) = force(law, d);
     s.spring_tangents(k) = tangent(law, d);
@@ -150,7 +149,7 @@ Solution Solver::solve(const VectorX& load, const NewtonOptions& options) {
 Solution Solver::solve(const VectorX& given_load, const VectorX& given_values, const NewtonOptions& options) {
   Work w;
   w.load = padded(given_load, model_->dofs());
-  w.values = padded(given_values, static_cast<Eigen::Index>(model_->constraints.size()));
+  w.values = padded(given_values, std::ssize(model_->constraints));
   if (linear_springs()) return solve_linear(w.load, w.values);
   check(w.load, w.values);
   w.length = characteristic_length(*model_);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "msa/base/index.h"
 #include "msa/frame/structure/elimination.h"
 
 namespace deflect::frame {
@@ -72,14 +73,14 @@ Form taken_by_pieces(const Model& m, const Pieces& all, const LinearForm& form) 
       out.scalars.push_back({t.dof - nodal, t.coefficient});
       continue;
     }
-    const auto node = static_cast<std::size_t>(t.dof / 6);
+    const auto node = as_size(t.dof / 6);
     const int piece = all.of_node[node];
     auto hold = std::find_if(out.holds.begin(), out.holds.end(), [&](const Hold& h) { return h.piece == piece; });
     if (hold == out.holds.end()) hold = out.holds.insert(hold, Hold{piece});
     const Vector3 axis = t.coefficient * Vector3::Unit(t.dof % 3);
     if (t.dof % 6 < 3) {
       hold->f += axis;
-      hold->m += (m.nodes[node].position - all.pieces[static_cast<std::size_t>(piece)].centre).cross(axis);
+      hold->m += (m.nodes[node].position - nth(all.pieces, piece).centre).cross(axis);
     } else {
       hold->m += axis;
     }
@@ -111,11 +112,11 @@ void set_coordinates(Piece& piece, std::vector<Hold> holds) {
       arm = std::max(arm, h.m.norm() / h.f.norm());
   }
   if (arm > 1e-9 * piece.size) piece.size = arm;  // else all act at one point, but for rounding
-  MatrixX A = MatrixX::Zero(std::max<Eigen::Index>(6, static_cast<Eigen::Index>(holds.size())), 6);
+  MatrixX A = MatrixX::Zero(std::max<Eigen::Index>(6, std::ssize(holds)), 6);
   for (std::size_t i = 0; i < holds.size(); ++i) {
     Vector6 row;
     row << holds[i].f, holds[i].m / piece.size;
-    if (const double size = row.norm(); size > 0) A.row(static_cast<Eigen::Index>(i)) = row / size;
+    if (const double size = row.norm(); size > 0) A.row(as_index(i)) = row / size;
   }
   const MatrixX R = Eigen::HouseholderQR<MatrixX>(A).matrixQR().topRows<6>().triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<MatrixX> svd(R, Eigen::ComputeFullV);
@@ -128,21 +129,61 @@ void set_coordinates(Piece& piece, std::vector<Hold> holds) {
   if (rank > 0) piece.weakest = strength(rank - 1) / strength(0);
 }
 
+/// Nodes by piece, each piece centred at its first node.
+Pieces nodes_by_piece(const Model& m) {
+  Pieces out;
+  const std::vector<int> first = first_nodes(m);
+  out.of_node.resize(m.nodes.size());
+  for (std::size_t i = 0; i < m.nodes.size(); ++i) {
+    const auto root = as_size(first[i]);
+    if (root == i) {
+      out.of_node[i] = static_cast<int>(out.pieces.size());
+      out.pieces.emplace_back().centre = m.nodes[i].position;
+    }
+    out.of_node[i] = out.of_node[root];
+    nth(out.pieces, out.of_node[i]).nodes.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
+/// Adds what the form, about the first nodes of the pieces, says of their coordinates; `to_centre`: by piece, from its
+/// first node. Nothing where the form vanishes.
+void add_row(Pieces& out, const Form& form, const std::vector<Vector3>& to_centre) {
+  PieceRow row;
+  double size = 0;
+  for (const Hold& h : form.holds) {
+    const Piece& piece = nth(out.pieces, h.piece);
+    Vector6 w;
+    w << h.f, (h.m - nth(to_centre, h.piece).cross(h.f)) / piece.size;
+    size = std::max(size, w.norm());
+    const VectorX c = piece.held.transpose() * w;
+    for (Eigen::Index i = 0; i < c.size(); ++i) row.push_back({piece.first + static_cast<int>(i), c(i)});
+  }
+  for (const Term& t : form.scalars) {
+    const auto k = as_size(t.dof);
+    row.push_back({out.y_of_scalar[k], t.coefficient * out.scalar_unit[k]});
+    size = std::max(size, std::abs(row.back().coefficient));
+  }
+  if (size == 0) return;
+  for (Term& t : row) t.coefficient /= size;
+  out.rows.push_back(std::move(row));
+}
+
 }  // namespace
 
 std::vector<int> first_nodes(const Model& m) {
   std::vector<int> parent(m.nodes.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&parent](int i) {
-    while (parent[static_cast<std::size_t>(i)] != i) {
-      int& up = parent[static_cast<std::size_t>(i)];
-      i = up = parent[static_cast<std::size_t>(up)];
+    while (nth(parent, i) != i) {
+      int& up = nth(parent, i);
+      i = up = nth(parent, up);
     }
     return i;
   };
   const auto join = [&](int a, int b) {
     const int low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
-    parent[static_cast<std::size_t>(high)] = low;
+    nth(parent, high) = low;
   };
   for (const Beam& beam : m.beams)
     if (resists_everything(beam.rigidity)) join(beam.a, beam.b);
@@ -152,31 +193,24 @@ std::vector<int> first_nodes(const Model& m) {
 }
 
 Pieces pieces_of(const Model& m, const std::vector<char>& resists) {
-  Pieces out;
-  const std::vector<int> first = first_nodes(m);
-  out.of_node.resize(m.nodes.size());
-  for (std::size_t i = 0; i < m.nodes.size(); ++i) {
-    const auto root = static_cast<std::size_t>(first[i]);
-    if (root == i) {
-      out.of_node[i] = static_cast<int>(out.pieces.size());
-      out.pieces.emplace_back().centre = m.nodes[i].position;
-    }
-    out.of_node[i] = out.of_node[root];
-    out.pieces[static_cast<std::size_t>(out.of_node[i])].nodes.push_back(static_cast<int>(i));
-  }
+  Pieces out = nodes_by_piece(m);
   std::vector<Form> forms;
   std::vector<std::vector<Hold>> holds(out.pieces.size());
   std::vector<double> seen(m.scalars.size(), 0);
   const double length = characteristic_length(m);
+  const auto nodal = static_cast<int>(6 * m.nodes.size());
   for (const LinearForm& condition : conditions(m, resists)) {
     Form form = taken_by_pieces(m, out, condition);
     double whole = 0;
-    for (const Term& t : condition) whole = std::max(whole, std::abs(t.coefficient) * (t.dof % 6 < 3 ? 1 : 1 / length));
+    for (const Term& t : condition) {
+      const bool turns = t.dof < nodal && t.dof % 6 >= 3;
+      whole = std::max(whole, std::abs(t.coefficient) * (turns ? 1 / length : 1));
+    }
     // What cancelled within a piece leaves its rounding.
     std::erase_if(form.holds, [&](const Hold& h) { return h.f.norm() + h.m.norm() / length <= 1e-13 * whole; });
-    for (const Hold& h : form.holds) holds[static_cast<std::size_t>(h.piece)].push_back(h);
+    for (const Hold& h : form.holds) nth(holds, h.piece).push_back(h);
     for (const Term& t : form.scalars) {
-      double& most = seen[static_cast<std::size_t>(t.dof)];
+      double& most = nth(seen, t.dof);
       most = std::max(most, std::abs(t.coefficient));
     }
     forms.push_back(std::move(form));
@@ -195,26 +229,7 @@ Pieces pieces_of(const Model& m, const std::vector<char>& resists) {
     out.y_of_scalar.push_back(most > 0 ? out.coordinates++ : -1);
     out.scalar_unit.push_back(most > 0 ? 1 / most : 1);
   }
-  for (const Form& form : forms) {
-    PieceRow row;
-    double size = 0;
-    for (const Hold& h : form.holds) {
-      const Piece& piece = out.pieces[static_cast<std::size_t>(h.piece)];
-      Vector6 w;
-      w << h.f, (h.m - to_centre[static_cast<std::size_t>(h.piece)].cross(h.f)) / piece.size;
-      size = std::max(size, w.norm());
-      const VectorX c = piece.held.transpose() * w;
-      for (Eigen::Index i = 0; i < c.size(); ++i) row.push_back({piece.first + static_cast<int>(i), c(i)});
-    }
-    for (const Term& t : form.scalars) {
-      const auto k = static_cast<std::size_t>(t.dof);
-      row.push_back({out.y_of_scalar[k], t.coefficient * out.scalar_unit[k]});
-      size = std::max(size, std::abs(row.back().coefficient));
-    }
-    if (size == 0) continue;
-    for (Term& t : row) t.coefficient /= size;
-    out.rows.push_back(std::move(row));
-  }
+  for (const Form& form : forms) add_row(out, form, to_centre);
   return out;
 }
 
@@ -222,7 +237,7 @@ LinearForm motion_of(const Model& m, const Piece& piece, const Vector6& x) {
   const Vector3 u = x.head<3>(), theta = x.tail<3>() / piece.size;
   LinearForm out;
   for (const int node : piece.nodes) {
-    const Vector3 d = u + theta.cross(m.nodes[static_cast<std::size_t>(node)].position - piece.centre);
+    const Vector3 d = u + theta.cross(nth(m.nodes, node).position - piece.centre);
     for (int i = 0; i < 3; ++i) {
       out.push_back({6 * node + i, d(i)});
       out.push_back({6 * node + 3 + i, theta(i)});

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseLU>
 
+#include "msa/base/index.h"
 #include "msa/frame/structure/assembly.h"
 
 namespace deflect::frame {
@@ -15,10 +16,10 @@ struct Reactions::Impl {
 
 Reactions::Reactions(const Model& m, const Elimination& e) : impl_(std::make_unique<Impl>()) {
   impl_->constraints = m.constraints.size();
-  std::vector<int> row_of_dof(static_cast<std::size_t>(m.dofs()), -1);
+  std::vector<int> row_of_dof(as_size(m.dofs()), -1);
   for (std::size_t k = 0; k < m.constraints.size(); ++k)
     if (e.pivot[k] >= 0) {
-      row_of_dof[static_cast<std::size_t>(e.pivot[k])] = static_cast<int>(impl_->active.size());
+      nth(row_of_dof, e.pivot[k]) = static_cast<int>(impl_->active.size());
       impl_->active.push_back(static_cast<int>(k));
       impl_->pivot.push_back(e.pivot[k]);
     }
@@ -26,10 +27,9 @@ Reactions::Reactions(const Model& m, const Elimination& e) : impl_(std::make_uni
   const auto n = static_cast<int>(impl_->active.size());
   std::vector<Eigen::Triplet<double>> entries;
   for (int column = 0; column < n; ++column) {
-    const auto k = static_cast<std::size_t>(impl_->active[static_cast<std::size_t>(column)]);
+    const auto k = as_size(nth(impl_->active, column));
     for (const Term& t : m.constraints[k].form)
-      if (const int row = row_of_dof[static_cast<std::size_t>(t.dof)]; row >= 0)
-        entries.emplace_back(row, column, t.coefficient);
+      if (const int row = nth(row_of_dof, t.dof); row >= 0) entries.emplace_back(row, column, t.coefficient);
   }
   Eigen::SparseMatrix<double> Ct(n, n);
   Ct.setFromTriplets(entries.begin(), entries.end());
@@ -41,14 +41,12 @@ Reactions::Reactions(Reactions&&) noexcept = default;
 Reactions& Reactions::operator=(Reactions&&) noexcept = default;
 
 MatrixX Reactions::forces(const MatrixX& unbalanced) const {
-  MatrixX forces = MatrixX::Zero(static_cast<Eigen::Index>(impl_->constraints), unbalanced.cols());
+  MatrixX forces = MatrixX::Zero(as_index(impl_->constraints), unbalanced.cols());
   if (impl_->active.empty()) return forces;
-  MatrixX rhs(static_cast<Eigen::Index>(impl_->pivot.size()), unbalanced.cols());
-  for (std::size_t i = 0; i < impl_->pivot.size(); ++i)
-    rhs.row(static_cast<Eigen::Index>(i)) = unbalanced.row(impl_->pivot[i]);
+  MatrixX rhs(std::ssize(impl_->pivot), unbalanced.cols());
+  for (std::size_t i = 0; i < impl_->pivot.size(); ++i) rhs.row(as_index(i)) = unbalanced.row(impl_->pivot[i]);
   const MatrixX lambda = impl_->lu.solve(rhs);
-  for (std::size_t i = 0; i < impl_->active.size(); ++i)
-    forces.row(impl_->active[i]) = lambda.row(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < impl_->active.size(); ++i) forces.row(impl_->active[i]) = lambda.row(as_index(i));
   return forces;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "msa/base/index.h"
 #include "msa/frame/structure/elimination.h"
 
 namespace deflect::frame {
@@ -24,7 +25,7 @@ double softest(const Model& m) {
 void make_relative(Model& m, Beam& beam) {
   beam.relative = m.dofs();
   for (int i = 0; i < 6; ++i) m.scalars.push_back(fmt::format("deformation {} of {}", i + 1, beam.name));
-  const Vector3 arm = m.nodes[static_cast<std::size_t>(beam.b)].position;
+  const Vector3 arm = nth(m.nodes, beam.b).position;
   for (int i = 0; i < 6; ++i) {
     const Vector3 axis = Vector3::Unit(i % 3);
     LinearForm form = i < 3 ? translation_of(m, beam.a, arm, axis, -1) : rotation_of(beam.a, axis, -1);

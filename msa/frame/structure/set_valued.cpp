@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "msa/base/index.h"
 #include "msa/frame/elements/jumping_springs.h"
 #include "msa/frame/structure/relative.h"
 #include "msa/frame/structure/solver.h"
@@ -19,6 +20,49 @@ namespace deflect::frame {
 namespace {
 
 constexpr double no_force = 1e-11;  // of the load
+
+/// The largest entry of a load, N: moments count by `length`.
+double driving_force(const Model& m, const VectorX& load, double length) {
+  double driving = 0;
+  for (Eigen::Index i = 0; i < load.size(); ++i)
+    driving = std::max(driving, std::abs(load(i)) / (i < as_index(6 * m.nodes.size()) && i % 6 > 2 ? length : 1));
+  return driving;
+}
+
+/// By spring its force at u; the springs `jumping` carry the forces `known`.
+VectorX spring_pulls(const std::vector<Spring>& springs, const ExtendedVector& u,
+                     const std::vector<std::size_t>& jumping, const VectorX& known) {
+  VectorX pulls(std::ssize(springs));
+  for (std::size_t i = 0; i < springs.size(); ++i)
+    pulls(as_index(i)) = force(springs[i].law, evaluate(springs[i].elongation, u));
+  for (Eigen::Index i = 0; i < known.size(); ++i) pulls(as_index(nth(jumping, i))) = known(i);
+  return pulls;
+}
+
+/// What the springs' `pulls` and the rest of the structure leave of the load, relative; `jumping`: the pulls of the
+/// springs that are not linear.
+double relative_residual(const Model& m, const Elimination& e, const VectorX& load, const ExtendedVector& u,
+                         const VectorX& pulls, const VectorX& jumping) {
+  const VectorX f = e.reduce(load);
+  const VectorX held = e.reduce(forces_with(m, u, pulls));
+  // Stiffness times the rounding of displacements is all that can be asked of forces.
+  const double rounding = 1e-15 * contact_stiffness(m) * largest(u.cast<double>());
+  const double size = std::max({largest(f) + largest(held), largest(jumping), rounding * 1e8});
+  return size > 0 ? largest(VectorX(f - held)) / size : 0;
+}
+
+/// Takes the state of law i, that of spring number `at`, into the solution and the force into the spring.
+void add_state(const SetValuedSolution& found, Eigen::Index i, std::size_t at, Spring& spring, Solution& s) {
+  const int end = nth(found.end, i);
+  know_force(spring.law, found.s(i));
+  s.spring_tangents(as_index(at)) = tangent_at(spring.law, found.d(i), found.s(i), end);
+  if (found.loose.cols() > 0 && found.loose.row(i).cwiseAbs().maxCoeff() > 0) s.loose.push_back(spring.name);
+  if (const auto* friction = std::get_if<FrictionSpring>(&spring.law); friction && friction->number >= 0) {
+    const auto number = as_size(friction->number);
+    s.slips.resize(std::max(s.slips.size(), number + 1));
+    s.slips[number] = slip_at(*friction, spring.law.at_rest, found.d(i), end);
+  }
+}
 
 }  // namespace
 
@@ -37,31 +81,29 @@ const Solver::Condensed& Solver::condensed() {
   c->tangents = starting_tangents(1);
   for (std::size_t i = 0; i < springs.size(); ++i)
     if (!is_linear(springs[i].law)) c->springs.push_back(i);
-  const auto n = static_cast<Eigen::Index>(c->springs.size());
+  const auto n = std::ssize(c->springs);
   const double length = characteristic_length(*model_), contact = contact_stiffness(*model_);
   MatrixX forces = MatrixX::Zero(model_->dofs(), n);
   c->k.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Spring& spring = springs[c->springs[static_cast<std::size_t>(i)]];
+    const Spring& spring = springs[nth(c->springs, i)];
     for (const Term& t : spring.elongation) forces(t.dof, i) += t.coefficient;
     c->k(i) = spring.law.rotation ? contact * length * length : contact;
   }
   // First with a k that is stiffer than all else, then with as much as the structure itself resists each elongation.
-  const MatrixX values = MatrixX::Zero(static_cast<Eigen::Index>(model_->constraints.size()), n);
+  const MatrixX values = MatrixX::Zero(std::ssize(model_->constraints), n);
   for (int pass = 0; pass < 2; ++pass) {
-    for (Eigen::Index i = 0; i < n; ++i)
-      c->tangents(static_cast<Eigen::Index>(c->springs[static_cast<std::size_t>(i)])) = c->k(i);
+    for (Eigen::Index i = 0; i < n; ++i) c->tangents(as_index(nth(c->springs, i))) = c->k(i);
     c->u = linear(c->tangents, forces, values);
     c->elongations.resize(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < n; ++j)
-        c->elongations(i, j) =
-            evaluate(springs[c->springs[static_cast<std::size_t>(i)]].elongation, ExtendedVector(c->u.col(j)));
+        c->elongations(i, j) = evaluate(springs[nth(c->springs, i)].elongation, ExtendedVector(c->u.col(j)));
     if (pass == 1) break;
     for (Eigen::Index i = 0; i < n; ++i)
       if (const double sum = 1 / c->elongations(i, i); sum < 1e12 * c->k(i)) {
         // A friction that slips has no stiffness of its own: digits are kept by one of the structure's size.
-        const SpringLaw& law = springs[c->springs[static_cast<std::size_t>(i)]].law;
+        const SpringLaw& law = springs[nth(c->springs, i)].law;
         const bool soft = frictions_soft_ && std::holds_alternative<FrictionSpring>(law);
         c->k(i) = soft ? std::max(sum - c->k(i), 1e-8 * c->k(i)) : sum;
       }
@@ -75,7 +117,7 @@ const Solver::Condensed& Solver::condensed() {
 ExtendedVector Solver::refined(const std::vector<ScalarLaw>& laws, SetValuedSolution& found,
                                const LinearRelation& relation, const ExtendedVector& u0) {
   const Condensed& c = condensed();
-  const auto n = static_cast<Eigen::Index>(laws.size());
+  const auto n = std::ssize(laws);
   const VectorX root = c.k.cwiseSqrt();  // units in which k is 1
   const MatrixX P = root.asDiagonal() * relation.P * root.cwiseInverse().asDiagonal();
   ExtendedVector o = found.o.cast<Extended>(), best = o;
@@ -85,7 +127,7 @@ ExtendedVector Solver::refined(const std::vector<ScalarLaw>& laws, SetValuedSolu
     VectorX lacking(n), d(n), s(n);
     MatrixX J(n, n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const auto at = static_cast<std::size_t>(i);
+      const auto at = as_size(i);
       const ScalarLaw& law = laws[at];
       Extended fine = 0;
       for (const Term& t : model_->springs[c.springs[at]].elongation) fine += t.coefficient * u(t.dof);
@@ -116,24 +158,20 @@ ExtendedVector Solver::refined(const std::vector<ScalarLaw>& laws, SetValuedSolu
 Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, const std::vector<int>& watched) {
   const Condensed& c = condensed();
   const std::vector<Spring>& springs = model_->springs;
-  const auto n = static_cast<Eigen::Index>(c.springs.size());
+  const auto n = std::ssize(c.springs);
   ExtendedVector u = linear(c.tangents, load, values);
   const double length = characteristic_length(*model_);
-  double driving = 0;  // N
-  for (Eigen::Index i = 0; i < load.size(); ++i)
-    driving =
-        std::max(driving, std::abs(load(i)) /
-                              (i < static_cast<Eigen::Index>(6 * model_->nodes.size()) && i % 6 > 2 ? length : 1));
+  const double driving = driving_force(*model_, load, length);
   LinearRelation relation{c.k.cwiseInverse(), VectorX(n), c.elongations * c.k.asDiagonal(), VectorX(n)};
   std::vector<ScalarLaw> laws;
-  MatrixX by_elongation = MatrixX::Zero(static_cast<Eigen::Index>(watched.size()), n);
+  MatrixX by_elongation = MatrixX::Zero(std::ssize(watched), n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Spring& spring = springs[c.springs[static_cast<std::size_t>(i)]];
+    const Spring& spring = springs[nth(c.springs, i)];
     relation.d0(i) = evaluate(spring.elongation, u);
     relation.size(i) = driving * (spring.law.rotation ? length : 1);
     laws.push_back(scalar_law(spring.law));
     for (std::size_t w = 0; w < watched.size(); ++w)
-      by_elongation(static_cast<Eigen::Index>(w), i) = c.k(i) * static_cast<double>(c.u(watched[w], i));
+      by_elongation(as_index(w), i) = c.k(i) * static_cast<double>(c.u(watched[w], i));
   }
   SetValuedSolution found = deflect::solve(relation, laws, by_elongation);
   Solution s;
@@ -147,45 +185,27 @@ Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, con
   if (!s.converged) {
     s.fine = u;
     s.u = u.cast<double>();
-    s.spring_tangents = s.spring_forces = VectorX::Zero(static_cast<Eigen::Index>(springs.size()));
+    s.spring_tangents = s.spring_forces = VectorX::Zero(std::ssize(springs));
     s.message = reason(found);
     return s;
   }
   const ExtendedVector offsets = refined(laws, found, relation, u);
   // A law at its kink has forces whose signs are rounding: it takes the stiffness of a pull, as in the closed form.
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double rest = -springs[c.springs[static_cast<std::size_t>(i)]].law.preload;
+    const double rest = -springs[nth(c.springs, i)].law.preload;
     if (std::abs(found.s(i) - rest) <= no_force * relation.size(i)) found.s(i) = rest;
   }
   u += c.u * c.k.cast<Extended>().cwiseProduct(offsets);
-  VectorX pulls(static_cast<Eigen::Index>(springs.size()));
-  const VectorX f = elimination_->reduce(load);
-  for (std::size_t i = 0; i < springs.size(); ++i)
-    pulls(static_cast<Eigen::Index>(i)) = force(springs[i].law, evaluate(springs[i].elongation, u));
-  for (Eigen::Index i = 0; i < n; ++i)
-    pulls(static_cast<Eigen::Index>(c.springs[static_cast<std::size_t>(i)])) = found.s(i);
-  const VectorX held = elimination_->reduce(forces_with(*model_, u, pulls));
-  // Stiffness times the rounding of displacements is all that can be asked of forces.
-  const double rounding = 1e-15 * contact_stiffness(*model_) * largest(u.cast<double>());
-  const double size = std::max({largest(f) + largest(held), largest(found.s), rounding * 1e8});
-  s.residual = size > 0 ? largest(VectorX(f - held)) / size : 0;
+  const VectorX pulls = spring_pulls(springs, u, c.springs, found.s);
+  s.residual = relative_residual(*model_, *elimination_, load, u, pulls, found.s);
   s.converged = std::isfinite(s.residual) && s.residual < 1e-7;
   s.fine = u;
   s.u = u.cast<double>();
   s.spring_forces = pulls;
   s.spring_tangents = c.tangents;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const std::size_t spring = c.springs[static_cast<std::size_t>(i)];
-    const SpringLaw& law = springs[spring].law;
-    const int end = found.end[static_cast<std::size_t>(i)];
-    know_force(model_->springs[spring].law, found.s(i));
-    s.spring_tangents(static_cast<Eigen::Index>(spring)) = tangent_at(law, found.d(i), found.s(i), end);
-    if (found.loose.cols() > 0 && found.loose.row(i).cwiseAbs().maxCoeff() > 0) s.loose.push_back(springs[spring].name);
-    if (const auto* friction = std::get_if<FrictionSpring>(&law); friction && friction->number >= 0) {
-      const auto number = static_cast<std::size_t>(friction->number);
-      s.slips.resize(std::max(s.slips.size(), number + 1));
-      s.slips[number] = slip_at(*friction, law.at_rest, found.d(i), end);
-    }
+    const std::size_t spring = nth(c.springs, i);
+    add_state(found, i, spring, model_->springs[spring], s);
   }
   s.free = c.u.cast<double>() * c.k.asDiagonal() * found.loose;
   s.least = found.least, s.most = found.most;
@@ -199,7 +219,7 @@ std::string Solver::reason(const SetValuedSolution& found) const {
   for (std::size_t i = 0; i < c.springs.size() && found.outcome == SetValuedSolution::Outcome::overcome; ++i) {
     const Spring& spring = model_->springs[c.springs[i]];
     const auto* friction = std::get_if<FrictionSpring>(&spring.law);
-    if (friction && std::abs(found.along(static_cast<Eigen::Index>(i))) > 1e-3 * largest(found.along))
+    if (friction && std::abs(found.along(as_index(i))) > 1e-3 * largest(found.along))
       return fmt::format("{} slips at {:.6g} {} and nothing else holds what it lets go", spring.name, friction->most,
                          spring.law.rotation ? "Nm" : "N");
   }

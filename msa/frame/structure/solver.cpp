@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/frame/structure/extended_structure.h"
 #include "msa/frame/structure/relative.h"
 #include "msa/frame/structure/stability.h"
@@ -26,7 +27,7 @@ constexpr double strains_nothing = 1e-24, is_no_strain = 1e-26;  // of the energ
 constexpr double few_digits_lost = 1e-13;                        // of a plain solution, in energy
 
 MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
-  MatrixX out = MatrixX::Zero(static_cast<Eigen::Index>(rows), m.cols());
+  MatrixX out = MatrixX::Zero(as_index(rows), m.cols());
   out.topRows(m.rows()) = m;
   return out;
 }
@@ -35,7 +36,7 @@ MatrixX padded_rows(const MatrixX& m, std::size_t rows) {
 bool is_rounding(const VectorX& reduced, const Elimination& e, const VectorX& f) {
   VectorX unsigned_sum = VectorX::Zero(e.independent);
   for (std::size_t dof = 0; dof < e.T.size(); ++dof)
-    for (const Term& t : e.T[dof]) unsigned_sum(t.dof) += std::abs(t.coefficient * f(static_cast<Eigen::Index>(dof)));
+    for (const Term& t : e.T[dof]) unsigned_sum(t.dof) += std::abs(t.coefficient * f(as_index(dof)));
   return (reduced.array().abs() <= 1e-14 * unsigned_sum.array()).all();
 }
 
@@ -48,7 +49,7 @@ double twice_energy(const Model& m, const ExtendedVector& u, const VectorX& tang
   }
   for (std::size_t s = 0; s < m.springs.size(); ++s) {
     const double elongation = evaluate(m.springs[s].elongation, u);
-    sum += tangents(static_cast<Eigen::Index>(s)) * elongation * elongation;
+    sum += tangents(as_index(s)) * elongation * elongation;
   }
   return sum;
 }
@@ -62,7 +63,7 @@ double unsigned_energy(const Model& m, const ExtendedVector& u, const VectorX& t
   for (std::size_t s = 0; s < m.springs.size(); ++s) {
     double elongation = 0;
     for (const Term& t : m.springs[s].elongation) elongation += std::abs(t.coefficient) * size(t.dof);
-    sum += tangents(static_cast<Eigen::Index>(s)) * elongation * elongation;
+    sum += tangents(as_index(s)) * elongation * elongation;
   }
   return sum;
 }
@@ -136,8 +137,7 @@ void Solver::note_condition() {
   if (condition > poor) return;
   if (!factored_) {  // what is softest shows beside a little of the diagonal
     const SparsePattern& p = assembly_->pattern();
-    for (int j = 0; j < p.n; ++j)
-      values[static_cast<std::size_t>(p.column_start[static_cast<std::size_t>(j)])] *= 1 + 1e-13;
+    for (int j = 0; j < p.n; ++j) nth(values, nth(p.column_start, j)) *= 1 + 1e-13;
     if (cholesky_->factor(values) == 0) return;
   }
   const SparseCholesky::Softest softest = cholesky_->softest();
@@ -163,7 +163,7 @@ void Solver::refuse_driven_motions(const VectorX& load) const {
 }
 
 void Solver::check(const VectorX& load, const VectorX& values) const {
-  check_consistent(*model_, *elimination_, padded(values, static_cast<Eigen::Index>(model_->constraints.size())));
+  check_consistent(*model_, *elimination_, padded(values, std::ssize(model_->constraints)));
   refuse_driven_motions(padded(load, model_->dofs()));
 }
 
@@ -186,14 +186,14 @@ void Solver::factor(const VectorX& tangents) {
 }
 
 VectorX Solver::starting_tangents(double force) const {
-  VectorX k(static_cast<Eigen::Index>(model_->springs.size()));
+  VectorX k(std::ssize(model_->springs));
   for (std::size_t s = 0; s < model_->springs.size(); ++s)
-    k(static_cast<Eigen::Index>(s)) = tangent_at_force(model_->springs[s].law, force);
+    k(as_index(s)) = tangent_at_force(model_->springs[s].law, force);
   return k;
 }
 
 ExtendedMatrix Solver::linear(const VectorX& tangents, const MatrixX& given_loads, const MatrixX& given_values) {
-  const MatrixX loads = padded_rows(given_loads, static_cast<std::size_t>(model_->dofs()));
+  const MatrixX loads = padded_rows(given_loads, as_size(model_->dofs()));
   const MatrixX values = padded_rows(given_values, model_->constraints.size());
   for (Eigen::Index c = 0; c < values.cols(); ++c) check_consistent(*model_, *elimination_, values.col(c));
   for (Eigen::Index c = 0; c < loads.cols(); ++c) refuse_driven_motions(loads.col(c));
@@ -277,7 +277,7 @@ Solution Solver::solve_linear(const VectorX& load, const VectorX& values) {
   s.spring_tangents = tangents;
   s.spring_forces.resize(tangents.size());
   for (std::size_t i = 0; i < model_->springs.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
+    const auto k = as_index(i);
     s.spring_forces(k) = tangents(k) * evaluate(model_->springs[i].elongation, s.fine);
   }
   return s;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "msa/base/index.h"
 #include "msa/frame/elements/two_at_once.h"
 
 // OpenBLAS, where it is the BLAS.
@@ -70,14 +71,14 @@ class BlasThreads {
 /// By column, a number for all that follow each other and have the same rows: the freedoms of a node.
 std::vector<int> groups_of(const SparsePattern& p) {
   const auto rows = [&p](int j, int skip) {
-    const auto k = static_cast<std::size_t>(j);
+    const auto k = as_size(j);
     return std::pair{p.row.begin() + p.column_start[k] + skip, p.row.begin() + p.column_start[k + 1]};
   };
-  std::vector<int> group(static_cast<std::size_t>(p.n), 0);
+  std::vector<int> group(as_size(p.n), 0);
   for (int j = 1; j < p.n; ++j) {
     const auto [from, to] = rows(j - 1, 1);
     const auto [first, last] = rows(j, 0);
-    group[static_cast<std::size_t>(j)] = group[static_cast<std::size_t>(j) - 1] + !std::equal(from, to, first, last);
+    nth(group, j) = group[as_size(j) - 1] + !std::equal(from, to, first, last);
   }
   return group;
 }
@@ -85,14 +86,14 @@ std::vector<int> groups_of(const SparsePattern& p) {
 /// Nested dissection (Karypis and Kumar's METIS) of groups of columns; an order of columns.
 std::vector<int> dissected(const SparsePattern& p, cholmod_common& common) {
   const std::vector<int> group = groups_of(p);
-  const auto groups = static_cast<std::size_t>(group.back()) + 1;
+  const auto groups = as_size(group.back()) + 1;
   std::vector<int> column_start{0}, row, met(groups, -1), first{0};
   for (int j = 0; j < p.n; ++j) {
-    const auto k = static_cast<std::size_t>(j);
+    const auto k = as_size(j);
     const int g = group[k];
     for (int at = p.column_start[k]; at < p.column_start[k + 1]; ++at) {
-      const int other = group[static_cast<std::size_t>(p.row[static_cast<std::size_t>(at)])];
-      if (std::exchange(met[static_cast<std::size_t>(other)], g) != g) row.push_back(other);
+      const int other = nth(group, nth(p.row, at));
+      if (std::exchange(nth(met, other), g) != g) row.push_back(other);
     }
     if (j + 1 == p.n || group[k + 1] != g) {
       column_start.push_back(static_cast<int>(row.size()));
@@ -112,8 +113,7 @@ std::vector<int> dissected(const SparsePattern& p, cholmod_common& common) {
   std::vector<int> of_groups(groups), order;
   if (!cholmod_metis(&graph, nullptr, 0, true, of_groups.data(), &common)) throw std::bad_alloc();
   for (const int g : of_groups)
-    for (int j = first[static_cast<std::size_t>(g)]; j < first[static_cast<std::size_t>(g) + 1]; ++j)
-      order.push_back(j);
+    for (int j = nth(first, g); j < first[as_size(g) + 1]; ++j) order.push_back(j);
   return order;
 }
 
@@ -121,7 +121,7 @@ std::vector<int> dissected(const SparsePattern& p, cholmod_common& common) {
 
 SparseCholesky::SparseCholesky(const SparsePattern& p) : impl_(std::make_unique<Impl>()) {
   if (p.n == 0) return;  // nothing is free to move; CHOLMOD has no empty factor
-  const auto n = static_cast<std::size_t>(p.n);
+  const auto n = as_size(p.n);
   impl_->A = cholmod_allocate_sparse(n, n, p.row.size(), true, true, -1, CHOLMOD_REAL, &impl_->common);
   if (!impl_->A) throw std::bad_alloc();
   std::copy(p.column_start.begin(), p.column_start.end(), impl_->columns());
@@ -148,13 +148,13 @@ double SparseCholesky::factor(const std::vector<double>& values) {
   const auto n = static_cast<int>(s.A->nrow);
   s.scale.resize(n);
   for (int j = 0; j < n; ++j) {
-    const double diagonal = values[static_cast<std::size_t>(s.columns()[j])];
+    const double diagonal = nth(values, s.columns()[j]);
     if (!(diagonal > 0)) return 0;
     s.scale(j) = 1 / std::sqrt(diagonal);
   }
   for (int j = 0; j < n; ++j)
     for (int k = s.columns()[j]; k < s.columns()[j + 1]; ++k)
-      s.values()[k] = values[static_cast<std::size_t>(k)] * s.scale(j) * s.scale(s.rows()[k]);
+      s.values()[k] = nth(values, k) * s.scale(j) * s.scale(s.rows()[k]);
   const BlasThreads threads(s.A->nrow);
   cholmod_factorize(s.A, s.L, &s.common);
   if (s.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -165,7 +165,7 @@ double SparseCholesky::factor(const std::vector<double>& values) {
 
 /// S K S X = B.
 MatrixX SparseCholesky::Impl::solve_scaled(MatrixX B) {
-  const auto rows = static_cast<std::size_t>(B.rows()), columns = static_cast<std::size_t>(B.cols());
+  const auto rows = as_size(B.rows()), columns = as_size(B.cols());
   const BlasThreads threads(A->nrow);
   cholmod_dense b{rows, columns, rows * columns, rows, B.data(), nullptr, CHOLMOD_REAL, CHOLMOD_DOUBLE};
   cholmod_dense* x = cholmod_solve(CHOLMOD_A, L, &b, &common);
@@ -178,7 +178,7 @@ MatrixX SparseCholesky::Impl::solve_scaled(MatrixX B) {
 SparseCholesky::Softest SparseCholesky::softest() const {
   Impl& s = *impl_;
   if (!s.A) return {1, {}};
-  const auto n = static_cast<Eigen::Index>(s.A->nrow);
+  const auto n = as_index(s.A->nrow);
   MatrixX X(n, 2);
   for (Eigen::Index i = 0; i < n; ++i)
     X.row(i) << std::sin(12.9898 * static_cast<double>(i + 1)), std::cos(78.233 * static_cast<double>(i + 1));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "msa/base/index.h"
 #include "msa/frame/structure/assembly.h"
 #include "msa/frame/structure/elimination.h"
 #include "msa/frame/structure/motions.h"
@@ -30,12 +31,12 @@ std::vector<int> bodies(const Model& m) {
   std::vector<int> parent(m.nodes.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&parent](int i) {
-    while (parent[static_cast<std::size_t>(i)] != i) i = parent[static_cast<std::size_t>(i)];
+    while (nth(parent, i) != i) i = nth(parent, i);
     return i;
   };
   const auto join = [&](int a, int b) {
     const int low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
-    parent[static_cast<std::size_t>(high)] = low;
+    nth(parent, high) = low;
   };
   for (const Beam& beam : m.beams) join(beam.a, beam.b);
   for (const auto& [a, b] : m.welds) join(a, b);
@@ -52,7 +53,7 @@ std::string body_name(const Model& m, const std::vector<int>& nodes) {
   for (const Beam& beam : m.beams)
     if (inside(beam.a)) add(base_name(beam.name));
   if (names.empty())
-    for (const int node : nodes) add(fmt::format("node '{}'", m.nodes[static_cast<std::size_t>(node)].name));
+    for (const int node : nodes) add(fmt::format("node '{}'", nth(m.nodes, node).name));
   return listed(names, 3);
 }
 
@@ -68,14 +69,13 @@ FreeMotion motion_of(const Model& m, const VectorX& u, const std::vector<int>& b
     for (std::size_t i = first; i < m.nodes.size(); ++i) {
       if (body_of[i] != static_cast<int>(first)) continue;
       body.nodes.push_back(static_cast<int>(i));
-      const auto at = static_cast<Eigen::Index>(6 * i);
+      const auto at = as_index(6 * i);
       const double size = std::max(u.segment<3>(at).norm(), length * u.segment<3>(at + 3).norm());
-      if (size > largest) largest = size, mover = static_cast<Eigen::Index>(i);
+      if (size > largest) largest = size, mover = as_index(i);
     }
     if (largest < at_rest) continue;
     body.name = body_name(m, body.nodes);
-    body.screw = screw_of(m.nodes[static_cast<std::size_t>(mover)].position, u.segment<3>(6 * mover),
-                          u.segment<3>(6 * mover + 3));
+    body.screw = screw_of(nth(m.nodes, mover).position, u.segment<3>(6 * mover), u.segment<3>(6 * mover + 3));
     motion.bodies.push_back(std::move(body));
   }
   for (const Release& r : m.releases)
@@ -145,7 +145,7 @@ CannotStand::CannotStand(const std::string& head, const Model& m, std::vector<Fr
 
 VectorX normalised(const Model& m, VectorX u) {
   const double length = characteristic_length(m);
-  const auto nodal = static_cast<Eigen::Index>(6 * m.nodes.size());
+  const auto nodal = as_index(6 * m.nodes.size());
   double size = 0;
   for (Eigen::Index i = 0; i < u.size(); ++i)
     size = std::max(size, std::abs(u(i)) * (i < nodal && i % 6 >= 3 ? length : 1));
@@ -174,8 +174,7 @@ std::string describe(const Model& m, const FreeMotion& motion) {
   if (!motion.joints.empty())
     text += fmt::format(". To hold it, lock or spring one of: {}", listed(motion.joints, 6));
   else if (!motion.bodies.empty())
-    text += fmt::format(". To hold it, support node '{}'",
-                        m.nodes[static_cast<std::size_t>(motion.bodies[0].nodes.front())].name);
+    text += fmt::format(". To hold it, support node '{}'", nth(m.nodes, motion.bodies[0].nodes.front()).name);
   return text;
 }
 
@@ -200,7 +199,7 @@ std::vector<std::string> idle_notes(const Model& m, const std::vector<IdleMotion
     return notes;
   }
   std::array<std::size_t, 3> count{};
-  for (const IdleMotion& motion : idle) ++count[static_cast<std::size_t>(moved_by(m, motion))];
+  for (const IdleMotion& motion : idle) ++nth(count, moved_by(m, motion));
   constexpr std::array<const char*, 3> what = {"rotations of hinged nodes", "spins of members about their own axes",
                                                "motions of inner bodies"};
   for (std::size_t i = 0; i < count.size(); ++i)

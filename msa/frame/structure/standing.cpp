@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "msa/base/index.h"
 #include "msa/frame/structure/elimination.h"
 #include "msa/frame/structure/pieces.h"
 
@@ -24,13 +25,13 @@ std::string not_proved_standing(const Model& m) {
     int only = -1;
     Vector6 row = Vector6::Zero();
     for (const Term& t : c.form) {
-      const auto node = static_cast<std::size_t>(t.dof / 6);
+      const auto node = as_size(t.dof / 6);
       if (t.dof >= nodal || (only >= 0 && body[node] != only)) {
         only = -1;
         break;
       }
       only = body[node];
-      const Vector3 arm = (m.nodes[node].position - m.nodes[static_cast<std::size_t>(only)].position) / length;
+      const Vector3 arm = (m.nodes[node].position - nth(m.nodes, only).position) / length;
       const Vector3 axis = Vector3::Unit(t.dof % 3);
       if (t.dof % 6 < 3) {  // u = v + w × r, rotations times the structure's size
         row.head<3>() += t.coefficient * axis;
@@ -39,7 +40,7 @@ std::string not_proved_standing(const Model& m) {
         row.tail<3>() += t.coefficient / length * axis;
       }
     }
-    if (only >= 0 && !row.isZero(0)) hold[static_cast<std::size_t>(only)] += row * row.transpose() / row.squaredNorm();
+    if (only >= 0 && !row.isZero(0)) nth(hold, only) += row * row.transpose() / row.squaredNorm();
   }
   for (std::size_t i = 0; i < m.nodes.size(); ++i) {
     if (body[i] != static_cast<int>(i)) continue;

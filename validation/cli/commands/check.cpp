@@ -6,8 +6,8 @@
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/report/check_results.h"
-#include "validation/theories/at_pose.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
+#include "validation/theories/theory.h"
 
 namespace deflect::cli {
 namespace {
@@ -33,7 +33,7 @@ PrintedMatrix stiffness_of(const CheckArguments& a, double unit_m) {
   const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
-  Matrix6 K = AnalyticAtPose(at.configuration, m.name).solve(wrench_from_mm(load)).stiffness;
+  Matrix6 K = theory("analytic").at(at.configuration, {m.name})->answer(wrench_from_mm(load)).stiffness;
   if (load.isZero(0) && stiffness_in_mm(K).isZero(1e-9))
     throw InputError("--device " + a.device + ": without load its contacts have no stiffness; give --load");
   K.topLeftCorner<3, 3>() *= unit_m;

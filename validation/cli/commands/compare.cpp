@@ -30,12 +30,10 @@ void run(const CompareArguments& a) {
   ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
-  o.threads = parse_threads(a.threads);
+  const int threads = parse_threads(a.threads);
   const Comparison c =
       timed_with_progress("compare: closed form at every reading, tolerances, patterns", [&](const auto& told) {
-        ComparisonOptions shown = o;
-        shown.progress = told;
-        return compare(m, data, shown);
+        return compare(m, data, o, {threads, nullptr, told});
       });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {

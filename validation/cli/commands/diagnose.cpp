@@ -31,19 +31,17 @@ void run(const DiagnoseArguments& a, Ranks* ranks) {
   o.comparison.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   o.comparison.as_recorded = a.as_recorded;
   o.bootstrap_sets = whole("--bootstrap", a.bootstrap, 99, 1e9);
-  o.ranks = ranks;
-  o.threads = o.comparison.threads = parse_threads(a.threads, ranks);
+  const int threads = parse_threads(a.threads, ranks);
   const Diagnosis d = timed_with_progress("diagnose: fit and weigh every effect", [&](const auto& told) {
-    DiagnosisOptions shown = o;
-    shown.progress = told;
-    return diagnose(m, data, effects, shown);
+    return diagnose(m, data, effects, o, {threads, ranks, told});
   });
   if (ranks && !ranks->first()) return;
   for (const PlacedEffect& found : d.missing) tell("found: {}", name_of(found));
   if (!a.json.empty()) write_file(a.json, diagnosis_json(d));
   fmt::print("{}", diagnosis_report(d, m.name, data.origin));
   if (!a.report.empty())
-    write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, {{"diagnose", diagnosis_json(d)}});
+    write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, threads,
+                              {{"diagnose", diagnosis_json(d)}});
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ void run(const EffectsArguments& a) {
   }
   std::optional<Mechanism> device;
   if (!a.device.empty()) device = read_device(a.device);
-  if (!a.json.empty()) write_file(a.json, effects_json(all, device ? &*device : nullptr));
+  if (!a.json.empty()) write_file(a.json, effects_json(all, device ? std::optional<Subject>(*device) : std::nullopt));
   if (!a.name.empty())
     fmt::print("{}", effect_page(all.front()));
   else if (!device)

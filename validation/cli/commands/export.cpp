@@ -9,12 +9,13 @@
 #include "meshes/vtu.h"
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "msa/base/units.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/talk.h"
-#include "validation/theories/at_pose.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
+#include "validation/theories/msa_theory.h"
 
 namespace deflect::cli {
 namespace {
@@ -68,11 +69,11 @@ void group_by_leg(const frame::MechanismModel& m, LineMesh& mesh, FieldData& fie
   CellField leg{"leg", {}}, part{"part", {}};
   for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
     LineCell& cell = mesh.cells[i];
-    const auto node_leg = [&](int node) { return leg_of(m.model.nodes[static_cast<std::size_t>(node)].name); };
+    const auto node_leg = [&](int node) { return leg_of(nth(m.model.nodes, node).name); };
     const int number = i < beams ? leg_of(m.model.beams[i].name) : std::max(node_leg(cell.a), node_leg(cell.b));
     leg.values.push_back(number);
     part.values.push_back(i < beams ? cell.group + 1 : 0);
-    const std::string& name = parts[static_cast<std::size_t>(cell.group)];
+    const std::string& name = nth(parts, cell.group);
     const std::string group = number ? fmt::format("leg {} {}", number, name) : name;
     const auto found = std::find(mesh.groups.begin(), mesh.groups.end(), group);
     cell.group = static_cast<int>(found - mesh.groups.begin());
@@ -85,7 +86,7 @@ void group_by_leg(const frame::MechanismModel& m, LineMesh& mesh, FieldData& fie
 /// What acts on the structure from outside: the load at the tool point, the world's reaction at the ground.
 void add_loads(const frame::MechanismModel& m, const Vector6& load_N_Nmm, FieldData& fields) {
   const std::vector<Vector3> zero(m.model.nodes.size(), Vector3::Zero());
-  const auto tool = static_cast<std::size_t>(m.tool), ground = static_cast<std::size_t>(m.ground);
+  const auto tool = as_size(m.tool), ground = as_size(m.ground);
   const Vector3 force = load_N_Nmm.head<3>(), moment = load_N_Nmm.tail<3>();
   const Vector3 arm_mm = 1e3 * (m.model.nodes[tool].position - m.model.nodes[ground].position);
   const auto field = [&](const char* name, std::size_t node, const Vector3& value) {
@@ -130,9 +131,9 @@ void run(const ExportArguments& a) {
   deflected_path.replace_filename(path.stem().string() + "-deflected" + format.suffix);
   const Stand at = parse_stand(m, a.pose, a.joints, true);
   const Vector6 load = parse_load(a.load);
-  MsaAtPose msa(at.configuration, divide(m, a.element_size), m.name);
+  MsaAt msa(at.configuration, {m.name, divide(m, a.element_size)});
   const Vector6 d =
-      timed("MSA: sparse Cholesky", [&] { return twist_in_mm(msa.solve(wrench_from_mm(load)).displacement); });
+      timed("MSA: sparse Cholesky", [&] { return twist_in_mm(msa.answer(wrench_from_mm(load)).displacement); });
   LineMesh mesh = lines_of(msa.mechanism());
   FieldData fields = fields_of(msa.mechanism(), msa.displacements());
   group_by_leg(msa.mechanism(), mesh, fields);

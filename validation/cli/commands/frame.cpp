@@ -9,6 +9,7 @@
 #include "meshes/vtu.h"
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "msa/base/units.h"
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/frame_schema.h"
@@ -18,9 +19,9 @@
 #include "validation/cli/motions.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
-#include "validation/page/page_frame_scene.h"
 #include "validation/report/frame_results.h"
 #include "validation/report/schema_results.h"
+#include "validation/scene/frame_scene.h"
 
 namespace deflect::cli {
 namespace fs = std::filesystem;
@@ -35,9 +36,7 @@ frame::FrameDivision divide_members(const frame::FrameDescription& f, const std:
   if (element_size.empty()) return {};
   const double size = parse_length("--element-size", element_size);
   const frame::NameIndex nodes(f.nodes);
-  const auto position = [&](const std::string& node) {
-    return f.nodes[static_cast<std::size_t>(nodes.find(node))].second;
-  };
+  const auto position = [&](const std::string& node) { return nth(f.nodes, nodes.find(node)).second; };
   std::vector<double> lengths;
   for (const auto& [name, member] : f.members) lengths.push_back((position(member.to) - position(member.from)).norm());
   return gmsh::subdivide(lengths, size);

@@ -9,7 +9,9 @@
 #include "validation/cli/figures.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
-#include "validation/figures/history_results.h"
+#include "validation/compare/history.h"
+#include "validation/figures/history_figure.h"
+#include "validation/report/compare_results.h"
 
 namespace deflect::cli {
 namespace {
@@ -44,7 +46,7 @@ void run(const HistoryArguments& a) {
   ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
-  o.threads = parse_threads(a.threads);
+  const int threads = parse_threads(a.threads);
   std::vector<Mechanism> devices;
   for (const std::string& name : a.devices) devices.push_back(read_device(name));
   const std::vector<Comparison> all = timed_with_progress("compare with each", [&](const auto& told) {
@@ -52,9 +54,8 @@ void run(const HistoryArguments& a) {
     const auto versions = static_cast<double>(devices.size());
     for (const Mechanism& m : devices) {
       const auto before = static_cast<double>(out.size());
-      ComparisonOptions shown = o;
-      shown.progress = part_of(told, before / versions, (before + 1) / versions);
-      out.push_back(timed("compare with " + m.name, [&] { return compare(m, data, shown); }));
+      const Work work = Work{threads, nullptr, told}.part(before / versions, (before + 1) / versions);
+      out.push_back(timed("compare with " + m.name, [&] { return compare(m, data, o, work); }));
     }
     return out;
   });

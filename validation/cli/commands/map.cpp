@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/base/units.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
@@ -15,13 +17,13 @@
 #include "validation/figures/stiffness_length.h"
 #include "validation/parallel/progress.h"
 #include "validation/report/map_results.h"
-#include "validation/theories/map.h"
+#include "validation/studies/map.h"
 
 namespace deflect::cli {
 namespace {
 
 struct MapArguments {
-  std::string device, ranges[3], n, tilt, load, theory = "both", length, json, out, report;
+  std::string device, ranges[3], n, tilt, load, theory, theories, length, json, out, report;
   double force_N = 50, threads = 0;
   FigureArguments figures;
 };
@@ -46,7 +48,7 @@ void set_grid(const Mechanism& m, const MapArguments& a, MapOptions& o) {
       throw InputError(fmt::format("{} {}: the range is reversed; write the smaller value first", names[axis], range));
     grid.low_mm(axis) = ends.front();
     grid.high_mm(axis) = ends.back();
-    const auto i = static_cast<std::size_t>(axis);
+    const auto i = as_size(axis);
     grid.counts[i] = ends.front() == ends.back() ? 1 : counts[i];
   }
   if (a.ranges[0].empty() && a.ranges[1].empty() && a.ranges[2].empty()) o.region = region_of(m);
@@ -56,12 +58,23 @@ void set_grid(const Mechanism& m, const MapArguments& a, MapOptions& o) {
   }
 }
 
+/// The earlier form: one theory, or both.
+Theories parse_theory(const std::string& name) {
+  if (name == "both") return all_theories();
+  std::vector<std::string> names;
+  for (const Theory* theory : all_theories()) {
+    if (theory->name == name) return {theory};
+    names.push_back(theory->name);
+  }
+  throw InputError(fmt::format("--theory '{}': write {} or both", name, fmt::join(names, ", ")));
+}
+
 double length_mm(const Mechanism& m, const std::string& text) {
   if (text.empty()) return weighing_length_mm(m);
   return 1e3 * parse_length("--length", text);
 }
 
-MapOptions options_of(const Mechanism& m, const MapArguments& a, Ranks* ranks) {
+MapOptions options_of(const Mechanism& m, const MapArguments& a) {
   MapOptions o;
   set_grid(m, a, o);
   o.force_N = a.force_N;
@@ -72,13 +85,9 @@ MapOptions options_of(const Mechanism& m, const MapArguments& a, Ranks* ranks) {
     if (o.load_N_Nmm->isZero(0))
       throw InputError(fmt::format("--load {}: without load a contact has no stiffness; give a load", a.load));
   }
-  if (a.theory != "both" && a.theory != "analytic" && a.theory != "msa")
-    throw InputError(fmt::format("--theory '{}': write analytic, msa or both", a.theory));
-  o.analytic = a.theory != "msa";
-  o.msa = a.theory != "analytic";
+  if (!a.theory.empty() && !a.theories.empty()) throw InputError("give --theories or --theory, not both");
+  o.theories = a.theory.empty() ? parse_theories(a.theories) : parse_theory(a.theory);
   o.length_mm = length_mm(m, a.length);
-  o.ranks = ranks;
-  o.threads = parse_threads(a.threads, ranks);
   return o;
 }
 
@@ -94,13 +103,17 @@ void run(const MapArguments& a, Ranks* ranks) {
   require_pages(a.report);
   const FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
-  MapOptions o = options_of(m, a, ranks);
+  const MapOptions o = options_of(m, a);
+  const int threads = parse_threads(a.threads, ranks);
   StiffnessMap map;
   {
-    const Step step(fmt::format("map: {} poses, theory {}", o.grid.size(), a.theory));
-    Progress progress(o.grid.size(), "poses", progress_stream());
-    o.progress = [&progress](std::size_t done) { progress.update(done); };
-    map = map_stiffness(m, o);
+    const std::size_t poses = o.grid.size();
+    const Step step(fmt::format("map: {} poses, {}", poses, titles_of(o.theories)));
+    Progress progress(poses, "poses", progress_stream());
+    const auto told = [&](double share) {
+      progress.update(static_cast<std::size_t>(std::lround(share * static_cast<double>(poses))));
+    };
+    map = map_stiffness(m, o, {threads, ranks, told});
   }
   if (ranks && !ranks->first()) return;
   require_reached(map);
@@ -151,7 +164,8 @@ Command map_command() {
             &a->tilt},
            {"--force", "N", "force along x, y, z in turn, in N (default 50)", &a->force_N},
            {"--load", "fx,fy,fz,mx,my,mz", "one wrench in N and Nmm instead of --force", &a->load},
-           {"--theory", "analytic|msa|both", "theory to use (default both)", &a->theory},
+           theories_option(&a->theories),
+           {"--theory", "NAME", "one theory, or both: the earlier form of --theories", &a->theory},
            {"--length", "LENGTH",
             "characteristic length, with unit, that turns rotations into displacements in the isotropy (default: the "
             "platform's radius, or the machine's extent)",

@@ -13,8 +13,7 @@
 #include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
-#include "validation/theories/theories.h"
-#include "validation/theories/workspace.h"
+#include "validation/studies/workspace.h"
 
 namespace deflect::cli {
 namespace {

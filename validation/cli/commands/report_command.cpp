@@ -5,7 +5,7 @@
 #include "validation/cli/commands/effects.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/report.h"
-#include "validation/report/result_file.h"
+#include "validation/result_files/result_file.h"
 
 namespace deflect::cli {
 namespace {
@@ -32,9 +32,8 @@ void run(const ReportArguments& a) {
   ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
-  o.threads = parse_threads(a.threads);
   write_report_of_diagnosis(a.output, a.device, read_device(a.device), read_data(a.data), known_effects(a.effects), o,
-                            std::move(results));
+                            parse_threads(a.threads), std::move(results));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/base/number_words.h"
 #include "msa/base/units.h"
 #include "msa/fields/yaml_tree.h"
@@ -52,7 +53,7 @@ EffectInstance parse_with(const std::string& text, const std::vector<Effect>& al
     if (found == names.end())
       throw InputError(
           fmt::format("--with '{}': {} has no parameter '{}'{}", text, effect.name, name, suggestion(name, names)));
-    const auto at = static_cast<std::size_t>(found - names.begin());
+    const auto at = as_size(found - names.begin());
     if (given[at]) throw InputError(fmt::format("--with '{}': '{}' is set twice", text, name));
     given[at] = true;
     double value = 0;
@@ -66,16 +67,9 @@ EffectInstance parse_with(const std::string& text, const std::vector<Effect>& al
       continue;
     }
     require_in_bounds(fmt::format("--with '{}': {}={:g}", text, name, value), effect, effect.parameters[at - 1], value);
-    out.values(static_cast<Eigen::Index>(at - 1)) = value;
+    out.values(as_index(at - 1)) = value;
   }
   return out;
-}
-
-Geometry geometry_of_data(const std::string& text) {
-  const auto found = std::find(std::begin(geometry_names), std::end(geometry_names), text);
-  if (found == std::end(geometry_names))
-    throw InputError(fmt::format("--geometry '{}': write {}", text, fmt::join(geometry_names, ", ")));
-  return static_cast<Geometry>(found - std::begin(geometry_names));
 }
 
 SimulationOptions options_of(const SimulateArguments& a) {
@@ -104,8 +98,7 @@ SimulationOptions options_of(const SimulateArguments& a) {
     if (const double coldest = o.temperature - std::abs(o.swing); coldest < -273.15 || !std::isfinite(coldest))
       throw InputError(fmt::format("--temperature {}: colder than -273.15 deg C", a.temperature));
   }
-  o.geometry = geometry_of_data(a.geometry);
-  o.threads = parse_threads(a.threads);
+  o.geometry = parse_geometry(a.geometry);
   return o;
 }
 
@@ -144,11 +137,11 @@ void run(const SimulateArguments& a) {
   }
   o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));
   tell("campaign {}: {} readings; {} elements per member, geometry {}", a.campaign, plan.readings.size(), a.elements,
-       geometry_names[static_cast<std::size_t>(o.geometry)]);
+       nth(geometry_names, o.geometry));
+  const int threads = parse_threads(a.threads);
   const Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
-    o.progress = told;
     try {
-      return simulate(m, plan, o);
+      return simulate(m, plan, o, {threads, nullptr, told});
     } catch (const NumericalError& e) {
       throw NumericalError(fmt::format("{}{}", e.what(), way_out(m, plan, o, a)));
     }

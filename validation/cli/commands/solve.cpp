@@ -9,25 +9,18 @@
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/report/solve_results.h"
-#include "validation/theories/solve_result.h"
-#include "validation/theories/theories.h"
+#include "validation/studies/solve.h"
 
 namespace deflect::cli {
 namespace {
 
 struct SolveArguments {
-  std::string device, pose, joints, load, json, out, report, element_size, geometry = "linear";
+  std::string device, pose, joints, load, json, out, report, element_size, theories, geometry = "linear";
 };
 
 void write_structure(const std::filesystem::path& folder, const SolveResult& r) {
   gmsh::write_msh(folder / "deflected.msh", r.mesh, r.fields);
   write_vtu(folder / "deflected.vtu", r.mesh, r.fields);
-}
-
-Geometry parse_geometry(const std::string& text) {
-  for (std::size_t i = 0; i < std::size(geometry_names); ++i)
-    if (text == geometry_names[i]) return static_cast<Geometry>(i);
-  throw InputError(fmt::format("--geometry: '{}' is none of {}", text, fmt::join(geometry_names, ", ")));
 }
 
 /// As asked for; else one element a member, which is exact at its ends, or as many as a drawing wants.
@@ -40,14 +33,15 @@ void run(const SolveArguments& a) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
+  const Theories theories = parse_theories(a.theories);
   const Geometry geometry = parse_geometry(a.geometry);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
-  const SolveResult r = timed(fmt::format("both theories, geometry {}: closed form; MSA, sparse Cholesky", a.geometry),
-                              [&] { return solve(m, at, load, division(m, at, a), geometry); });
+  const SolveResult r = timed(fmt::format("{}, geometry {}", titles_of(theories), a.geometry),
+                              [&] { return solve(m, at, load, division(m, at, a), geometry, theories); });
   if (!a.out.empty()) write_structure(a.out, r);
   if (!a.json.empty()) write_file(a.json, solve_json(r));
   fmt::print("{}\n{}", m.name, solve_report(r));
-  if (load.isZero(0) && r.msa.stiffness_mm.isZero(1e-9))
+  if (load.isZero(0) && r.reference().stiffness_mm.isZero(1e-9))
     fmt::print("Without load the contacts have no stiffness; give --load to get the stiffness under that load.\n");
   if (!a.out.empty()) fmt::print("Deflected structure: {0}/deflected.msh, {0}/deflected.vtu\n", a.out);
   if (!a.report.empty())
@@ -69,6 +63,7 @@ Command solve_command() {
            {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
             &a->joints},
            {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
+           theories_option(&a->theories),
            {"--geometry", "linear|second-order|finite",
             "shape in which forces balance: undeformed (linear, default) or deformed (second-order; finite: rotations "
             "of any size). In the deformed shape K is the tangent, and loads past buckling are refused",

@@ -14,15 +14,16 @@
 #include "validation/figures/fig10.h"
 #include "validation/report/errata_table.h"
 #include "validation/report/validation_results.h"
-#include "validation/theories/points_file.h"
-#include "validation/theories/theories.h"
-#include "validation/theories/workspace.h"
+#include "validation/studies/errata_prices.h"
+#include "validation/studies/points_file.h"
+#include "validation/studies/validate.h"
+#include "validation/studies/workspace.h"
 
 namespace deflect::cli {
 namespace {
 
 struct ValidateArguments {
-  std::string device, points, as_printed, json, out, report, element_size;
+  std::string device, points, as_printed, theories, json, out, report, element_size;
   double load_N = 50;
   bool errata = false, mesh_study = false;
   FigureArguments figures;
@@ -47,10 +48,12 @@ void run(const ValidateArguments& a) {
   const std::set<Erratum> as_printed = parse_errata(a.as_printed);
   if (!std::isfinite(a.load_N) || a.load_N == 0)
     throw InputError(fmt::format("--force {}: give a force in N other than zero", a.load_N));
+  const Theories theories = parse_theories(a.theories);
+  if (!as_printed.empty()) place_of(theories, "analytic");
   const std::vector<ValidationPoint> points = a.points.empty() ? workspace_points(m) : read_points(a.points);
-  const Validation v =
-      timed(fmt::format("both theories at {} points: closed form; MSA, sparse Cholesky", points.size()),
-            [&] { return validate(m, points, a.load_N, as_printed, divide(m, a.element_size)); });
+  const Validation v = timed(fmt::format("{} at {} points", titles_of(theories), points.size()), [&] {
+    return validate(m, points, a.load_N, as_printed, divide(m, a.element_size), theories);
+  });
   std::vector<ErratumPrice> prices;
   if (a.errata) prices = timed("price of the errata", [&] { return price_errata(m, points, a.load_N); });
   const std::filesystem::path folder = a.out;
@@ -84,7 +87,7 @@ Command validate_command() {
   for (const ErratumInfo& e : errata()) errata_help += fmt::format("\n{} {}: {}", e.name, e.equations, e.as_printed);
   return {
       "validate",
-      "Compare the closed form with the MSA at points of the device's workspace, under a force along x, y and z: "
+      "Compare the theories at points of the device's workspace, under a force along x, y and z: "
       "table of errors, Fig. 10. The points of a cube are its centre and corners; --points gives others",
       "deflect validate haptic-6psu --out figures --as-printed passive-joints,ujoint-parallel",
       with_figures(
@@ -92,6 +95,7 @@ Command validate_command() {
            {"--points", "FILE", "CSV of poses: x_mm,y_mm,z_mm and optionally pose,roll_deg,pitch_deg,yaw_deg",
             &a->points},
            {"--force", "N", "force along each axis in N (default 50)", &a->load_N},
+           theories_option(&a->theories),
            {"--as-printed", "ERRATA", errata_help, &a->as_printed},
            {"--errata", "", "show how much each erratum alone changes the result", &a->errata},
            {"--mesh-study", "", "show the difference of the theories as the mesh is refined", &a->mesh_study},

@@ -1,0 +1,124 @@
+// A machine and a frame as measured things: what comparison and diagnosis see of them is the same.
+#include "validation/subject/subject.h"
+
+#include <gtest/gtest.h>
+
+#include "msa/base/error.h"
+#include "msa/frame/file/frame_file.h"
+#include "tests/support/devices.h"
+#include "tests/support/measurements.h"
+#include "validation/compare/comparison.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/measurement/configure_all.h"
+
+namespace deflect {
+namespace {
+
+// A cantilever of 1 m, E = 210 GPa, a square of 20 mm: I = 20⁴/12 mm⁴.
+constexpr const char* cantilever = R"(
+name: cantilever
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
+nodes: {A: [0 m, 0 m, 0 m], M: [0.5 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
+members:
+  near: {from: A, to: M, section: bar, material: steel}
+  far: {from: M, to: B, section: bar, material: steel}
+supports: {A: clamped}
+loads: {tip: {nodes: {B: {fz: 1 N}}}}
+)";
+constexpr double EI = 210e9 * 0.02 * 0.02 * 0.02 * 0.02 / 12;
+
+Subject beam(const std::string& node) { return Subject(frame::parse_frame(cantilever, "beam.yaml"), node); }
+
+/// Loads along y and z at one place, with what the tip does, `softer` times as soft as drawn.
+Measurements readings(double softer, double noise_mm = 0) {
+  std::string rows;
+  for (int i = 0; i < 12; ++i) {
+    const double fy = 10 * (i % 4 - 1.5), fz = 8 * (i % 3 - 1), off = noise_mm * (i % 5 - 2);
+    const auto mm = [&](double f) { return 1e3 * softer * f / (3 * EI) + off; };
+    rows += fmt::format("here,0,0,0,0,0,0,0,{},{},0,{},{}\n", fy, fz, mm(fy), mm(fz));
+  }
+  return parse_measurements(test::usual_file(rows), "tip.csv");
+}
+
+TEST(FrameSubject, PredictsACantileversTip) {
+  const Measurements data = readings(1);
+  const std::shared_ptr<const Standing> standing = beam("B").stand(data);
+  const std::vector<Vector6> d = standing->predict(data, {});
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (const int axis : {1, 2})
+      EXPECT_NEAR(d[i](axis), data.readings[i].load(axis) / (3 * EI), 1e-12 * 10 / (3 * EI));
+  EXPECT_NEAR(standing->compliance(0)(2, 2), 1 / (3 * EI), 1e-12 / (3 * EI));
+  EXPECT_EQ(standing->tool(0).p_W, Vector3(1, 0, 0));
+  EXPECT_EQ(standing->size(), 1);
+  EXPECT_TRUE(standing->sites(0).empty());
+}
+
+TEST(FrameSubject, IsWeakerInTheMiddle) {
+  const Measurements data = readings(1);
+  EXPECT_NEAR(beam("M").stand(data)->compliance(0)(2, 2), 0.125 / (3 * EI), 1e-12 / (3 * EI));
+  EXPECT_THROW(beam("C"), InputError);
+}
+
+TEST(FrameSubject, IsEditedLikeAMachine) {
+  const Measurements data = readings(1);
+  const Subject half = beam("B").edited({{"materials.steel.E", "0.5", Edit::Action::multiply}});
+  EXPECT_NEAR(half.stand(data)->compliance(0)(1, 1), 2 / (3 * EI), 1e-12 / (3 * EI));
+  try {
+    beam("B").edited({{"materials.steal.E", "0.5", Edit::Action::multiply}});
+    FAIL() << "a material that is not there was edited";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("steel"), std::string::npos) << e.what();
+  }
+}
+
+TEST(FrameSubject, IsComparedLikeAMachine) {
+  const Subject drawn = beam("B");
+  const Measurements right = readings(1, 1e-4), soft = readings(1.2, 1e-4);
+  EXPECT_LT(compare(drawn, right).all.rmse, 2e-7);
+  const Comparison c = compare(drawn, soft);
+  EXPECT_EQ(c.device, "cantilever");
+  EXPECT_GT(c.all.rmse, 1e-5);
+  const Diagnosis d = diagnose(drawn, soft, {});
+  EXPECT_EQ(d.verdict, Verdict::unknown_effect);  // no effect is known for frames yet
+}
+
+TEST(MachineSubject, PredictsWhatTheMachineDoes) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const Measurements data = parse_measurements(test::usual_file("a,0,0,174,0,0,0,50,0,0,1,1,1\n"
+                                                                "b,10,0,180,0,0,0,0,20,-30,1,1,1\n"),
+                                               "data.csv");
+  const Subject subject = m;
+  const std::shared_ptr<const Standing> standing = subject.stand(data);
+  EXPECT_EQ(standing->predict(data, {}), predict(m, configure_all(m, data), data, {}));
+  EXPECT_EQ(standing->poses(), 2u);
+  EXPECT_EQ(standing->sites(0).size(), 6u);
+  EXPECT_EQ(subject.legs(), 6);
+  const Subject soft = subject.edited({{"materials.*.E", "0.5", Edit::Action::multiply}});
+  EXPECT_GT(soft.stand(data)->predict(data, {})[0](0), standing->predict(data, {})[0](0));
+}
+
+// A tolerance is a difference of predictions: twice the modulus' deviation in the Young's modulus of all members is
+// what the prediction changes by, to first order.
+TEST(MachineSubject, IsOffByItsTolerances) {
+  Mechanism m = test::device("haptic-6psu-ideal-joints");
+  m.tolerances = {};
+  m.tolerances.modulus = 1e-4;
+  m.tolerances.actuator_repeatability = 1e-5;
+  const Measurements data = parse_measurements(test::usual_file("a,0,0,174,0,0,0,50,0,0,1,1,1\n"
+                                                                "b,10,0,180,0,0,0,0,20,-30,1,1,1\n"),
+                                               "data.csv");
+  const std::shared_ptr<const Standing> standing = Subject(m).stand(data);
+  const std::unique_ptr<const Deviations> off = standing->deviations(data);
+  ASSERT_EQ(off->tolerances().size(), 13u);
+  EXPECT_EQ(off->tolerances()[0].name, "modulus");
+  EXPECT_FALSE(off->tolerances()[0].pose);
+  EXPECT_EQ(off->tolerances()[7].pose, 1u);
+  EXPECT_EQ(off->with(7)->poses(), 1u);
+  const Subject stiffer = Subject(m).edited({{"materials.*.E", "1.0001", Edit::Action::multiply}});
+  const std::vector<Vector6> expected = stiffer.stand(data)->predict(data, {}), d = off->with(0)->predict(data, {});
+  for (std::size_t i = 0; i < d.size(); ++i) EXPECT_LE((d[i] - expected[i]).norm(), 1e-12 * d[i].norm());
+}
+
+}  // namespace
+}  // namespace deflect

@@ -1,0 +1,137 @@
+#include "validation/scene/frame_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "msa/base/index.h"
+#include "msa/frame/file/member_axes.h"
+#include "validation/figures/drawing.h"
+#include "validation/report/text.h"
+#include "validation/scene/scene_numbers.h"
+
+namespace deflect {
+namespace {
+
+using frame::CaseResult;
+using frame::FrameDescription;
+using frame::FrameResult;
+
+constexpr std::size_t few_members = 250;
+constexpr int drawn_elements = 8;
+
+/// The same frame in more elements: exact at every node where it is linear.
+std::optional<FrameResult> in_more_elements(const FrameDescription& f, const FrameResult& r) {
+  if (r.geometry != Geometry::linear || f.members.size() > few_members) return {};
+  frame::FrameOptions options;
+  for (const auto& [name, member] : f.members) {
+    const int n = std::max(drawn_elements, member.elements);
+    std::vector<double> at;
+    for (int i = 0; i <= n; ++i) at.push_back(static_cast<double>(i) / n);
+    options.division.push_back(std::move(at));
+  }
+  return frame::analyse(f, options);
+}
+
+Vector3 place_of(const FrameDescription& f, const FrameResult& r, const std::string& node) {
+  return nth(f.nodes, r.structure.nodes.find(node)).second;
+}
+
+void put_members(Json& scene, Json& pose, const FrameDescription& f, const FrameResult& r) {
+  for (std::size_t i = 0; i < f.members.size(); ++i) {
+    const auto& [name, member] = f.members[i];
+    const Section* section = find(f.sections, member.section);
+    Json body = {{"leg", ""}, {"part", name}, {"kind", "member"}, {"guilty", false}};
+    if (section) put_outline(body, outline_of(*section), properties(*section, 0.3));
+    scene["bodies"].push_back(std::move(body));
+    const Vector3 along = place_of(f, r, member.to) - place_of(f, r, member.from);
+    const Vector3 y = frame::member_axes(along, member.y_axis).col(1);
+    pose["axes"].push_back({scene_digits(y.x()), scene_digits(y.y()), scene_digits(y.z())});
+    for (int e = r.structure.first_element[i]; e < r.structure.first_element[i + 1]; ++e) {
+      const frame::Beam& beam = nth(r.structure.model.beams, e);
+      scene["cells"].push_back({beam.a, beam.b, i});
+    }
+  }
+  if (r.structure.arms.empty()) return;
+  for (const auto& [a, b] : r.structure.arms) scene["cells"].push_back({a, b, f.members.size()});
+  scene["bodies"].push_back({{"leg", ""}, {"part", "rigid"}, {"kind", "offset"}, {"guilty", false}});
+  pose["axes"].push_back(nullptr);
+}
+
+Json supports_of(const FrameDescription& f, const FrameResult& r) {
+  Json out = Json::array();
+  for (const auto& [node, held] : f.supports) {
+    std::string words;
+    for (std::size_t i = 0; i < 6; ++i)
+      if (held[i]) words += std::string(words.empty() ? "" : " ") + frame::node_freedoms[i];
+    if (!words.empty())
+      out.push_back({{"at_mm", scene_position(place_of(f, r, node))},
+                     {"words", fmt::format("{}: {} held", node, words)},
+                     {"whole", std::count(held.begin(), held.end(), true) == 6}});
+  }
+  return out;
+}
+
+/// Along the member at the nodes of its elements; the value stands at one of them.
+void put_line_load(Json& arrows, const FrameDescription& f, const FrameResult& r, const std::string& name,
+                   const frame::LineLoad& load) {
+  const auto i = as_size(r.structure.members.find(name));
+  const frame::FrameMember& member = f.members[i].second;
+  const Vector3 along = place_of(f, r, member.to) - place_of(f, r, member.from);
+  const Vector3 q = load.member_axes ? Vector3(frame::member_axes(along, member.y_axis) * load.q) : load.q;
+  if (q.norm() == 0) return;
+  const int first = r.structure.first_element[i], last = r.structure.first_element[i + 1];
+  for (int e = first; e < last; ++e) {
+    const frame::Beam& beam = nth(r.structure.model.beams, e);
+    const bool middle = e == first + (last - first) / 2;
+    arrows.push_back({{"point", beam.a},
+                      {"kind", "line"},
+                      {"vector", {scene_digits(q.x()), scene_digits(q.y()), scene_digits(q.z())}},
+                      {"words", middle ? fmt::format("{:.4g} N/mm", q.norm() / mm) : ""}});
+  }
+}
+
+/// What is no arrow: "gravity (0, 0, −9.81) m/s²; 3 members warmer or colder; 1 support moved".
+std::string other_loads(const frame::LoadCase& load) {
+  std::string out;
+  const auto add = [&](const std::string& words) { out += (out.empty() ? "" : "; ") + words; };
+  const Vector3& g = load.gravity;
+  if (g.norm() > 0) add(fmt::format("gravity ({:g}, {:g}, {:g}) m/s²", g.x(), g.y(), g.z()));
+  if (!load.temperature.empty())
+    add(fmt::format("{} member{} warmer or colder", load.temperature.size(), load.temperature.size() == 1 ? "" : "s"));
+  if (!load.displacements.empty())
+    add(fmt::format("{} support{} moved", load.displacements.size(), load.displacements.size() == 1 ? "" : "s"));
+  return with_minus(out);
+}
+
+Json shape_of(const FrameDescription& f, const FrameResult& r, const CaseResult& c) {
+  Json shape = {{"name", c.name}, {"arrows", Json::array()}, {"displacement_mm", Json::array()}};
+  for (std::size_t i = 0; i < r.structure.model.nodes.size(); ++i)
+    shape["displacement_mm"].push_back(scene_displacement(c.u.segment<3>(as_index(6 * i))));
+  if (const frame::LoadCase* load = find(f.loads, c.name)) {
+    for (const auto& [node, wrench] : load->nodes)
+      put_load_arrows(shape["arrows"], r.structure.nodes.find(node), wrench);
+    for (const auto& [member, line] : load->members) put_line_load(shape["arrows"], f, r, member, line);
+    shape["other_loads"] = other_loads(*load);
+  }
+  return shape;
+}
+
+}  // namespace
+
+Json frame_scene_json(const FrameDescription& f, const FrameResult& result) {
+  if (f.members.size() > most_drawn_members) return nullptr;
+  const std::optional<FrameResult> finer = in_more_elements(f, result);
+  const FrameResult& r = finer ? *finer : result;
+  Json scene = {{"kind", "frame"}, {"tool", nullptr}, {"guilty", Json::array()}, {"ground", supports_of(f, r)}};
+  for (const char* list : {"bodies", "cells", "joints", "poses"}) scene[list] = Json::array();
+  Json pose = {{"label", ""}, {"pose_mm_deg", nullptr}, {"axes", Json::array()}, {"shapes", Json::array()}};
+  for (const frame::Node& node : r.structure.model.nodes) pose["points_mm"].push_back(scene_position(node.position));
+  put_members(scene, pose, f, r);
+  for (const CaseResult& c : r.cases) pose["shapes"].push_back(shape_of(f, r, c));
+  scene["poses"].push_back(std::move(pose));
+  return scene;
+}
+
+}  // namespace deflect

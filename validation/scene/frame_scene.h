@@ -1,0 +1,17 @@
+// A solved frame as data of the 3D view.
+#pragma once
+
+#include "msa/frame/file/frame_analysis.h"
+#include "validation/json/json_text.h"
+
+namespace deflect {
+
+/// A frame with more members than this is not drawn in 3D: a browser turns no more of them smoothly.
+inline constexpr std::size_t most_drawn_members = 3000;
+
+/// As scene_json (page_scene.h) with "kind": "frame": one pose, a shape with its "name" for each load case, nodes that
+/// supports hold as ground, and no tool. Of a linear frame with few members each is divided into eight elements, so
+/// that it is seen to bend; others are drawn as they were solved. Null above `most_drawn_members`.
+Json frame_scene_json(const frame::FrameDescription&, const frame::FrameResult&);
+
+}  // namespace deflect

@@ -1,0 +1,46 @@
+#include "validation/scene/scene_numbers.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "validation/report/text.h"
+
+namespace deflect {
+
+double scene_digits(double x) {
+  if (x == 0) return 0;
+  const double step = std::pow(10, std::floor(std::log10(std::abs(x))) - 6);
+  return std::round(x / step) * step;
+}
+
+Json scene_position(const Vector3& p) {
+  const auto rounded = [](double x) { return std::round(mm * x / 1e-4) * 1e-4; };
+  return {rounded(p.x()), rounded(p.y()), rounded(p.z())};
+}
+
+Json scene_displacement(const Vector3& u) {
+  return {scene_digits(mm * u.x()), scene_digits(mm * u.y()), scene_digits(mm * u.z())};
+}
+
+void put_outline(Json& body, const SectionOutline& o, const SectionProperties& p) {
+  const bool shaped = o.size_y > 0 && o.size_z > 0;
+  const double y = shaped ? o.size_y : 4 * std::sqrt(p.Iz / p.A), z = shaped ? o.size_z : 4 * std::sqrt(p.Iy / p.A);
+  body["size_mm"] = {scene_digits(mm * y), scene_digits(mm * z)};
+  body["round"] = !shaped || o.round;
+}
+
+void put_load_arrows(Json& arrows, int point, const Vector6& load) {
+  const auto put = [&](const char* kind, const Vector3& v, const std::string& words) {
+    if (v.norm() > 0)
+      arrows.push_back({{"point", point},
+                        {"kind", kind},
+                        {"vector", {scene_digits(v.x()), scene_digits(v.y()), scene_digits(v.z())}},
+                        {"words", words}});
+  };
+  const Vector3 force = load.head<3>(), moment = load.tail<3>();
+  put("force", force, fmt::format("{:.4g} N", force.norm()));
+  put("moment", moment, fmt::format("{:.4g} Nmm", mm * moment.norm()));
+}
+
+}  // namespace deflect

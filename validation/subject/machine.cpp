@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <functional>
+#include <utility>
+
+#include "analytic/model.h"
+#include "msa/base/index.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/measurement/configure_all.h"
+#include "validation/prediction/as_built.h"
+#include "validation/subject/machine_sites.h"
+#include "validation/subject/subject.h"
+
+namespace deflect {
+namespace {
+
+/// One tolerance, moved by a standard deviation: in every pose, or in one.
+struct Move {
+  Tolerance tolerance;
+  AsBuilt built = {};
+  std::size_t actuator = 0;  ///< of a pose
+};
+
+std::vector<Move> shared_moves(const Mechanism& m) {
+  const Tolerances& t = m.tolerances;
+  const auto legs = as_size(leg_count(m));
+  std::vector<Move> moves;
+  const auto add = [&](const std::string& name, double sigma, const std::function<void(AsBuilt&)>& change) {
+    if (!(sigma > 0)) return;
+    Move move{{name, sigma}};
+    move.built.legs.resize(legs);
+    change(move.built);
+    moves.push_back(std::move(move));
+  };
+  add("modulus", t.modulus, [&](AsBuilt& b) { b.modulus = t.modulus; });
+  const bool seats = std::holds_alternative<SixPsu>(m.kinematics) || !m.mounts.empty();
+  for (std::size_t i = 0; i < legs; ++i) {
+    const std::string leg = fmt::format("leg {} ", i + 1);
+    add(leg + "guide diameter", t.guide_diameter, [&](AsBuilt& b) { b.legs[i].guide_diameter = t.guide_diameter; });
+    if (!seats) continue;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      add(leg + "base joint " + "xyz"[axis], t.joint_position,
+          [&](AsBuilt& b) { b.legs[i].base_joint(axis) = t.joint_position; });
+      add(leg + "platform joint " + "xyz"[axis], t.joint_position,
+          [&](AsBuilt& b) { b.legs[i].platform_joint(axis) = t.joint_position; });
+    }
+    if (std::holds_alternative<SixPsu>(m.kinematics))
+      add(leg + "link length", t.link_length, [&](AsBuilt& b) { b.legs[i].link_length = t.link_length; });
+  }
+  return moves;
+}
+
+std::vector<Move> moves_of(const Mechanism& m, const std::vector<Configuration>& drawn, const Measurements& data) {
+  std::vector<Move> moves = shared_moves(m);
+  const double sigma = m.tolerances.actuator_repeatability;
+  if (!(sigma > 0)) return moves;
+  for (std::size_t p = 0; p < drawn.size(); ++p)
+    for (std::size_t q = 0; q < drawn[p].actuators.size(); ++q) {
+      if (drawn[p].actuators[q].rotation) continue;
+      moves.push_back({{fmt::format("pose {} {}", data.poses[p].label, drawn[p].actuators[q].name), sigma, p}, {}, q});
+    }
+  return moves;
+}
+
+std::shared_ptr<const Mechanism> without_drift(const Mechanism& m) {
+  Mechanism out = m;
+  out.geometry = Geometry::linear;
+  out.sensor.drift.setZero();
+  return std::make_shared<const Mechanism>(std::move(out));
+}
+
+class MachineStanding final : public Standing {
+ public:
+  MachineStanding(std::shared_ptr<const Mechanism> m, std::vector<Configuration> machines)
+      : mechanism_(std::move(m)), machines_(std::move(machines)) {}
+
+  std::size_t poses() const override { return machines_.size(); }
+  double size() const override { return machines_.front().size; }
+  BodyFrame tool(std::size_t pose) const override { return {machines_[pose].pose.p_WT, machines_[pose].pose.R_WT}; }
+  BodyFrame base(std::size_t pose) const override { return {machines_[pose].base.p_W, machines_[pose].base.R_WJ}; }
+  std::vector<Site> sites(std::size_t pose) const override { return sites_of(machines_[pose]); }
+
+  Matrix6 compliance(std::size_t pose) const override {
+    const analytic::AnalyticModel model(machines_[pose]);
+    Vector6 F = Vector6::Zero();
+    if (!model.linear()) F.head<3>().setConstant(1);
+    return model.compliance(model.solve(F));
+  }
+
+  std::vector<Vector6> predict(const Measurements& data, const PredictionOptions& o, const Work& work) const override {
+    return deflect::predict(*mechanism_, machines_, data, o, work);
+  }
+
+  std::unique_ptr<const Deviations> deviations(const Measurements&) const override;
+
+  const std::vector<Configuration>& machines() const { return machines_; }
+
+ private:
+  std::shared_ptr<const Mechanism> mechanism_;
+  std::vector<Configuration> machines_;  // by pose, as drawn
+};
+
+class MachineDeviations final : public Deviations {
+ public:
+  MachineDeviations(const Mechanism& m, const std::vector<Configuration>& machines, const Measurements& data)
+      : mechanism_(without_drift(m)),
+        same_geometry_(with_geometry(*mechanism_, {})),
+        drawn_(mechanism_, machines),
+        moves_(moves_of(m, machines, data)) {
+    for (const Move& move : moves_) tolerances_.push_back(move.tolerance);
+  }
+
+  const std::vector<Tolerance>& tolerances() const override { return tolerances_; }
+  const Standing& drawn() const override { return drawn_; }
+
+  std::unique_ptr<const Standing> with(std::size_t k) const override {
+    const Move& move = moves_[k];
+    std::vector<Configuration> moved;
+    if (const std::optional<std::size_t> pose = move.tolerance.pose) {
+      const Configuration& drawn = drawn_.machines()[*pose];
+      VectorX errors = VectorX::Zero(std::ssize(drawn.actuators));
+      errors(as_index(move.actuator)) = move.tolerance.sigma;
+      moved.push_back(configure_as_built(same_geometry_, {}, drawn, errors));
+    } else {
+      const Mechanism geometry = with_geometry(*mechanism_, move.built);
+      for (const Configuration& c : drawn_.machines()) moved.push_back(configure_as_built(geometry, move.built, c));
+    }
+    return std::make_unique<MachineStanding>(mechanism_, std::move(moved));
+  }
+
+ private:
+  std::shared_ptr<const Mechanism> mechanism_;
+  Mechanism same_geometry_;
+  MachineStanding drawn_;
+  std::vector<Move> moves_;
+  std::vector<Tolerance> tolerances_;
+};
+
+std::unique_ptr<const Deviations> MachineStanding::deviations(const Measurements& data) const {
+  return std::make_unique<MachineDeviations>(*mechanism_, machines_, data);
+}
+
+class MachineSubject final : public Subject::Kind {
+ public:
+  explicit MachineSubject(Mechanism m) : mechanism_(std::make_shared<const Mechanism>(std::move(m))) {}
+
+  const std::string& name() const override { return mechanism_->name; }
+  Geometry geometry() const override { return mechanism_->geometry; }
+  double load_tolerance() const override { return mechanism_->tolerances.load; }
+  int legs() const override { return leg_count(*mechanism_); }
+  const Mechanism* machine() const override { return mechanism_.get(); }
+
+  std::shared_ptr<const Standing> stand(const Measurements& data) const override {
+    return std::make_shared<MachineStanding>(mechanism_, configure_all(*mechanism_, data));
+  }
+  std::shared_ptr<const Kind> edited(const std::vector<Edit>& edits) const override {
+    return machine_subject(edited_in_turn(*mechanism_, edits));
+  }
+
+ private:
+  std::shared_ptr<const Mechanism> mechanism_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Subject::Kind> machine_subject(Mechanism m) {
+  return std::make_shared<MachineSubject>(std::move(m));
+}
+
+}  // namespace deflect

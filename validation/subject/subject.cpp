@@ -1,0 +1,19 @@
+#include "validation/subject/subject.h"
+
+#include <utility>
+
+namespace deflect {
+
+Subject::Subject(Mechanism m) : kind_(machine_subject(std::move(m))) {}
+Subject::Subject(frame::FrameDescription f, std::string node) : kind_(frame_subject(std::move(f), std::move(node))) {}
+Subject::Subject(std::shared_ptr<const Kind> kind) : kind_(std::move(kind)) {}
+
+const std::string& Subject::name() const { return kind_->name(); }
+Geometry Subject::geometry() const { return kind_->geometry(); }
+double Subject::load_tolerance() const { return kind_->load_tolerance(); }
+int Subject::legs() const { return kind_->legs(); }
+std::shared_ptr<const Standing> Subject::stand(const Measurements& m) const { return kind_->stand(m); }
+Subject Subject::edited(const std::vector<Edit>& edits) const { return Subject(kind_->edited(edits)); }
+const Mechanism* Subject::machine() const { return kind_->machine(); }
+
+}  // namespace deflect
