@@ -31,21 +31,4 @@ struct Command {
   std::variant<Run, SharedRun> run;
 };
 
-Command solve_command();
-Command validate_command();
-Command frame_command();
-Command map_command();
-Command export_command();
-Command devices_command();
-Command check_command();
-Command compare_command();
-Command diagnose_command();
-Command history_command();
-Command report_command();
-Command simulate_command();
-Command effects_command();
-Command add_command();
-Command new_command();
-Command show_command();
-
 }  // namespace deflect::cli

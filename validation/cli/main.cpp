@@ -13,6 +13,13 @@
 #include "validation/cli/unknown_words.h"
 #include "validation/parallel/ranks.h"
 
+// A command is its file in commands/, its declaration here, and its place in the help below.
+namespace deflect::cli {
+Command new_command(), show_command(), solve_command(), validate_command(), frame_command(), map_command(),
+    export_command(), devices_command(), check_command(), effects_command(), add_command(), compare_command(),
+    simulate_command(), diagnose_command(), history_command(), report_command();
+}
+
 namespace {
 
 using deflect::Ranks;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "validation/json/json_text.h"
@@ -138,10 +139,10 @@ PrintedMatrix numbers_of(MatrixText layout, const std::string& file) {
   if (largest > 0) last = std::min(last, leading(largest) - fewest_digits + 1);
 
   PrintedMatrix out;
-  out.values.resize(static_cast<Index>(layout.rows.size()), static_cast<Index>(columns));
+  out.values.resize(std::ssize(layout.rows), as_index(columns));
   out.rounding.resizeLike(out.values);
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const Index i = static_cast<Index>(k / columns), j = static_cast<Index>(k % columns);
+    const Index i = as_index(k / columns), j = as_index(k % columns);
     const double value = numbers[k].value;
     const int significant = value == 0 ? last : leading(value) - digits + 1;
     out.values(i, j) = layout.factor * value;
