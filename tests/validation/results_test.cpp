@@ -258,6 +258,11 @@ TEST(SolveReport, ForAPerson) {
   EXPECT_TRUE(has(report, "passive joints free   NO")) << report;
 }
 
+TEST(Text, AQuotedCellDoublesItsQuotes) {
+  EXPECT_EQ(csv_cell("left, 2"), "\"left, 2\"");
+  EXPECT_EQ(csv_cell("a \"b\""), "\"a \"\"b\"\"\"");
+}
+
 TEST(Text, ColumnsLinesAndClipsCountLetters) {
   EXPECT_EQ(aligned({{"µm", "1"}, {"a", "10"}, {"b"}}), "µm   1\na   10\nb\n");
   EXPECT_EQ(wrap("one two three", 7), (std::vector<std::string>{"one two", "three"}));

@@ -159,8 +159,8 @@ std::string checks_csv(const MatrixCheck& m) {
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : std::string(); };
   std::string csv = "check,quantity,measured,at_least,at_most,passes\n";
   for (const Check& c : m.checks)
-    csv += fmt::format("{},\"{}\",{},{},{},{}\n", c.id, c.quantity, c.measured ? fmt::format("{}", *c.measured) : "",
-                       cell(c.at_least), cell(c.at_most), c.passes());
+    csv += fmt::format("{},{},{},{},{},{}\n", c.id, csv_cell(c.quantity),
+                       c.measured ? fmt::format("{}", *c.measured) : "", cell(c.at_least), cell(c.at_most), c.passes());
   return csv;
 }
 

@@ -161,13 +161,6 @@ Json patterns_json(const std::vector<PatternTest>& tests) {
   return out;
 }
 
-/// Tolerances with their size in standard deviations.
-Json strained_json(const std::vector<std::pair<std::string, double>>& strained) {
-  Json out = Json::array();
-  for (const auto& [name, eta] : strained) out.push_back({{"name", name}, {"sigmas", eta}});
-  return out;
-}
-
 /// Of the contrasts, those that noise does not explain.
 std::vector<std::string> failing_tests(const Comparison& c) {
   std::vector<std::string> out;
@@ -259,7 +252,7 @@ std::string residuals_csv(const Comparison& c) {
     const Reading& r = s.data->readings[v.reading];
     const double unit = v.component < 3 ? mm : 1;
     const double residual = c.residual(as_index(i));
-    out += fmt::format("{},\"{}\",{},{},{:.9g},{:.9g},{:.9g},{:.4g}\n", r.line, s.data->poses[r.pose].label,
+    out += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.4g}\n", r.line, csv_cell(s.data->poses[r.pose].label),
                        names[v.component], v.component < 3 ? "mm" : "rad", unit * v.value, unit * (v.value - residual),
                        unit * residual, unit * c.sigma[i]);
   }
@@ -275,7 +268,7 @@ std::string errors_csv(const Comparison& c) {
   for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading, &c.by_pose})
     rows.insert(rows.end(), groups->begin(), groups->end());
   for (const Errors& e : rows)
-    out += fmt::format("\"{}\",{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", e.group, e.readings, um * e.rmse,
+    out += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(e.group), e.readings, um * e.rmse,
                        um * e.bias.x(), um * e.bias.y(), um * e.bias.z(), um * e.worst, e.worst_line);
   return out;
 }
@@ -351,7 +344,7 @@ std::string history_csv(const History& h) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Comparison& c = all[i];
     const std::optional<double> wrong = h.placebo[i];
-    out += fmt::format("\"{}\",{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", c.device, um * c.all.rmse,
+    out += fmt::format("{},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(c.device), um * c.all.rmse,
                        wrong ? fmt::format("{:.6g}", um * *wrong) : "", um * c.held_out, c.chi2_per_dof,
                        um * c.noise_and_tolerances, c.strained.size());
   }

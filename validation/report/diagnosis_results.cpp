@@ -164,8 +164,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["tolerance_scale"] = d.tolerance_scale;
   j["readings"] = d.readings;
   j["set_aside"] = d.set_aside;
-  j["strained_tolerances"] = Json::array();
-  for (const auto& [name, eta] : d.strained) j["strained_tolerances"].push_back({{"name", name}, {"sigmas", eta}});
+  j["strained_tolerances"] = strained_json(d.strained);
   j["detectable"] = detectable_json(d.detectable);
   j["left_out"] = Json::array();
   for (const LeftOut& e : d.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});

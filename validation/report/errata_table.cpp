@@ -14,10 +14,9 @@ std::string range_text(double low, double high) {
   return a == b ? a : a + " ... " + b;
 }
 
-std::string quoted(std::string text) {
-  for (std::size_t at = 0; (at = text.find('"', at)) != text.npos; at += 2) text.insert(at, 1, '"');
+std::string in_a_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return '"' + text + '"';
+  return text;
 }
 
 std::string remark(const ErratumPrice& p) {
@@ -50,10 +49,10 @@ std::string errata_csv(const std::vector<ErratumPrice>& prices) {
   for (const char axis : {'x', 'y', 'z'}) csv += fmt::format(",ratio_{0}_min,ratio_{0}_max", axis);
   csv += ",failed_check,refused\n";
   for (const ErratumPrice& p : prices) {
-    csv += fmt::format("{},{}", info(p.erratum).name, quoted(info(p.erratum).equations));
+    csv += fmt::format("{},{}", info(p.erratum).name, csv_cell(info(p.erratum).equations));
     for (int axis = 0; axis < 3; ++axis)
       csv += p.refused.empty() ? fmt::format(",{},{}", p.smallest(axis), p.largest(axis)) : ",,";
-    csv += fmt::format(",{},{}\n", quoted(p.failed_check), quoted(p.refused));
+    csv += fmt::format(",{},{}\n", csv_cell(in_a_line(p.failed_check)), csv_cell(in_a_line(p.refused)));
   }
   return csv;
 }

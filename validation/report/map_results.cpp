@@ -314,9 +314,7 @@ std::string map_csv(const StiffnessMap& map) {
                                                   : fmt::format("{},secant", map.options.force_N);
   for (const MapPose& p : map.poses) {
     text += fmt::format("{},{},{},{},", fmt::join(p.pose_mm_deg, ","), load, map.options.length_mm, int{p.reached()});
-    std::string note = p.out_of_reach;  // in quotes; the kinematics' words contain commas
-    for (std::size_t at = note.find('"'); at != note.npos; at = note.find('"', at + 2)) note.insert(at, 1, '"');
-    if (!note.empty()) text += '"' + note + '"';
+    if (!p.out_of_reach.empty()) text += csv_cell(p.out_of_reach);  // the kinematics' words contain commas
     for (const SlideColumn& slide : slide_columns(map)) text += p.reached() ? fmt::format(",{}", p.*slide.of) : ",";
     for (std::size_t t = 0; t < theories.size(); ++t)
       for (const Column& column : columns()) text += p.reached() ? fmt::format(",{}", column.of(p.values[t])) : ",";

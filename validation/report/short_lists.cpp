@@ -40,6 +40,12 @@ std::string strained_words(std::vector<std::pair<std::string, double>> strained)
   return out + and_more(strained.size());
 }
 
+Json strained_json(const std::vector<std::pair<std::string, double>>& strained) {
+  Json out = Json::array();
+  for (const auto& [name, eta] : strained) out.push_back({{"name", name}, {"sigmas", eta}});
+  return out;
+}
+
 std::string left_out_words(const std::vector<LeftOut>& all) {
   if (all.empty()) return "";
   std::string out = "not looked at: ";

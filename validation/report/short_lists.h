@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "validation/diagnosis/detectable.h"
+#include "validation/json/json_text.h"
 
 namespace deflect {
 
 /// "modulus −90.0, leg 3 guide diameter −9.9, … and 28 more": names with multiples of their standard deviation, the
 /// largest first.
 std::string strained_words(std::vector<std::pair<std::string, double>>);
+
+/// [{"name", "sigmas"}, …], all of them.
+Json strained_json(const std::vector<std::pair<std::string, double>>&);
 
 /// "not looked at: joint_preload, motor_compliance (why: --json)", a line; empty where nothing was left out.
 std::string left_out_words(const std::vector<LeftOut>&);

@@ -20,6 +20,12 @@ std::string clip(std::string_view utf8, std::size_t most) {
   return std::string(utf8.substr(0, bytes)) + "…";
 }
 
+std::string csv_cell(std::string_view text) {
+  std::string cell = "\"";
+  for (const char c : text) cell.append(c == '"' ? 2 : 1, c);
+  return cell + '"';
+}
+
 std::string with_minus(std::string_view utf8) {
   std::string out;
   for (std::size_t i = 0; i < utf8.size(); ++i) {

@@ -20,6 +20,9 @@ std::size_t letters(std::string_view utf8);
 /// The text, or its beginning and "…" where it has more than `most` letters.
 std::string clip(std::string_view utf8, std::size_t most);
 
+/// A cell of a CSV file: in quotes, those of the text doubled.
+std::string csv_cell(std::string_view text);
+
 /// The text with typographic minus signs before its numbers: "from -2 to 3" → "from −2 to 3"; "leg-2" stays.
 std::string with_minus(std::string_view utf8);
 

@@ -27,9 +27,7 @@ Json json_label(const std::string& label) {
 std::string csv_text(const std::string& text) {
   if (!text.empty() && text.find_first_of(",;\"\r\n") == std::string::npos && text.front() != ' ' && text.back() != ' ')
     return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
-  return quoted + "\"";
+  return csv_cell(text);
 }
 
 std::string csv_number(double value, const std::string& what) {

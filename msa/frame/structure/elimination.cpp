@@ -23,7 +23,6 @@ class Expression {
     v += value;
   }
   double take(int index) { return std::exchange(nth(values_, index), 0); }
-  double at(int index) const { return nth(values_, index); }
 
   /// Replaces eliminated freedoms by what they were eliminated to, until none is left: touched_ grows as it is walked.
   void substitute(const std::vector<LinearForm>& rows, const std::vector<char>& eliminated) {
