@@ -125,13 +125,11 @@ double rounding_of(const Theories& theories, const std::vector<Answer>& answers,
 double require_agreement(const Theories& theories, const std::vector<Answer>& answers, const Vector6& F,
                          const Configuration& c, const std::string& device) {
   constexpr double roundings = 10, most = 1e-4;  // of two draws of rounding, what others may be
-  double known = 0, turned = 0;
-  for (const Answer& answer : answers) known = std::max(known, answer.rounding);
-  const double bound = agreement_bound(all_linear(c), known);
+  double turned = 0;
   for_each_pair(theories, [&](std::size_t i, std::size_t j, double known_to) {
     const Difference apart = difference(answers[i], answers[j], c.size);
     const bool alike = answers[i].rigid == answers[j].rigid;
-    if (alike && apart.largest() <= bound + known_to) return;
+    if (alike && apart.largest() <= linear_bound + known_to) return;  // the least that any bound is
     double wide = agreement_bound(all_linear(c), rounding_of(theories, answers, c.size)) + known_to;
     if (alike && apart.largest() > wide && apart.largest() <= most + known_to) {
       const double changed = roundings * (changed_by_turning(*theories[i], answers[i], c, F) +
