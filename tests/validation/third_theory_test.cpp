@@ -131,6 +131,14 @@ TEST(ThirdTheory, FitsReadItLikeTheOthers) {
             softer_by * theory("analytic").at(c, {})->predict(F, {}).displacement);
 }
 
+TEST(Theories, OneAloneHasNoDifference) {
+  const Validation v = validate(haptic(), workspace_points(haptic()), 50, {}, {}, theories_named("msa"));
+  EXPECT_FALSE(has(validation_table(v), "difference"));
+  EXPECT_FALSE(has(validation_csv(v), "analytic_"));
+  EXPECT_FALSE(read_result(validation_json(v, {}), "one").json.contains("max_relative_difference"));
+  EXPECT_FALSE(has(fig10(v).caption, "Below"));
+}
+
 TEST(Theories, AreNamedByAList) {
   EXPECT_EQ(theories_named("").size(), 2u);
   EXPECT_EQ(theories_named("msa,analytic"), all_theories());

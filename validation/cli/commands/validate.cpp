@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -49,7 +50,9 @@ void run(const ValidateArguments& a) {
   if (!std::isfinite(a.load_N) || a.load_N == 0)
     throw InputError(fmt::format("--force {}: give a force in N other than zero", a.load_N));
   const Theories theories = parse_theories(a.theories);
-  if (!as_printed.empty()) place_of(theories, "analytic");
+  if (!as_printed.empty() && std::find(theories.begin(), theories.end(), &theory("analytic")) == theories.end())
+    throw InputError(
+        fmt::format("--as-printed {}: the errata are the closed form's: put analytic among --theories", a.as_printed));
   const std::vector<ValidationPoint> points = a.points.empty() ? workspace_points(m) : read_points(a.points);
   const Validation v = timed(fmt::format("{} at {} points", titles_of(theories), points.size()), [&] {
     return validate(m, points, a.load_N, as_printed, divide(m, a.element_size), theories);
