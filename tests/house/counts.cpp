@@ -18,9 +18,21 @@ std::vector<std::string> code_lines(const Source& source) {
 
 std::string place(const Source& source, std::size_t line) { return source.path + ":" + std::to_string(line + 1); }
 
-/// Where a function of the first level (or of a class or a namespace at it) begins: a line that is no keyword's.
+/// The signature that begins on this line, on one line up to its "{"; empty where none does.
+std::string signature_at(const std::vector<std::string>& lines, std::size_t i) {
+  std::string whole = lines[i];
+  for (std::size_t k = i + 1; k < std::min(i + 8, lines.size()) && !whole.empty(); ++k) {
+    if (whole.ends_with('{') || whole.ends_with(';') || whole.ends_with('}')) break;
+    const std::size_t first = lines[k].find_first_not_of(' ');
+    if (first == std::string::npos) return "";
+    whole += " " + lines[k].substr(first);
+  }
+  return whole.ends_with('{') ? whole : "";
+}
+
+/// Whether a function of the first level, or of a class or a namespace at it, begins so: not with a keyword.
 bool begins_function(const std::string& line) {
-  static const std::regex free(R"(^[A-Za-z].*\{$)"), member(R"(^  [A-Za-z].*\) (const |override |noexcept )*\{$)"),
+  static const std::regex free(R"(^[A-Za-z].*\{$)"), member(R"(^  [A-Za-z].*\).* ?\{$)"),
       other(
           R"(^ *(namespace|struct|class|enum|union|constexpr|inline constexpr|static|for|if|while|switch|else|do)\b.*)");
   return (std::regex_match(line, free) || std::regex_match(line, member)) && !std::regex_match(line, other);
@@ -48,7 +60,7 @@ std::vector<std::string> long_functions(const std::vector<Source>& sources, int 
   for (const Source& source : sources) {
     const std::vector<std::string> lines = code_lines(source);
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (!begins_function(lines[i])) continue;
+      if (!begins_function(signature_at(lines, i))) continue;
       const std::string end = std::string(lines[i].find_first_not_of(' '), ' ') + "}";
       // What ends at the first level before it was no function of a class.
       const auto last = std::find_if(lines.begin() + static_cast<std::ptrdiff_t>(i) + 1, lines.end(),

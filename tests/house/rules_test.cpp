@@ -135,6 +135,8 @@ TEST(Counts, SeeNamesLongFunctionsCastsAndCatches) {
   EXPECT_EQ(long_functions({source}, 5, {}), std::vector<std::string>{"validation/compare/x.cpp:2: 6 lines"});
   EXPECT_TRUE(long_functions({source}, 6, {}).empty());
   EXPECT_TRUE(long_functions({source}, 5, {"validation/compare/x.cpp: f("}).empty());
+  const Source broken{"validation/compare/y.cpp", "int f(int a,\n      int b) {\n  g();\n  return 0;\n}\n"};
+  EXPECT_EQ(long_functions({broken}, 4, {}), std::vector<std::string>{"validation/compare/y.cpp:1: 5 lines"});
   EXPECT_EQ(index_casts({source}), 1);
   EXPECT_EQ(catches({source}), std::vector<std::string>{"validation/compare/x.cpp:5"});
 }

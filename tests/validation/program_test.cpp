@@ -59,6 +59,15 @@ TEST(Program, SolveWritesTheContractsJsonAndTheDeflectedStructure) {
   EXPECT_NE(contents(folder / "out" / "deflected.vtu").find("displacement_mm"), std::string::npos);
 }
 
+TEST(Program, SolveDrawsNoStructureThatNoTheoryHas) {
+  const Folder folder;
+  const auto run = deflect("solve haptic-6psu --theories analytic --pose 25,25,198.9,0,0,0 --load 50,0,0 --out '" +
+                           (folder / "out").string() + "'");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.out.find("put msa among --theories"), std::string::npos) << run.out;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
 TEST(Program, SolveFindsEquilibriumInTheDeformedShape) {
   const Folder folder;
   const std::string call = "solve haptic-6psu --pose 25,25,198.9 --load 50,0,0 --json '" + (folder / "s.json").string();

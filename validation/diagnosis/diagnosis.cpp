@@ -148,6 +148,12 @@ Diagnosis only_mistakes(Diagnosis d, const Observations& o) {
   return d;
 }
 
+Verdict verdict_of(const Diagnosis& d) {
+  if (d.unexplained) return Verdict::unknown_effect;
+  if (d.missing.empty()) return Verdict::nothing_missing;
+  return d.indistinguishable.empty() ? Verdict::effect : Verdict::ambiguous;
+}
+
 }  // namespace
 
 bool is_mistaken(const Diagnosis& d) { return !d.mistakes.empty() && d.mistakes.front().certain; }
@@ -205,10 +211,7 @@ Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::
   d.left_out.insert(d.left_out.end(), candidates.left_out().begin(), candidates.left_out().end());
   for (const std::vector<std::string>& tie : found.ties)
     if (!tie.empty()) d.indistinguishable.push_back(tie);
-  d.verdict = d.unexplained                 ? Verdict::unknown_effect
-              : d.missing.empty()           ? Verdict::nothing_missing
-              : d.indistinguishable.empty() ? Verdict::effect
-                                            : Verdict::ambiguous;
+  d.verdict = verdict_of(d);
   d.final = quality(seen, d.missing, d.fit);
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));
   d.set_aside = seen.set_aside();

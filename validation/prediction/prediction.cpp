@@ -97,6 +97,13 @@ std::pair<int, bool> frictions_of(Configuration c) {
   return {all, all > 0 && number_slips(c) == 0};
 }
 
+/// What the sensor's drift adds to readings in their sequence.
+void add_drift(std::vector<Vector6>& readings, const Sensor& sensor, const Measurements& data) {
+  const std::vector<double> rank = ranks(data, "drift");
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    readings[i].head<3>() += sensor.drift * (rank[i] / static_cast<double>(readings.size()));
+}
+
 }  // namespace
 
 Vector6 true_load(const LoadCell& cell, const Vector6& recorded) {
@@ -163,11 +170,7 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
     for_each_case(machines.size(), 1, work.threads, at_pose,
                   work.progress ? std::function<void(std::size_t)>(told) : nullptr);
   }
-  if (!m.sensor.drift.isZero(0)) {
-    const std::vector<double> rank = ranks(data, "drift");
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i].head<3>() += m.sensor.drift * (rank[i] / static_cast<double>(out.size()));
-  }
+  if (!m.sensor.drift.isZero(0)) add_drift(out, m.sensor, data);
   return out;
 }
 

@@ -125,7 +125,7 @@ Answer AnalyticAt::linear_answer(const analytic::AnalyticSolution& s, const Vect
 
 /// What turning the machine changes of the stored energy, relative, 1e-7 at most; 0 where it finds no equilibrium.
 double AnalyticAt::energy_by_turning(const Vector6& F, double energy, const Conditions& conditions) const {
-  const Matrix3 R = Eigen::AngleAxisd(0.7, Vector3(0.36, 0.48, 0.8)).toRotationMatrix();
+  const Matrix3& R = turn_number(0);
   const Configuration there = turned(*configuration_, R);
   const auto stored = outcome_of([&] {
     const analytic::AnalyticModel m(there);

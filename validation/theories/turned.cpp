@@ -40,14 +40,13 @@ void turn(std::vector<PlacedLeg>& legs, const Matrix3& R) {
   }
 }
 
-/// Two turns about axes that no machine is drawn along.
+}  // namespace
+
 const Matrix3& turn_number(std::size_t i) {
   static const Matrix3 turns[] = {Eigen::AngleAxisd(0.7, Vector3(0.36, 0.48, 0.8)).toRotationMatrix(),
                                   Eigen::AngleAxisd(-1.9, Vector3(0.8, -0.36, 0.48)).toRotationMatrix()};
   return turns[i];
 }
-
-}  // namespace
 
 Configuration turned(const Configuration& c, const Matrix3& R) {
   Configuration out = c;

@@ -5,6 +5,9 @@
 
 namespace deflect {
 
+/// Two turns, i = 0 and 1, about axes that no machine is drawn along.
+const Matrix3& turn_number(std::size_t i);
+
 /// The machine with everything turned about the origin of W by R: points, axes, load and weight. Its answer is that of
 /// the machine as it stands, turned.
 Configuration turned(const Configuration&, const Matrix3& R);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "meshes/gmsh.h"
 #include "meshes/vtu.h"
 #include "msa/base/error.h"
@@ -34,6 +36,9 @@ void run(const SolveArguments& a) {
   const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
   const Theories theories = parse_theories(a.theories);
+  if (!a.out.empty() && std::none_of(theories.begin(), theories.end(), [](const Theory* t) { return t->divides; }))
+    throw InputError(
+        fmt::format("--out {}: the closed form has no structure to draw: put msa among --theories", a.out));
   const Geometry geometry = parse_geometry(a.geometry);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
   const SolveResult r = timed(fmt::format("{}, geometry {}", titles_of(theories), a.geometry),
