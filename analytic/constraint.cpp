@@ -14,16 +14,20 @@ int redundant(const Group& g) {
   return count;
 }
 
-/// What stands beside the legs yields where it is elastic, and constrains nothing there.
+/// What stands side by side with the legs, or with laws of a joint, yields where it is elastic and constrains nothing
+/// there.
 Configuration with_yielding_beside(Configuration c) {
   for (PlacedLeg& leg : c.legs)
-    for (PlacedPart& part : leg.parts)
+    for (PlacedPart& part : leg.parts) {
+      if (std::holds_alternative<PlacedParallel>(part))
+        if (const PlacedJoint* alone = joint_of(part)) part = PlacedJoint(*alone);
       if (auto* joint = std::get_if<PlacedJoint>(&part); joint && leg.beside) {
         for (std::size_t i = 0; i < 6; ++i)
           if (joint->elastic(i)) joint->freedoms[i] = Freedom::free;
         joint->laws = {};
         joint->stiffness.reset();
       }
+    }
   return c;
 }
 

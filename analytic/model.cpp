@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "analytic/deformed.h"
 #include "analytic/rotation_vector.h"
@@ -28,9 +29,9 @@ ChainConditions drawn(ChainConditions c) {
   return c;
 }
 
-/// Laws that jump taken out, where the legs carry `wrenches` and base and tool F: gaps are closed, frictions beside
-/// legs let go and others stick, a one-sided law yields as on the side on which it is. Within groups, whose branches'
-/// wrenches are not known here, its sides yield alike.
+/// Laws that jump taken out, where the legs carry `wrenches` and base and tool F: gaps are closed, frictions side by
+/// side with something let go and others stick, a one-sided law yields as on the side on which it is. Within groups,
+/// whose branches' wrenches are not known here, its sides yield alike.
 Configuration without_steps(Configuration c, const std::vector<Vector6>& wrenches, const Vector6& F) {
   const auto strip = [&](PlacedJoint& joint, bool beside, const Vector6* wrench) {
     for (std::size_t i = 0; i < 6; ++i) {
@@ -54,9 +55,12 @@ Configuration without_steps(Configuration c, const std::vector<Vector6>& wrenche
     for (PlacedPart& part : c.legs[l].parts) {
       if (auto* joint = std::get_if<PlacedJoint>(&part)) strip(*joint, c.legs[l].beside, &wrenches[l]);
       if (auto* group = std::get_if<PlacedParallel>(&part))
-        for_each_part(group->branches, [&](auto& inner) {
-          if constexpr (requires { inner.laws; }) strip(inner, c.legs[l].beside, nullptr);
-        });
+        for (PlacedLeg& branch : group->branches) {
+          const bool beside = c.legs[l].beside || (group->one_joint && &branch != &group->branches.front());
+          for_each_part(std::span(&branch, 1), [&](auto& inner) {
+            if constexpr (requires { inner.laws; }) strip(inner, beside, nullptr);
+          });
+        }
     }
   strip(c.base, false, &F);
   strip(c.tool, false, &F);

@@ -63,6 +63,11 @@ class AnalyticModel {
   /// the linear one where there are such.
   AnalyticSolution solve(const Vector6& F_T_W, const Conditions& = {}) const;
 
+  /// Displacement, slips, convergence and message of solve(), nothing of what is inside: for fits, which ask for many
+  /// loads. Where laws jump in linear geometry, what lies between them is solved for six loads once, and a load costs
+  /// the laws alone.
+  AnalyticSolution displaced(const Vector6& F_T_W, const Conditions& = {}) const;
+
   /// The assembled state: displacement of T from the drawing, the legs' wrenches by misfit.
   AnalyticSolution assembled(Geometry = Geometry::linear) const;
 
@@ -97,7 +102,16 @@ class AnalyticModel {
   std::vector<SteppedLaw> stepped_;
   std::optional<Lines> lines_;  ///< where frictions beside the legs are all that jumps
   int frictions_ = 0;
+  /// What all but the laws that jump does under a load at T, weight included: linear.
+  struct Between {
+    MatrixX forces;  ///< of the laws, by load
+    Matrix6 displacement;
+    std::vector<Matrix6> wrenches;  ///< of the legs
+  };
+  Between between(const Imposed&) const;
+
   // Made when first needed: a model is for one thread at a time.
+  mutable std::shared_ptr<const Between> between_;
   mutable std::shared_ptr<Imposed> imposed_;
   mutable std::shared_ptr<const Deformed> rest_;
 };

@@ -229,7 +229,9 @@ class Balance {
     for (Member& m : members_) m.phase = phase_at_rest(m.law());
     for (Member& m : members_)
       if (std::holds_alternative<ClearanceLaw>(m.law()) && m.stepped->preload == 0) m.phase = Phase::open;
-    return conclude();
+    BalancedSteps out = conclude();
+    out.offsets = VectorX::Zero(n_);
+    return out;
   }
 
   BalancedSteps result(const SetValuedSolution& found) {
@@ -248,6 +250,7 @@ class Balance {
         m.phase = found.s(i) + m.stepped->preload < -no_force * sizes_(i) ? Phase::minus : Phase::plus;
     }
     BalancedSteps out = conclude();
+    out.offsets = found.o;
     for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)
       if (found.loose.row(i).cwiseAbs().maxCoeff() > 0) out.loose.push_back(nth(members_, i).stepped->part);
     out.twists = imposed_.T * found.loose;

@@ -63,6 +63,7 @@ struct Imposed {
 struct BalancedSteps {
   std::vector<Step> steps;
   std::vector<double> slips;  ///< of the frictions, by FrictionLaw::number
+  VectorX offsets;            ///< imposed on the laws beside the compliances of Imposed; empty where not converged
   bool converged = false;
   std::string reason;  ///< where there is no equilibrium, or none was found
   /// Parts whose play nothing loads. The steps are the middle of the play (set_valued_laws.h); T moves in it by

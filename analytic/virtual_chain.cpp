@@ -209,7 +209,7 @@ void hold_idle(Linearised& l, const std::vector<int>& step, double length) {
   for (const Eigen::Index i : others) kept.push_back(nth(l.kept, i));
   kept.resize(as_size(rest.cols() + moving.cols()), true);
   VectorX scale = VectorX::Ones(rest.cols() + moving.cols());
-  scale.head(rest.cols()) = l.scale(others);
+  for (std::size_t i = 0; i < others.size(); ++i) scale(as_index(i)) = l.scale(others[i]);
   l.all = false;
   l.kept = kept;
   l.scale = scale;

@@ -18,7 +18,7 @@ class Search {
  public:
   Search(const std::string& path, const std::string& where) : segments_(segments_of(path)), where_(where) {}
 
-  std::vector<Place> found;
+  std::vector<TreePlace> found;
 
   void from(const YamlNode& node, std::size_t depth, const std::string& walked) {
     if (depth == segments_.size()) {
@@ -57,7 +57,7 @@ class Search {
     const std::size_t before = found.size();
     std::string first_error = fmt::format("{}{}: there are no entries", where_, joined(walked, "*"));
     bool failed = false;
-    const Place here = place_;
+    const TreePlace here = place_;
     for (std::size_t i = 0; i < node.children.size(); ++i) {
       const auto went = outcome_of<InputError>([&] {
         step(node, i, depth + 1, walked);
@@ -87,7 +87,7 @@ class Search {
 
   std::vector<std::string> segments_;
   std::string where_;
-  Place place_;
+  TreePlace place_;
 };
 
 /// An assumption about the whole becomes one about each of its parts.
@@ -96,7 +96,7 @@ void pass_down(YamlNode& node) {
   node.ours = false;
 }
 
-YamlNode& opened(YamlNode& root, const Place& place) {
+YamlNode& opened(YamlNode& root, const TreePlace& place) {
   YamlNode* node = &root;
   for (const std::size_t i : place) {
     pass_down(*node);
@@ -166,20 +166,20 @@ std::vector<std::string> segments_of(const std::string& path) {
   return out;
 }
 
-std::vector<Place> places(const YamlNode& root, const std::string& path, const std::string& where) {
+std::vector<TreePlace> places(const YamlNode& root, const std::string& path, const std::string& where) {
   if (path.empty()) throw InputError(where + "the path is empty");
   Search search(path, where);
   search.from(root, 0, "");
   return std::move(search.found);
 }
 
-const YamlNode& at(const YamlNode& root, const Place& place) {
+const YamlNode& at(const YamlNode& root, const TreePlace& place) {
   const YamlNode* node = &root;
   for (const std::size_t i : place) node = &node->children[i];
   return *node;
 }
 
-std::string path_of(const YamlNode& root, const Place& place) {
+std::string path_of(const YamlNode& root, const TreePlace& place) {
   std::string path;
   const YamlNode* node = &root;
   for (const std::size_t i : place) {
@@ -189,7 +189,8 @@ std::string path_of(const YamlNode& root, const Place& place) {
   return path;
 }
 
-void change(YamlNode& root, const Place& place, Edit::Action action, const YamlNode& value, const std::string& where) {
+void change(YamlNode& root, const TreePlace& place, Edit::Action action, const YamlNode& value,
+            const std::string& where) {
   const std::string here = fmt::format("{}{}: ", where, path_of(root, place));
   YamlNode& node = opened(root, place);
   switch (action) {
@@ -216,7 +217,7 @@ void apply(YamlNode& root, const Edit& edit, const std::string& origin) {
   const std::string where = origin + ": ";
   YamlNode value = parse_yaml(edit.value, origin);
   set_line(value, 0);
-  for (const Place& place : places(root, edit.path, where)) change(root, place, edit.action, value, where);
+  for (const TreePlace& place : places(root, edit.path, where)) change(root, place, edit.action, value, where);
 }
 
 }  // namespace deflect

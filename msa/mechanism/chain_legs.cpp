@@ -29,8 +29,9 @@ PlacedJoint only(PlacedJoint j, const std::array<bool, 6>& left, const Frame& at
 
 /// A joint in the state in which it stands. Its freedoms move one after the other, each about axes that the ones before
 /// have turned: where these are not the axes of one frame, it is several joints in series.
-void place_joint(const Step& step, const Joint& joint, double actuator, const Mechanism& m,
+void place_joint(const Step& step, const Joint& joint, double actuator, const Mechanism& m, const std::string& leg,
                  std::vector<PlacedPart>& out) {
+  const std::array<std::vector<Law>, 6> beside = beside_of(joint, m, actuator);
   const Frame& at = joint.axes == "after" ? step.moved : step.joint;
   PlacedJoint whole = placed(joint, *step.name, {at.p, at.R, actuator}, m);
   std::array<bool, 6> slides{}, turns{}, last_turn{}, yields{};
@@ -44,12 +45,13 @@ void place_joint(const Step& step, const Joint& joint, double actuator, const Me
     else
       (++turn_count == 3 && !ball ? last_turn : turns)[i] = true;
   const bool one_frame = turn_count == 0 || (slide_count == 0 && (turn_count == 1 || ball));
-  if (one_frame || whole.stiffness) {
-    out.push_back(std::move(whole));
-    return;
-  }
+  if (one_frame || whole.stiffness) return put(std::move(whole), beside, leg, out);
   const auto add = [&](const std::array<bool, 6>& left, const Frame& frame) {
-    if (std::find(left.begin(), left.end(), true) != left.end()) out.push_back(only(whole, left, frame));
+    if (std::find(left.begin(), left.end(), true) == left.end()) return;
+    std::array<std::vector<Law>, 6> own;
+    for (std::size_t i = 0; i < 6; ++i)
+      if (left[i]) own[i] = beside[i];
+    put(only(whole, left, frame), own, leg, out);
   };
   add(slides, step.joint);
   add(turns, {step.moved.p, ball ? at.R : step.turning});
@@ -85,28 +87,29 @@ class Placer {
     return found;
   }
 
-  void place(const Joint& joint, const Step& step, const std::string&, double actuator,
+  void place(const Joint& joint, const Step& step, const std::string& name, double actuator,
              std::vector<PlacedPart>& out) const {
-    for (const auto& laws : joint.laws)
-      for (const Law& law : laws)
-        if (lacks_length(law) && !(actuator > 0))
-          throw InputError(
-              fmt::format("the {} has no length: no slide before it is driven and extended ({:.6g} mm); "
-                          "give it a length",
-                          row_of(law).name, 1e3 * actuator));
-    place_joint(step, joint, actuator, m_, out);
+    for (const auto* all : {&joint.laws, &joint.beside})
+      for (const auto& laws : *all)
+        for (const Law& law : laws)
+          if (lacks_length(law) && !(actuator > 0))
+            throw InputError(
+                fmt::format("the {} has no length: no slide before it is driven and extended ({:.6g} mm); "
+                            "give it a length",
+                            row_of(law).name, 1e3 * actuator));
+    place_joint(step, joint, actuator, m_, name, out);
   }
 
   void place(const Member& member, const Step& step, const std::string&, double, std::vector<PlacedPart>& out) const {
     if (member.y_axis.isZero(0)) {
-      out.emplace_back(
-          placed(member, *step.name, step.start, step.after.p, step.before.R.col(1), step.before.R.col(2), m_));
-      return;
+      return put(member,
+                 placed(member, *step.name, step.start, step.after.p, step.before.R.col(1), step.before.R.col(2), m_),
+                 m_, out);
     }
     const Vector3 y_W = step.before.R * member.y_axis, along = step.after.p - step.start;
     if (along.norm() > 0 && along.cross(y_W).norm() <= 1e-6 * along.norm() * y_W.norm())
       throw ModelError(fmt::format("{}: y_axis is parallel to the member here: name another direction", *step.name));
-    out.emplace_back(placed(member, *step.name, step.start, step.after.p, y_W, y_W, m_));
+    put(member, placed(member, *step.name, step.start, step.after.p, y_W, y_W, m_), m_, out);
   }
 
   void place(const Offset&, const Step&, const std::string&, double, std::vector<PlacedPart>&) const {}

@@ -56,9 +56,14 @@ struct PlacedParallel {
   std::string part;
   Vector3 p_W_start = Vector3::Zero(), p_W_end = Vector3::Zero();
   std::vector<PlacedLeg> branches;
+  /// It is one joint of the description, the first branch, with laws side by side, one in each other branch.
+  bool one_joint = false;
 };
 
 using PlacedPart = std::variant<PlacedJoint, PlacedMember, PlacedParallel>;
+
+/// The joint of the description that the part is, with or without laws side by side; null where it is none.
+const PlacedJoint* joint_of(const PlacedPart&);
 
 struct PlacedLeg {
   std::string name;               ///< "leg 1"; of a branch "leg 1 parallelogram 2"
@@ -88,7 +93,7 @@ struct Configuration {
 
 /// Calls f(part) for every PlacedJoint and PlacedMember of the legs, those of branches too, base to platform.
 template <class Legs, class F>
-void for_each_part(Legs& legs, const F& f) {
+void for_each_part(Legs&& legs, const F& f) {
   for (auto& leg : legs)
     for (auto& part : leg.parts)
       if (auto* group = std::get_if<PlacedParallel>(&part))

@@ -71,6 +71,12 @@ std::string at_pose(const Mechanism& m, const Pose& pose) {
 
 }  // namespace
 
+const PlacedJoint* joint_of(const PlacedPart& part) {
+  if (const auto* group = std::get_if<PlacedParallel>(&part))
+    return group->one_joint ? std::get_if<PlacedJoint>(&group->branches.front().parts.front()) : nullptr;
+  return std::get_if<PlacedJoint>(&part);
+}
+
 bool all_linear(const Configuration& c) {
   bool all = true;
   for_each_law(c, [&](const Law& law) { all = all && is_linear(law); });
@@ -130,7 +136,8 @@ const Configuration& Posing::at(const Pose& pose) {
                         PlacedMechanism placed = place(*k, m, pose);
                         c = completed(placed, m);
                         impl_->seats = std::move(placed.seats);
-                        impl_->moves.emplace(*k, m);
+                        SixPsuMoves moves(*k, m);
+                        if (moves.hold(c.legs)) impl_->moves = std::move(moves);
                       });
   return c;
 }

@@ -66,6 +66,9 @@ struct Joint {
   /// Force (N) or moment (Nm) that the joint itself keeps in the laws of freedom i (a clamped ball, a pretensioned
   /// cable): the laws work about it.
   std::array<double, 6> preload{};
+  /// Of a joint of a leg: each law alone stands side by side with all of laws[i] (friction beside a gear, a rubber
+  /// seal). Only where freedom i moves: by a law of its own, or freely.
+  std::array<std::vector<Law>, 6> beside;
 };
 
 enum class BeamTheory { euler_bernoulli, timoshenko };
@@ -89,6 +92,7 @@ struct Member {
   double bending_factor = 1;
   PartPoint from_point = PartPoint::usual;
   Vector3 y_axis = Vector3::Zero();
+  Joint start, end;  ///< how its ends yield against what holds them: fixed joints in its own axes (x along it)
 };
 
 /// A rigid piece of a chain.
@@ -197,6 +201,8 @@ struct LoadCell {
 struct Sensor {
   Vector3 rotation = Vector3::Zero();  ///< rad
   Vector3 drift = Vector3::Zero();     ///< m over a whole sequence
+  bool free_zero = false;              ///< readings count from a zero that nobody knows, one for all of a file
+  Vector6 zero = Vector6::Zero();      ///< that zero, m and rad, where it is known; no part of a file
 };
 
 /// Standard deviations of what differs from machine to machine within its drawing.
@@ -224,6 +230,8 @@ struct Mechanism {
   Workspace workspace;
   LoadCell load_cell;
   Sensor sensor;
+  /// Kinds of place at which nothing is missing: "base", "tool", "load", "load cell", "sensor".
+  std::vector<std::string> trusted;
   Tolerances tolerances;
   std::set<std::string> ours;  ///< paths of values that the source does not state and we assumed (YAML tag !ours)
   /// The parts of each leg, variations applied, where resolved() worked them out once for many poses; no part of a

@@ -66,9 +66,9 @@ void edit_one_leg(YamlNode& tree, const Mechanism& m, const Edit& edit, const Ya
   const MarkedLeg leg = marked_leg(m, number);
   YamlNode parts = tree_of(leg.parts, leg.ours, m);
   const std::string inside = fmt::format("{}leg[{}].", where, number);
-  const std::vector<Place> all = places(parts, path, inside);
-  for (const Place& place : all) change(parts, place, edit.action, value, inside);
-  for (const Place& place : all)
+  const std::vector<TreePlace> all = places(parts, path, inside);
+  for (const TreePlace& place : all) change(parts, place, edit.action, value, inside);
+  for (const TreePlace& place : all)
     put(*tree.child("variations"), variation_node(number, path_of(parts, place), stripped(at(parts, place))));
 }
 
@@ -96,7 +96,7 @@ MarkedLeg varied(const MarkedLeg& leg, const Variation& v, const YamlNode& value
   const std::string name = fmt::format("leg[{}]", v.leg), inside = fmt::format("{}{}.", where, name);
   YamlNode tree = tree_of(leg.parts, leg.ours, m);
   set_line(tree, value.line);
-  for (const Place& place : places(tree, v.path, inside)) change(tree, place, Edit::Action::set, value, inside);
+  for (const TreePlace& place : places(tree, v.path, inside)) change(tree, place, Edit::Action::set, value, inside);
 
   MarkedLeg out;
   FieldReader reader(origin, name);

@@ -23,6 +23,9 @@ class SixPsuMoves {
  public:
   /// Throws InputError on names that do not resolve.
   SixPsuMoves(const SixPsu&, const Mechanism&);
+  /// Whether they do for what place() makes: every part is placed as one, no joint with laws side by side, no member
+  /// between ends that yield.
+  bool hold(const std::vector<PlacedLeg>&) const;
   /// What place() made for one pose, moved to another; nothing is allocated. Throws ModelError as place() does.
   void move(const SixPsu&, const Pose&, std::vector<PlacedLeg>&, std::vector<Actuator>&, std::vector<Seats>&) const;
 

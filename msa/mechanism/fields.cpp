@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "msa/base/index.h"
+#include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/field_lists.h"
 
@@ -42,7 +44,9 @@ void place_names(const SixPsu&, Surroundings& s) {
   s.axes = {"base", "guide", "link", "platform"};
 }
 
-void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor) {
+constexpr const char* trusted_kinds[] = {"base", "tool", "load", "load cell", "sensor"};
+
+void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<std::string>& trusted) {
   const auto cell_fields = [&] {
     v.quantity("gain", cell.gain, optional(1, Dimension::ratio, positive), "true load over recorded load");
     v.vector3("rotation", cell.rotation, Dimension::angle, "rotation vector from recorded to true load");
@@ -50,10 +54,19 @@ void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor) {
   const auto sensor_fields = [&] {
     v.vector3("rotation", sensor.rotation, Dimension::angle, "rotation vector from true to recorded displacement");
     v.vector3("drift", sensor.drift, Dimension::length, "drift of the reading over a sequence");
+    std::string zero = sensor.free_zero ? "free" : "unloaded";
+    v.word("zero", zero, {"zero of the readings", {"unloaded", "free"}, "unloaded"},
+           "where readings count from: the unloaded machine, or somewhere");
+    sensor.free_zero = zero == "free";
   };
   const auto both = [&] {
     v.object("load_cell", Need::optional, false, cell_fields, "how loads are recorded");
     v.object("sensor", Need::optional, false, sensor_fields, "how displacements are recorded");
+    v.texts("trusted", trusted, Need::optional, "where nothing is missing: base, tool, load, load cell, sensor");
+    const std::vector<std::string> known{std::begin(trusted_kinds), std::end(trusted_kinds)};
+    for (const std::string& kind : trusted)
+      v.require(std::find(known.begin(), known.end(), kind) != known.end(), "trusted",
+                fmt::format("there is no '{}' to trust{}", kind, suggestion(kind, known)));
   };
   v.object("rig", Need::optional, false, both, "how loads and displacements are recorded");
 }
@@ -166,7 +179,7 @@ void describe(FieldVisitor& v, Mechanism& m) {
   describe_geometry(v, m.geometry);
 
   describe_workspace(v, m.workspace);
-  describe_rig(v, m.load_cell, m.sensor);
+  describe_rig(v, m.load_cell, m.sensor, m.trusted);
   v.object(
       "tolerances", Need::optional, false, [&] { describe_tolerances(v, m.tolerances); },
       "standard deviations from machine to machine");

@@ -131,8 +131,14 @@ struct ClearanceLaw {
 /// the slip moves until |f| = force. The slip is history: conditions.h.
 struct FrictionLaw {
   double force = 0, stiffness = 0;
+  /// −1 … 1: the share of the largest load of a pose that the machine had carried and given up before the first
+  /// reading, which then counts as unloaded. 0: relaxed.
+  double start = 0;
+  double kept = 1;  ///< 0 … 1: the share of what is in it that a friction beside a leg keeps from pose to pose
   int number = -1;  ///< among the frictions of a configuration, see number_slips(); no part of what the law is
-  bool operator==(const FrictionLaw& other) const { return force == other.force && stiffness == other.stiffness; }
+  bool operator==(const FrictionLaw& other) const {
+    return force == other.force && stiffness == other.stiffness && start == other.start && kept == other.kept;
+  }
 };
 
 using Law = std::variant<LinearLaw, HertzPointLaw, HertzLineLaw, PinBendingLaw, MotorShaftLaw, CableLaw, CablePairLaw,

@@ -106,6 +106,10 @@ void fields(FieldVisitor& v, ClearanceLaw& l) {
 void fields(FieldVisitor& v, FrictionLaw& l) {
   v.quantity(effort_key(v), l.force, required(effort(v), not_negative), "load at which it slips");
   v.quantity("stiffness", l.stiffness, required(stiffness(v)), "stiffness before it slips");
+  v.quantity("start", l.start, optional(0, Dimension::none, {-1, 1}),
+             "share of the largest load that came and went before the first reading, -1 to 1; 0: relaxed");
+  v.quantity("kept", l.kept, optional(1, Dimension::none, {0, 1}),
+             "share of what is in it that a friction beside a leg keeps from pose to pose, 0 to 1; 0: relaxed at each");
 }
 
 /// "'linear', 'belt', … or 'friction'": the laws that a rotation takes.

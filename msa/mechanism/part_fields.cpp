@@ -98,6 +98,29 @@ void describe_laws(FieldVisitor& v, Joint& joint) {
   }
 }
 
+/// Laws side by side with what a freedom of a leg's joint does.
+void describe_beside(FieldVisitor& v, Joint& joint) {
+  const auto laws = [&] {
+    for (std::size_t i = 0; i < 6; ++i) {
+      v.surroundings.rotation = i >= 3;
+      ListElements<Law> beside(joint.beside[i]);
+      v.one_or_list(freedom_names[i], beside, "laws, each side by side with all that is on this freedom");
+    }
+  };
+  v.object("beside", Need::optional, false, laws, "laws side by side with those of a freedom");
+  const JointType* type = find_joint_type(joint.type);
+  const std::string letters = joint.freedoms.size() == 6 ? joint.freedoms : type ? type->letters : "ffffff";
+  for (std::size_t i = 0; i < 6; ++i)
+    v.require(joint.beside[i].empty() || letters[i] == 'f' || !joint.laws[i].empty(), "beside",
+              fmt::format("{} is rigid here, so that nothing side by side with it is loaded: give {} a law first",
+                          freedom_names[i], freedom_names[i]));
+  const auto any = [](const auto& all) {
+    return std::any_of(all.begin(), all.end(), [](const auto& l) { return !l.empty(); });
+  };
+  v.require(!joint.stiffness || !any(joint.beside), "beside",
+            "stands side by side with laws of single freedoms, and this joint has a stiffness of all of them");
+}
+
 /// A stiffness of all freedoms together.
 void describe_stiffness(FieldVisitor& v, Joint& joint) {
   MatrixX rows;
@@ -222,6 +245,7 @@ void fields(FieldVisitor& v, Joint& joint) {
   }
   describe_laws(v, joint);
   describe_stiffness(v, joint);
+  describe_beside(v, joint);
 }
 
 /// `from: PART`, or `from: {part: PART, at: start}`.
@@ -283,6 +307,8 @@ void fields(FieldVisitor& v, Member& member) {
 
   v.quantity("bending_factor", member.bending_factor, optional(1, Dimension::ratio, positive),
              "multiplies the bending stiffness");
+  describe_fixture(v, "start", member.start, "", "", "how its start yields against what stands before it; x along it");
+  describe_fixture(v, "end", member.end, "", "", "how its end yields against what follows; x along it");
 }
 
 void fields(FieldVisitor& v, Offset& o) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "msa/base/error.h"
@@ -53,6 +54,45 @@ PlacedJoint placed(const Joint& joint, const std::string& part, const JointPlace
   j.preload = joint.preload;
   j.stiffness = joint.stiffness;
   return j;
+}
+
+std::array<std::vector<Law>, 6> beside_of(const Joint& joint, const Mechanism& m, double actuator) {
+  std::array<std::vector<Law>, 6> out;
+  for (std::size_t i = 0; i < 6; ++i)
+    for (const Law& law : joint.beside[i]) out[i].push_back(resolved(law, m, actuator));
+  return out;
+}
+
+void put(PlacedJoint joint, const std::array<std::vector<Law>, 6>& beside, const std::string& leg,
+         std::vector<PlacedPart>& out) {
+  PlacedParallel group{joint.part, joint.p_W, joint.p_W, {}, true};
+  for (std::size_t i = 0; i < 6; ++i)
+    for (const Law& law : beside[i]) {
+      if (joint.free(i)) {  // nothing else is there
+        joint.laws[i] = {law};
+        continue;
+      }
+      PlacedJoint one{joint.part + " beside", joint.p_W, joint.R_WJ, {}, {}, {}, {}};
+      one.freedoms.fill(Freedom::free);
+      one.laws[i] = {law};
+      group.branches.push_back({fmt::format("{} {} beside", leg, joint.part), {std::move(one)}});
+    }
+  if (group.branches.empty()) return out.emplace_back(std::move(joint)), void();
+  PlacedLeg main{fmt::format("{} {}", leg, joint.part), {}};
+  main.parts.emplace_back(std::move(joint));
+  group.branches.insert(group.branches.begin(), std::move(main));
+  out.emplace_back(std::move(group));
+}
+
+void put(const Member& member, PlacedMember placed_member, const Mechanism& m, std::vector<PlacedPart>& out) {
+  const auto end = [&](const Joint& fixture, const char* which, const Vector3& p) {
+    const bool yields = std::any_of(fixture.laws.begin(), fixture.laws.end(), [](const auto& l) { return !l.empty(); });
+    if (yields || fixture.stiffness)
+      out.emplace_back(placed(fixture, fmt::format("{} {}", placed_member.part, which), {p, placed_member.R_WM}, m));
+  };
+  end(member.start, "start", placed_member.p_W_start);
+  out.emplace_back(placed_member);
+  end(member.end, "end", placed_member.p_W_end);
 }
 
 PlacedMember placed(const Member& member, const std::string& part, const Vector3& p_W_start, const Vector3& p_W_end,

@@ -15,6 +15,15 @@ struct JointPlace {
 /// Throws InputError on names that do not resolve.
 PlacedJoint placed(const Joint&, const std::string& part, const JointPlace&, const Mechanism&);
 
+/// Adds the joint to a leg of that name, in the place where it stands; with `beside` laws on its freedoms as branches.
+void put(PlacedJoint, const std::array<std::vector<Law>, 6>& beside, const std::string& leg, std::vector<PlacedPart>&);
+
+/// Laws with their materials resolved.
+std::array<std::vector<Law>, 6> beside_of(const Joint&, const Mechanism&, double actuator);
+
+/// Adds the member, between joints where its ends yield.
+void put(const Member&, PlacedMember, const Mechanism&, std::vector<PlacedPart>&);
+
 /// From start to end, local y in the plane of the member and `reference`, or of `otherwise` where the reference lies
 /// along the member. Throws ModelError when it has no length.
 PlacedMember placed(const Member&, const std::string& part, const Vector3& p_W_start, const Vector3& p_W_end,

@@ -1,6 +1,7 @@
 // The legs of the family "6-psu": parts at the points A, B, C.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "msa/base/error.h"
@@ -43,12 +44,15 @@ std::size_t number_of(const std::string& name, const std::array<const char*, n>&
   throw InputError(fmt::format("there is no {} '{}'", what, name));
 }
 
-PlacedPart placed_part(const Part& part, const std::string& name, const LegFrames& f, const Mechanism& m) {
+/// Adds the part to the leg.
+void put_part(const Part& part, const std::string& name, const LegFrames& f, const Mechanism& m, PlacedLeg& leg) {
   const auto point = [&](const std::string& p) { return f.points[number_of(p, point_names, "point")]; };
   if (const auto* member = std::get_if<Member>(&part))
-    return placed(*member, name, point(member->from), point(member->to), f.radial, Vector3::UnitZ(), m);
+    return put(*member, placed(*member, name, point(member->from), point(member->to), f.radial, Vector3::UnitZ(), m), m,
+               leg.parts);
   const Joint& joint = std::get<Joint>(part);
-  return placed(joint, name, {point(joint.at), f.axes[number_of(joint.axes, axes_names, "set of axes")], f.slider}, m);
+  const JointPlace at{point(joint.at), f.axes[number_of(joint.axes, axes_names, "set of axes")], f.slider};
+  put(placed(joint, name, at, m), beside_of(joint, m, f.slider), leg.name, leg.parts);
 }
 
 /// Refusals of work() are that leg's.
@@ -62,9 +66,8 @@ PlacedLeg placed_leg(const SixPsu& k, const Mechanism& m, const Named<Part>& par
   PlacedLeg out;
   out.name = fmt::format("leg {}", leg);
   for (const auto& [name, part] : parts)
-    told_at<InputError>(
-        [&, &name = name] { return fmt::format("{}: leg.{}: ", m.name, name); },
-        [&, &name = name, &part = part] { of_leg(leg, [&] { out.parts.push_back(placed_part(part, name, f, m)); }); });
+    told_at<InputError>([&, &name = name] { return fmt::format("{}: leg.{}: ", m.name, name); },
+                        [&, &name = name, &part = part] { of_leg(leg, [&] { put_part(part, name, f, m, out); }); });
   return out;
 }
 
@@ -73,7 +76,7 @@ PlacedLeg placed_beside(const SixPsu& k, const Mechanism& m, const std::string& 
   PlacedLeg out;
   out.name = fmt::format("leg {} {}", leg, name);
   told_at<InputError>([&] { return fmt::format("{}: beside.{}: ", m.name, name); },
-                      [&] { out.parts.push_back(placed_part(joint, name, frames(k, drawing_of(k, leg), pose), m)); });
+                      [&] { put_part(joint, name, frames(k, drawing_of(k, leg), pose), m, out); });
   out.beside = true;
   return out;
 }
@@ -112,6 +115,13 @@ SixPsuMoves::SixPsuMoves(const SixPsu& k, const Mechanism& m) {
   }
   for (const auto& [name, joint] : m.beside)
     for (std::size_t leg = 0; leg < legs; ++leg) moves_.push_back({moves_of(joint, leg)});
+}
+
+bool SixPsuMoves::hold(const std::vector<PlacedLeg>& placed) const {
+  return std::equal(placed.begin(), placed.end(), moves_.begin(), moves_.end(), [](const auto& leg, const auto& moves) {
+    const auto several = [](const PlacedPart& part) { return std::holds_alternative<PlacedParallel>(part); };
+    return leg.parts.size() == moves.size() && std::none_of(leg.parts.begin(), leg.parts.end(), several);
+  });
 }
 
 void SixPsuMoves::move(const SixPsu& k, const Pose& pose, std::vector<PlacedLeg>& placed,

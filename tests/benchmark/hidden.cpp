@@ -41,7 +41,7 @@ std::optional<VectorX> values_at(const Effect& e, const VectorX& signs, double t
 }  // namespace
 
 std::optional<Hidden> hidden_effect(const Plan& plan, const Effect& e, double lambda, Random& random) {
-  const std::vector<PlacedEffect> places = places_of(e, plan.observations->device());
+  const std::vector<PlacedEffect> places = places_of(e, *plan.observations->subject().machine());
   if (places.empty()) return std::nullopt;
   Hidden out;
   const double lot = random.uniform(0, static_cast<double>(places.size()));

@@ -9,6 +9,7 @@
 #include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/device_file.h"
+#include "tests/benchmark/machines.h"
 #include "tests/benchmark/scores.h"
 #include "validation/effects/effect_file.h"
 #include "validation/parallel/progress.h"
@@ -18,6 +19,7 @@ namespace deflect::benchmark {
 namespace {
 
 constexpr const char* usage = R"(benchmark_diagnosis [options]
+  --devices A,B  other machines: entries and laws at places hidden alike, one row each; 'all' for every built-in one
   --group NAME   one group of sets: {}
   --sets N       about N sets, every group thinned alike (default: all)
   --seed N       of everything drawn by lot (default 1)
@@ -29,6 +31,7 @@ Under mpirun the processes share the sets, and the first one writes.
 
 struct Arguments {
   std::string group, json, out;
+  std::vector<std::string> devices;
   std::size_t sets = 0;
   std::uint64_t seed = 1;
   int threads = 0;
@@ -43,12 +46,24 @@ std::size_t whole(const char* option, const char* text) {
 }
 
 Arguments parse(int argc, char** argv) {
-  const option options[] = {{"group", required_argument, nullptr, 'g'}, {"sets", required_argument, nullptr, 'n'},
-                            {"seed", required_argument, nullptr, 's'},  {"threads", required_argument, nullptr, 't'},
-                            {"json", required_argument, nullptr, 'j'},  {"out", required_argument, nullptr, 'o'},
-                            {"help", no_argument, nullptr, 'h'},        {nullptr, 0, nullptr, 0}};
+  const option options[] = {{"devices", required_argument, nullptr, 'd'},
+                            {"group", required_argument, nullptr, 'g'},
+                            {"sets", required_argument, nullptr, 'n'},
+                            {"seed", required_argument, nullptr, 's'},
+                            {"threads", required_argument, nullptr, 't'},
+                            {"json", required_argument, nullptr, 'j'},
+                            {"out", required_argument, nullptr, 'o'},
+                            {"help", no_argument, nullptr, 'h'},
+                            {nullptr, 0, nullptr, 0}};
   Arguments a;
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) switch (c) {
+      case 'd':
+        for (std::string rest = optarg; !rest.empty();) {
+          const std::size_t comma = std::min(rest.find(','), rest.size());
+          a.devices.push_back(rest.substr(0, comma));
+          rest = rest.substr(std::min(comma + 1, rest.size()));
+        }
+        break;
       case 'g':
         a.group = optarg;
         break;
@@ -79,7 +94,17 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
+void run_machines(const Arguments& a) {
+  const std::vector<MachineRow> rows = diagnose_machines(a.devices, a.sets > 0 ? a.sets : 24, a.seed, a.threads);
+  if (!a.json.empty()) write_text(a.json, json_text(machines_json(rows)));
+  fmt::print("{}", machines_table(rows));
+}
+
 void run_all(const Arguments& a, Ranks* ranks) {
+  if (!a.devices.empty()) {
+    if (!ranks || ranks->first()) run_machines(a);
+    return;
+  }
   const std::string data = std::string(DEFLECT_SOURCE_DIR) + "/validation";
   const Mechanism device = read_mechanism(data + "/devices/haptic-6psu-ideal-joints.yaml");
   const std::vector<Effect> effects = catalogue(data + "/effects/catalogue");

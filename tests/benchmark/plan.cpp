@@ -75,10 +75,10 @@ VectorX numbers_of(const Measurements& data) {
 }  // namespace
 
 Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::string& name, std::uint64_t seed,
-           bool temperature) {
+           const PlanOptions& o) {
   simulation.seed = seed;
-  simulation.sigma_u = sigma_u;
-  if (temperature) simulation.temperature = 22, simulation.swing = 2;
+  simulation.sigma_u = o.sigma;
+  if (o.temperature) simulation.temperature = 22, simulation.swing = 2;
   simulation.division = frame::equal_division(configure(m, home_pose(m)), elements);
   readings = campaign(name, m, force, seed);
   healthy = simulate(m, readings, simulation, alone);
@@ -86,6 +86,7 @@ Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::st
   signatures = deflect::signatures(*observations, effects, 1);
   const VectorX rest = observations->residual(m);
   nominal = numbers_of(healthy) - rest;
+  if (!o.changes) return;
   elsewhere = new_poses(m, seed + 1);
   nominal_elsewhere = predict_elsewhere(*this, m, theory("analytic"));
   const VectorX linear = predicted_elsewhere(*this, m, theory("analytic"), Geometry::linear);
@@ -105,7 +106,8 @@ Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::st
 VectorX Plan::residual(const Measurements& data) const { return numbers_of(data) - nominal; }
 
 VectorX Plan::whitened_change(const EffectInstance& e) const {
-  return observations->null_residual() - observations->whitened_residual(with_effect(observations->device(), e));
+  return observations->null_residual() -
+         observations->whitened_residual(with_effect(*observations->subject().machine(), e));
 }
 
 VectorX predict_elsewhere(const Plan& plan, const Mechanism& m, const Theory& theory) {
@@ -120,8 +122,8 @@ const Plan& Plans::at(const std::string& campaign, int variant) {
   while (campaign != campaign_names[at]) ++at;
   Slot& slot = slots_[at * variants + static_cast<std::size_t>(variant)];
   std::call_once(slot.once, [&] {
-    slot.plan =
-        std::make_unique<Plan>(device_, effects_, campaign, seed_ + 1000 * (at + 1) + 10 * variant, variant % 2 == 1);
+    slot.plan = std::make_unique<Plan>(device_, effects_, campaign, seed_ + 1000 * (at + 1) + 10 * variant,
+                                       PlanOptions{sigma_u, variant % 2 == 1, true});
   });
   return *slot.plan;
 }

@@ -25,9 +25,16 @@ struct Change {
   MatrixX measured, elsewhere;  ///< of the plan's numbers; at the new poses
 };
 
+struct PlanOptions {
+  double sigma = sigma_u;    ///< m: of a reading
+  bool temperature = false;  ///< is recorded
+  bool changes = true;       ///< `changes` and new poses are wanted: for the other methods
+};
+
 /// Must stand where it was made: its parts point at each other.
 struct Plan {
-  Plan(const Mechanism&, const std::vector<Effect>&, const std::string& campaign, std::uint64_t seed, bool temperature);
+  Plan(const Mechanism&, const std::vector<Effect>&, const std::string& campaign, std::uint64_t seed,
+       const PlanOptions& = {});
   Plan(const Plan&) = delete;
   Plan& operator=(const Plan&) = delete;
 

@@ -12,6 +12,7 @@
 #include "msa/mechanism/stand.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "validation/effects/place_effects.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
 #include "validation/report/diagnosis_results.h"
@@ -102,6 +103,17 @@ TEST(Diagnose, SaysThatTheDataCannotTell) {
   EXPECT_NE(std::find(group.begin(), group.end(), "platform_flexibility"), group.end());
 }
 
+/// And the laws at the device's places.
+std::vector<Effect> with_places(std::vector<Effect> named) {
+  for (Effect& e : place_effects(ideal(), named)) named.push_back(std::move(e));
+  return named;
+}
+
+const std::vector<Effect>& entries_and_places() {
+  static const std::vector<Effect> all = with_places(test::all_effects());
+  return all;
+}
+
 // An effect of one's own: the machine turns on its base about the vertical.
 const char* own_effect = R"(name: turntable
 title: The machine turns on its base
@@ -121,13 +133,43 @@ TEST(Diagnose, FindsAnEffectOfOnesOwnAndCallsItUnknownWithoutItsFile) {
   const Diagnosis without = diagnose(ideal(), data, effects);
   EXPECT_EQ(without.verdict, Verdict::unknown_effect);
   EXPECT_FALSE(without.pattern.empty());
-  ASSERT_FALSE(without.localised.empty());
-  EXPECT_EQ(without.localised.front().what, "the base's rz, like a spring");
+
+  const Diagnosis by_places = diagnose(ideal(), data, entries_and_places());
+  ASSERT_EQ(names(by_places.missing), std::vector<std::string>{"linear@base.rz"});
+  EXPECT_NEAR(by_places.fit.values(0), 2e6, 0.1 * 2e6);
 
   add_effect(effects, own);
-  const Diagnosis with_file = diagnose(ideal(), data, effects);
+  const std::vector<Effect> all = with_places(effects);
+  const Diagnosis with_file = diagnose(ideal(), data, all);
   ASSERT_EQ(names(with_file.missing), std::vector<std::string>{"turntable"});
   const auto [low, high] = interval95(with_file.missing, with_file.fit, 0);
+  EXPECT_LT(low, 2e6);
+  EXPECT_GT(high, 2e6);
+}
+
+// Hundreds of laws at places do not outvote an entry, do not alarm where nothing is missing and do not change what an
+// entry's fit says.
+TEST(Diagnose, LawsAtPlacesStandBesideTheEntries) {
+  const Measurements data = measured(with("guide_root_compliance", {5e6}), 11);
+  const Diagnosis entries = diagnose(ideal(), data, test::all_effects()),
+                  all = diagnose(ideal(), data, entries_and_places());
+  EXPECT_EQ(names(all.missing), names(entries.missing));
+  EXPECT_NEAR(all.fit.values(0) / entries.fit.values(0), 1, 1e-6);
+  EXPECT_NEAR(total(all), 1, 1e-9);
+  EXPECT_GT(all.candidates.size(), entries.candidates.size() + 100);
+
+  const Diagnosis healthy = diagnose(ideal(), measured(ideal(), 12), entries_and_places());
+  EXPECT_EQ(healthy.verdict, Verdict::nothing_missing);
+}
+
+// One leg's guide is clamped softly about one axis, which no entry is about.
+TEST(Diagnose, NamesALawAtAPlaceThatNoEntryIsAbout) {
+  const Mechanism truth =
+      edited(ideal(), {"leg[4].actuator.rx", "{law: linear, stiffness: 2e6 Nmm/rad}", Edit::Action::append});
+  const Diagnosis d = diagnose(ideal(), measured(truth, 31), entries_and_places());
+  ASSERT_EQ(names(d.missing), std::vector<std::string>{"linear@leg.actuator.rx"});
+  EXPECT_EQ(d.missing.front().leg, 4);
+  const auto [low, high] = interval95(d.missing, d.fit, 0);
   EXPECT_LT(low, 2e6);
   EXPECT_GT(high, 2e6);
 }

@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Hidden{"p01", {"guide_root_compliance"}, {5e6}, {}}, Hidden{"p02", {"joint_clearance"}, {0.02}, {}},
                     Hidden{"p03", {"actuator_compliance"}, {500}, {}}, Hidden{"p04", {"base_tilt"}, {3e7}, {}},
                     Hidden{"p05", {"hertz_contact"}, {0.0025}, {}}, Hidden{"p06", {"leg_defect"}, {0.6}, 5},
-                    Hidden{"p07", {"joint_friction"}, {2, 524}, {}},
+                    Hidden{"p07", {"joint_friction"}, {2, 445, 0}, {}},
                     Hidden{"p11", {"platform_flexibility", "joint_compliance"}, {697, 1003}, {}},
                     Hidden{"p08", {}, {}, {}}, Hidden{"p09", {}, {}, {}}),
     [](const auto& sample) { return sample.param.set; });

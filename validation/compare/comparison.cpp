@@ -64,10 +64,12 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
 }
 
 /// Root mean square of a residual that Errors speak of, with nothing missing.
-double expected_rmse(const ResidualStudy& s, const PartedColumns& A, const std::vector<double>& sigma) {
+double expected_rmse(const ResidualStudy& s, const ToleranceModel& t, const std::vector<double>& sigma) {
   double squares = 0, n = 0;
   const bool rotations = rotations_alone(s.values);
-  const VectorX tolerances = A.squared_row_norms();
+  VectorX tolerances = t.A.squared_row_norms();
+  for (std::size_t k = 0; k < t.nuisances.size(); ++k)
+    if (t.nuisances[k].zero) tolerances -= t.A.shared.col(as_index(k)).cwiseAbs2();
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const MeasuredValue& v = s.values[i];
     if ((v.component >= 3) != rotations) continue;
@@ -136,6 +138,7 @@ class Comparing {
     Outliers outliers = gross_outliers(s, c.tolerances.A, c.sigma, left_, all, work_.threads);
     aside_ = std::move(outliers.aside);
     uncertainty_ = std::move(outliers.uncertainty);
+    take_zero();
     c.set_aside.clear();
     for (std::size_t i = 0; i < aside_.size(); ++i)
       if (aside_[i]) c.set_aside.push_back(s.data->readings[i].line);
@@ -145,7 +148,7 @@ class Comparing {
     c.chi2_per_dof = chi2 / freedoms;
     c.p_value = chi_squared_tail(freedoms, chi2);
     c.sigma_u = rms_of_errors(s.values, Eigen::Map<const VectorX>(c.sigma.data(), std::ssize(c.sigma)));
-    c.noise_and_tolerances = expected_rmse(s, c.tolerances.A, c.sigma);
+    c.noise_and_tolerances = expected_rmse(s, c.tolerances, c.sigma);
   }
 
   /// By how much the χ² of what is left may change, up to chance, where the deformed shape is off by a fifth of itself.
@@ -183,6 +186,23 @@ class Comparing {
   }
 
  private:
+  /// Where nobody knows the zero of the readings they count from here on from where the model as it is puts it; how
+  /// well it is known stays in the tolerances.
+  void take_zero() {
+    VectorX shift = VectorX::Zero(c.residual.size());
+    VectorX eta;
+    for (std::size_t k = 0; k < c.tolerances.nuisances.size(); ++k) {
+      if (!c.tolerances.nuisances[k].zero) continue;
+      if (eta.size() == 0) eta = uncertainty_->nuisances(left_);
+      shift += eta(as_index(k)) * c.tolerances.A.shared.col(as_index(k));
+    }
+    if (eta.size() == 0) return;
+    for (std::size_t i = 0; i < c.study.values.size(); ++i) c.study.values[i].value -= shift(as_index(i));
+    c.residual -= shift;
+    left_ -= shift;
+    add_errors(c);
+  }
+
   ComparisonOptions options_;
   Work work_;
   std::vector<Pattern> patterns_;

@@ -81,6 +81,7 @@ double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x)
 }
 
 void add_errors(Comparison& c) {
+  for (auto* list : {&c.by_axis, &c.by_pose, &c.by_direction, &c.by_magnitude, &c.by_heading}) list->clear();
   const Measurements& data = *c.study.data;
   const bool rotations = rotations_alone(c.study.values);
   std::vector<std::size_t> all(c.study.values.size());

@@ -35,8 +35,9 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int sets
                      const Counted& counted) {
   if (all.empty() || !(least_p < 1)) return 1;
   std::vector<double> wanted;
-  for (const Signature& s : all)
-    wanted.push_back(std::max(gain_at_p_value(s, least_p), std::numeric_limits<double>::min()));
+  const std::vector<double> weights = weights_of(all);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    wanted.push_back(std::max(gain_at_p_value(all[i], least_p * weights[i]), std::numeric_limits<double>::min()));
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(inner_products(all));
   const Eigen::Index columns = axes.eigenvalues().size();
   const MatrixX root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();

@@ -1,5 +1,7 @@
 #include "validation/diagnosis/candidates.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -45,9 +47,10 @@ std::vector<double> summed(const std::vector<double>& x, const std::vector<std::
 std::vector<double> shared_priors(const std::vector<Signature>& all, const std::vector<std::size_t>& classes) {
   std::map<std::string, double> places;
   for (const Signature& s : all) places[s.effect.effect->name] += 1;
+  const std::vector<double> looks = weights_of(all);
   std::vector<double> weight, largest(all.size(), 0);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    weight.push_back(1 / places[all[i].effect.effect->name]);
+    weight.push_back(looks[i] / places[all[i].effect.effect->name]);
     largest[classes[i]] = std::max(largest[classes[i]], weight[i]);
   }
   const std::vector<double> together = summed(weight, classes);
@@ -59,6 +62,9 @@ std::vector<double> shared_priors(const std::vector<Signature>& all, const std::
   for (double& w : weight) w *= Candidates::prior_missing * (1 - Candidates::prior_unknown) / total;
   return weight;
 }
+
+/// What is sure to be less likely than the best by this logarithm is not fitted.
+constexpr double far_behind = 12;
 
 /// Physics lets it act to one side only, and the residual asks for the other.
 bool wrong_way(const Signature& s, const VectorX& residual) {
@@ -128,19 +134,34 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
     c.gain = allowed[i] && !wrong_way(s, so_far.residual) ? most_gain(s, so_far.residual, fitted) : 0;
     best = std::max(best, c.gain);
   }
-  const double enough = std::max(near_nothing, 0.5 * best - hopeless);
+  // A few directions say less of an effect that parameters shape than of one that is proportional to its size.
+  const auto enough = [best](const Signature& s) {
+    return std::max(near_nothing, (s.shaped ? 0.1 : 0.5) * best - hopeless);
+  };
   std::atomic<std::size_t> done = 0;
-  for_each_case(out.size(), 1, threads_, [&](std::size_t i) {
-    Candidate& c = out[i];
-    const Signature& s = signatures_[i];
-    if (allowed[i] && c.gain >= enough && log_odds(i, 1.2 * c.gain + bent, class_priors_[i]) > least) {
-      c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual));
-      c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
-    }
-    c.log_odds = allowed[i] ? log_odds(i, c.gain, priors_[i]) : out_of_question;
-    c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations.numbers());
-    if (progress_) progress_(++done, out.size());
-  });
+  // Entries first: of the many laws at places only those are fitted that can come near them.
+  std::vector<std::size_t> entries, places;
+  for (std::size_t i = 0; i < out.size(); ++i) (signatures_[i].effect.effect->place ? places : entries).push_back(i);
+  double bar = least;
+  for (const std::vector<std::size_t>* part : {&entries, &places}) {
+    for_each_case(part->size(), 1, threads_, [&](std::size_t k) {
+      const std::size_t i = (*part)[k];
+      Candidate& c = out[i];
+      const Signature& s = signatures_[i];
+      if (allowed[i] && c.gain >= enough(s) && log_odds(i, 1.2 * c.gain + bent, class_priors_[i]) > bar) {
+        c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual));
+        if (s.effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))
+          c.fit = not_found(fmt::format("its {} runs to the end of what it can be, {:g}",
+                                        s.effect.effect->parameters.front().name, c.fit.values.tail<1>()(0)));
+        c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
+      }
+      c.log_odds = allowed[i] ? log_odds(i, c.gain, priors_[i]) : out_of_question;
+      c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations.numbers());
+      if (progress_) progress_(++done, out.size());
+    });
+    for (const std::size_t i : *part)
+      if (out[i].fit.found) bar = std::max(bar, out[i].log_odds - far_behind);
+  }
   add_up_classes(out);
   note_left_out(out);
   return out;

@@ -19,6 +19,7 @@ constexpr double alarm = 0.02;  // chance above which nothing is called missing
 constexpr double sure = 0.7;    // probability from which something unknown is there
 constexpr std::size_t quality_of = 5;
 constexpr double left_over_evidence = 2, left_over_p = 3e-3;
+constexpr double large_part = 4;  // times the misfit with an effect that is left without it
 
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
@@ -73,7 +74,7 @@ Selection beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns
   for (std::size_t i = s.effects.size(); i-- > 0;) {
     auto [others, values] = without(s.effects, s.fit.values, i);
     Fit rest = fit_of_all(s.observations, others, values);
-    if (!rest.found) continue;  // the others need it
+    if (!rest.found || rest.chi2 > large_part * s.fit.chi2) continue;  // the others need it; or nearly all is its own
     const double gain = all.chi2(rest.residual, size) - all.chi2(s.fit.residual, size);
     if (candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
     s.effects = std::move(others);
@@ -84,16 +85,17 @@ Selection beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns
 }
 
 /// Of what is left unexplained: its size, its pattern, where it acts, the entry that comes nearest.
-void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const Selection& found, int threads) {
+void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const Selection& found) {
   const Observations& o = found.observations;
   const auto numbers = static_cast<double>(o.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
   d.pattern = left_over_pattern(o, subject_with(o, found.effects, found.fit.values));
-  d.localised = scan(o, found.fit, threads);
+  d.localised = localised(all, found.fit, numbers);
   const MatrixX fitted = orthonormal(found.fit.signature);
   for (const Signature& s : all)
-    if (const double share = most_gain(s, found.fit.residual, fitted) / left; share > d.nearest_share) {
+    if (const double share = most_gain(s, found.fit.residual, fitted) / left;
+        !s.effect.effect->place && share > d.nearest_share) {
       d.nearest = name_of(s.effect);
       d.nearest_share = std::min(1.0, share);
     }
@@ -184,8 +186,9 @@ Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::
   weigh(d, probability_of_unknown(discrepancy.log_evidence(null.residual) - log_weight(d.candidates),
                                   missing_odds * Candidates::prior_unknown));
   double least_p = 1;
+  const std::vector<double> weights = weights_of(all);
   for (std::size_t i = 0; i < all.size(); ++i)
-    least_p = std::min(least_p, single_p_value(all[i], d.candidates[i].gain));
+    least_p = std::min(least_p, single_p_value(all[i], d.candidates[i].gain) / weights[i]);
   d.bootstrap_sets = options.bootstrap_sets;
   d.chance = chance_of_any(all, least_p, options.bootstrap_sets, work,
                            [&](std::size_t done, std::size_t of) { rounds(done, of); });
@@ -204,7 +207,7 @@ Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::
     weigh(d, probability_of_unknown(evidence_left, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
   if (d.unexplained) {
     found = beside_unknown(patterns, candidates, std::move(found));
-    describe_left_over(d, all, found, work.threads);
+    describe_left_over(d, all, found);
   }
   d.missing = found.effects;
   d.fit = found.fit;

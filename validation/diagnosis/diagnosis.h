@@ -14,7 +14,7 @@
 
 #include "validation/diagnosis/candidates.h"
 #include "validation/diagnosis/detectable.h"
-#include "validation/diagnosis/scan.h"
+#include "validation/diagnosis/localised.h"
 #include "validation/parallel/ranks.h"
 
 namespace deflect {
@@ -53,7 +53,7 @@ struct Diagnosis {
   std::string pattern;                                   ///< of what is left
   std::string nearest;                                   ///< entry that comes nearest to what is left, …
   double nearest_share = 0;                              ///< … and how much of that it would take off
-  std::vector<Localised> localised;                      ///< where it acts, by the systematic scan
+  std::vector<Localised> localised;                      ///< where it acts, by the laws at places
   std::vector<std::pair<std::string, double>> strained;  ///< tolerances beyond two deviations at the end
   std::vector<Detectable> detectable;
   std::vector<LeftOut> left_out;  ///< entries that are no hypothesis for this device and these data

@@ -133,6 +133,7 @@ EffectInstance instance(const Effect& e, const FoundEffect& found) {
     const EffectParameter& p = e.parameters[i];
     const auto at = std::find_if(found.parameters.begin(), found.parameters.end(),
                                  [&](const auto& given) { return given.first == p.name; });
+    if (at == found.parameters.end() && p.optional) continue;
     if (at == found.parameters.end())
       throw InputError(fmt::format("effect '{}' needs a value: --set {}={:g} ({}; between {:g} and {:g})", e.name,
                                    p.name, p.start, p.about, p.low, p.high));

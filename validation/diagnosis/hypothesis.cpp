@@ -117,7 +117,7 @@ std::vector<VectorX> starts(const PlacedEffect& e) {
     else if (from_nothing)
       tries = {*p.vanishes * 1.02, *p.vanishes / 1.02};
     else if (p.log) {
-      const int count = all.size() == 1 ? 9 : 3;
+      const int count = all.size() == 1 ? 9 : p.vanishes ? 7 : 3;
       const double low = std::max(std::log(p.low), std::log(p.start) - 9),
                    high = std::min(std::log(p.high), std::log(p.start) + 9);
       for (int k = 0; k < count; ++k) tries.push_back(std::exp(low + (high - low) * (k + 0.5) / count));
@@ -161,16 +161,31 @@ struct Start {
   double chi2 = INFINITY;
 };
 
+/// Values that were fitted to an end of their range say little there: where others join them a search may not leave it.
+/// The same with their starts in their place; nothing where none stands at an end.
+std::optional<VectorX> off_the_ends(const Problem& problem, const VectorX& from) {
+  VectorX out = from;
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
+    const EffectParameter& p = *nth(problem.parameters(), i);
+    if (!p.vanishes && (from(i) <= p.low || from(i) >= p.high)) out(i) = p.start;
+  }
+  if (out == from) return std::nullopt;
+  return out;
+}
+
 /// The best of the last effect's values, behind those of the effects before.
 std::optional<Start> best_start(const Problem& problem, const std::vector<VectorX>& tails, const VectorX& from) {
   std::optional<Start> best;
-  for (const VectorX& tail : tails) {
-    VectorX values(from.size() + tail.size());
-    values << from, tail;
-    const VectorX x = problem.coordinates(values);
-    const std::optional<VectorX> r = problem.residual(x);
-    if (r && !(best && r->squaredNorm() >= best->chi2)) best = Start{x, r->squaredNorm()};
-  }
+  std::vector<VectorX> heads = {from};
+  if (const auto moved = off_the_ends(problem, from)) heads.push_back(*moved);
+  for (const VectorX& head : heads)
+    for (const VectorX& tail : tails) {
+      VectorX values(head.size() + tail.size());
+      values << head, tail;
+      const VectorX x = problem.coordinates(values);
+      const std::optional<VectorX> r = problem.residual(x);
+      if (r && !(best && r->squaredNorm() >= best->chi2)) best = Start{x, r->squaredNorm()};
+    }
   return best;
 }
 
@@ -200,13 +215,13 @@ Fit search_from(const Problem& problem, const Start& start, Eigen::Index rows) {
   return out;
 }
 
+}  // namespace
+
 Fit not_found(std::string why) {
   Fit out;
   out.why = std::move(why);
   return out;
 }
-
-}  // namespace
 
 Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess) {
   const auto fitted = outcome_of([&] {
@@ -254,6 +269,16 @@ std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::siz
   const auto at = as_index(i);
   const double x = coordinate(p, f.values(at)), half = 1.959964 * std::sqrt(std::max(0.0, f.covariance(at, at)));
   return {value_at(p, x - half), value_at(p, x + half)};
+}
+
+bool wants_more_than_there_can_be(const Hypothesis& h, const Fit& f) {
+  const std::vector<EffectParameter>& own = h.back().effect->parameters;
+  if (own.size() != 1 || !f.found) return false;
+  const EffectParameter& p = own.front();
+  const double x = coordinate(p, f.values(f.values.size() - 1));
+  for (const double bound : {p.low, p.high})
+    if (p.vanishes != bound && std::abs(x - coordinate(p, bound)) < 1e-3) return true;
+  return false;
 }
 
 bool runs_to_a_bound(const Hypothesis& h, const Fit& f) {

@@ -33,6 +33,9 @@ Fit fit(const Observations&, const Hypothesis&, const VectorX& from = {}, const 
 /// The same from values of all of them, without a search for starts; of no effect: the null.
 Fit fit_of_all(const Observations&, const Hypothesis&, const VectorX& values);
 
+/// A fit that there is none of, and why.
+Fit not_found(std::string why);
+
 /// What is left when effect i is taken away, and the values of that.
 std::pair<Hypothesis, VectorX> without(Hypothesis, const VectorX& values, std::size_t i);
 
@@ -48,6 +51,10 @@ std::vector<const EffectParameter*> parameters_of(const Hypothesis&);
 /// Whether the last effect's fit stands at a bound of one of several parameters: it is then another, simpler effect (a
 /// spring that would harden far beyond the data is a linear one).
 bool runs_to_a_bound(const Hypothesis&, const Fit&);
+
+/// Whether the last effect's one parameter is fitted to a bound at which it does not vanish: more of it would be needed
+/// than there can be.
+bool wants_more_than_there_can_be(const Hypothesis&, const Fit&);
 
 /// Whether an amplitude of the effect has a sign that physics fixes (one parameter, which vanishes at a bound).
 bool one_sided(const PlacedEffect&);

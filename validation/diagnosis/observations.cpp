@@ -87,10 +87,23 @@ VectorX Observations::whitened_residual(const Subject& subject) const {
 }
 
 double Observations::rmse(const Subject& subject) const {
-  return rms_of_kept(comparison_->study.values, residual(subject), aside_);
+  return rms_of_kept(comparison_->study.values, from_zero(residual(subject)), aside_);
 }
 
-double Observations::held_out_rmse(const Subject& subject) const { return held_out_->rmse(residual(subject)); }
+VectorX Observations::from_zero(VectorX residual) const {
+  const std::vector<Tolerance>& all = comparison_->tolerances.nuisances;
+  if (std::none_of(all.begin(), all.end(), [](const Tolerance& t) { return t.zero; })) return residual;
+  const VectorX eta = uncertainty_->nuisances(residual);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].zero) residual -= eta(as_index(i)) * A_.shared.col(as_index(i));
+  return residual;
+}
+
+double Observations::held_out_rmse(const Subject& subject) const {
+  const VectorX all = residual(subject);
+  // Of one pose no other says where the readings count from.
+  return held_out_->rmse(comparison_->study.data->poses.size() > 1 ? all : from_zero(all));
+}
 
 std::vector<std::pair<std::string, double>> Observations::strained(const Subject& subject) const {
   const VectorX eta = uncertainty_->nuisances(residual(subject));

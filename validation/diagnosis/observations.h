@@ -46,6 +46,8 @@ class Observations {
   Observations granted(const Subject&) const;
 
  private:
+  /// Without the zero of the readings, where nobody knows it.
+  VectorX from_zero(VectorX residual) const;
   void weigh(const std::vector<bool>& aside);
   void count_shape();
 

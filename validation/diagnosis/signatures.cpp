@@ -7,6 +7,7 @@
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "validation/diagnosis/by_statics.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
@@ -16,16 +17,23 @@ namespace {
 
 constexpr double unseen = 1e-6;  // of a whitened change at the start: nothing that these data show
 
-/// The start, and where a parameter cannot vanish (it shapes the effect) this a hundredth and a hundred times of it.
-std::vector<VectorX> shapes(const std::vector<EffectParameter>& all, const VectorX& start) {
+/// Of amplitudes together: the start and each of them a hundredth to a hundred times, which spans what they can do.
+///
+/// Where parameters shape the effect: the start, and what shapes it a thirtieth and thirty times, from never slipping
+/// to slipping at once, from hardly bent to bent at every load; an amplitude that starts from nothing thirty times too,
+/// since friction as large as the loads is no multiple of a little.
+std::vector<VectorX> shapes(const std::vector<EffectParameter>& all, const VectorX& start, bool shaped) {
   std::vector<VectorX> out = {start};
   if (all.size() == 1) return out;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!all[i].log) continue;
-    for (const double times : {0.01, 0.1, 10.0, 100.0}) {
+    const EffectParameter& p = all[i];
+    std::vector<double> factors = {0.01, 0.1, 10, 100};
+    if (shaped) factors = !p.vanishes ? std::vector{1.0 / 30, 30.0} : std::vector{30.0};
+    if (!p.log || (shaped && p.vanishes && std::isinf(*p.vanishes))) continue;
+    for (const double times : factors) {
       out.push_back(start);
       double& value = out.back()(as_index(i));
-      value = std::clamp(times * value, all[i].low, all[i].high);
+      value = std::clamp(times * value, p.low, p.high);
     }
   }
   return out;
@@ -51,7 +59,7 @@ MatrixX directions(const Observations& o, const PlacedEffect& e, const VectorX& 
       columns.push_back(change(values));
     }
   else
-    for (const VectorX& values : shapes(all, start)) columns.push_back(change(values));
+    for (const VectorX& values : shapes(all, start, shaped)) columns.push_back(change(values));
   MatrixX out(o.null_residual().size(), std::ssize(columns));
   for (std::size_t i = 0; i < columns.size(); ++i) out.col(as_index(i)) = columns[i];
   return out;
@@ -89,6 +97,14 @@ double tail(int freedoms, bool one_sided, double gain) {
   return one_sided ? p / 2 : p;
 }
 
+/// Of a law at a place, which is one of the subject's own.
+std::vector<PlacedEffect> every_leg(const Effect& e, const Subject& subject) {
+  if (e.scope != Scope::one_leg) return {{&e, {}}};
+  std::vector<PlacedEffect> out;
+  for (int leg = 1; leg <= subject.legs(); ++leg) out.push_back({&e, leg});
+  return out;
+}
+
 }  // namespace
 
 std::vector<Signature> signatures(const Observations& o, const std::vector<Effect>& effects, int threads,
@@ -96,7 +112,7 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
   std::vector<PlacedEffect> places;
   for (const Effect& e : effects) {
     if (is_geometry(e)) continue;
-    const std::vector<PlacedEffect> own = places_of(e, o.subject());
+    const std::vector<PlacedEffect> own = e.place ? every_leg(e, o.subject()) : places_of(e, o.subject());
     places.insert(places.end(), own.begin(), own.end());
     if (left_out && own.empty()) {
       const auto leg = e.scope == Scope::one_leg ? std::optional(1) : std::nullopt;
@@ -105,10 +121,21 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
   }
   std::vector<Signature> all(places.size());
   std::vector<std::string> why(places.size());
+  const ByStatics statics(o, places, threads);
   for_each_case(places.size(), 1, threads, [&](std::size_t i) {
     Signature& s = all[i];
     s.effect = places[i];
     const auto looked_at = outcome_of([&] {
+      if (std::optional<VectorX> change = statics.change(places[i])) {
+        s.one_sided = one_sided(places[i]);
+        s.at_start = std::move(*change);
+        const double size = s.at_start.norm();
+        if (size > unseen)
+          s.basis = s.at_start / size;
+        else
+          why[i] = "changes nothing that was measured";
+        return true;
+      }
       const VectorX start = start_values(*places[i].effect);
       const MatrixX columns = directions(o, places[i], start, s.shaped);
       s.at_start =
@@ -126,9 +153,20 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
     if (!looked_at) why[i] = looked_at.why;
   });
   for (std::size_t i = 0; left_out && i < all.size(); ++i)
-    if (all[i].basis.cols() == 0) left_out->push_back({name_of(places[i]), why[i]});
+    if (all[i].basis.cols() == 0 && !places[i].effect->place) left_out->push_back({name_of(places[i]), why[i]});
   std::erase_if(all, [](const Signature& s) { return s.basis.cols() == 0; });
   return all;
+}
+
+std::vector<double> weights_of(const std::vector<Signature>& all) {
+  constexpr double share_of_places = 0.15;
+  const auto is_place = [](const Signature& s) { return s.effect.effect && s.effect.effect->place; };
+  const auto places = static_cast<double>(std::count_if(all.begin(), all.end(), is_place));
+  const double entries = static_cast<double>(all.size()) - places;
+  const double each = entries > 0 ? std::min(1.0, share_of_places * entries / places) : 1;
+  std::vector<double> out;
+  for (const Signature& s : all) out.push_back(is_place(s) ? each : 1);
+  return out;
 }
 
 std::optional<VectorX> guess(const Signature& s, const VectorX& residual) {

@@ -32,6 +32,10 @@ struct LeftOut {
 std::vector<Signature> signatures(const Observations&, const std::vector<Effect>&, int threads,
                                   std::vector<LeftOut>* left_out = nullptr);
 
+/// How much each counts where many are looked at: an entry of the catalogue 1, all laws at places together a share of
+/// all entries, so that they do not outvote them; 1 where there are no entries.
+std::vector<double> weights_of(const std::vector<Signature>&);
+
 /// What the effect's value would be, were its signature in proportion to its distance from where it vanishes: from the
 /// residual it is to explain. Nothing for effects of several parameters, or of the wrong sign.
 std::optional<VectorX> guess(const Signature&, const VectorX& residual);

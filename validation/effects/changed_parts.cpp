@@ -28,6 +28,15 @@ bool same(const PlacedPart& a, const PlacedPart& b) {
   return true;  // branches are compared as legs
 }
 
+/// The same joint with the same laws side by side.
+bool same_joint(const PlacedPart& a, const PlacedPart& b) {
+  const auto* group = std::get_if<PlacedParallel>(&a);
+  const auto* other = std::get_if<PlacedParallel>(&b);
+  if (!group || !other) return !group && !other && same(a, b);
+  return std::equal(group->branches.begin(), group->branches.end(), other->branches.begin(), other->branches.end(),
+                    [](const PlacedLeg& x, const PlacedLeg& y) { return same(x.parts.front(), y.parts.front()); });
+}
+
 const std::string& name_of(const PlacedPart& part) {
   return std::visit([](const auto& p) -> const std::string& { return p.part; }, part);
 }
@@ -43,7 +52,9 @@ void compare_legs(const std::vector<PlacedLeg>& before, const std::vector<Placed
       for (const PlacedPart& part : old->parts) parts[name_of(part)] = &part;
     for (const PlacedPart& part : leg.parts) {
       const PlacedPart* drawn = parts.contains(name_of(part)) ? parts[name_of(part)] : nullptr;
-      if (const auto* group = std::get_if<PlacedParallel>(&part)) {
+      if (joint_of(part)) {
+        if (!drawn || !joint_of(*drawn) || !same_joint(*drawn, part)) out.push_back({leg.name, name_of(part)});
+      } else if (const auto* group = std::get_if<PlacedParallel>(&part)) {
         const auto* was = drawn ? std::get_if<PlacedParallel>(drawn) : nullptr;
         compare_legs(was ? was->branches : std::vector<PlacedLeg>{}, group->branches, out);
       } else if (!drawn || !same(*drawn, part)) {

@@ -15,6 +15,7 @@
 #include "msa/mechanism/fields.h"
 #include "msa/mechanism/mechanism_tree.h"
 #include "msa/mechanism/place.h"
+#include "validation/subject/machine_places.h"
 
 namespace deflect {
 namespace {
@@ -79,13 +80,39 @@ std::vector<std::string> moduli(const std::string& path, const Mechanism& m) {
   return out;
 }
 
+/// "leg.…", as the reader has seen to, in one leg.
+std::string in_leg(const std::string& path, int leg) { return fmt::format("leg[{}]{}", leg, path.substr(3)); }
+
+/// Parts by what they are for, not by their names.
+struct Role {
+  std::string_view selector;
+  bool (*is)(const Place&);
+  const char* none;
+};
+constexpr Role roles[] = {
+    {"leg.<line>", [](const Place& p) { return p.kind == PlaceKind::line; },
+     "no bar carries a force along itself alone"},
+    {"leg.<guide>", [](const Place& p) { return p.kind == PlaceKind::clamp && p.freedoms.size() == 2 && p.slides; },
+     "no slide that is driven holds a member"},
+};
+
+std::vector<std::string> of_role(const Role& role, const std::string& rest, const Mechanism& m,
+                                 std::optional<int> leg) {
+  std::vector<std::string> out;
+  for (const Place& p : places_of(m)) {
+    if (!role.is(p) || (leg && !p.in_legs()) || (p.rotation() && p.freedoms.front() != 3)) continue;
+    out.push_back((leg ? in_leg(p.path, *leg) : p.path) + rest);
+  }
+  if (out.empty()) throw InputError(fmt::format("{}{}: {}", role.selector, rest, role.none));
+  return out;
+}
+
 /// "leg.<actuated>.<slide>" as the paths of the drives.
 std::vector<std::string> selected(const std::string& path, const Mechanism& m, std::optional<int> leg) {
-  if (path.find('<') == path.npos) {
-    if (!leg) return {path};
-    return {fmt::format("leg[{}]{}", *leg, path.substr(3))};  // "leg.…", as the reader has seen to
-  }
+  if (path.find('<') == path.npos) return {leg ? in_leg(path, *leg) : path};
   if (path.ends_with(".<moduli>")) return moduli(path, m);
+  for (const Role& role : roles)
+    if (path.starts_with(role.selector)) return of_role(role, path.substr(role.selector.size()), m, leg);
   const std::string head = fmt::format("leg.{}.", actuated);
   std::string rest = path.starts_with(head) ? path.substr(head.size()) : path;
   const Selector* motion = nullptr;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "validation/subject/place.h"
+
 namespace deflect {
 
 /// Numbers are in the unit that the name ends with: "stiffness_N_per_mm". A name without one is a plain number.
@@ -18,14 +20,17 @@ struct EffectParameter {
   bool log = false;                ///< searched on a logarithmic scale; low > 0
   std::optional<double> vanishes;  ///< the value, maybe infinity, at which the edits that use it do nothing
   std::string about;
+  bool optional = false;  ///< where no value is given the start is taken: a state that nobody knows
 };
 
 /// What is done to the description. `paths` are alternatives for devices of different make: the first that the device
 /// has is taken. Paths of edited(), and with selectors:
 ///   leg.<actuated>  every part with a driven freedom, where it stands (in the legs, in mounts of their own, in
 ///                   branches);
-///   …<motion>       after it: each of its driven freedoms; <slide> those along, <turn> those about an axis;
-///   materials.*.<moduli>  E of the material and, where it is given, G.
+///   leg.<line>      the start of every bar that carries a force along itself alone, x along it;
+///   leg.<guide>     every driven slide that holds a member;
+///   …<motion>       after leg.<actuated>: each of its driven freedoms; <slide> those along, <turn> those about an
+///   axis; materials.*.<moduli>  E of the material and, where it is given, G.
 /// `value` is YAML in flow style, in which "$name" is a parameter with its unit, "$name unit" one with another unit.
 struct EffectEdit {
   enum class Action {
@@ -61,6 +66,8 @@ struct Effect {
   std::string see;     ///< sources
   std::string origin;  ///< the file, for messages
   int line = 0;        ///< of its name there
+  /// Of an effect that is a law at a place (place_effects.h), no entry of a file: the place.
+  std::optional<Place> place;
 };
 
 /// Whether all it does is to write equilibrium in another shape: it has a size of its own and nothing to fit.

@@ -1,8 +1,11 @@
 #include "validation/effects/effect_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <limits>
 
 #include "msa/base/error.h"
@@ -21,6 +24,8 @@ namespace deflect {
 namespace {
 
 constexpr const char* action_keys[] = {"set", "append", "multiply", "add"};
+
+bool in_name(unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; }
 
 void describe(FieldVisitor& v, EffectParameter& p) {
   const Quantity number{Dimension::none, {}, std::nullopt};
@@ -47,6 +52,10 @@ void describe(FieldVisitor& v, EffectParameter& p) {
     p.vanishes = parsed.value;
   }
   v.text("about", p.about, Need::required, "what it is, with its unit");
+  std::string given = p.optional ? "optional" : "required";
+  v.word("value", given, {"need of a value", {"required", "optional"}, "required"},
+         "whether a value must be given where the effect is added; optional: its start is taken");
+  p.optional = given == "optional";
   v.require(p.low < p.high, "high", fmt::format("{} must be above low, {}", p.high, p.low));
   v.require(p.low <= p.start && p.start <= p.high, "start",
             fmt::format("{} must lie between low, {}, and high, {}", p.start, p.low, p.high));
@@ -95,7 +104,6 @@ class Edits final : public Elements {
 void describe(FieldVisitor& v, Effect& e) {
   v.keys({"name", "title", "scope", "parameters", "edits", "pages", "see"});
   v.text("name", e.name, Need::required, "id of the effect");
-  const auto in_name = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
   v.require(std::all_of(e.name.begin(), e.name.end(), in_name), "name",
             "consists of letters, digits, '_' and '-': it is written on command lines");
   v.text("title", e.title, Need::required, "the effect in one line");
@@ -231,6 +239,32 @@ Effect parse_effect(std::string_view yaml, const std::string& origin) {
 }
 
 Effect read_effect(const std::filesystem::path& path) { return parse_effect(read_text(path), path.string()); }
+
+std::string write_effect(const Effect& e) {
+  std::string name = e.name;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return !in_name(c); }, '_');
+  std::string out = fmt::format("name: {}\ntitle: \"{}\"\nscope: {}\n", name, e.title, nth(scope_names, e.scope));
+  if (!e.parameters.empty()) out += "parameters:\n";
+  for (const EffectParameter& p : e.parameters) {
+    out += fmt::format("  {}: {{start: {:.17g}, low: {:.17g}, high: {:.17g}, scale: {}", p.name, p.start, p.low, p.high,
+                       p.log ? "log" : "linear");
+    if (p.vanishes)
+      out += std::isinf(*p.vanishes) ? ", vanishes: infinity" : fmt::format(", vanishes: {}", *p.vanishes);
+    out += fmt::format(", about: \"{}\"{}}}\n", p.about, p.optional ? ", value: optional" : "");
+  }
+  out += "edits:\n";
+  for (const EffectEdit& edit : e.edits)
+    out += fmt::format("  - {{at: [{}], {}: {}}}\n", fmt::join(edit.paths, ", "), nth(action_keys, edit.action),
+                       edit.value);
+  out += "pages:\n";
+  for (const auto& [key, text] : {std::pair{"machine", &e.pages.machine},
+                                  {"data", &e.pages.data},
+                                  {"bench", &e.pages.bench},
+                                  {"cure", &e.pages.cure}})
+    out += fmt::format("  {}: \"{}\"\n", key, *text);
+  return out;
+}
 
 std::vector<Effect> catalogue(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;

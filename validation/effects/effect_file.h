@@ -16,6 +16,9 @@ Effect read_effect(const std::filesystem::path&);
 /// The same from text; `origin` stands for the file's name in messages.
 Effect parse_effect(std::string_view yaml, const std::string& origin);
 
+/// The effect as a file to start one's own from; what a name cannot hold becomes '_'.
+std::string write_effect(const Effect&);
+
 /// The files *.yaml of a folder (effects/catalogue, or share/deflect/effects/catalogue where installed), by name of
 /// file.
 std::vector<Effect> catalogue(const std::filesystem::path& folder);

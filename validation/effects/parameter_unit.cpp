@@ -20,6 +20,8 @@ constexpr std::array suffixes = {
     Suffix{"N_per_mm", "N/mm", "N/mm"},
     Suffix{"N_per_m", "N/m", "N/m"},
     Suffix{"mm_per_N", "mm/N", "mm/N"},
+    Suffix{"rad_per_Nmm", "rad/Nmm", "rad/Nmm"},
+    Suffix{"rad_per_Nm", "rad/Nm", "rad/Nm"},
     Suffix{"per_K", "1/K", "1/K"},
     Suffix{"mm2", "mm^2", "mm^2"},
     Suffix{"mm4", "mm^4", "mm^4"},

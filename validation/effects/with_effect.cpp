@@ -45,6 +45,16 @@ void check_arguments(const Effect& e, const Mechanism& m, const VectorX& values,
     throw InputError(fmt::format("{}: there is no leg {}, legs are 1 to {}", m.name, *leg, legs));
 }
 
+/// The values, with the start of those at the end that need not be given.
+VectorX with_optional(const Effect& e, const VectorX& given) {
+  VectorX out = start_values(e);
+  for (Eigen::Index i = given.size(); i < out.size(); ++i)
+    if (!nth(e.parameters, i).optional) return given;
+  if (given.size() > out.size()) return given;
+  out.head(given.size()) = given;
+  return out;
+}
+
 std::string line_of(const Effect& e, std::size_t edit) {
   return fmt::format("{}:{}: edits.{}: ", e.origin, e.edits[edit].line, edit);
 }
@@ -56,6 +66,21 @@ Mechanism one_by_one(const Mechanism& m, const Effect& e, const VectorX& values,
     so_far = told_at<InputError>([&] { return line_of(e, i); },
                                  [&] { return edited_in_turn(so_far, edits_of(e, e.edits[i], so_far, values, leg)); });
   return so_far;
+}
+
+/// The kind of place that the effect sits in, where the device says that nothing is missing there.
+std::optional<std::string> trusted_place(const Effect& e, const Mechanism& m) {
+  static const std::pair<const char*, const char*> kinds[] = {{"base", "base"},
+                                                              {"tool", "tool"},
+                                                              {"payload", "load"},
+                                                              {"rig.load_cell", "load cell"},
+                                                              {"rig.sensor", "sensor"}};
+  for (const EffectEdit& edit : e.edits)
+    for (const std::string& path : edit.paths)
+      for (const auto& [head, kind] : kinds)
+        if (path.starts_with(head) && std::find(m.trusted.begin(), m.trusted.end(), kind) != m.trusted.end())
+          return kind;
+  return std::nullopt;
 }
 
 /// Without the places that the reader of the file knows: "leg.carriage: there is no 'carriage' (known: …)".
@@ -80,7 +105,8 @@ VectorX start_values(const Effect& e) {
   return out;
 }
 
-Mechanism with_effect(const Mechanism& m, const Effect& e, const VectorX& values, std::optional<int> leg) {
+Mechanism with_effect(const Mechanism& m, const Effect& e, const VectorX& given, std::optional<int> leg) {
+  const VectorX values = with_optional(e, given);
   check_arguments(e, m, values, leg);
   auto at_once = outcome_of<InputError>([&] {
     std::vector<Edit> all;
@@ -95,9 +121,15 @@ Mechanism with_effect(const Mechanism& m, const EffectInstance& i) {
   return with_effect(m, *i.effect, i.values, i.leg);
 }
 
+Subject with_effect(const Subject& subject, const EffectInstance& i) {
+  if (!subject.machine()) throw InputError(subject.name() + ": effects act on parts of machines, this is a frame");
+  return with_effect(*subject.machine(), i);
+}
+
 std::optional<std::string> why_not(const Effect& e, const Subject& subject, std::optional<int> leg) {
   if (!subject.machine()) return "acts on parts of machines: this is a frame";
   const Mechanism& m = *subject.machine();
+  if (const auto kind = trusted_place(e, m)) return fmt::format("the device trusts its {}", *kind);
   std::optional<std::string> first;
   const bool each = e.scope == Scope::one_leg && !leg;
   for (int i = 1; i <= (each ? leg_count(m) : 1); ++i) {

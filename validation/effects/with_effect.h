@@ -31,11 +31,13 @@ void require_in_bounds(const std::string& given, const Effect&, const EffectPara
 /// The parameters' start.
 VectorX start_values(const Effect&);
 
-/// A new description with the effect in it, checked like a file. An edit one of whose parameters has the value at which
-/// it vanishes (infinity too) is left out. Values may lie outside the bounds of a search as long as the description
-/// can hold them. InputError "file:line: edits.i: …" naming what does not fit, and the nearest valid name.
+/// A new description with the effect in it, checked like a file. Optional values at the end need not be given. An edit
+/// one of whose parameters has the value at which it vanishes (infinity too) is left out. Values may lie outside the
+/// bounds of a search as long as the description can hold them. InputError "file:line: edits.i: …" naming what does not
+/// fit, and the nearest valid name.
 Mechanism with_effect(const Mechanism&, const Effect&, const VectorX& values, std::optional<int> leg = {});
 Mechanism with_effect(const Mechanism&, const EffectInstance&);
+Subject with_effect(const Subject&, const EffectInstance&);
 
 /// Why the effect has no place in the subject (or in that leg of it), in words; nothing when it has one.
 std::optional<std::string> why_not(const Effect&, const Subject&, std::optional<int> leg = {});

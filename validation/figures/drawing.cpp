@@ -73,7 +73,7 @@ class PlacedDrawing {
       const std::string& name = std::visit([](const auto& p) -> const std::string& { return p.part; }, placed);
       while (described != parts.end() && described->first != name) ++described;
       const Part* part = described == parts.end() ? nullptr : &described->second;
-      if (const auto* joint = std::get_if<PlacedJoint>(&placed)) {
+      if (const PlacedJoint* joint = joint_of(placed)) {
         add_joint(leg.name, *joint);
       } else if (const auto* member = std::get_if<PlacedMember>(&placed)) {
         add_member(leg.name, *member, part ? std::get_if<Member>(part) : nullptr);

@@ -56,6 +56,7 @@ class Carried {
           if (const auto* joint = std::get_if<PlacedJoint>(&part)) add(*joint, c.pose.p_WT);
     slips_.clear();
     if (forces_.size() != laws_.size()) forces_.assign(laws_.size(), 0);
+    for (std::size_t i = 0; i < forces_.size(); ++i) forces_[i] *= laws_[i].kept;
     if (std::all_of(forces_.begin(), forces_.end(), [](double f) { return f == 0; })) return;
     Configuration bare = c;
     std::erase_if(bare.legs, [](const PlacedLeg& leg) { return leg.beside; });
@@ -97,6 +98,40 @@ std::pair<int, bool> frictions_of(Configuration c) {
   return {all, all > 0 && number_slips(c) == 0};
 }
 
+/// The share of the largest load that a machine had carried before the first reading of a pose: what its frictions
+/// say. 0: they are relaxed.
+double carried_before(const Configuration& c) {
+  double share = 0;
+  for_each_law(c, [&](const Law& law) {
+    if (const auto* friction = std::get_if<FrictionLaw>(&law); friction && friction->start != 0)
+      share = friction->start;
+  });
+  return share;
+}
+
+/// The largest load of a pose as true load, in size of the displacement that it was read with.
+Vector6 largest_load(const PoseGroup& pose, const Measurements& data, const Matrix6& cell) {
+  Vector6 largest = Vector6::Zero();
+  for (const std::size_t i : pose.readings)
+    if (data.readings[i].load.norm() > largest.norm()) largest = data.readings[i].load;
+  return cell * largest;
+}
+
+/// A load that came and went: the slips that it leaves, and the displacement.
+Vector6 after(const Vector6& F, TheoryAt& machine, Conditions& conditions) {
+  conditions.slips = machine.predict(F, conditions).slips;
+  const Prediction rest = machine.predict(Vector6::Zero(), conditions);
+  conditions.slips = rest.slips;
+  return rest.displacement;
+}
+
+/// Tells the theory where it will be asked many times.
+void expect(TheoryAt& machine, const PoseGroup& pose, const Measurements& data) {
+  if (pose.readings.size() <= 8) return;
+  machine.expect_many(std::any_of(pose.readings.begin(), pose.readings.end(),
+                                  [&](std::size_t i) { return data.readings[i].temperature_C != 20; }));
+}
+
 /// What the sensor's drift adds to readings in their sequence.
 void add_drift(std::vector<Vector6>& readings, const Sensor& sensor, const Measurements& data) {
   const std::vector<double> rank = ranks(data, "drift");
@@ -119,16 +154,17 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
   std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
   const auto [frictions, beside] = machines.empty() ? std::pair{0, false} : frictions_of(machines.front());
   if (frictions > 0) in_sequence(data, "friction");
+  const double before = machines.empty() ? 0 : carried_before(machines.front());
   Carried carried;
   const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation)),
                 sensor = rotate_twist(rotation_from_vector(m.sensor.rotation));
   const auto at_pose = [&](std::size_t p) {
     const std::unique_ptr<TheoryAt> machine = o.theory->at(machines[p], {m.name, o.division});
     Conditions conditions(o.geometry.value_or(m.geometry));
-    const bool linear = conditions.geometry == Geometry::linear;
-    if (const std::vector<std::size_t>& all = data.poses[p].readings; linear && all.size() > 8)
-      machine->expect_many(
-          std::any_of(all.begin(), all.end(), [&](std::size_t i) { return data.readings[i].temperature_C != 20; }));
+    if (conditions.geometry == Geometry::linear) expect(*machine, data.poses[p], data);
+    Vector6 unloaded = Vector6::Zero();
+    if (before != 0 && !beside)
+      unloaded = after(before * largest_load(data.poses[p], data, cell), *machine, conditions);
     if (beside) {
       carried.enter(machines[p], o);
       conditions.slips = carried.slips();
@@ -155,7 +191,7 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
                                          reading.line, o.theory->spoken, r.reason.empty() ? "" : ": ", r.reason));
       if (beside) carried.leave_with(r.displacement, r.slips);
       conditions.slips = r.slips;
-      out[i] = sensor * r.displacement;
+      out[i] = m.sensor.zero + sensor * (r.displacement - unloaded);
     }
   };
   const auto all = static_cast<double>(machines.size());

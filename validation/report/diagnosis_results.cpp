@@ -7,6 +7,7 @@
 
 #include "msa/base/index.h"
 #include "validation/json/json_text.h"
+#include "validation/report/effect_results.h"
 #include "validation/report/short_lists.h"
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
@@ -53,17 +54,18 @@ Json parameters_json(const Hypothesis& h, const Fit& f, std::size_t from, std::s
   return out;
 }
 
-/// An effect and its place: in words, and where it is one leg as its number.
-Json place_json(const PlacedEffect& e) {
+/// An effect and its place: in words, where it is one leg as its number, of a law at a place the place.
+Json placed_json(const PlacedEffect& e) {
   Json out = {{"effect", e.effect->name}, {"title", e.effect->title}, {"site", site_of(e)}};
   if (e.leg) out["leg"] = *e.leg;
+  if (e.effect->place) out["place"] = place_json(*e.effect->place, e.leg);
   return out;
 }
 
 Json candidates_json(const std::vector<Candidate>& candidates) {
   Json out = Json::array();
   for (const Candidate& c : candidates) {
-    Json one = place_json(c.added());
+    Json one = placed_json(c.added());
     one["probability"] = c.probability;
     one["parameters"] = parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size());
     one["rmse_mm"] = mm * c.rmse;
@@ -77,7 +79,11 @@ Json candidates_json(const std::vector<Candidate>& candidates) {
 /// What is left of the misfit, and where it acts.
 Json unexplained_json(const Diagnosis& d) {
   Json localised = Json::array();
-  for (const Localised& l : d.localised) localised.push_back({{"what", l.what}, {"share", l.share}});
+  for (const Localised& l : d.localised)
+    localised.push_back({{"what", l.what},
+                         {"share", l.share},
+                         {"effect", l.effect.effect->name},
+                         {"place", place_json(*l.effect.effect->place, l.effect.leg)}});
   return {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained},
           {"pattern", d.pattern},         {"localised", localised},
           {"nearest", d.nearest},         {"nearest_share", d.nearest_share}};
@@ -88,7 +94,7 @@ Json found_json(const Diagnosis& d) {
   Json out = Json::array();
   std::size_t from = 0;
   for (const PlacedEffect& e : d.missing) {
-    Json one = place_json(e);
+    Json one = placed_json(e);
     one["parameters"] = parameters_json(d.missing, d.fit, from, e.effect->parameters.size());
     out.push_back(std::move(one));
     from += e.effect->parameters.size();
@@ -101,7 +107,7 @@ Json detectable_json(const std::vector<Detectable>& detectable) {
   for (const Detectable& e : detectable) {
     Json names = Json::array();
     for (const EffectParameter& p : e.effect.effect->parameters) names.push_back(p.name);
-    Json one = place_json(e.effect);
+    Json one = placed_json(e.effect);
     one["parameters"] = names;
     one["smallest"] = e.smallest;
     one["mistaken_for"] = e.mistaken_for;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "msa/base/index.h"
 #include "validation/effects/parameter_unit.h"
@@ -60,10 +62,39 @@ Json effect_json(const Effect& e) {
     j["edits"].push_back({{"at", edit.paths}, {"action", action_name(edit)}, {"value", edit.value}});
   j["pages"] = {{"machine", e.pages.machine}, {"data", e.pages.data}, {"bench", e.pages.bench}, {"cure", e.pages.cure}};
   if (!e.see.empty()) j["see"] = e.see;
+  if (e.place) j["place"] = place_json(*e.place, std::nullopt);
   return j;
 }
 
+/// One line for each place: its laws; those that may sit in one leg alone.
+std::string laws_at_places(const std::vector<Effect>& all, const Subject& subject) {
+  std::vector<std::string> order;
+  std::map<std::string, std::string> kinds, laws, of_one_leg;
+  for (const Effect& e : all) {
+    if (!e.place) continue;
+    const std::string id = id_of(*e.place), law = e.name.substr(0, e.name.find('@'));
+    if (std::find(order.begin(), order.end(), id) == order.end()) order.push_back(id);
+    kinds[id] = nth(place_kind_names, e.place->kind);
+    (e.scope == Scope::one_leg ? of_one_leg : laws)[id] += law + " ";
+  }
+  if (order.empty()) return "";
+  std::string out = fmt::format(
+      "laws at its places: LAW@PLACE, of one leg LAW@leg.PLACE; 'deflect effects LAW@PLACE --device {}' explains one\n",
+      subject.name());
+  for (const std::string& id : order)
+    out += fmt::format("  {:<24} {:<9} {}{}\n", id, kinds[id], laws[id],
+                       of_one_leg[id].empty() ? "" : "| of one leg: " + of_one_leg[id]);
+  return out;
+}
+
 }  // namespace
+
+Json place_json(const Place& p, std::optional<int> leg) {
+  Json out = {{"kind", nth(place_kind_names, p.kind)}, {"part", p.part}, {"path", p.path}};
+  if (const std::string motion = motion_of(p); !motion.empty()) out["motion"] = motion;
+  if (leg) out["leg"] = *leg;
+  return out;
+}
 
 std::string effect_table(const std::vector<Effect>& all) {
   std::string out = row("effect", "scope", "what is missing, and its parameters");
@@ -74,11 +105,14 @@ std::string effect_table(const std::vector<Effect>& all) {
 std::string effects_in_device(const std::vector<Effect>& all, const Subject& subject) {
   std::string there = fmt::format("effects that {} can have\n", subject.name()), not_there;
   for (const Effect& e : all)
-    if (const auto reason = why_not(e, subject))
+    if (e.place)
+      continue;
+    else if (const auto reason = why_not(e, subject))
       not_there += fmt::format("  {:<24} {}\n", e.name, *reason);
     else
       there += fmt::format("  {:<24} {:<9} {}\n", e.name, scope_name(e), parameter_names(e));
-  return there + (not_there.empty() ? "" : "effects that it cannot have, and why\n" + not_there);
+  return there + (not_there.empty() ? "" : "effects that it cannot have, and why\n" + not_there) +
+         laws_at_places(all, subject);
 }
 
 std::string effect_page(const Effect& e) {

@@ -5,13 +5,17 @@
 #include <vector>
 
 #include "validation/effects/with_effect.h"
+#include "validation/json/json_text.h"
 
 namespace deflect {
 
 /// One paragraph per effect: name, scope, title, parameters.
 std::string effect_table(const std::vector<Effect>&);
 
-/// Which of them have a place in the device; of the others, why not.
+/// {"kind", "part", "path"} and, where it has them, "motion" and "leg".
+Json place_json(const Place&, std::optional<int> leg);
+
+/// Which of them have a place in the device; of the others, why not. Laws at places by place.
 std::string effects_in_device(const std::vector<Effect>&, const Subject&);
 
 /// Everything about one effect.

@@ -136,10 +136,10 @@ class Drawing {
   void joints(const std::vector<PlacedLeg>& legs) {
     for (const PlacedLeg& leg : legs)
       for (const PlacedPart& part : leg.parts)
-        if (const auto* group = std::get_if<PlacedParallel>(&part))
-          joints(group->branches);
-        else if (const auto* joint = std::get_if<PlacedJoint>(&part))
+        if (const PlacedJoint* joint = joint_of(part))
           add_joint(leg.name, joint->part, *joint, nearest_node(*joint));
+        else if (const auto* group = std::get_if<PlacedParallel>(&part))
+          joints(group->branches);
   }
 
   void add_joint(const std::string& leg, const std::string& part, const PlacedJoint& joint, int node) {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -8,7 +10,9 @@
 #include "msa/mechanism/device_file.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/prediction/as_built.h"
+#include "validation/subject/machine_places.h"
 #include "validation/subject/machine_sites.h"
+#include "validation/subject/machine_transmissions.h"
 #include "validation/subject/subject.h"
 
 namespace deflect {
@@ -18,7 +22,8 @@ namespace {
 struct Move {
   Tolerance tolerance;
   AsBuilt built = {};
-  std::size_t actuator = 0;  ///< of a pose
+  std::size_t actuator = 0;        ///< of a pose
+  Vector6 zero = Vector6::Zero();  ///< of the sensor
 };
 
 std::vector<Move> shared_moves(const Mechanism& m) {
@@ -50,8 +55,25 @@ std::vector<Move> shared_moves(const Mechanism& m) {
   return moves;
 }
 
+/// A zero that nobody knows, of each component that is measured: wide beside all that was read.
+std::vector<Move> free_zeros(const Measurements& data) {
+  static const char* names[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
+  std::vector<Move> out;
+  for (std::size_t i = 0; i < 6; ++i) {
+    double largest = 0;
+    for (const Reading& r : data.readings) largest = std::max(largest, std::abs(r.displacement[i].value_or(0)));
+    if (largest == 0) continue;
+    Move move{{fmt::format("zero of {}", names[i]), 10 * largest, {}, true}};
+    move.zero(as_index(i)) = move.tolerance.sigma;
+    out.push_back(std::move(move));
+  }
+  return out;
+}
+
 std::vector<Move> moves_of(const Mechanism& m, const std::vector<Configuration>& drawn, const Measurements& data) {
   std::vector<Move> moves = shared_moves(m);
+  if (m.sensor.free_zero)
+    for (Move& zero : free_zeros(data)) moves.push_back(std::move(zero));
   const double sigma = m.tolerances.actuator_repeatability;
   if (!(sigma > 0)) return moves;
   for (std::size_t p = 0; p < drawn.size(); ++p)
@@ -91,6 +113,10 @@ class MachineStanding final : public Standing {
     return deflect::predict(*mechanism_, machines_, data, o, work);
   }
 
+  std::unique_ptr<const Transmissions> transmissions() const override {
+    return transmissions_of(*mechanism_, machines_);
+  }
+
   std::unique_ptr<const Deviations> deviations(const Measurements&) const override;
 
   const std::vector<Configuration>& machines() const { return machines_; }
@@ -115,6 +141,12 @@ class MachineDeviations final : public Deviations {
 
   std::unique_ptr<const Standing> with(std::size_t k) const override {
     const Move& move = moves_[k];
+    if (!move.zero.isZero(0)) {
+      Mechanism shifted = *mechanism_;
+      shifted.sensor.zero += move.zero;
+      return std::make_unique<MachineStanding>(std::make_shared<const Mechanism>(std::move(shifted)),
+                                               drawn_.machines());
+    }
     std::vector<Configuration> moved;
     if (const std::optional<std::size_t> pose = move.tolerance.pose) {
       const Configuration& drawn = drawn_.machines()[*pose];
@@ -148,6 +180,7 @@ class MachineSubject final : public Subject::Kind {
   Geometry geometry() const override { return mechanism_->geometry; }
   double load_tolerance() const override { return mechanism_->tolerances.load; }
   int legs() const override { return leg_count(*mechanism_); }
+  std::vector<Place> places() const override { return places_of(*mechanism_); }
   const Mechanism* machine() const override { return mechanism_.get(); }
 
   std::shared_ptr<const Standing> stand(const Measurements& data) const override {

@@ -33,7 +33,7 @@ bool is_driven(const PlacedJoint& joint, std::size_t i) { return joint.freedoms[
 
 bool has_drive(const PlacedLeg& leg) {
   for (const PlacedPart& part : leg.parts)
-    if (const auto* joint = std::get_if<PlacedJoint>(&part))
+    if (const PlacedJoint* joint = joint_of(part))
       for (std::size_t i = 0; i < 6; ++i)
         if (is_driven(*joint, i)) return true;
   return false;
@@ -60,13 +60,15 @@ std::vector<Site> sites_of(const Configuration& c) {
   for (std::size_t l = 0; l < c.legs.size(); ++l) {
     const PlacedLeg& leg = c.legs[l];
     if (!has_drive(leg)) continue;
+    const auto number = c.legs.size() == 1 ? std::nullopt : std::optional(static_cast<int>(l) + 1);
     const std::optional<Vector6> line = line_of(leg, model.chains()[l]);
     if (line) {
       // The wrench is f s at T: f = n · force, since n is a unit vector.
-      sites.push_back({leg.name, false, W[l].topRows<3>().transpose() * line->head<3>(), *line});
+      sites.push_back(
+          {leg.name, {PlaceKind::line, number, "", ""}, false, W[l].topRows<3>().transpose() * line->head<3>(), *line});
     }
     for (const PlacedPart& part : leg.parts) {
-      const auto* joint = std::get_if<PlacedJoint>(&part);
+      const PlacedJoint* joint = joint_of(part);
       if (!joint) continue;
       for (std::size_t i = 0; i < 6; ++i) {
         if (!is_driven(*joint, i)) continue;
@@ -82,7 +84,9 @@ std::vector<Site> sites_of(const Configuration& c) {
           continue;
         }
         const std::string where = c.legs.size() == 1 ? joint->part : leg.name + " " + joint->part;
-        sites.push_back({fmt::format("{} {}", where, freedom_names[i]), i >= 3,
+        const Place place{PlaceKind::drive,     number, joint->part,
+                          "leg." + joint->part, {i},    joint->elastic(i) ? Hold::elastic : Hold::rigid};
+        sites.push_back({fmt::format("{} {}", where, freedom_names[i]), place, i >= 3,
                          W[l].transpose() * analytic::freedom_twist(*joint, i, c.pose.p_WT), Vector6::Zero(),
                          extension});
       }

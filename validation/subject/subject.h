@@ -12,6 +12,7 @@
 #include "msa/frame/file/frame_description.h"
 #include "validation/measurement/measurements.h"
 #include "validation/prediction/prediction.h"
+#include "validation/subject/place.h"
 
 namespace deflect {
 
@@ -22,6 +23,7 @@ namespace deflect {
 /// out. So every reading is a point on a force–elongation curve of every site.
 struct Site {
   std::string name;       ///< "leg 3", "shoulder rz"; the same at every pose
+  Place place;            ///< what it is: a drive, or the line of a leg
   bool rotation = false;  ///< f in Nm and e in rad, else N and m
   Vector6 g = Vector6::Zero();
   Vector6 s = Vector6::Zero();  ///< of a leg's line: the wrench at T of a unit force along it; 0 at joints
@@ -34,12 +36,24 @@ struct Tolerance {
   std::string name;  ///< "modulus", "leg 3 base joint x", "pose 4 leg 1 slider"
   double sigma = 0;  ///< standard deviation: relative, or m
   std::optional<std::size_t> pose = {};
+  bool zero = false;  ///< where a sensor counts from: no part of the subject
 };
 
 /// A body of the subject where it stands: position (m) and axes in W.
 struct BodyFrame {
   Vector3 p_W = Vector3::Zero();
   Matrix3 R_W = Matrix3::Identity();
+};
+
+/// What statics makes of the loads at the places of a subject as drawn: to first order, what a small deflection at a
+/// place does to its readings.
+class Transmissions {
+ public:
+  virtual ~Transmissions() = default;
+  /// By reading, the change when every freedom of the place gives way by the law (its materials resolved, no history)
+  /// under the force that it carries; in one leg where `leg` is given. Nothing where the place is not known.
+  virtual std::optional<std::vector<Vector6>> change(const Place&, std::optional<int> leg, const Law&,
+                                                     const Measurements&) const = 0;
 };
 
 class Deviations;
@@ -62,6 +76,9 @@ class Standing {
 
   /// The readings of these measurements, which have the same poses: prediction.h.
   virtual std::vector<Vector6> predict(const Measurements&, const PredictionOptions& = {}, const Work& = {}) const = 0;
+
+  /// Null where forces at places are more than shares of the load.
+  virtual std::unique_ptr<const Transmissions> transmissions() const { return nullptr; }
 
   /// What it is off by from piece to piece.
   virtual std::unique_ptr<const Deviations> deviations(const Measurements&) const = 0;
@@ -96,6 +113,8 @@ class Subject {
   double load_tolerance() const;
   /// How many legs it has; 0 of a subject that has none.
   int legs() const;
+  /// Where effects can act in it.
+  std::vector<Place> places() const;
 
   /// Throws as configure_all() where it cannot stand.
   std::shared_ptr<const Standing> stand(const Measurements&) const;
@@ -119,6 +138,7 @@ class Subject::Kind {
   virtual Geometry geometry() const = 0;
   virtual double load_tolerance() const = 0;
   virtual int legs() const { return 0; }
+  virtual std::vector<Place> places() const { return {}; }
   virtual std::shared_ptr<const Standing> stand(const Measurements&) const = 0;
   virtual std::shared_ptr<const Kind> edited(const std::vector<Edit>&) const = 0;
   virtual const Mechanism* machine() const { return nullptr; }

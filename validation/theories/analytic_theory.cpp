@@ -165,7 +165,7 @@ Prediction AnalyticAt::predict(const Vector6& F, const Conditions& conditions) {
     if (affine_) return {affine_->rest + affine_->C * F + conditions.warmer * affine_->per_kelvin, affine_->converged};
     if (analytic::PoseSweep* s = sweep(); s && s->solve(F, conditions.warmer)) return {s->displacement(), true};
   }
-  const analytic::AnalyticSolution s = model().solve(F, conditions);
+  const analytic::AnalyticSolution s = model().displaced(F, conditions);
   return {s.displacement, s.converged, s.slips, s.message};
 }
 

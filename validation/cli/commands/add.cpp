@@ -133,7 +133,7 @@ void require_other_file(const AddArguments& a) {
 void run(const AddArguments& a) {
   require_other_file(a);
   Mechanism m = read_device(a.device);
-  const std::vector<Effect> all = known_effects(a.files);
+  const std::vector<Effect> all = known_effects(a.files, m);
   const std::vector<EffectInstance> added = add_effects(m, a, all);
   const std::string old = m.name, text = device_text(m, old, added, a.out);
   const Mechanism written = parse_mechanism(text, a.out);

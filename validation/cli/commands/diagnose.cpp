@@ -25,7 +25,7 @@ void run(const DiagnoseArguments& a, Ranks* ranks) {
   const Mechanism m = read_device(a.device);
   const Measurements data = read_data(a.data);
   tell_size(data, 1200);
-  const std::vector<Effect> effects = known_effects(a.files);
+  const std::vector<Effect> effects = known_effects(a.files, m);
   DiagnosisOptions o;
   o.comparison.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.comparison.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
@@ -48,29 +48,30 @@ void run(const DiagnoseArguments& a, Ranks* ranks) {
 
 Command diagnose_command() {
   auto a = std::make_shared<DiagnoseArguments>();
-  return {"diagnose",
-          "Find which physical effect the model lacks. The command first checks the file for recording mistakes "
-          "(units, signs, axes, columns, poses). If one is certain, the report names it and the search ends. Otherwise "
-          "the command fits every effect of the catalogue at every possible place in the device, with all tolerances "
-          "free under their priors, and weighs the fits by their evidence. The report starts with the verdict. It "
-          "lists ties, unknown effects and effects that the campaign cannot detect. The exit code is 0 for every "
-          "verdict. Under mpirun the processes share the "
-          "sets of --bootstrap and the first one writes; the result is the same",
-          "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
-          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
-           {"data", "DATA", "measurements (CSV)", &a->data, true},
-           {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
-           {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
-           {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
-           {"--as-recorded", "", "take the file as it is: skip the search for recording mistakes", &a->as_recorded},
-           {"--bootstrap", "N",
-            "random data sets with nothing missing; they give the chance of a false alarm to 1/(N+1) (default 1999, at "
-            "least 99)",
-            &a->bootstrap},
-           {"--threads", "N", "threads per process (default 0: all cores); they do not change the result", &a->threads},
-           {"--json", "FILE", "write the result", &a->json},
-           report_option(&a->report)},
-          [a](Ranks* ranks) { run(*a, ranks); }};
+  return {
+      "diagnose",
+      "Find which physical effect the model lacks. The command first checks the file for recording mistakes "
+      "(units, signs, axes, columns, poses). If one is certain, the report names it and the search ends. Otherwise "
+      "the command fits every effect of the catalogue at every possible place in the device, and every law at every "
+      "other place (as in clearance@elbow.rz), with all tolerances free under their priors, and weighs the fits by "
+      "their evidence. The report starts with the verdict. It lists ties, unknown effects and effects that the "
+      "campaign cannot detect. The exit code is 0 for every verdict. Under mpirun the processes share the "
+      "sets of --bootstrap and the first one writes; the result is the same",
+      "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
+      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+       {"data", "DATA", "measurements (CSV)", &a->data, true},
+       {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
+       {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
+       {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
+       {"--as-recorded", "", "take the file as it is: skip the search for recording mistakes", &a->as_recorded},
+       {"--bootstrap", "N",
+        "random data sets with nothing missing; they give the chance of a false alarm to 1/(N+1) (default 1999, at "
+        "least 99)",
+        &a->bootstrap},
+       {"--threads", "N", "threads per process (default 0: all cores); they do not change the result", &a->threads},
+       {"--json", "FILE", "write the result", &a->json},
+       report_option(&a->report)},
+      [a](Ranks* ranks) { run(*a, ranks); }};
 }
 
 }  // namespace deflect::cli

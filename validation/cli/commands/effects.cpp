@@ -8,6 +8,7 @@
 #include "validation/cli/devices.h"
 #include "validation/cli/talk.h"
 #include "validation/effects/effect_file.h"
+#include "validation/effects/place_effects.h"
 #include "validation/report/effect_results.h"
 
 namespace deflect::cli {
@@ -22,6 +23,12 @@ std::vector<Effect> known_effects(const std::vector<std::string>& files) {
   return all;
 }
 
+std::vector<Effect> known_effects(const std::vector<std::string>& files, const Subject& subject) {
+  std::vector<Effect> all = known_effects(files);
+  for (Effect& e : place_effects(subject, all)) all.push_back(std::move(e));
+  return all;
+}
+
 namespace {
 
 struct EffectsArguments {
@@ -31,15 +38,17 @@ struct EffectsArguments {
 };
 
 void run(const EffectsArguments& a) {
-  std::vector<Effect> all = known_effects(a.files);
+  std::optional<Mechanism> device;
+  if (!a.device.empty()) device = read_device(a.device);
+  std::vector<Effect> all = device ? known_effects(a.files, *device) : known_effects(a.files);
+  if (!device && a.name.find('@') != a.name.npos)
+    throw InputError(fmt::format("{}: a law at a place belongs to a device: name it with --device", a.name));
   if (!a.name.empty()) all = {find_effect(all, a.name)};
   if (a.yaml) {
     if (a.name.empty()) throw InputError("--yaml prints the file of one effect: name it");
-    fmt::print("{}", read_text(all.front().origin));
+    fmt::print("{}", all.front().place ? write_effect(all.front()) : read_text(all.front().origin));
     return;
   }
-  std::optional<Mechanism> device;
-  if (!a.device.empty()) device = read_device(a.device);
   if (!a.json.empty()) write_file(a.json, effects_json(all, device ? std::optional<Subject>(*device) : std::nullopt));
   if (!a.name.empty())
     fmt::print("{}", effect_page(all.front()));
@@ -54,7 +63,8 @@ Command effects_command() {
   auto a = std::make_shared<EffectsArguments>();
   return {"effects",
           "List the effects that a model can lack, or explain one: what happens in the machine, what the data show, "
-          "how to confirm it on the bench, how to cure it. With --yaml, print the effect's file to start your own from",
+          "how to confirm it on the bench, how to cure it. With --device, also the laws at the device's places "
+          "(LAW@PLACE). With --yaml, print the effect's file to start your own from",
           "deflect effects guide_root_compliance --device haptic-6psu",
           {{"name", "EFFECT", "effect to explain (default: list all)", &a->name},
            {"--device", "DEVICE", "list the effects that this device can have, and why it cannot have the others",

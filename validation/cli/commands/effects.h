@@ -5,10 +5,13 @@
 #include <vector>
 
 #include "validation/effects/effect.h"
+#include "validation/subject/subject.h"
 
 namespace deflect::cli {
 
 /// The catalogue and the user's own files.
 std::vector<Effect> known_effects(const std::vector<std::string>& files);
+/// And the laws at the subject's places (place_effects.h).
+std::vector<Effect> known_effects(const std::vector<std::string>& files, const Subject&);
 
 }  // namespace deflect::cli

@@ -123,8 +123,8 @@ std::string way_out(const Mechanism& m, const Measurements& plan, const Simulati
 }
 
 void run(const SimulateArguments& a) {
-  const std::vector<Effect> all = known_effects(a.files);
   Mechanism m = read_device(a.device);
+  const std::vector<Effect> all = known_effects(a.files, m);
   SimulationOptions o = options_of(a);
   Measurements plan = plan_of(a, m, o.seed);
   std::string hidden;

@@ -1,0 +1,64 @@
+#include <algorithm>
+
+#include "analytic/model.h"
+#include "msa/base/index.h"
+
+namespace deflect::analytic {
+
+/// Under unit loads, each law held by its compliance alone.
+AnalyticModel::Between AnalyticModel::between(const Imposed& imposed) const {
+  ChainConditions under;
+  for (Eigen::Index i = 0; i < imposed.c.size(); ++i) under.steps.push_back({0, imposed.c(i), false});
+  Between out{MatrixX(imposed.c.size(), 6), Matrix6(), std::vector<Matrix6>(legs_.branches.size())};
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const Vector6 F = Vector6::Unit(k);
+    const AnalyticSolution s = equilibrium_under(F, under);
+    VectorX forces = VectorX::Zero(imposed.c.size());
+    for (std::size_t l = 0; l < s.leg_wrenches.size(); ++l) {
+      legs_.branches[l].add_step_forces(s.leg_wrenches[l], under, forces);
+      out.wrenches[l].col(k) = s.leg_wrenches[l];
+    }
+    through_.add_step_forces(F, under, forces);
+    out.forces.col(k) = forces;
+    out.displacement.col(k) = s.displacement;
+  }
+  return out;
+}
+
+AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
+  const bool straight = conditions.geometry == Geometry::linear && conditions.warmer == 0 && as_printed_.empty() &&
+                        legs_.fits() && !stepped_.empty() && !lines_;
+  if (!straight || !imposed_ || imposed_->S.size() == 0 ||
+      (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_))
+    return solve(F, conditions);
+  if (!between_) between_ = std::make_shared<const Between>(between(*imposed_));
+  const Between& b = *between_;
+  const double length = legs_.length;
+  const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
+  const Vector6 load = F + weight_;
+  SteppedForces at{b.forces * load, b.displacement * load, size(load), length, true};
+  for (const Matrix6& W : b.wrenches) at.largest = std::max(at.largest, size(W * load));
+  const SteppedForces held = at;
+  const Imposed known = *imposed_;
+  const BalancedSteps found = balance(
+      stepped_, conditions.slips,
+      [&](const std::vector<Step>& steps) {
+        VectorX offsets(std::ssize(steps));
+        for (std::size_t i = 0; i < steps.size(); ++i) offsets(as_index(i)) = steps[i].offset;
+        at.forces = held.forces - known.S * offsets;
+        at.displacement = held.displacement + known.T * offsets;
+        return at;
+      },
+      *imposed_);
+  *imposed_ = known;
+  AnalyticSolution s;
+  s.converged = found.converged;
+  s.message = found.reason;
+  s.slips = found.slips;
+  s.load = F;
+  s.displacement = held.displacement;
+  if (found.offsets.size() > 0) s.displacement += known.T * found.offsets;
+  return s;
+}
+
+}  // namespace deflect::analytic

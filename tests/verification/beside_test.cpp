@@ -1,0 +1,167 @@
+// Laws side by side with those of a joint's freedom, and members whose ends yield: both theories, against hand values
+// and against the same machine written in another way.
+#include <gtest/gtest.h>
+
+#include "analytic/model.h"
+#include "msa/base/error.h"
+#include "msa/frame/mechanism/msa.h"
+#include "msa/mechanism/device_file.h"
+#include "tests/support/chains.h"
+#include "tests/support/devices.h"
+
+namespace deflect {
+namespace {
+
+using test::with;
+constexpr auto append = Edit::Action::append;
+
+/// Largest difference of what two machines do under six loads, relative, by both theories, in a geometry.
+void expect_same(const Mechanism& a, const Mechanism& b, double to, Geometry geometry = Geometry::linear) {
+  const Pose pose = home_pose(a);
+  const Configuration ca = configure(a, pose), cb = configure(b, pose);
+  const analytic::AnalyticModel analytic_a(ca), analytic_b(cb);
+  frame::MsaModel msa_a(ca), msa_b(cb);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const Vector6 F = Vector6::Unit(i) * (i < 3 ? 20 : 5);
+    const Vector6 d = analytic_a.solve(F, geometry).displacement;
+    const double size = d.head<3>().norm() + ca.size * d.tail<3>().norm();
+    const auto expect = [&](const Vector6& other, const char* who) {
+      const Vector6 off = other - d;
+      EXPECT_LE(off.head<3>().norm() + ca.size * off.tail<3>().norm(), to * size) << who << ", load " << i;
+    };
+    expect(analytic_b.solve(F, geometry).displacement, "closed form");
+    if (geometry != Geometry::linear) continue;  // discretised there
+    expect(msa_a.solve(F).displacement, "MSA of the first");
+    expect(msa_b.solve(F).displacement, "MSA of the second");
+  }
+}
+
+TEST(SideBySide, SpringsAddUpInEveryFamily) {
+  const Mechanism tripteron = test::device("tripteron");
+  expect_same(with(tripteron, "leg.slide.beside.tz", "{law: linear, stiffness: 500 N/mm}", append),
+              with(tripteron, "leg.slide.tz.stiffness", "1500 N/mm"), 1e-9);
+  const Mechanism delta = test::device("delta");
+  expect_same(with(delta, "leg.motor.beside.rz", "{law: linear, stiffness: 3e7 Nmm/rad}", append),
+              with(delta, "leg.motor.rz.stiffness", "5e7 Nmm/rad"), 1e-9);
+  const Mechanism haptic =
+      with(test::device("haptic-6psu-ideal-joints"), "leg.actuator.tz", "{law: linear, stiffness: 700 N/mm}", append);
+  expect_same(with(haptic, "leg.actuator.beside.tz", "{law: linear, stiffness: 300 N/mm}", append),
+              with(haptic, "leg.actuator.tz.stiffness", "1000 N/mm"), 1e-9);
+}
+
+TEST(SideBySide, SpringsAddUpInTheDeformedShape) {
+  const Mechanism arm = test::device("arm");
+  expect_same(with(arm, "leg.joint_2.beside.rz", "{law: linear, stiffness: 1e4 Nm/rad}", append),
+              with(arm, "leg.joint_2.rz.stiffness", "5e4 Nm/rad"), 1e-6, Geometry::finite);
+}
+
+// On a freedom that is free a law side by side with it is the law alone.
+TEST(SideBySide, OfAFreeFreedomIsTheLawItself) {
+  const Mechanism m = test::device("tripteron");
+  expect_same(with(m, "leg.elbow.beside.rz", "{law: linear, stiffness: 1e6 Nmm/rad}", append),
+              with(m, "leg.elbow.rz", "{law: linear, stiffness: 1e6 Nmm/rad}", append), 1e-12);
+}
+
+TEST(SideBySide, ASeriesStandsBesideAsAWhole) {
+  const Mechanism m = test::device("tripteron");
+  // 1000 and 1000 N/mm in series are 500; with 250 beside 750.
+  const Mechanism series = with(m, "leg.slide.tz", "{law: linear, stiffness: 1000 N/mm}", append);
+  expect_same(with(series, "leg.slide.beside.tz", "{law: linear, stiffness: 250 N/mm}", append),
+              with(m, "leg.slide.tz.stiffness", "750 N/mm"), 1e-9);
+}
+
+const char* actuator = R"(name: drive
+kinematics: {family: chains}
+leg:
+  drive: {joint: motor, rz: {law: linear, stiffness: 200 Nm/rad}, beside: {rz: {law: friction, moment: 3 Nm, stiffness: 800 Nm/rad}}}
+  lever: {offset: [0 mm, 0 mm, 100 mm]}
+)";
+
+// A Jenkins element beside a spring, by hand as in friction_test.cpp: slips at 3/800 rad, where the whole carries
+// 3.75 Nm; back from 10 Nm it sticks over twice that way.
+TEST(SideBySide, FrictionBesideADriveLoadsSlipsAndSticksAsByHand) {
+  const Configuration c = configure_joints(parse_mechanism(actuator, "actuator.yaml"), VectorX::Zero(1));
+  const analytic::AnalyticModel analytic(c);
+  frame::MsaModel msa(c);
+  std::vector<double> slips;
+  const auto turn = [&](double Nm) {
+    Conditions at;
+    at.slips = slips;
+    const auto a = analytic.solve(Nm * Vector6::Unit(5), at);
+    const auto f = msa.solve(Nm * Vector6::Unit(5), at);
+    EXPECT_TRUE(a.converged) << a.message;
+    EXPECT_NEAR(a.displacement(5), f.displacement(5), 1e-14);
+    slips = a.slips;
+    return a.displacement(5);
+  };
+  EXPECT_NEAR(turn(2), 2.0 / 1000, 1e-15);
+  EXPECT_NEAR(turn(10), 7.0 / 200, 1e-14);
+  EXPECT_NEAR(turn(4), 7.0 / 200 - 6.0 / 1000, 1e-14);
+  EXPECT_NEAR(turn(0), (7.0 / 200 - 7.5 / 1000) - 2.5 / 200, 1e-14);
+}
+
+TEST(SideBySide, ARigidFreedomRefusesIt) {
+  const Mechanism m = test::device("tripteron");
+  try {
+    with(m, "leg.shoulder.beside.rx", "{law: linear, stiffness: 1e6 Nmm/rad}", append);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("rx is rigid here"), std::string::npos) << e.what();
+  }
+}
+
+TEST(SideBySide, IsKeptByTheFile) {
+  const Mechanism m = parse_mechanism(actuator, "actuator.yaml");
+  EXPECT_EQ(write_mechanism(parse_mechanism(write_mechanism(m), "again.yaml")), write_mechanism(m));
+  const auto* drive = std::get_if<Joint>(&m.leg.front().second);
+  ASSERT_TRUE(drive);
+  EXPECT_EQ(std::get<FrictionLaw>(drive->beside[5].at(0)).force, 3);
+}
+
+// An end that yields is a joint between the member and what holds it.
+TEST(MemberEnds, AreJointsInTheMembersAxes) {
+  const std::string head = R"(name: beam
+kinematics: {family: chains}
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {rod: {shape: round, diameter: 20 mm}}
+leg:
+)";
+  // Along x of the chain: the member's axes are the chain's.
+  const std::string member = "  beam: {member: rod, material: steel, along: [300 mm, 0 mm, 0 mm]";
+  const Mechanism ends = parse_mechanism(
+      head + member + ", start: {rz: {law: linear, stiffness: 5e6 Nmm/rad}, tx: {law: linear, stiffness: 2e4 N/mm}}," +
+          " end: {ry: {law: linear, stiffness: 3e6 Nmm/rad}}}\n  tip: {offset: [50 mm, 0 mm, 0 mm]}\n",
+      "ends.yaml");
+  const Mechanism joints =
+      parse_mechanism(head +
+                          "  root: {joint: fixed, rz: {law: linear, stiffness: 5e6 Nmm/rad}, tx: {law: linear, "
+                          "stiffness: 2e4 N/mm}}\n" +
+                          member + "}\n  seat: {joint: fixed, ry: {law: linear, stiffness: 3e6 Nmm/rad}}\n" +
+                          "  tip: {offset: [50 mm, 0 mm, 0 mm]}\n",
+                      "joints.yaml");
+  expect_same(ends, joints, 1e-12);
+  EXPECT_EQ(write_mechanism(parse_mechanism(write_mechanism(ends), "again.yaml")), write_mechanism(ends));
+}
+
+TEST(MemberEnds, OfTheFixedFamilyYieldToo) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  // The ball joint stands where the link begins, its z along the link.
+  expect_same(with(m, "leg.link.start.tx", "{law: linear, stiffness: 900 N/mm}", append),
+              with(m, "leg.ball_joint.tz", "{law: linear, stiffness: 900 N/mm}", append), 1e-9);
+}
+
+// Pose after pose a machine with either stands as it does alone.
+TEST(Posing, KnowsJointsSideBySideAndEndsThatYield) {
+  Mechanism m =
+      with(test::device("haptic-6psu-ideal-joints"), "leg.link.start.tx", "{law: linear, stiffness: 900 N/mm}", append);
+  m = with(m, "leg.ball_joint.beside.rx", "{law: linear, stiffness: 1e4 Nmm/rad}", append);
+  Posing posing(m);
+  for (const Pose& pose : test::random_poses(m, 3)) {
+    const Configuration &a = posing.at(pose), b = configure(m, pose);
+    const Vector6 F = Vector6::Constant(1);
+    EXPECT_EQ(analytic::AnalyticModel(a).solve(F).displacement, analytic::AnalyticModel(b).solve(F).displacement);
+  }
+}
+
+}  // namespace
+}  // namespace deflect

@@ -1,0 +1,307 @@
+#include "validation/effects/place_effects.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <regex>
+#include <set>
+
+#include "msa/base/outcome.h"
+#include "msa/mechanism/joint_table.h"
+#include "validation/effects/edit_paths.h"
+
+namespace deflect {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// How parameters are measured at a place: along an axis or about one.
+struct Units {
+  const char *way, *force, *moment_word;
+  double small_way, stiffness;  ///< a way that is little (mm, rad), a stiffness that is large (N/mm, Nmm/rad)
+};
+constexpr Units along{"mm", "N", "force", 1e-4, 1e5}, about{"rad", "Nmm", "moment", 1e-6, 1e9};
+
+const Units& units(const Place& p) { return p.rotation() ? about : along; }
+
+EffectParameter parameter(std::string name, std::string unit, double start, double vanishes, std::string words) {
+  return {std::move(name), std::move(unit), start, start * 1e-6, start * 1e6, true, vanishes, std::move(words)};
+}
+
+EffectParameter spring(const Place& p, const char* words) {
+  const Units& u = units(p);
+  return parameter(fmt::format("stiffness_{}_per_{}", u.force, u.way), fmt::format("{}/{}", u.force, u.way),
+                   u.stiffness, infinity, fmt::format("{}, {}/{}", words, u.force, u.way));
+}
+
+bool in_series(const Place& p) { return !p.freedoms.empty() && p.hold != Hold::free; }
+bool single(const Place& p) { return p.freedoms.size() == 1; }
+
+/// One law where it can act.
+struct PlaceLaw {
+  const char* id;
+  bool (*acts)(const Place&);
+  const char* title;  ///< after "the elbow rz "
+  std::vector<EffectParameter> (*parameters)(const Place&);
+  std::string (*value)(const std::vector<EffectParameter>&, const Place&);
+  EffectPages pages;  ///< with {} for the place
+  bool of_one_leg = false;
+  EffectEdit::Action action = EffectEdit::Action::append;
+  const char* field = "";  ///< behind the freedom
+};
+
+std::string first_of(const std::vector<EffectParameter>& p) { return "$" + p.front().name; }
+
+const PlaceLaw laws[] = {
+    {"linear",
+     [](const Place& p) { return in_series(p) && !p.one_stiffness; },
+     "yields like a spring",
+     [](const Place& p) { return std::vector{spring(p, "its stiffness")}; },
+     [](const auto& p, const Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
+     {"Force passes through {} on its way to the tool. There it is not as rigid as it is drawn: a bearing, a clamp, a "
+      "screw joint or a thin wall yields in proportion to the force.",
+      "The displacement is too large in proportion to the load, the same in both senses, where {} carries force, and "
+      "not where it carries none.",
+      "Put a dial gauge across {} and load the tool there and back: the reading follows the force on a straight "
+      "line.",
+      "Stiffen {}, preload it, or take its stiffness into the model."},
+     true},
+    {"factor",
+     [](const Place& p) { return p.one_stiffness && single(p); },
+     "is not as stiff as described",
+     [](const Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.9, 0.02, 50, true, 1, "true stiffness over the one in the description"}};
+     },
+     [](const auto& p, const Place&) { return first_of(p); },
+     {"The stiffness of {} in the description comes from a data sheet or an estimate; the part has another one.",
+      "The displacement is too large or too small in proportion to the load that {} carries.",
+      "Load {} alone and read its stiffness off the slope.", "Put the measured stiffness into the description."},
+     true,
+     EffectEdit::Action::multiply,
+     ".stiffness"},
+    {"factor",
+     [](const Place& p) { return p.kind == PlaceKind::member && p.in_legs(); },
+     "does not bend as the description says",
+     [](const Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.9, 0.02, 50, true, 1, "true bending stiffness over the one in the description"}};
+     },
+     [](const auto& p, const Place&) { return first_of(p); },
+     {"{} bends more or less than its section and material say: a cut, a weld, a wall that is thinner.",
+      "The displacement is too large or too small in proportion to the bending moment in {}.",
+      "Bend {} alone and read its stiffness off the slope.", "Measure the section, or put the factor into the model."},
+     true,
+     EffectEdit::Action::multiply,
+     ".bending_factor"},
+    {"factor",
+     [](const Place& p) { return p.path.starts_with("materials."); },
+     "is stiffer or softer than described",
+     [](const Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.95, 0.3, 3, true, 1, "true modulus over the one in the description"}};
+     },
+     [](const auto& p, const Place&) { return first_of(p); },
+     {"The moduli of {} are not those of the description: another alloy, a wrong table.",
+      "What bends or stretches of it is off by one factor.", "Test a sample.", "Put the measured modulus in."},
+     false,
+     EffectEdit::Action::multiply,
+     ".<moduli>"},
+    {"factor",
+     [](const Place& p) { return p.path.starts_with("sections."); },
+     "is not as described",
+     [](const Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.98, 0.8, 1.25, true, 1, "true length over the one in the description"}};
+     },
+     [](const auto& p, const Place&) { return first_of(p); },
+     {"{} was made, worn or written down wrong.", "All members of that section are off by one factor.",
+      "Measure it with a caliper.", "Put the measured length in."},
+     false,
+     EffectEdit::Action::multiply},
+    {"clearance",
+     [](const Place& p) { return in_series(p) && single(p); },
+     "has play",
+     [](const Place& p) {
+       const Units& u = units(p);
+       return std::vector{parameter(fmt::format("gap_{}", u.way), u.way, u.small_way, 0,
+                                    fmt::format("free travel to either side of the middle, {}", u.way))};
+     },
+     [](const auto& p, const Place&) { return "{law: clearance, gap: " + first_of(p) + "}"; },
+     {"{} moves freely by a little before it carries force: a worn bearing, a loose fit, backlash of a gear.",
+      "A step where the force in {} changes sign, of the same size at every load; nothing grows with the load.",
+      "Push and pull by a small force: it jumps by the whole play.", "Preload {} or take up the play."}},
+    {"pull",
+     [](const Place& p) { return in_series(p) && single(p); },
+     "yields to positive force alone",
+     [](const Place& p) {
+       const Units& u = units(p);
+       return std::vector{parameter(fmt::format("yields_{}_per_{}", u.way, u.force),
+                                    fmt::format("{}/{}", u.way, u.force), 1 / u.stiffness, 0,
+                                    "deflection by force in the sense in which it yields")};
+     },
+     [](const auto& p, const Place&) { return "{law: one_sided, pull: " + first_of(p) + "}"; },
+     {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
+      "force pulls it along its positive axis.",
+      "The displacement is too large for one sense of the load and right for the other.",
+      "Load both senses: two slopes that meet at zero.", "Preload {}."}},
+    {"push",
+     [](const Place& p) { return in_series(p) && single(p); },
+     "yields to negative force alone",
+     [](const Place& p) {
+       const Units& u = units(p);
+       return std::vector{parameter(fmt::format("yields_{}_per_{}", u.way, u.force),
+                                    fmt::format("{}/{}", u.way, u.force), 1 / u.stiffness, 0,
+                                    "deflection by force in the sense in which it yields")};
+     },
+     [](const auto& p, const Place&) { return "{law: one_sided, push: " + first_of(p) + "}"; },
+     {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
+      "force pushes it against its positive axis.",
+      "The displacement is too large for one sense of the load and right for the other.",
+      "Load both senses: two slopes that meet at zero.", "Preload {}."}},
+    {"contact",
+     [](const Place& p) { return in_series(p) && single(p) && !p.rotation(); },
+     "yields like a contact",
+     [](const Place&) { return std::vector{parameter("approach_mm", "mm", 1e-5, 0, "approach under 1 N, mm")}; },
+     [](const auto& p, const Place&) {
+       return "{law: power, deflection: " + first_of(p) + ", force: 1 N, exponent: 0.66666666666666663}";
+     },
+     {"Round bodies touch at {}: a ball, a roller, a cam. The contact flattens as the force to the power 2/3.",
+      "The displacement is too large, most so at small loads: it grows as the force to the power 2/3.",
+      "Load in steps: the slope falls with the load.", "Preload {}, or more and larger rolling bodies."}},
+    {"hardening",
+     [](const Place& p) { return p.kind == PlaceKind::drive && single(p); },
+     "yields and becomes stiffer with deflection",
+     [](const Place& p) {
+       const Units& u = units(p);
+       std::vector<EffectParameter> out = {spring(p, "stiffness without load")};
+       out.push_back(
+           {fmt::format("reference_{}", u.way), u.way, 1e2 * u.small_way, 1e-2 * u.small_way, 1e5 * u.small_way, true,
+            std::nullopt,
+            fmt::format("deflection at which the {} is twice that of a linear spring, {}", u.moment_word, u.way)});
+       return out;
+     },
+     [](const auto& p, const Place&) {
+       return fmt::format("{{law: hardening, stiffness: ${}, reference: ${}}}", p[0].name, p[1].name);
+     },
+     {"More and more of {} carries as it deflects: teeth, rollers, a flexspline, a rubber element.",
+      "The displacement is too large at small loads and less so at large ones, odd in the load.",
+      "Load in steps: the slope rises with the load.", "Take the measured curve into the model."}},
+    {"friction",
+     [](const Place& p) { return single(p) && p.hold != Hold::rigid; },
+     "sticks before it slips",
+     [](const Place& p) {
+       const Units& u = units(p);
+       const double force = p.rotation() ? 100 : 2, stiffness = p.rotation() ? 1e6 : 1e3;
+       const std::string strength = fmt::format("{}_{}", u.moment_word, u.force),
+                         stuck = fmt::format("stiffness_{}_per_{}", u.force, u.way);
+       return std::vector<EffectParameter>{
+           {strength, u.force, force, force * 1e-4, force * 1e4, true, 0,
+            fmt::format("{} that friction holds before it slips, {}", u.moment_word, u.force)},
+           {stuck, fmt::format("{}/{}", u.force, u.way), stiffness, stiffness * 1e-4, stiffness * 1e4, true,
+            std::nullopt, fmt::format("stiffness while it sticks, {}/{}", u.force, u.way)},
+           {"start_share", "", 0, -1, 1, false, std::nullopt,
+            "share of the largest load that came and went before the first reading", true}};
+     },
+     [](const auto& p, const Place& at) {
+       return fmt::format("{{law: friction, {}: ${}, stiffness: ${}, start: ${}}}", units(at).moment_word, p[0].name,
+                          p[1].name, p[2].name);
+     },
+     {"{} rubs: seals, bearings and teeth hold a part of the load until they slip.",
+      "Loops: loading and unloading differ, and the displacement does not return to zero.",
+      "Load and unload slowly; tap the machine: it creeps towards the frictionless curve.",
+      "Lubricate {}, relieve its preload, or approach every reading from the same side."}},
+    {"restraint",
+     [](const Place& p) { return single(p) && p.hold == Hold::free; },
+     "is not free",
+     [](const Place& p) {
+       const Units& u = units(p);
+       return std::vector<EffectParameter>{{fmt::format("stiffness_{}_per_{}", u.force, u.way),
+                                            fmt::format("{}/{}", u.force, u.way), u.stiffness * 1e-5,
+                                            u.stiffness * 1e-11, u.stiffness * 10, true, 0,
+                                            fmt::format("stiffness that holds it, {}/{}", u.force, u.way)}};
+     },
+     [](const auto& p, const Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
+     {"{} is drawn free and is held: a hose, a seal, a flexure, a joint that binds.",
+      "The displacement is too small in proportion to the load, where the motion of {} would give way.",
+      "Move {} by hand, unloaded: it springs back.", "Free it, or take the restraint into the model."}},
+};
+
+/// What stands for "{}" in a page.
+std::string with_place(const std::string& page, const std::string& place) {
+  std::string out = page;
+  for (std::size_t at = out.find("{}"); at != out.npos; at = out.find("{}"))
+    out.replace(at, 2, at == 0 ? "The " + place : "the " + place);
+  return out;
+}
+
+std::vector<EffectEdit> edits_of(const PlaceLaw& law, const Place& p, const std::string& value) {
+  std::string head = p.path;
+  if (law.id == std::string("friction") && p.hold == Hold::elastic) head += ".beside";
+  std::vector<EffectEdit> out;
+  for (const std::size_t i : p.freedoms)
+    out.push_back({law.action, {fmt::format("{}.{}{}", head, freedom_names.at(i), law.field)}, value});
+  if (p.freedoms.empty()) out.push_back({law.action, {head + law.field}, value});
+  return out;
+}
+
+Effect effect_of(const PlaceLaw& law, const Place& p, bool several_legs, bool one_leg) {
+  Effect e;
+  const std::string words = name_of(p);
+  e.name = fmt::format("{}@{}{}", law.id, one_leg ? "leg." : "", id_of(p));
+  e.title = fmt::format("The {}{} {}", words,
+                        one_leg                       ? " of one leg"
+                        : several_legs && p.in_legs() ? " of every leg"
+                                                      : "",
+                        law.title);
+  e.scope = one_leg ? Scope::one_leg : several_legs && p.in_legs() ? Scope::all_legs : Scope::machine;
+  e.parameters = law.parameters(p);
+  e.edits = edits_of(law, p, law.value(e.parameters, p));
+  for (auto page : {&EffectPages::machine, &EffectPages::data, &EffectPages::bench, &EffectPages::cure})
+    e.pages.*page = with_place(law.pages.*page, words);
+  e.origin = "places";
+  e.place = p;
+  return e;
+}
+
+/// What an effect does to the machine, without the names of its parameters; nothing where it has no place in it.
+std::optional<std::string> key_of(const Effect& e, const Mechanism& m) {
+  static const std::regex names(R"(\$[A-Za-z0-9_-]+)");
+  std::set<std::string> edits;
+  for (const EffectEdit& edit : e.edits) {
+    const auto paths = outcome_of([&] { return paths_of(edit, m, std::nullopt); });
+    if (!paths) return std::nullopt;
+    for (const std::string& path : *paths)
+      edits.insert(
+          fmt::format("{} {} {}", path, static_cast<int>(edit.action), std::regex_replace(edit.value, names, "$$")));
+  }
+  return fmt::format("{} {}", e.scope == Scope::one_leg, fmt::join(edits, "; "));
+}
+
+}  // namespace
+
+std::vector<Effect> place_effects(const Subject& subject, const std::vector<Effect>& named) {
+  if (!subject.machine()) return {};
+  const Mechanism& m = *subject.machine();
+  std::set<std::string> known;
+  for (const Effect& e : named)
+    if (const auto key = key_of(e, m)) known.insert(*key);
+  const bool several = subject.legs() > 1;
+  std::vector<Effect> out;
+  const auto add = [&](Effect e) {
+    const auto key = key_of(e, m);
+    if (key && known.insert(*key).second) out.push_back(std::move(e));
+  };
+  for (const Place& place : subject.places())
+    for (const PlaceLaw& law : laws) {
+      if (!law.acts(place)) continue;
+      add(effect_of(law, place, several, false));
+      if (several && law.of_one_leg && place.in_legs()) add(effect_of(law, place, several, true));
+    }
+  return out;
+}
+
+}  // namespace deflect

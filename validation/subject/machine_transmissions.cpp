@@ -1,0 +1,186 @@
+#include "validation/subject/machine_transmissions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "analytic/model.h"
+#include "msa/base/index.h"
+#include "msa/mechanism/device_file.h"
+#include "msa/mechanism/place.h"
+
+namespace deflect {
+namespace {
+
+/// One freedom where it stands: the force f = gᵀF in it under a load F at T, and the displacement g of T when it gives
+/// way by one unit (the principle of virtual forces).
+struct Freedom6 {
+  std::array<Vector6, 6> g;
+  std::array<bool, 6> there{};
+  int leg = 0;  ///< 1-based; 0: in no leg
+};
+using ByPart = std::multimap<std::string, Freedom6>;
+
+/// Lets every freedom that holds give way by a law, so that it is placed with axes of its own.
+void yield_everywhere(Named<Part>& parts) {
+  const auto all = [](Joint& joint) {
+    const std::array<Freedom, 6> f = freedoms_of(joint);
+    for (std::size_t i = 0; i < 6 && !joint.stiffness; ++i)
+      if (joint.laws[i].empty() && f[i] != Freedom::free) joint.laws[i] = {LinearLaw{1}};
+  };
+  for (auto& [name, part] : parts)
+    if (auto* joint = std::get_if<Joint>(&part)) {
+      all(*joint);
+    } else if (auto* member = std::get_if<Member>(&part)) {
+      all(member->start);
+      all(member->end);
+    } else if (auto* group = std::get_if<Parallel>(&part)) {
+      yield_everywhere(group->leg);
+      for (Mount& mount : group->mounts) yield_everywhere(mount.leg);
+    }
+}
+
+/// A member's end is placed as the joint "rod start", and is the part "rod.start" of the description.
+std::string described(std::string part) {
+  for (const char* end : {" start", " end"})
+    if (part.ends_with(end)) part.replace(part.rfind(' '), 1, ".");
+  return part;
+}
+
+class Forces {
+ public:
+  Forces(const Vector3& p_WT, ByPart& out) : p_WT_(p_WT), out_(out) {}
+
+  /// W: the wrench at T that the leg carries under each unit load.
+  void leg(const PlacedLeg& placed, const analytic::Chain& chain, const Matrix6& W, int number,
+           const std::vector<std::string>& nested) {
+    std::size_t group = 0;
+    for (const PlacedPart& part : placed.parts) {
+      if (const auto* joint = std::get_if<PlacedJoint>(&part)) {
+        add(*joint, W, number, nested);
+      } else if (const auto* parallel = std::get_if<PlacedParallel>(&part)) {
+        branches(*parallel, chain.groups.at(group++), W, number, nested);
+      }
+    }
+  }
+
+  void add(const PlacedJoint& joint, const Matrix6& W, int number, const std::vector<std::string>& nested) {
+    Freedom6 here;
+    here.leg = number;
+    for (std::size_t i = 0; i < 6; ++i) {
+      here.there[i] = !joint.laws[i].empty();
+      here.g[i] = W.transpose() * analytic::freedom_twist(joint, i, p_WT_);
+    }
+    for (const std::string& before : nested) out_.emplace(before + described(joint.part), here);
+  }
+
+ private:
+  void branches(const PlacedParallel& parallel, const analytic::Group& group, const Matrix6& W, int number,
+                const std::vector<std::string>& nested) {
+    std::vector<Matrix6> own(parallel.branches.size());
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      const std::vector<Vector6> wrenches = group.solve(W.col(i), {}).wrenches;
+      for (std::size_t b = 0; b < own.size(); ++b) own[b].col(i) = wrenches[b];
+    }
+    for (std::size_t b = 0; b < own.size(); ++b) {
+      std::vector<std::string> inner = nested;
+      if (!parallel.one_joint) {
+        inner.clear();
+        for (const std::string& before : nested) {
+          inner.push_back(fmt::format("{}{}.", before, parallel.part));
+          inner.push_back(fmt::format("{}{}.mounts.{}.", before, parallel.part, b));
+        }
+      }
+      leg(parallel.branches[b], group.branches[b], own[b], number, inner);
+    }
+  }
+
+  const Vector3& p_WT_;
+  ByPart& out_;
+};
+
+ByPart forces_at(const Configuration& drawn, const Configuration& yielding) {
+  ByPart out;
+  const analytic::AnalyticModel model(drawn);
+  std::vector<Matrix6> W(drawn.legs.size(), Matrix6::Zero());
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const std::vector<Vector6> wrenches = model.solve(Vector6::Unit(i)).leg_wrenches;
+    for (std::size_t l = 0; l < W.size(); ++l) W[l].col(i) = wrenches[l];
+  }
+  Forces forces(drawn.pose.p_WT, out);
+  int number = 0;
+  for (std::size_t l = 0; l < W.size(); ++l) {
+    ++number;
+    if (!drawn.legs[l].beside)
+      forces.leg(yielding.legs[l], model.chains()[l], W[l], number, {"", fmt::format("mounts.{}.", l)});
+  }
+  for (PlacedJoint fixture : {drawn.base, drawn.tool}) {
+    for (auto& laws : fixture.laws) laws = {LinearLaw{1}};
+    forces.add(fixture, Matrix6::Identity(), 0, {""});
+  }
+  return out;
+}
+
+/// Of a law that starts at rest under no force.
+double deflection_of(const Law& law, double force) {
+  if (const auto* play = std::get_if<ClearanceLaw>(&law)) return force > 0 ? play->gap : force < 0 ? -play->gap : 0;
+  if (const auto* sided = std::get_if<OneSidedLaw>(&law))
+    return force * (force > 0 ? sided->pull : sided->push).value_or(0);
+  return analytic::deflection(law, force);
+}
+
+class MachineTransmissions final : public Transmissions {
+ public:
+  MachineTransmissions(const Mechanism& m, std::vector<ByPart> by_pose)
+      : by_pose_(std::move(by_pose)), cell_(m.load_cell), sensor_(m.sensor) {}
+
+  std::optional<std::vector<Vector6>> change(const Place& place, std::optional<int> leg, const Law& law,
+                                             const Measurements& data) const override {
+    std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
+    for (std::size_t p = 0; p < data.poses.size(); ++p) {
+      std::vector<Vector6> all;
+      const auto [first, last] = by_pose_[p].equal_range(place.part);
+      for (auto at = first; at != last; ++at)
+        for (const std::size_t i : place.freedoms)
+          if (at->second.there[i] && (!leg || at->second.leg == *leg)) all.push_back(at->second.g[i]);
+      if (all.empty()) return std::nullopt;
+      for (const std::size_t i : data.poses[p].readings) {
+        const Vector6 F = true_load(cell_, data.readings[i].load);
+        Vector6 d = Vector6::Zero();
+        for (const Vector6& g : all) d += g * deflection_of(law, g.dot(F));
+        out[i] = recorded_displacement(sensor_, d);
+      }
+    }
+    return out;
+  }
+
+ private:
+  std::vector<ByPart> by_pose_;
+  LoadCell cell_;
+  Sensor sensor_;
+};
+
+bool is_proportional(const Configuration& c) {
+  bool preloaded = false;
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (requires { part.preload; })
+      preloaded = preloaded || std::any_of(part.preload.begin(), part.preload.end(), [](double f) { return f != 0; });
+  });
+  return !preloaded && all_linear(c) && c.weight.isZero(0) &&
+         std::all_of(c.legs.begin(), c.legs.end(), [](const PlacedLeg& leg) { return leg.misfit.isZero(0); });
+}
+
+}  // namespace
+
+std::unique_ptr<const Transmissions> transmissions_of(const Mechanism& m, const std::vector<Configuration>& drawn) {
+  if (drawn.empty() || !is_proportional(drawn.front())) return nullptr;
+  Mechanism yielding = m.legs.empty() ? resolved(m) : m;
+  for (Named<Part>& leg : yielding.legs) yield_everywhere(leg);
+  std::vector<ByPart> by_pose;
+  for (const Configuration& c : drawn) by_pose.push_back(forces_at(c, configure(yielding, c.pose)));
+  return std::make_unique<MachineTransmissions>(m, std::move(by_pose));
+}
+
+}  // namespace deflect

@@ -1,0 +1,26 @@
+#include "validation/subject/place.h"
+
+#include <fmt/format.h>
+
+#include "msa/mechanism/joint_table.h"
+
+namespace deflect {
+
+std::string motion_of(const Place& p) {
+  if (p.freedoms.empty()) return "";
+  if (p.freedoms.size() > 1) return p.rotation() ? "tilt" : "across";
+  return freedom_names.at(p.freedoms.front());
+}
+
+std::string id_of(const Place& p) {
+  const std::string motion = motion_of(p);
+  return motion.empty() ? p.part : p.part + "." + motion;
+}
+
+std::string name_of(const Place& p) {
+  const std::string motion = motion_of(p);
+  return fmt::format("{}{}{}{}", p.leg ? fmt::format("leg {} ", *p.leg) : "", p.part, motion.empty() ? "" : " ",
+                     motion);
+}
+
+}  // namespace deflect
