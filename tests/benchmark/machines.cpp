@@ -203,7 +203,7 @@ std::vector<MachineRow> diagnose_machines(const std::vector<std::string>& device
     MachineRow row{name, machine.candidates(), std::vector<MachineSet>(sets)};
     for_each_case(sets, 1, threads, [&](std::size_t k) {
       try {
-        row.sets[k] = machine.diagnosed(k, seed + 1000 * k);
+        row.sets[k] = machine.diagnosed(k, seed + 1000 * k + 100000 * out.size());
       } catch (const std::runtime_error& e) {
         row.sets[k].device = name;
         row.sets[k].skipped = e.what();

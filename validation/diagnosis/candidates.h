@@ -31,7 +31,9 @@ class Candidates {
 
   /// Every effect beside others that are fitted: in the order of the signatures. Fits are made for those that can come
   /// near the best and whose log_odds can reach `least`; of two that do all but the same only one can be there.
-  std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least) const;
+  /// `known`: an effect that was fitted beside them before, which is not fitted worse than from those values.
+  std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least,
+                                const std::optional<EffectInstance>& known = {}) const;
 
   /// Those so far that could not be fitted beside what was there, and why: each once.
   const std::vector<LeftOut>& left_out() const { return left_out_; }

@@ -19,7 +19,8 @@ constexpr double alarm = 0.02;  // chance above which nothing is called missing
 constexpr double sure = 0.7;    // probability from which something unknown is there
 constexpr std::size_t quality_of = 5;
 constexpr double left_over_evidence = 2, left_over_p = 3e-3;
-constexpr double large_part = 4;  // times the misfit with an effect that is left without it
+// Times the misfit with all effects: without any of them, for them to be most of the matter; then without one of them.
+constexpr double large_part = 4, small_part = 1.25;
 
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
@@ -71,10 +72,12 @@ Selection beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns
   const Discrepancy all(patterns);
   const Discrepancy left(patterns, s.fit.signature);
   const Discrepancy::Size size = left.likeliest(s.fit.residual);
+  const bool most = s.observations.null_residual().squaredNorm() > large_part * s.fit.chi2;
+  const double own_part = most ? small_part : large_part;
   for (std::size_t i = s.effects.size(); i-- > 0;) {
     auto [others, values] = without(s.effects, s.fit.values, i);
     Fit rest = fit_of_all(s.observations, others, values);
-    if (!rest.found || rest.chi2 > large_part * s.fit.chi2) continue;  // the others need it; or nearly all is its own
+    if (!rest.found || rest.chi2 > own_part * s.fit.chi2) continue;  // the others need it; or much is its own
     const double gain = all.chi2(rest.residual, size) - all.chi2(s.fit.residual, size);
     if (candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
     s.effects = std::move(others);

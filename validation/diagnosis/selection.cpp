@@ -38,7 +38,7 @@ class Search {
       const auto [others, values] = without(s_.effects, s_.fit.values, i);
       const Fit rest = fit_of_all(seen(), others, values);
       if (!rest.found) continue;  // the others need it
-      const std::vector<Candidate> all = candidates_.beside(seen(), others, rest, never);
+      const std::vector<Candidate> all = candidates_.beside(seen(), others, rest, never, present(i));
       const auto own = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
         return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
       });
@@ -62,6 +62,13 @@ class Search {
   std::size_t size() const { return s_.effects.size(); }
 
  private:
+  /// Effect i as it is fitted now.
+  EffectInstance present(std::size_t i) const {
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k < i; ++k) first += std::ssize(s_.effects[k].effect->parameters);
+    return {s_.effects[i], s_.fit.values.segment(first, std::ssize(s_.effects[i].effect->parameters))};
+  }
+
   const Observations& seen() const { return s_.observations; }
 
   /// By what is the same to these data, then by the entry's own.
