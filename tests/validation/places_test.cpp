@@ -82,7 +82,7 @@ TEST_P(LawsAtPlaces, StandInEveryMachineWithIdsOfTheirOwn) {
   EXPECT_GE(laws_of(GetParam()).size(), 20U);
 }
 
-// Near the value at which it vanishes an effect does nothing: the machine stands as before.
+// Each is also a file to start one's own from, which says the same.
 TEST_P(LawsAtPlaces, AreFilesOfTheirOwn) {
   const std::vector<Effect>& all = laws_of(GetParam());
   for (std::size_t i = 0; i < all.size(); i += 7) {

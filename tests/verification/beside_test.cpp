@@ -118,6 +118,31 @@ TEST(SideBySide, IsKeptByTheFile) {
   EXPECT_EQ(std::get<FrictionLaw>(drive->beside[5].at(0)).force, 3);
 }
 
+// For fits a load costs the laws that jump alone: the same displacement and slips as with everything solved.
+TEST(Displaced, IsWhatSolveSays) {
+  const Mechanism haptic = with(test::device("haptic-6psu-ideal-joints"), "leg.ball_joint.tz",
+                                "[{law: clearance, gap: 0.02 mm}, {law: linear, stiffness: 2000 N/mm}]");
+  const Mechanism rubbing = with(test::device("tripteron"), "leg.slide.beside.tz",
+                                 "{law: friction, force: 5 N, stiffness: 300 N/mm}", append);
+  for (const Mechanism& m : {haptic, rubbing}) {
+    const Configuration c = configure(m, home_pose(m));
+    const analytic::AnalyticModel model(c), whole(c);
+    std::mt19937 random(4);
+    Conditions quick, slow;
+    for (int i = 0; i < 8; ++i) {
+      const Vector6 F = test::random_wrench(random);
+      const analytic::AnalyticSolution a = model.displaced(F, quick), b = whole.solve(F, slow);
+      ASSERT_TRUE(a.converged && b.converged) << a.message << b.message;
+      EXPECT_LE((a.displacement - b.displacement).norm(), 1e-9 * b.displacement.norm()) << m.name << " " << i;
+      ASSERT_EQ(a.slips.size(), b.slips.size());
+      for (std::size_t k = 0; k < a.slips.size(); ++k)
+        EXPECT_NEAR(a.slips[k], b.slips[k], 1e-9 * b.displacement.norm());
+      quick.slips = a.slips;
+      slow.slips = b.slips;
+    }
+  }
+}
+
 // An end that yields is a joint between the member and what holds it.
 TEST(MemberEnds, AreJointsInTheMembersAxes) {
   const std::string head = R"(name: beam

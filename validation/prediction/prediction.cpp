@@ -109,7 +109,7 @@ double carried_before(const Configuration& c) {
   return share;
 }
 
-/// The largest load of a pose as true load, in size of the displacement that it was read with.
+/// The largest load of a pose (its six numbers in N and Nm together), as true load.
 Vector6 largest_load(const PoseGroup& pose, const Measurements& data, const Matrix6& cell) {
   Vector6 largest = Vector6::Zero();
   for (const std::size_t i : pose.readings)
@@ -117,12 +117,13 @@ Vector6 largest_load(const PoseGroup& pose, const Measurements& data, const Matr
   return cell * largest;
 }
 
-/// A load that came and went: the slips that it leaves, and the displacement.
+/// A load that came and went: the slips that it leaves, and the displacement that these alone leave.
 Vector6 after(const Vector6& F, TheoryAt& machine, Conditions& conditions) {
+  const Vector6 relaxed = machine.predict(Vector6::Zero(), conditions).displacement;  // weight's
   conditions.slips = machine.predict(F, conditions).slips;
   const Prediction rest = machine.predict(Vector6::Zero(), conditions);
   conditions.slips = rest.slips;
-  return rest.displacement;
+  return rest.displacement - relaxed;
 }
 
 /// Tells the theory where it will be asked many times.
