@@ -123,8 +123,8 @@ Chain chain_of(const PlacedLeg& leg, const Vector3& p_W, double length, const As
   return chain;
 }
 
-Response Chain::respond(const Vector6& F, double least, const ChainConditions& c) const {
-  Response r;
+ChainResponse Chain::respond(const Vector6& F, double least, const ChainConditions& c) const {
+  ChainResponse r;
   r.d = misfit + c.warmer * expansion + C * F;
   r.tangent = {C, roots, rooted, c.printed.count(Erratum::passive_joints) ? Matrix6X(6, 0) : J_q, N};
   const Eigen::Index passive = r.tangent.J.cols();

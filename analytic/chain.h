@@ -41,7 +41,7 @@ struct FlexiblePart {
 };
 
 /// Displacement under a wrench and its derivative there.
-struct Response {
+struct ChainResponse {
   Vector6 d = Vector6::Zero();
   Flexibility tangent;
   bool converged = true;  ///< of the groups within
@@ -70,7 +70,7 @@ struct Chain {
 
   /// Motion under F but for J_q θ; the tangent's compliance takes a force below `least` (N, Nm) for `least`, so that
   /// unloaded contacts stay finite; with least = 0 they let go, and so do released steps.
-  Response respond(const Vector6& F, double least, const ChainConditions&) const;
+  ChainResponse respond(const Vector6& F, double least, const ChainConditions&) const;
   Vector6 deflection(const Vector6& F, const ChainConditions&) const;
   /// Tangent stiffness K_c. Contacts without load do not resist. Throws ModelError where it is infinite.
   Matrix6 stiffness(const Vector6& F, const ChainConditions&) const;

@@ -204,7 +204,7 @@ std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const Chai
   for (const Chain& branch : branches) {
     const Eigen::Index own = branch.N.cols();
     s.wrenches.push_back(branch.N * lambda.segment(at, own));
-    const Response r = branch.respond(s.wrenches.back(), 0, c);
+    const ChainResponse r = branch.respond(s.wrenches.back(), 0, c);
     if (r.tangent.N.cols() < own) return std::nullopt;
     s.converged = s.converged && r.converged;
     e.segment(at, own) = branch.N.transpose() * r.d;
@@ -217,7 +217,7 @@ std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const Chai
 Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   // A chain alone is asked directly: stiffness is needed to share forces only.
   if (branches.size() == 1) {
-    const Response r = branches[0].respond(F, 0, c);
+    const ChainResponse r = branches[0].respond(F, 0, c);
     return {r.d, {F}, r.converged, 1, 0};
   }
   if (determinate)
@@ -238,7 +238,7 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
     std::vector<LinearisedBranch> linearised;
     Vector6 missing = F, moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
-      const Response r = branches[i].respond(s.wrenches[i], least, c);
+      const ChainResponse r = branches[i].respond(s.wrenches[i], least, c);
       linearised.emplace_back(r.tangent, length, r.d - s.t);
       missing -= s.wrenches[i];
       const LinearisedBranch& b = linearised.back();
@@ -282,7 +282,7 @@ void Group::settle(State& s, double least, const ChainConditions& c) const {
   s.misfit = 0;
   for (std::size_t i = 0; i < branches.size(); ++i) {
     if (branches[i].N.cols() == 0) continue;
-    const Response r = branches[i].respond(s.wrenches[i], least, c);
+    const ChainResponse r = branches[i].respond(s.wrenches[i], least, c);
     s.converged = s.converged && r.converged;
     if (r.tangent.N.cols() == 0) continue;
     const VectorX d = r.tangent.N.transpose() * r.d, moved = r.tangent.N.transpose() * s.t;

@@ -148,7 +148,7 @@ std::optional<Lines::Answer> Lines::solve(const Group& g, const Vector6& F, cons
       out.slips[number] = shared.slip;
     }
     s.wrenches[line.leg] = w * own;
-    const Response r = leg.respond(s.wrenches[line.leg], 0, c);
+    const ChainResponse r = leg.respond(s.wrenches[line.leg], 0, c);
     if (r.tangent.N.cols() < 1) return std::nullopt;
     s.converged = s.converged && r.converged;
     e(at) = w.dot(r.d);

@@ -65,6 +65,7 @@ void FieldReader::note(const YamlNode& node, const std::string& path) {
 
 void FieldReader::note_all(const YamlNode& node, const std::string& path) {
   note(node, path);
+  if (node.depends) depends_[path] = *node.depends;
   for (std::size_t i = 0; i < node.children.size(); ++i)
     note_all(node.children[i], joined(path, node.kind == Kind::map ? node.keys[i] : std::to_string(i)));
 }
@@ -122,7 +123,7 @@ const std::string& FieldReader::scalar(const YamlNode& node, LaterText path, Lat
   return node.text;
 }
 
-double FieldReader::number(const YamlNode& node, LaterText path, const Quantity& q, LaterText sample) const {
+double FieldReader::number(const YamlNode& node, LaterText path, const Quantity& q, LaterText sample) {
   const std::string& text = scalar(node, path, sample);
   const auto parsed = outcome_of<InputError>([&] {
     const double found = parse_quantity(text, q.dimension);
@@ -132,6 +133,10 @@ double FieldReader::number(const YamlNode& node, LaterText path, const Quantity&
   if (!parsed) fail(node, path(), parsed.why);
   const double value = *parsed;
   if (!q.range.holds(value)) fail(node, path(), fmt::format("'{}' must be {}", text, words(q.range, q.dimension)));
+  if (node.depends) {
+    Dependence& seen = depends_[path()] = *node.depends;
+    seen.factor = (value - seen.offset) / seen.x;
+  }
   return value;
 }
 
@@ -339,6 +344,19 @@ void FieldReader::one_or_list(const char* key, Elements& all, const char* about)
   level_.asked.emplace_back(key);
   all.add("");
   element(*node, joined(joined(path_, key), "0"), all, all.size() - 1);
+}
+
+void FieldReader::others(Named<std::string>& values, const char*) {
+  values.clear();
+  for (std::size_t i = 0; i < level_.map->keys.size(); ++i) {
+    const std::string& key = level_.map->keys[i];
+    if (std::find(level_.asked.begin(), level_.asked.end(), key) != level_.asked.end()) continue;
+    const YamlNode& node = level_.map->children[i];
+    const std::string sample = key + ": 10 %", path = joined(path_, key);
+    values.emplace_back(key, scalar(node, path, sample));
+    note(node, path);
+    level_.asked.push_back(key.c_str());
+  }
 }
 
 void FieldReader::keys(const std::vector<std::string>& all) {

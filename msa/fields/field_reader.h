@@ -45,6 +45,9 @@ class FieldReader final : public FieldVisitor {
   /// Paths met with the tag !ours.
   const std::set<std::string>& ours() const { return ours_; }
 
+  /// The numbers met that depend on a parameter.
+  const Dependences& depends() const { return depends_; }
+
   void quantity(const char*, double&, const Quantity&, const char*) override;
   void quantity_if_given(const char*, std::optional<double>&, const Quantity&, const char*) override;
   void integer(const char*, int&, int low, int high, const char*) override;
@@ -60,6 +63,7 @@ class FieldReader final : public FieldVisitor {
   void entries(const char*, Elements&, Need, const char*) override;
   void list(const char*, Elements&, const char*) override;
   void one_or_list(const char*, Elements&, const char*) override;
+  void others(Named<std::string>&, const char*) override;
   void keys(const std::vector<std::string>& all) override;
   std::size_t alternative(const std::vector<std::string>& keys, std::size_t) override;
   void require(bool, const char*, const std::string&) override;
@@ -80,7 +84,7 @@ class FieldReader final : public FieldVisitor {
   const YamlNode* child(std::string_view key) const;
   const YamlNode* find(const char* key, bool needed, LaterText example, const char* about);
   const std::string& scalar(const YamlNode&, LaterText path, LaterText example) const;
-  double number(const YamlNode&, LaterText path, const Quantity&, LaterText example) const;
+  double number(const YamlNode&, LaterText path, const Quantity&, LaterText example);
   void elements(const YamlNode& list, Elements&);
   void element(const YamlNode&, const std::string& path, Elements&, std::size_t);
   void note(const YamlNode&, const std::string& path);
@@ -89,6 +93,7 @@ class FieldReader final : public FieldVisitor {
   std::string origin_, path_;
   Level level_;
   std::set<std::string> ours_;
+  Dependences depends_;
 };
 
 }  // namespace deflect

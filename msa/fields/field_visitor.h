@@ -96,6 +96,9 @@ class FieldVisitor {
   virtual void list(const char* key, Elements&, const char* about) = 0;
   virtual void one_or_list(const char* key, Elements&, const char* about) = 0;
 
+  /// Every key of this map that no field above asked for, each with a single value, kept as text. Called last.
+  virtual void others(Named<std::string>&, const char* about) = 0;
+
   /// The keys of this map, told beforehand where fields below refer to others: an unknown one is told first.
   virtual void keys(const std::vector<std::string>& all) = 0;
 

@@ -173,6 +173,10 @@ void FieldWriter::one_or_list(const char* key, Elements& all, const char*) {
   add(key, std::move(node), all.size() == 0);
 }
 
+void FieldWriter::others(Named<std::string>& values, const char*) {
+  for (const auto& [key, value] : values) add(key, scalar(value), false);
+}
+
 std::size_t FieldWriter::alternative(const std::vector<std::string>& keys, std::size_t current) {
   telling_ = keys[current];
   return current;

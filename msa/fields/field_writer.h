@@ -35,6 +35,7 @@ class FieldWriter final : public FieldVisitor {
   void entries(const char*, Elements&, Need, const char*) override;
   void list(const char*, Elements&, const char*) override;
   void one_or_list(const char*, Elements&, const char*) override;
+  void others(Named<std::string>&, const char*) override;
   void keys(const std::vector<std::string>&) override {}
   std::size_t alternative(const std::vector<std::string>& keys, std::size_t current) override;
   void require(bool, const char*, const std::string&) override {}

@@ -139,6 +139,7 @@ class SchemaVisitor final : public FieldVisitor {
   void one_or_list(const char* key, Elements& all, const char* about) override {
     elements(key, FieldKind::one_or_list, all, Need::optional, about, "");
   }
+  void others(Named<std::string>&, const char* about) override { add("...", FieldKind::others, false, about); }
   void keys(const std::vector<std::string>&) override {}
   std::size_t alternative(const std::vector<std::string>& keys, std::size_t) override {
     const std::string chosen = choose(fmt::format("{}", fmt::join(keys, "|")), keys, keys.front());

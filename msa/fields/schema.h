@@ -16,7 +16,21 @@
 
 namespace deflect {
 
-enum class FieldKind { quantity, integer, vector3, matrix, text, texts, word, any, object, entries, list, one_or_list };
+enum class FieldKind {
+  quantity,
+  integer,
+  vector3,
+  matrix,
+  text,
+  texts,
+  word,
+  any,
+  object,
+  entries,
+  list,
+  one_or_list,
+  others
+};
 
 struct SchemaField {
   std::string key, about;

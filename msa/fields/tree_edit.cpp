@@ -121,10 +121,26 @@ void append(YamlNode& node, const YamlNode& value, const std::string& here) {
   }
 }
 
+/// Of a number that an edit moves with a parameter; it had one before where it depended already.
+Dependence dependence(const YamlNode& node, Dependence on, double offset) {
+  on.offset = offset;
+  on.alone = !node.depends;
+  return on;
+}
+std::optional<Dependence> scaled(std::optional<Dependence> on, double factor) {
+  if (on) on->offset *= factor;
+  return on;
+}
+std::optional<Dependence> shifted(std::optional<Dependence> on, double by) {
+  if (on) on->offset += by;
+  return on;
+}
+
 void multiply(YamlNode& node, const YamlNode& value, const std::string& here) {
   if (!node.number) throw InputError(here + "is not a number that is there to be multiplied");
   if (value.kind != Kind::scalar) throw InputError(here + "a plain number is wanted as factor");
   const double factor = told_at<InputError>([&] { return here; }, [&] { return parse_number(value.text); });
+  node.depends = value.depends ? dependence(node, *value.depends, 0) : scaled(node.depends, factor);
   node.number = *node.number * factor;
   if (!std::isfinite(*node.number)) throw InputError(here + "the product is not finite");
   node.text = format_quantity(*node.number, node.dimension);
@@ -134,7 +150,10 @@ void multiply(YamlNode& node, const YamlNode& value, const std::string& here) {
 void add(YamlNode& node, const YamlNode& value, const std::string& here) {
   if (!node.number) throw InputError(here + "is not a number that is there to be added to");
   if (value.kind != Kind::scalar) throw InputError(here + "a single value is wanted as summand");
-  *node.number += told_at<InputError>([&] { return here; }, [&] { return parse_quantity(value.text, node.dimension); });
+  const double added =
+      told_at<InputError>([&] { return here; }, [&] { return parse_quantity(value.text, node.dimension); });
+  node.depends = value.depends ? dependence(node, *value.depends, *node.number) : shifted(node.depends, added);
+  *node.number += added;
   if (!std::isfinite(*node.number)) throw InputError(here + "the sum is not finite");
   node.text = format_quantity(*node.number, node.dimension);
   node.ours = false;
@@ -213,11 +232,17 @@ std::string origin_of(const Edit& edit) {
   return fmt::format("edit '{} {} {}'", edit.path, sign(edit.action), edit.value);
 }
 
-void apply(YamlNode& root, const Edit& edit, const std::string& origin) {
-  const std::string where = origin + ": ";
-  YamlNode value = parse_yaml(edit.value, origin);
+std::string origin_of(const TreeEdit& edit) { return origin_of(Edit{edit.path, flow_yaml(edit.value), edit.action}); }
+
+TreeEdit parsed(const Edit& edit) {
+  YamlNode value = parse_yaml(edit.value, origin_of(edit));
   set_line(value, 0);
-  for (const TreePlace& place : places(root, edit.path, where)) change(root, place, edit.action, value, where);
+  return {edit.path, std::move(value), edit.action};
+}
+
+void apply(YamlNode& root, const TreeEdit& edit, const std::string& origin) {
+  const std::string where = origin + ": ";
+  for (const TreePlace& place : places(root, edit.path, where)) change(root, place, edit.action, edit.value, where);
 }
 
 }  // namespace deflect

@@ -30,7 +30,17 @@ const YamlNode& at(const YamlNode& root, const TreePlace&);
 /// are not edited. InputError, beginning with `where`, when the action does not fit what stands there.
 void change(YamlNode& root, const TreePlace&, Edit::Action, const YamlNode& value, const std::string& where);
 
+/// An edit whose value has been parsed.
+struct TreeEdit {
+  std::string path;
+  YamlNode value;
+  Edit::Action action = Edit::Action::set;
+};
+/// InputError where the value is no YAML.
+TreeEdit parsed(const Edit&);
+std::string origin_of(const TreeEdit&);
+
 /// An edit at every place that its path means. InputError beginning with `origin`, as origin_of() of the edit.
-void apply(YamlNode& root, const Edit&, const std::string& origin);
+void apply(YamlNode& root, const TreeEdit&, const std::string& origin);
 
 }  // namespace deflect

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace deflect {
 
@@ -28,6 +29,25 @@ YamlNode stripped(const YamlNode& node) {
     out.children.push_back(stripped(node.children[i]));
   }
   return out;
+}
+
+void attach(YamlNode& root, const Dependences& all) {
+  for (const auto& [path, dependence] : all) {
+    YamlNode* node = &root;
+    for (std::string_view rest = path; node && !rest.empty();) {
+      const std::size_t dot = std::min(rest.find('.'), rest.size());
+      const std::string_view segment = rest.substr(0, dot);
+      rest.remove_prefix(std::min(dot + 1, rest.size()));
+      if (node->kind == YamlNode::Kind::map) {
+        node = node->child(segment);
+        continue;
+      }
+      std::size_t i = node->children.size();
+      std::from_chars(segment.data(), segment.data() + segment.size(), i);
+      node = i < node->children.size() ? &node->children[i] : nullptr;
+    }
+    if (node) node->depends = dependence;
+  }
 }
 
 void set_line(YamlNode& node, int line) {

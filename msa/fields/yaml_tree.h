@@ -2,6 +2,8 @@
 // whether it carries the tag !ours; a tree made from a description knows more (see "written" below).
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +12,14 @@
 #include "msa/base/units.h"
 
 namespace deflect {
+
+/// How a number depends on a parameter that was filled in: offset + factor · x.
+struct Dependence {
+  std::size_t parameter = 0;
+  double x = 0;                   ///< the parameter's value; not 0
+  double offset = 0, factor = 1;  ///< SI; the factor is known when the number has been read
+  bool alone = true;              ///< false: another parameter moves this number too
+};
 
 struct YamlNode {
   enum class Kind { null, scalar, list, map };
@@ -20,6 +30,7 @@ struct YamlNode {
   bool ours = false;               ///< tagged !ours
   bool quoted = false;             ///< free text: written in quotes where another reader would see a number or a word
   int line = 0, key_line = 0;      ///< 1-based, 0 where there is no file: of the value, of its key
+  std::optional<Dependence> depends;  ///< of a scalar that a parameter was filled into
 
   // Written: set by FieldWriter only.
   bool implied = false;    ///< a default or an absent field: known to edits, not part of the file
@@ -46,6 +57,12 @@ std::string flow_yaml(const YamlNode&);
 
 /// Without what is implied.
 YamlNode stripped(const YamlNode&);
+
+/// By the path of the number: "leg.elbow.rz.0.stiffness".
+using Dependences = std::map<std::string, Dependence>;
+
+/// Puts the dependences at their places in a tree; paths that lead nowhere are passed over.
+void attach(YamlNode& root, const Dependences&);
 
 /// The node and all below it stand on this line.
 void set_line(YamlNode&, int line);

@@ -29,18 +29,18 @@ double way_to(double wanted, double from, bool rotation) {
   return rotation ? std::fmod(way, 2 * pi) : way;
 }
 
-std::string leg_name(const Assembly& a, std::size_t leg) {
+std::string leg_name(const ChainAssembly& a, std::size_t leg) {
   return a.legs.size() == 1 ? "" : fmt::format("leg {}: ", leg + 1);
 }
 
 Frame frame_of(const Pose& pose) { return {pose.p_WT, pose.R_WT}; }
 
-Closed close_leg(Assembly& a, std::size_t leg, const Pose& pose) {
+Closed close_leg(ChainAssembly& a, std::size_t leg, const Pose& pose) {
   return close_loops(one(a.legs[leg]), a.states[leg], frame_of(pose), a.length);
 }
 
 /// All legs together: passive coordinates follow the actuated ones. The platform is where the legs have it.
-Closed close_all(Assembly& a) {
+Closed close_all(ChainAssembly& a) {
   std::vector<JointState> all;
   for (const auto& states : a.states) all.insert(all.end(), states.begin(), states.end());
   const Closed closed = close_loops(a.legs, all, std::nullopt, a.length);
@@ -71,7 +71,7 @@ void joints_of(const Named<Part>& parts, const std::string& within,
     }
 }
 
-void check_limits(const Assembly& a) {
+void check_limits(const ChainAssembly& a) {
   for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {
     std::vector<std::pair<std::string, const Joint*>> joints;
     joints_of(a.legs[leg].parts, "", joints);
@@ -110,9 +110,9 @@ void require_reachable(double q, bool rotation, double length, const std::string
 }
 
 /// Refuses a pose in which a leg's end can move in fewer directions than it can at home.
-void refuse_singular(const Assembly& a, const Assembly& home) {
+void refuse_singular(const ChainAssembly& a, const ChainAssembly& home) {
   for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {
-    const auto at = [&](const Assembly& s) {
+    const auto at = [&](const ChainAssembly& s) {
       return reach(walk(one(s.legs[leg]), s.states[leg]), 0, s.pose.p_WT, s.length);
     };
     const Reach here = at(a), there = at(home);
@@ -128,8 +128,8 @@ void refuse_singular(const Assembly& a, const Assembly& home) {
   }
 }
 
-Assembly with_joints_at_home(const Mechanism& m) {
-  Assembly a;
+ChainAssembly with_joints_at_home(const Mechanism& m) {
+  ChainAssembly a;
   a.legs = legs_of(m);
   for (const LegParts& leg : a.legs) a.states.push_back(home_states(one(leg)));
   return a;
@@ -137,9 +137,9 @@ Assembly with_joints_at_home(const Mechanism& m) {
 
 }  // namespace
 
-Assembly home_assembly(const Mechanism& m) {
+ChainAssembly home_assembly(const Mechanism& m) {
   const Chains& k = std::get<Chains>(m.kinematics);
-  Assembly a = with_joints_at_home(m);
+  ChainAssembly a = with_joints_at_home(m);
   std::vector<JointState> all;
   for (const auto& states : a.states) all.insert(all.end(), states.begin(), states.end());
   const Trace guess = walk(a.legs, all);
@@ -150,6 +150,7 @@ Assembly home_assembly(const Mechanism& m) {
     for (const Step& step : leg.steps) length = std::max(length, (step.after.p - centre).norm());
   }
   a.length = length > 0 ? length : 1;
+  a.home = k.home;
   if (const auto n = actuated(a).values.size(); k.controller.size() > 0 && k.controller.rows() != n)
     throw InputError(fmt::format("{}: kinematics.controller has {} rows: the mechanism has {} actuated coordinates",
                                  m.name, k.controller.rows(), n));
@@ -170,8 +171,8 @@ Assembly home_assembly(const Mechanism& m) {
   return a;
 }
 
-void move_to(Assembly& a, const Pose& pose) {
-  const Assembly home = a;
+void move_to(ChainAssembly& a, const Pose& pose) {
+  const ChainAssembly home = a;
   const Eigen::AngleAxisd turn(home.pose.R_WT.transpose() * pose.R_WT);
   const Vector3 shift = pose.p_WT - home.pose.p_WT;
   if (!(shift.norm() <= farthest * a.length))
@@ -196,7 +197,7 @@ void move_to(Assembly& a, const Pose& pose) {
   refuse_singular(a, home);
 }
 
-void move_to_coordinates(Assembly& a, const VectorX& wanted) {
+void move_to_coordinates(ChainAssembly& a, const VectorX& wanted) {
   const ActuatedCoordinates home = actuated(a);
   const VectorX from = home.values;
   VectorX way(from.size());
@@ -222,7 +223,7 @@ void move_to_coordinates(Assembly& a, const VectorX& wanted) {
   check_limits(a);
 }
 
-ActuatedCoordinates actuated(const Assembly& a) {
+ActuatedCoordinates actuated(const ChainAssembly& a) {
   ActuatedCoordinates out;
   std::vector<double> values;
   for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {

@@ -3,26 +3,34 @@
 #pragma once
 
 #include "msa/mechanism/closure.h"
+#include "msa/mechanism/configuration.h"
 
 namespace deflect {
 
-struct Assembly {
+struct ChainAssembly {
   std::vector<LegParts> legs;
   std::vector<std::vector<JointState>> states;  ///< by leg
   Pose pose;                                    ///< of the platform
   double length = 1;                            ///< extent of the mechanism at home, m
+  std::optional<Placement> home;                ///< kinematics.home
+  VectorX coordinates;                          ///< actuated ones that were asked for; none: the pose was
+  std::vector<Actuator> actuators;              ///< where it was placed
 };
+
+/// Whether joints that stand somewhere in one stand there in the other too: all that kinematics read is equal. Laws,
+/// sections and materials may differ.
+bool same_kinematics(const std::vector<LegParts>&, const std::vector<LegParts>&);
 
 /// Throws ModelError when the loops do not close at home, InputError when the controller has another number of rows
 /// than there are actuated coordinates.
-Assembly home_assembly(const Mechanism&);
+ChainAssembly home_assembly(const Mechanism&);
 
 /// Throws ModelError naming the leg: the pose is not reached (and how near it comes), a coordinate leaves its limits,
 /// or the pose is singular: the leg's end can no longer move in a direction, which is named.
-void move_to(Assembly&, const Pose&);
+void move_to(ChainAssembly&, const Pose&);
 
 /// The same for actuated coordinates in the order of the walk; a singular pose is taken as it is.
-void move_to_coordinates(Assembly&, const VectorX& actuated);
+void move_to_coordinates(ChainAssembly&, const VectorX& actuated);
 
 /// Values of the actuated coordinates in the order of the walk, and what they are called.
 struct ActuatedCoordinates {
@@ -30,7 +38,7 @@ struct ActuatedCoordinates {
   std::vector<std::string> names;
   std::vector<bool> rotation;
 };
-ActuatedCoordinates actuated(const Assembly&);
+ActuatedCoordinates actuated(const ChainAssembly&);
 
 /// The same with the joints at home, where the loops need not close.
 ActuatedCoordinates actuated_at_home(const Mechanism&);

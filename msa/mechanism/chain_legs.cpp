@@ -128,7 +128,26 @@ class Placer {
   const std::vector<JointState>& states_;
 };
 
-PlacedMechanism placed_assembly(const Mechanism& m, const Assembly& a) {
+/// The mechanism with its joints where they stand in another of the same kinematics; nothing where these differ.
+std::optional<ChainAssembly> taken_over(const ChainAssembly& known, const Chains& k, const Mechanism& m) {
+  const auto same = [](const Placement& a, const Placement& b) { return a.shift == b.shift && a.turn == b.turn; };
+  if (known.home.has_value() != k.home.has_value() || (k.home && !same(*k.home, *known.home))) return std::nullopt;
+  std::vector<LegParts> legs = legs_of(m);
+  if (!same_kinematics(legs, known.legs)) return std::nullopt;
+  return ChainAssembly{std::move(legs), known.states,      known.pose,     known.length,
+                       known.home,      known.coordinates, known.actuators};
+}
+
+/// Those given by the user for the actuated ones of the chains.
+std::vector<Actuator> actuators_of(const ChainAssembly& a, const MatrixX& controller) {
+  std::vector<Actuator> out;
+  const ActuatedCoordinates q = actuated(a);
+  const VectorX given = controller.size() > 0 ? VectorX(controller.partialPivLu().solve(q.values)) : q.values;
+  for (std::size_t i = 0; i < q.names.size(); ++i) out.push_back({q.names[i], given(as_index(i)), q.rotation[i]});
+  return out;
+}
+
+PlacedMechanism placed_assembly(const Mechanism& m, ChainAssembly a) {
   PlacedMechanism out;
   out.pose = a.pose;
   for (std::size_t i = 0; i < a.legs.size(); ++i) {
@@ -139,27 +158,34 @@ PlacedMechanism placed_assembly(const Mechanism& m, const Assembly& a) {
     const Frame platform = Frame{a.pose.p_WT, a.pose.R_WT} * frame_of(a.legs[i].mount.platform);
     out.seats.push_back({leg.start.p, platform.p});
   }
-  const ActuatedCoordinates q = actuated(a);
-  const MatrixX& controller = std::get<Chains>(m.kinematics).controller;
-  VectorX given = q.values;
-  if (controller.size() > 0) given = controller.partialPivLu().solve(q.values);
-  for (std::size_t i = 0; i < q.names.size(); ++i)
-    out.actuators.push_back({q.names[i], given(as_index(i)), q.rotation[i]});
+  if (a.actuators.empty()) a.actuators = actuators_of(a, std::get<Chains>(m.kinematics).controller);
+  out.actuators = a.actuators;
+  out.assembly = std::make_shared<const ChainAssembly>(std::move(a));
   return out;
 }
 
 }  // namespace
 
-PlacedMechanism place(const Chains&, const Mechanism& m, const Pose& pose) {
-  Assembly a = home_assembly(m);
+PlacedMechanism place(const Chains& k, const Mechanism& m, const Pose& pose, const ChainAssembly* known) {
+  const bool there =
+      known && known->coordinates.size() == 0 && known->pose.p_WT == pose.p_WT && known->pose.R_WT == pose.R_WT;
+  if (auto same = there ? taken_over(*known, k, m) : std::nullopt) return placed_assembly(m, std::move(*same));
+  ChainAssembly a = home_assembly(m);
   move_to(a, pose);
-  return placed_assembly(m, a);
+  return placed_assembly(m, std::move(a));
 }
 
-PlacedMechanism place_joints(const Chains& k, const Mechanism& m, const VectorX& coordinates) {
-  Assembly a = home_assembly(m);
-  move_to_coordinates(a, k.controller.size() > 0 ? VectorX(k.controller * coordinates) : coordinates);
-  return placed_assembly(m, a);
+PlacedMechanism place_joints(const Chains& k, const Mechanism& m, const VectorX& coordinates,
+                             const ChainAssembly* known) {
+  if (k.controller.size() > 0) require_count(m, k.controller.cols(), coordinates);
+  const VectorX wanted = k.controller.size() > 0 ? VectorX(k.controller * coordinates) : coordinates;
+  const bool there = known && known->coordinates.size() == wanted.size() && known->coordinates == wanted;
+  if (auto same = there ? taken_over(*known, k, m) : std::nullopt) return placed_assembly(m, std::move(*same));
+  ChainAssembly a = home_assembly(m);
+  require_count(m, actuated(a).values.size(), wanted);
+  move_to_coordinates(a, wanted);
+  a.coordinates = wanted;
+  return placed_assembly(m, std::move(a));
 }
 
 Pose home_pose(const Chains&, const Mechanism& m) { return home_assembly(m).pose; }

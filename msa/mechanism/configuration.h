@@ -89,6 +89,8 @@ struct Configuration {
   Vector3 weight = Vector3::Zero();  ///< N at T, acts with and without load
   /// m: the mechanism's extent from T; where ranks are decided, moments weigh against forces by it.
   double size = 0;
+  /// Of the family "chains": how its joints stand (chain_kinematics.h).
+  std::shared_ptr<const struct ChainAssembly> assembly;
 };
 
 /// Calls f(part) for every PlacedJoint and PlacedMember of the legs, those of branches too, base to platform.
@@ -129,8 +131,9 @@ int number_slips(Configuration&);
 int leg_count(const Mechanism&);
 
 /// Throws ModelError naming leg and limit when the pose is out of reach, or when it is singular, naming the direction
-/// that is lost; InputError on names that do not resolve.
-Configuration configure(const Mechanism&, const Pose&);
+/// that is lost; InputError on names that do not resolve. `known`: where a mechanism stands that may have the same
+/// kinematics at the same pose; if so, its joint states are taken and the result is the same, to the last bit.
+Configuration configure(const Mechanism&, const Pose&, const Configuration* known = nullptr);
 
 /// One device at pose after pose, names resolved once. Of the family "6-psu" nothing is allocated after the first pose.
 class Posing {
@@ -150,7 +153,7 @@ class Posing {
 
 /// The same from commanded joint coordinates, one per actuator (m, rad), by closing the loops from home; a singular
 /// pose is no error there.
-Configuration configure_joints(const Mechanism&, const VectorX& coordinates);
+Configuration configure_joints(const Mechanism&, const VectorX& coordinates, const Configuration* known = nullptr);
 
 /// Where the kinematics start and the workspace lies.
 Pose home_pose(const Mechanism&);

@@ -56,6 +56,7 @@ Configuration completed(PlacedMechanism& placed, const Mechanism& m) {
   c.pose = placed.pose;
   c.legs = std::move(placed.legs);
   c.actuators = std::move(placed.actuators);
+  c.assembly = std::move(placed.assembly);
   c.base = deflect::placed(m.base, "base", {Vector3::Zero(), Matrix3::Identity()}, m);
   c.tool = deflect::placed(m.tool, "tool", {c.pose.p_WT, c.pose.R_WT}, m);
   c.weight = -m.payload * standard_gravity * Vector3::UnitZ();
@@ -102,11 +103,12 @@ int leg_count(const Mechanism& m) {
   return std::max(1, static_cast<int>(m.mounts.size()));
 }
 
-Configuration configure(const Mechanism& m, const Pose& pose) {
+Configuration configure(const Mechanism& m, const Pose& pose, const Configuration* known) {
+  const ChainAssembly* assembly = known ? known->assembly.get() : nullptr;
   return told_at<ModelError>([&] { return at_pose(m, pose); },
                              [&] {
                                PlacedMechanism placed =
-                                   std::visit([&](const auto& k) { return place(k, m, pose); }, m.kinematics);
+                                   std::visit([&](const auto& k) { return place(k, m, pose, assembly); }, m.kinematics);
                                return completed(placed, m);
                              });
 }
@@ -133,7 +135,7 @@ const Configuration& Posing::at(const Pose& pose) {
                           c.pose = pose;
                           return complete(c, impl_->seats, m);
                         }
-                        PlacedMechanism placed = place(*k, m, pose);
+                        PlacedMechanism placed = place(*k, m, pose, nullptr);
                         c = completed(placed, m);
                         impl_->seats = std::move(placed.seats);
                         SixPsuMoves moves(*k, m);
@@ -142,15 +144,19 @@ const Configuration& Posing::at(const Pose& pose) {
   return c;
 }
 
-Configuration configure_joints(const Mechanism& m, const VectorX& q) {
-  if (const std::size_t wanted = actuators_of(m).size(); as_size(q.size()) != wanted)
-    throw InputError(fmt::format("{} has {} joint coordinates, {} are given", m.name, wanted, q.size()));
+void require_count(const Mechanism& m, Eigen::Index has, const VectorX& given) {
+  if (given.size() != has)
+    throw InputError(fmt::format("{} has {} joint coordinates, {} are given", m.name, has, given.size()));
+}
+
+Configuration configure_joints(const Mechanism& m, const VectorX& q, const Configuration* known) {
+  const ChainAssembly* assembly = known ? known->assembly.get() : nullptr;
   const auto at_coordinates = [&] {
     return fmt::format("{} at joint coordinates ({:.6g}) (m, rad): ", m.name,
                        fmt::join(q.data(), q.data() + q.size(), ", "));
   };
   return told_at<ModelError>(at_coordinates, [&] {
-    PlacedMechanism placed = std::visit([&](const auto& k) { return place_joints(k, m, q); }, m.kinematics);
+    PlacedMechanism placed = std::visit([&](const auto& k) { return place_joints(k, m, q, assembly); }, m.kinematics);
     return completed(placed, m);
   });
 }

@@ -209,6 +209,7 @@ struct Sensor {
 struct Tolerances {
   double modulus = 0, guide_diameter = 0, load = 0;                        ///< relative
   double joint_position = 0, link_length = 0, actuator_repeatability = 0;  ///< m
+  Named<std::string> numbers;  ///< of single numbers, as the file says it: "drive.stiffness" "10 %" (tolerances.h)
 };
 
 struct Mechanism {

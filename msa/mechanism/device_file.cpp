@@ -6,12 +6,14 @@
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/fields/field_reader.h"
 #include "msa/fields/field_writer.h"
 #include "msa/fields/file_kind.h"
 #include "msa/mechanism/chain_kinematics.h"
 #include "msa/mechanism/fields.h"
 #include "msa/mechanism/mechanism_tree.h"
+#include "msa/mechanism/tolerances.h"
 
 namespace deflect {
 namespace {
@@ -34,9 +36,24 @@ void check_controller(const Mechanism& m, const YamlNode& tree, const std::strin
                   have, names.size(), names.size() == 1 ? "" : "s", fmt::join(names, ", ")));
 }
 
+/// Keys that name numbers can be judged only with the whole description. Not after edits: an effect may take away the
+/// number of a tolerance.
+void check_tolerances(const Mechanism& m, const YamlNode& tree, const std::string& origin) {
+  if (m.tolerances.numbers.empty()) return;
+  const Mechanism each_leg = resolved(m);
+  for (const auto& [key, value] : m.tolerances.numbers) {
+    const int line = tree.child("tolerances")->child(key)->line;
+    told_at<InputError>([&] { return fmt::format("{}:{}: tolerances.", origin, line); },
+                        [&] {
+                          check_tolerance(each_leg, key, value);
+                          return true;
+                        });
+  }
+}
+
 }  // namespace
 
-Mechanism mechanism_of(const YamlNode& tree, const std::string& origin) {
+DependentMechanism mechanism_of(const YamlNode& tree, const std::string& origin) {
   if (tree.ours) throw InputError(origin + ": !ours marks single values, not a whole file");
   Mechanism m;
   FieldReader reader(origin);
@@ -44,13 +61,15 @@ Mechanism mechanism_of(const YamlNode& tree, const std::string& origin) {
   m.ours = reader.ours();
   varied_legs(m, tree.child("variations"), origin);  // throws where a variation does not fit
   check_controller(m, tree, origin);
-  return m;
+  return {std::move(m), reader.depends()};
 }
 
 Mechanism parse_mechanism(std::string_view yaml, const std::string& origin) {
   const YamlNode tree = parse_yaml(yaml, origin);
   require_kind(tree, FileKind::device, origin);
-  return mechanism_of(tree, origin);
+  Mechanism m = mechanism_of(tree, origin).mechanism;
+  check_tolerances(m, tree, origin);
+  return m;
 }
 
 Mechanism read_mechanism(const std::filesystem::path& path) { return parse_mechanism(read_text(path), path.string()); }

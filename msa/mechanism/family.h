@@ -16,6 +16,7 @@ struct PlacedMechanism {
   std::vector<PlacedLeg> legs;
   std::vector<Seats> seats;  ///< of the legs
   std::vector<Actuator> actuators;
+  std::shared_ptr<const ChainAssembly> assembly = {};
 };
 
 /// Where the parts of a 6-PSU stand at any pose, names resolved.
@@ -38,14 +39,17 @@ class SixPsuMoves {
   std::vector<std::vector<Move>> moves_;  // as PlacedMechanism::legs
 };
 
+/// InputError where another number of joint coordinates is given than the mechanism has.
+void require_count(const Mechanism&, Eigen::Index has, const VectorX& given);
+
 /// At a pose, from joint coordinates, at home: as configure(), configure_joints(), home_pose() say.
-PlacedMechanism place(const SixPsu&, const Mechanism&, const Pose&);
-PlacedMechanism place_joints(const SixPsu&, const Mechanism&, const VectorX& coordinates);
+PlacedMechanism place(const SixPsu&, const Mechanism&, const Pose&, const ChainAssembly* known);
+PlacedMechanism place_joints(const SixPsu&, const Mechanism&, const VectorX& coordinates, const ChainAssembly* known);
 Pose home_pose(const SixPsu&, const Mechanism&);
 std::vector<Actuator> actuators_of(const SixPsu&, const Mechanism&);
 
-PlacedMechanism place(const Chains&, const Mechanism&, const Pose&);
-PlacedMechanism place_joints(const Chains&, const Mechanism&, const VectorX& coordinates);
+PlacedMechanism place(const Chains&, const Mechanism&, const Pose&, const ChainAssembly* known);
+PlacedMechanism place_joints(const Chains&, const Mechanism&, const VectorX& coordinates, const ChainAssembly* known);
 Pose home_pose(const Chains&, const Mechanism&);
 std::vector<Actuator> actuators_of(const Chains&, const Mechanism&);
 

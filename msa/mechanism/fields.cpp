@@ -80,6 +80,9 @@ void describe_tolerances(FieldVisitor& v, Tolerances& t) {
   v.quantity("joint_position", t.joint_position, absolute, "standard deviation of a joint's position per axis");
   v.quantity("link_length", t.link_length, absolute, "standard deviation of a link's length");
   v.quantity("actuator_repeatability", t.actuator_repeatability, absolute, "standard deviation of a slider's position");
+  v.others(t.numbers,
+           "standard deviation of other numbers, by path ('leg.elbow.rz.stiffness') or kind of place "
+           "('drive.stiffness', 'member.length'): '10 %' of each, or '0.1 mm'");
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ PlacedLeg placed_beside(const SixPsu& k, const Mechanism& m, const std::string& 
 
 }  // namespace
 
-PlacedMechanism place(const SixPsu& k, const Mechanism& m, const Pose& pose) {
+PlacedMechanism place(const SixPsu& k, const Mechanism& m, const Pose& pose, const ChainAssembly*) {
   PlacedMechanism out;
   out.pose = pose;
   for (int leg = 1; leg <= legs; ++leg) {
@@ -148,7 +148,8 @@ void SixPsuMoves::move(const SixPsu& k, const Pose& pose, std::vector<PlacedLeg>
     }
 }
 
-PlacedMechanism place_joints(const SixPsu& k, const Mechanism& m, const VectorX& coordinates) {
+PlacedMechanism place_joints(const SixPsu& k, const Mechanism& m, const VectorX& coordinates, const ChainAssembly*) {
+  require_count(m, legs, coordinates);
   std::array<double, legs> sliders{};
   std::copy(coordinates.begin(), coordinates.end(), sliders.begin());
   const ForwardKinematics found = forward_kinematics(k, sliders, centred_pose(k, coordinates.mean()));
@@ -157,7 +158,7 @@ PlacedMechanism place_joints(const SixPsu& k, const Mechanism& m, const VectorX&
         fmt::format("the sliders fit no assembly of the device near the untilted one (closure error {:.3g} mm after {} "
                     "steps)",
                     1e3 * found.closure_error, found.iterations));
-  return place(k, m, found.pose);
+  return place(k, m, found.pose, nullptr);
 }
 
 Pose home_pose(const SixPsu& k, const Mechanism& m) {

@@ -43,10 +43,32 @@ std::optional<VectorX> values_at(const Effect& e, const VectorX& signs, double t
 std::optional<Hidden> hidden_effect(const Plan& plan, const Effect& e, double lambda, Random& random) {
   const std::vector<PlacedEffect> places = places_of(e, *plan.observations->subject().machine());
   if (places.empty()) return std::nullopt;
-  Hidden out;
   const double lot = random.uniform(0, static_cast<double>(places.size()));
-  static_cast<PlacedEffect&>(out.effect) = places[static_cast<std::size_t>(lot)];
-  const VectorX signs = drawn_signs(e, random);
+  return hidden_effect(plan, places[static_cast<std::size_t>(lot)], drawn_signs(e, random), lambda);
+}
+
+std::vector<VectorX> possible_signs(const Effect& e, std::size_t directions, Random& random) {
+  const VectorX ones = VectorX::Ones(static_cast<Eigen::Index>(e.parameters.size()));
+  std::vector<VectorX> out = {ones};
+  std::vector<Eigen::Index> free;
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const EffectParameter& p = e.parameters[i];
+    if (p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high) free.push_back(static_cast<Eigen::Index>(i));
+  }
+  if (free.size() == 1) {
+    out.push_back(ones);
+    out.back()(free.front()) = -1;
+  } else if (free.size() > 1) {
+    out.clear();
+    for (std::size_t i = 0; i < directions; ++i) out.push_back(drawn_signs(e, random));
+  }
+  return out;
+}
+
+std::optional<Hidden> hidden_effect(const Plan& plan, const PlacedEffect& placed, const VectorX& signs, double lambda) {
+  const Effect& e = *placed.effect;
+  Hidden out;
+  static_cast<PlacedEffect&>(out.effect) = placed;
   const auto at = [&](double x) {  // ln λ over ln of the size; nothing outside the bounds
     std::optional<double> y;
     if (const std::optional<VectorX> values = values_at(e, signs, std::exp(x))) try {

@@ -20,6 +20,12 @@ struct Hidden {
 /// it stay at their start. Nothing where the bounds of its parameters do not let it become so large.
 std::optional<Hidden> hidden_effect(const Plan&, const Effect&, double lambda, Random&);
 
+/// The same at a given place; `signs`: of each parameter, ±1 or the components of a direction.
+std::optional<Hidden> hidden_effect(const Plan&, const PlacedEffect&, const VectorX& signs, double lambda);
+
+/// Signs by which the effect may be drawn: all of them, or of several free ones so many directions drawn by lot.
+std::vector<VectorX> possible_signs(const Effect&, std::size_t directions, Random&);
+
 /// The entry of another name, of no more directions, that comes nearest to the change. Separation: what the best of it
 /// leaves of λ², the difference of 2 ln L to be expected. A tie has a cosine above 0.995: data of this plan cannot tell
 /// the two apart.

@@ -13,6 +13,7 @@
 #include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/benchmark/hidden.h"
+#include "tests/benchmark/oracle.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/place_effects.h"
@@ -43,6 +44,11 @@ double sigma_for(const Mechanism& m) {
   return std::sqrt(square / static_cast<double>(plan.readings.size())) / 50;
 }
 
+bool among(const std::vector<std::string>& list, const std::vector<std::string>& of) {
+  return std::any_of(list.begin(), list.end(),
+                     [&](const std::string& name) { return std::find(of.begin(), of.end(), name) != of.end(); });
+}
+
 /// A device with its effects and plans, which point at each other.
 class Machine {
  public:
@@ -55,6 +61,7 @@ class Machine {
     o.changes = false;
     for (const char* campaign : campaigns)
       plans_.push_back(std::make_unique<Plan>(mechanism_, effects_, campaign, seed, o));
+    for (const auto& plan : plans_) oracles_.emplace_back(*plan, 0.25, 0.5, seed, 0);
   }
 
   std::size_t candidates() const { return plans_.front()->signatures.size(); }
@@ -87,10 +94,35 @@ class Machine {
     const Diagnosis d = diagnose(mechanism_, data, effects_, {}, alone);
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     take(d, hidden, out);
+    const Oracle::Answer best =
+        oracles_[k % plans_.size()].answer(plan.observations->uncertainty().whitened(plan.residual(data)));
+    out.oracle_right = hidden ? among({best.first}, out.alike) : best.first.empty();
+    out.oracle_reported = best.reported;
+    if (hidden && hidden->effect.effect->place) leave_out(*hidden, data, out);
     return out;
   }
 
  private:
+  /// The same data without any law at the place where one is hidden: is the place found by what acts near it?
+  void leave_out(const Hidden& hidden, const Measurements& data, MachineSet& out) const {
+    const Place& place = *hidden.effect.effect->place;
+    std::vector<Effect> others;
+    for (const Effect& e : effects_)
+      if (&e != hidden.effect.effect) others.push_back(e);
+    const Diagnosis d = diagnose(mechanism_, data, others, {}, alone);
+    out.left_out = true;
+    std::vector<const Effect*> told;
+    for (const PlacedEffect& e : d.missing) told.push_back(e.effect);
+    if (d.unexplained)
+      for (const Localised& l : d.localised) told.push_back(l.effect.effect);
+    for (const Effect* each : told) {
+      const bool right = (each->place && each->place->path == place.path) || among({each->name}, out.alike);
+      ++out.told;
+      out.told_rightly += right;
+      out.place_found = out.place_found || right;
+    }
+  }
+
   std::optional<Hidden> drawn(const Plan& plan, bool place, double lambda, Random& random) const {
     std::vector<const Effect*> choice;
     for (const Signature& s : plan.signatures)
@@ -128,6 +160,12 @@ class Machine {
       const double value = hidden->effect.values(as_index(i));
       ++out.intervals;
       out.covering += low <= value && value <= high;
+      if (i > 0) continue;
+      const bool log = hidden->effect.effect->parameters[i].log;
+      const auto at = [&](double x) { return log ? std::log(x) : x; };
+      const double sd = (at(high) - at(low)) / (2 * 1.959964);
+      out.named = sd > 0;
+      if (out.named) out.bias = (at(d.fit.values(as_index(i))) - at(value)) / sd;
     }
   }
 
@@ -135,12 +173,8 @@ class Machine {
   Mechanism mechanism_;
   std::vector<Effect> effects_;
   std::vector<std::unique_ptr<Plan>> plans_;
+  std::vector<Oracle> oracles_;  // of the plans
 };
-
-bool among(const std::vector<std::string>& list, const std::vector<std::string>& of) {
-  return std::any_of(list.begin(), list.end(),
-                     [&](const std::string& name) { return std::find(of.begin(), of.end(), name) != of.end(); });
-}
 
 bool is_named(const MachineSet& s) { return s.verdict == "effect" || s.verdict == "ambiguous"; }
 bool is_right(const MachineSet& s) {
@@ -164,6 +198,59 @@ std::string share(const std::vector<MachineSet>& all, const Which& which, const 
   return sets == 0 ? "" : fmt::format("{:.2f} ({})", static_cast<double>(yes) / sets, sets);
 }
 
+/// "0.94": of the sets that the oracle has right, the share that the diagnosis has right too, and the number.
+std::string beside_oracle(const std::vector<MachineSet>& all) {
+  int oracle = 0, both = 0;
+  for (const MachineSet& s : all) {
+    if (!s.skipped.empty()) continue;
+    oracle += s.oracle_right;
+    both += is_right(s);
+  }
+  return oracle == 0 ? "" : fmt::format("{:.2f} ({})", static_cast<double>(both) / oracle, oracle);
+}
+
+/// "2.1 / 1.9": how many effects are left in question, by the diagnosis and by the oracle, where one is named.
+std::string sizes(const std::vector<MachineSet>& all) {
+  double own = 0, oracle = 0;
+  int sets = 0;
+  for (const MachineSet& s : all) {
+    if (!s.skipped.empty() || s.effect.empty() || !is_named(s)) continue;
+    std::vector<std::string> names = s.missing;
+    names.insert(names.end(), s.tied.begin(), s.tied.end());
+    std::sort(names.begin(), names.end());
+    own += static_cast<double>(std::unique(names.begin(), names.end()) - names.begin());
+    oracle += static_cast<double>(s.oracle_reported);
+    ++sets;
+  }
+  return sets == 0 ? "" : fmt::format("{:.1f} / {:.1f}", own / sets, oracle / sets);
+}
+
+/// F1 of the places told where the law was left out, and the number of sets.
+std::string localisation(const std::vector<MachineSet>& all) {
+  int sets = 0, found = 0, told = 0, rightly = 0;
+  for (const MachineSet& s : all) {
+    if (!s.skipped.empty() || !s.left_out || s.lambda < 7) continue;
+    ++sets;
+    found += s.place_found;
+    told += s.told;
+    rightly += s.told_rightly;
+  }
+  if (sets == 0) return "";
+  const double recall = static_cast<double>(found) / sets,
+               precision = told > 0 ? static_cast<double>(rightly) / told : 0;
+  const double f1 = recall + precision > 0 ? 2 * recall * precision / (recall + precision) : 0;
+  return fmt::format("{:.2f} ({})", f1, sets);
+}
+
+/// Mean of (found − true)/standard deviation, and its own standard error.
+std::string mean_bias(const std::vector<MachineSet>& all) {
+  double sum = 0;
+  int sets = 0;
+  for (const MachineSet& s : all)
+    if (s.skipped.empty() && s.named) sum += s.bias, ++sets;
+  return sets == 0 ? "" : fmt::format("{:+.2f} ± {:.2f}", sum / sets, 1 / std::sqrt(static_cast<double>(sets)));
+}
+
 std::string row(const std::string& name, const std::string& candidates, const std::vector<MachineSet>& all) {
   const auto size = [](double lambda) {
     return [=](const MachineSet& s) { return !s.effect.empty() && std::abs(s.lambda / lambda - 1) < 0.1; };
@@ -180,10 +267,12 @@ std::string row(const std::string& name, const std::string& candidates, const st
   }
   std::sort(seconds.begin(), seconds.end());
   return fmt::format(
-      "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, candidates, share(all, size(4), is_right),
-      share(all, size(8), is_right), share(all, size(16), is_right), share(all, large, holds),
-      share(all, healthy, [](const MachineSet& s) { return !is_right(s); }), share(all, hidden, is_wrong),
+      "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, candidates,
+      share(all, size(4), is_right), share(all, size(8), is_right), share(all, size(16), is_right),
+      share(all, large, holds), share(all, healthy, [](const MachineSet& s) { return !is_right(s); }),
+      share(all, hidden, is_wrong),
       intervals > 0 ? fmt::format("{:.2f} ({})", static_cast<double>(covering) / intervals, intervals) : "",
+      mean_bias(all), beside_oracle(all), sizes(all), localisation(all),
       seconds.empty() ? "" : fmt::format("{:.1f}", seconds[seconds.size() / 2]));
 }
 
@@ -217,7 +306,8 @@ std::vector<MachineRow> diagnose_machines(const std::vector<std::string>& device
 std::string machines_table(const std::vector<MachineRow>& rows) {
   std::string out =
       "| machine | candidates that act | right class, λ 4 | λ 8 | λ 16 | truth reported, λ ≥ 8 | false alarms | "
-      "confident and wrong | intervals that hold | s |\n|---|---|---|---|---|---|---|---|---|---|\n";
+      "confident and wrong | intervals that hold | bias, σ | of the oracle's right answers | effects reported, by the "
+      "oracle | place of a law left out, F1 | s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::vector<MachineSet> all;
   for (const MachineRow& r : rows) {
     out += row(r.device, std::to_string(r.candidates), r.sets);
@@ -243,6 +333,12 @@ Json machines_json(const std::vector<MachineRow>& rows) {
                              {"alike", s.alike},
                              {"probability", s.probability},
                              {"right", is_right(s)},
+                             {"oracle_right", s.oracle_right},
+                             {"oracle_reported", s.oracle_reported},
+                             {"bias", s.bias},
+                             {"left_out", s.left_out},
+                             {"places_told", s.told},
+                             {"places_right", s.told_rightly},
                              {"wrong", is_wrong(s)},
                              {"seconds", s.seconds},
                              {"skipped", s.skipped}});

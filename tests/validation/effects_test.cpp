@@ -4,10 +4,10 @@
 #include <map>
 
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/numbers.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/same_mechanism.h"
-#include "validation/effects/number_walk.h"
 
 namespace deflect {
 namespace {
@@ -255,7 +255,7 @@ TEST(PreparedEffects, HoldSeveralEffectsAtOnce) {
   expect_equal(prepared.machine(x), resolved(slow), "five");
 }
 
-TEST(PreparedEffects, GoTheLongWayWhereTheDescriptionCannotHoldAllValues) {
+TEST(PreparedEffects, RefuseValuesThatTheDescriptionCannotHold) {
   const Mechanism m = device("tripteron");  // E and G are given: 1.2 E alone would make Poisson's ratio 0.65
   const Effect young = parse_effect(R"(
 name: young_alone
@@ -271,6 +271,7 @@ pages: {machine: a, data: b, bench: c, cure: d}
   const PreparedEffects prepared(m, {{&young, {}}});
   expect_equal(prepared.machine(values({0.9})), resolved(with_effect(m, young, values({0.9}))), "young");
   EXPECT_THROW(prepared(values({1.2})), InputError);
+  EXPECT_THROW(prepared(values({-0.1})), InputError);
 }
 
 TEST(Catalogue, TheModulusIsBothModuliWhereBothAreGiven) {

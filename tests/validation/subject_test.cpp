@@ -1,6 +1,7 @@
 // A machine and a frame as measured things: what comparison and diagnosis see of them is the same.
 #include "validation/subject/subject.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "msa/base/error.h"
@@ -118,6 +119,33 @@ TEST(MachineSubject, IsOffByItsTolerances) {
   const Subject stiffer = Subject(m).edited({{"materials.*.E", "1.0001", Edit::Action::multiply}});
   const std::vector<Vector6> expected = stiffer.stand(data)->predict(data, {}), d = off->with(0)->predict(data, {});
   for (std::size_t i = 0; i < d.size(); ++i) EXPECT_LE((d[i] - expected[i]).norm(), 1e-12 * d[i].norm());
+}
+
+// A tolerance of a number is the difference that the same edit of the description makes: a gear's stiffness where the
+// geometry stays, an arm's length where the drives stay and the platform goes elsewhere.
+TEST(MachineSubject, IsOffByTolerancesOfItsNumbers) {
+  Mechanism m = test::device("delta");
+  m.tolerances = {};
+  m.tolerances.numbers = {
+      {"drive.stiffness", "1 %"}, {"materials.carbon_tube.E", "1 %"}, {"leg[2].arm.along.0", "1 um"}};
+  const Pose home = test::home(m);
+  const Measurements data = parse_measurements(
+      test::usual_file(fmt::format("a,0,0,{:.17g},0,0,0,50,0,20,1,1,1\n", 1e3 * home.p_WT.z())), "d.csv");
+  const std::unique_ptr<const Deviations> off = Subject(m).stand(data)->deviations(data);
+  ASSERT_EQ(off->tolerances().size(), 5u);
+  EXPECT_EQ(off->tolerances()[1].name, "leg 2 motor rz stiffness");
+  EXPECT_EQ(off->tolerances()[4].name, "leg 2 arm along x");
+  const std::vector<std::pair<std::size_t, Edit>> same = {
+      {1, {"leg[2].motor.rz.stiffness", "1.01", Edit::Action::multiply}},
+      {3, {"materials.carbon_tube.E", "1.01", Edit::Action::multiply}}};
+  for (const auto& [k, edit] : same) {
+    const Vector6 expected = Subject(m).edited({edit}).stand(data)->predict(data, {})[0];
+    EXPECT_LE((off->with(k)->predict(data, {})[0] - expected).norm(), 1e-9 * expected.norm()) << k;
+  }
+  // The drives stay: the tool point itself has moved, by about as much as the arm is longer.
+  const double moved = (off->with(4)->tool(0).p_W - home.p_WT).norm();
+  EXPECT_GT(moved, 0.2e-6);
+  EXPECT_LT(moved, 3e-6);
 }
 
 }  // namespace

@@ -49,8 +49,9 @@ bool ByStatics::agrees(const PlacedEffect& e) const {
   if (!told) return false;
   PredictionOptions linear;
   linear.geometry = Geometry::linear;
+  const Standing* drawn = observations_.comparison().study.standing.get();
   const auto off = outcome_of([&] {
-    const auto predicted = [&](const Subject& s) { return s.stand(some)->predict(some, linear, alone); };
+    const auto predicted = [&](const Subject& s) { return s.stand(some, drawn)->predict(some, linear, alone); };
     const std::vector<Vector6> before = predicted(observations_.subject()),
                                after = predicted(with_effect(observations_.subject(), {e, small}));
     double square = 0, size = 0;

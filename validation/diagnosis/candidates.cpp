@@ -114,17 +114,6 @@ void Candidates::add_up_classes(std::vector<Candidate>& all) const {
     all[i].class_log_odds = all[i].fit.found ? most[classes_[i]] + std::log(sum[classes_[i]]) : out_of_question;
 }
 
-void Candidates::note_left_out(const std::vector<Candidate>& all) const {
-  for (const Candidate& c : all) {
-    if (c.fit.found || c.fit.why.empty()) continue;
-    std::string name = name_of(c.added());
-    for (std::size_t i = 0; i + 1 < c.hypothesis.size(); ++i)
-      name += (i == 0 ? " beside " : " and ") + name_of(c.hypothesis[i]);
-    if (std::none_of(left_out_.begin(), left_out_.end(), [&](const LeftOut& l) { return l.effect == name; }))
-      left_out_.push_back({name, c.fit.why});
-  }
-}
-
 std::vector<Candidate> Candidates::beside(const Observations& observations, const Hypothesis& before, const Fit& so_far,
                                           double least, const std::optional<EffectInstance>& known) const {
   std::vector<Candidate> out(signatures_.size());
@@ -172,8 +161,18 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
       if (out[i].fit.found) bar = std::max(bar, out[i].log_odds - far_behind);
   }
   add_up_classes(out);
-  note_left_out(out);
   return out;
+}
+
+void add_left_out(std::vector<LeftOut>& noted, const std::vector<Candidate>& all) {
+  for (const Candidate& c : all) {
+    if (c.fit.found || c.fit.why.empty()) continue;
+    std::string name = name_of(c.added());
+    for (std::size_t i = 0; i + 1 < c.hypothesis.size(); ++i)
+      name += (i == 0 ? " beside " : " and ") + name_of(c.hypothesis[i]);
+    if (std::none_of(noted.begin(), noted.end(), [&](const LeftOut& l) { return l.effect == name; }))
+      noted.push_back({name, c.fit.why});
+  }
 }
 
 }  // namespace deflect

@@ -35,18 +35,16 @@ class Candidates {
   std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                 const std::optional<EffectInstance>& known = {}) const;
 
-  /// Those so far that could not be fitted beside what was there, and why: each once.
-  const std::vector<LeftOut>& left_out() const { return left_out_; }
-
   /// ln(prior · evidence) of all that do the same as one of the effects, against their absence.
   double class_log_odds_of(const PlacedEffect&, double gain) const;
+
+  int threads() const { return threads_; }
 
   static constexpr double prior_missing = 0.8, prior_unknown = 0.1;  ///< the second as a share of the first
 
  private:
   double log_odds(std::size_t i, double gain, double prior) const;
   void add_up_classes(std::vector<Candidate>&) const;
-  void note_left_out(const std::vector<Candidate>&) const;
 
   const std::vector<Signature>& signatures_;
   int threads_;
@@ -54,7 +52,9 @@ class Candidates {
   std::vector<std::size_t> classes_;  ///< per signature the first one that does the same to these data
   /// Places of an entry share what the entry has; those of one class have one share together.
   std::vector<double> priors_, class_priors_;
-  mutable std::vector<LeftOut> left_out_;
 };
+
+/// Adds those that could not be fitted beside what was there, and why: each once.
+void add_left_out(std::vector<LeftOut>&, const std::vector<Candidate>&);
 
 }  // namespace deflect

@@ -200,7 +200,7 @@ Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::
   const std::vector<Candidate> first = d.candidates;
   sort_candidates(d, o);
 
-  Selection found = missing ? select(o, candidates, first) : Selection{o, {}, null, {}};
+  Selection found = missing ? select(o, candidates, first) : Selection{o, {}, null, {}, {}};
   const Observations& seen = found.observations;
   if (!found.effects.empty()) patterns = seen.whitened_patterns();
   const Discrepancy left(patterns, found.fit.signature);
@@ -214,7 +214,8 @@ Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::
   }
   d.missing = found.effects;
   d.fit = found.fit;
-  d.left_out.insert(d.left_out.end(), candidates.left_out().begin(), candidates.left_out().end());
+  add_left_out(d.left_out, first);
+  d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
   for (const std::vector<std::string>& tie : found.ties)
     if (!tie.empty()) d.indistinguishable.push_back(tie);
   d.verdict = verdict_of(d);

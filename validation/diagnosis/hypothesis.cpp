@@ -10,6 +10,7 @@
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "validation/parallel/cases.h"
 
 namespace deflect {
 namespace {
@@ -43,11 +44,11 @@ class Problem {
     return out;
   }
 
-  /// Nothing where the device cannot have these values or cannot be predicted with them.
-  std::optional<VectorX> residual(const VectorX& x) const {
+  /// Nothing where the subject cannot have these values or cannot be predicted with them.
+  std::optional<VectorX> residual(const VectorX& x, std::string* why = nullptr) const {
     auto predicted = outcome_of([&] { return observations_.whitened_residual(prepared_(values(x))); });
     if (predicted && predicted->allFinite()) return std::move(predicted.value);
-    if (first_failure_.empty()) first_failure_ = predicted ? "the prediction is no number" : predicted.why;
+    if (why) *why = predicted ? "the prediction is no number" : predicted.why;
     return std::nullopt;
   }
 
@@ -55,14 +56,12 @@ class Problem {
   VectorX residual_or_wall(const VectorX& x) const { return residual(x).value_or(wall_); }
 
   const std::vector<const EffectParameter*>& parameters() const { return parameters_; }
-  const std::string& first_failure() const { return first_failure_; }
 
  private:
   const Observations& observations_;
   std::vector<const EffectParameter*> parameters_;
   PreparedEffects prepared_;
   VectorX wall_;
-  mutable std::string first_failure_;
 };
 
 /// As MINPACK's port in Eigen wants it.
@@ -173,9 +172,11 @@ std::optional<VectorX> off_the_ends(const Problem& problem, const VectorX& from)
   return out;
 }
 
-/// The best of the last effect's values, behind those of the effects before.
-std::optional<Start> best_start(const Problem& problem, const std::vector<VectorX>& tails, const VectorX& from) {
-  std::optional<Start> best;
+/// The best of the last effect's values, behind those of the effects before; so many at most, the best first.
+/// `why`: what the first that cannot be predicted met with.
+std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX>& tails, const VectorX& from,
+                               std::size_t count, std::string& why) {
+  std::vector<Start> best;
   std::vector<VectorX> heads = {from};
   if (const auto moved = off_the_ends(problem, from)) heads.push_back(*moved);
   for (const VectorX& head : heads)
@@ -183,11 +184,21 @@ std::optional<Start> best_start(const Problem& problem, const std::vector<Vector
       VectorX values(head.size() + tail.size());
       values << head, tail;
       const VectorX x = problem.coordinates(values);
-      const std::optional<VectorX> r = problem.residual(x);
-      if (r && !(best && r->squaredNorm() >= best->chi2)) best = Start{x, r->squaredNorm()};
+      if (const std::optional<VectorX> r = problem.residual(x, why.empty() ? &why : nullptr))
+        best.push_back({x, r->squaredNorm()});
     }
+  std::stable_sort(best.begin(), best.end(), [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
+  if (best.size() > count) best.resize(count);
   return best;
 }
+
+/// What jumps has valleys of χ² besides the deepest one: friction whose slips come before or after a turn of the load.
+bool has_valleys(const PlacedEffect& e) {
+  const std::vector<EffectParameter>& all = e.effect->parameters;
+  const bool shaped = std::any_of(all.begin(), all.end(), [](const EffectParameter& p) { return !p.vanishes; });
+  return shaped && all.size() > 1;
+}
+constexpr std::size_t valleys = 5;
 
 Fit search_from(const Problem& problem, const Start& start, Eigen::Index rows) {
   Fit out;
@@ -226,12 +237,46 @@ Fit not_found(std::string why) {
 Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess) {
   const auto fitted = outcome_of([&] {
     const Problem problem(o, h);
-    std::optional<Start> start;
-    if (guess) start = best_start(problem, {*guess}, from);
-    if (!start) start = best_start(problem, starts(h.back()), from);
-    return start ? search_from(problem, *start, o.null_residual().size()) : not_found(problem.first_failure());
+    std::vector<Start> begun;
+    std::string why;
+    if (guess) begun = best_starts(problem, {*guess}, from, 1, why);
+    if (begun.empty()) begun = best_starts(problem, starts(h.back()), from, has_valleys(h.back()) ? valleys : 1, why);
+    Fit best = not_found(why);
+    for (const Start& start : begun) {
+      Fit found = search_from(problem, start, o.null_residual().size());
+      if (!best.found || found.chi2 < best.chi2) best = std::move(found);
+    }
+    return best;
   });
   return fitted ? *fitted : not_found(fitted.why);  // the effects may not go together in this subject
+}
+
+Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int threads) {
+  const Problem problem(o, h);
+  Eigen::Index first = 0;
+  for (const PlacedEffect& e : h) {
+    const auto own = std::ssize(e.effect->parameters);
+    if (h.size() > 1 && has_valleys(e)) {
+      const std::vector<VectorX> tries = starts(e);
+      std::vector<Start> begun(tries.size());
+      for_each_case(tries.size(), 1, threads, [&](std::size_t i) {
+        VectorX values = found.values;
+        values.segment(first, own) = tries[i];
+        begun[i].x = problem.coordinates(values);
+        if (const auto r = problem.residual(begun[i].x)) begun[i].chi2 = r->squaredNorm();
+      });
+      std::stable_sort(begun.begin(), begun.end(), [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
+      begun.resize(std::min(begun.size(), valleys));
+      std::vector<Fit> fits(begun.size());
+      for_each_case(begun.size(), 1, threads, [&](std::size_t i) {
+        if (std::isfinite(begun[i].chi2)) fits[i] = search_from(problem, begun[i], found.residual.size());
+      });
+      for (Fit& each : fits)
+        if (each.found && each.chi2 < found.chi2) found = std::move(each);
+    }
+    first += own;
+  }
+  return found;
 }
 
 Fit fit_of_all(const Observations& o, const Hypothesis& h, const VectorX& values) {

@@ -33,6 +33,10 @@ Fit fit(const Observations&, const Hypothesis&, const VectorX& from = {}, const 
 /// The same from values of all of them, without a search for starts; of no effect: the null.
 Fit fit_of_all(const Observations&, const Hypothesis&, const VectorX& values);
 
+/// A fit, or a better one: each effect that parameters shape is looked for again over its whole range beside the
+/// others, since effects that were fitted one after the other may stand in a valley of χ² that is not the deepest.
+Fit searched_again(const Observations&, const Hypothesis&, Fit, int threads);
+
 /// A fit that there is none of, and why.
 Fit not_found(std::string why);
 

@@ -28,7 +28,7 @@ std::shared_ptr<const Uncertainty> uncertainty_of(const Comparison& c, const Par
 
 /// What equilibrium in the deformed shape adds to a subject's readings; nothing where it does not stand in it.
 std::optional<VectorX> deformed_shape_of(const ResidualStudy& s, const Subject& subject) {
-  const std::shared_ptr<const Standing> standing = subject.stand(*s.data);
+  const std::shared_ptr<const Standing> standing = subject.stand(*s.data, s.standing.get());
   PredictionOptions linear, finite;
   linear.geometry = Geometry::linear;
   finite.geometry = Geometry::finite;
@@ -79,7 +79,7 @@ VectorX Observations::residual(const Subject& subject) const {
   const ResidualStudy& s = comparison_->study;
   PredictionOptions o;
   o.geometry = Geometry::linear;
-  return measured_ - shape_ - rows_of(s.values, subject.stand(*s.data)->predict(*s.data, o, alone));
+  return measured_ - shape_ - rows_of(s.values, subject.stand(*s.data, s.standing.get())->predict(*s.data, o, alone));
 }
 
 VectorX Observations::whitened_residual(const Subject& subject) const {

@@ -16,7 +16,8 @@ constexpr double never = -1e6;
 
 class Search {
  public:
-  Search(const Observations& o, const Candidates& c) : s_{o, {}, fit_of_all(o, {}, VectorX(0)), {}}, candidates_(c) {}
+  Search(const Observations& o, const Candidates& c)
+      : s_{o, {}, fit_of_all(o, {}, VectorX(0)), {}, {}}, candidates_(c) {}
 
   /// The best candidate beside what is there, if it is called for.
   bool add(const std::vector<Candidate>& all, double least) {
@@ -29,7 +30,7 @@ class Search {
     return true;
   }
 
-  std::vector<Candidate> further() const { return candidates_.beside(seen(), s_.effects, s_.fit, called_for); }
+  std::vector<Candidate> further() { return beside(s_.effects, s_.fit, called_for); }
 
   /// Each effect asked again beside the others; true when one was dropped or exchanged.
   bool reconsider() {
@@ -38,7 +39,7 @@ class Search {
       const auto [others, values] = without(s_.effects, s_.fit.values, i);
       const Fit rest = fit_of_all(seen(), others, values);
       if (!rest.found) continue;  // the others need it
-      const std::vector<Candidate> all = candidates_.beside(seen(), others, rest, never, present(i));
+      const std::vector<Candidate> all = beside(others, rest, never, present(i));
       const auto own = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
         return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
       });
@@ -62,6 +63,13 @@ class Search {
   std::size_t size() const { return s_.effects.size(); }
 
  private:
+  std::vector<Candidate> beside(const Hypothesis& others, const Fit& so_far, double least,
+                                const std::optional<EffectInstance>& known = {}) {
+    std::vector<Candidate> all = candidates_.beside(seen(), others, so_far, least, known);
+    add_left_out(s_.left_out, all);
+    return all;
+  }
+
   /// Effect i as it is fitted now.
   EffectInstance present(std::size_t i) const {
     Eigen::Index first = 0;
@@ -80,6 +88,7 @@ class Search {
     s_.observations = seen().granted(subject_with(seen(), h, values));
     Fit again = fit_of_all(seen(), h, values);
     if (!again.found) throw std::logic_error("a fit that was found is not found again");
+    again = searched_again(seen(), h, std::move(again), candidates_.threads());
     s_.effects = h;
     s_.fit = std::move(again);
   }

@@ -13,6 +13,7 @@ struct Selection {
   /// Per effect what does nearly as well in its place: names, best first, where together they have 95 % of the
   /// probability there; empty where one has more than 90 %.
   std::vector<std::vector<std::string>> ties;
+  std::vector<LeftOut> left_out;  ///< could not be fitted beside the others
 };
 
 /// ln of the odds from which a further effect is called for.

@@ -32,15 +32,16 @@ ParameterUse parameter_use(std::string_view text) {
   return {std::string(text.begin() + 1, name_end), std::string(unit)};
 }
 
-YamlNode filled_in(const YamlNode& value, const Effect& e, const VectorX& values) {
+YamlNode filled_in(const YamlNode& value, const Effect& e, const VectorX& values, std::size_t first) {
   YamlNode out = value;
   const ParameterUse use = parameter_use(value.kind == YamlNode::Kind::scalar ? value.text : "");
   if (const std::size_t i = index_of(e, use.name); i < e.parameters.size()) {
     const std::string& unit = use.unit.empty() ? e.parameters[i].unit : use.unit;
     out.text = fmt::format("{:.17g}{}{}", values(as_index(i)), unit.empty() ? "" : " ", unit);
     out.quoted = false;
+    if (const double x = values(as_index(i)); x != 0) out.depends = Dependence{first + i, x};
   }
-  for (YamlNode& child : out.children) child = filled_in(child, e, values);
+  for (YamlNode& child : out.children) child = filled_in(child, e, values, first);
   return out;
 }
 

@@ -17,8 +17,9 @@ struct ParameterUse {
 };
 ParameterUse parameter_use(std::string_view scalar);
 
-/// The value with numbers in the place of parameters, 17 digits each. Every name in it is one of the effect's.
-YamlNode filled_in(const YamlNode& value, const Effect&, const VectorX& values);
+/// The value with numbers in the place of parameters, 17 digits each, which know on which parameter they depend
+/// (counted from `first`). Every name in it is one of the effect's.
+YamlNode filled_in(const YamlNode& value, const Effect&, const VectorX& values, std::size_t first = 0);
 
 /// The parameters that the value uses, as a mask over the effect's.
 std::vector<bool> parameters_used(const YamlNode& value, const Effect&);

@@ -9,6 +9,7 @@
 #include "msa/base/outcome.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/mechanism_tree.h"
 #include "validation/effects/edit_paths.h"
 #include "validation/effects/effect_value.h"
 
@@ -16,18 +17,19 @@ namespace deflect {
 namespace {
 
 /// The effect's edits as edits of this mechanism; edits whose parameters vanish are left out.
-std::vector<Edit> edits_of(const Effect& e, const EffectEdit& edit, const Mechanism& m, const VectorX& values,
-                           std::optional<int> leg) {
+std::vector<TreeEdit> edits_of(const Effect& e, const EffectEdit& edit, const Mechanism& m, const VectorX& values,
+                               std::optional<int> leg, std::size_t first) {
   const YamlNode value = parse_yaml(edit.value, e.origin);
   const std::vector<bool> used = parameters_used(value, e);
   for (std::size_t i = 0; i < used.size(); ++i)
     if (used[i] && e.parameters[i].vanishes == values(as_index(i))) return {};
   static_assert(static_cast<int>(Edit::Action::add) == static_cast<int>(EffectEdit::Action::add) &&
                 static_cast<int>(Edit::Action::multiply) == static_cast<int>(EffectEdit::Action::multiply));
-  const std::string text = flow_yaml(filled_in(value, e, values));
-  std::vector<Edit> out;
+  YamlNode filled = filled_in(value, e, values, first);
+  set_line(filled, 0);
+  std::vector<TreeEdit> out;
   for (const std::string& path : paths_of(edit, m, leg))
-    out.push_back({path, text, static_cast<Edit::Action>(edit.action)});
+    out.push_back({path, filled, static_cast<Edit::Action>(edit.action)});
   return out;
 }
 
@@ -60,11 +62,16 @@ std::string line_of(const Effect& e, std::size_t edit) {
 }
 
 /// Edit by edit, so that a message can name the line that does not fit, and an edit can reach into the one before.
-Mechanism one_by_one(const Mechanism& m, const Effect& e, const VectorX& values, std::optional<int> leg) {
-  Mechanism so_far = m;
+DependentMechanism one_by_one(const DependentMechanism& m, const Effect& e, const VectorX& values,
+                              std::optional<int> leg, std::size_t first) {
+  DependentMechanism so_far = m;
   for (std::size_t i = 0; i < e.edits.size(); ++i)
     so_far = told_at<InputError>([&] { return line_of(e, i); },
-                                 [&] { return edited_in_turn(so_far, edits_of(e, e.edits[i], so_far, values, leg)); });
+                                 [&] {
+                                   const std::vector<TreeEdit> edits =
+                                       edits_of(e, e.edits[i], so_far.mechanism, values, leg, first);
+                                   return edited_in_turn(so_far, edits);
+                                 });
   return so_far;
 }
 
@@ -105,16 +112,21 @@ VectorX start_values(const Effect& e) {
   return out;
 }
 
-Mechanism with_effect(const Mechanism& m, const Effect& e, const VectorX& given, std::optional<int> leg) {
+DependentMechanism with_effect(const DependentMechanism& m, const Effect& e, const VectorX& given,
+                               std::optional<int> leg, std::size_t first) {
   const VectorX values = with_optional(e, given);
-  check_arguments(e, m, values, leg);
+  check_arguments(e, m.mechanism, values, leg);
   auto at_once = outcome_of<InputError>([&] {
-    std::vector<Edit> all;
+    std::vector<TreeEdit> all;
     for (const EffectEdit& edit : e.edits)
-      for (Edit& each : edits_of(e, edit, m, values, leg)) all.push_back(std::move(each));
+      for (TreeEdit& each : edits_of(e, edit, m.mechanism, values, leg, first)) all.push_back(std::move(each));
     return edited_in_turn(m, all);
   });
-  return at_once ? std::move(*at_once) : one_by_one(m, e, values, leg);
+  return at_once ? std::move(*at_once) : one_by_one(m, e, values, leg, first);
+}
+
+Mechanism with_effect(const Mechanism& m, const Effect& e, const VectorX& given, std::optional<int> leg) {
+  return with_effect(DependentMechanism{m}, e, given, leg, 0).mechanism;
 }
 
 Mechanism with_effect(const Mechanism& m, const EffectInstance& i) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "msa/mechanism/description.h"
+#include "msa/mechanism/mechanism_tree.h"
 #include "validation/effects/effect.h"
 #include "validation/subject/subject.h"
 
@@ -38,6 +38,9 @@ VectorX start_values(const Effect&);
 Mechanism with_effect(const Mechanism&, const Effect&, const VectorX& values, std::optional<int> leg = {});
 Mechanism with_effect(const Mechanism&, const EffectInstance&);
 Subject with_effect(const Subject&, const EffectInstance&);
+/// The same, with the numbers that depend on the effect's parameters, which are counted from `first`.
+DependentMechanism with_effect(const DependentMechanism&, const Effect&, const VectorX& values, std::optional<int> leg,
+                               std::size_t first);
 
 /// Why the effect has no place in the subject (or in that leg of it), in words; nothing when it has one.
 std::optional<std::string> why_not(const Effect&, const Subject&, std::optional<int> leg = {});
@@ -45,8 +48,9 @@ std::optional<std::string> why_not(const Effect&, const Subject&, std::optional<
 /// Every place the effect has in the subject: one, or one per leg, or none.
 std::vector<PlacedEffect> places_of(const Effect&, const Subject&);
 
-/// Effects placed in one subject, for many values in a row: the edits are worked out once, so that a call only sets
-/// numbers, and the legs are resolved (see `resolved` in device_file.h): for models, not for files.
+/// Effects placed in one subject, for many values in a row. The edits are made once and tell which numbers of the
+/// description depend on which parameter; a call only sets these numbers. The legs are resolved (see `resolved` in
+/// device_file.h), so the machine is for models, not for files.
 class PreparedEffects {
  public:
   /// The effects must outlive this object. InputError as with_effect.
@@ -55,7 +59,7 @@ class PreparedEffects {
   /// Values of all effects one after the other.
   Subject operator()(const VectorX& values) const;
 
-  /// The machine with the effects.
+  /// The machine with the effects. InputError where its description cannot hold the values.
   Mechanism machine(const VectorX& values) const;
 
   Eigen::Index parameter_count() const { return std::ssize(parameters_); }
@@ -68,15 +72,13 @@ class PreparedEffects {
   };
 
   Mechanism edited_one_by_one(const VectorX& values) const;
-  VectorX probe(double part) const;  // of the way from the start towards the farther bound
-  bool find_slots();                 // which numbers follow which parameter, seen at a few values
-  bool slots_hold() const;           // at another value
+  bool find_slots(const Dependences&);
 
   Mechanism bare_, with_;  // without the effects; with them, at some values
   std::vector<PlacedEffect> effects_;
   std::vector<const EffectParameter*> parameters_;
   std::vector<Slot> slots_;  // by `at`
-  bool affine_ = true;       // otherwise every call goes the long way
+  bool affine_ = true;       // otherwise every call edits the description: two parameters move one number
 };
 
 }  // namespace deflect

@@ -22,8 +22,9 @@ void check_joints(const Mechanism& mechanism, const Measurements& m) {
 
 }  // namespace
 
-std::vector<Configuration> configure_all(const Mechanism& mechanism, const Measurements& m) {
-  if (m.by_joints()) check_joints(mechanism, m);
+std::vector<Configuration> configure_all(const Mechanism& mechanism, const Measurements& m,
+                                         std::span<const Configuration> known) {
+  if (m.by_joints() && known.empty()) check_joints(mechanism, m);
   std::vector<Configuration> configurations;
   configurations.reserve(m.poses.size());
   for (const PoseGroup& group : m.poses) {
@@ -31,9 +32,11 @@ std::vector<Configuration> configure_all(const Mechanism& mechanism, const Measu
       return fmt::format("{}:{}: column 'pose': '{}': ", m.origin, m.readings.at(group.readings.front()).line,
                          excerpt(group.label));
     };
+    const std::size_t p = configurations.size();
+    const Configuration* before = p < known.size() ? &known[p] : nullptr;
     configurations.push_back(told_at<ModelError>(place, [&] {
-      return m.by_joints() ? configure_joints(mechanism, group.joints)
-                           : configure(mechanism, pose_from(group.pose_mm_deg));
+      return m.by_joints() ? configure_joints(mechanism, group.joints, before)
+                           : configure(mechanism, pose_from(group.pose_mm_deg), before);
     }));
   }
   return configurations;

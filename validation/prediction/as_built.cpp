@@ -50,7 +50,7 @@ Configuration configure_as_built(const Mechanism& geometry, const AsBuilt& built
   VectorX q(std::ssize(drawn.actuators));
   for (Eigen::Index i = 0; i < q.size(); ++i)
     q(i) = nth(drawn.actuators, i).value + (actuator_errors.size() > 0 ? actuator_errors(i) : 0);
-  Configuration c = configure_joints(geometry, q);
+  Configuration c = configure_joints(geometry, q, &drawn);
   for (std::size_t i = 0; i < std::min(built.legs.size(), c.legs.size()); ++i)
     scale_first_member(c.legs[i], 1 + built.legs[i].guide_diameter);
   for_each_part(c.legs, [&](auto& part) {

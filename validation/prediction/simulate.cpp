@@ -4,6 +4,8 @@
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "msa/mechanism/device_file.h"
+#include "msa/mechanism/tolerances.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/as_built.h"
@@ -13,7 +15,7 @@ namespace deflect {
 namespace {
 
 AsBuilt draw(const Mechanism& m, double scale, Random& random) {
-  const Tolerances& t = m.tolerances;
+  const Tolerances t = named_tolerances(m);
   AsBuilt built;
   built.modulus = scale * t.modulus * random.normal();
   for (int leg = 0; leg < leg_count(m); ++leg) {
@@ -25,6 +27,15 @@ AsBuilt draw(const Mechanism& m, double scale, Random& random) {
     built.legs.push_back(l);
   }
   return built;
+}
+
+/// The description with the numbers off that have tolerances of their own.
+Mechanism draw_numbers(const Mechanism& m, double scale, Random& random) {
+  if (m.tolerances.numbers.empty()) return m;
+  Mechanism out = resolved(m);
+  const std::vector<NumberMove> all = number_moves(out);
+  for (const NumberMove& move : all) out = moved(out, move, scale * random.normal());
+  return out;
 }
 
 /// Repeatability is a length: of slides.
@@ -46,7 +57,7 @@ double rounded(double value, double sigma, double per_SI) {
 Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOptions& o, const Work& work) {
   Random random(o.seed);
   const AsBuilt built = draw(m, o.tolerances, random);
-  const Mechanism geometry = o.tolerances > 0 ? with_geometry(m, built) : m;
+  const Mechanism geometry = o.tolerances > 0 ? with_geometry(draw_numbers(m, o.tolerances, random), built) : m;
   std::vector<Configuration> machines = configure_all(m, plan);
   for (Configuration& machine : machines) {
     const VectorX errors = draw_errors(machine.actuators, o.tolerances * m.tolerances.actuator_repeatability, random);
@@ -67,7 +78,7 @@ Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOpt
   p.theory = &theory("msa");
   p.geometry = o.geometry;
   p.division = o.division;
-  const std::vector<Vector6> exact = predict(m, machines, loaded, p, work);
+  const std::vector<Vector6> exact = predict(geometry, machines, loaded, p, work);
 
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
     Reading& r = plan.readings[i];

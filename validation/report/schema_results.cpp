@@ -49,6 +49,8 @@ std::string type_of(const SchemaField& f) {
       return "list of maps";
     case FieldKind::one_or_list:
       return "map or list of maps";
+    case FieldKind::others:
+      return "values under keys of your own";
   }
   return "";
 }
@@ -168,6 +170,7 @@ class JsonSchema {
       case FieldKind::matrix:
         return array_of(array_of({{"type", "number"}}, f.size), f.size);
       case FieldKind::text:
+      case FieldKind::others:
         return {{"type", {"string", "number", "boolean"}}};
       case FieldKind::texts:
         return {{"anyOf", {Json{{"type", "string"}}, array_of({{"type", "string"}}, 0)}}};
@@ -191,8 +194,12 @@ class JsonSchema {
   }
 
   Json case_json(const SchemaCase& c) const {
-    Json properties = Json::object(), required = Json::array();
+    Json properties = Json::object(), required = Json::array(), others = false;
     for (const SchemaField& f : c.fields) {
+      if (f.kind == FieldKind::others) {
+        others = field_json(f);
+        continue;
+      }
       properties[f.key] = field_json(f);
       if (f.required) required.push_back(f.key);
     }
@@ -205,7 +212,7 @@ class JsonSchema {
         properties[key]["enum"] = words;
       }
     }
-    return {{"type", "object"}, {"properties", properties}, {"required", required}, {"additionalProperties", false}};
+    return {{"type", "object"}, {"properties", properties}, {"required", required}, {"additionalProperties", others}};
   }
 
   Json level_json(const SchemaLevel& level) const {

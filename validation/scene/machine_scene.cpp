@@ -106,15 +106,15 @@ class Drawing {
           add_member(leg.name, *member);
   }
 
-  /// Beams of a member are called "leg 1 guideway [3]".
+  /// Members come in the order in which they were built.
   void add_member(const std::string& leg, const PlacedMember& m) {
-    const std::string name = leg + " " + m.part + " [";
+    const auto [first, last] = built_.members.at(bodies_.size());
     Json body = {{"leg", leg}, {"part", m.part}, {"kind", "member"}, {"guilty", is_guilty(leg, m.part)}};
     const auto outline = outlines_.find({leg, m.part});
     put_outline(body, outline == outlines_.end() ? SectionOutline{} : outline->second, m.section);
     bodies_.push_back(std::move(body));
-    for (const frame::Beam& beam : built_.model.beams)
-      if (beam.name.starts_with(name)) cells_.push_back({beam.a, beam.b, bodies_.size() - 1});
+    for (std::size_t i = first; i < last; ++i)
+      cells_.push_back({built_.model.beams[i].a, built_.model.beams[i].b, bodies_.size() - 1});
   }
 
   void arms() {

@@ -114,7 +114,7 @@ class FrameSubject final : public Subject::Kind {
   const std::string& name() const override { return frame_->name; }
   Geometry geometry() const override { return frame_->geometry; }
   double load_tolerance() const override { return 0; }
-  std::shared_ptr<const Standing> stand(const Measurements& data) const override {
+  std::shared_ptr<const Standing> stand(const Measurements& data, const Standing*) const override {
     return std::make_shared<FrameStanding>(frame_, number_, data.poses.size());
   }
   std::shared_ptr<const Kind> edited(const std::vector<Edit>& edits) const override {

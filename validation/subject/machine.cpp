@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <utility>
 
 #include "analytic/model.h"
 #include "msa/base/index.h"
 #include "msa/mechanism/device_file.h"
+#include "msa/mechanism/tolerances.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/prediction/as_built.h"
 #include "validation/subject/machine_places.h"
@@ -24,10 +26,11 @@ struct Move {
   AsBuilt built = {};
   std::size_t actuator = 0;        ///< of a pose
   Vector6 zero = Vector6::Zero();  ///< of the sensor
+  NumberMove number = {};          ///< of the resolved description
 };
 
 std::vector<Move> shared_moves(const Mechanism& m) {
-  const Tolerances& t = m.tolerances;
+  const Tolerances t = named_tolerances(m);
   const auto legs = as_size(leg_count(m));
   std::vector<Move> moves;
   const auto add = [&](const std::string& name, double sigma, const std::function<void(AsBuilt&)>& change) {
@@ -72,6 +75,9 @@ std::vector<Move> free_zeros(const Measurements& data) {
 
 std::vector<Move> moves_of(const Mechanism& m, const std::vector<Configuration>& drawn, const Measurements& data) {
   std::vector<Move> moves = shared_moves(m);
+  if (!m.tolerances.numbers.empty())
+    for (NumberMove& number : number_moves(resolved(m)))
+      moves.push_back({{number.name, number.sigma}, {}, 0, Vector6::Zero(), std::move(number)});
   if (m.sensor.free_zero)
     for (Move& zero : free_zeros(data)) moves.push_back(std::move(zero));
   const double sigma = m.tolerances.actuator_repeatability;
@@ -131,6 +137,7 @@ class MachineDeviations final : public Deviations {
   MachineDeviations(const Mechanism& m, const std::vector<Configuration>& machines, const Measurements& data)
       : mechanism_(without_drift(m)),
         same_geometry_(with_geometry(*mechanism_, {})),
+        resolved_(resolved(same_geometry_)),
         drawn_(mechanism_, machines),
         moves_(moves_of(m, machines, data)) {
     for (const Move& move : moves_) tolerances_.push_back(move.tolerance);
@@ -146,6 +153,12 @@ class MachineDeviations final : public Deviations {
       shifted.sensor.zero += move.zero;
       return std::make_unique<MachineStanding>(std::make_shared<const Mechanism>(std::move(shifted)),
                                                drawn_.machines());
+    }
+    if (!move.number.shifts.empty()) {
+      const auto built = std::make_shared<const Mechanism>(moved(resolved_, move.number));
+      std::vector<Configuration> machines;
+      for (const Configuration& c : drawn_.machines()) machines.push_back(configure_as_built(*built, {}, c));
+      return std::make_unique<MachineStanding>(built, std::move(machines));
     }
     std::vector<Configuration> moved;
     if (const std::optional<std::size_t> pose = move.tolerance.pose) {
@@ -163,6 +176,7 @@ class MachineDeviations final : public Deviations {
  private:
   std::shared_ptr<const Mechanism> mechanism_;
   Mechanism same_geometry_;
+  Mechanism resolved_;  // that with its legs worked out, one by one
   MachineStanding drawn_;
   std::vector<Move> moves_;
   std::vector<Tolerance> tolerances_;
@@ -183,8 +197,11 @@ class MachineSubject final : public Subject::Kind {
   std::vector<Place> places() const override { return places_of(*mechanism_); }
   const Mechanism* machine() const override { return mechanism_.get(); }
 
-  std::shared_ptr<const Standing> stand(const Measurements& data) const override {
-    return std::make_shared<MachineStanding>(mechanism_, configure_all(*mechanism_, data));
+  std::shared_ptr<const Standing> stand(const Measurements& data, const Standing* known) const override {
+    const auto* machine = dynamic_cast<const MachineStanding*>(known);
+    std::span<const Configuration> before;
+    if (machine) before = machine->machines();
+    return std::make_shared<MachineStanding>(mechanism_, configure_all(*mechanism_, data, before));
   }
   std::shared_ptr<const Kind> edited(const std::vector<Edit>& edits) const override {
     return machine_subject(edited_in_turn(*mechanism_, edits));

@@ -13,7 +13,9 @@ Geometry Subject::geometry() const { return kind_->geometry(); }
 double Subject::load_tolerance() const { return kind_->load_tolerance(); }
 int Subject::legs() const { return kind_->legs(); }
 std::vector<Place> Subject::places() const { return kind_->places(); }
-std::shared_ptr<const Standing> Subject::stand(const Measurements& m) const { return kind_->stand(m); }
+std::shared_ptr<const Standing> Subject::stand(const Measurements& m, const Standing* known) const {
+  return kind_->stand(m, known);
+}
 Subject Subject::edited(const std::vector<Edit>& edits) const { return Subject(kind_->edited(edits)); }
 const Mechanism* Subject::machine() const { return kind_->machine(); }
 

@@ -116,8 +116,9 @@ class Subject {
   /// Where effects can act in it.
   std::vector<Place> places() const;
 
-  /// Throws as configure_all() where it cannot stand.
-  std::shared_ptr<const Standing> stand(const Measurements&) const;
+  /// Throws as configure_all() where it cannot stand. `known`: where a subject stands that may have the same
+  /// kinematics, at the poses of the same measurements; the result is the same with it, and sooner there.
+  std::shared_ptr<const Standing> stand(const Measurements&, const Standing* known = nullptr) const;
 
   /// With the edits one after the other, checked like a file. InputError as edited().
   Subject edited(const std::vector<Edit>&) const;
@@ -139,7 +140,7 @@ class Subject::Kind {
   virtual double load_tolerance() const = 0;
   virtual int legs() const { return 0; }
   virtual std::vector<Place> places() const { return {}; }
-  virtual std::shared_ptr<const Standing> stand(const Measurements&) const = 0;
+  virtual std::shared_ptr<const Standing> stand(const Measurements&, const Standing* known) const = 0;
   virtual std::shared_ptr<const Kind> edited(const std::vector<Edit>&) const = 0;
   virtual const Mechanism* machine() const { return nullptr; }
 };

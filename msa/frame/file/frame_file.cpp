@@ -43,7 +43,7 @@ std::string write_frame(const FrameDescription& f) { return block_yaml(stripped(
 FrameDescription edited(const FrameDescription& f, const std::vector<Edit>& edits) {
   if (edits.empty()) return f;
   YamlNode tree = tree_of(f);
-  for (const Edit& edit : edits) apply(tree, edit, origin_of(edit));
+  for (const Edit& edit : edits) apply(tree, parsed(edit), origin_of(edit));
   return frame_of(stripped(tree), origin_of(edits.back()));
 }
 

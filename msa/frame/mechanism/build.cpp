@@ -89,6 +89,7 @@ class Builder {
         for (Eigen::Index i = 0; i < 6; ++i) model.constraints[constraints + as_size(i)].value = p.beside(i);
       if (p.ends_leg) out.attachments.push_back({constraints, model.constraints.size(), springs, model.springs.size()});
     }
+    out.members = std::move(members_);
     out.model = std::move(model);
   }
 
@@ -130,6 +131,7 @@ class Builder {
     const auto found = division_.find(m.part);
     const std::vector<double> at = found == division_.end() ? std::vector<double>{0, 1} : found->second;
     const std::string name = leg.name + " " + m.part;
+    const std::size_t first = model.beams.size();
     int previous = start;
     for (std::size_t i = 1; i < at.size(); ++i) {
       const bool last = i + 1 == at.size();
@@ -139,11 +141,13 @@ class Builder {
       model.beams.back().expansion = m.expansion;
       previous = next;
     }
+    members_.emplace_back(first, model.beams.size());
     return previous;
   }
 
   const MemberDivision& division_;
   std::vector<Pending> pending_;
+  std::vector<std::pair<std::size_t, std::size_t>> members_;
 };
 
 }  // namespace

@@ -37,6 +37,8 @@ struct MechanismModel {
     std::size_t first_constraint = 0, last_constraint = 0, first_spring = 0, last_spring = 0;
   };
   std::vector<Attachment> attachments;
+  /// By member, in the order of for_each_part, its beams: a range [first, last) of the model's.
+  std::vector<std::pair<std::size_t, std::size_t>> members;
 };
 
 /// World, base joint, legs, platform, tool joint. Bodies are nodes with lever arms; joints between a member and a body

@@ -261,8 +261,8 @@ void CondensedLeg::stretch(const Vector6& d) {
   }
 }
 
-CondensedLeg::Response CondensedLeg::follow(const Vector6& d_T) const {
-  Response out;
+CondensedLeg::LegForces CondensedLeg::follow(const Vector6& d_T) const {
+  LegForces out;
   Vector6 d = d_T, foot = Vector6::Zero();
   Vector3 at = p_WT_;
   const auto see_from = [&](const Vector3& point) {

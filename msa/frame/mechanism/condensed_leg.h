@@ -52,12 +52,12 @@ class CondensedLeg {
   const Vector6& pull() const { return p_; }  ///< on the platform at rest
   void stretch(const Vector6& d);             ///< by the displacement of T
 
-  struct Response {
+  struct LegForces {
     Vector6 reaction = Vector6::Zero();  ///< wrench of the ground on the leg, about T
     double energy = 0;
   };
   /// Of members and springs themselves, from the platform back to the ground, for the d of the last stretch().
-  Response follow(const Vector6& d) const;
+  LegForces follow(const Vector6& d) const;
 
   /// Twists at T of its passive joints (columns).
   Matrix6X passive_twists(const PlacedLeg&, const Vector3& p_WT) const;

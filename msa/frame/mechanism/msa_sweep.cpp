@@ -66,7 +66,7 @@ bool MsaSweep::solve(const Vector6& F_T_W) {
   energy_ = 0;
   reaction_.setZero();
   for (const CondensedLeg& leg : legs_) {
-    const CondensedLeg::Response r = leg.follow(displacement_);
+    const CondensedLeg::LegForces r = leg.follow(displacement_);
     energy_ += r.energy;
     reaction_ += r.reaction;
   }
