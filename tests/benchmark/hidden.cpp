@@ -9,6 +9,10 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+
 constexpr double accuracy = 0.02;  // of λ
 
 /// ±1 for each parameter whose sign is free; of several of them a direction of length √n.

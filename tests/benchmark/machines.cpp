@@ -22,6 +22,13 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+using namespace parallel;
+using namespace prediction;
+using namespace subject;
+
 constexpr double separable = 9;  // difference of 2 ln L
 constexpr const char* campaigns[] = {"rich", "random"};
 const std::string data_folder = std::string(DEFLECT_SOURCE_DIR) + "/validation";

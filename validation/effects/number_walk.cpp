@@ -2,7 +2,7 @@
 
 #include "msa/mechanism/fields.h"
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 class NumberWalk final : public FieldVisitor {
@@ -63,4 +63,4 @@ std::vector<double> numbers_of(const Mechanism& m) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

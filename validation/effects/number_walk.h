@@ -7,11 +7,11 @@
 
 #include "msa/mechanism/description.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 /// Calls f(index, number) for each; f may change it. Legs that were resolved come last, one by one.
 void for_each_number(Mechanism&, const std::function<void(std::size_t, double&)>& f);
 
 std::vector<double> numbers_of(const Mechanism&);
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -8,7 +8,7 @@
 #include "validation/effects/number_walk.h"
 #include "validation/effects/with_effect.h"
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 bool close(double a, double b) { return std::abs(a - b) <= 1e-13 * std::max(std::abs(a), std::abs(b)); }
@@ -22,7 +22,7 @@ double beside(const EffectParameter& p, double part) {
 
 }  // namespace
 
-PreparedEffects::PreparedEffects(const Subject& subject, std::vector<PlacedEffect> effects)
+PreparedEffects::PreparedEffects(const subject::Subject& subject, std::vector<PlacedEffect> effects)
     : effects_(std::move(effects)) {
   if (!subject.machine()) throw InputError(subject.name() + ": effects act on parts of machines, this is a frame");
   bare_ = *subject.machine();
@@ -80,7 +80,7 @@ Mechanism PreparedEffects::edited_one_by_one(const VectorX& values) const {
   return resolved(out);
 }
 
-Subject PreparedEffects::operator()(const VectorX& values) const { return machine(values); }
+subject::Subject PreparedEffects::operator()(const VectorX& values) const { return machine(values); }
 
 Mechanism PreparedEffects::machine(const VectorX& values) const {
   bool vanishes = false;
@@ -97,4 +97,4 @@ Mechanism PreparedEffects::machine(const VectorX& values) const {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -9,7 +9,7 @@
 #include "validation/effects/effect.h"
 #include "validation/subject/subject.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 /// An effect with its place: `leg` (1-based) is given if and only if the effect's scope is one leg.
 struct PlacedEffect {
@@ -37,23 +37,23 @@ VectorX start_values(const Effect&);
 /// fit, and the nearest valid name.
 Mechanism with_effect(const Mechanism&, const Effect&, const VectorX& values, std::optional<int> leg = {});
 Mechanism with_effect(const Mechanism&, const EffectInstance&);
-Subject with_effect(const Subject&, const EffectInstance&);
+subject::Subject with_effect(const subject::Subject&, const EffectInstance&);
 
 /// Why the effect has no place in the subject (or in that leg of it), in words; nothing when it has one.
-std::optional<std::string> why_not(const Effect&, const Subject&, std::optional<int> leg = {});
+std::optional<std::string> why_not(const Effect&, const subject::Subject&, std::optional<int> leg = {});
 
 /// Every place the effect has in the subject: one, or one per leg, or none.
-std::vector<PlacedEffect> places_of(const Effect&, const Subject&);
+std::vector<PlacedEffect> places_of(const Effect&, const subject::Subject&);
 
 /// Effects placed in one subject, for many values in a row: the edits are worked out once, so that a call only sets
 /// numbers, and the legs are resolved (see `resolved` in device_file.h): for models, not for files.
 class PreparedEffects {
  public:
   /// The effects must outlive this object. InputError as with_effect.
-  PreparedEffects(const Subject&, std::vector<PlacedEffect>);
+  PreparedEffects(const subject::Subject&, std::vector<PlacedEffect>);
 
   /// Values of all effects one after the other.
-  Subject operator()(const VectorX& values) const;
+  subject::Subject operator()(const VectorX& values) const;
 
   /// The machine with the effects.
   Mechanism machine(const VectorX& values) const;
@@ -79,4 +79,4 @@ class PreparedEffects {
   bool affine_ = true;       // otherwise every call goes the long way
 };
 
-}  // namespace deflect
+}  // namespace deflect::effects

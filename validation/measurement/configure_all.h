@@ -6,11 +6,11 @@
 #include "msa/mechanism/configuration.h"
 #include "validation/measurement/measurements.h"
 
-namespace deflect {
+namespace deflect::measurement {
 
 /// One configuration per Measurements::poses, by inverse kinematics or, where joint coordinates were commanded, by
 /// forward kinematics. Throws InputError where number or kind (rad, mm) of the joint coordinates is not the device's,
 /// ModelError "file:line: column 'pose': …" for the first pose where the mechanism cannot stand.
 std::vector<Configuration> configure_all(const Mechanism&, const Measurements&);
 
-}  // namespace deflect
+}  // namespace deflect::measurement
