@@ -10,8 +10,6 @@
 namespace deflect::benchmark {
 namespace {
 
-using namespace theories;
-
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), recognisable = 6, plain = 12;
 constexpr double separable = 9;  // difference of 2 ln L
 

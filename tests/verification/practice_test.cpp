@@ -24,7 +24,6 @@ using namespace measurement;
 using namespace parallel;
 using namespace statistics;
 using namespace subject;
-using namespace theories;
 
 testing::AssertionResult says(const std::string& text, const std::string& part) {
   if (text.find(part) != text.npos) return testing::AssertionSuccess();
