@@ -24,6 +24,8 @@
 namespace deflect::attack {
 namespace {
 
+using namespace studies;
+
 DeviceClass class_of(const DeviceTruth& truth) {
   if (!truth.clear) return DeviceClass::unclear;
   if (!truth.held) return DeviceClass::moves;

@@ -7,6 +7,9 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace compare;
+using namespace statistics;
+
 using Changes = std::vector<const Change*>;
 using Decomposition = Eigen::CompleteOrthogonalDecomposition<MatrixX>;
 

@@ -6,6 +6,8 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace measurement;
+
 /// Poses over 25 mm and 7.5 deg, loads over the plan's largest force and 20 mm of it; a column each reading.
 struct Inputs {
   Matrix6X pose, load;

@@ -9,14 +9,18 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+
 constexpr double accuracy = 0.02;  // of λ
 
 /// ±1 for each parameter whose sign is free; of several of them a direction of length √n.
-VectorX drawn_signs(const Effect& e, Random& random) {
+VectorX drawn_signs(const effects::Effect& e, measurement::Random& random) {
   VectorX out = VectorX::Ones(static_cast<Eigen::Index>(e.parameters.size()));
   Eigen::Index free = 0;
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
-    const EffectParameter& p = e.parameters[i];
+    const effects::EffectParameter& p = e.parameters[i];
     if (!p.vanishes || !(p.low < *p.vanishes && *p.vanishes < p.high)) continue;
     out(static_cast<Eigen::Index>(i)) = random.normal();
     ++free;
@@ -26,10 +30,10 @@ VectorX drawn_signs(const Effect& e, Random& random) {
 }
 
 /// The values at which the effect is `times` as large as at its start; nothing outside the bounds.
-std::optional<VectorX> values_at(const Effect& e, const VectorX& signs, double times) {
+std::optional<VectorX> values_at(const effects::Effect& e, const VectorX& signs, double times) {
   VectorX out = start_values(e);
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
-    const EffectParameter& p = e.parameters[i];
+    const effects::EffectParameter& p = e.parameters[i];
     double& value = out(static_cast<Eigen::Index>(i));
     const double by = times * signs(static_cast<Eigen::Index>(i));
     if (p.vanishes) value = std::isinf(*p.vanishes) ? p.start / by : *p.vanishes + by * (p.start - *p.vanishes);
@@ -40,19 +44,19 @@ std::optional<VectorX> values_at(const Effect& e, const VectorX& signs, double t
 
 }  // namespace
 
-std::optional<Hidden> hidden_effect(const Plan& plan, const Effect& e, double lambda, Random& random) {
-  const std::vector<PlacedEffect> places = places_of(e, *plan.observations->subject().machine());
+std::optional<Hidden> hidden_effect(const Plan& plan, const effects::Effect& e, double lambda, measurement::Random& random) {
+  const std::vector<effects::PlacedEffect> places = places_of(e, *plan.observations->subject().machine());
   if (places.empty()) return std::nullopt;
   const double lot = random.uniform(0, static_cast<double>(places.size()));
   return hidden_effect(plan, places[static_cast<std::size_t>(lot)], drawn_signs(e, random), lambda);
 }
 
-std::vector<VectorX> possible_signs(const Effect& e, std::size_t directions, Random& random) {
+std::vector<VectorX> possible_signs(const effects::Effect& e, std::size_t directions, measurement::Random& random) {
   const VectorX ones = VectorX::Ones(static_cast<Eigen::Index>(e.parameters.size()));
   std::vector<VectorX> out = {ones};
   std::vector<Eigen::Index> free;
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
-    const EffectParameter& p = e.parameters[i];
+    const effects::EffectParameter& p = e.parameters[i];
     if (p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high) free.push_back(static_cast<Eigen::Index>(i));
   }
   if (free.size() == 1) {
@@ -65,10 +69,10 @@ std::vector<VectorX> possible_signs(const Effect& e, std::size_t directions, Ran
   return out;
 }
 
-std::optional<Hidden> hidden_effect(const Plan& plan, const PlacedEffect& placed, const VectorX& signs, double lambda) {
-  const Effect& e = *placed.effect;
+std::optional<Hidden> hidden_effect(const Plan& plan, const effects::PlacedEffect& placed, const VectorX& signs, double lambda) {
+  const effects::Effect& e = *placed.effect;
   Hidden out;
-  static_cast<PlacedEffect&>(out.effect) = placed;
+  static_cast<effects::PlacedEffect&>(out.effect) = placed;
   const auto at = [&](double x) {  // ln λ over ln of the size; nothing outside the bounds
     std::optional<double> y;
     if (const std::optional<VectorX> values = values_at(e, signs, std::exp(x))) try {
@@ -114,7 +118,7 @@ Nearest nearest_entry(const Plan& plan, const Hidden& hidden) {
 
 double cosine(const Hidden& a, const Hidden& b) { return std::abs(a.change.dot(b.change)) / (a.lambda() * b.lambda()); }
 
-VectorX beyond_catalogue(const Plan& plan, const VectorX& change, const Effect* left_out) {
+VectorX beyond_catalogue(const Plan& plan, const VectorX& change, const effects::Effect* left_out) {
   Eigen::Index columns = 0;
   MatrixX all(change.size(), 0);
   for (const Signature& s : plan.signatures) {

@@ -10,7 +10,7 @@ namespace deflect::benchmark {
 
 /// λ: length of what the effect changes in the plan's numbers, whitened with noise and tolerances.
 struct Hidden {
-  EffectInstance effect;
+  effects::EffectInstance effect;
   VectorX change;  ///< whitened
 
   double lambda() const { return change.norm(); }
@@ -18,13 +18,13 @@ struct Hidden {
 
 /// The effect with that λ (to 2 %) at a leg and with signs drawn by lot where they are free; parameters that only shape
 /// it stay at their start. Nothing where the bounds of its parameters do not let it become so large.
-std::optional<Hidden> hidden_effect(const Plan&, const Effect&, double lambda, Random&);
+std::optional<Hidden> hidden_effect(const Plan&, const effects::Effect&, double lambda, measurement::Random&);
 
 /// The same at a given place; `signs`: of each parameter, ±1 or the components of a direction.
-std::optional<Hidden> hidden_effect(const Plan&, const PlacedEffect&, const VectorX& signs, double lambda);
+std::optional<Hidden> hidden_effect(const Plan&, const effects::PlacedEffect&, const VectorX& signs, double lambda);
 
 /// Signs by which the effect may be drawn: all of them, or of several free ones so many directions drawn by lot.
-std::vector<VectorX> possible_signs(const Effect&, std::size_t directions, Random&);
+std::vector<VectorX> possible_signs(const effects::Effect&, std::size_t directions, measurement::Random&);
 
 /// The entry of another name, of no more directions, that comes nearest to the change. Separation: what the best of it
 /// leaves of λ², the difference of 2 ln L to be expected. A tie has a cosine above 0.995: data of this plan cannot tell
@@ -40,6 +40,6 @@ Nearest nearest_entry(const Plan&, const Hidden&);
 double cosine(const Hidden&, const Hidden&);
 
 /// What is left of a whitened change once the signatures of all effects, one left out, are taken out of it.
-VectorX beyond_catalogue(const Plan&, const VectorX& change, const Effect* left_out = nullptr);
+VectorX beyond_catalogue(const Plan&, const VectorX& change, const effects::Effect* left_out = nullptr);
 
 }  // namespace deflect::benchmark

@@ -5,6 +5,10 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace compare;
+using namespace measurement;
+using namespace subject;
+
 constexpr double um = 1e-6;
 
 /// Σ g e over the legs, translations.

@@ -11,7 +11,7 @@ struct Law {
   const char* name;
   /// δ of T, m, at an amplitude of 1 µm. f: force of each leg (N), L1: free length of its guideway (m), x: commanded
   /// (m), F: load on T.
-  Vector3 (*displacement)(const std::vector<Site>& legs, const VectorX& f, const Vector6& F, double x);
+  Vector3 (*displacement)(const std::vector<subject::Site>& legs, const VectorX& f, const Vector6& F, double x);
 };
 
 const std::vector<Law>& laws();

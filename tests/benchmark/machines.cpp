@@ -23,6 +23,13 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+using namespace parallel;
+using namespace prediction;
+using namespace subject;
+
 constexpr double separable = 9;  // difference of 2 ln L
 constexpr const char* campaigns[] = {"rich", "random"};
 const std::string data_folder = std::string(DEFLECT_SOURCE_DIR) + "/validation";
@@ -55,7 +62,7 @@ class Machine {
   Machine(const std::string& name, std::uint64_t seed)
       : name_(name), mechanism_(read_mechanism(data_folder + "/devices/" + name + ".yaml")) {
     effects_ = catalogue(data_folder + "/effects/catalogue");
-    for (Effect& e : place_effects(mechanism_, effects_)) effects_.push_back(std::move(e));
+    for (effects::Effect& e : place_effects(mechanism_, effects_)) effects_.push_back(std::move(e));
     PlanOptions o;
     o.sigma = sigma_for(mechanism_);
     o.changes = false;
@@ -71,7 +78,7 @@ class Machine {
     MachineSet out;
     out.device = name_;
     const Plan& plan = *plans_[k % plans_.size()];
-    Random random(seed);
+    measurement::Random random(seed);
     Mechanism truth = mechanism_;
     std::optional<Hidden> hidden;
     if (k % 4 != 0) {
@@ -106,16 +113,16 @@ class Machine {
   /// The same data without any law at the place where one is hidden: is the place found by what acts near it?
   void leave_out(const Hidden& hidden, const Measurements& data, MachineSet& out) const {
     const Place& place = *hidden.effect.effect->place;
-    std::vector<Effect> others;
-    for (const Effect& e : effects_)
+    std::vector<effects::Effect> others;
+    for (const effects::Effect& e : effects_)
       if (&e != hidden.effect.effect) others.push_back(e);
     const Diagnosis d = diagnose(mechanism_, data, others, {}, alone);
     out.left_out = true;
-    std::vector<const Effect*> told;
-    for (const PlacedEffect& e : d.missing) told.push_back(e.effect);
+    std::vector<const effects::Effect*> told;
+    for (const effects::PlacedEffect& e : d.missing) told.push_back(e.effect);
     if (d.unexplained)
       for (const Localised& l : d.localised) told.push_back(l.effect.effect);
-    for (const Effect* each : told) {
+    for (const effects::Effect* each : told) {
       const bool right = (each->place && each->place->path == place.path) || among({each->name}, out.alike);
       ++out.told;
       out.told_rightly += right;
@@ -123,8 +130,8 @@ class Machine {
     }
   }
 
-  std::optional<Hidden> drawn(const Plan& plan, bool place, double lambda, Random& random) const {
-    std::vector<const Effect*> choice;
+  std::optional<Hidden> drawn(const Plan& plan, bool place, double lambda, measurement::Random& random) const {
+    std::vector<const effects::Effect*> choice;
     for (const Signature& s : plan.signatures)
       if (s.effect.effect->place.has_value() == place && (choice.empty() || choice.back() != s.effect.effect))
         choice.push_back(s.effect.effect);
@@ -147,7 +154,7 @@ class Machine {
 
   static void take(const Diagnosis& d, const std::optional<Hidden>& hidden, MachineSet& out) {
     out.verdict = nth(verdict_names, d.verdict);
-    for (const PlacedEffect& e : d.missing) out.missing.push_back(e.effect->name);
+    for (const effects::PlacedEffect& e : d.missing) out.missing.push_back(e.effect->name);
     for (const std::vector<std::string>& group : d.indistinguishable)
       out.tied.insert(out.tied.end(), group.begin(), group.end());
     if (!d.candidates.empty()) out.probability = d.candidates.front().probability;
@@ -171,7 +178,7 @@ class Machine {
 
   std::string name_;
   Mechanism mechanism_;
-  std::vector<Effect> effects_;
+  std::vector<effects::Effect> effects_;
   std::vector<std::unique_ptr<Plan>> plans_;
   std::vector<Oracle> oracles_;  // of the plans
 };
@@ -290,7 +297,7 @@ std::vector<MachineRow> diagnose_machines(const std::vector<std::string>& device
   for (const std::string& name : names) {
     const Machine machine(name, seed);
     MachineRow row{name, machine.candidates(), std::vector<MachineSet>(sets)};
-    for_each_case(sets, 1, threads, [&](std::size_t k) {
+    parallel::for_each_case(sets, 1, threads, [&](std::size_t k) {
       try {
         row.sets[k] = machine.diagnosed(k, seed + 1000 * k + 100000 * out.size());
       } catch (const std::runtime_error& e) {

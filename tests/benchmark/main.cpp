@@ -18,6 +18,11 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace effects;
+using namespace figures;
+using namespace json;
+using namespace parallel;
+
 constexpr const char* usage = R"(benchmark_diagnosis [options]
   --devices A,B  other machines: entries and laws at places hidden alike, one row each; 'all' for every built-in one
   --group NAME   one group of sets: {}

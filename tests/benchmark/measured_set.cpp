@@ -12,6 +12,13 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace compare;
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+using namespace prediction;
+using namespace statistics;
+
 constexpr double most_alike = 0.9;  // cosine of the effects of a pair
 
 /// Student's t with three degrees of freedom, scaled to the deviation 1.

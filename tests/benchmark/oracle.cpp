@@ -17,9 +17,9 @@ constexpr std::size_t directions = 6;  // drawn for an effect of several signs
 Oracle::Oracle(const Plan& plan, double place, double entry, std::uint64_t seed, int threads)
     : nothing_(1 - place - entry) {
   std::vector<std::vector<Case>> found(plan.signatures.size());
-  for_each_case(found.size(), 1, threads, [&](std::size_t i) {
-    const PlacedEffect& e = plan.signatures[i].effect;
-    Random random(seed + i);
+  parallel::for_each_case(found.size(), 1, threads, [&](std::size_t i) {
+    const effects::PlacedEffect& e = plan.signatures[i].effect;
+    measurement::Random random(seed + i);
     const std::vector<VectorX> all = possible_signs(*e.effect, directions, random);
     for (const VectorX& signs : all)
       for (const double lambda : lambdas)
@@ -28,7 +28,7 @@ Oracle::Oracle(const Plan& plan, double place, double entry, std::uint64_t seed,
               {e.effect, 1.0 / static_cast<double>(all.size() * std::size(lambdas)), std::move(hidden->change)});
   });
   // An effect is drawn, then its place.
-  std::map<const Effect*, double> places, kinds[2];
+  std::map<const effects::Effect*, double> places, kinds[2];
   for (std::size_t i = 0; i < found.size(); ++i)
     if (!found[i].empty()) places[plan.signatures[i].effect.effect] += 1;
   for (const auto& [effect, count] : places) kinds[effect->place.has_value()][effect] = 1;

@@ -22,7 +22,7 @@ class Oracle {
  private:
   /// One of the things that can be hidden: of an effect, at a place, with a sign and a size.
   struct Case {
-    const Effect* effect;
+    const effects::Effect* effect;
     double prior;
     VectorX change;
   };

@@ -12,6 +12,14 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace compare;
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+using namespace parallel;
+using namespace prediction;
+using namespace theories;
+
 constexpr int elements = 2;  // per member
 
 /// The first three loads of each pose of a random plan, halved moments about x, y, z added by turns; at 23 °C.
@@ -83,7 +91,7 @@ Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::st
   readings = campaign(name, m, force, seed);
   healthy = simulate(m, readings, simulation, alone);
   observations = std::make_unique<Observations>(m, healthy, ComparisonOptions(), alone);
-  signatures = deflect::signatures(*observations, effects, 1);
+  signatures = diagnosis::signatures(*observations, effects, 1);
   const VectorX rest = observations->residual(m);
   nominal = numbers_of(healthy) - rest;
   if (!o.changes) return;

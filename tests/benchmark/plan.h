@@ -21,7 +21,7 @@ inline constexpr double force = 50;      // N: largest of a plan
 /// An effect at a place: what it adds to the numbers at the start of its parameters, parameter by parameter where each
 /// can vanish alone.
 struct Change {
-  PlacedEffect effect;
+  effects::PlacedEffect effect;
   MatrixX measured, elsewhere;  ///< of the plan's numbers; at the new poses
 };
 
@@ -33,34 +33,34 @@ struct PlanOptions {
 
 /// Must stand where it was made: its parts point at each other.
 struct Plan {
-  Plan(const Mechanism&, const std::vector<Effect>&, const std::string& campaign, std::uint64_t seed,
+  Plan(const Mechanism&, const std::vector<effects::Effect>&, const std::string& campaign, std::uint64_t seed,
        const PlanOptions& = {});
   Plan(const Plan&) = delete;
   Plan& operator=(const Plan&) = delete;
 
-  SimulationOptions simulation;                ///< of a machine within tolerances, read with noise
-  Measurements readings;                       ///< poses and loads
-  Measurements healthy;                        ///< nothing hidden, seed of its own
-  std::unique_ptr<Observations> observations;  ///< of `healthy`
-  std::vector<Signature> signatures;
+  prediction::SimulationOptions simulation;               ///< of a machine within tolerances, read with noise
+  measurement::Measurements readings;                     ///< poses and loads
+  measurement::Measurements healthy;                      ///< nothing hidden, seed of its own
+  std::unique_ptr<diagnosis::Observations> observations;  ///< of `healthy`
+  std::vector<diagnosis::Signature> signatures;
   std::vector<Change> changes;
-  Measurements elsewhere;     ///< twenty poses that are not in the plan, three loads each
-  VectorX nominal_elsewhere;  ///< m: prediction there with nothing added
-  VectorX nominal;            ///< m: the same of the plan's numbers
+  measurement::Measurements elsewhere;  ///< twenty poses that are not in the plan, three loads each
+  VectorX nominal_elsewhere;            ///< m: prediction there with nothing added
+  VectorX nominal;                      ///< m: the same of the plan's numbers
 
   /// Measured − predicted with nothing added, m.
-  VectorX residual(const Measurements&) const;
+  VectorX residual(const measurement::Measurements&) const;
   /// Σ^(−1/2) times what an effect changes in the plan's numbers.
-  VectorX whitened_change(const EffectInstance&) const;
+  VectorX whitened_change(const effects::EffectInstance&) const;
 };
 
 /// Translations of a device at the plan's new poses in the deformed shape, m. NumericalError where there is none.
-VectorX predict_elsewhere(const Plan&, const Mechanism&, const Theory&);
+VectorX predict_elsewhere(const Plan&, const Mechanism&, const theories::Theory&);
 
 /// Plans of all campaigns, made when first asked for; from any thread.
 class Plans {
  public:
-  Plans(const Mechanism&, const std::vector<Effect>&, std::uint64_t seed);
+  Plans(const Mechanism&, const std::vector<effects::Effect>&, std::uint64_t seed);
 
   static constexpr int variants = 4;  ///< of one campaign: other poses, and temperatures recorded in those that are odd
   const Plan& at(const std::string& campaign, int variant);
@@ -71,7 +71,7 @@ class Plans {
     std::unique_ptr<Plan> plan;
   };
   const Mechanism& device_;
-  const std::vector<Effect>& effects_;
+  const std::vector<effects::Effect>& effects_;
   std::uint64_t seed_;
   std::vector<Slot> slots_;
 };

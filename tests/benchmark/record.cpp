@@ -12,6 +12,11 @@
 
 namespace deflect::benchmark {
 
+using namespace diagnosis;
+using namespace effects;
+using namespace parallel;
+using namespace theories;
+
 template <class Archive>
 void serialize(Archive& a, Truth& t) {
   a(t.effects, t.unknown, t.tied);

@@ -39,6 +39,6 @@ std::string packed(const Record&);
 Record unpacked(const std::string& bytes, const Case& order);
 
 /// Makes the set and has it diagnosed, on this thread alone.
-Record run(const Case&, const Mechanism&, const std::vector<Effect>&, Plans&);
+Record run(const Case&, const Mechanism&, const std::vector<effects::Effect>&, Plans&);
 
 }  // namespace deflect::benchmark

@@ -11,6 +11,8 @@
 namespace deflect::benchmark {
 namespace {
 
+using namespace figures;
+
 std::string cell(double value) {
   return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, value > 0 && value < 0.1 ? 3 : 2);
 }

@@ -25,7 +25,7 @@ struct Reliability {
 std::vector<Reliability> reliability(const std::vector<Record>&);
 
 /// The bins as a picture: share of the truth against mean probability, with 95 % intervals of the share.
-Figure reliability_figure(const std::vector<Record>&, const FigureStyle& = {});
+figures::Figure reliability_figure(const std::vector<Record>&, const figures::FigureStyle& = {});
 
 /// Tables in Markdown: scores, reliability, time, what was left out and why.
 std::string report(const std::vector<Record>&);

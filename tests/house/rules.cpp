@@ -171,6 +171,20 @@ std::vector<Include> includes_of(const std::string& text) {
   return found;
 }
 
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> found;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) found.push_back(line);
+  return found;
+}
+
+/// Of a room of validation and of the rooms in it: deflect::<room>.
+std::string validation_namespace(const std::string& path) {
+  static const std::regex inside("validation/([^/]+)/.*");
+  std::smatch match;
+  return std::regex_match(path, match, inside) ? "deflect::" + match[1].str() : "";
+}
+
 std::string list(const Rooms& rooms) {
   std::string text;
   for (const std::string& room : rooms) text += (text.empty() ? "" : ", ") + room;
@@ -244,6 +258,38 @@ std::vector<std::string> table_violations() {
     for (const std::string& other : others)
       if (!below.contains(other)) violations.push_back(room + " looks up into " + other);
     below.insert(room);
+  }
+  return violations;
+}
+
+std::vector<std::string> namespace_violations(const std::vector<Source>& sources) {
+  static const std::regex opened(R"(namespace (deflect[\w:]*) \{)");
+  static const std::regex names_only(R"((class|struct) \w+;|using [\w:]+;|///? .*)");
+  static const std::regex whole(R"(\s*using namespace .*)");
+  std::vector<std::string> violations;
+  for (const Source& source : sources) {
+    if (source.path.starts_with("tests/")) continue;
+    const std::string own = validation_namespace(source.path);
+    const std::vector<std::string> lines = lines_of(source.text);
+    bool at_home = own.empty();
+    const auto refuse = [&](std::size_t line, const std::string& what) {
+      violations.push_back(source.path + ":" + std::to_string(line + 1) + ": " + what);
+    };
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      std::smatch match;
+      if (source.path.ends_with(".h") && std::regex_match(lines[i], whole))
+        refuse(i, "a header uses a whole namespace");
+      if (own.empty() || !std::regex_match(lines[i], match, opened)) continue;
+      const std::string name = match[1];
+      if (name == own || name.starts_with(own + "::")) {
+        at_home = true;
+        continue;
+      }
+      std::size_t end = i + 1;
+      while (end < lines.size() && std::regex_match(lines[end], names_only)) ++end;
+      if (end == lines.size() || !lines[end].starts_with("}")) refuse(i, "opens " + name + ", its own is " + own);
+    }
+    if (!at_home) violations.push_back(source.path + ": does not open " + own);
   }
   return violations;
 }

@@ -25,6 +25,11 @@ std::vector<std::string> include_violations(const std::vector<Source>& sources);
 /// One message for every room of the table that may look into one that stands behind it there.
 std::vector<std::string> table_violations();
 
+/// One message "file:line: …" for every namespace that a file of validation/<room> opens and that is not
+/// deflect::<room>, for every file that does not open its own, and for every header of any room but `tests` that uses
+/// a whole namespace. Names that are only declared, or given to all with `using`, may stand in the namespace of others.
+std::vector<std::string> namespace_violations(const std::vector<Source>& sources);
+
 /// "room has n sources" for every room with more than `limit`.
 std::vector<std::string> crowded_rooms(const std::vector<Source>& sources, int limit);
 

@@ -111,6 +111,37 @@ TEST(Includes, ALibraryOfOneFileIsRefusedInASecond) {
                      "msa/frame/structure/a.cpp includes it already"});
 }
 
+TEST(Namespaces, ARoomOfValidationOpensItsOwn) {
+  const auto judged = [](const std::string& path, const std::string& text) {
+    return namespace_violations({{path, text}});
+  };
+  EXPECT_TRUE(judged("msa/base/a.h", "namespace deflect {\n}\n").empty());
+  EXPECT_TRUE(judged("validation/page/a.h", "namespace deflect::page {\nint a;\n}\n").empty());
+  EXPECT_TRUE(judged("validation/page/a.h", "namespace deflect::page::inner {\nint a;\n}\n").empty());
+  EXPECT_TRUE(judged("validation/cli/commands/a.cpp", "namespace deflect::cli {\n}\n").empty());
+  EXPECT_EQ(judged("validation/page/a.h", "#pragma once\n"),
+            Messages{"validation/page/a.h: does not open deflect::page"});
+  EXPECT_EQ(judged("validation/page/a.h", "namespace deflect {\nint a;\n}\nnamespace deflect::page {\n}\n"),
+            Messages{"validation/page/a.h:1: opens deflect, its own is deflect::page"});
+  EXPECT_EQ(judged("validation/page/a.h", "namespace deflect::page {\n}\nnamespace deflect::pages {\nint a;\n}\n"),
+            Messages{"validation/page/a.h:3: opens deflect::pages, its own is deflect::page"});
+}
+
+TEST(Namespaces, NamesOfOthersMayBeDeclaredAndGivenToAll) {
+  const std::string own = "namespace deflect::page {\n}\n";
+  EXPECT_TRUE(
+      namespace_violations({{"validation/page/a.h", "namespace deflect::scene {\nclass Scene;\n}\n" + own},
+                            {"validation/page/b.h", own + "namespace deflect {\n/// Why.\nusing page::Page;\n}\n"}})
+          .empty());
+}
+
+TEST(Namespaces, HeadersUseNoneAsAWhole) {
+  const std::string text = "namespace deflect::page {\nusing namespace scene;\n}\n";
+  EXPECT_EQ(namespace_violations({{"validation/page/a.h", text}}),
+            Messages{"validation/page/a.h:2: a header uses a whole namespace"});
+  EXPECT_TRUE(namespace_violations({{"validation/page/a.cpp", text}}).empty());
+}
+
 TEST(Length, CountsAnUnfinishedLastLine) {
   EXPECT_TRUE(length_violations({{"a.h", ""}, {"b.h", "1\n2\n"}}, 2).empty());
   EXPECT_EQ(length_violations({{"a.h", "1\n2\n3"}}, 2), Messages{"a.h: 3 lines, at most 2"});

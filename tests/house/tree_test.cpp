@@ -32,6 +32,10 @@ TEST(Tree, IncludesKeepToTheTableOfRooms) {
   EXPECT_EQ(lines(include_violations(sources)), "");
 }
 
+TEST(Tree, NamespacesAreThoseOfTheRooms) {
+  EXPECT_EQ(lines(namespace_violations(read_sources(root, {".h", ".cpp"}))), "");
+}
+
 TEST(Tree, RoomsLookDownOnlyAndAreSmall) {
   EXPECT_EQ(lines(table_violations()), "");
   EXPECT_EQ(lines(crowded_rooms(read_sources(root, {".cpp"}), 20)), "");

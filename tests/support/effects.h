@@ -6,16 +6,17 @@
 
 namespace deflect::test {
 
-inline const std::vector<Effect>& all_effects() {
-  static const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
+inline const std::vector<effects::Effect>& all_effects() {
+  static const std::vector<effects::Effect> all =
+      effects::catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
   return all;
 }
 
-inline const Effect& effect(const std::string& name) { return find_effect(all_effects(), name); }
+inline const effects::Effect& effect(const std::string& name) { return effects::find_effect(all_effects(), name); }
 
 /// With the leg that an effect of one leg needs.
-inline std::optional<int> some_leg(const Effect& e) {
-  return e.scope == Scope::one_leg ? std::optional(4) : std::nullopt;
+inline std::optional<int> some_leg(const effects::Effect& e) {
+  return e.scope == effects::Scope::one_leg ? std::optional(4) : std::nullopt;
 }
 
 inline VectorX values(std::initializer_list<double> numbers) {

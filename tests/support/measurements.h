@@ -20,7 +20,7 @@ inline std::string usual_file(const std::string& rows, const std::string& more =
 /// What parse_measurements says against the text, "data.csv" being its file; "" when it reads it.
 inline std::string refusal(const std::string& text) {
   try {
-    parse_measurements(text, "data.csv");
+    measurement::parse_measurements(text, "data.csv");
   } catch (const InputError& error) {
     return error.what();
   }

@@ -9,6 +9,10 @@
 
 namespace deflect::test {
 
+using measurement::Measurements;
+using measurement::PoseGroup;
+using measurement::Reading;
+
 struct Planted {
   std::string id;  ///< by which it must be named
   std::function<void(Measurements&)> plant;

@@ -31,7 +31,9 @@ inline std::string printed(const MatrixX& K, int digits) {
   return text;
 }
 
-inline PrintedMatrix read_back(const MatrixX& K, int digits) { return parse_matrix(printed(K, digits), "K.csv"); }
+inline matrix::PrintedMatrix read_back(const MatrixX& K, int digits) {
+  return matrix::parse_matrix(printed(K, digits), "K.csv");
+}
 
 /// Lines swapped so that the halves change places.
 inline Matrix6 halves_exchanged() {

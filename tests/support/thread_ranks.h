@@ -17,7 +17,7 @@ class ThreadRanks {
   explicit ThreadRanks(int size) : brought_(static_cast<std::size_t>(size)), barrier_(size) {}
 
   /// Runs `work` on all ranks; how each of them ended, `work` and the last meeting.
-  std::vector<Ending> run(const std::function<void(Ranks&)>& work) {
+  std::vector<Ending> run(const std::function<void(parallel::Ranks&)>& work) {
     std::vector<Ending> ends(brought_.size());
     {
       std::vector<std::jthread> threads;
@@ -41,9 +41,9 @@ class ThreadRanks {
   }
 
  private:
-  struct Rank : Ranks {
+  struct Rank : parallel::Ranks {
     Rank(ThreadRanks& together, int rank)
-        : Ranks(rank, static_cast<int>(together.brought_.size()), 1), together_(together) {}
+        : parallel::Ranks(rank, static_cast<int>(together.brought_.size()), 1), together_(together) {}
 
     std::vector<std::string> gather(const std::string& mine) override {
       together_.brought_[static_cast<std::size_t>(rank())] = mine;

@@ -11,6 +11,8 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+
 using nlohmann::json;
 using test::contents;
 

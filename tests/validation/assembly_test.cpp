@@ -9,6 +9,9 @@
 namespace deflect {
 namespace {
 
+using namespace studies;
+using namespace theories;
+
 Mechanism tripteron() { return read_mechanism(DEFLECT_SOURCE_DIR "/validation/devices/tripteron.yaml"); }
 
 SolveResult at_home(const Mechanism& m, const Vector6& load) {

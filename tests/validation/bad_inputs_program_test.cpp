@@ -13,6 +13,10 @@
 namespace deflect {
 namespace {
 
+using namespace diagnosis;
+using namespace page;
+using namespace report;
+
 class BadInputs : public ::testing::Test {
  protected:
   std::string path(const std::string& name) { return "'" + (folder / name).string() + "'"; }

@@ -10,6 +10,9 @@
 namespace deflect {
 namespace {
 
+using namespace diagnosis;
+using namespace parallel;
+
 constexpr Eigen::Index rows = 12;
 
 /// An effect of the directions e_from … of the data, as many as asked for.

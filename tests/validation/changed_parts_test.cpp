@@ -10,6 +10,8 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+
 Configuration at_home(const Mechanism& m) { return configure(m, home_pose(m)); }
 
 std::vector<ChangedPart> changed(const Mechanism& m, const Effect& e, const VectorX& values, std::optional<int> leg) {

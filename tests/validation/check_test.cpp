@@ -14,6 +14,8 @@
 namespace deflect {
 namespace {
 
+using namespace matrix;
+
 constexpr int full = 17, few = 4;
 
 /// The closed form's stiffness of the built-in device, N, mm.

@@ -18,6 +18,12 @@
 namespace deflect {
 namespace {
 
+using namespace compare;
+using namespace measurement;
+using namespace prediction;
+using namespace report;
+using namespace subject;
+
 testing::AssertionResult says(const std::string& text, const std::string& part) {
   if (text.find(part) != text.npos) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "'" << part << "' is not in: " << text;

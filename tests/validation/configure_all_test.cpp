@@ -8,6 +8,8 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+
 template <class Error>
 std::string message(const Mechanism& m, const std::string& text) {
   try {

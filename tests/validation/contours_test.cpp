@@ -10,6 +10,8 @@
 namespace deflect {
 namespace {
 
+using namespace figures;
+
 /// x² + y² between −1 and 1.
 GridField bowl(int n) {
   GridField f;

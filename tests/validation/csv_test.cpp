@@ -14,6 +14,9 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+using namespace studies;
+
 using namespace std::string_literals;
 
 std::string message(const std::function<void()>& work) {

@@ -20,6 +20,12 @@
 namespace deflect {
 namespace {
 
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+using namespace prediction;
+using namespace report;
+
 const Mechanism& ideal() {
   static const Mechanism m = test::device("haptic-6psu-ideal-joints");
   return m;

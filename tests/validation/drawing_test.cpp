@@ -11,6 +11,8 @@
 namespace deflect {
 namespace {
 
+using namespace figures;
+
 /// The rows of a gnuplot data block, four numbers each.
 std::vector<std::array<double, 4>> rows(const std::string& body, const std::string& block) {
   const std::size_t from = body.find("$" + block + " << EOD\n");

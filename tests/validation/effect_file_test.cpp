@@ -14,6 +14,8 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+
 using test::effect_text;
 
 std::string refusal(const std::string& text) {

@@ -15,6 +15,8 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+
 using test::device;
 using test::effect;
 using test::values;

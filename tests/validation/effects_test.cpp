@@ -12,6 +12,8 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+
 using test::all_effects;
 using test::device;
 using test::effect;

@@ -15,6 +15,10 @@
 namespace deflect {
 namespace {
 
+using namespace diagnosis;
+using namespace measurement;
+using namespace statistics;
+
 double log_normal_density(double x, double variance) {
   return -0.5 * (x * x / variance + std::log(2 * M_PI * variance));
 }

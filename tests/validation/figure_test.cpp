@@ -19,6 +19,10 @@
 namespace deflect {
 namespace {
 
+using namespace figures;
+using namespace studies;
+using namespace theories;
+
 namespace fs = std::filesystem;
 
 /// A folder of its own for each test.

@@ -12,6 +12,8 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+
 using nlohmann::json;
 using test::contents;
 using test::deflect;

@@ -13,6 +13,9 @@
 namespace deflect {
 namespace {
 
+using namespace report;
+using namespace studies;
+
 using nlohmann::json;
 using test::contents;
 using test::cube;

@@ -19,6 +19,11 @@
 namespace deflect {
 namespace {
 
+using namespace figures;
+using namespace report;
+using namespace studies;
+using namespace theories;
+
 using nlohmann::json;
 using test::cube;
 using test::device;

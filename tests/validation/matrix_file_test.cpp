@@ -12,6 +12,8 @@
 namespace deflect {
 namespace {
 
+using namespace matrix;
+
 const MatrixX two_by_three = (MatrixX(2, 3) << 1.5, -2, 3e5, 4, 5.25, -0.006).finished();
 
 TEST(MatrixFile, SameMatrixHoweverItWasPrinted) {

@@ -13,6 +13,8 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+
 using test::uniform;
 
 bool chance(std::mt19937& random) { return random() % 2 == 0; }

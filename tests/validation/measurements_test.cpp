@@ -9,6 +9,8 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+
 using test::refusal;
 using test::usual_file;
 

@@ -11,6 +11,8 @@
 namespace deflect {
 namespace {
 
+using namespace page;
+
 using test::contents;
 
 class NewProgram : public ::testing::TestWithParam<const char*> {

@@ -18,6 +18,9 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+using namespace subject;
+
 std::vector<Place> with_id(const Mechanism& m, const std::string& id) {
   std::vector<Place> out;
   for (const Place& p : places_of(m))

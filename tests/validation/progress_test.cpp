@@ -10,6 +10,8 @@
 namespace deflect {
 namespace {
 
+using namespace parallel;
+
 struct Line {
   std::ostringstream out;
   double now = 100;

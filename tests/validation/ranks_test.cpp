@@ -20,6 +20,10 @@
 namespace deflect {
 namespace {
 
+using namespace parallel;
+using namespace report;
+using namespace studies;
+
 TEST(Pack, KeepsEveryBit) {
   const double quiet = std::numeric_limits<double>::quiet_NaN(), tiny = std::numeric_limits<double>::denorm_min();
   const std::vector<std::optional<Vector3>> values = {Vector3(-0.0, tiny, 0.1), std::nullopt,

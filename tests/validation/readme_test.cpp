@@ -18,6 +18,10 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+using namespace measurement;
+using namespace studies;
+
 /// The blocks of code of a language in the README of a room, from a heading on.
 std::vector<std::string> blocks(const std::string& room, const std::string& heading, const std::string& language) {
   const std::string text = read_text(DEFLECT_SOURCE_DIR "/" + room + "/README.md"), fence = "```" + language + "\n";

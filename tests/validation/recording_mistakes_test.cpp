@@ -20,6 +20,12 @@
 namespace deflect {
 namespace {
 
+using namespace compare;
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+using namespace prediction;
+
 bool all_wanted() { return std::getenv("DEFLECT_ALL_MISTAKES") != nullptr; }
 
 const char* machine_names[] = {"haptic-6psu", "stewart-6ups", "hybrid", "delta", "tripteron"};

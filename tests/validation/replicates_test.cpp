@@ -9,6 +9,8 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+
 using Groups = std::vector<std::vector<std::size_t>>;
 
 const std::string header = "pose,q1_rad,fx_N,fy_N,fz_N,ux_mm,thx_rad";

@@ -12,6 +12,8 @@
 namespace deflect {
 namespace {
 
+using namespace page;
+
 using nlohmann::json;
 using test::contents;
 using test::page_data;

@@ -9,6 +9,10 @@
 namespace deflect {
 namespace {
 
+using namespace diagnosis;
+using namespace report;
+using namespace result_files;
+
 std::string refused(const std::string& text) {
   try {
     read_result(text, "file.json");

@@ -10,6 +10,8 @@
 namespace deflect {
 namespace {
 
+using namespace result_files;
+
 TEST(ResultKind, IsSaidByEveryResultAndRead) {
   const test::Folder folder;
   const std::string data = (folder / "data.csv").string(), file = (folder / "result.json").string();

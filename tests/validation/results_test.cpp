@@ -16,6 +16,11 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+using namespace report;
+using namespace studies;
+using namespace theories;
+
 const double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -12,6 +12,10 @@
 namespace deflect {
 namespace {
 
+using namespace compare;
+using namespace measurement;
+using namespace prediction;
+
 /// The same readings, rows and labels the other way round: every fifth row first, then the next ones.
 Measurements rearranged(Measurements data) {
   for (std::size_t p = 0; p < data.poses.size(); ++p)

@@ -11,6 +11,8 @@
 namespace deflect {
 namespace {
 
+using namespace page;
+
 using nlohmann::json;
 using test::contents;
 

@@ -8,6 +8,8 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+
 using test::contents;
 
 class SimulateProgram : public ::testing::Test {

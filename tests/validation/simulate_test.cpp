@@ -12,6 +12,9 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+using namespace prediction;
+
 Mechanism ideal() { return test::device("haptic-6psu-ideal-joints"); }
 
 TEST(Campaign, HasTheReadingsThatItsHeaderSays) {

@@ -14,6 +14,12 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+using namespace measurement;
+using namespace parallel;
+using namespace prediction;
+using namespace subject;
+
 class StaticsAtPlaces : public testing::TestWithParam<const char*> {};
 
 // A spring of compliance ε at a place moves the point by ε g gᵀF to first order in ε, in determinate and in

@@ -15,6 +15,12 @@
 namespace deflect {
 namespace {
 
+using namespace compare;
+using namespace diagnosis;
+using namespace measurement;
+using namespace prediction;
+using namespace subject;
+
 // A cantilever of 1 m, E = 210 GPa, a square of 20 mm: I = 20⁴/12 mm⁴.
 constexpr const char* cantilever = R"(
 name: cantilever

@@ -10,6 +10,9 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+using namespace theories;
+
 double apart(const Answer& a, const Answer& b, double length) {
   return std::max(test::apart(a.displacement, b.displacement, length), test::apart(a.stiffness, b.stiffness, length));
 }

@@ -17,6 +17,9 @@
 namespace deflect {
 namespace {
 
+using namespace studies;
+using namespace theories;
+
 using test::device;
 
 const frame::MemberDivision four_each = {{"guideway", {0, 0.25, 0.5, 0.75, 1}}, {"link", {0, 0.25, 0.5, 0.75, 1}}};

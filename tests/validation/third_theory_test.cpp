@@ -18,6 +18,12 @@
 namespace deflect {
 namespace {
 
+using namespace figures;
+using namespace report;
+using namespace result_files;
+using namespace studies;
+using namespace theories;
+
 constexpr double softer_by = 1.01;
 
 class SofterAt final : public TheoryAt {

@@ -9,6 +9,8 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+
 using test::usual_file;
 
 bool tells(const Measurements& m, const std::string& part) {

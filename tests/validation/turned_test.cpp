@@ -11,6 +11,8 @@
 namespace deflect {
 namespace {
 
+using namespace theories;
+
 class TurnedDevice : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(TurnedDevice, HasTheSameAnswerTurned) {
@@ -32,7 +34,7 @@ TEST(Turned, APartThatStaysBehindIsSeen) {
   const Mechanism m = test::device("haptic-6psu-ideal-joints");
   const Configuration c = configure(m, home_pose(m));
   const Vector6 F = 50 * Vector6::Unit(0);
-  const Theory& theory = deflect::theory("analytic");
+  const Theory& theory = theories::theory("analytic");
   const Matrix3 R = Eigen::AngleAxisd(0.5, Vector3::UnitY()).toRotationMatrix();
   Configuration there = turned(c, R);
   const auto answer = [&] {

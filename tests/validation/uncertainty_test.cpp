@@ -17,6 +17,12 @@
 namespace deflect {
 namespace {
 
+using namespace compare;
+using namespace measurement;
+using namespace prediction;
+using namespace statistics;
+using namespace subject;
+
 /// Twelve readings of three components each, displacement d, σ each.
 struct Small {
   std::vector<MeasuredValue> values;

@@ -12,6 +12,10 @@
 namespace deflect {
 namespace {
 
+using namespace compare;
+using namespace diagnosis;
+using namespace report;
+
 bool has(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
 /// The numbers of a sentence, in order.

@@ -19,6 +19,12 @@
 namespace deflect {
 namespace {
 
+using namespace compare;
+using namespace diagnosis;
+using namespace measurement;
+using namespace parallel;
+using namespace statistics;
+
 // Eigenvalues of the covariances lie between 1 and some hundreds: of products of 60 numbers each a rounding of 1e-16,
 // amplified by that, 1e-12 of the whole is left with a margin of ten.
 constexpr double kept_to = 1e-12;

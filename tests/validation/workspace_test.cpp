@@ -14,6 +14,11 @@
 namespace deflect {
 namespace {
 
+using namespace measurement;
+using namespace parallel;
+using namespace prediction;
+using namespace studies;
+
 Mechanism planar(const std::string& workspace) { return test::with(test::device("3-rrr"), "workspace", workspace); }
 
 std::vector<Vector3> positions(const Mechanism& m) {

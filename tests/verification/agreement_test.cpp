@@ -13,6 +13,8 @@
 namespace deflect {
 namespace {
 
+using namespace theories;
+
 class Agreement : public ::testing::TestWithParam<std::string> {};
 
 // Contacts are solved to equilibrium by each theory to 1e-11 of its own; 1e-7 is asked for where they are, 1e-9 of laws

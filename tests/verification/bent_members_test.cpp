@@ -11,6 +11,8 @@
 namespace deflect {
 namespace {
 
+using namespace theories;
+
 constexpr double length = 0.5;
 
 /// A blade along x, 20 mm × 1 mm, thin along z.

@@ -14,6 +14,8 @@
 namespace deflect {
 namespace {
 
+using namespace studies;
+
 /// |a − b| / |b|, rotations weighed by a length.
 double difference(const Vector6& a, const Vector6& b, double length) {
   Vector6 w = Vector6::Ones();

@@ -16,6 +16,11 @@
 namespace deflect {
 namespace {
 
+using namespace effects;
+using namespace measurement;
+using namespace prediction;
+using namespace theories;
+
 std::vector<Effect> all_effects() {
   return catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
 }

@@ -15,6 +15,9 @@
 namespace deflect {
 namespace {
 
+using namespace studies;
+using namespace theories;
+
 struct Answers {
   Answer closed_form, msa;
 };

@@ -10,6 +10,9 @@
 namespace deflect {
 namespace {
 
+using namespace studies;
+using namespace theories;
+
 using test::law_of;
 using test::LawSite;
 using test::with_law;

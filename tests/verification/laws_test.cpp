@@ -16,6 +16,8 @@
 namespace deflect {
 namespace {
 
+using namespace theories;
+
 const Mechanism& haptic() {
   static const Mechanism m = test::device("haptic-6psu-ideal-joints");
   return m;

@@ -17,6 +17,14 @@
 namespace deflect {
 namespace {
 
+using namespace compare;
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+using namespace parallel;
+using namespace statistics;
+using namespace subject;
+
 testing::AssertionResult says(const std::string& text, const std::string& part) {
   if (text.find(part) != text.npos) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "'" << part << "' is not in: " << text;

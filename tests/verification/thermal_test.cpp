@@ -12,6 +12,8 @@
 namespace deflect {
 namespace {
 
+using namespace theories;
+
 constexpr double alpha = 12e-6, warmer = 30, L = 0.4;  // 1/K, K, m
 
 PlacedMember warm_rod(const std::string& name, const Vector3& a, const Vector3& b) {

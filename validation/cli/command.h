@@ -23,7 +23,7 @@ struct Option {
 /// NumericalError. Run is called on the first rank only. SharedRun divides its work among the ranks that it is given
 /// (nullptr: this process is the only one); it prints and writes on the first rank only.
 using Run = std::function<void()>;
-using SharedRun = std::function<void(Ranks*)>;
+using SharedRun = std::function<void(parallel::Ranks*)>;
 
 struct Command {
   std::string name, help, example;

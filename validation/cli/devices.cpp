@@ -92,34 +92,35 @@ Mechanism read_device(const std::string& name) {
   return m;
 }
 
-Measurements read_data(const std::string& file) {
-  Measurements data = read_measurements(file);
+measurement::Measurements read_data(const std::string& file) {
+  measurement::Measurements data = measurement::read_measurements(file);
   const auto count = [&](auto has) { return std::count_if(data.readings.begin(), data.readings.end(), has); };
   tell(
       "measurements {}: {} readings at {} poses, {} with translations, {} with rotations, {} with their own standard "
       "deviation, {}",
       file, data.readings.size(), data.poses.size(),
-      count([](const Reading& r) { return r.displacement[0] || r.displacement[1] || r.displacement[2]; }),
-      count([](const Reading& r) { return r.displacement[3] || r.displacement[4] || r.displacement[5]; }),
-      count([](const Reading& r) { return r.sigma_u || r.sigma_th; }),
+      count([](const measurement::Reading& r) { return r.displacement[0] || r.displacement[1] || r.displacement[2]; }),
+      count([](const measurement::Reading& r) { return r.displacement[3] || r.displacement[4] || r.displacement[5]; }),
+      count([](const measurement::Reading& r) { return r.sigma_u || r.sigma_th; }),
       data.readings.front().sequence ? "in a known order" : "in an unknown order");
   return data;
 }
 
-void tell_size(const Measurements& data, double numbers_kept) {
+void tell_size(const measurement::Measurements& data, double numbers_kept) {
   constexpr std::size_t large = 20'000;
   if (data.readings.size() < large) return;
   double numbers = 0;
-  for (const Reading& r : data.readings)
+  for (const measurement::Reading& r : data.readings)
     numbers += static_cast<double>(
         std::count_if(r.displacement.begin(), r.displacement.end(), [](const auto& d) { return d.has_value(); }));
   const std::string text = fmt::format("{} readings at {} poses: about {:.1f} GB of memory", data.readings.size(),
                                        data.poses.size(), 8e-9 * numbers * numbers_kept);
-  if (const ProgressStream stream = progress_stream(); stream.out && !verbose()) *stream.out << text << std::endl;
+  if (const parallel::ProgressStream stream = progress_stream(); stream.out && !verbose())
+    *stream.out << text << std::endl;
   tell("{}", text);
 }
 
-int parse_threads(double value, const Ranks* ranks) {
+int parse_threads(double value, const parallel::Ranks* ranks) {
   int threads = whole("--threads", value, 0, 1024);
   if (ranks && threads == 0) threads = ranks->threads();
   tell("threads: {}", threads > 0 ? std::to_string(threads)
@@ -208,13 +209,15 @@ Geometry parse_geometry(const std::string& text) {
   throw InputError(fmt::format("--geometry '{}': write {}", text, fmt::join(geometry_names, ", ")));
 }
 
-Theories parse_theories(const std::string& list) try { return theories_named(list); } catch (const InputError& e) {
+theories::Theories parse_theories(const std::string& list) try {
+  return theories::theories_named(list);
+} catch (const InputError& e) {
   throw InputError(fmt::format("--theories {}: {}", list, e.what()));
 }
 
 Option theories_option(std::string* list) {
   std::vector<std::string> names;
-  for (const Theory* theory : all_theories()) names.push_back(theory->name);
+  for (const theories::Theory* theory : theories::all_theories()) names.push_back(theory->name);
   return {"--theories", "NAMES", fmt::format("theories, separated by commas (default {})", fmt::join(names, ",")),
           list};
 }
@@ -276,11 +279,12 @@ void list_or_print(const DevicesArguments& a) {
   if (a.schema && !a.name.empty()) throw InputError("--schema covers all devices: omit the name");
   if (!a.json.empty() && !a.schema) throw InputError("--json needs --schema");
   if (a.schema) {
-    std::vector<NamedSchema> all;
+    std::vector<report::NamedSchema> all;
     for (const char* family : family_names)
       all.push_back({fmt::format("device files, family {}", family), device_schema(family)});
-    if (!a.json.empty()) write_file(a.json, schema_json(all, "deflect device file"));
-    for (const NamedSchema& each : all) fmt::print("{}{}", &each == &all.front() ? "" : "\n", schema_table(each));
+    if (!a.json.empty()) write_file(a.json, report::schema_json(all, "deflect device file"));
+    for (const report::NamedSchema& each : all)
+      fmt::print("{}{}", &each == &all.front() ? "" : "\n", report::schema_table(each));
   } else if (!a.name.empty()) {
     fmt::print("{}", read_text(device_file(a.name)));
   } else {
@@ -306,7 +310,7 @@ Command devices_command() {
       "set them: r rigid, f free, a actuated. They move in this order: along x, y and z, then about x, then about y as "
       "turned by rx, then about z as turned by rx and ry. For another order, write several joints in series.\n"
       "Laws of a freedom, with their fields; several laws in a list act in series:" +
-          law_lines(),
+          report::law_lines(),
       "deflect devices haptic-6psu > my-device.yaml",
       {{"name", "DEVICE", "device to print (default: list all)", &a->name, false},
        {"--schema", "", "list the keys of device files: type, unit, default, meaning", &a->schema},

@@ -33,14 +33,14 @@ std::filesystem::path frame_file(const std::string& name_or_path);
 Mechanism read_device(const std::string& name_or_path);
 
 /// read_measurements(), with a summary if verbose.
-Measurements read_data(const std::string& file);
+measurement::Measurements read_data(const std::string& file);
 
 /// For 20 000 readings or more, prints roughly how much memory the work needs if it keeps `numbers_kept` numbers per
 /// measured number. Only if progress is shown or the program is verbose.
-void tell_size(const Measurements&, double numbers_kept);
+void tell_size(const measurement::Measurements&, double numbers_kept);
 
 /// The number of threads from --threads; for 0, all of this rank's threads, or 0 (all of the machine) without ranks.
-int parse_threads(double, const Ranks* = nullptr);
+int parse_threads(double, const parallel::Ranks* = nullptr);
 
 /// write_text(), reported if verbose.
 void write_table(const std::filesystem::path&, const std::string& text);
@@ -68,7 +68,7 @@ Stand parse_stand(const Mechanism&, const std::string& pose, const std::string& 
 Geometry parse_geometry(const std::string& text);
 
 /// --theories analytic,msa: of the table; all where the text is empty.
-Theories parse_theories(const std::string& list);
+theories::Theories parse_theories(const std::string& list);
 Option theories_option(std::string* list);
 
 /// The wrench of --load in N and Nmm; zero if empty.

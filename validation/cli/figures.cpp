@@ -17,23 +17,23 @@ std::vector<Option> with_figures(std::vector<Option> options, FigureArguments* a
   return options;
 }
 
-FigureStyle figure_style(const FigureArguments& a, const std::string& out) {
+figures::FigureStyle figure_style(const FigureArguments& a, const std::string& out) {
   if (out.empty() && !(a.width + a.font + a.size).empty())
     throw InputError("--figure-width, --figure-font and --figure-font-size belong to --out, which draws figures");
-  FigureStyle style;
+  figures::FigureStyle style;
   if (!a.width.empty()) style.width_mm = 1e3 * parse_length("--figure-width", a.width);
   if (!a.size.empty()) style.size_pt = parse_list("--figure-font-size", a.size, {1}, "points")[0];
   if (!a.font.empty()) {
     style.font = a.font;
-    check_font(style.font);
+    figures::check_font(style.font);
   }
-  check_size(style);
+  figures::check_size(style);
   return style;
 }
 
-std::string draw(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+std::string draw(const std::vector<figures::Figure>& figures, const std::filesystem::path& folder) {
   std::string names, sizes;
-  for (const Figure& figure : figures) {
+  for (const figures::Figure& figure : figures) {
     names += (names.empty() ? "" : ", ") + figure.name;
     sizes +=
         fmt::format("{}{}: {:.4g} x {:.4g} mm, {} {:g} pt", sizes.empty() ? "" : "; ", (folder / figure.name).string(),
@@ -41,7 +41,7 @@ std::string draw(const std::vector<Figure>& figures, const std::filesystem::path
   }
   if (figures.empty()) return "";
   const Step step(fmt::format("figure{} {}", figures.size() == 1 ? "" : "s", sizes));
-  render_all(figures, folder);
+  figures::render_all(figures, folder);
   return names;
 }
 

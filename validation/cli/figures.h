@@ -18,9 +18,9 @@ struct FigureArguments {
 std::vector<Option> with_figures(std::vector<Option>, FigureArguments*);
 
 /// To call before any work. InputError if the size or font is unusable, or if options are given without `out`.
-FigureStyle figure_style(const FigureArguments&, const std::string& out);
+figures::FigureStyle figure_style(const FigureArguments&, const std::string& out);
 
 /// Draws all figures, in parallel, into the folder. Returns their names, separated by commas.
-std::string draw(const std::vector<Figure>&, const std::filesystem::path& folder);
+std::string draw(const std::vector<figures::Figure>&, const std::filesystem::path& folder);
 
 }  // namespace deflect::cli

@@ -22,9 +22,9 @@ Command new_command(), show_command(), solve_command(), validate_command(), fram
 
 namespace {
 
-using deflect::Ranks;
 using deflect::cli::Command;
 using deflect::cli::Option;
+using deflect::parallel::Ranks;
 
 // OpenBLAS, where it is the BLAS: one thread, since the systems of mechanisms are small and threads only cost.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
     sub->add_flag("--verbose", loud, "print every step with its time and choices on standard error")->excludes(q);
     parsers.push_back(sub);
   }
-  const bool first = deflect::launched().rank == 0;
+  const bool first = deflect::parallel::launched().rank == 0;
   const auto work = [&](Ranks* ranks) {
     if (!parse(app, commands, argc, argv, first)) return;
     set_talk(quiet || !first ? Talk::quiet : loud ? Talk::verbose : Talk::usual);
@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < commands.size(); ++i)
       if (parsers[i]->parsed()) run(commands[i], ranks);
   };
-  return deflect::run_on_ranks(work, [](const deflect::Ending& end) {
+  return deflect::parallel::run_on_ranks(work, [](const deflect::Ending& end) {
     fmt::print(stderr, "deflect: {}{}\n", end.code == 70 ? "a bug, please report it: " : "", end.message);
   });
 }

@@ -47,32 +47,32 @@ std::string command_line() {
   return out;
 }
 
-PageSource source_of(const std::string& path) {
+page::PageSource source_of(const std::string& path) {
   return {std::filesystem::path(path).filename().string(), read_text(path)};
 }
 
-PageContents contents(const std::string& device) {
-  PageContents page;
+page::PageContents contents(const std::string& device) {
+  page::PageContents page;
   page.version = DEFLECT_VERSION;
   page.command = command_line();
   if (!device.empty()) page.device = source_of(device_file(device).string());
   return page;
 }
 
-void write_page(const std::string& file, const PageContents& page) {
-  write_file(file, page_html(page));
+void write_page(const std::string& file, const page::PageContents& page) {
+  write_file(file, page::page_html(page));
   fmt::print("Report: {}\n", std::filesystem::absolute(file).string());
 }
 
 /// Poses of the measurements, of many those where the residual is largest, in their order.
-std::vector<SceneStand> stands_of(const Comparison& c, const std::vector<Configuration>& machines) {
+std::vector<scene::SceneStand> stands_of(const compare::Comparison& c, const std::vector<Configuration>& machines) {
   std::vector<std::size_t> shown(c.by_pose.size());
   std::iota(shown.begin(), shown.end(), std::size_t{0});
   std::stable_sort(shown.begin(), shown.end(),
                    [&](std::size_t a, std::size_t b) { return c.by_pose[a].rmse > c.by_pose[b].rmse; });
   shown.resize(std::min(shown.size(), most_stands));
   std::sort(shown.begin(), shown.end());
-  std::vector<SceneStand> out;
+  std::vector<scene::SceneStand> out;
   for (const std::size_t p : shown) {
     const Configuration& machine = machines[p];
     out.push_back({c.study.data->poses[p].label, mm_deg_from(machine.pose), machine});
@@ -81,9 +81,9 @@ std::vector<SceneStand> stands_of(const Comparison& c, const std::vector<Configu
 }
 
 /// For each component that the readings load, its largest size alone.
-std::vector<Vector6> loads_of(const Measurements& data) {
+std::vector<Vector6> loads_of(const measurement::Measurements& data) {
   Vector6 largest = Vector6::Zero();
-  for (const Reading& r : data.readings) largest = largest.cwiseMax(r.load.cwiseAbs());
+  for (const measurement::Reading& r : data.readings) largest = largest.cwiseMax(r.load.cwiseAbs());
   std::vector<Vector6> out;
   for (int i = 0; i < 6; ++i)
     if (largest(i) > 0) out.push_back(largest(i) * Vector6::Unit(i));
@@ -91,15 +91,15 @@ std::vector<Vector6> loads_of(const Measurements& data) {
 }
 
 /// What a diagnosis names as missing, with the values found. Of a diagnosis of another device InputError.
-std::vector<EffectInstance> found_in(const PageResult& result, const std::string& device,
-                                     const std::vector<Effect>& effects) {
-  const ReadResult read = read_result(result.json, result.origin);
+std::vector<effects::EffectInstance> found_in(const page::PageResult& result, const std::string& device,
+                                              const std::vector<effects::Effect>& effects) {
+  const result_files::ReadResult read = result_files::read_result(result.json, result.origin);
   if (read.kind != "diagnosis") return {};
   if (const std::string of = read.json.value("device", device); of != device)
     throw InputError(fmt::format("{}: this diagnosis is of '{}', but --device is '{}'", result.origin, of, device));
-  std::vector<EffectInstance> out;
-  for (const FoundEffect& found : parse_found_effects(result.json, result.origin).missing)
-    out.push_back(instance(find_effect(effects, found.effect), found));
+  std::vector<effects::EffectInstance> out;
+  for (const diagnosis::FoundEffect& found : diagnosis::parse_found_effects(result.json, result.origin).missing)
+    out.push_back(diagnosis::instance(effects::find_effect(effects, found.effect), found));
   return out;
 }
 
@@ -110,71 +110,75 @@ Option report_option(std::string* file) {
 }
 
 void require_pages(const std::string& file) {
-  if (file.empty() || pages_are_built()) return;
+  if (file.empty() || page::pages_are_built()) return;
   throw InputError(
       fmt::format("--report {}: this deflect was built without pages: install esbuild, libjs-three and libjs-chart.js, "
                   "configure and build again",
                   file));
 }
 
-void write_report(const std::string& file, const std::string& device, const std::vector<Comparison>& versions,
-                  std::vector<PageResult> results) {
-  const Comparison &first = versions.front(), &last = versions.back();
-  PageContents page = contents(device);
+void write_report(const std::string& file, const std::string& device, const std::vector<compare::Comparison>& versions,
+                  std::vector<page::PageResult> results) {
+  const compare::Comparison &first = versions.front(), &last = versions.back();
+  page::PageContents page = contents(device);
   page.data = source_of(first.study.data->origin);
   page.results = std::move(results);
   const std::string origin = page.results.empty() ? first.data : page.results.front().origin;
-  if (versions.size() > 1 && origin != "history") page.results.push_back({origin, history_json(history(versions))});
-  for (const Comparison& c : versions) page.versions.push_back(&c);
+  if (versions.size() > 1 && origin != "history")
+    page.results.push_back({origin, report::history_json(compare::history(versions))});
+  for (const compare::Comparison& c : versions) page.versions.push_back(&c);
   const Mechanism &m = *first.study.subject->machine(), &latest = *last.study.subject->machine();
-  const std::vector<Configuration> machines = configure_all(m, *first.study.data);
-  const Configuration changed = configure_all(latest, one_pose(*first.study.data, 0)).front();
-  page.scene = scene_json(m, stands_of(first, machines), loads_of(*first.study.data),
-                          changed_parts(machines.front(), changed), m.geometry);
+  const std::vector<Configuration> machines = measurement::configure_all(m, *first.study.data);
+  const Configuration changed = measurement::configure_all(latest, measurement::one_pose(*first.study.data, 0)).front();
+  page.scene = scene::scene_json(m, stands_of(first, machines), loads_of(*first.study.data),
+                                 effects::changed_parts(machines.front(), changed), m.geometry);
   write_page(file, page);
 }
 
 void write_report_of_diagnosis(const std::string& file, const std::string& device, const Mechanism& m,
-                               const Measurements& data, const std::vector<Effect>& effects,
-                               const ComparisonOptions& options, int threads, std::vector<PageResult> results) {
+                               const measurement::Measurements& data, const std::vector<effects::Effect>& effects,
+                               const compare::ComparisonOptions& options, int threads,
+                               std::vector<page::PageResult> results) {
   std::vector<Mechanism> devices = {m};
-  for (const PageResult& result : results) try {
-      for (const EffectInstance& e : found_in(result, m.name, effects)) {
-        devices.push_back(with_effect(devices.back(), e));
-        devices.back().name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + site_of(e) + ")" : "");
+  for (const page::PageResult& result : results) try {
+      for (const effects::EffectInstance& e : found_in(result, m.name, effects)) {
+        devices.push_back(effects::with_effect(devices.back(), e));
+        devices.back().name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + effects::site_of(e) + ")" : "");
       }
     } catch (const InputError& e) {
       if (std::string_view(e.what()).starts_with(result.origin)) throw;
       throw InputError(fmt::format("{}: its effects do not fit {}: is it a diagnosis of another device? {}",
                                    result.origin, m.name, e.what()));
     }
-  std::vector<Comparison> versions;
+  std::vector<compare::Comparison> versions;
   for (const Mechanism& each : devices)
-    versions.push_back(timed("compare with " + each.name, [&] { return compare(each, data, options, {threads}); }));
+    versions.push_back(
+        timed("compare with " + each.name, [&] { return compare::compare(each, data, options, {threads}); }));
   write_report(file, device, versions, std::move(results));
 }
 
 void write_report_of_stands(const std::string& file, const std::string& device, const Mechanism& m,
-                            const std::vector<SceneStand>& stands, const std::vector<Vector6>& loads_N_Nmm,
-                            PageResult result, Geometry geometry) {
-  PageContents page = contents(device);
+                            const std::vector<scene::SceneStand>& stands, const std::vector<Vector6>& loads_N_Nmm,
+                            page::PageResult result, Geometry geometry) {
+  page::PageContents page = contents(device);
   page.results = {std::move(result)};
   std::vector<Vector6> loads;
   for (const Vector6& load : loads_N_Nmm) loads.push_back(wrench_from_mm(load));
-  page.scene = scene_json(m, stands, loads, {}, geometry);
+  page.scene = scene::scene_json(m, stands, loads, {}, geometry);
   write_page(file, page);
 }
 
-void write_report_of_file(const std::string& file, const std::filesystem::path& source, PageResult result, Json scene) {
-  PageContents page = contents("");
+void write_report_of_file(const std::string& file, const std::filesystem::path& source, page::PageResult result,
+                          Json scene) {
+  page::PageContents page = contents("");
   page.device = source_of(source.string());
   page.results = {std::move(result)};
   page.scene = std::move(scene);
   write_page(file, page);
 }
 
-void write_report_of_results(const std::string& file, std::vector<PageResult> results) {
-  PageContents page = contents("");
+void write_report_of_results(const std::string& file, std::vector<page::PageResult> results) {
+  page::PageContents page = contents("");
   page.results = std::move(results);
   write_page(file, page);
 }

@@ -31,7 +31,7 @@ void set_talk(Talk wanted) {
 
 bool verbose() { return talk == Talk::verbose; }
 
-ProgressStream progress_stream() { return talk == Talk::quiet ? nullptr : watched_stream(); }
+parallel::ProgressStream progress_stream() { return talk == Talk::quiet ? nullptr : parallel::watched_stream(); }
 
 void tell_line(const std::string& text) {
   fmt::print(stderr, "deflect {:.2f} s: {}\n", seconds(), text);

@@ -18,7 +18,7 @@ void set_talk(Talk);
 bool verbose();
 
 /// The stream for progress of long work: watched_stream(), or none if quiet.
-ProgressStream progress_stream();
+parallel::ProgressStream progress_stream();
 
 /// Prints one line on standard error with the seconds since the program began: "deflect 0.12 s: …". tell() does so only
 /// if verbose.
@@ -57,7 +57,7 @@ auto timed(std::string what, const Work& work) {
 template <class Work>
 auto timed_with_progress(std::string what, const Work& work) {
   const Step step(std::move(what));
-  Progress progress(100, "", progress_stream());
+  parallel::Progress progress(100, "", progress_stream());
   return work([&progress](double share) { progress.update(static_cast<std::size_t>(100 * share)); });
 }
 

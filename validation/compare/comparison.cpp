@@ -20,13 +20,14 @@
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 /// σ of every measured number: the file's or replicates', else the option's.
-std::optional<std::vector<double>> sigma_of(const std::vector<MeasuredValue>& values, const ComparisonOptions& o) {
+std::optional<std::vector<double>> sigma_of(const std::vector<measurement::MeasuredValue>& values,
+                                            const ComparisonOptions& o) {
   std::vector<double> out;
-  for (const MeasuredValue& v : values) {
+  for (const measurement::MeasuredValue& v : values) {
     const std::optional<double> sigma = v.sigma ? v.sigma : v.component < 3 ? o.sigma_u : o.sigma_th;
     if (!sigma) return std::nullopt;
     out.push_back(*sigma);
@@ -39,8 +40,8 @@ constexpr int fewest_left = 10;  // freedoms, for a scatter to within a quarter 
 /// The scatter that no pattern explains, alike for all translations and for all rotations.
 std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const MatrixX& patterns) {
   const std::vector<double> one(s.values.size(), 1e-6);
-  const Uncertainty u(PartedColumns(MatrixX(r.size(), 0)), s.values, one, s.predicted, 0);
-  const Regression fit = regress(u, r, patterns);
+  const statistics::Uncertainty u(statistics::PartedColumns(MatrixX(r.size(), 0)), s.values, one, s.predicted, 0);
+  const statistics::Regression fit = statistics::regress(u, r, patterns);
   if (static_cast<int>(s.values.size()) < fit.freedoms + fewest_left)
     throw InputError(
         fmt::format("{}: neither σ nor replicates, and {} measured numbers are too few to read the scatter off what no "
@@ -56,7 +57,7 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
   }
   const auto count = static_cast<double>(s.values.size());
   std::vector<double> out;
-  for (const MeasuredValue& v : s.values) {
+  for (const measurement::MeasuredValue& v : s.values) {
     const std::size_t kind = v.component < 3 ? 0 : 1;
     out.push_back(std::max(1e-12, std::sqrt(squares[kind] / n[kind] * count / std::max(1.0, count - fit.freedoms))));
   }
@@ -64,14 +65,14 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
 }
 
 /// Root mean square of a residual that Errors speak of, with nothing missing.
-double expected_rmse(const ResidualStudy& s, const ToleranceModel& t, const std::vector<double>& sigma) {
+double expected_rmse(const ResidualStudy& s, const statistics::ToleranceModel& t, const std::vector<double>& sigma) {
   double squares = 0, n = 0;
   const bool rotations = rotations_alone(s.values);
   VectorX tolerances = t.A.squared_row_norms();
   for (std::size_t k = 0; k < t.nuisances.size(); ++k)
     if (t.nuisances[k].zero) tolerances -= t.A.shared.col(as_index(k)).cwiseAbs2();
   for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const MeasuredValue& v = s.values[i];
+    const measurement::MeasuredValue& v = s.values[i];
     if ((v.component >= 3) != rotations) continue;
     const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.component));
     squares += sigma[i] * sigma[i] + load * load + tolerances(as_index(i));
@@ -89,7 +90,8 @@ class Comparing {
  public:
   Comparison c;
 
-  Comparing(const Subject& subject, const Measurements& data, const ComparisonOptions& o, const Work& work)
+  Comparing(const subject::Subject& subject, const measurement::Measurements& data, const ComparisonOptions& o,
+            const parallel::Work& work)
       : options_(o), work_(work) {
     if (data.readings.size() < 2)
       throw InputError(fmt::format("{}: one reading says nothing of a model: two or more are wanted", data.origin));
@@ -100,10 +102,10 @@ class Comparing {
     c.study = residual_study(subject, data, work.part(0, 0.05));
     const ResidualStudy& s = c.study;
     c.numbers = s.values.size();
-    c.pure_error = rotations_alone(s.values) ? pure_error(data).th : pure_error(data).u;
+    c.pure_error = rotations_alone(s.values) ? measurement::pure_error(data).th : measurement::pure_error(data).u;
     VectorX measured(std::ssize(s.values));
     for (std::size_t i = 0; i < s.values.size(); ++i) measured(as_index(i)) = s.values[i].value;
-    c.residual = measured - rows_of(s.values, s.predicted);
+    c.residual = measured - statistics::rows_of(s.values, s.predicted);
     add_errors(c);
   }
 
@@ -111,10 +113,10 @@ class Comparing {
 
   void add_tolerances() {
     const ResidualStudy& s = c.study;
-    c.tolerances = tolerance_model(*s.standing, *s.data, s.values, work_.part(0.5, 0.8));
+    c.tolerances = statistics::tolerance_model(*s.standing, *s.data, s.values, work_.part(0.5, 0.8));
     patterns_ = patterns_of(s);
     for (Pattern& p : patterns_) {
-      columns_.push_back(rows_of(s.values, p.by_reading));
+      columns_.push_back(statistics::rows_of(s.values, p.by_reading));
       p.by_reading = {};
     }
   }
@@ -122,13 +124,13 @@ class Comparing {
   /// χ², and which readings are set aside.
   void weigh() {
     const ResidualStudy& s = c.study;
-    const MatrixX all = side_by_side(columns_, c.residual.size());
+    const MatrixX all = statistics::side_by_side(columns_, c.residual.size());
     // A linear model leaves the deformed shape out, which is known in size: what follows looks for other things.
     left_ = c.residual;
     shape_.resize(0);
     c.deformed_shape = 0;
     if (!s.deformed_shape.empty()) {
-      shape_ = rows_of(s.values, s.deformed_shape);
+      shape_ = statistics::rows_of(s.values, s.deformed_shape);
       c.deformed_shape = rms_of_errors(s.values, shape_);
       left_ -= shape_;
     }
@@ -146,7 +148,7 @@ class Comparing {
     const double chi2 = uncertainty_->inner(c.residual, c.residual)(0, 0);
     const auto freedoms = static_cast<double>(uncertainty_->count());
     c.chi2_per_dof = chi2 / freedoms;
-    c.p_value = chi_squared_tail(freedoms, chi2);
+    c.p_value = statistics::chi_squared_tail(freedoms, chi2);
     c.sigma_u = rms_of_errors(s.values, Eigen::Map<const VectorX>(c.sigma.data(), std::ssize(c.sigma)));
     c.noise_and_tolerances = expected_rmse(s, c.tolerances, c.sigma);
   }
@@ -165,7 +167,7 @@ class Comparing {
   /// Tests, curves, held-out poses.
   void test() {
     const ResidualStudy& s = c.study;
-    const Uncertainty& u = *uncertainty_;
+    const statistics::Uncertainty& u = *uncertainty_;
     for (std::size_t i = 0; i < patterns_.size(); ++i) {
       const PatternRow& row = row_of(patterns_[i].id);
       PatternTest t{row.name, row.title, found_.alone[i], 0};
@@ -178,9 +180,9 @@ class Comparing {
         [&] { c.contrasts = contrast_tests(s, u, left_, aside_); }, [&] { c.curves = elongation_curves(s, u, left_); },
         [&] { c.held_out = HeldOut(s, u, aside_).rmse(c.residual); }, [&] { eta = u.nuisances(left_); },
         [&] {
-          if (shape_.size() > 0) c.deformed_shape_fit = regress(u, c.residual, shape_, found_.columns);
+          if (shape_.size() > 0) c.deformed_shape_fit = statistics::regress(u, c.residual, shape_, found_.columns);
         }};
-    for_each_case(std::size(tests), 1, work_.threads, [&](std::size_t i) { tests[i](); });
+    parallel::for_each_case(std::size(tests), 1, work_.threads, [&](std::size_t i) { tests[i](); });
     for (Eigen::Index i = 0; i < eta.size(); ++i)
       if (std::abs(eta(i)) > 2) c.strained.emplace_back(nth(c.tolerances.nuisances, i).name, eta(i));
   }
@@ -204,17 +206,17 @@ class Comparing {
   }
 
   ComparisonOptions options_;
-  Work work_;
+  parallel::Work work_;
   std::vector<Pattern> patterns_;
   std::vector<MatrixX> columns_;  // of the patterns, over the measured numbers
   VectorX left_, shape_;          // the residual without the deformed shape
   std::vector<bool> aside_;
-  std::optional<Uncertainty> uncertainty_;
+  std::optional<statistics::Uncertainty> uncertainty_;
   Findings found_;
 };
 
-Comparison compared_as_recorded(const Subject& subject, const Measurements& data, const ComparisonOptions& o,
-                                const Work& work) {
+Comparison compared_as_recorded(const subject::Subject& subject, const measurement::Measurements& data,
+                                const ComparisonOptions& o, const parallel::Work& work) {
   Comparing comparing(subject, data, o, work);
   comparing.add_deformed_shape();
   comparing.add_tolerances();
@@ -242,8 +244,8 @@ std::vector<Vector6> supposed_shape(const ResidualStudy& known, const ResidualSt
 /// The account of corrected data. The deformed shape takes longest: at first it is supposed from that of the recorded
 /// data. Where the corrected ones are not right then, even if it is off by a fifth and half of what else speaks against
 /// them is its doing, they are not.
-std::optional<MisfitAccount> compared_again(const Comparison& recorded, const Measurements& data,
-                                            const ComparisonOptions& o, const Work& work,
+std::optional<MisfitAccount> compared_again(const Comparison& recorded, const measurement::Measurements& data,
+                                            const ComparisonOptions& o, const parallel::Work& work,
                                             const CanBeRight& can_be_right) {
   Comparing comparing(*recorded.study.subject, data, o, work);
   MisfitAccount at_best;
@@ -271,16 +273,17 @@ std::optional<MisfitAccount> compared_again(const Comparison& recorded, const Me
 
 bool is_mistaken(const Comparison& c) { return !c.mistakes.empty() && c.mistakes.front().certain; }
 
-Comparison compare(const Subject& subject, const Measurements& data, const ComparisonOptions& o, const Work& work) {
+Comparison compare(const subject::Subject& subject, const measurement::Measurements& data, const ComparisonOptions& o,
+                   const parallel::Work& work) {
   auto compared = outcome_of<ModelError>([&] { return compared_as_recorded(subject, data, o, work); });
   if (!compared) throw ModelError(compared.why + within_reach_hint(subject, data), compared.cause);
   Comparison& c = *compared;
   if (o.as_recorded) return std::move(c);
-  c.mistakes =
-      recording_mistakes(subject, c, work.threads, [&](const Measurements& other, const CanBeRight& can_be_right) {
-        return compared_again(c, other, o, work.quiet(), can_be_right);
-      });
+  c.mistakes = recording_mistakes(subject, c, work.threads,
+                                  [&](const measurement::Measurements& other, const CanBeRight& can_be_right) {
+                                    return compared_again(c, other, o, work.quiet(), can_be_right);
+                                  });
   return std::move(c);
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

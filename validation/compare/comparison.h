@@ -14,12 +14,12 @@
 #include "validation/prediction/prediction.h"
 #include "validation/statistics/uncertainty.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 /// The residual regressed on one pattern alone.
 struct PatternTest {
   std::string pattern, title;
-  Regression alone;
+  statistics::Regression alone;
   double size = 0;  ///< m
 };
 
@@ -28,7 +28,7 @@ struct Comparison {
   std::size_t readings = 0, poses = 0, numbers = 0;
   bool sigma_from_residuals = false;  ///< neither σ nor replicates: scatter is what no pattern explains
   double sigma_u = 0;                 ///< m: root mean square of the readings' σ
-  std::optional<NoiseEstimate> pure_error;
+  std::optional<measurement::NoiseEstimate> pure_error;
   Errors all;
   std::vector<Errors> by_axis, by_pose, by_direction, by_magnitude, by_heading;
   double kept_rmse = 0;             ///< of the readings that are not set aside, m or rad
@@ -37,7 +37,7 @@ struct Comparison {
   double noise_and_tolerances = 0;  ///< m: root mean square expected of a residual with nothing missing
   double held_out = 0;              ///< m: rmse at each pose with the tolerances learnt at the others
   double deformed_shape = 0;        ///< m: root mean square of what a linear model leaves out of the equilibrium
-  std::optional<Regression> deformed_shape_fit;  ///< its amplitude in the data, 1 expected
+  std::optional<statistics::Regression> deformed_shape_fit;  ///< its amplitude in the data, 1 expected
   std::vector<ContrastTest> contrasts;
   std::vector<PatternTest> patterns;
   std::vector<Finding> findings;  ///< empty: nothing is missing that these readings can show
@@ -46,7 +46,7 @@ struct Comparison {
   std::vector<std::pair<std::string, double>> strained;  ///< tolerances beyond two standard deviations, with them
   std::vector<RecordingMistake> mistakes;                ///< plausibility.h: of recording, the headline first
   std::vector<ElongationCurve> curves;                   ///< of the sites
-  ToleranceModel tolerances;
+  statistics::ToleranceModel tolerances;
   ResidualStudy study;        ///< residuals, forces, sites: for figures
   VectorX residual;           ///< of study.values
   std::vector<double> sigma;  ///< of study.values
@@ -61,6 +61,7 @@ struct ComparisonOptions {
 bool is_mistaken(const Comparison&);
 
 /// Throws InputError where the data are too few, ModelError, NumericalError as predict() does.
-Comparison compare(const Subject&, const Measurements&, const ComparisonOptions& = {}, const Work& = {});
+Comparison compare(const subject::Subject&, const measurement::Measurements&, const ComparisonOptions& = {},
+                   const parallel::Work& = {});
 
-}  // namespace deflect
+}  // namespace deflect::compare

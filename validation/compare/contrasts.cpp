@@ -9,7 +9,7 @@
 #include "msa/base/index.h"
 #include "validation/statistics/tail.h"
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
@@ -18,8 +18,8 @@ using Weights = std::vector<std::pair<std::size_t, double>>;  // reading, weight
 constexpr std::size_t most_contrasts = 1200;
 
 /// Contrasts whose noise is not independent lie in one block; blocks as small as they are.
-std::vector<NoiseBlock> blocks_of(const MatrixX& noise) {
-  std::vector<NoiseBlock> out;
+std::vector<statistics::NoiseBlock> blocks_of(const MatrixX& noise) {
+  std::vector<statistics::NoiseBlock> out;
   Eigen::Index first = 0, reaches = 0;  // the last contrast that those since `first` have to do with
   for (Eigen::Index i = 0; i < noise.rows(); ++i) {
     Eigen::Index last = noise.rows() - 1;
@@ -36,17 +36,19 @@ std::vector<NoiseBlock> blocks_of(const MatrixX& noise) {
 /// Of contrasts z at least as large, by chance. Directions whose variance is lost beside the others' (1e-9, each
 /// contrast in its own deviation) do not count: where the noise alone is more than that there are none, for errors in
 /// common only add to it; else all directions are looked at.
-double chance_of(const VectorX& z, const Uncertainty::OfContrasts& of, const VectorX& deviation) {
+double chance_of(const VectorX& z, const statistics::Uncertainty::OfContrasts& of, const VectorX& deviation) {
   constexpr double lost = 1e-9;
-  const std::vector<NoiseBlock> blocks = blocks_of(of.noise);
+  const std::vector<statistics::NoiseBlock> blocks = blocks_of(of.noise);
   const VectorX scale = deviation.cwiseInverse();
-  const bool all_count = std::all_of(blocks.begin(), blocks.end(), [&](const NoiseBlock& b) {
+  const bool all_count = std::all_of(blocks.begin(), blocks.end(), [&](const statistics::NoiseBlock& b) {
     const VectorX own = scale.segment(b.first, b.size);
     const Eigen::SelfAdjointEigenSolver<MatrixX> axes(MatrixX(own.asDiagonal() * b.covariance * own.asDiagonal()),
                                                       Eigen::EigenvaluesOnly);
     return axes.eigenvalues()(0) > lost;
   });
-  if (all_count) return chi_squared_tail(static_cast<double>(z.size()), Whitening(blocks, of.errors)(z).squaredNorm());
+  if (all_count)
+    return statistics::chi_squared_tail(static_cast<double>(z.size()),
+                                        statistics::Whitening(blocks, of.errors)(z).squaredNorm());
   const MatrixX errors = scale.asDiagonal() * of.errors.dense();
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(
       MatrixX(scale.asDiagonal() * of.noise * scale.asDiagonal() + errors * errors.transpose()));
@@ -58,7 +60,7 @@ double chance_of(const VectorX& z, const Uncertainty::OfContrasts& of, const Vec
       chi2 += along(i) * along(i) / axes.eigenvalues()(i);
       ++freedoms;
     }
-  return chi_squared_tail(freedoms, chi2);
+  return statistics::chi_squared_tail(freedoms, chi2);
 }
 
 /// Contrasts of translations: one row for each component that all its readings have.
@@ -91,7 +93,7 @@ class Contrasts {
     return row_[reading][component] >= 0 && (aside_.empty() || !aside_[reading]);
   }
 
-  ContrastTest judge(ContrastTest t, const Uncertainty& u, const VectorX& r) const {
+  ContrastTest judge(ContrastTest t, const statistics::Uncertainty& u, const VectorX& r) const {
     std::vector<std::vector<std::pair<Eigen::Index, double>>> rows = rows_;
     if (rows.size() > most_contrasts) {  // evenly over the plan
       std::vector<std::vector<std::pair<Eigen::Index, double>>> some;
@@ -106,7 +108,7 @@ class Contrasts {
       for (const auto& [column, weight] : rows[i]) entries.emplace_back(as_index(i), column, weight);
     T.setFromTriplets(entries.begin(), entries.end());
     const VectorX z = T * r;
-    const Uncertainty::OfContrasts of = u.of_contrasts(T);
+    const statistics::Uncertainty::OfContrasts of = u.of_contrasts(T);
     const VectorX variance = of.noise.diagonal() + of.errors.squared_row_norms();
     t.p_value = chance_of(z, of, variance.cwiseSqrt());
     t.size = std::sqrt(std::max(0.0, (z.squaredNorm() - variance.sum()) / static_cast<double>(z.size())));
@@ -149,7 +151,7 @@ Weights operator+(Weights a, const Weights& b) {
 
 using ByLoad = std::map<std::array<long long, 6>, std::vector<std::size_t>>;
 
-ByLoad by_load(const ResidualStudy& s, const PoseGroup& group, const std::vector<bool>& aside) {
+ByLoad by_load(const ResidualStudy& s, const measurement::PoseGroup& group, const std::vector<bool>& aside) {
   ByLoad out;
   for (const std::size_t i : group.readings)
     if (aside.empty() || !aside[i]) out[key(s.data->readings[i].load)].push_back(i);
@@ -192,7 +194,7 @@ void add_intercepts(Contrasts& c, const ResidualStudy& s, const ByLoad& loads) {
 }
 
 /// Along the load: whether it was reached from below or from above (by its change since the reading before).
-void add_hysteresis(Contrasts& c, const ResidualStudy& s, const PoseGroup& group, const ByLoad& loads) {
+void add_hysteresis(Contrasts& c, const ResidualStudy& s, const measurement::PoseGroup& group, const ByLoad& loads) {
   std::vector<std::size_t> order = group.readings;
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return s.data->readings[a].sequence < s.data->readings[b].sequence; });
@@ -227,7 +229,7 @@ void add_drift(Contrasts& c, const ResidualStudy& s, const ByLoad& loads) {
 }
 
 /// The antisymmetric part of C in u = C f + c0, least squares over the pose's readings under forces alone.
-void add_reciprocity(Contrasts& c, const ResidualStudy& s, const PoseGroup& group) {
+void add_reciprocity(Contrasts& c, const ResidualStudy& s, const measurement::PoseGroup& group) {
   std::vector<std::size_t> readings;
   for (const std::size_t i : group.readings)
     if (s.data->readings[i].load.tail<3>().isZero(0) && c.usable(i, 0) && c.usable(i, 1) && c.usable(i, 2))
@@ -254,8 +256,8 @@ void add_reciprocity(Contrasts& c, const ResidualStudy& s, const PoseGroup& grou
 
 }  // namespace
 
-std::vector<ContrastTest> contrast_tests(const ResidualStudy& s, const Uncertainty& u, const VectorX& residual,
-                                         const std::vector<bool>& aside) {
+std::vector<ContrastTest> contrast_tests(const ResidualStudy& s, const statistics::Uncertainty& u,
+                                         const VectorX& residual, const std::vector<bool>& aside) {
   enum { parity, proportionality, hysteresis, zero, drift, reciprocity };
   std::vector<ContrastTest> tests = {
       {"parity", "is the misfit the same for a load and its opposite (even)?", 0, 0, 1, "pairs of opposite loads"},
@@ -267,7 +269,7 @@ std::vector<ContrastTest> contrast_tests(const ResidualStudy& s, const Uncertain
       {"reciprocity", "do forces and displacements answer each other alike?", 0, 0, 1,
        "forces in all directions at a pose"}};
   std::vector<Contrasts> contrasts(tests.size(), Contrasts(s, aside));
-  for (const PoseGroup& group : s.data->poses) {
+  for (const measurement::PoseGroup& group : s.data->poses) {
     const ByLoad loads = by_load(s, group, aside);
     add_parity(contrasts[parity], loads);
     add_intercepts(contrasts[proportionality], s, loads);
@@ -286,4 +288,4 @@ std::vector<ContrastTest> contrast_tests(const ResidualStudy& s, const Uncertain
   return tests;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -17,7 +17,7 @@
 #include "validation/compare/patterns.h"
 #include "validation/statistics/uncertainty.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 struct ContrastTest {
   std::string id, question;
@@ -27,7 +27,7 @@ struct ContrastTest {
   std::string missing;  ///< what the plan would have to hold, where it does not answer
 };
 
-std::vector<ContrastTest> contrast_tests(const ResidualStudy&, const Uncertainty&, const VectorX& residual,
+std::vector<ContrastTest> contrast_tests(const ResidualStudy&, const statistics::Uncertainty&, const VectorX& residual,
                                          const std::vector<bool>& set_aside);
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -13,7 +13,7 @@
 #include "validation/prediction/prediction.h"
 #include "validation/recording/recording_mistakes.h"
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 constexpr std::size_t most_sampled = 1000;  // readings
@@ -22,14 +22,14 @@ constexpr double clearly_worse = 5;  // of the sum of losses
 constexpr double least_shift_mm = 0.5, most_shift_mm = 100;
 
 /// Some of the readings, spread evenly over the file, at the poses that they have.
-std::pair<Measurements, std::vector<std::size_t>> sample_of(const Measurements& data) {
-  Measurements out{data.origin, data.joint_rotates, {}, data.temperature_recorded, {}, {}};
+std::pair<measurement::Measurements, std::vector<std::size_t>> sample_of(const measurement::Measurements& data) {
+  measurement::Measurements out{data.origin, data.joint_rotates, {}, data.temperature_recorded, {}, {}};
   std::vector<std::size_t> rows;
   std::vector<std::size_t> pose(data.poses.size(), data.poses.size());
   const std::size_t n = data.readings.size(), wanted = std::min(n, most_sampled);
   for (std::size_t k = 0; k < wanted; ++k) {
     const std::size_t i = k * n / wanted;
-    const Reading& r = data.readings[i];
+    const measurement::Reading& r = data.readings[i];
     if (pose[r.pose] == data.poses.size()) {
       pose[r.pose] = out.poses.size();
       out.poses.push_back(data.poses[r.pose]);
@@ -53,7 +53,7 @@ double quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-CorrectionScreen::CorrectionScreen(const Subject& subject, const Comparison& c, int threads)
+CorrectionScreen::CorrectionScreen(const subject::Subject& subject, const Comparison& c, int threads)
     : subject_(subject), study_(&c.study), threads_(threads), size_(c.study.standing->size()) {
   if (!c.sigma_from_residuals) {
     std::array<double, 2> sum{}, count{};
@@ -65,9 +65,9 @@ CorrectionScreen::CorrectionScreen(const Subject& subject, const Comparison& c, 
       if (count[of] > 0) sigma_[of] = std::sqrt(sum[of] / count[of]);
   }
   std::tie(sample_, rows_) = sample_of(*c.study.data);
-  as_recorded_ = loss(Correction{});
+  as_recorded_ = loss(recording::Correction{});
   std::size_t numbers = 0;
-  for (const Reading& r : sample_.readings)
+  for (const measurement::Reading& r : sample_.readings)
     for (const std::optional<double>& d : r.displacement) numbers += d.has_value();
   equal_within_ = clearly_worse / static_cast<double>(std::max<std::size_t>(1, numbers));
   // Noise and tolerances alone, of the size that the comparison has for them.
@@ -76,7 +76,7 @@ CorrectionScreen::CorrectionScreen(const Subject& subject, const Comparison& c, 
   const VectorX tolerances = c.tolerances.A.squared_row_norms();
   double noise = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
-    const MeasuredValue& v = study_->values[i];
+    const measurement::MeasuredValue& v = study_->values[i];
     const double weight = v.component < 3 ? 1 : size_, s = scale.at({v.reading, v.component});
     const double variance = (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) + tolerances(as_index(i));
     noise += s > 0 ? std::log1p(weight * weight * variance / (s * s)) + std::log(s) : 0;
@@ -85,17 +85,17 @@ CorrectionScreen::CorrectionScreen(const Subject& subject, const Comparison& c, 
   promising_ = as_recorded_ - good_part * std::max(0.0, as_recorded_ - noise);
 }
 
-std::vector<CorrectionScreen::Difference> CorrectionScreen::differences(const Measurements& data,
+std::vector<CorrectionScreen::Difference> CorrectionScreen::differences(const measurement::Measurements& data,
                                                                         const std::vector<Vector6>& predicted) const {
   std::vector<double> usual;
-  for (const Reading& r : data.readings)
+  for (const measurement::Reading& r : data.readings)
     for (std::size_t k = 0; k < 6; ++k)
       if (r.displacement[k]) usual.push_back(std::abs(*r.displacement[k]) * (k < 3 ? 1 : size_));
   const double usually = of_usual * quantile(usual, 0.75);
   std::vector<Difference> out;
   for (std::size_t i = 0; i < data.readings.size(); ++i)
     for (std::size_t k = 0; k < 6; ++k) {
-      const Reading& r = data.readings[i];
+      const measurement::Reading& r = data.readings[i];
       if (!r.displacement[k]) continue;
       const double weight = k < 3 ? 1 : size_, p = weight * predicted[i](as_index(k));
       const double sigma = weight * (k < 3 ? r.sigma_u.value_or(sigma_[0]) : r.sigma_th.value_or(sigma_[1]));
@@ -104,8 +104,8 @@ std::vector<CorrectionScreen::Difference> CorrectionScreen::differences(const Me
   return out;
 }
 
-double CorrectionScreen::loss(const Measurements& data, const std::vector<Vector6>& predicted,
-                              const Rewritten& displacement) const {
+double CorrectionScreen::loss(const measurement::Measurements& data, const std::vector<Vector6>& predicted,
+                              const recording::Rewritten& displacement) const {
   const std::vector<Difference> all = differences(data, predicted);
   double sum = 0;
   for (const Difference& d : all)
@@ -114,11 +114,11 @@ double CorrectionScreen::loss(const Measurements& data, const std::vector<Vector
   return all.empty() ? 0 : sum / static_cast<double>(all.size());
 }
 
-double CorrectionScreen::loss(const Correction& c) const {
-  const Measurements data = corrected(sample_, c);
+double CorrectionScreen::loss(const recording::Correction& c) const {
+  const measurement::Measurements data = recording::corrected(sample_, c);
   std::vector<Vector6> predicted(rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const Reading& recorded = study_->data->readings[rows_[i]];
+    const measurement::Reading& recorded = study_->data->readings[rows_[i]];
     predicted[i] = study_->predicted[rows_[i]];
     predicted[i] += deformed_shape_under(*study_, rows_[i], data.readings[i].load);
     predicted[i] += study_->compliance[recorded.pose] * (data.readings[i].load - recorded.load);
@@ -126,8 +126,8 @@ double CorrectionScreen::loss(const Correction& c) const {
   return loss(data, predicted, c.displacement);
 }
 
-std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const Correction& c) const {
-  const Measurements data = corrected(sample_, c);
+std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const recording::Correction& c) const {
+  const measurement::Measurements data = recording::corrected(sample_, c);
   // The subject may not reach a pose, or not stand there.
   auto predicted = outcome_of([&] { return subject_.stand(data)->predict(data, {}, {threads_}); });
   for (std::size_t i = 0; predicted && i < rows_.size(); ++i)
@@ -135,14 +135,15 @@ std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const Corre
   return std::move(predicted.value);
 }
 
-double CorrectionScreen::loss_elsewhere(const Correction& c) const {
+double CorrectionScreen::loss_elsewhere(const recording::Correction& c) const {
   const auto predicted = predicted_with(c);
-  return predicted ? loss(corrected(sample_, c), *predicted, c.displacement) : std::numeric_limits<double>::infinity();
+  return predicted ? loss(recording::corrected(sample_, c), *predicted, c.displacement)
+                   : std::numeric_limits<double>::infinity();
 }
 
-std::optional<Correction> CorrectionScreen::best_shift(int axis) const {
+std::optional<recording::Correction> CorrectionScreen::best_shift(int axis) const {
   if (sample_.by_joints()) return std::nullopt;
-  const auto shifted = [&](double mm) { return shifted_poses(mm * Vector3::Unit(axis)); };
+  const auto shifted = [&](double mm) { return recording::shifted_poses(mm * Vector3::Unit(axis)); };
   const auto at = [&](double mm) { return predicted_with(shifted(mm)); };
   // Gauss–Newton on the losses: numbers far off count little.
   double mm = 0, least = as_recorded_;
@@ -172,11 +173,11 @@ std::optional<Correction> CorrectionScreen::best_shift(int axis) const {
   return std::abs(mm) >= least_shift_mm ? std::optional(shifted(mm)) : std::nullopt;
 }
 
-std::optional<Correction> CorrectionScreen::best_point() const {
+std::optional<recording::Correction> CorrectionScreen::best_point() const {
   Vector3 p = Vector3::Zero();
   double least = as_recorded_;
   for (int step = 0; step < 6; ++step) {
-    const auto here = predicted_with(forces_elsewhere(p));
+    const auto here = predicted_with(recording::forces_elsewhere(p));
     if (!here) return std::nullopt;
     const std::vector<Difference> all = differences(sample_, *here);
     // One scale for all: what the loads' point adds is as certain where little moves as where much does.
@@ -187,7 +188,7 @@ std::optional<Correction> CorrectionScreen::best_point() const {
     Matrix3 squares = Matrix3::Zero();
     Vector3 along = Vector3::Zero();
     for (const Difference& d : all) {
-      const Reading& r = sample_.readings[d.row];
+      const measurement::Reading& r = sample_.readings[d.row];
       const auto k = as_index(d.component);
       // C [0; p × f] = −C_·θ [f]× p
       const Vector3 slope =
@@ -203,11 +204,11 @@ std::optional<Correction> CorrectionScreen::best_point() const {
     Vector3 further = solver.solve(along);
     bool better = false;
     for (int half = 0; half < 5 && !better; ++half, further /= 2)
-      if (const double loss = loss_elsewhere(forces_elsewhere(p + further)); loss < least)
+      if (const double loss = loss_elsewhere(recording::forces_elsewhere(p + further)); loss < least)
         least = loss, p += further, better = true;
     if (!better || further.norm() < 1e-5) break;
   }
-  return p.norm() > 1e-3 ? std::optional(forces_elsewhere(p)) : std::nullopt;
+  return p.norm() > 1e-3 ? std::optional(recording::forces_elsewhere(p)) : std::nullopt;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

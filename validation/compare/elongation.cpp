@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 /// Knots over [−1, 1], as many on each side, both ending at 0, where the curve may jump.
@@ -22,8 +22,8 @@ double hat(double x, int k, int knots) {
 
 }  // namespace
 
-std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
-                                               int knots) {
+std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const statistics::Uncertainty& u,
+                                               const VectorX& r, int knots) {
   std::vector<ElongationCurve> out;
   const std::size_t sites = s.sites.front().size();
   if (sites == 0) return out;
@@ -43,15 +43,15 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const Unc
   }
   MatrixX shapes(std::ssize(s.values), columns);
   for (std::size_t n = 0; n < s.values.size(); ++n) {
-    const MeasuredValue& v = s.values[n];
-    const std::vector<Site>& own = s.sites[s.data->readings[v.reading].pose];
+    const measurement::MeasuredValue& v = s.values[n];
+    const std::vector<subject::Site>& own = s.sites[s.data->readings[v.reading].pose];
     for (Eigen::Index c = 0; c < columns; ++c)
       shapes(as_index(n), c) = hats(c, as_index(v.reading)) * nth(own, c / knots).g(as_index(v.component));
   }
   hats.resize(0, 0);
-  const Regression fit = regress(u, r, shapes);
+  const statistics::Regression fit = statistics::regress(u, r, shapes);
   for (std::size_t k = 0; k < sites; ++k) {
-    const Site& site = s.sites.front()[k];
+    const subject::Site& site = s.sites.front()[k];
     ElongationCurve curve{site.name, site.rotation, {}, {}, {}};
     for (int j = 0; j < knots; ++j) {
       const Eigen::Index column = as_index(k) * knots + j;
@@ -65,4 +65,4 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const Unc
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

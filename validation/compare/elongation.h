@@ -8,7 +8,7 @@
 #include "validation/compare/patterns.h"
 #include "validation/statistics/uncertainty.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 /// Elongation beyond the model's at forces over the range that the data cover, knots without data left out; f = 0
 /// stands twice, for what the curve comes to from below and from above.
@@ -20,7 +20,7 @@ struct ElongationCurve {
 
 /// One regression of the residual on all sites' knots at once (each site its own curve), by generalised least squares:
 /// determined where the readings load sites independently. Empty without sites.
-std::vector<ElongationCurve> elongation_curves(const ResidualStudy&, const Uncertainty&, const VectorX& residual,
-                                               int knots = 10);
+std::vector<ElongationCurve> elongation_curves(const ResidualStudy&, const statistics::Uncertainty&,
+                                               const VectorX& residual, int knots = 10);
 
-}  // namespace deflect
+}  // namespace deflect::compare

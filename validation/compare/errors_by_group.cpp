@@ -10,11 +10,11 @@
 #include <map>
 #include <numeric>
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 /// Whether a measured number belongs to the group.
-using Belongs = std::function<bool(const MeasuredValue&)>;
+using Belongs = std::function<bool(const measurement::MeasuredValue&)>;
 
 Errors errors_of(const Comparison& c, const std::string& group, bool rotations, const std::vector<std::size_t>& values,
                  const Belongs& belongs) {
@@ -24,7 +24,7 @@ Errors errors_of(const Comparison& c, const std::string& group, bool rotations, 
   Vector3 sum = Vector3::Zero(), count = Vector3::Zero();
   std::size_t last = c.readings;
   for (const std::size_t i : values) {
-    const MeasuredValue& v = c.study.values[i];
+    const measurement::MeasuredValue& v = c.study.values[i];
     if ((v.component >= 3) != rotations || !belongs(v)) continue;
     const double r = c.residual(as_index(i));
     squares += r * r;
@@ -57,19 +57,21 @@ std::string direction_of(const Vector6& F) {
 
 }  // namespace
 
-bool rotations_alone(const std::vector<MeasuredValue>& values) {
-  return std::all_of(values.begin(), values.end(), [](const MeasuredValue& v) { return v.component >= 3; });
+bool rotations_alone(const std::vector<measurement::MeasuredValue>& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](const measurement::MeasuredValue& v) { return v.component >= 3; });
 }
 
-double rms_of_kept(const std::vector<MeasuredValue>& values, const VectorX& x, const std::vector<bool>& set_aside) {
-  std::vector<MeasuredValue> kept;
+double rms_of_kept(const std::vector<measurement::MeasuredValue>& values, const VectorX& x,
+                   const std::vector<bool>& set_aside) {
+  std::vector<measurement::MeasuredValue> kept;
   std::vector<Eigen::Index> rows;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!set_aside[values[i].reading]) kept.push_back(values[i]), rows.push_back(as_index(i));
   return rms_of_errors(kept, x(rows));
 }
 
-double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x) {
+double rms_of_errors(const std::vector<measurement::MeasuredValue>& values, const VectorX& x) {
   const bool rotations = rotations_alone(values);
   double squares = 0, n = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -82,19 +84,20 @@ double rms_of_errors(const std::vector<MeasuredValue>& values, const VectorX& x)
 
 void add_errors(Comparison& c) {
   for (auto* list : {&c.by_axis, &c.by_pose, &c.by_direction, &c.by_magnitude, &c.by_heading}) list->clear();
-  const Measurements& data = *c.study.data;
+  const measurement::Measurements& data = *c.study.data;
   const bool rotations = rotations_alone(c.study.values);
   std::vector<std::size_t> all(c.study.values.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const auto group = [&](const std::string& name, const Belongs& belongs) {
     return errors_of(c, name, rotations, all, belongs);
   };
-  c.all = group("", [](const MeasuredValue&) { return true; });
+  c.all = group("", [](const measurement::MeasuredValue&) { return true; });
   for (std::size_t k = 0; k < 3; ++k) {
-    const Errors e = group(std::string(1, "xyz"[k]), [&](const MeasuredValue& v) { return v.component % 3 == k; });
+    const Errors e =
+        group(std::string(1, "xyz"[k]), [&](const measurement::MeasuredValue& v) { return v.component % 3 == k; });
     if (e.readings > 0) c.by_axis.push_back(e);
   }
-  const auto every = [](const MeasuredValue&) { return true; };
+  const auto every = [](const measurement::MeasuredValue&) { return true; };
   std::vector<std::vector<std::size_t>> of_pose(data.poses.size());
   for (const std::size_t i : all) of_pose[data.readings[c.study.values[i].reading].pose].push_back(i);
   for (std::size_t p = 0; p < data.poses.size(); ++p)
@@ -102,7 +105,7 @@ void add_errors(Comparison& c) {
   double most = 0;
   std::map<std::string, std::vector<std::size_t>> directions;
   std::vector<std::vector<std::size_t>*> direction;
-  for (const Reading& r : data.readings) {
+  for (const measurement::Reading& r : data.readings) {
     direction.push_back(&directions[direction_of(r.load)]);
     most = std::max(most, r.load.head<3>().norm());
   }
@@ -111,7 +114,7 @@ void add_errors(Comparison& c) {
   if (most > 0)
     for (int third = 0; third < 3; ++third) {
       const double low = most * third / 3, high = most * (third + 1) / 3;
-      const auto within = [&, third](const MeasuredValue& v) {
+      const auto within = [&, third](const measurement::MeasuredValue& v) {
         const double F = data.readings[v.reading].load.head<3>().norm();
         return F > low * (1 + 1e-9) && F <= high * (1 + 1e-9) && (third > 0 || F > 0);
       };
@@ -120,7 +123,7 @@ void add_errors(Comparison& c) {
     }
   if (!c.study.sequence) return;
   // Whether the largest site force had risen or fallen in size.
-  const auto heading = [&](const MeasuredValue& v) {
+  const auto heading = [&](const measurement::MeasuredValue& v) {
     const VectorX &f = c.study.force[v.reading], &h = c.study.heading[v.reading];
     if (f.size() == 0) return 0.0;
     Eigen::Index k = 0;
@@ -128,9 +131,9 @@ void add_errors(Comparison& c) {
     return f(k) * h(k);
   };
   for (const auto& [name, sign] : {std::pair<const char*, double>{"loading", 1}, {"unloading", -1}}) {
-    const Errors e = group(name, [&, s = sign](const MeasuredValue& v) { return heading(v) * s > 0; });
+    const Errors e = group(name, [&, s = sign](const measurement::MeasuredValue& v) { return heading(v) * s > 0; });
     if (e.readings > 0) c.by_heading.push_back(e);
   }
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -7,16 +7,16 @@
 #include "msa/base/spatial.h"
 #include "validation/measurement/replicates.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 /// Whether no translation was measured: the errors are then those of rotations, in rad where m is said below.
-bool rotations_alone(const std::vector<MeasuredValue>&);
+bool rotations_alone(const std::vector<measurement::MeasuredValue>&);
 
 /// Root mean square over the numbers that errors speak of: m, or rad of rotations alone; 0 without any.
-double rms_of_errors(const std::vector<MeasuredValue>&, const VectorX&);
+double rms_of_errors(const std::vector<measurement::MeasuredValue>&, const VectorX&);
 
 /// The same over the readings that are not set aside.
-double rms_of_kept(const std::vector<MeasuredValue>&, const VectorX&, const std::vector<bool>& set_aside);
+double rms_of_kept(const std::vector<measurement::MeasuredValue>&, const VectorX&, const std::vector<bool>& set_aside);
 
 /// Of residuals measured − predicted: translations in m, or rotations in rad where none were measured.
 struct Errors {
@@ -34,4 +34,4 @@ struct Comparison;
 /// Fills `all`, `by_axis`, `by_pose`, `by_direction`, `by_magnitude` and, with a sequence, `by_heading`.
 void add_errors(Comparison&);
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -7,17 +7,17 @@
 #include "validation/compare/slides.h"
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 /// The exponent that takes most χ² away: grid, then a parabola through the best three. `column(p)`: of the exponent.
-std::optional<Exponent> best_exponent(double low, double high, double step, const Regressions& regressions,
+std::optional<Exponent> best_exponent(double low, double high, double step, const statistics::Regressions& regressions,
                                       const std::function<VectorX(double)>& column) {
   std::vector<double> at;
   for (double p = low; p <= high + 1e-9; p += step) at.push_back(p);
   std::vector<double> gains(at.size());
   constexpr std::size_t some = 8;  // columns that are whitened together
-  for_each_case((at.size() + some - 1) / some, 1, regressions.threads(), [&](std::size_t part) {
+  parallel::for_each_case((at.size() + some - 1) / some, 1, regressions.threads(), [&](std::size_t part) {
     const std::size_t first = part * some, end = std::min(first + some, at.size());
     MatrixX columns;
     for (std::size_t i = first; i < end; ++i) {
@@ -38,8 +38,8 @@ std::optional<Exponent> best_exponent(double low, double high, double step, cons
 
 }  // namespace
 
-std::optional<Exponent> force_exponent(const ResidualStudy& s, const Regressions& regressions,
-                                       const std::function<double(const Site&)>& weight) {
+std::optional<Exponent> force_exponent(const ResidualStudy& s, const statistics::Regressions& regressions,
+                                       const std::function<double(const subject::Site&)>& weight) {
   return best_exponent(-0.5, 2.5, 0.1, regressions, [&](double p) {
     return rows_of_sites(s, [&](std::size_t i, std::size_t k) {
       const double f = s.force[i](as_index(k));
@@ -48,9 +48,9 @@ std::optional<Exponent> force_exponent(const ResidualStudy& s, const Regressions
   });
 }
 
-std::optional<Exponent> extension_exponent(const ResidualStudy& s, const Regressions& regressions) {
+std::optional<Exponent> extension_exponent(const ResidualStudy& s, const statistics::Regressions& regressions) {
   if (!varies_in_extension(s)) return std::nullopt;
   return best_exponent(-2, 5, 0.1, regressions, [&](double p) { return elastic_across(s, p); });
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

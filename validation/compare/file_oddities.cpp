@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 constexpr std::size_t least_numbers = 10;       // of which a verdict can be made
@@ -20,8 +20,9 @@ std::string size_words(double value, bool rotation) {
   return fmt::format("{:.3g} {}", 1e6 * value, rotation ? "µrad" : "µm");
 }
 
-bool temperature_varies(const Measurements& data) {
-  return data.temperature_recorded && std::any_of(data.readings.begin(), data.readings.end(), [&](const Reading& r) {
+bool temperature_varies(const measurement::Measurements& data) {
+  return data.temperature_recorded &&
+         std::any_of(data.readings.begin(), data.readings.end(), [&](const measurement::Reading& r) {
            return r.temperature_C != data.readings.front().temperature_C;
          });
 }
@@ -33,7 +34,7 @@ struct ByComponent {
 
   explicit ByComponent(const Comparison& c) {
     for (std::size_t i = 0; i < c.study.values.size(); ++i) {
-      const MeasuredValue& v = c.study.values[i];
+      const measurement::MeasuredValue& v = c.study.values[i];
       const double p = c.study.predicted[v.reading](as_index(v.component));
       measured[v.component] += v.value * v.value;
       predicted[v.component] += p * p;
@@ -47,24 +48,25 @@ struct ByComponent {
 };
 
 void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
-  const Measurements& data = *c.study.data;
+  const measurement::Measurements& data = *c.study.data;
   const ByComponent by(c);
   const auto zero = [&](std::size_t k) { return by.count[k] == 0 || by.measured[k] == 0; };
   bool measured = false;
   for (std::size_t k = 0; k < 6; ++k) measured = measured || !zero(k);
-  const bool loaded =
-      std::any_of(data.readings.begin(), data.readings.end(), [](const Reading& r) { return !r.load.isZero(0); });
+  const bool loaded = std::any_of(data.readings.begin(), data.readings.end(),
+                                  [](const measurement::Reading& r) { return !r.load.isZero(0); });
   if (!loaded && !temperature_varies(data))
     out.push_back({{"nothing_loaded"},
                    "nothing was loaded: every load is 0 in all readings, and the stiffness of a machine shows under "
                    "load only"});
   if (!measured) {
     const bool rotations = rotations_alone(c.study.values);
-    out.push_back({{"nothing_measured"},
-                   fmt::format("nothing was measured: every displacement is 0, where {} rms are predicted; leave the "
-                               "cells empty that were not measured",
-                               size_words(rms_of_errors(c.study.values, rows_of(c.study.values, c.study.predicted)),
-                                          rotations))});
+    out.push_back(
+        {{"nothing_measured"},
+         fmt::format("nothing was measured: every displacement is 0, where {} rms are predicted; leave the "
+                     "cells empty that were not measured",
+                     size_words(rms_of_errors(c.study.values, statistics::rows_of(c.study.values, c.study.predicted)),
+                                rotations))});
     return;
   }
   for (std::size_t k = 0; k < 6; ++k)
@@ -80,7 +82,7 @@ void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
 /// are no multiples of the power of ten below σ.
 bool finely_written(const Comparison& c) {
   double fine = 0;
-  for (const MeasuredValue& v : c.study.values) {
+  for (const measurement::MeasuredValue& v : c.study.values) {
     const double unit = v.component < 3 ? 1e3 : 1;
     const double scatter = unit * v.sigma.value_or(1e-3 * (c.all.measured > 0 ? c.all.measured : 1));
     const double steps = std::abs(unit * v.value) / std::pow(10, std::floor(std::log10(scatter)));
@@ -90,12 +92,12 @@ bool finely_written(const Comparison& c) {
 }
 
 void add_identical_rows(const Comparison& c, std::vector<RecordingMistake>& out) {
-  const Measurements& data = *c.study.data;
+  const measurement::Measurements& data = *c.study.data;
   if (c.study.sequence) return;
   using Row = std::tuple<std::size_t, std::array<double, 6>, std::array<std::optional<double>, 6>, double>;
   std::map<Row, std::size_t> first;  // line
   std::size_t copies = 0, line = 0, of = 0;
-  for (const Reading& r : data.readings) {
+  for (const measurement::Reading& r : data.readings) {
     std::array<double, 6> load;
     for (std::size_t k = 0; k < 6; ++k) load[k] = r.load(as_index(k));
     const auto [same, is_new] = first.emplace(Row{r.pose, load, r.displacement, r.temperature_C}, r.line);
@@ -127,19 +129,19 @@ std::string sigma_unit_words(double factor, bool rotation) {
 }
 
 void add_sigma(const Comparison& c, std::vector<RecordingMistake>& out) {
-  const PureError pure = pure_error(*c.study.data);
+  const measurement::PureError pure = measurement::pure_error(*c.study.data);
   for (const bool rotation : {false, true}) {
     double sigma = 0, n = 0, residual = 0;
     for (std::size_t i = 0; i < c.study.values.size(); ++i) {
-      const MeasuredValue& v = c.study.values[i];
-      const Reading& r = c.study.data->readings[v.reading];
+      const measurement::MeasuredValue& v = c.study.values[i];
+      const measurement::Reading& r = c.study.data->readings[v.reading];
       if ((v.component >= 3) != rotation || !(rotation ? r.sigma_th : r.sigma_u)) continue;
       const double left = c.residual(as_index(i));
       sigma += c.sigma[i] * c.sigma[i], residual += left * left, n += 1;
     }
     if (n < static_cast<double>(least_numbers)) continue;
     sigma = std::sqrt(sigma / n), residual = std::sqrt(residual / n);
-    const std::optional<NoiseEstimate>& seen = rotation ? pure.th : pure.u;
+    const std::optional<measurement::NoiseEstimate>& seen = rotation ? pure.th : pure.u;
     const bool replicated = seen && seen->degrees_of_freedom >= replicates_to_trust;
     const double scatter = replicated ? seen->sigma : residual, factor = sigma / scatter;
     // Without replicates the scatter is the residual: of data that were computed it is all but nothing.
@@ -177,11 +179,11 @@ std::vector<RecordingMistake> sigma_oddities(const Comparison& c) {
 }
 
 std::vector<RecordingMistake> contradictions(const Comparison& c) {
-  const Measurements& data = *c.study.data;
+  const measurement::Measurements& data = *c.study.data;
   std::vector<RecordingMistake> out;
   std::size_t more = 0;
   constexpr std::size_t most = 5;
-  for (const std::vector<std::size_t>& group : replicates(data))
+  for (const std::vector<std::size_t>& group : measurement::replicates(data))
     for (std::size_t k = 0; k < 3; ++k) {
       std::size_t low = group[0], high = group[0];
       for (const std::size_t i : group) {
@@ -190,7 +192,7 @@ std::vector<RecordingMistake> contradictions(const Comparison& c) {
         if (!data.readings[low].displacement[k] || *u[k] < *data.readings[low].displacement[k]) low = i;
         if (!data.readings[high].displacement[k] || *u[k] > *data.readings[high].displacement[k]) high = i;
       }
-      const Reading &a = data.readings[low], &b = data.readings[high];
+      const measurement::Reading &a = data.readings[low], &b = data.readings[high];
       if (!a.sigma_u || !b.sigma_u || !a.displacement[k] || !b.displacement[k]) continue;
       const double apart = *b.displacement[k] - *a.displacement[k];
       if (!(apart > 10 * std::hypot(*a.sigma_u, *b.sigma_u))) continue;
@@ -209,4 +211,4 @@ std::vector<RecordingMistake> contradictions(const Comparison& c) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -4,7 +4,7 @@
 
 #include "validation/compare/comparison.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 /// Nothing measured, nothing loaded, too few readings, a column of zeros, identical rows.
 std::vector<RecordingMistake> file_oddities(const Comparison&);
@@ -15,4 +15,4 @@ std::vector<RecordingMistake> sigma_oddities(const Comparison&);
 /// Replicates that differ by more than ten standard deviations of a difference, by line.
 std::vector<RecordingMistake> contradictions(const Comparison&);
 
-}  // namespace deflect
+}  // namespace deflect::compare

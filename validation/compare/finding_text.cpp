@@ -11,7 +11,7 @@
 #include "validation/compare/exponents.h"
 #include "validation/compare/slides.h"
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 std::string plus_minus(double value, double deviation, double scale, const char* unit) {
@@ -35,7 +35,7 @@ std::string sentence_from(const std::vector<std::string>& parts) {
 
 /// How much a site of this geometry yields in the pattern found, which grows as a root's or a guide's does across
 /// slides.
-double weight_of(const Finding& found, double mean_extension, const Site& site) {
+double weight_of(const Finding& found, double mean_extension, const subject::Site& site) {
   if (found.id == PatternId::elastic_along_slides) return site.along;
   if (found.id != PatternId::elastic_across_slides) return 1;
   const double L = site.extension / mean_extension;
@@ -45,24 +45,24 @@ double weight_of(const Finding& found, double mean_extension, const Site& site) 
 }
 
 /// Whether each site's own size of the same shape says more than a common one.
-std::string alike(const Finding& found, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+std::string alike(const Finding& found, const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& r,
                   const MatrixX& beside) {
-  const std::vector<Site>& sites = s.sites.front();
+  const std::vector<subject::Site>& sites = s.sites.front();
   if (sites.size() < 2) return "";
   const double mean = mean_extension(s);
   const auto shape = [&](std::size_t i, std::size_t k) {
     return weight_of(found, mean, s.sites[s.data->readings[i].pose][k]) * s.force[i](as_index(k));
   };
-  const MatrixX own = rows_of(s.values, site_columns(s, shape));
+  const MatrixX own = statistics::rows_of(s.values, site_columns(s, shape));
   MatrixX both(r.size(), beside.cols() + found.shape.cols());
   both << beside, found.shape;
-  const Regression spread = regress(u, r, own, both);
+  const statistics::Regression spread = statistics::regress(u, r, own, both);
   const std::string p = digits_of(spread.p_value, 2);
   return std::stod(p) > 0.01 ? fmt::format("the same at all {} sites (p = {})", sites.size(), p)
                              : fmt::format("not the same at all sites (p = {})", p);
 }
 
-std::string elastic(const Finding& f, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+std::string elastic(const Finding& f, const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& r,
                     const MatrixX& beside) {
   std::vector<std::string> parts;
   const bool rotation = s.sites.front().front().rotation;
@@ -78,8 +78,8 @@ std::string elastic(const Finding& f, const ResidualStudy& s, const Uncertainty&
   else if (f.id == PatternId::elastic_by_site)
     first += ": " + (rotation ? by_column(f, 1e3, "µrad/Nmm") : by_column(f, 1e6, "µm/N"));
   parts.push_back(first);
-  const auto weight = [&, mean = mean_extension(s)](const Site& site) { return weight_of(f, mean, site); };
-  const Regressions regressions(u, r, beside);
+  const auto weight = [&, mean = mean_extension(s)](const subject::Site& site) { return weight_of(f, mean, site); };
+  const statistics::Regressions regressions(u, r, beside);
   if (const auto p = force_exponent(s, regressions, weight); p && f.id != PatternId::elastic_at) {
     const double power = as_printed(p->value, 2), deviation = as_printed(p->deviation, 2);
     parts.push_back(fmt::format("odd in the load and {} (it grows as the force to the {:.2f} ± {:.2f})",
@@ -94,8 +94,8 @@ std::string elastic(const Finding& f, const ResidualStudy& s, const Uncertainty&
   return sentence_from(parts);
 }
 
-std::string power(const ResidualStudy& s, const Regressions& regressions) {
-  const auto p = force_exponent(s, regressions, [](const Site&) { return 1.0; });
+std::string power(const ResidualStudy& s, const statistics::Regressions& regressions) {
+  const auto p = force_exponent(s, regressions, [](const subject::Site&) { return 1.0; });
   const bool less = !p || as_printed(p->value, 2) < 1;
   return fmt::format(
       "the misfit is odd in the load and grows {} than in proportion{}: {}", less ? "less" : "no less",
@@ -105,7 +105,7 @@ std::string power(const ResidualStudy& s, const Regressions& regressions) {
 
 }  // namespace
 
-std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+std::string sentence_of(const Finding& f, const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& r,
                         const MatrixX& beside) {
   const bool rotation = !s.sites.front().empty() && s.sites.front().front().rotation;
   // Its sign is told by the words.
@@ -126,7 +126,7 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertai
           f.amplitude(0) > 0 ? "gives way by" : "holds back by",
           rotation ? amplitude(1e6, "µrad") : amplitude(1e6, "µm"));
     case PatternId::power:
-      return power(s, Regressions(u, r, beside));
+      return power(s, statistics::Regressions(u, r, beside));
     case PatternId::one_sided:
       return fmt::format("the misfit is even in the load: sites give {} where they are {}, not in the other sense",
                          rotation ? amplitude(2e3, "µrad/Nmm") : amplitude(2e6, "µm/N"),
@@ -164,4 +164,4 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const Uncertai
   throw std::logic_error("a pattern without a sentence");
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -12,7 +12,7 @@
 #include "validation/compare/slides.h"
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 constexpr double least_score = 10, close_call = 10, least_p = 1e-4;
@@ -43,9 +43,9 @@ void add_single_sites(const ResidualStudy& s, const Pattern& p, const MatrixX& c
     Candidate c{PatternId::elastic_at, p.columns[site], {p.columns[site]}, p.unit, columns.col(as_index(site))};
     if (slides) {
       c.columns.resize(Eigen::NoChange, 3);
-      c.columns.col(0) = only([](const Site& x) { return x.along; });
-      c.columns.col(1) = only([](const Site& x) { return 1 - x.along; });
-      c.columns.col(2) = only([&](const Site& x) { return (1 - x.along) * std::pow(x.extension / mean, 3); });
+      c.columns.col(0) = only([](const subject::Site& x) { return x.along; });
+      c.columns.col(1) = only([](const subject::Site& x) { return 1 - x.along; });
+      c.columns.col(2) = only([&](const subject::Site& x) { return (1 - x.along) * std::pow(x.extension / mean, 3); });
       c.names = {"along its slide", "across", "across, as L^3"};
     }
     out.push_back(std::move(c));
@@ -83,22 +83,24 @@ MatrixX joined(const MatrixX& a, const MatrixX& b) {
 }
 
 /// Whitened, by candidate.
-std::vector<MatrixX> whitened_columns(const std::vector<Candidate>& candidates, const Uncertainty& u) {
+std::vector<MatrixX> whitened_columns(const std::vector<Candidate>& candidates, const statistics::Uncertainty& u) {
   std::vector<MatrixX> out(candidates.size());
-  for_each_case(out.size(), 1, u.threads(), [&](std::size_t i) { out[i] = u.whitened(candidates[i].columns); });
+  parallel::for_each_case(out.size(), 1, u.threads(),
+                          [&](std::size_t i) { out[i] = u.whitened(candidates[i].columns); });
   return out;
 }
 
-std::vector<Regression> fits_of(const Regressions& regressions, const std::vector<MatrixX>& whitened) {
-  std::vector<Regression> out(whitened.size());
-  for_each_case(out.size(), 1, regressions.threads(),
-                [&](std::size_t i) { out[i] = regressions.on_whitened(whitened[i]); });
+std::vector<statistics::Regression> fits_of(const statistics::Regressions& regressions,
+                                            const std::vector<MatrixX>& whitened) {
+  std::vector<statistics::Regression> out(whitened.size());
+  parallel::for_each_case(out.size(), 1, regressions.threads(),
+                          [&](std::size_t i) { out[i] = regressions.on_whitened(whitened[i]); });
   return out;
 }
 
 }  // namespace
 
-Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const VectorX& r,
+Findings find_patterns(const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& r,
                        const std::vector<Pattern>& patterns, const std::vector<MatrixX>& columns, bool in_words) {
   const std::vector<Candidate> candidates = candidates_of(s, patterns, columns);
   const double penalty = std::log(static_cast<double>(s.data->readings.size()));
@@ -109,7 +111,7 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
   const std::vector<MatrixX> whitened = whitened_columns(candidates, u);
   std::vector<bool> found(candidates.size(), false);  // beside what it all but follows from, rounding of one is left
   while (out.findings.size() < most_findings) {
-    const std::vector<Regression> fits = fits_of(Regressions(u, r, out.columns), whitened);
+    const std::vector<statistics::Regression> fits = fits_of(statistics::Regressions(u, r, out.columns), whitened);
     if (out.alone.empty())
       for (std::size_t i = 0; i < fits.size(); ++i)
         if (candidates[i].is_pattern) out.alone.push_back(fits[i]);
@@ -118,7 +120,7 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
       scores.push_back(found[i] ? -std::numeric_limits<double>::infinity() : fits[i].gain - penalty * fits[i].freedoms);
     const auto best = as_size(std::max_element(scores.begin(), scores.end()) - scores.begin());
     const Candidate& c = candidates[best];
-    const Regression& fit = fits[best];
+    const statistics::Regression& fit = fits[best];
     if (scores[best] < least_score || fit.p_value * static_cast<double>(candidates.size()) > least_p) break;
     found[best] = true;
     Finding f;
@@ -143,8 +145,8 @@ Findings find_patterns(const ResidualStudy& s, const Uncertainty& u, const Vecto
     out.findings.push_back(std::move(f));
   }
   // Of all together: one by one, gains of patterns that are nearly alike add up to more than there is.
-  if (!out.findings.empty()) out.chi2_left = std::max(0.0, chi2 - Regressions(u, r).on(out.columns).gain);
+  if (!out.findings.empty()) out.chi2_left = std::max(0.0, chi2 - statistics::Regressions(u, r).on(out.columns).gain);
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -4,7 +4,7 @@
 #include "validation/compare/patterns.h"
 #include "validation/statistics/uncertainty.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 /// A pattern that the residual holds, in the order found: each given those before it.
 struct Finding {
@@ -26,16 +26,16 @@ struct Finding {
 
 struct Findings {
   std::vector<Finding> findings;
-  std::vector<Regression> alone;  ///< of the residual on each pattern by itself
-  MatrixX columns;                ///< of all findings, over the measured numbers
-  double chi2_left = 0;           ///< of the residual with them
+  std::vector<statistics::Regression> alone;  ///< of the residual on each pattern by itself
+  MatrixX columns;                            ///< of all findings, over the measured numbers
+  double chi2_left = 0;                       ///< of the residual with them
 };
 
 /// One at a time, that which takes most away beyond what chance gives (χ² gain − k ln n for k columns and n readings),
 /// as long as this is more than 10 and chance would do as well in less than one of 10⁴ sets; then what is left is asked
 /// again. Patterns that come within 10 of the best one are named beside it. `columns`: of the patterns, over the
 /// measured numbers. `in_words`: whether sentences are wanted, which take longer than the findings.
-Findings find_patterns(const ResidualStudy&, const Uncertainty&, const VectorX& residual, const std::vector<Pattern>&,
-                       const std::vector<MatrixX>& columns, bool in_words = true);
+Findings find_patterns(const ResidualStudy&, const statistics::Uncertainty&, const VectorX& residual,
+                       const std::vector<Pattern>&, const std::vector<MatrixX>& columns, bool in_words = true);
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -6,9 +6,9 @@
 #include "msa/base/index.h"
 #include "validation/compare/comparison.h"
 
-namespace deflect {
+namespace deflect::compare {
 
-HeldOut::HeldOut(const ResidualStudy& s, const Uncertainty& u, const std::vector<bool>& set_aside)
+HeldOut::HeldOut(const ResidualStudy& s, const statistics::Uncertainty& u, const std::vector<bool>& set_aside)
     : study_(&s), uncertainty_(&u), set_aside_(set_aside), folds_(std::min<std::size_t>(10, s.data->poses.size())) {
   const MatrixX& B = u.whitening()->shared();
   if (folds_ < 2 || B.cols() == 0) return;
@@ -32,7 +32,7 @@ std::size_t HeldOut::fold_of(std::size_t value) const {
 }
 
 double HeldOut::rmse(const VectorX& residual) const {
-  const Whitening& white = *uncertainty_->whitening();
+  const statistics::Whitening& white = *uncertainty_->whitening();
   const MatrixX& B = white.shared();
   std::vector<VectorX> eta(folds_, VectorX::Zero(B.cols()));
   if (!others_.empty()) {  // where there is one pose, nothing is learnt at others
@@ -61,4 +61,4 @@ double HeldOut::rmse(const VectorX& residual) const {
   return n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

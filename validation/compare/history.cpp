@@ -2,7 +2,7 @@
 
 #include "validation/compare/placebo.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 History history(const std::vector<Comparison>& versions) {
   History h{versions, {std::nullopt}};
@@ -10,4 +10,4 @@ History history(const std::vector<Comparison>& versions) {
   return h;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -6,7 +6,7 @@
 
 #include "validation/compare/comparison.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 /// Versions of a device in order, beside the same measurements; they must outlive it.
 struct History {
@@ -16,4 +16,4 @@ struct History {
 };
 History history(const std::vector<Comparison>&);
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -5,26 +5,27 @@
 #include <cmath>
 #include <optional>
 
-namespace deflect {
+namespace deflect::compare {
 
 constexpr double limit = 4.5;
 
-Outliers gross_outliers(const ResidualStudy& s, const PartedColumns& A, const std::vector<double>& sigma,
+Outliers gross_outliers(const ResidualStudy& s, const statistics::PartedColumns& A, const std::vector<double>& sigma,
                         const VectorX& residual, const MatrixX& patterns, int threads) {
   const auto without = [&](const std::vector<bool>& aside) {
-    return Uncertainty(A, s.values, sigma, s.predicted, s.subject->load_tolerance(), aside, threads);
+    return statistics::Uncertainty(A, s.values, sigma, s.predicted, s.subject->load_tolerance(), aside, threads);
   };
   std::vector<bool> aside(s.data->readings.size(), false);
-  std::optional<Uncertainty> uncertainty;
+  std::optional<statistics::Uncertainty> uncertainty;
   for (int round = 0; round < 5; ++round) {
     uncertainty = without(aside);
-    const Uncertainty& u = *uncertainty;
-    const VectorX rest =
-        patterns.cols() > 0 ? VectorX(residual - patterns * regress(u, residual, patterns).amplitude) : residual;
+    const statistics::Uncertainty& u = *uncertainty;
+    const VectorX rest = patterns.cols() > 0
+                             ? VectorX(residual - patterns * statistics::regress(u, residual, patterns).amplitude)
+                             : residual;
     const VectorX left = rest - A * u.nuisances(rest);
     std::vector<double> worst(aside.size(), 0);
     for (std::size_t i = 0; i < s.values.size(); ++i) {
-      const MeasuredValue& v = s.values[i];
+      const measurement::MeasuredValue& v = s.values[i];
       const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.component));
       worst[v.reading] = std::max(worst[v.reading], std::abs(left(as_index(i))) / std::hypot(sigma[i], load));
     }
@@ -39,4 +40,4 @@ Outliers gross_outliers(const ResidualStudy& s, const PartedColumns& A, const st
   return {aside, without(aside)};
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

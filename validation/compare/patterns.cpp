@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numeric>
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 using Block = Eigen::Matrix<double, 6, Eigen::Dynamic>;
@@ -71,9 +71,9 @@ Block translations(double size) {
 }
 
 /// Rank in the sequence over N, about its middle.
-std::vector<double> ranks(const Measurements& m) {
+std::vector<double> ranks(const measurement::Measurements& m) {
   std::vector<double> out(m.readings.size());
-  const std::vector<std::size_t> order = in_sequence(m, "drift");
+  const std::vector<std::size_t> order = measurement::in_sequence(m, "drift");
   for (std::size_t i = 0; i < order.size(); ++i)
     out[order[i]] = (static_cast<double>(i) + 0.5) / static_cast<double>(order.size()) - 0.5;
   return out;
@@ -82,7 +82,7 @@ std::vector<double> ranks(const Measurements& m) {
 Pattern base_tilt(const ResidualStudy& s) {
   return {PatternId::base_tilt, {"rx", "ry"}, "rad/Nm", by_reading(s, [&](std::size_t i) {
             const std::size_t pose = s.data->readings[i].pose;
-            const BodyFrame base = s.standing->base(pose);
+            const subject::BodyFrame base = s.standing->base(pose);
             const Vector3 arm = s.standing->tool(pose).p_W - base.p_W;
             Block out(6, 2);
             for (std::size_t k = 0; k < 2; ++k) {
@@ -111,7 +111,7 @@ std::vector<MatrixX> stop_forces(const ResidualStudy& s) {
   double most = 0;
   for (const VectorX& f : s.force) most = std::max(most, f.size() > 0 ? f.cwiseAbs().maxCoeff() : 0);
   std::vector<MatrixX> out(s.force.size());
-  for (const PoseGroup& group : s.data->poses) {
+  for (const measurement::PoseGroup& group : s.data->poses) {
     std::vector<std::size_t> order = group.readings;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return s.data->readings[a].sequence < s.data->readings[b].sequence;
@@ -155,7 +155,7 @@ const PatternRow& row_of(PatternId id) { return nth(pattern_rows, id); }
 
 Columns site_column(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
   return by_reading(s, [&](std::size_t i) {
-    const std::vector<Site>& sites = s.sites[s.data->readings[i].pose];
+    const std::vector<subject::Site>& sites = s.sites[s.data->readings[i].pose];
     Block out = Block::Zero(6, 1);
     for (std::size_t k = 0; k < sites.size(); ++k) out.col(0) += sites[k].g * elongation(i, k);
     return out;
@@ -168,7 +168,7 @@ VectorX rows_of_sites(const ResidualStudy& s, const std::function<double(std::si
   for (std::size_t n = 0; n < s.values.size(); ++n) {
     const std::size_t i = s.values[n].reading;
     if (n == 0 || i != s.values[n - 1].reading) {
-      const std::vector<Site>& sites = s.sites[s.data->readings[i].pose];
+      const std::vector<subject::Site>& sites = s.sites[s.data->readings[i].pose];
       moved.setZero();
       for (std::size_t k = 0; k < sites.size(); ++k) moved += sites[k].g * elongation(i, k);
     }
@@ -179,7 +179,7 @@ VectorX rows_of_sites(const ResidualStudy& s, const std::function<double(std::si
 
 Columns site_columns(const ResidualStudy& s, const std::function<double(std::size_t, std::size_t)>& elongation) {
   return by_reading(s, [&](std::size_t i) {
-    const std::vector<Site>& sites = s.sites[s.data->readings[i].pose];
+    const std::vector<subject::Site>& sites = s.sites[s.data->readings[i].pose];
     Block out(6, std::ssize(sites));
     for (std::size_t k = 0; k < sites.size(); ++k) out.col(as_index(k)) = sites[k].g * elongation(i, k);
     return out;
@@ -191,9 +191,10 @@ std::vector<Pattern> patterns_of(const ResidualStudy& s) {
   const auto& sites = s.sites.front();
   const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](as_index(k)); };
   std::vector<std::string> names;
-  for (const Site& site : sites) names.push_back(site.name);
-  const bool alike = !sites.empty() && std::all_of(sites.begin(), sites.end(),
-                                                   [&](const Site& x) { return x.rotation == sites[0].rotation; });
+  for (const subject::Site& site : sites) names.push_back(site.name);
+  const bool alike = !sites.empty() && std::all_of(sites.begin(), sites.end(), [&](const subject::Site& x) {
+    return x.rotation == sites[0].rotation;
+  });
   const std::string per_force = alike && sites[0].rotation ? "rad/Nm" : "m/N";
   const bool rotation = alike && sites[0].rotation;
   if (alike) {
@@ -236,4 +237,4 @@ std::vector<Pattern> patterns_of(const ResidualStudy& s) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

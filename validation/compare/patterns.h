@@ -26,7 +26,7 @@
 
 #include "validation/compare/residual_study.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 using Columns = std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>;  ///< by reading
 
@@ -80,4 +80,4 @@ VectorX rows_of_sites(const ResidualStudy&,
 Columns site_columns(const ResidualStudy&,
                      const std::function<double(std::size_t reading, std::size_t site)>& elongation);
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -6,14 +6,15 @@
 #include "msa/base/index.h"
 #include "validation/measurement/random.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 double placebo_rmse(const Comparison& before, const Comparison& after) {
   const ResidualStudy& s = before.study;
-  const VectorX change = rows_of(s.values, after.study.predicted) - rows_of(s.values, s.predicted);
+  const VectorX change =
+      statistics::rows_of(s.values, after.study.predicted) - statistics::rows_of(s.values, s.predicted);
   const VectorX& r = before.residual;
   const bool rotations = rotations_alone(s.values);
-  Random random(20110101);
+  measurement::Random random(20110101);
   std::vector<double> reached;
   for (int draw = 0; draw < 99; ++draw) {
     std::vector<double> sign(s.data->poses.size());
@@ -35,4 +36,4 @@ double placebo_rmse(const Comparison& before, const Comparison& after) {
   return reached[49];
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -13,7 +13,7 @@
 #include "validation/compare/file_oddities.h"
 #include "validation/recording/recording_mistakes.h"
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 constexpr double chance_of_bad_fit = 1e-4, share_set_aside = 0.02, share_of_misfit = 0.05;
@@ -41,11 +41,11 @@ double description(const MisfitAccount& a, int fitted, std::size_t readings) {
 
 /// Of the recorded numbers y the corrected ones f y are told. Where σ is not told with them, σ/|f| is what y scatter
 /// by: −2 ln of the density of y is then χ² − 2 ln |f| a number, against χ² of y as they stand.
-double cost_of_scale(const Comparison& c, const Correction& correction) {
+double cost_of_scale(const Comparison& c, const recording::Correction& correction) {
   if (c.sigma_from_residuals) return 0;
   double sum = 0;
-  for (const MeasuredValue& v : c.study.values) {
-    const Reading& r = c.study.data->readings[v.reading];
+  for (const measurement::MeasuredValue& v : c.study.values) {
+    const measurement::Reading& r = c.study.data->readings[v.reading];
     const bool told = correction.sigma_too && (v.component < 3 ? r.sigma_u : r.sigma_th).has_value();
     if (!told) sum -= 2 * std::log(std::abs(correction.displacement.factor[v.component]));
   }
@@ -82,7 +82,7 @@ std::string what_would_fall(const MisfitAccount& before, const MisfitAccount& af
 }
 
 struct Tried {
-  Correction correction;
+  recording::Correction correction;
   double loss = 0;
 };
 
@@ -90,7 +90,7 @@ struct Tried {
 class Promising {
  public:
   explicit Promising(const CorrectionScreen& screen) : least_(screen.promising()) {}
-  void add(const Correction& correction, double loss) {
+  void add(const recording::Correction& correction, double loss) {
     if (loss < least_) all_.push_back({correction, loss});
   }
   std::vector<Tried> sorted() && {
@@ -105,7 +105,8 @@ class Promising {
 
 std::vector<Tried> promising_readings(const Comparison& c, const CorrectionScreen& screen) {
   Promising out(screen);
-  for (const Correction& correction : mistaken_readings(*c.study.data)) out.add(correction, screen.loss(correction));
+  for (const recording::Correction& correction : recording::mistaken_readings(*c.study.data))
+    out.add(correction, screen.loss(correction));
   if (const auto point = screen.best_point()) out.add(*point, screen.loss_elsewhere(*point));
   return std::move(out).sorted();
 }
@@ -113,7 +114,7 @@ std::vector<Tried> promising_readings(const Comparison& c, const CorrectionScree
 /// These want predictions of their own.
 std::vector<Tried> promising_poses(const Comparison& c, const CorrectionScreen& screen) {
   Promising out(screen);
-  for (const Correction& correction : mistaken_poses(*c.study.data))
+  for (const recording::Correction& correction : recording::mistaken_poses(*c.study.data))
     out.add(correction, screen.loss_elsewhere(correction));
   for (int axis = 0; axis < 3; ++axis)
     if (const auto shift = screen.best_shift(axis)) out.add(*shift, screen.loss_elsewhere(*shift));
@@ -151,14 +152,15 @@ class MistakeSearch {
 
  private:
   /// By how much the corrected data's description is shorter than the recorded ones'.
-  double shorter_by(const MisfitAccount& after, const Correction& correction) const {
+  double shorter_by(const MisfitAccount& after, const recording::Correction& correction) const {
     return description(before_, 0, c_.readings) - description(after, correction.fitted, c_.readings) -
            cost_of_scale(c_, correction);
   }
 
-  void try_one(const std::vector<Tried>& all, std::size_t from, std::size_t to, const Correction& correction) {
+  void try_one(const std::vector<Tried>& all, std::size_t from, std::size_t to,
+               const recording::Correction& correction) {
     const auto compared = outcome_of([&] {
-      return again_(corrected(*c_.study.data, correction), [&](const MisfitAccount& at_best) {
+      return again_(recording::corrected(*c_.study.data, correction), [&](const MisfitAccount& at_best) {
         const double gain =
             at_best.left > 0 ? shorter_by(at_best, correction) : std::numeric_limits<double>::infinity();
         return cures(before_, at_best, correction.fitted, gain);
@@ -175,7 +177,7 @@ class MistakeSearch {
     found_.emplace();
     std::string words;
     for (std::size_t i = from; i < to; ++i) {
-      const Correction& each = all[i].correction;
+      const recording::Correction& each = all[i].correction;
       if (std::find(found_->ids.begin(), found_->ids.end(), each.id) != found_->ids.end()) continue;
       found_->ids.push_back(each.id);
       words += (words.empty() ? "" : "; or ") + each.sentence;
@@ -201,7 +203,8 @@ MisfitAccount account_of(const Comparison& c) {
   MisfitAccount a;
   double aside = 0;
   const std::unordered_set<std::size_t> lines(c.set_aside.begin(), c.set_aside.end());
-  for (const MeasuredValue& v : c.study.values) aside += lines.contains(c.study.data->readings[v.reading].line);
+  for (const measurement::MeasuredValue& v : c.study.values)
+    aside += lines.contains(c.study.data->readings[v.reading].line);
   a.numbers = static_cast<double>(c.numbers) - aside;
   a.chi2 = c.chi2_per_dof * a.numbers;
   for (const Finding& f : c.findings) a.columns += f.freedoms;
@@ -212,7 +215,7 @@ MisfitAccount account_of(const Comparison& c) {
   return a;
 }
 
-std::vector<RecordingMistake> recording_mistakes(const Subject& subject, const Comparison& c, int threads,
+std::vector<RecordingMistake> recording_mistakes(const subject::Subject& subject, const Comparison& c, int threads,
                                                  const ComparedAgain& again) {
   std::vector<RecordingMistake> out = file_oddities(c);
   const MisfitAccount before = account_of(c);
@@ -231,13 +234,13 @@ std::vector<RecordingMistake> recording_mistakes(const Subject& subject, const C
   return out;
 }
 
-std::string within_reach_hint(const Subject& subject, const Measurements& data) {
+std::string within_reach_hint(const subject::Subject& subject, const measurement::Measurements& data) {
   std::string words;
-  for (const auto& corrections : {mistaken_pose_lengths(data), mistaken_poses(data)})
-    for (const Correction& correction : corrections)
-      if (outcome_of<ModelError>([&] { return subject.stand(corrected(data, correction)); }))
+  for (const auto& corrections : {recording::mistaken_pose_lengths(data), recording::mistaken_poses(data)})
+    for (const recording::Correction& correction : corrections)
+      if (outcome_of<ModelError>([&] { return subject.stand(recording::corrected(data, correction)); }))
         words += (words.empty() ? "" : "; or ") + correction.sentence;
   return words.empty() ? "" : "; all poses could be reached if these data were " + words;
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

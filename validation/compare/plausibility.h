@@ -18,10 +18,13 @@
 #include "validation/measurement/measurements.h"
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::subject {
+class Subject;
+}
+
+namespace deflect::compare {
 
 struct Comparison;
-class Subject;
 
 /// Something about a file that comes before what it says of the machine.
 struct RecordingMistake {
@@ -46,13 +49,14 @@ MisfitAccount account_of(const Comparison&);
 /// Whether data of which no more speaks against them than in the account may be right; asked on the way.
 using CanBeRight = std::function<bool(const MisfitAccount&)>;
 /// Compares other data with the same device; empty where they cannot be right.
-using ComparedAgain = std::function<std::optional<MisfitAccount>(const Measurements&, const CanBeRight&)>;
+using ComparedAgain = std::function<std::optional<MisfitAccount>(const measurement::Measurements&, const CanBeRight&)>;
 
 /// The first is the headline where it is certain.
-std::vector<RecordingMistake> recording_mistakes(const Subject&, const Comparison&, int threads, const ComparedAgain&);
+std::vector<RecordingMistake> recording_mistakes(const subject::Subject&, const Comparison&, int threads,
+                                                 const ComparedAgain&);
 
 /// What to add to the message about a pose that cannot be reached: which corrections of the poses bring all of them
 /// within reach; empty where none does.
-std::string within_reach_hint(const Subject&, const Measurements&);
+std::string within_reach_hint(const subject::Subject&, const measurement::Measurements&);
 
-}  // namespace deflect
+}  // namespace deflect::compare

@@ -6,11 +6,11 @@
 #include "msa/base/outcome.h"
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::compare {
 namespace {
 
 void add_forces(ResidualStudy& s) {
-  const std::vector<Reading>& readings = s.data->readings;
+  const std::vector<measurement::Reading>& readings = s.data->readings;
   s.force.resize(readings.size());
   s.heading.resize(readings.size());
   for (std::size_t p = 0; p < s.data->poses.size(); ++p) {
@@ -36,19 +36,20 @@ void add_forces(ResidualStudy& s) {
 
 }  // namespace
 
-ResidualStudy residual_study(const Subject& subject, const Measurements& data, const Work& work) {
+ResidualStudy residual_study(const subject::Subject& subject, const measurement::Measurements& data,
+                             const parallel::Work& work) {
   ResidualStudy s;
   s.subject = subject;
   s.data = &data;
   s.standing = subject.stand(data);
-  s.values = measured_values(data);
-  s.sequence =
-      std::all_of(data.readings.begin(), data.readings.end(), [](const Reading& r) { return r.sequence.has_value(); });
+  s.values = measurement::measured_values(data);
+  s.sequence = std::all_of(data.readings.begin(), data.readings.end(),
+                           [](const measurement::Reading& r) { return r.sequence.has_value(); });
   s.predicted = s.standing->predict(data, {}, work);
   const std::size_t poses = s.standing->poses();
   s.sites.resize(poses);
   s.compliance.resize(poses);
-  for_each_case(poses, 1, work.threads, [&](std::size_t p) {
+  parallel::for_each_case(poses, 1, work.threads, [&](std::size_t p) {
     s.sites[p] = s.standing->sites(p);
     s.compliance[p] = s.standing->compliance(p);
   });
@@ -56,9 +57,9 @@ ResidualStudy residual_study(const Subject& subject, const Measurements& data, c
   return s;
 }
 
-std::vector<Vector6> deformed_shape_of(const ResidualStudy& s, const Work& work) {
+std::vector<Vector6> deformed_shape_of(const ResidualStudy& s, const parallel::Work& work) {
   if (s.subject->geometry() != Geometry::linear) return {};
-  PredictionOptions o;
+  prediction::PredictionOptions o;
   o.geometry = Geometry::finite;
   // A load may be beyond what the deformed shape carries, or the subject does not stand in it.
   const auto finite = outcome_of([&] { return s.standing->predict(*s.data, o, work); });
@@ -77,4 +78,4 @@ Vector6 deformed_shape_under(const ResidualStudy& s, std::size_t reading, const 
   return (recorded > 0 ? squared(load) / recorded : 0) * s.deformed_shape[reading];
 }
 
-}  // namespace deflect
+}  // namespace deflect::compare

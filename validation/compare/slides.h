@@ -3,7 +3,7 @@
 
 #include "validation/compare/patterns.h"
 
-namespace deflect {
+namespace deflect::compare {
 
 /// Whether the sites have slides at an angle to their lines, and slides that stand at different lengths in the data.
 bool has_slides(const ResidualStudy&);
@@ -17,4 +17,4 @@ VectorX elastic_along(const ResidualStudy&);
 /// e ∝ f (1 − along) (L/L̄)^p: what yields across slides of extension L, L̄ their mean.
 VectorX elastic_across(const ResidualStudy&, double power);
 
-}  // namespace deflect
+}  // namespace deflect::compare

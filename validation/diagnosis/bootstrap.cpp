@@ -10,7 +10,7 @@
 #include "validation/parallel/pack.h"
 #include "validation/parallel/shared_cases.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 constexpr std::size_t block = 256;  // sets with one stream of random numbers
@@ -31,7 +31,7 @@ double gain(const Signature& s, const Components& z) {
 
 }  // namespace
 
-double chance_of_any(const std::vector<Signature>& all, double least_p, int sets_drawn, const Work& work,
+double chance_of_any(const std::vector<Signature>& all, double least_p, int sets_drawn, const parallel::Work& work,
                      const Counted& counted) {
   if (all.empty() || !(least_p < 1)) return 1;
   std::vector<double> wanted;
@@ -44,10 +44,10 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int sets
 
   const auto sets = as_size(sets_drawn);
   std::vector<int> as_good((sets + block - 1) / block);
-  SharedCases blocks;
+  parallel::SharedCases blocks;
   blocks.count = as_good.size();
   blocks.work = [&](std::size_t k) {
-    Random random(seed + k);
+    measurement::Random random(seed + k);
     MatrixX xi(columns, as_index(std::min(block, sets - k * block)));
     for (double& x : xi.reshaped()) x = random.normal();
     const MatrixX z = root * xi;
@@ -62,13 +62,13 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int sets
       as_good[k] += found;
     }
   };
-  blocks.result = [&](std::size_t k) { return pack(as_good[k]); };
-  blocks.take = [&](std::size_t k, const std::string& bytes) { as_good[k] = unpack<int>(bytes); };
+  blocks.result = [&](std::size_t k) { return parallel::pack(as_good[k]); };
+  blocks.take = [&](std::size_t k, const std::string& bytes) { as_good[k] = parallel::unpack<int>(bytes); };
   const auto told = [&](std::size_t done) { counted(done, as_good.size()); };
-  for_each_case(blocks, work.ranks, work.threads, counted ? std::function<void(std::size_t)>(told) : nullptr);
+  parallel::for_each_case(blocks, work.ranks, work.threads, counted ? std::function<void(std::size_t)>(told) : nullptr);
   double chance = (std::accumulate(as_good.begin(), as_good.end(), 0.0) + 1) / (sets_drawn + 1.0);
-  if (work.ranks) chance = unpack<double>(work.ranks->meet("", pack(chance)).said);
+  if (work.ranks) chance = parallel::unpack<double>(work.ranks->meet("", parallel::pack(chance)).said);
   return chance;
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

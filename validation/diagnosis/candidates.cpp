@@ -12,7 +12,7 @@
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 constexpr double out_of_question = -1e9;           // ln of the odds of what is there already, or cannot be
@@ -78,7 +78,9 @@ double can_gain(const Signature& s, double gain) {
 
 Fit better(Fit a, Fit b) { return b.found && (!a.found || b.chi2 < a.chi2) ? b : a; }
 
-bool same(const PlacedEffect& a, const PlacedEffect& b) { return a.effect == b.effect && a.leg == b.leg; }
+bool same(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
+  return a.effect == b.effect && a.leg == b.leg;
+}
 
 }  // namespace
 
@@ -98,7 +100,7 @@ double Candidates::log_odds(std::size_t i, double gain, double prior) const {
   return std::log(prior / (1 - prior_missing)) + log_evidence(gain, s.amplitudes(), s.one_sided) - shape;
 }
 
-double Candidates::class_log_odds_of(const PlacedEffect& e, double gain) const {
+double Candidates::class_log_odds_of(const effects::PlacedEffect& e, double gain) const {
   for (std::size_t i = 0; i < signatures_.size(); ++i)
     if (same(signatures_[i].effect, e)) return log_odds(i, gain, class_priors_[i]);
   return out_of_question;
@@ -115,10 +117,10 @@ void Candidates::add_up_classes(std::vector<Candidate>& all) const {
 }
 
 std::vector<Candidate> Candidates::beside(const Observations& observations, const Hypothesis& before, const Fit& so_far,
-                                          double least, const std::optional<EffectInstance>& known) const {
+                                          double least, const std::optional<effects::EffectInstance>& known) const {
   std::vector<Candidate> out(signatures_.size());
   std::vector<char> allowed(out.size(), 1);
-  const MatrixX fitted = orthonormal(so_far.signature);
+  const MatrixX fitted = statistics::orthonormal(so_far.signature);
   double best = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Signature& s = signatures_[i];
@@ -140,7 +142,7 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   for (std::size_t i = 0; i < out.size(); ++i) (signatures_[i].effect.effect->place ? places : entries).push_back(i);
   double bar = least;
   for (const std::vector<std::size_t>* part : {&entries, &places}) {
-    for_each_case(part->size(), 1, threads_, [&](std::size_t k) {
+    parallel::for_each_case(part->size(), 1, threads_, [&](std::size_t k) {
       const std::size_t i = (*part)[k];
       Candidate& c = out[i];
       const Signature& s = signatures_[i];
@@ -175,4 +177,4 @@ void add_left_out(std::vector<LeftOut>& noted, const std::vector<Candidate>& all
   }
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

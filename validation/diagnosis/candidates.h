@@ -6,7 +6,7 @@
 #include "validation/diagnosis/hypothesis.h"
 #include "validation/diagnosis/signatures.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 /// One hypothesis looked at.
 struct Candidate {
@@ -21,7 +21,7 @@ struct Candidate {
   double rmse = 0, held_out = 0;  ///< m
   double chi2_per_dof = 0;
 
-  const PlacedEffect& added() const { return hypothesis.back(); }
+  const effects::PlacedEffect& added() const { return hypothesis.back(); }
 };
 
 class Candidates {
@@ -33,10 +33,10 @@ class Candidates {
   /// near the best and whose log_odds can reach `least`; of two that do all but the same only one can be there.
   /// `known`: an effect that was fitted beside them before, which is not fitted worse than from those values.
   std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least,
-                                const std::optional<EffectInstance>& known = {}) const;
+                                const std::optional<effects::EffectInstance>& known = {}) const;
 
   /// ln(prior · evidence) of all that do the same as one of the effects, against their absence.
-  double class_log_odds_of(const PlacedEffect&, double gain) const;
+  double class_log_odds_of(const effects::PlacedEffect&, double gain) const;
 
   int threads() const { return threads_; }
 
@@ -57,4 +57,4 @@ class Candidates {
 /// Adds those that could not be fitted beside what was there, and why: each once.
 void add_left_out(std::vector<LeftOut>&, const std::vector<Candidate>&);
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

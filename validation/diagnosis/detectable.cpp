@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
   std::vector<Detectable> out;
@@ -12,9 +12,9 @@ std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
     const Signature& s = all[i];
     if (s.effect.effect->place) continue;
     Detectable d{s.effect, s.at_start.norm(), {}, "", 0};
-    const VectorX start = start_values(*s.effect.effect);
+    const VectorX start = effects::start_values(*s.effect.effect);
     for (Eigen::Index k = 0; k < start.size(); ++k) {
-      const EffectParameter& p = nth(s.effect.effect->parameters, k);
+      const effects::EffectParameter& p = nth(s.effect.effect->parameters, k);
       if (!p.vanishes) continue;
       // The signature grows with the distance from where the effect vanishes, for stiffnesses with the compliance.
       const double value = std::isinf(*p.vanishes) ? start(k) * d.lambda_at_start / 4
@@ -31,4 +31,4 @@ std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

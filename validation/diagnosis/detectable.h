@@ -3,11 +3,11 @@
 
 #include "validation/diagnosis/signatures.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 /// What this campaign would show of an effect.
 struct Detectable {
-  PlacedEffect effect;
+  effects::PlacedEffect effect;
   double lambda_at_start = 0;    ///< norm of its signature at the start values
   std::vector<double> smallest;  ///< values at which λ = 4; empty where they are outside the bounds
   std::string mistaken_for;      ///< the entry that is most like it, where the cosine is above 0.9
@@ -16,4 +16,4 @@ struct Detectable {
 
 std::vector<Detectable> detectable_sizes(const std::vector<Signature>&);
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

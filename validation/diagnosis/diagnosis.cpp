@@ -12,7 +12,7 @@
 #include "validation/diagnosis/selection.h"
 #include "validation/statistics/columns.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 constexpr double alarm = 0.02;  // chance above which nothing is called missing
@@ -25,20 +25,21 @@ constexpr double large_part = 4, small_part = 1.25;
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
   q.chi2_per_dof = f.chi2 / std::max(1.0, static_cast<double>(o.numbers()) - static_cast<double>(f.values.size()));
-  const Subject subject = subject_with(o, h, f.values);
+  const subject::Subject subject = subject_with(o, h, f.values);
   q.rmse = o.rmse(subject);
   q.held_out = o.held_out_rmse(subject);
   return q;
 }
 
 /// What is left, in words.
-std::string left_over_pattern(const Observations& o, const Subject& subject) {
-  const ResidualStudy& s = o.comparison().study;
-  const std::vector<Pattern> patterns = patterns_of(s);
+std::string left_over_pattern(const Observations& o, const subject::Subject& subject) {
+  const compare::ResidualStudy& s = o.comparison().study;
+  const std::vector<compare::Pattern> patterns = compare::patterns_of(s);
   std::vector<MatrixX> columns;
-  for (const Pattern& p : patterns) columns.push_back(rows_of(s.values, p.by_reading));
+  for (const compare::Pattern& p : patterns) columns.push_back(statistics::rows_of(s.values, p.by_reading));
   std::string out;
-  for (const Finding& f : find_patterns(s, o.uncertainty(), o.residual(subject), patterns, columns).findings)
+  for (const compare::Finding& f :
+       compare::find_patterns(s, o.uncertainty(), o.residual(subject), patterns, columns).findings)
     out += (out.empty() ? "" : "; then ") + f.sentence;
   return out.empty() ? "no pattern that was looked for" : out;
 }
@@ -95,7 +96,7 @@ void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const S
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
   d.pattern = left_over_pattern(o, subject_with(o, found.effects, found.fit.values));
   d.localised = localised(all, found.fit, numbers);
-  const MatrixX fitted = orthonormal(found.fit.signature);
+  const MatrixX fitted = statistics::orthonormal(found.fit.signature);
   for (const Signature& s : all)
     if (const double share = most_gain(s, found.fit.residual, fitted) / left;
         !s.effect.effect->place && share > d.nearest_share) {
@@ -163,8 +164,9 @@ Verdict verdict_of(const Diagnosis& d) {
 
 bool is_mistaken(const Diagnosis& d) { return !d.mistakes.empty() && d.mistakes.front().certain; }
 
-Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::vector<Effect>& effects,
-                   const DiagnosisOptions& options, const Work& work) {
+Diagnosis diagnose(const subject::Subject& subject, const measurement::Measurements& data,
+                   const std::vector<effects::Effect>& effects, const DiagnosisOptions& options,
+                   const parallel::Work& work) {
   const Observations o(subject, data, options.comparison, work.part(0, 0.2));
   Diagnosis d;
   d.device = subject.name();
@@ -172,7 +174,7 @@ Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::
   d.mistakes = o.comparison().mistakes;
   d.readings = o.comparison().readings;
   d.set_aside = o.set_aside();
-  d.rotations = rotations_alone(o.comparison().study.values);
+  d.rotations = compare::rotations_alone(o.comparison().study.values);
   d.noise_floor = o.comparison().sigma_u;
   d.tolerance_scale = o.tolerance_scale();
   if (is_mistaken(d)) return only_mistakes(std::move(d), o);
@@ -225,4 +227,4 @@ Diagnosis diagnose(const Subject& subject, const Measurements& data, const std::
   return d;
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

@@ -17,7 +17,7 @@
 #include "validation/diagnosis/localised.h"
 #include "validation/parallel/ranks.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 enum class Verdict { nothing_missing, effect, ambiguous, unknown_effect };
 inline constexpr const char* verdict_names[] = {"nothing_missing", "effect", "ambiguous", "unknown_effect"};
@@ -33,7 +33,7 @@ struct Diagnosis {
   Verdict verdict = Verdict::nothing_missing;
   /// Of recording (plausibility.h). Where the first is certain nothing else was asked: something unknown is said to be
   /// missing, without candidates.
-  std::vector<RecordingMistake> mistakes;
+  std::vector<compare::RecordingMistake> mistakes;
   /// Of "nothing" beside the candidates of the first step, and of something unknown: beside what was found, if any.
   double probability_nothing = 0, probability_unknown = 0;
   double chance = 1;                  ///< of any effect looking as good with nothing missing
@@ -60,7 +60,7 @@ struct Diagnosis {
 };
 
 struct DiagnosisOptions {
-  ComparisonOptions comparison;
+  compare::ComparisonOptions comparison;
   int bootstrap_sets = 1999;  ///< bootstrap.h
 };
 
@@ -68,7 +68,7 @@ struct DiagnosisOptions {
 bool is_mistaken(const Diagnosis&);
 
 /// The effects must outlive the result. Ranks share the bootstrap alone; all have the result.
-Diagnosis diagnose(const Subject&, const Measurements&, const std::vector<Effect>&, const DiagnosisOptions& = {},
-                   const Work& = {});
+Diagnosis diagnose(const subject::Subject&, const measurement::Measurements&, const std::vector<effects::Effect>&,
+                   const DiagnosisOptions& = {}, const parallel::Work& = {});
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

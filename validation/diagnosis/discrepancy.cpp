@@ -11,7 +11,7 @@
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 const std::vector<double>& scales() {
@@ -19,19 +19,24 @@ const std::vector<double>& scales() {
   return all;
 }
 
-MatrixX by_sites(const ResidualStudy& s) {
+MatrixX by_sites(const compare::ResidualStudy& s) {
   std::vector<MatrixX> parts;
-  for (const Pattern& p : patterns_of(s)) parts.push_back(rows_of(s.values, p.by_reading));
+  for (const compare::Pattern& p : compare::patterns_of(s))
+    parts.push_back(statistics::rows_of(s.values, p.by_reading));
   if (!s.sites.front().empty()) {
     const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](as_index(k)); };
-    const auto site = [&](std::size_t i, std::size_t k) -> const Site& { return s.sites[s.data->readings[i].pose][k]; };
-    const auto add = [&](const auto& e) { parts.push_back(rows_of(s.values, site_columns(s, e))); };
+    const auto site = [&](std::size_t i, std::size_t k) -> const subject::Site& {
+      return s.sites[s.data->readings[i].pose][k];
+    };
+    const auto add = [&](const auto& e) {
+      parts.push_back(statistics::rows_of(s.values, compare::site_columns(s, e)));
+    };
     add([&](std::size_t i, std::size_t k) { return f(i, k) == 0 ? 0 : std::copysign(1, f(i, k)); });
     add([&](std::size_t i, std::size_t k) { return std::copysign(std::pow(std::abs(f(i, k)), 2.0 / 3), f(i, k)); });
     add([&](std::size_t i, std::size_t k) { return std::copysign(f(i, k) * f(i, k), f(i, k)); });
     add([&](std::size_t i, std::size_t k) { return std::abs(f(i, k)); });
-    if (has_slides(s)) {
-      const double mean = mean_extension(s);
+    if (compare::has_slides(s)) {
+      const double mean = compare::mean_extension(s);
       add([&](std::size_t i, std::size_t k) { return f(i, k) * site(i, k).along; });
       for (const int power : {0, 1, 2, 3, 4})
         add([&](std::size_t i, std::size_t k) {
@@ -40,19 +45,19 @@ MatrixX by_sites(const ResidualStudy& s) {
     }
     if (s.sequence) add([&](std::size_t i, std::size_t k) { return s.heading[i](as_index(k)); });
   }
-  return side_by_side(parts, std::ssize(s.values));
+  return statistics::side_by_side(parts, std::ssize(s.values));
 }
 
 /// At each pose and for each component (b · 6 + c): as much as 10 N do, and what is in proportion to each force.
-PartedColumns by_poses(const ResidualStudy& s) {
-  PartedColumns out(MatrixX(std::ssize(s.values), 0));
+statistics::PartedColumns by_poses(const compare::ResidualStudy& s) {
+  statistics::PartedColumns out(MatrixX(std::ssize(s.values), 0));
   out.groups.resize(s.data->poses.size());
   for (std::size_t i = 0; i < s.values.size(); ++i)
     out.groups[s.data->readings[s.values[i].reading].pose].rows.push_back(as_index(i));
-  for (GroupColumns& g : out.groups) {
+  for (statistics::GroupColumns& g : out.groups) {
     g.columns = MatrixX::Zero(std::ssize(g.rows), 24);
     for (std::size_t i = 0; i < g.rows.size(); ++i) {
-      const MeasuredValue& v = nth(s.values, g.rows[i]);
+      const measurement::MeasuredValue& v = nth(s.values, g.rows[i]);
       const Vector6& load = s.data->readings[v.reading].load;
       for (Eigen::Index b = 0; b < 4; ++b)
         g.columns(as_index(i), 6 * b + as_index(v.component)) = b == 0 ? 10 : load(b - 1);
@@ -61,11 +66,11 @@ PartedColumns by_poses(const ResidualStudy& s) {
   return out;
 }
 
-MatrixX by_loads(const ResidualStudy& s) {
-  const std::vector<Reading>& readings = s.data->readings;
+MatrixX by_loads(const compare::ResidualStudy& s) {
+  const std::vector<measurement::Reading>& readings = s.data->readings;
   std::vector<VectorX> basis(readings.size(), VectorX(15));
   double first = INFINITY, last = -INFINITY;
-  for (const Reading& r : readings)
+  for (const measurement::Reading& r : readings)
     if (r.sequence) first = std::min(first, *r.sequence), last = std::max(last, *r.sequence);
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const Vector3 f = readings[i].load.head<3>();
@@ -90,18 +95,18 @@ MatrixX by_loads(const ResidualStudy& s) {
 
 }  // namespace
 
-Families discrepancy_families(const ResidualStudy& s) { return {by_sites(s), by_poses(s), by_loads(s)}; }
+Families discrepancy_families(const compare::ResidualStudy& s) { return {by_sites(s), by_poses(s), by_loads(s)}; }
 
-WhitenedFamilies::WhitenedFamilies(const Families& all, std::shared_ptr<const Whitening> with, int threads)
+WhitenedFamilies::WhitenedFamilies(const Families& all, std::shared_ptr<const statistics::Whitening> with, int threads)
     : whitening(std::move(with)) {
   const double length = std::sqrt(static_cast<double>(whitening->rows()));
   const auto factor = [length](double norm) { return norm > 0 ? length / norm : 0; };
-  for (const PartedColumns& family : all) {
+  for (const statistics::PartedColumns& family : all) {
     Family out;
     // A few columns at a time: their number does not depend on the threads, lest sums do.
     constexpr Eigen::Index some = 16;
     out.columns.resize(family.shared.rows(), family.shared.cols());
-    for_each_case(as_size((family.shared.cols() + some - 1) / some), 1, threads, [&](std::size_t k) {
+    parallel::for_each_case(as_size((family.shared.cols() + some - 1) / some), 1, threads, [&](std::size_t k) {
       const Eigen::Index first = as_index(k) * some, count = std::min(some, family.shared.cols() - first);
       MatrixX X = (*whitening)(family.shared.middleCols(first, count));
       for (auto column : X.colwise()) column *= factor(column.norm());
@@ -110,8 +115,8 @@ WhitenedFamilies::WhitenedFamilies(const Families& all, std::shared_ptr<const Wh
     out.gram = out.columns.transpose() * out.columns;
     out.groups = family.groups;
     whitening->white_within_groups(out.groups);
-    for_each_case(out.groups.size(), 1, threads, [&](std::size_t k) {
-      GroupColumns& g = out.groups[k];
+    parallel::for_each_case(out.groups.size(), 1, threads, [&](std::size_t k) {
+      statistics::GroupColumns& g = out.groups[k];
       const VectorX norms = whitening->norms_of_shared(g);
       for (Eigen::Index i = 0; i < norms.size(); ++i) g.columns.col(i) *= factor(norms(i));
     });
@@ -121,13 +126,13 @@ WhitenedFamilies::WhitenedFamilies(const Families& all, std::shared_ptr<const Wh
 
 Discrepancy::Discrepancy(std::shared_ptr<const WhitenedFamilies> white, const MatrixX& fitted)
     : white_(std::move(white)),
-      fitted_(fitted.cols() > 0 ? orthonormal(fitted) : MatrixX(white_->whitening->rows(), 0)) {
+      fitted_(fitted.cols() > 0 ? statistics::orthonormal(fitted) : MatrixX(white_->whitening->rows(), 0)) {
   constexpr double none = 1e-10;  // of the largest w
   for (const WhitenedFamilies::Family& of : white_->families) {
     Family family;
     if (!of.groups.empty()) {
-      const Whitening& w = *white_->whitening;
-      ScaledGroups& groups = family.own.groups.emplace(of.groups, w.shared(), w.undo_shared(fitted_), none);
+      const statistics::Whitening& w = *white_->whitening;
+      statistics::ScaledGroups& groups = family.own.groups.emplace(of.groups, w.shared(), w.undo_shared(fitted_), none);
       family.own.none = groups.at(0, 1);
       for (const double tau : scales()) family.own.scaled.push_back(groups.at(tau * tau, 1));
     } else {
@@ -150,7 +155,7 @@ VectorX Discrepancy::along(std::size_t family, const VectorX& r) const {
          (white_->families[family].columns.transpose() * r - f.along_fitted * (fitted_.transpose() * r));
 }
 
-ScaledGroups::Seen Discrepancy::seen(std::size_t family, const VectorX& r) const {
+statistics::ScaledGroups::Seen Discrepancy::seen(std::size_t family, const VectorX& r) const {
   return families_[family].own.groups->seen(white_->whitening->undo_shared(r));
 }
 
@@ -158,9 +163,9 @@ std::vector<double> Discrepancy::log_likelihoods(std::size_t family, const Vecto
   std::vector<double> out;
   const Family& f = families_[family];
   if (f.own.groups) {
-    const ScaledGroups::Seen seen_of_r = seen(family, r);
+    const statistics::ScaledGroups::Seen seen_of_r = seen(family, r);
     const double nothing = f.own.groups->log_likelihood(f.own.none, seen_of_r);
-    for (const ScaledGroups::Scaled& s : f.own.scaled)
+    for (const statistics::ScaledGroups::Scaled& s : f.own.scaled)
       out.push_back(f.own.groups->log_likelihood(s, seen_of_r) - nothing);
     return out;
   }
@@ -199,7 +204,7 @@ Discrepancy::Gain Discrepancy::own_gain(std::size_t family, const VectorX& r) co
   constexpr double least = 1e-6;  // of the largest w
   const Family& f = families_[family];
   if (f.own.groups) {
-    const ScaledGroups::Gain of_groups = f.own.groups->free_gain(seen(family, r), least);
+    const statistics::ScaledGroups::Gain of_groups = f.own.groups->free_gain(seen(family, r), least);
     return {of_groups.gain, of_groups.freedoms};
   }
   const Eigen::Index own = f.all.w.size() > 0 ? (f.all.w.array() > least * f.all.w.maxCoeff()).count() : 0;
@@ -210,7 +215,7 @@ double Discrepancy::p_value(const VectorX& r) const {
   double smallest = 1;
   for (std::size_t f = 0; f < families_.size(); ++f) {
     const Gain own = own_gain(f, r);
-    if (own.freedoms > 0) smallest = std::min(smallest, chi_squared_tail(own.freedoms, own.gain));
+    if (own.freedoms > 0) smallest = std::min(smallest, statistics::chi_squared_tail(own.freedoms, own.gain));
   }
   return std::min(1.0, smallest * static_cast<double>(families_.size()));
 }
@@ -219,7 +224,7 @@ double Discrepancy::chi2(const VectorX& r, const Size& size) const {
   const Family& f = families_[size.family];
   const double scale = size.tau * size.tau;
   if (f.own.groups) {
-    const ScaledGroups::Seen of_r = seen(size.family, r);
+    const statistics::ScaledGroups::Seen of_r = seen(size.family, r);
     return r.squaredNorm() + f.own.groups->chi2(f.own.groups->at(scale, 1), of_r) -
            f.own.groups->chi2(f.own.none, of_r);
   }
@@ -228,4 +233,4 @@ double Discrepancy::chi2(const VectorX& r, const Size& size) const {
   return r.squaredNorm() - (a.array().square() * more.array() / (1 + more.array())).sum();
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

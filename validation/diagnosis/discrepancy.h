@@ -14,22 +14,22 @@
 #include "validation/compare/comparison.h"
 #include "validation/statistics/scaled_groups.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 /// One per family, over the measured numbers, m and rad per unit of each pattern; groups: poses.
-using Families = std::vector<PartedColumns>;
-Families discrepancy_families(const ResidualStudy&);
+using Families = std::vector<statistics::PartedColumns>;
+Families discrepancy_families(const compare::ResidualStudy&);
 
 /// The same white, each column √n long but where it is 0. A family is either of all numbers or of groups.
 struct WhitenedFamilies {
-  WhitenedFamilies(const Families&, std::shared_ptr<const Whitening>, int threads = 1);
+  WhitenedFamilies(const Families&, std::shared_ptr<const statistics::Whitening>, int threads = 1);
 
   struct Family {
-    MatrixX columns, gram;             // white; XᵀX
-    std::vector<GroupColumns> groups;  // white within groups
+    MatrixX columns, gram;                         // white; XᵀX
+    std::vector<statistics::GroupColumns> groups;  // white within groups
   };
   std::vector<Family> families;
-  std::shared_ptr<const Whitening> whitening;
+  std::shared_ptr<const statistics::Whitening> whitening;
 };
 
 class Discrepancy {
@@ -60,9 +60,9 @@ class Discrepancy {
     VectorX w;
   };
   struct OfGroups {
-    std::optional<ScaledGroups> groups;
-    std::vector<ScaledGroups::Scaled> scaled;  // at each τ
-    ScaledGroups::Scaled none;
+    std::optional<statistics::ScaledGroups> groups;
+    std::vector<statistics::ScaledGroups::Scaled> scaled;  // at each τ
+    statistics::ScaledGroups::Scaled none;
   };
   struct Family {
     OfAll all;
@@ -73,7 +73,7 @@ class Discrepancy {
     int freedoms = 0;
   };
   VectorX along(std::size_t family, const VectorX& r) const;  // Qᵀr
-  ScaledGroups::Seen seen(std::size_t family, const VectorX& r) const;
+  statistics::ScaledGroups::Seen seen(std::size_t family, const VectorX& r) const;
   std::vector<double> log_likelihoods(std::size_t family, const VectorX& r) const;  // by τ
   Gain own_gain(std::size_t family, const VectorX& r) const;
 
@@ -82,4 +82,4 @@ class Discrepancy {
   std::vector<Family> families_;
 };
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

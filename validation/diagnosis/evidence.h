@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 /// ln B.
 double log_evidence(double gain, int parameters, bool one_sided);
@@ -22,4 +22,4 @@ double log_mean_exp(const std::vector<double>& x);
 /// `count` numbers between low and high, evenly in their logarithm, none at the ends.
 std::vector<double> log_spaced(double low, double high, int count);
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

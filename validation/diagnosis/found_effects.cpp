@@ -11,22 +11,20 @@
 #include "validation/json/json_text.h"
 #include "validation/measurement/column_names.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
-
-using json = Json;
 
 class Reader {
  public:
   Reader(const std::string& text, const std::string& origin)
-      : file_(origin), root_(parse_json(text, origin, "give the file of 'deflect diagnose --json'")) {}
+      : file_(origin), root_(json::parse_json(text, origin, "give the file of 'deflect diagnose --json'")) {}
 
   FoundEffects read() const {
     FoundEffects out;
-    const json& candidates = list(root_, "candidates", "");
+    const Json& candidates = list(root_, "candidates", "");
     for (std::size_t i = 0; i < candidates.size(); ++i)
       out.candidates.push_back(hypothesis(candidates[i], fmt::format("candidates[{}]", i)));
-    const json& missing = list(root_, "missing", "");
+    const Json& missing = list(root_, "missing", "");
     for (std::size_t i = 0; i < missing.size(); ++i) {
       const std::string where = fmt::format("missing[{}]", i);
       out.missing.push_back(missing[i].is_string() ? named(missing[i]) : hypothesis(missing[i], where));
@@ -43,7 +41,7 @@ class Reader {
 
   /// Legs and values of what is missing, fitted together: of several effects each alone has others.
   void take_found(std::vector<FoundEffect>& missing) const {
-    const json& found = list(root_, "found", "");
+    const Json& found = list(root_, "found", "");
     for (std::size_t i = 0; i < std::max(found.size(), missing.size()); ++i) {
       const std::string where = fmt::format("found[{}]", i);
       if (i >= found.size() || i >= missing.size())
@@ -56,9 +54,9 @@ class Reader {
     }
   }
 
-  static FoundEffect named(const json& name) { return {name.get<std::string>(), {}, {}}; }
+  static FoundEffect named(const Json& name) { return {name.get<std::string>(), {}, {}}; }
 
-  const json& list(const json& in, const char* key, const std::string& where) const {
+  const Json& list(const Json& in, const char* key, const std::string& where) const {
     const std::string path = where.empty() ? key : fmt::format("{}.{}", where, key);
     if (!in.is_object() || !in.contains(key) || !in[key].is_array())
       fail(path, "a list is wanted, as 'deflect diagnose --json' writes it");
@@ -66,12 +64,13 @@ class Reader {
   }
 
   /// "leg" is the place as a number; results of versions before have it in the words of "site" alone.
-  std::optional<int> leg(const json& in, const std::string& where) const {
+  std::optional<int> leg(const Json& in, const std::string& where) const {
     constexpr int most = 1000;
     if (in.contains("leg")) {
-      const json& number = in["leg"];
+      const Json& number = in["leg"];
       if (!number.is_number_integer() || number < 1 || number > most)
-        fail(where + ".leg", fmt::format("is {}: the number of a leg is wanted, from 1", excerpt(number.dump())));
+        fail(where + ".leg",
+             fmt::format("is {}: the number of a leg is wanted, from 1", measurement::excerpt(number.dump())));
       return number.get<int>();
     }
     if (!in.contains("site") || !in["site"].is_string()) return std::nullopt;
@@ -79,16 +78,16 @@ class Reader {
     if (!site.starts_with("leg ")) return std::nullopt;
     for (int number = 1; number <= most; ++number)
       if (site == fmt::format("leg {}", number)) return number;
-    fail(where + ".site", fmt::format("there is no '{}': legs are numbered from 1", excerpt(site)));
+    fail(where + ".site", fmt::format("there is no '{}': legs are numbered from 1", measurement::excerpt(site)));
   }
 
-  FoundEffect hypothesis(const json& in, const std::string& where) const {
+  FoundEffect hypothesis(const Json& in, const std::string& where) const {
     if (!in.is_object() || !in.contains("effect") || !in["effect"].is_string()) fail(where, "has no 'effect'");
     FoundEffect found = named(in["effect"]);
     found.leg = leg(in, where);
     if (!in.contains("parameters")) return found;
-    const json& parameters = list(in, "parameters", where);
-    for (const json& p : parameters) {
+    const Json& parameters = list(in, "parameters", where);
+    for (const Json& p : parameters) {
       if (!p.is_object() || !p.contains("name") || !p["name"].is_string() || !p.contains("value") ||
           !p["value"].is_number())
         fail(where + ".parameters", R"(each is {"name": ..., "value": number})");
@@ -108,7 +107,7 @@ class Reader {
   }
 
   std::string file_;
-  json root_;
+  Json root_;
 };
 
 }  // namespace
@@ -121,26 +120,26 @@ FoundEffects read_found_effects(const std::filesystem::path& path) {
   return parse_found_effects(read_text(path), path.string());
 }
 
-EffectInstance instance(const Effect& e, const FoundEffect& found) {
+effects::EffectInstance instance(const effects::Effect& e, const FoundEffect& found) {
   std::vector<std::string> names;
-  for (const EffectParameter& p : e.parameters) names.push_back(p.name);
+  for (const effects::EffectParameter& p : e.parameters) names.push_back(p.name);
   for (const auto& [name, value] : found.parameters)
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw InputError(fmt::format("effect '{}' has no parameter '{}'{}", e.name, name, suggestion(name, names)));
 
-  EffectInstance out{{&e, found.leg}, start_values(e)};
+  effects::EffectInstance out{{&e, found.leg}, effects::start_values(e)};
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const EffectParameter& p = e.parameters[i];
+    const effects::EffectParameter& p = e.parameters[i];
     const auto at = std::find_if(found.parameters.begin(), found.parameters.end(),
                                  [&](const auto& given) { return given.first == p.name; });
     if (at == found.parameters.end() && p.optional) continue;
     if (at == found.parameters.end())
       throw InputError(fmt::format("effect '{}' needs a value: --set {}={:g} ({}; between {:g} and {:g})", e.name,
                                    p.name, p.start, p.about, p.low, p.high));
-    require_in_bounds(fmt::format("{}={:g}", p.name, at->second), e, p, at->second);
+    effects::require_in_bounds(fmt::format("{}={:g}", p.name, at->second), e, p, at->second);
     out.values(as_index(i)) = at->second;
   }
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

@@ -9,7 +9,7 @@
 
 #include "validation/effects/with_effect.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 struct FoundEffect {
   std::string effect;
@@ -31,6 +31,6 @@ FoundEffects parse_found_effects(const std::string& json, const std::string& ori
 
 /// The effect with the values found. InputError for a parameter that it does not have, one without a value, and a value
 /// out of its bounds.
-EffectInstance instance(const Effect&, const FoundEffect&);
+effects::EffectInstance instance(const effects::Effect&, const FoundEffect&);
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

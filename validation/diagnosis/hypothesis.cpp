@@ -12,14 +12,14 @@
 #include "msa/base/outcome.h"
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 /// Coordinates of the search: ln p, or p over half the range, so that steps of size 1 are large.
-double coordinate(const EffectParameter& p, double value) {
+double coordinate(const effects::EffectParameter& p, double value) {
   return p.log ? std::log(value) : value / (0.5 * (p.high - p.low));
 }
-double value_at(const EffectParameter& p, double x) {
+double value_at(const effects::EffectParameter& p, double x) {
   const double value = p.log ? std::exp(x) : x * 0.5 * (p.high - p.low);
   return std::clamp(value, p.low, p.high);
 }
@@ -55,12 +55,12 @@ class Problem {
   /// For a search: what cannot be predicted is far worse than anything that can.
   VectorX residual_or_wall(const VectorX& x) const { return residual(x).value_or(wall_); }
 
-  const std::vector<const EffectParameter*>& parameters() const { return parameters_; }
+  const std::vector<const effects::EffectParameter*>& parameters() const { return parameters_; }
 
  private:
   const Observations& observations_;
-  std::vector<const EffectParameter*> parameters_;
-  PreparedEffects prepared_;
+  std::vector<const effects::EffectParameter*> parameters_;
+  effects::PreparedEffects prepared_;
   VectorX wall_;
 };
 
@@ -86,7 +86,7 @@ struct Functor {
     J = MatrixX::Zero(rows, columns);
     for (Eigen::Index i = 0; i < columns; ++i) {
       // Towards the inside where a bound is near, else away from what cannot be predicted.
-      const EffectParameter& p = *nth(problem->parameters(), i);
+      const effects::EffectParameter& p = *nth(problem->parameters(), i);
       double step = 1e-5 * std::max(1.0, std::abs(x(i)));
       if (!(value_at(p, x(i) + step) < p.high)) step = -step;
       for (const double each : {step, -step}) {
@@ -104,11 +104,11 @@ struct Functor {
 
 /// Starts of the last effect's parameters: over the bounds where its size is searched on a logarithmic scale, where
 /// signs are open the value at which it vanishes.
-std::vector<VectorX> starts(const PlacedEffect& e) {
-  const std::vector<EffectParameter>& all = e.effect->parameters;
+std::vector<VectorX> starts(const effects::PlacedEffect& e) {
+  const std::vector<effects::EffectParameter>& all = e.effect->parameters;
   std::vector<VectorX> out = {VectorX(std::ssize(all))};
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const EffectParameter& p = all[i];
+    const effects::EffectParameter& p = all[i];
     std::vector<double> tries;
     const bool from_nothing = p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high;
     if (from_nothing && !p.log)
@@ -136,20 +136,20 @@ std::vector<VectorX> starts(const PlacedEffect& e) {
 
 }  // namespace
 
-std::string name_of(const PlacedEffect& p) {
-  return p.leg ? fmt::format("{} ({})", p.effect->name, site_of(p)) : p.effect->name;
+std::string name_of(const effects::PlacedEffect& p) {
+  return p.leg ? fmt::format("{} ({})", p.effect->name, effects::site_of(p)) : p.effect->name;
 }
 
-std::vector<const EffectParameter*> parameters_of(const Hypothesis& h) {
-  std::vector<const EffectParameter*> out;
-  for (const PlacedEffect& e : h)
-    for (const EffectParameter& p : e.effect->parameters) out.push_back(&p);
+std::vector<const effects::EffectParameter*> parameters_of(const Hypothesis& h) {
+  std::vector<const effects::EffectParameter*> out;
+  for (const effects::PlacedEffect& e : h)
+    for (const effects::EffectParameter& p : e.effect->parameters) out.push_back(&p);
   return out;
 }
 
-bool one_sided(const PlacedEffect& e) {
+bool one_sided(const effects::PlacedEffect& e) {
   if (e.effect->parameters.size() != 1) return false;
-  const EffectParameter& p = e.effect->parameters.front();
+  const effects::EffectParameter& p = e.effect->parameters.front();
   return p.vanishes && (*p.vanishes <= p.low || *p.vanishes >= p.high);
 }
 
@@ -165,7 +165,7 @@ struct Start {
 std::optional<VectorX> off_the_ends(const Problem& problem, const VectorX& from) {
   VectorX out = from;
   for (Eigen::Index i = 0; i < from.size(); ++i) {
-    const EffectParameter& p = *nth(problem.parameters(), i);
+    const effects::EffectParameter& p = *nth(problem.parameters(), i);
     if (!p.vanishes && (from(i) <= p.low || from(i) >= p.high)) out(i) = p.start;
   }
   if (out == from) return std::nullopt;
@@ -193,9 +193,9 @@ std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX
 }
 
 /// What jumps has valleys of χ² besides the deepest one: friction whose slips come before or after a turn of the load.
-bool has_valleys(const PlacedEffect& e) {
-  const std::vector<EffectParameter>& all = e.effect->parameters;
-  const bool shaped = std::any_of(all.begin(), all.end(), [](const EffectParameter& p) { return !p.vanishes; });
+bool has_valleys(const effects::PlacedEffect& e) {
+  const std::vector<effects::EffectParameter>& all = e.effect->parameters;
+  const bool shaped = std::any_of(all.begin(), all.end(), [](const effects::EffectParameter& p) { return !p.vanishes; });
   return shaped && all.size() > 1;
 }
 constexpr std::size_t valleys = 5;
@@ -254,12 +254,12 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
 Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int threads) {
   const Problem problem(o, h);
   Eigen::Index first = 0;
-  for (const PlacedEffect& e : h) {
+  for (const effects::PlacedEffect& e : h) {
     const auto own = std::ssize(e.effect->parameters);
     if (h.size() > 1 && has_valleys(e)) {
       const std::vector<VectorX> tries = starts(e);
       std::vector<Start> begun(tries.size());
-      for_each_case(tries.size(), 1, threads, [&](std::size_t i) {
+      parallel::for_each_case(tries.size(), 1, threads, [&](std::size_t i) {
         VectorX values = found.values;
         values.segment(first, own) = tries[i];
         begun[i].x = problem.coordinates(values);
@@ -268,7 +268,7 @@ Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int th
       std::stable_sort(begun.begin(), begun.end(), [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
       begun.resize(std::min(begun.size(), valleys));
       std::vector<Fit> fits(begun.size());
-      for_each_case(begun.size(), 1, threads, [&](std::size_t i) {
+      parallel::for_each_case(begun.size(), 1, threads, [&](std::size_t i) {
         if (std::isfinite(begun[i].chi2)) fits[i] = search_from(problem, begun[i], found.residual.size());
       });
       for (Fit& each : fits)
@@ -305,21 +305,21 @@ std::pair<Hypothesis, VectorX> without(Hypothesis h, const VectorX& values, std:
   return {std::move(h), std::move(rest)};
 }
 
-Subject subject_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
-  return h.empty() ? o.subject() : PreparedEffects(o.subject(), h)(values);
+subject::Subject subject_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
+  return h.empty() ? o.subject() : effects::PreparedEffects(o.subject(), h)(values);
 }
 
 std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::size_t i) {
-  const EffectParameter& p = *parameters_of(h).at(i);
+  const effects::EffectParameter& p = *parameters_of(h).at(i);
   const auto at = as_index(i);
   const double x = coordinate(p, f.values(at)), half = 1.959964 * std::sqrt(std::max(0.0, f.covariance(at, at)));
   return {value_at(p, x - half), value_at(p, x + half)};
 }
 
 bool wants_more_than_there_can_be(const Hypothesis& h, const Fit& f) {
-  const std::vector<EffectParameter>& own = h.back().effect->parameters;
+  const std::vector<effects::EffectParameter>& own = h.back().effect->parameters;
   if (own.size() != 1 || !f.found) return false;
-  const EffectParameter& p = own.front();
+  const effects::EffectParameter& p = own.front();
   const double x = coordinate(p, f.values(f.values.size() - 1));
   for (const double bound : {p.low, p.high})
     if (p.vanishes != bound && std::abs(x - coordinate(p, bound)) < 1e-3) return true;
@@ -327,7 +327,7 @@ bool wants_more_than_there_can_be(const Hypothesis& h, const Fit& f) {
 }
 
 bool runs_to_a_bound(const Hypothesis& h, const Fit& f) {
-  const std::vector<EffectParameter>& own = h.back().effect->parameters;
+  const std::vector<effects::EffectParameter>& own = h.back().effect->parameters;
   if (own.size() < 2 || !f.found) return false;
   const Eigen::Index first = f.values.size() - std::ssize(own);
   for (std::size_t i = 0; i < own.size(); ++i) {
@@ -338,4 +338,4 @@ bool runs_to_a_bound(const Hypothesis& h, const Fit& f) {
   return false;
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

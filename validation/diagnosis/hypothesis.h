@@ -8,12 +8,12 @@
 #include "validation/diagnosis/observations.h"
 #include "validation/effects/with_effect.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
-using Hypothesis = std::vector<PlacedEffect>;
+using Hypothesis = std::vector<effects::PlacedEffect>;
 
 /// "guide_root_compliance", "leg_defect (leg 5)".
-std::string name_of(const PlacedEffect&);
+std::string name_of(const effects::PlacedEffect&);
 
 /// Least squares of the whitened residual over the parameters, those on a logarithmic scale in their logarithm, within
 /// their bounds (Levenberg–Marquardt, MINPACK's, from the best of a few starts).
@@ -44,13 +44,13 @@ Fit not_found(std::string why);
 std::pair<Hypothesis, VectorX> without(Hypothesis, const VectorX& values, std::size_t i);
 
 /// The subject with the effects at those values.
-Subject subject_with(const Observations&, const Hypothesis&, const VectorX& values);
+subject::Subject subject_with(const Observations&, const Hypothesis&, const VectorX& values);
 
 /// 95 % interval of parameter i: in the logarithm for a logarithmic scale, within the bounds.
 std::pair<double, double> interval95(const Hypothesis&, const Fit&, std::size_t i);
 
 /// The parameters of all effects, one after the other.
-std::vector<const EffectParameter*> parameters_of(const Hypothesis&);
+std::vector<const effects::EffectParameter*> parameters_of(const Hypothesis&);
 
 /// Whether the last effect's fit stands at a bound of one of several parameters: it is then another, simpler effect (a
 /// spring that would harden far beyond the data is a linear one).
@@ -61,6 +61,6 @@ bool runs_to_a_bound(const Hypothesis&, const Fit&);
 bool wants_more_than_there_can_be(const Hypothesis&, const Fit&);
 
 /// Whether an amplitude of the effect has a sign that physics fixes (one parameter, which vanishes at a bound).
-bool one_sided(const PlacedEffect&);
+bool one_sided(const effects::PlacedEffect&);
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

@@ -7,14 +7,14 @@
 
 #include "validation/statistics/columns.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 constexpr double alike_place = 0.995;  // cosine from which one place stands for another
 constexpr double beyond_chance = 30;   // in χ², of a few hundred that are looked at
 
 /// The effect's title in the middle of a sentence, with the leg's number where it is one.
-std::string words_of(const PlacedEffect& e) {
+std::string words_of(const effects::PlacedEffect& e) {
   std::string out = e.effect->title;
   out.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(out.front())));
   const std::string one = "of one leg";
@@ -26,7 +26,7 @@ std::string words_of(const PlacedEffect& e) {
 }  // namespace
 
 std::vector<Localised> localised(const std::vector<Signature>& all, const Fit& fit, double numbers, std::size_t most) {
-  const MatrixX fitted = orthonormal(fit.signature);
+  const MatrixX fitted = statistics::orthonormal(fit.signature);
   std::vector<double> gain(all.size(), 0);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -51,4 +51,4 @@ std::vector<Localised> localised(const std::vector<Signature>& all, const Fit& f
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

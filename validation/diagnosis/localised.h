@@ -6,10 +6,10 @@
 
 #include "validation/diagnosis/signatures.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 struct Localised {
-  PlacedEffect effect;
+  effects::PlacedEffect effect;
   std::string what;  ///< "the actuator rx of every leg yields like a spring"
   double share = 0;  ///< of χ² beyond noise and tolerances that it can take off, beside what is fitted
 };
@@ -18,4 +18,4 @@ struct Localised {
 /// Empty where nothing takes off more than chance.
 std::vector<Localised> localised(const std::vector<Signature>&, const Fit&, double numbers, std::size_t most = 3);
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

@@ -8,51 +8,53 @@
 #include "msa/base/outcome.h"
 #include "validation/compare/outliers.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 constexpr double shape_known_to = 0.2;
 
-std::vector<bool> set_aside_by(const Comparison& c) {
+std::vector<bool> set_aside_by(const compare::Comparison& c) {
   std::vector<bool> aside(c.readings, false);
   const std::set<std::size_t> lines(c.set_aside.begin(), c.set_aside.end());
   for (std::size_t i = 0; i < c.readings; ++i) aside[i] = lines.contains(c.study.data->readings[i].line);
   return aside;
 }
 
-std::shared_ptr<const Uncertainty> uncertainty_of(const Comparison& c, const PartedColumns& A,
-                                                  const std::vector<bool>& aside) {
-  return std::make_shared<const Uncertainty>(A, c.study.values, c.sigma, c.study.predicted,
-                                             c.study.subject->load_tolerance(), aside);
+std::shared_ptr<const statistics::Uncertainty> uncertainty_of(const compare::Comparison& c,
+                                                              const statistics::PartedColumns& A,
+                                                              const std::vector<bool>& aside) {
+  return std::make_shared<const statistics::Uncertainty>(A, c.study.values, c.sigma, c.study.predicted,
+                                                         c.study.subject->load_tolerance(), aside);
 }
 
 /// What equilibrium in the deformed shape adds to a subject's readings; nothing where it does not stand in it.
-std::optional<VectorX> deformed_shape_of(const ResidualStudy& s, const Subject& subject) {
-  const std::shared_ptr<const Standing> standing = subject.stand(*s.data, s.standing.get());
-  PredictionOptions linear, finite;
+std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject) {
+  const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
+  prediction::PredictionOptions linear, finite;
   linear.geometry = Geometry::linear;
   finite.geometry = Geometry::finite;
   return outcome_of([&] {
-           return VectorX(rows_of(s.values, standing->predict(*s.data, finite)) -
-                          rows_of(s.values, standing->predict(*s.data, linear)));
+           return VectorX(statistics::rows_of(s.values, standing->predict(*s.data, finite)) -
+                          statistics::rows_of(s.values, standing->predict(*s.data, linear)));
          })
       .value;
 }
 
 }  // namespace
 
-Observations::Observations(const Subject& subject, const Measurements& data, const ComparisonOptions& o,
-                           const Work& work)
+Observations::Observations(const subject::Subject& subject, const measurement::Measurements& data,
+                           const compare::ComparisonOptions& o, const parallel::Work& work)
     : subject_(subject),
-      comparison_(std::make_shared<const Comparison>(compare(subject, data, o, work))),
+      comparison_(std::make_shared<const compare::Comparison>(compare::compare(subject, data, o, work))),
       patterns_(std::make_shared<const Families>(discrepancy_families(comparison_->study))),
       threads_(work.threads),
       A_(comparison_->tolerances.A),
       aside_(set_aside_by(*comparison_)),
       uncertainty_(uncertainty_of(*comparison_, A_, aside_)) {
-  const ResidualStudy& s = comparison_->study;
-  measured_ = comparison_->residual + rows_of(s.values, s.predicted);
-  shape_ = s.deformed_shape.empty() ? VectorX(VectorX::Zero(measured_.size())) : rows_of(s.values, s.deformed_shape);
+  const compare::ResidualStudy& s = comparison_->study;
+  measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
+  shape_ = s.deformed_shape.empty() ? VectorX(VectorX::Zero(measured_.size()))
+                                    : statistics::rows_of(s.values, s.deformed_shape);
   tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
@@ -75,37 +77,38 @@ std::shared_ptr<const WhitenedFamilies> Observations::whitened_patterns() const 
 
 std::size_t Observations::set_aside() const { return as_size(std::count(aside_.begin(), aside_.end(), true)); }
 
-VectorX Observations::residual(const Subject& subject) const {
-  const ResidualStudy& s = comparison_->study;
-  PredictionOptions o;
+VectorX Observations::residual(const subject::Subject& subject) const {
+  const compare::ResidualStudy& s = comparison_->study;
+  prediction::PredictionOptions o;
   o.geometry = Geometry::linear;
-  return measured_ - shape_ - rows_of(s.values, subject.stand(*s.data, s.standing.get())->predict(*s.data, o, alone));
+  const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
+  return measured_ - shape_ - statistics::rows_of(s.values, standing->predict(*s.data, o, parallel::alone));
 }
 
-VectorX Observations::whitened_residual(const Subject& subject) const {
+VectorX Observations::whitened_residual(const subject::Subject& subject) const {
   return uncertainty_->whitened(residual(subject));
 }
 
-double Observations::rmse(const Subject& subject) const {
-  return rms_of_kept(comparison_->study.values, from_zero(residual(subject)), aside_);
+double Observations::rmse(const subject::Subject& subject) const {
+  return compare::rms_of_kept(comparison_->study.values, from_zero(residual(subject)), aside_);
 }
 
 VectorX Observations::from_zero(VectorX residual) const {
-  const std::vector<Tolerance>& all = comparison_->tolerances.nuisances;
-  if (std::none_of(all.begin(), all.end(), [](const Tolerance& t) { return t.zero; })) return residual;
+  const std::vector<subject::Tolerance>& all = comparison_->tolerances.nuisances;
+  if (std::none_of(all.begin(), all.end(), [](const subject::Tolerance& t) { return t.zero; })) return residual;
   const VectorX eta = uncertainty_->nuisances(residual);
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].zero) residual -= eta(as_index(i)) * A_.shared.col(as_index(i));
   return residual;
 }
 
-double Observations::held_out_rmse(const Subject& subject) const {
+double Observations::held_out_rmse(const subject::Subject& subject) const {
   const VectorX all = residual(subject);
   // Of one pose no other says where the readings count from.
   return held_out_->rmse(comparison_->study.data->poses.size() > 1 ? all : from_zero(all));
 }
 
-std::vector<std::pair<std::string, double>> Observations::strained(const Subject& subject) const {
+std::vector<std::pair<std::string, double>> Observations::strained(const subject::Subject& subject) const {
   const VectorX eta = uncertainty_->nuisances(residual(subject));
   const Eigen::Index shape = A_.shared.cols() - 1;  // between the tolerances of all poses and those of each
   std::vector<std::pair<std::string, double>> out;
@@ -119,15 +122,16 @@ std::vector<std::pair<std::string, double>> Observations::strained(const Subject
   return out;
 }
 
-Observations Observations::granted(const Subject& subject) const {
+Observations Observations::granted(const subject::Subject& subject) const {
   Observations out = *this;
-  const ResidualStudy& s = comparison_->study;
+  const compare::ResidualStudy& s = comparison_->study;
   if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) out.shape_ = *shape;
   out.count_shape();
-  const std::vector<bool> aside = gross_outliers(s, out.A_, comparison_->sigma, out.residual(subject), {}).aside;
+  const std::vector<bool> aside =
+      compare::gross_outliers(s, out.A_, comparison_->sigma, out.residual(subject), {}).aside;
   const auto count = as_size(std::count(aside.begin(), aside.end(), true));
   out.weigh(20 * count <= aside.size() ? aside : aside_);
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

@@ -6,7 +6,7 @@
 
 #include "validation/diagnosis/evidence.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 constexpr std::size_t most_effects = 3, most_rounds = 6;
@@ -64,14 +64,14 @@ class Search {
 
  private:
   std::vector<Candidate> beside(const Hypothesis& others, const Fit& so_far, double least,
-                                const std::optional<EffectInstance>& known = {}) {
+                                const std::optional<effects::EffectInstance>& known = {}) {
     std::vector<Candidate> all = candidates_.beside(seen(), others, so_far, least, known);
     add_left_out(s_.left_out, all);
     return all;
   }
 
   /// Effect i as it is fitted now.
-  EffectInstance present(std::size_t i) const {
+  effects::EffectInstance present(std::size_t i) const {
     Eigen::Index first = 0;
     for (std::size_t k = 0; k < i; ++k) first += std::ssize(s_.effects[k].effect->parameters);
     return {s_.effects[i], s_.fit.values.segment(first, std::ssize(s_.effects[i].effect->parameters))};
@@ -137,4 +137,4 @@ Selection select(const Observations& o, const Candidates& candidates, const std:
   return search.result();
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

@@ -4,7 +4,7 @@
 
 #include "validation/diagnosis/candidates.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 struct Selection {
   Observations observations;  ///< with what was found granted
@@ -22,4 +22,4 @@ inline constexpr double called_for = 4;
 /// What is right so far becomes granted (Observations::granted). `first`: candidates of the first step.
 Selection select(const Observations&, const Candidates&, const std::vector<Candidate>& first);
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

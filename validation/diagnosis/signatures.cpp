@@ -12,7 +12,7 @@
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 namespace {
 
 constexpr double unseen = 1e-6;  // of a whitened change at the start: nothing that these data show
@@ -22,11 +22,11 @@ constexpr double unseen = 1e-6;  // of a whitened change at the start: nothing t
 /// Where parameters shape the effect: the start, and what shapes it a thirtieth and thirty times, from never slipping
 /// to slipping at once, from hardly bent to bent at every load; an amplitude that starts from nothing thirty times too,
 /// since friction as large as the loads is no multiple of a little.
-std::vector<VectorX> shapes(const std::vector<EffectParameter>& all, const VectorX& start, bool shaped) {
+std::vector<VectorX> shapes(const std::vector<effects::EffectParameter>& all, const VectorX& start, bool shaped) {
   std::vector<VectorX> out = {start};
   if (all.size() == 1) return out;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const EffectParameter& p = all[i];
+    const effects::EffectParameter& p = all[i];
     std::vector<double> factors = {0.01, 0.1, 10, 100};
     if (shaped) factors = !p.vanishes ? std::vector{1.0 / 30, 30.0} : std::vector{30.0};
     if (!p.log || (shaped && p.vanishes && std::isinf(*p.vanishes))) continue;
@@ -41,16 +41,16 @@ std::vector<VectorX> shapes(const std::vector<EffectParameter>& all, const Vecto
 
 /// Parameter by parameter where each can vanish alone, else all at the start; parameters that only shape the effect
 /// are tried at several values.
-MatrixX directions(const Observations& o, const PlacedEffect& e, const VectorX& start, bool& shaped) {
-  const PreparedEffects prepared(o.subject(), {e});
-  const std::vector<EffectParameter>& all = e.effect->parameters;
+MatrixX directions(const Observations& o, const effects::PlacedEffect& e, const VectorX& start, bool& shaped) {
+  const effects::PreparedEffects prepared(o.subject(), {e});
+  const std::vector<effects::EffectParameter>& all = e.effect->parameters;
   const auto change = [&](const VectorX& values) {
     return VectorX(o.whitened_residual(prepared(values)) - o.null_residual());
   };
   std::vector<VectorX> columns;
-  shaped = std::any_of(all.begin(), all.end(), [](const EffectParameter& p) { return !p.vanishes; });
+  shaped = std::any_of(all.begin(), all.end(), [](const effects::EffectParameter& p) { return !p.vanishes; });
   bool separate = all.size() > 1;
-  for (const EffectParameter& p : all) separate = separate && p.vanishes && std::isfinite(*p.vanishes);
+  for (const effects::EffectParameter& p : all) separate = separate && p.vanishes && std::isfinite(*p.vanishes);
   if (separate)
     for (Eigen::Index i = 0; i < start.size(); ++i) {
       VectorX values = start;
@@ -77,8 +77,8 @@ MatrixX unit_columns(const MatrixX& X) {
 }
 
 /// Of a shaped effect: its amplitude vanishes at a bound.
-bool amplitude_from_nothing(const Effect& e) {
-  return std::any_of(e.parameters.begin(), e.parameters.end(), [](const EffectParameter& p) {
+bool amplitude_from_nothing(const effects::Effect& e) {
+  return std::any_of(e.parameters.begin(), e.parameters.end(), [](const effects::EffectParameter& p) {
     return p.vanishes && (*p.vanishes <= p.low || *p.vanishes >= p.high);
   });
 }
@@ -93,36 +93,37 @@ double cosine(const Signature& a, const Signature& b, const MatrixX& cross) {
 
 double tail(int freedoms, bool one_sided, double gain) {
   if (!(gain > 0)) return 1;
-  const double p = chi_squared_tail(freedoms, gain);
+  const double p = statistics::chi_squared_tail(freedoms, gain);
   return one_sided ? p / 2 : p;
 }
 
 /// Of a law at a place, which is one of the subject's own.
-std::vector<PlacedEffect> every_leg(const Effect& e, const Subject& subject) {
-  if (e.scope != Scope::one_leg) return {{&e, {}}};
-  std::vector<PlacedEffect> out;
+std::vector<effects::PlacedEffect> every_leg(const effects::Effect& e, const subject::Subject& subject) {
+  if (e.scope != effects::Scope::one_leg) return {{&e, {}}};
+  std::vector<effects::PlacedEffect> out;
   for (int leg = 1; leg <= subject.legs(); ++leg) out.push_back({&e, leg});
   return out;
 }
 
 }  // namespace
 
-std::vector<Signature> signatures(const Observations& o, const std::vector<Effect>& effects, int threads,
+std::vector<Signature> signatures(const Observations& o, const std::vector<effects::Effect>& effects, int threads,
                                   std::vector<LeftOut>* left_out) {
-  std::vector<PlacedEffect> places;
-  for (const Effect& e : effects) {
-    if (is_geometry(e)) continue;
-    const std::vector<PlacedEffect> own = e.place ? every_leg(e, o.subject()) : places_of(e, o.subject());
+  std::vector<effects::PlacedEffect> places;
+  for (const effects::Effect& e : effects) {
+    if (effects::is_geometry(e)) continue;
+    const std::vector<effects::PlacedEffect> own =
+        e.place ? every_leg(e, o.subject()) : effects::places_of(e, o.subject());
     places.insert(places.end(), own.begin(), own.end());
     if (left_out && own.empty()) {
-      const auto leg = e.scope == Scope::one_leg ? std::optional(1) : std::nullopt;
-      left_out->push_back({e.name, why_not(e, o.subject(), leg).value_or("")});
+      const auto leg = e.scope == effects::Scope::one_leg ? std::optional(1) : std::nullopt;
+      left_out->push_back({e.name, effects::why_not(e, o.subject(), leg).value_or("")});
     }
   }
   std::vector<Signature> all(places.size());
   std::vector<std::string> why(places.size());
   const ByStatics statics(o, places, threads);
-  for_each_case(places.size(), 1, threads, [&](std::size_t i) {
+  parallel::for_each_case(places.size(), 1, threads, [&](std::size_t i) {
     Signature& s = all[i];
     s.effect = places[i];
     const auto looked_at = outcome_of([&] {
@@ -136,7 +137,7 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
           why[i] = "changes nothing that was measured";
         return true;
       }
-      const VectorX start = start_values(*places[i].effect);
+      const VectorX start = effects::start_values(*places[i].effect);
       const MatrixX columns = directions(o, places[i], start, s.shaped);
       s.at_start =
           !s.shaped && columns.cols() == start.size() ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0));
@@ -144,7 +145,7 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<Effec
       if (!columns.allFinite())
         why[i] = "the prediction with it is no number";
       else if (columns.norm() > unseen)
-        s.basis = s.shaped ? unit_columns(columns) : orthonormal(columns);
+        s.basis = s.shaped ? unit_columns(columns) : statistics::orthonormal(columns);
       else
         why[i] = "changes nothing that was measured";
       return true;
@@ -170,9 +171,9 @@ std::vector<double> weights_of(const std::vector<Signature>& all) {
 }
 
 std::optional<VectorX> guess(const Signature& s, const VectorX& residual) {
-  const Effect& e = *s.effect.effect;
+  const effects::Effect& e = *s.effect.effect;
   if (e.parameters.size() != 1) return std::nullopt;
-  const EffectParameter& p = e.parameters.front();
+  const effects::EffectParameter& p = e.parameters.front();
   if (!p.vanishes) return std::nullopt;
   // at_start is the change of the residual: to take it away the effect must be −⟨r, s⟩/⟨s, s⟩ times that large.
   const double times = -s.at_start.dot(residual) / s.at_start.squaredNorm();
@@ -196,7 +197,7 @@ double most_gain(const Signature& s, const VectorX& residual, const MatrixX& bes
     }
     return most;
   }
-  return (orthonormal(columns, 1e-3).transpose() * residual).squaredNorm();
+  return (statistics::orthonormal(columns, 1e-3).transpose() * residual).squaredNorm();
 }
 
 double own_share(const Signature& s, const MatrixX& beside) {
@@ -246,7 +247,7 @@ double single_p_value(const Signature& s, double gain) { return tail(s.amplitude
 
 double gain_at_p_value(const Signature& s, double p) {
   const double own = s.one_sided ? 2 * p : p;
-  return own < 1 ? chi_squared_at_tail(s.amplitudes(), own) : 0;
+  return own < 1 ? statistics::chi_squared_at_tail(s.amplitudes(), own) : 0;
 }
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

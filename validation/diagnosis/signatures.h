@@ -7,10 +7,10 @@
 
 #include "validation/diagnosis/hypothesis.h"
 
-namespace deflect {
+namespace deflect::diagnosis {
 
 struct Signature {
-  PlacedEffect effect;
+  effects::PlacedEffect effect;
   /// Unit columns. Of an effect whose parameters are amplitudes: orthonormal, as many as it has. Of one with an
   /// amplitude and parameters that shape it: the direction at each of a few shapes, of which it takes one.
   MatrixX basis;
@@ -29,7 +29,7 @@ struct LeftOut {
 /// Those of the places that effects have in the device and that change what was measured; the others are told in
 /// `left_out`. Equilibrium in the deformed shape is no hypothesis: it is known in size, and in the prediction. The
 /// effects must outlive the result.
-std::vector<Signature> signatures(const Observations&, const std::vector<Effect>&, int threads,
+std::vector<Signature> signatures(const Observations&, const std::vector<effects::Effect>&, int threads,
                                   std::vector<LeftOut>* left_out = nullptr);
 
 /// How much each counts where many are looked at: an entry of the catalogue 1, all laws at places together a share of
@@ -61,4 +61,4 @@ double single_p_value(const Signature&, double gain);
 /// The gain that has this p-value; 0 where every gain has a smaller one.
 double gain_at_p_value(const Signature&, double p);
 
-}  // namespace deflect
+}  // namespace deflect::diagnosis

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 bool same(const PlacedJoint& a, const PlacedJoint& b) {
@@ -76,4 +76,4 @@ std::vector<ChangedPart> changed_parts(const Configuration& before, const Config
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

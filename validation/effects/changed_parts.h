@@ -6,7 +6,7 @@
 
 #include "msa/mechanism/configuration.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 struct ChangedPart {
   std::string leg;  ///< "leg 4", of a branch "leg 4 parallelogram 2"; empty outside the legs
@@ -19,4 +19,4 @@ struct ChangedPart {
 /// the weight at the platform, parts and legs that are new. Places do not count: they follow from those.
 std::vector<ChangedPart> changed_parts(const Configuration& before, const Configuration& after);
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -17,7 +17,7 @@
 #include "msa/mechanism/place.h"
 #include "validation/subject/machine_places.h"
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 struct Selector {
@@ -86,20 +86,21 @@ std::string in_leg(const std::string& path, int leg) { return fmt::format("leg[{
 /// Parts by what they are for, not by their names.
 struct Role {
   std::string_view selector;
-  bool (*is)(const Place&);
+  bool (*is)(const subject::Place&);
   const char* none;
 };
 constexpr Role roles[] = {
-    {"leg.<line>", [](const Place& p) { return p.kind == PlaceKind::line; },
+    {"leg.<line>", [](const subject::Place& p) { return p.kind == subject::PlaceKind::line; },
      "no bar carries a force along itself alone"},
-    {"leg.<guide>", [](const Place& p) { return p.kind == PlaceKind::clamp && p.freedoms.size() == 2 && p.slides; },
+    {"leg.<guide>",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::clamp && p.freedoms.size() == 2 && p.slides; },
      "no slide that is driven holds a member"},
 };
 
 std::vector<std::string> of_role(const Role& role, const std::string& rest, const Mechanism& m,
                                  std::optional<int> leg) {
   std::vector<std::string> out;
-  for (const Place& p : places_of(m)) {
+  for (const subject::Place& p : subject::places_of(m)) {
     if (!role.is(p) || (leg && !p.in_legs()) || (p.rotation() && p.freedoms.front() != 3)) continue;
     out.push_back((leg ? in_leg(p.path, *leg) : p.path) + rest);
   }
@@ -188,4 +189,4 @@ std::vector<std::string> paths_of(const EffectEdit& edit, const Mechanism& m, st
   return in_varied_legs_too(first_alternative(edit, m, leg), m);
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -10,7 +10,7 @@
 
 #include "validation/subject/place.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 /// Numbers are in the unit that the name ends with: "stiffness_N_per_mm". A name without one is a plain number.
 struct EffectParameter {
@@ -67,7 +67,7 @@ struct Effect {
   std::string origin;  ///< the file, for messages
   int line = 0;        ///< of its name there
   /// Of an effect that is a law at a place (place_effects.h), no entry of a file: the place.
-  std::optional<Place> place;
+  std::optional<subject::Place> place;
 };
 
 /// Whether all it does is to write equilibrium in another shape: it has a size of its own and nothing to fit.
@@ -77,4 +77,4 @@ inline bool is_geometry(const Effect& e) {
   });
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -20,7 +20,7 @@
 #include "validation/effects/effect_value.h"
 #include "validation/effects/parameter_unit.h"
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 constexpr const char* action_keys[] = {"set", "append", "multiply", "add"};
@@ -296,4 +296,4 @@ const Effect& find_effect(const std::vector<Effect>& all, const std::string& nam
   throw InputError(fmt::format("there is no effect '{}'{}", name, suggestion(name, names)));
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

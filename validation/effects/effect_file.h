@@ -8,7 +8,7 @@
 
 #include "validation/effects/effect.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 /// Strict as device files are: InputError "file:line: path: what, and the nearest valid name".
 Effect read_effect(const std::filesystem::path&);
@@ -29,4 +29,4 @@ void add_effect(std::vector<Effect>&, Effect);
 /// The effect of that name, or InputError with the nearest one.
 const Effect& find_effect(const std::vector<Effect>&, const std::string& name);
 
-}  // namespace deflect
+}  // namespace deflect::effects

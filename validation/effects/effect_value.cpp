@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 std::size_t index_of(const Effect& e, const std::string& name) {
@@ -51,4 +51,4 @@ std::vector<bool> parameters_used(const YamlNode& value, const Effect& e) {
   return used;
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -9,7 +9,7 @@
 #include "msa/fields/yaml_tree.h"
 #include "validation/effects/effect.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 /// A scalar "$name unit" taken apart; `name` is empty where the scalar is none.
 struct ParameterUse {
@@ -24,4 +24,4 @@ YamlNode filled_in(const YamlNode& value, const Effect&, const VectorX& values, 
 /// The parameters that the value uses, as a mask over the effect's.
 std::vector<bool> parameters_used(const YamlNode& value, const Effect&);
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -6,10 +6,10 @@
 #include "msa/mechanism/fields.h"
 #include "validation/effects/effect_value.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 std::optional<Law> law_in_series(const Effect& e, const VectorX& values) {
-  if (!e.place || e.place->hold == Hold::free || e.parameters.size() != 1) return std::nullopt;
+  if (!e.place || e.place->hold == subject::Hold::free || e.parameters.size() != 1) return std::nullopt;
   for (const EffectEdit& edit : e.edits)
     if (edit.action != EffectEdit::Action::append || edit.value != e.edits.front().value) return std::nullopt;
   const YamlNode node = filled_in(parse_yaml(e.edits.front().value, e.name), e, values);
@@ -20,4 +20,4 @@ std::optional<Law> law_in_series(const Effect& e, const VectorX& values) {
   return law;
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 struct Suffix {
@@ -89,4 +89,4 @@ std::string known_parameter_units() {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

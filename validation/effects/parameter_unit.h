@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace deflect {
+namespace deflect::effects {
 
 /// The unit as a description writes it ("Nmm/rad", "1/K"), "" for a plain number. Nothing where the name ends like a
 /// unit that is not known. `mm_per_N23` (mm/N^(2/3)) has no such unit; a value then says its own, as in "$c mm".
@@ -16,4 +16,4 @@ std::string printed_unit(const std::string& name);
 /// "N, Nmm, N_per_mm, …": for messages.
 std::string known_parameter_units();
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -13,7 +13,7 @@
 #include "msa/mechanism/joint_table.h"
 #include "validation/effects/edit_paths.h"
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -25,28 +25,28 @@ struct Units {
 };
 constexpr Units along{"mm", "N", "force", 1e-4, 1e5}, about{"rad", "Nmm", "moment", 1e-6, 1e9};
 
-const Units& units(const Place& p) { return p.rotation() ? about : along; }
+const Units& units(const subject::Place& p) { return p.rotation() ? about : along; }
 
 EffectParameter parameter(std::string name, std::string unit, double start, double vanishes, std::string words) {
   return {std::move(name), std::move(unit), start, start * 1e-6, start * 1e6, true, vanishes, std::move(words)};
 }
 
-EffectParameter spring(const Place& p, const char* words) {
+EffectParameter spring(const subject::Place& p, const char* words) {
   const Units& u = units(p);
   return parameter(fmt::format("stiffness_{}_per_{}", u.force, u.way), fmt::format("{}/{}", u.force, u.way),
                    u.stiffness, infinity, fmt::format("{}, {}/{}", words, u.force, u.way));
 }
 
-bool in_series(const Place& p) { return !p.freedoms.empty() && p.hold != Hold::free; }
-bool single(const Place& p) { return p.freedoms.size() == 1; }
+bool in_series(const subject::Place& p) { return !p.freedoms.empty() && p.hold != subject::Hold::free; }
+bool single(const subject::Place& p) { return p.freedoms.size() == 1; }
 
 /// One law where it can act.
 struct PlaceLaw {
   const char* id;
-  bool (*acts)(const Place&);
+  bool (*acts)(const subject::Place&);
   const char* title;  ///< after "the elbow rz "
-  std::vector<EffectParameter> (*parameters)(const Place&);
-  std::string (*value)(const std::vector<EffectParameter>&, const Place&);
+  std::vector<EffectParameter> (*parameters)(const subject::Place&);
+  std::string (*value)(const std::vector<EffectParameter>&, const subject::Place&);
   EffectPages pages;  ///< with {} for the place
   bool of_one_leg = false;
   EffectEdit::Action action = EffectEdit::Action::append;
@@ -57,10 +57,10 @@ std::string first_of(const std::vector<EffectParameter>& p) { return "$" + p.fro
 
 const PlaceLaw laws[] = {
     {"linear",
-     [](const Place& p) { return in_series(p) && !p.one_stiffness; },
+     [](const subject::Place& p) { return in_series(p) && !p.one_stiffness; },
      "yields like a spring",
-     [](const Place& p) { return std::vector{spring(p, "its stiffness")}; },
-     [](const auto& p, const Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
+     [](const subject::Place& p) { return std::vector{spring(p, "its stiffness")}; },
+     [](const auto& p, const subject::Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
      {"Force passes through {} on its way to the tool. There it is not as rigid as it is drawn: a bearing, a clamp, a "
       "screw joint or a thin wall yields in proportion to the force.",
       "The displacement is too large in proportion to the load, the same in both senses, where {} carries force, and "
@@ -70,13 +70,13 @@ const PlaceLaw laws[] = {
       "Stiffen {}, preload it, or take its stiffness into the model."},
      true},
     {"factor",
-     [](const Place& p) { return p.one_stiffness && single(p); },
+     [](const subject::Place& p) { return p.one_stiffness && single(p); },
      "is not as stiff as described",
-     [](const Place&) {
+     [](const subject::Place&) {
        return std::vector<EffectParameter>{
            {"factor", "", 0.9, 0.02, 50, true, 1, "true stiffness over the one in the description"}};
      },
-     [](const auto& p, const Place&) { return first_of(p); },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
      {"The stiffness of {} in the description comes from a data sheet or an estimate; the part has another one.",
       "The displacement is too large or too small in proportion to the load that {} carries.",
       "Load {} alone and read its stiffness off the slope.", "Put the measured stiffness into the description."},
@@ -84,13 +84,13 @@ const PlaceLaw laws[] = {
      EffectEdit::Action::multiply,
      ".stiffness"},
     {"factor",
-     [](const Place& p) { return p.kind == PlaceKind::member && p.in_legs(); },
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::member && p.in_legs(); },
      "does not bend as the description says",
-     [](const Place&) {
+     [](const subject::Place&) {
        return std::vector<EffectParameter>{
            {"factor", "", 0.9, 0.02, 50, true, 1, "true bending stiffness over the one in the description"}};
      },
-     [](const auto& p, const Place&) { return first_of(p); },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
      {"{} bends more or less than its section and material say: a cut, a weld, a wall that is thinner.",
       "The displacement is too large or too small in proportion to the bending moment in {}.",
       "Bend {} alone and read its stiffness off the slope.", "Measure the section, or put the factor into the model."},
@@ -98,84 +98,86 @@ const PlaceLaw laws[] = {
      EffectEdit::Action::multiply,
      ".bending_factor"},
     {"factor",
-     [](const Place& p) { return p.path.starts_with("materials."); },
+     [](const subject::Place& p) { return p.path.starts_with("materials."); },
      "is stiffer or softer than described",
-     [](const Place&) {
+     [](const subject::Place&) {
        return std::vector<EffectParameter>{
            {"factor", "", 0.95, 0.3, 3, true, 1, "true modulus over the one in the description"}};
      },
-     [](const auto& p, const Place&) { return first_of(p); },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
      {"The moduli of {} are not those of the description: another alloy, a wrong table.",
       "What bends or stretches of it is off by one factor.", "Test a sample.", "Put the measured modulus in."},
      false,
      EffectEdit::Action::multiply,
      ".<moduli>"},
     {"factor",
-     [](const Place& p) { return p.path.starts_with("sections."); },
+     [](const subject::Place& p) { return p.path.starts_with("sections."); },
      "is not as described",
-     [](const Place&) {
+     [](const subject::Place&) {
        return std::vector<EffectParameter>{
            {"factor", "", 0.98, 0.8, 1.25, true, 1, "true length over the one in the description"}};
      },
-     [](const auto& p, const Place&) { return first_of(p); },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
      {"{} was made, worn or written down wrong.", "All members of that section are off by one factor.",
       "Measure it with a caliper.", "Put the measured length in."},
      false,
      EffectEdit::Action::multiply},
     {"clearance",
-     [](const Place& p) { return in_series(p) && single(p); },
+     [](const subject::Place& p) { return in_series(p) && single(p); },
      "has play",
-     [](const Place& p) {
+     [](const subject::Place& p) {
        const Units& u = units(p);
        return std::vector{parameter(fmt::format("gap_{}", u.way), u.way, u.small_way, 0,
                                     fmt::format("free travel to either side of the middle, {}", u.way))};
      },
-     [](const auto& p, const Place&) { return "{law: clearance, gap: " + first_of(p) + "}"; },
+     [](const auto& p, const subject::Place&) { return "{law: clearance, gap: " + first_of(p) + "}"; },
      {"{} moves freely by a little before it carries force: a worn bearing, a loose fit, backlash of a gear.",
       "A step where the force in {} changes sign, of the same size at every load; nothing grows with the load.",
       "Push and pull by a small force: it jumps by the whole play.", "Preload {} or take up the play."}},
     {"pull",
-     [](const Place& p) { return in_series(p) && single(p); },
+     [](const subject::Place& p) { return in_series(p) && single(p); },
      "yields to positive force alone",
-     [](const Place& p) {
+     [](const subject::Place& p) {
        const Units& u = units(p);
        return std::vector{parameter(fmt::format("yields_{}_per_{}", u.way, u.force),
                                     fmt::format("{}/{}", u.way, u.force), 1 / u.stiffness, 0,
                                     "deflection by force in the sense in which it yields")};
      },
-     [](const auto& p, const Place&) { return "{law: one_sided, pull: " + first_of(p) + "}"; },
+     [](const auto& p, const subject::Place&) { return "{law: one_sided, pull: " + first_of(p) + "}"; },
      {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
       "force pulls it along its positive axis.",
       "The displacement is too large for one sense of the load and right for the other.",
       "Load both senses: two slopes that meet at zero.", "Preload {}."}},
     {"push",
-     [](const Place& p) { return in_series(p) && single(p); },
+     [](const subject::Place& p) { return in_series(p) && single(p); },
      "yields to negative force alone",
-     [](const Place& p) {
+     [](const subject::Place& p) {
        const Units& u = units(p);
        return std::vector{parameter(fmt::format("yields_{}_per_{}", u.way, u.force),
                                     fmt::format("{}/{}", u.way, u.force), 1 / u.stiffness, 0,
                                     "deflection by force in the sense in which it yields")};
      },
-     [](const auto& p, const Place&) { return "{law: one_sided, push: " + first_of(p) + "}"; },
+     [](const auto& p, const subject::Place&) { return "{law: one_sided, push: " + first_of(p) + "}"; },
      {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
       "force pushes it against its positive axis.",
       "The displacement is too large for one sense of the load and right for the other.",
       "Load both senses: two slopes that meet at zero.", "Preload {}."}},
     {"contact",
-     [](const Place& p) { return in_series(p) && single(p) && !p.rotation(); },
+     [](const subject::Place& p) { return in_series(p) && single(p) && !p.rotation(); },
      "yields like a contact",
-     [](const Place&) { return std::vector{parameter("approach_mm", "mm", 1e-5, 0, "approach under 1 N, mm")}; },
-     [](const auto& p, const Place&) {
+     [](const subject::Place&) {
+       return std::vector{parameter("approach_mm", "mm", 1e-5, 0, "approach under 1 N, mm")};
+     },
+     [](const auto& p, const subject::Place&) {
        return "{law: power, deflection: " + first_of(p) + ", force: 1 N, exponent: 0.66666666666666663}";
      },
      {"Round bodies touch at {}: a ball, a roller, a cam. The contact flattens as the force to the power 2/3.",
       "The displacement is too large, most so at small loads: it grows as the force to the power 2/3.",
       "Load in steps: the slope falls with the load.", "Preload {}, or more and larger rolling bodies."}},
     {"hardening",
-     [](const Place& p) { return p.kind == PlaceKind::drive && single(p); },
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::drive && single(p); },
      "yields and becomes stiffer with deflection",
-     [](const Place& p) {
+     [](const subject::Place& p) {
        const Units& u = units(p);
        std::vector<EffectParameter> out = {spring(p, "stiffness without load")};
        out.push_back(
@@ -184,16 +186,16 @@ const PlaceLaw laws[] = {
             fmt::format("deflection at which the {} is twice that of a linear spring, {}", u.moment_word, u.way)});
        return out;
      },
-     [](const auto& p, const Place&) {
+     [](const auto& p, const subject::Place&) {
        return fmt::format("{{law: hardening, stiffness: ${}, reference: ${}}}", p[0].name, p[1].name);
      },
      {"More and more of {} carries as it deflects: teeth, rollers, a flexspline, a rubber element.",
       "The displacement is too large at small loads and less so at large ones, odd in the load.",
       "Load in steps: the slope rises with the load.", "Take the measured curve into the model."}},
     {"friction",
-     [](const Place& p) { return single(p) && p.hold != Hold::rigid; },
+     [](const subject::Place& p) { return single(p) && p.hold != subject::Hold::rigid; },
      "sticks before it slips",
-     [](const Place& p) {
+     [](const subject::Place& p) {
        const Units& u = units(p);
        const double force = p.rotation() ? 100 : 2, stiffness = p.rotation() ? 1e6 : 1e3;
        const std::string strength = fmt::format("{}_{}", u.moment_word, u.force),
@@ -206,7 +208,7 @@ const PlaceLaw laws[] = {
            {"start_share", "", 0, -1, 1, false, std::nullopt,
             "share of the largest load that came and went before the first reading", true}};
      },
-     [](const auto& p, const Place& at) {
+     [](const auto& p, const subject::Place& at) {
        return fmt::format("{{law: friction, {}: ${}, stiffness: ${}, start: ${}}}", units(at).moment_word, p[0].name,
                           p[1].name, p[2].name);
      },
@@ -215,16 +217,16 @@ const PlaceLaw laws[] = {
       "Load and unload slowly; tap the machine: it creeps towards the frictionless curve.",
       "Lubricate {}, relieve its preload, or approach every reading from the same side."}},
     {"restraint",
-     [](const Place& p) { return single(p) && p.hold == Hold::free; },
+     [](const subject::Place& p) { return single(p) && p.hold == subject::Hold::free; },
      "is not free",
-     [](const Place& p) {
+     [](const subject::Place& p) {
        const Units& u = units(p);
        return std::vector<EffectParameter>{{fmt::format("stiffness_{}_per_{}", u.force, u.way),
                                             fmt::format("{}/{}", u.force, u.way), u.stiffness * 1e-5,
                                             u.stiffness * 1e-11, u.stiffness * 10, true, 0,
                                             fmt::format("stiffness that holds it, {}/{}", u.force, u.way)}};
      },
-     [](const auto& p, const Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
+     [](const auto& p, const subject::Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
      {"{} is drawn free and is held: a hose, a seal, a flexure, a joint that binds.",
       "The displacement is too small in proportion to the load, where the motion of {} would give way.",
       "Move {} by hand, unloaded: it springs back.", "Free it, or take the restraint into the model."}},
@@ -238,9 +240,9 @@ std::string with_place(const std::string& page, const std::string& place) {
   return out;
 }
 
-std::vector<EffectEdit> edits_of(const PlaceLaw& law, const Place& p, const std::string& value) {
+std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p, const std::string& value) {
   std::string head = p.path;
-  if (law.id == std::string("friction") && p.hold == Hold::elastic) head += ".beside";
+  if (law.id == std::string("friction") && p.hold == subject::Hold::elastic) head += ".beside";
   std::vector<EffectEdit> out;
   for (const std::size_t i : p.freedoms)
     out.push_back({law.action, {fmt::format("{}.{}{}", head, freedom_names.at(i), law.field)}, value});
@@ -248,10 +250,10 @@ std::vector<EffectEdit> edits_of(const PlaceLaw& law, const Place& p, const std:
   return out;
 }
 
-Effect effect_of(const PlaceLaw& law, const Place& p, bool several_legs, bool one_leg) {
+Effect effect_of(const PlaceLaw& law, const subject::Place& p, bool several_legs, bool one_leg) {
   Effect e;
-  const std::string words = name_of(p);
-  e.name = fmt::format("{}@{}{}", law.id, one_leg ? "leg." : "", id_of(p));
+  const std::string words = subject::name_of(p);
+  e.name = fmt::format("{}@{}{}", law.id, one_leg ? "leg." : "", subject::id_of(p));
   e.title = fmt::format("The {}{} {}", words,
                         one_leg                       ? " of one leg"
                         : several_legs && p.in_legs() ? " of every leg"
@@ -283,7 +285,7 @@ std::optional<std::string> key_of(const Effect& e, const Mechanism& m) {
 
 }  // namespace
 
-std::vector<Effect> place_effects(const Subject& subject, const std::vector<Effect>& named) {
+std::vector<Effect> place_effects(const subject::Subject& subject, const std::vector<Effect>& named) {
   if (!subject.machine()) return {};
   const Mechanism& m = *subject.machine();
   std::set<std::string> known;
@@ -295,7 +297,7 @@ std::vector<Effect> place_effects(const Subject& subject, const std::vector<Effe
     const auto key = key_of(e, m);
     if (key && known.insert(*key).second) out.push_back(std::move(e));
   };
-  for (const Place& place : subject.places())
+  for (const subject::Place& place : subject.places())
     for (const PlaceLaw& law : laws) {
       if (!law.acts(place)) continue;
       add(effect_of(law, place, several, false));
@@ -304,4 +306,4 @@ std::vector<Effect> place_effects(const Subject& subject, const std::vector<Effe
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

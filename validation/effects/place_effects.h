@@ -19,9 +19,9 @@
 #include "validation/effects/effect.h"
 #include "validation/subject/subject.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 /// Those of the subject that do not repeat one of the named effects, edit for edit.
-std::vector<Effect> place_effects(const Subject&, const std::vector<Effect>& named);
+std::vector<Effect> place_effects(const subject::Subject&, const std::vector<Effect>& named);
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -7,7 +7,7 @@
 #include "msa/mechanism/numbers.h"
 #include "validation/effects/with_effect.h"
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 /// A value that is not zero, at which no edit vanishes: the start, or one beside it.
@@ -19,7 +19,7 @@ double plain_value(const EffectParameter& p) {
 
 }  // namespace
 
-PreparedEffects::PreparedEffects(const Subject& subject, std::vector<PlacedEffect> effects)
+PreparedEffects::PreparedEffects(const subject::Subject& subject, std::vector<PlacedEffect> effects)
     : effects_(std::move(effects)) {
   if (!subject.machine()) throw InputError(subject.name() + ": effects act on parts of machines, this is a frame");
   bare_ = *subject.machine();
@@ -60,7 +60,7 @@ Mechanism PreparedEffects::edited_one_by_one(const VectorX& values) const {
   return resolved(out);
 }
 
-Subject PreparedEffects::operator()(const VectorX& values) const { return machine(values); }
+subject::Subject PreparedEffects::operator()(const VectorX& values) const { return machine(values); }
 
 Mechanism PreparedEffects::machine(const VectorX& values) const {
   bool vanishes = false;
@@ -77,4 +77,4 @@ Mechanism PreparedEffects::machine(const VectorX& values) const {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -13,7 +13,7 @@
 #include "validation/effects/edit_paths.h"
 #include "validation/effects/effect_value.h"
 
-namespace deflect {
+namespace deflect::effects {
 namespace {
 
 /// The effect's edits as edits of this mechanism; edits whose parameters vanish are left out.
@@ -133,12 +133,12 @@ Mechanism with_effect(const Mechanism& m, const EffectInstance& i) {
   return with_effect(m, *i.effect, i.values, i.leg);
 }
 
-Subject with_effect(const Subject& subject, const EffectInstance& i) {
+subject::Subject with_effect(const subject::Subject& subject, const EffectInstance& i) {
   if (!subject.machine()) throw InputError(subject.name() + ": effects act on parts of machines, this is a frame");
   return with_effect(*subject.machine(), i);
 }
 
-std::optional<std::string> why_not(const Effect& e, const Subject& subject, std::optional<int> leg) {
+std::optional<std::string> why_not(const Effect& e, const subject::Subject& subject, std::optional<int> leg) {
   if (!subject.machine()) return "acts on parts of machines: this is a frame";
   const Mechanism& m = *subject.machine();
   if (const auto kind = trusted_place(e, m)) return fmt::format("the device trusts its {}", *kind);
@@ -153,7 +153,7 @@ std::optional<std::string> why_not(const Effect& e, const Subject& subject, std:
   return first;
 }
 
-std::vector<PlacedEffect> places_of(const Effect& e, const Subject& subject) {
+std::vector<PlacedEffect> places_of(const Effect& e, const subject::Subject& subject) {
   std::vector<PlacedEffect> out;
   if (e.scope != Scope::one_leg) {
     if (!why_not(e, subject)) out.push_back({&e, {}});
@@ -172,4 +172,4 @@ void require_in_bounds(const std::string& given, const Effect& e, const EffectPa
                   given, p.low, p.high, p.about, e.name));
 }
 
-}  // namespace deflect
+}  // namespace deflect::effects

@@ -9,7 +9,7 @@
 #include "validation/effects/effect.h"
 #include "validation/subject/subject.h"
 
-namespace deflect {
+namespace deflect::effects {
 
 /// An effect with its place: `leg` (1-based) is given if and only if the effect's scope is one leg.
 struct PlacedEffect {
@@ -37,16 +37,16 @@ VectorX start_values(const Effect&);
 /// fit, and the nearest valid name.
 Mechanism with_effect(const Mechanism&, const Effect&, const VectorX& values, std::optional<int> leg = {});
 Mechanism with_effect(const Mechanism&, const EffectInstance&);
-Subject with_effect(const Subject&, const EffectInstance&);
+subject::Subject with_effect(const subject::Subject&, const EffectInstance&);
 /// The same, with the numbers that depend on the effect's parameters, which are counted from `first`.
 DependentMechanism with_effect(const DependentMechanism&, const Effect&, const VectorX& values, std::optional<int> leg,
                                std::size_t first);
 
 /// Why the effect has no place in the subject (or in that leg of it), in words; nothing when it has one.
-std::optional<std::string> why_not(const Effect&, const Subject&, std::optional<int> leg = {});
+std::optional<std::string> why_not(const Effect&, const subject::Subject&, std::optional<int> leg = {});
 
 /// Every place the effect has in the subject: one, or one per leg, or none.
-std::vector<PlacedEffect> places_of(const Effect&, const Subject&);
+std::vector<PlacedEffect> places_of(const Effect&, const subject::Subject&);
 
 /// Effects placed in one subject, for many values in a row. The edits are made once and tell which numbers of the
 /// description depend on which parameter; a call only sets these numbers. The legs are resolved (see `resolved` in
@@ -54,10 +54,10 @@ std::vector<PlacedEffect> places_of(const Effect&, const Subject&);
 class PreparedEffects {
  public:
   /// The effects must outlive this object. InputError as with_effect.
-  PreparedEffects(const Subject&, std::vector<PlacedEffect>);
+  PreparedEffects(const subject::Subject&, std::vector<PlacedEffect>);
 
   /// Values of all effects one after the other.
-  Subject operator()(const VectorX& values) const;
+  subject::Subject operator()(const VectorX& values) const;
 
   /// The machine with the effects. InputError where its description cannot hold the values.
   Mechanism machine(const VectorX& values) const;
@@ -81,4 +81,4 @@ class PreparedEffects {
   bool affine_ = true;       // otherwise every call edits the description: two parameters move one number
 };
 
-}  // namespace deflect
+}  // namespace deflect::effects

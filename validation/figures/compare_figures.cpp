@@ -10,15 +10,15 @@
 #include "validation/report/compare_words.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
-Figure residuals(const Comparison& c, const FigureStyle& style) {
-  const ErrorUnit unit = error_unit(c);
-  const std::vector<ReadingCells> cells = cells_of(c);
+Figure residuals(const compare::Comparison& c, const FigureStyle& style) {
+  const report::ErrorUnit unit = report::error_unit(c);
+  const std::vector<report::ReadingCells> cells = report::cells_of(c);
   Sheet s("residuals", style, 160);
   std::string data = "$data << EOD\n";
-  const double band = 2 * um * c.noise_and_tolerances;
+  const double band = 2 * report::um * c.noise_and_tolerances;
   Vector3 low = Vector3::Constant(-band), high = -low;
   std::array<bool, 3> measured = {};
   double last = 0;
@@ -27,7 +27,7 @@ Figure residuals(const Comparison& c, const FigureStyle& style) {
     last = std::max(last, at);
     data += fmt::format("{}", at);
     for (int k = 0; k < 3; ++k) {
-      const double r = um * cells[i].residual(k);
+      const double r = report::um * cells[i].residual(k);
       data += fmt::format(" {}", r);
       if (!std::isfinite(r)) continue;
       nth(measured, k) = true;
@@ -37,7 +37,7 @@ Figure residuals(const Comparison& c, const FigureStyle& style) {
   }
   s.put("{}EOD\nset multiplot\nunset key", data);
   const std::string order = c.study.sequence ? "in the order taken" : "in the order of the file";
-  double y = s.heading("Residuals " + order, {subjects(c)}) + 0.6 * s.line();
+  double y = s.heading("Residuals " + order, {report::subjects(c)}) + 0.6 * s.line();
   const double height = std::max(5.2 * s.line(), 0.165 * s.width()), gap = 1.1 * s.line();
   std::array<Tics, 3> tics;
   Tics widest;
@@ -68,30 +68,31 @@ Figure residuals(const Comparison& c, const FigureStyle& style) {
       y - gap + s.below(),
       fmt::format("Residuals of every reading {}, component by component, in {}. Grey: ±2 standard deviations "
                   "({:.3g} {}) of what noise and tolerances give with nothing missing. {} {} {}",
-                  order, unit.micro, band, unit.micro, axes_sentence(c), data_sentence(c), noise_sentence(c)));
+                  order, unit.micro, band, unit.micro, report::axes_sentence(c), report::data_sentence(c),
+                  report::noise_sentence(c)));
 }
 
-Figure groups(const Comparison& c, const FigureStyle& style) {
-  const ErrorUnit unit = error_unit(c);
+Figure groups(const compare::Comparison& c, const FigureStyle& style) {
+  const report::ErrorUnit unit = report::error_unit(c);
   Sheet s("groups", style, 160);
   std::string labels, data = "$data << EOD\n";
   int at = 0;
   std::size_t longest = 1;
-  const double floor = um * c.noise_and_tolerances;
+  const double floor = report::um * c.noise_and_tolerances;
   double most = floor;
   for (const auto* list : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading}) {
     if (list->empty()) continue;
-    for (const Errors& e : *list) {
-      data += fmt::format("{} {:.5g}\n", at, um * e.rmse);
+    for (const compare::Errors& e : *list) {
+      data += fmt::format("{} {:.5g}\n", at, report::um * e.rmse);
       labels += fmt::format("{}{} {}", labels.empty() ? "" : ", ", gnuplot_tic_label(e.group), at);
-      longest = std::max(longest, letters(e.group));
-      most = std::max(most, um * e.rmse);
+      longest = std::max(longest, report::letters(e.group));
+      most = std::max(most, report::um * e.rmse);
       ++at;
     }
     ++at;
   }
   s.put("{}EOD", data);
-  const double y = s.heading("Residual by group: root mean square", {subjects(c)}) + 1.2 * s.line();
+  const double y = s.heading("Residual by group: root mean square", {report::subjects(c)}) + 1.2 * s.line();
   const double left = s.text_mm(longest) + 3, w = s.width() - left - 5, height = 1.25 * s.line() * at;
   s.panel(left, y, w, height);
   s.axis_names(fmt::format("rms of measured − predicted ({})", unit.micro), "", {});
@@ -106,8 +107,8 @@ Figure groups(const Comparison& c, const FigureStyle& style) {
       y + height + s.below(),
       fmt::format("Root mean square of the residual by component, direction of the load, its size{}, in {}. "
                   "Dashed: what noise and tolerances give with nothing missing. {} {} {}",
-                  c.by_heading.empty() ? "" : ", loading or unloading", unit.micro, axes_sentence(c), data_sentence(c),
-                  noise_sentence(c)));
+                  c.by_heading.empty() ? "" : ", loading or unloading", unit.micro, report::axes_sentence(c),
+                  report::data_sentence(c), report::noise_sentence(c)));
 }
 
 /// Range of the curves of one kind.
@@ -119,7 +120,7 @@ struct CurveRange {
 /// their range; where both are there every panel has numbers of its own.
 class ElongationPanels {
  public:
-  ElongationPanels(const Comparison& c, const FigureStyle& style)
+  ElongationPanels(const compare::Comparison& c, const FigureStyle& style)
       : c_(c), s_("elongation", style, 160), columns_(std::min<std::size_t>(s_.narrow() ? 2 : 3, c.curves.size())) {}
 
   Figure figure() {
@@ -127,7 +128,7 @@ class ElongationPanels {
     mixed_ = there_[0] && there_[1];
     measure();
     s_.put("set multiplot\nunset key");
-    top_ = s_.heading("Force–elongation of the sites beyond the model", {subjects(c_)}) + 0.6 * s_.line();
+    top_ = s_.heading("Force–elongation of the sites beyond the model", {report::subjects(c_)}) + 0.6 * s_.line();
     s_.put("set xzeroaxis lt 1 lc rgb '#808080' lw 0.6\nset yzeroaxis lt 1 lc rgb '#808080' lw 0.6");
     for (std::size_t k = 0; k < c_.curves.size(); ++k) draw(k);
     s_.put("unset multiplot");
@@ -139,12 +140,12 @@ class ElongationPanels {
  private:
   /// The data of a curve; its kind's range grows with it.
   void put_curve(std::size_t k) {
-    const ElongationCurve& curve = c_.curves[k];
+    const compare::ElongationCurve& curve = c_.curves[k];
     CurveRange& r = ranges_[curve.rotation];
     there_[curve.rotation] = true;
     s_.put("$c{} << EOD", k);
     for (std::size_t i = 0; i < curve.force.size(); ++i) {
-      const double e = um * curve.elongation[i], deviation = um * curve.deviation[i];
+      const double e = report::um * curve.elongation[i], deviation = report::um * curve.deviation[i];
       s_.put("{} {} {}", curve.force[i], e, deviation);
       r.low_force = std::min(r.low_force, curve.force[i]), r.high_force = std::max(r.high_force, curve.force[i]);
       r.low = std::min(r.low, e - deviation), r.high = std::max(r.high, e + deviation);
@@ -193,10 +194,11 @@ class ElongationPanels {
     return fmt::format(
         "What the sites ({} to {}) yield beyond the model, read off the residuals without a law: {}. "
         "Band: one standard deviation. {} {} {}",
-        c_.curves.front().site, c_.curves.back().site, what, axes_sentence(c_), data_sentence(c_), noise_sentence(c_));
+        c_.curves.front().site, c_.curves.back().site, what, report::axes_sentence(c_), report::data_sentence(c_),
+        report::noise_sentence(c_));
   }
 
-  const Comparison& c_;
+  const compare::Comparison& c_;
   Sheet s_;
   std::size_t columns_;
   CurveRange ranges_[2];  // of forces and of moments, as all pairs below
@@ -205,18 +207,18 @@ class ElongationPanels {
   double left_ = 0, gap_ = 0, w_ = 0, h_ = 0, top_ = 0, row_ = 0;  // mm
 };
 
-std::optional<Figure> elongation(const Comparison& c, const FigureStyle& style) {
+std::optional<Figure> elongation(const compare::Comparison& c, const FigureStyle& style) {
   if (c.curves.empty()) return std::nullopt;
   return ElongationPanels(c, style).figure();
 }
 
 }  // namespace
 
-std::vector<Figure> compare_figures(const Comparison& c, const FigureStyle& style) {
+std::vector<Figure> compare_figures(const compare::Comparison& c, const FigureStyle& style) {
   std::vector<Figure> out = {residuals(c, style), residual_map(c, style), groups(c, style)};
   for (const std::optional<Figure>& f : {secant(c, style), elongation(c, style), loops(c, style)})
     if (f) out.push_back(*f);
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -7,7 +7,7 @@
 #include "validation/compare/comparison.h"
 #include "validation/figures/gnuplot.h"
 
-namespace deflect {
+namespace deflect::figures {
 
 /// Those that the data allow:
 ///   residuals       by reading in the order taken, x y z apart, with the band of ±2 standard deviations of what noise
@@ -17,6 +17,6 @@ namespace deflect {
 ///   secant          displacement over load along the load, measured and predicted, over the load (load_curves.h)
 ///   elongation      force–elongation curves of the sites beyond the model
 ///   loops           displacement over load at the pose of the largest misfit, measured and predicted
-std::vector<Figure> compare_figures(const Comparison&, const FigureStyle& = {});
+std::vector<Figure> compare_figures(const compare::Comparison&, const FigureStyle& = {});
 
-}  // namespace deflect
+}  // namespace deflect::figures

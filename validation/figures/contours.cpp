@@ -10,7 +10,7 @@
 
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 /// An edge of the grid by a number: even along x from (i, j), odd along y.
@@ -157,7 +157,7 @@ PlanePoint LabelledCurves::moved_inside(const CurveLabel& l) const {
 }
 
 void LabelledCurves::label(double level, bool tight) {
-  const double width = letter_ * (static_cast<double>(letters(fmt::format("{:g}", level))) + 0.6);
+  const double width = letter_ * (static_cast<double>(report::letters(fmt::format("{:g}", level))) + 0.6);
   for (const Polyline& line : curves_of(level)) {
     std::vector<double> run = {0};  // mm along the curve
     for (std::size_t k = 1; k < line.size(); ++k)
@@ -227,4 +227,4 @@ CurveRows curve_rows(LabelledCurves curves, const std::vector<double>& iso, cons
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace deflect {
+namespace deflect::figures {
 
 /// A point of the plane, in the units of the grid's coordinates.
 struct PlanePoint {
@@ -75,4 +75,4 @@ struct CurveRows {
 /// another one carries its own. Black on light colours, that is from the value `light` on, and white on dark ones.
 CurveRows curve_rows(LabelledCurves, const std::vector<double>& iso, const std::vector<double>& index, double light);
 
-}  // namespace deflect
+}  // namespace deflect::figures

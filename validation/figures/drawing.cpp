@@ -18,7 +18,7 @@
 #include "msa/mechanism/place.h"
 #include "msa/mechanism/stand.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr double shown_motion = 0.1;  // of the machine's size
@@ -272,4 +272,4 @@ MachineDrawing drawing_of(const frame::FrameDescription& f) {
   return d;
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

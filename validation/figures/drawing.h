@@ -12,7 +12,7 @@
 #include "msa/frame/file/frame_description.h"
 #include "msa/mechanism/configuration.h"
 
-namespace deflect {
+namespace deflect::figures {
 
 /// The box around a section in the member's local y and z, m; of a round one both are its diameter; zero where the file
 /// gives no shape.
@@ -79,4 +79,4 @@ struct MachineDrawing {
 MachineDrawing drawing_of(const Mechanism&, const std::optional<Configuration>& at = {});
 MachineDrawing drawing_of(const frame::FrameDescription&);
 
-}  // namespace deflect
+}  // namespace deflect::figures

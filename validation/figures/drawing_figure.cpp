@@ -10,7 +10,7 @@
 #include "validation/figures/drawing_results.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 using Paper = Eigen::Vector2d;
@@ -186,7 +186,8 @@ std::vector<Callout> callouts(const DrawnView& v, const MachineDrawing& d) {
   std::set<std::string> said;
   for (const DrawnMember& m : d.members)
     if (said.insert(m.part).second)
-      out.push_back({fmt::format("{}, {:.4g} mm", m.part, mm * (m.end - m.start).norm()), v.at((m.start + m.end) / 2)});
+      out.push_back(
+          {fmt::format("{}, {:.4g} mm", m.part, report::mm * (m.end - m.start).norm()), v.at((m.start + m.end) / 2)});
   for (const DrawnJoint& j : d.joints)
     if (said.insert(j.part).second) out.push_back({j.part + (j.driven() ? ", driven" : ""), v.at(j.at)});
   for (const DrawnPoint& p : d.frames)
@@ -213,7 +214,7 @@ void write_callouts(DrawnView& v, const std::vector<Callout>& all, std::size_t l
       below = y - step;
       rest -= step;
       const double column_mm = s.text_mm(letters_of_column, 0.94), text_x = side ? width - column_mm : column_mm;
-      s.label(clip(c.text, letters_of_column + 4), v.box()(0) + text_x, v.box()(1) + height - y,
+      s.label(report::clip(c.text, letters_of_column + 4), v.box()(0) + text_x, v.box()(1) + height - y,
               std::string(side ? "left " : "right ") + "textcolor rgb '#202020' " + s.font(0.94));
       leaders += DrawnView::point({text_x + (side ? -0.7 : 0.7), y}) + DrawnView::point(c.at) + "\n";
     }
@@ -229,7 +230,7 @@ void draw_scale_bar(DrawnView& v) {
   const double x = 2, y = 1.2;
   v.block("bar", DrawnView::point({x, y}) + DrawnView::point({x + length * v.scale(), y}));
   v.add("$bar with lines lw 1.6 lc rgb '#202020' notitle");
-  v.sheet().label(fmt::format("{:g} mm", mm * length), v.box()(0) + x, v.box()(1) + v.box()(3) - y - 1.2,
+  v.sheet().label(fmt::format("{:g} mm", report::mm * length), v.box()(0) + x, v.box()(1) + v.box()(3) - y - 1.2,
                   "left offset 0,0.5 textcolor rgb '#202020' " + v.sheet().font(0.94));
 }
 
@@ -246,7 +247,7 @@ Figure drawing_figure(const MachineDrawing& d, const FigureStyle& style) {
   std::vector<std::string> notes = {what_is_drawn(d)};
   if (!d.trouble.empty()) notes.push_back(d.trouble);
   if (!d.motions.empty()) notes.push_back("red: " + d.motions.front().words);
-  double y = s.heading(fmt::format("{}: as drawn, unloaded", clip(d.name, 60)), notes) + 1;
+  double y = s.heading(fmt::format("{}: as drawn, unloaded", report::clip(d.name, 60)), notes) + 1;
   const double w = s.width(), large = 0.62 * w, small = 0.42 * w;
   const std::size_t letters_of_column = static_cast<std::size_t>(0.24 * w / s.text_mm(1, 0.94));
   s.put("set multiplot");
@@ -282,4 +283,4 @@ Figure drawing_figure(const MachineDrawing& d, const FigureStyle& style) {
   return s.figure(y + small + s.line() + 1, caption);
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

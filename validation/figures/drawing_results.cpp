@@ -9,7 +9,7 @@
 #include "validation/json/json_text.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr std::size_t most_rows = 80;
@@ -17,13 +17,16 @@ constexpr std::size_t most_rows = 80;
 double tidy(double x) { return std::abs(x) < 1e-9 ? 0 : x; }
 
 std::string in_mm(const Vector3& p) {
-  return fmt::format("({:.5g}, {:.5g}, {:.5g})", tidy(mm * p.x()), tidy(mm * p.y()), tidy(mm * p.z()));
+  return fmt::format("({:.5g}, {:.5g}, {:.5g})", tidy(report::mm * p.x()), tidy(report::mm * p.y()),
+                     tidy(report::mm * p.z()));
 }
 std::string direction(const Vector3& v) {
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", tidy(v.x()), tidy(v.y()), tidy(v.z()));
 }
 
-Json list_in_mm(const Vector3& p) { return {tidy(mm * p.x()), tidy(mm * p.y()), tidy(mm * p.z())}; }
+Json list_in_mm(const Vector3& p) {
+  return {tidy(report::mm * p.x()), tidy(report::mm * p.y()), tidy(report::mm * p.z())};
+}
 Json axes_json(const Matrix3& R) {
   Json out = Json::array();
   for (Eigen::Index i = 0; i < 3; ++i) out.push_back({tidy(R(0, i)), tidy(R(1, i)), tidy(R(2, i))});
@@ -62,7 +65,7 @@ std::string whole_name(const std::string& leg, const std::string& part) {
 
 std::string coordinate(const Actuator& a) {
   return a.rotation ? fmt::format("{} {:.5g} deg", a.name, tidy(a.value * 180 / pi))
-                    : fmt::format("{} {:.5g} mm", a.name, tidy(mm * a.value));
+                    : fmt::format("{} {:.5g} mm", a.name, tidy(report::mm * a.value));
 }
 
 std::vector<std::vector<std::string>> member_rows(const MachineDrawing& d) {
@@ -70,7 +73,7 @@ std::vector<std::vector<std::string>> member_rows(const MachineDrawing& d) {
       {"member", "section, material", "from mm", "to mm", "length mm", "local y", "local z"}};
   for (const DrawnMember& m : d.members)
     rows.push_back({whole_name(m.leg, m.part), m.section + ", " + m.material, in_mm(m.start), in_mm(m.end),
-                    fmt::format("{:.6g}", mm * (m.end - m.start).norm()), direction(m.axes.col(1)),
+                    fmt::format("{:.6g}", report::mm * (m.end - m.start).norm()), direction(m.axes.col(1)),
                     direction(m.axes.col(2))});
   return rows;
 }
@@ -93,7 +96,7 @@ std::string table(std::vector<std::vector<std::string>> rows) {
   if (rows.size() < 2) return "";
   const std::size_t all = rows.size() - 1;
   rows.resize(std::min(rows.size(), most_rows + 1));
-  std::string text = "\n" + aligned(rows);
+  std::string text = "\n" + report::aligned(rows);
   if (all > most_rows) text += fmt::format("… and {} more, all of them in --json\n", all - most_rows);
   return text;
 }
@@ -122,11 +125,11 @@ std::string drawing_json(const MachineDrawing& d) {
   out["drawing"] = d.frame ? "frame" : "device";
   out["name"] = d.name;
   out["about"] = d.about;
-  if (!d.frame) out["pose_mm_deg"] = json_numbers(d.pose_mm_deg, "pose");
+  if (!d.frame) out["pose_mm_deg"] = json::json_numbers(d.pose_mm_deg, "pose");
   out["driven"] = Json::array();
   for (const Actuator& a : d.driven)
     out["driven"].push_back({{"name", a.name},
-                             {"value", a.rotation ? a.value * 180 / pi : mm * a.value},
+                             {"value", a.rotation ? a.value * 180 / pi : report::mm * a.value},
                              {"unit", a.rotation ? "deg" : "mm"}});
   for (const char* list : {"members", "joints", "frames", "points_mm", "lines", "motions"}) out[list] = Json::array();
   for (const DrawnMember& m : d.members)
@@ -136,9 +139,9 @@ std::string drawing_json(const MachineDrawing& d) {
                               {"material", m.material},
                               {"start_mm", list_in_mm(m.start)},
                               {"end_mm", list_in_mm(m.end)},
-                              {"length_mm", mm * (m.end - m.start).norm()},
+                              {"length_mm", report::mm * (m.end - m.start).norm()},
                               {"axes", axes_json(m.axes)},
-                              {"size_mm", {mm * m.size_y, mm * m.size_z}},
+                              {"size_mm", {report::mm * m.size_y, report::mm * m.size_z}},
                               {"round", m.round}});
   for (const DrawnJoint& j : d.joints)
     out["joints"].push_back({{"leg", j.leg},
@@ -160,7 +163,7 @@ std::string drawing_json(const MachineDrawing& d) {
     out["motions"].push_back({{"words", motion.words}, {"displacement_mm", std::move(u)}});
   }
   out["trouble"] = d.trouble;
-  return json_text(out);
+  return json::json_text(out);
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -6,7 +6,7 @@
 #include "validation/figures/drawing.h"
 #include "validation/figures/sheet.h"
 
-namespace deflect {
+namespace deflect::figures {
 
 /// Where it stands, and a line for each part: what it is, from where to where, its length and axes; then what is wrong.
 std::string drawing_report(const MachineDrawing&);
@@ -22,4 +22,4 @@ std::string drawing_json(const MachineDrawing&);
 /// beside the place where it begins.
 Figure drawing_figure(const MachineDrawing&, const FigureStyle&);
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -7,7 +7,7 @@
 #include "validation/report/by_point.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr double linear_to = 1e-3, knee = 2;
@@ -35,9 +35,9 @@ struct Ends {
   double low, high;  // of the axis, as place()
 };
 
-Ends ends_of(const std::vector<ErratumPrice>& prices) {
+Ends ends_of(const std::vector<studies::ErratumPrice>& prices) {
   Ends e{place(0.9), place(1.1)};
-  for (const ErratumPrice& p : prices)
+  for (const studies::ErratumPrice& p : prices)
     for (int axis = 0; axis < 3; ++axis)
       for (const double ratio : {p.smallest(axis), p.largest(axis)})
         if (p.refused.empty() && drawable(ratio))
@@ -53,7 +53,7 @@ std::string tics_of(const Sheet& s, const Ends& e, double w) {
     double last = -INFINITY, half = 0;
     for (const Mark& mark : chosen) {
       const double at = place(mark.ratio), offset = w * std::abs(at) / (e.high - e.low),
-                   own = s.text_mm(letters(mark.name)) / 2;
+                   own = s.text_mm(report::letters(mark.name)) / 2;
       if (at < e.low || at > e.high || offset - last < half + own + 0.6 * s.line()) continue;
       last = offset, half = own;
       tics += fmt::format("{}{} {:.6g}", tics.empty() ? "" : ", ", gnuplot_tic_label(mark.name), at);
@@ -69,7 +69,7 @@ std::string tics_of(const Sheet& s, const Ends& e, double w) {
 double put_directions(Sheet& s, double y) {
   double x = 3;
   for (int axis = 0; axis < 3; ++axis) {
-    s.label((s.narrow() ? "load " : "load along ") + std::string(axis_names[axis]), x + 3, y, "left");
+    s.label((s.narrow() ? "load " : "load along ") + std::string(report::axis_names[axis]), x + 3, y, "left");
     s.put("set label {} '' at screen {:.5f},1-{:.4f}/H point pt {} ps 0.7 lc rgb '{}'", 40 + axis,
           (x + 1.2) / s.width(), y, shapes[axis], colours[axis]);
     x += s.text_mm(12) + 5;
@@ -79,10 +79,10 @@ double put_directions(Sheet& s, double y) {
 
 /// Rows of the data: axis, row, smallest, largest, the end with the larger effect. What cannot be drawn is said in its
 /// row; `x`: the middle of the panel, `y`: its top.
-std::string rows_of(Sheet& s, const std::vector<ErratumPrice>& prices, double x, double y, double row) {
+std::string rows_of(Sheet& s, const std::vector<studies::ErratumPrice>& prices, double x, double y, double row) {
   std::string data;
   for (std::size_t i = 0; i < prices.size(); ++i) {
-    const ErratumPrice& p = prices[i];
+    const studies::ErratumPrice& p = prices[i];
     const auto in_row = [&](int axis) { return static_cast<double>(i) + 0.24 * (axis - 1); };
     const auto note = [&](const std::string& text, int axis) {
       s.label(text, x, y + row * (in_row(axis) + 0.5),
@@ -108,19 +108,20 @@ std::string rows_of(Sheet& s, const std::vector<ErratumPrice>& prices, double x,
 
 }  // namespace
 
-Figure errata_figure(const std::vector<ErratumPrice>& prices, const Validation& v, const FigureStyle& style) {
+Figure errata_figure(const std::vector<studies::ErratumPrice>& prices, const studies::Validation& v,
+                     const FigureStyle& style) {
   Sheet s("errata", style, 160);
   const Ends e = ends_of(prices);
   std::size_t longest = 1;
   std::string names;
   for (std::size_t i = 0; i < prices.size(); ++i) {
     const char* name = info(prices[i].erratum).name;
-    longest = std::max(longest, letters(name));
+    longest = std::max(longest, report::letters(name));
     names += fmt::format("{}{} {}", i ? ", " : "", gnuplot_tic_label(name), i);
   }
-  double y = s.heading(
-      "Price of the errata: deflection as printed / corrected",
-      {fmt::format("{}, {} along x, y, z, smallest to largest of the points", clip(v.device, 40), load_text(v))});
+  double y = s.heading("Price of the errata: deflection as printed / corrected",
+                       {fmt::format("{}, {} along x, y, z, smallest to largest of the points",
+                                    report::clip(v.device, 40), report::load_text(v))});
   y += 0.4 * s.line();
   y += put_directions(s, y);
 
@@ -150,7 +151,7 @@ Figure errata_figure(const std::vector<ErratumPrice>& prices, const Validation& 
                   "the end with the larger effect. Signed, logarithmic in the change up to a factor of 2 (linear "
                   "below 0.1 %) and in the factor beyond: to the left the erratum makes the device too stiff "
                   "(÷2: half the deflection), to the right too soft. Computed, no measurements and no noise.",
-                  v.device, load_text(v), by_point(v).size()));
+                  v.device, report::load_text(v), report::by_point(v).size()));
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

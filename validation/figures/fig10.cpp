@@ -12,7 +12,7 @@
 #include "validation/report/by_point.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 struct Look {
@@ -40,11 +40,11 @@ double nice_below(double x) {
 }
 
 /// The component along the load, mm.
-double along(const ValidationRow& row, const Vector6& displacement) {
+double along(const studies::ValidationRow& row, const Vector6& displacement) {
   const double value = displacement[row.axis];
   if (!std::isfinite(value))
     throw std::invalid_argument(
-        fmt::format("point {}: deflection along {} is {}", row.point.label, axis_names[row.axis], value));
+        fmt::format("point {}: deflection along {} is {}", row.point.label, report::axis_names[row.axis], value));
   return value;
 }
 
@@ -64,7 +64,7 @@ struct Data {
   Unit unit = units[0];
 };
 
-void widen(Data& data, const ValidationRow& row) {
+void widen(Data& data, const studies::ValidationRow& row) {
   const double first = along(row, row.displacements.front());
   for (const Vector6& displacement : row.displacements) {
     const double value = along(row, displacement);
@@ -79,19 +79,19 @@ void widen(Data& data, const ValidationRow& row) {
 
 /// The cells of one series at one point; NaN where there is no row, or the series has no number.
 template <class Value>
-std::string cells(const PointRows& p, const Value& value) {
+std::string cells(const report::PointRows& p, const Value& value) {
   std::string text;
-  for (const ValidationRow* row : p.rows) {
+  for (const studies::ValidationRow* row : p.rows) {
     const std::optional<double> v = row ? value(*row) : std::nullopt;
     text += v ? fmt::format(" {}", *v) : " NaN";
   }
   return text;
 }
 
-Data data_of(const std::vector<PointRows>& points, std::size_t theories) {
+Data data_of(const std::vector<report::PointRows>& points, std::size_t theories) {
   Data data;
-  for (const PointRows& p : points)
-    for (const ValidationRow* row : p.rows)
+  for (const report::PointRows& p : points)
+    for (const studies::ValidationRow* row : p.rows)
       if (row) widen(data, *row);
   const auto readable = [&](const Unit& unit) { return data.residual * unit.per_mm >= 1; };
   const auto found = std::find_if(std::begin(units), std::end(units), readable);
@@ -102,12 +102,13 @@ Data data_of(const std::vector<PointRows>& points, std::size_t theories) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     data.block += fmt::format("{}", i);
     for (std::size_t t = 0; t < theories; ++t)
-      data.block += cells(points[i], [&](const ValidationRow& r) -> Value { return along(r, r.displacements[t]); });
-    data.block += cells(points[i], [&](const ValidationRow& r) -> Value {
+      data.block +=
+          cells(points[i], [&](const studies::ValidationRow& r) -> Value { return along(r, r.displacements[t]); });
+    data.block += cells(points[i], [&](const studies::ValidationRow& r) -> Value {
       return r.as_printed ? Value(along(r, *r.as_printed)) : std::nullopt;
     });
     for (std::size_t t = 1; t < theories; ++t)
-      data.block += cells(points[i], [&](const ValidationRow& r) -> Value {
+      data.block += cells(points[i], [&](const studies::ValidationRow& r) -> Value {
         return (along(r, r.displacements[0]) - along(r, r.displacements[t])) * data.unit.per_mm;
       });
     data.block += "\n";
@@ -123,25 +124,27 @@ struct PointLabels {
   double height = 0;  ///< mm
 };
 
-PointLabels labels_of(const std::vector<PointRows>& points, double room, const Sheet& s) {
+PointLabels labels_of(const std::vector<report::PointRows>& points, double room, const Sheet& s) {
   constexpr std::size_t most = 16;  // letters of a label
   std::size_t longest = 1;
-  for (const PointRows& p : points) longest = std::max(longest, std::min(most, letters(p.point->label)));
+  for (const report::PointRows& p : points)
+    longest = std::max(longest, std::min(most, report::letters(p.point->label)));
   const double upright = s.text_mm(longest + 1);
   PointLabels l;
   l.turned = longest > 3 && upright > room;
   const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil((l.turned ? s.line() : upright) / room)));
   for (std::size_t i = 0; i < points.size(); i += every) {
-    l.labels += fmt::format("{}{} {}", i ? ", " : "", gnuplot_tic_label(clip(points[i].point->label, most)), i);
+    l.labels += fmt::format("{}{} {}", i ? ", " : "", gnuplot_tic_label(report::clip(points[i].point->label, most)), i);
     l.bare += fmt::format("{}'' {}", i ? ", " : "", i);
   }
   l.height = l.turned ? s.text_mm(longest) : s.line();
   return l;
 }
 
-bool there(const std::vector<PointRows>& points, std::size_t axis, bool as_printed) {
-  return std::any_of(points.begin(), points.end(),
-                     [&](const PointRows& p) { return p.rows[axis] && (!as_printed || p.rows[axis]->as_printed); });
+bool there(const std::vector<report::PointRows>& points, std::size_t axis, bool as_printed) {
+  return std::any_of(points.begin(), points.end(), [&](const report::PointRows& p) {
+    return p.rows[axis] && (!as_printed || p.rows[axis]->as_printed);
+  });
 }
 
 /// How a series is drawn.
@@ -153,7 +156,8 @@ struct Stroke {
   double marker, width;
 };
 
-std::vector<Stroke> strokes_of(const Theories& theories, const std::vector<PointRows>& points, std::size_t axis) {
+std::vector<Stroke> strokes_of(const theories::Theories& theories, const std::vector<report::PointRows>& points,
+                               std::size_t axis) {
   const Look& look = looks[axis];
   std::vector<Stroke> out;
   if (there(points, axis, true))
@@ -167,7 +171,8 @@ std::vector<Stroke> strokes_of(const Theories& theories, const std::vector<Point
 }
 
 /// A column for each axis, where the paper is too narrow a row for each, or all below each other; y below it.
-double put_legend(Sheet& s, const Theories& theories, const std::vector<PointRows>& points, double top, double left) {
+double put_legend(Sheet& s, const theories::Theories& theories, const std::vector<report::PointRows>& points,
+                  double top, double left) {
   const double line = s.line(), mark = 0.6 * line, entry = mark + 1 + 0.9 * s.text_mm(12) + 2;
   std::size_t most = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) most = std::max(most, strokes_of(theories, points, axis).size());
@@ -192,9 +197,9 @@ double put_legend(Sheet& s, const Theories& theories, const std::vector<PointRow
   return foot;
 }
 
-std::string poses_text(const std::vector<PointRows>& points) {
+std::string poses_text(const std::vector<report::PointRows>& points) {
   Vector6 low = points.front().point->pose_mm_deg, high = low;
-  for (const PointRows& p : points)
+  for (const report::PointRows& p : points)
     low = low.cwiseMin(p.point->pose_mm_deg), high = high.cwiseMax(p.point->pose_mm_deg);
   constexpr const char* names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   std::string out;
@@ -207,13 +212,14 @@ std::string poses_text(const std::vector<PointRows>& points) {
 }
 
 /// "analytic − MSA", "analytic − others".
-std::string residual_name(const Theories& theories) {
+std::string residual_name(const theories::Theories& theories) {
   return theories[0]->title + " − " + (theories.size() == 2 ? theories[1]->title : "others");
 }
 
-std::string caption_of(const Validation& validation, const std::vector<PointRows>& points, const Data& data) {
+std::string caption_of(const studies::Validation& validation, const std::vector<report::PointRows>& points,
+                       const Data& data) {
   std::vector<std::string> captions;
-  for (const Theory* theory : validation.theories) captions.push_back(theory->caption);
+  for (const theories::Theory* theory : validation.theories) captions.push_back(theory->caption);
   const std::string below =
       validation.theories.size() < 2
           ? ""
@@ -223,16 +229,19 @@ std::string caption_of(const Validation& validation, const std::vector<PointRows
       "Linear deflection of the tool point of {} along a force of {} on it in x, y and z in turn (mm, base axes, "
       "positive "
       "along a positive force) at {} points of the workspace ({}), by {}{}. {}Computed, no measurements and no noise.",
-      validation.device, load_text(validation), points.size(), poses_text(points), fmt::join(captions, " and by "),
-      has_as_printed(validation) ? ", and by the closed form with " + errata_text(validation) + " as printed" : "",
+      validation.device, report::load_text(validation), points.size(), poses_text(points),
+      fmt::join(captions, " and by "),
+      report::has_as_printed(validation)
+          ? ", and by the closed form with " + report::errata_text(validation) + " as printed"
+          : "",
       below);
 }
 
 /// The deflections above, what the theories differ by below.
 class Fig10 {
  public:
-  Fig10(const Validation& v, const FigureStyle& style)
-      : v_(v), points_(by_point(v)), data_(data_of(points_, v.theories.size())), s_("fig10", style, 160) {}
+  Fig10(const studies::Validation& v, const FigureStyle& style)
+      : v_(v), points_(report::by_point(v)), data_(data_of(points_, v.theories.size())), s_("fig10", style, 160) {}
 
   Figure draw() {
     const double line = s_.line();
@@ -240,10 +249,11 @@ class Fig10 {
     s_.put("{}set multiplot\nunset key", data_.block);
     s_.put("set xrange [-0.5:{}]", static_cast<double>(points_.size()) - 0.5);
     std::vector<std::string> notes = {"Force at the tool point, its displacement along the force, base axes"};
-    if (has_as_printed(v_)) notes.push_back("As printed: analytic theory with " + errata_text(v_));
+    if (report::has_as_printed(v_)) notes.push_back("As printed: analytic theory with " + report::errata_text(v_));
     const double x = s_.narrow() ? 2 : left_;
     const double keys = s_.heading(
-        fmt::format("{}: linear deflection under {} in x, y, z", clip(v_.device, 50), load_text(v_)), notes, x);
+        fmt::format("{}: linear deflection under {} in x, y, z", report::clip(v_.device, 50), report::load_text(v_)),
+        notes, x);
     const double top = put_legend(s_, v_.theories, points_, keys + 0.2 * line, x) + 0.6 * line;
     double foot = top + std::max(panel * s_.width(), 10 * line);
     deflections(top, foot - top);
@@ -267,7 +277,7 @@ class Fig10 {
     residual_ = data_.residual > 0 ? data_.residual * data_.unit.per_mm : 1;
     widest_ = {step_, 1};
     for (const double number : {low_, high_, -nice_below(residual_)})
-      widest_.letters = std::max(widest_.letters, letters(fmt::format("{:.6g}", number)));
+      widest_.letters = std::max(widest_.letters, report::letters(fmt::format("{:.6g}", number)));
     left_ = s_.left_of(widest_) + s_.line();  // two lines name the strip's axis
     w_ = s_.width() - left_ - right;
     const double room = w_ / static_cast<double>(points_.size());
@@ -331,8 +341,8 @@ class Fig10 {
     s_.plot(fmt::format("plot {}", fmt::join(stems, ", \\\n  ")));
   }
 
-  const Validation& v_;
-  std::vector<PointRows> points_;
+  const studies::Validation& v_;
+  std::vector<report::PointRows> points_;
   Data data_;
   Sheet s_;
   PointLabels tics_;
@@ -342,6 +352,8 @@ class Fig10 {
 
 }  // namespace
 
-Figure fig10(const Validation& validation, const FigureStyle& style) { return Fig10(validation, style).draw(); }
+Figure fig10(const studies::Validation& validation, const FigureStyle& style) {
+  return Fig10(validation, style).draw();
+}
 
-}  // namespace deflect
+}  // namespace deflect::figures

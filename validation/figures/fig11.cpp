@@ -19,7 +19,7 @@
 #include "validation/report/map_results.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr double iso_text = 0.8;  // of the style's size
@@ -31,7 +31,7 @@ struct Slice {
   int fixed() const { return 3 - across - up; }
 };
 
-std::vector<Slice> slices_of(const MapGrid& g) {
+std::vector<Slice> slices_of(const studies::MapGrid& g) {
   const auto [nx, ny, nz] = g.counts;
   std::vector<Slice> list;
   if (nx > 1 && ny > 1) {
@@ -46,7 +46,7 @@ std::vector<Slice> slices_of(const MapGrid& g) {
   return list;
 }
 
-const MapPose& at(const StiffnessMap& map, const Slice& s, int i, int j) {
+const studies::MapPose& at(const studies::StiffnessMap& map, const Slice& s, int i, int j) {
   std::array<int, 3> index{};
   nth(index, s.across) = i;
   nth(index, s.up) = j;
@@ -56,13 +56,13 @@ const MapPose& at(const StiffnessMap& map, const Slice& s, int i, int j) {
 
 /// Interpolated bilinearly in the logarithm, with some steps between poses; NaN outside the cells whose four corners
 /// are reached. Nothing where no cell is whole.
-std::optional<GridField> surface(const StiffnessMap& map, const Slice& s, int axis) {
-  const MapGrid& g = map.options.grid;
+std::optional<GridField> surface(const studies::StiffnessMap& map, const Slice& s, int axis) {
+  const studies::MapGrid& g = map.options.grid;
   const int n = nth(g.counts, s.across), m = nth(g.counts, s.up);
   const auto steps = [](int count) { return std::max(1, static_cast<int>(std::ceil(60.0 / (count - 1)))); };
   const int fine_x = steps(n), fine_y = steps(m);
   const auto log_value = [&](int i, int j) {
-    const MapValues* v = shown(at(map, s, i, j));
+    const studies::MapValues* v = report::shown(at(map, s, i, j));
     return v ? std::log(v->stiffness_N_mm(axis)) : none;
   };
   const auto in_cell = [&](int i, int j, double u, double v) {  // NaN where the cell is not whole or not there
@@ -97,11 +97,11 @@ std::optional<GridField> surface(const StiffnessMap& map, const Slice& s, int ax
 }
 
 /// The mean positions of the slides that occur in a slice; briefly for narrow paper.
-std::string slide_text(const StiffnessMap& map, const Slice& s, bool brief) {
+std::string slide_text(const studies::StiffnessMap& map, const Slice& s, bool brief) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int j = 0; j < nth(map.options.grid.counts, s.up); ++j)
     for (int i = 0; i < nth(map.options.grid.counts, s.across); ++i)
-      if (const MapPose& p = at(map, s, i, j); p.reached()) {
+      if (const studies::MapPose& p = at(map, s, i, j); p.reached()) {
         low = std::min(low, p.slide_mean_mm);
         high = std::max(high, p.slide_mean_mm);
       }
@@ -120,12 +120,13 @@ constexpr const char* palette =
 /// paper below.
 class Slices {
  public:
-  Slices(const StiffnessMap& map, const FigureStyle& style)
+  Slices(const studies::StiffnessMap& map, const FigureStyle& style)
       : map_(map),
         g_(map.options.grid),
         slices_(slices_of(g_)),
         e_(range_of_stiffness(map)),
-        all_reached_(std::all_of(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); })),
+        all_reached_(
+            std::all_of(map.poses.begin(), map.poses.end(), [](const studies::MapPose& p) { return p.reached(); })),
         script_("fig11", style, 170.5),
         line_(script_.line()),
         width_(script_.width()),
@@ -216,15 +217,15 @@ class Slices {
                 inner_tics(script_, g_.low_mm(s.across), g_.high_mm(s.across), panel_),
                 inner_tics(script_, g_.low_mm(s.up), g_.high_mm(s.up), h), axis == 0 ? "%g" : "");
     if (axis == 0) {
-      script_.label(fmt::format("{} (mm)", axis_names[s.up]), 0.65 * line_, y + h / 2, "center rotate by 90");
-      script_.label(fmt::format("{} = {:.4g} mm{}", axis_names[s.fixed()], g_.coordinate(s.fixed(), s.at),
+      script_.label(fmt::format("{} (mm)", report::axis_names[s.up]), 0.65 * line_, y + h / 2, "center rotate by 90");
+      script_.label(fmt::format("{} = {:.4g} mm{}", report::axis_names[s.fixed()], g_.coordinate(s.fixed(), s.at),
                                 slide_text(map_, s, below_)),
                     below_ ? 3 : left_, y - 0.6 * line_, "left textcolor rgb '#202020'");
     }
-    script_.label(fmt::format("{} (mm)", axis_names[s.across]), x + panel_ / 2, y + h + 1.65 * line_, "center");
+    script_.label(fmt::format("{} (mm)", report::axis_names[s.across]), x + panel_ / 2, y + h + 1.65 * line_, "center");
     if (r == 0)
-      script_.label((below_ ? "force " : "force along ") + std::string(axis_names[axis]), x + panel_, y - 1.6 * line_,
-                    fmt::format("right {} textcolor rgb '{}'", script_.font(1, true), colours[axis]));
+      script_.label((below_ ? "force " : "force along ") + std::string(report::axis_names[axis]), x + panel_,
+                    y - 1.6 * line_, fmt::format("right {} textcolor rgb '{}'", script_.font(1, true), colours[axis]));
     put_colours(r, axis);
     script_.plot(series_[series]);
   }
@@ -248,8 +249,8 @@ class Slices {
 
   static constexpr double bar = 4;  // mm
 
-  const StiffnessMap& map_;
-  const MapGrid& g_;
+  const studies::StiffnessMap& map_;
+  const studies::MapGrid& g_;
   std::vector<Slice> slices_;
   StiffnessRange e_;
   bool all_reached_;
@@ -264,10 +265,10 @@ class Slices {
 
 }  // namespace
 
-std::vector<Figure> fig11(const StiffnessMap& map, const FigureStyle& style) {
+std::vector<Figure> fig11(const studies::StiffnessMap& map, const FigureStyle& style) {
   Slices slices(map, style);
   if (!slices.any()) return {};
   return {slices.figure()};
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -9,7 +9,7 @@
 #include "msa/base/error.h"
 #include "validation/figures/child_process.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr double narrowest_in_lines = 15.5, line_mm_per_pt = 0.5;
@@ -67,4 +67,4 @@ void check_font(const std::string& family) {
       family, found.output.substr(0, found.output.find(','))));
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

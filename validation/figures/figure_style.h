@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace deflect {
+namespace deflect::figures {
 
 /// Of the axes x, y and z: colours by Okabe and Ito, which any colour vision tells apart, and gnuplot's filled points.
 inline constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73"};
@@ -22,4 +22,4 @@ void check_size(const FigureStyle&);
 /// the name cannot be a family's.
 void check_font(const std::string& family);
 
-}  // namespace deflect
+}  // namespace deflect::figures

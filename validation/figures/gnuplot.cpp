@@ -13,7 +13,7 @@
 #include "validation/figures/child_process.h"
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr const char* remedy = "install it with `apt-get install gnuplot-nox fonts-dejavu-core`";
@@ -111,7 +111,7 @@ std::vector<std::filesystem::path> render_all(const std::vector<Figure>& figures
       throw std::logic_error(fmt::format("'{}' is no name for a figure's files", figure.name));
   const std::array<std::string, 3> suffixes = {"svg", "pdf", "png"};
   std::vector<std::string> pictures(figures.size() * suffixes.size());
-  for_each_case(pictures.size(), 1, 0, [&](std::size_t i) {
+  parallel::for_each_case(pictures.size(), 1, 0, [&](std::size_t i) {
     pictures[i] = draw(suffixes[i % suffixes.size()], figures[i / suffixes.size()]);
   });
   std::vector<std::filesystem::path> paths;
@@ -146,4 +146,4 @@ std::string gnuplot_tic_label(std::string_view text) {
   return gnuplot_quote(doubled);
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

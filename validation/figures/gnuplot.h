@@ -8,7 +8,7 @@
 
 #include "validation/figures/figure_style.h"
 
-namespace deflect {
+namespace deflect::figures {
 
 /// A figure as gnuplot commands with inline data. The body sets neither terminal nor output nor encoding; its
 /// font sizes are points, its line widths points at `lw 1`, and it may count on the common look set by
@@ -38,4 +38,4 @@ std::string gnuplot_quote(std::string_view text);
 /// The same for a label of a tic, where gnuplot would take a percent sign as a format.
 std::string gnuplot_tic_label(std::string_view text);
 
-}  // namespace deflect
+}  // namespace deflect::figures

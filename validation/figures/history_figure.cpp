@@ -11,7 +11,7 @@
 #include "validation/report/compare_words.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 /// The bars of a version, side by side.
@@ -25,7 +25,7 @@ constexpr BarKind bar_kinds[] = {
 /// takes the rest.
 std::vector<std::string> name_lines(std::string name, std::size_t most_letters) {
   std::vector<std::string> parts;
-  while (letters(name) > most_letters && parts.size() < 4) {
+  while (report::letters(name) > most_letters && parts.size() < 4) {
     std::size_t cut = name.find_last_of("-_ ", most_letters);
     cut = cut == std::string::npos || cut == 0 ? most_letters : cut + 1;
     parts.push_back(name.substr(0, cut));
@@ -38,13 +38,13 @@ std::vector<std::string> name_lines(std::string name, std::size_t most_letters) 
 /// Three bars for each version over the line of noise and tolerances.
 class HistoryBars {
  public:
-  HistoryBars(const History& h, const FigureStyle& style)
+  HistoryBars(const compare::History& h, const FigureStyle& style)
       : h_(h),
         all_(h.versions),
-        unit_(error_unit(all_.front())),
+        unit_(report::error_unit(all_.front())),
         n_(static_cast<double>(all_.size())),
         s_("history", style, 160),
-        floor_(um * all_.back().noise_and_tolerances),
+        floor_(report::um * all_.back().noise_and_tolerances),
         most_(floor_) {}
 
   Figure draw() {
@@ -73,9 +73,10 @@ class HistoryBars {
   void put_data() {
     std::string data = "$data << EOD\n";
     for (std::size_t i = 0; i < all_.size(); ++i) {
-      const double wrong = h_.placebo[i] ? um * *h_.placebo[i] : NAN;
-      data += fmt::format("{} {:.6g} {:.6g} {:.6g}\n", i, um * all_[i].all.rmse, um * all_[i].held_out, wrong);
-      for (const double x : {um * all_[i].all.rmse, um * all_[i].held_out, wrong})
+      const double wrong = h_.placebo[i] ? report::um * *h_.placebo[i] : NAN;
+      data += fmt::format("{} {:.6g} {:.6g} {:.6g}\n", i, report::um * all_[i].all.rmse, report::um * all_[i].held_out,
+                          wrong);
+      for (const double x : {report::um * all_[i].all.rmse, report::um * all_[i].held_out, wrong})
         if (std::isfinite(x)) most_ = std::max(most_, x);
     }
     s_.put("{}EOD\nset multiplot\nunset key", data);
@@ -85,7 +86,7 @@ class HistoryBars {
   double put_legend(double y) {
     double x = 3;
     const auto key = [&](const char* name, const std::string& mark) {
-      const double room = 7 + s_.text_mm(letters(name)) + 2;
+      const double room = 7 + s_.text_mm(report::letters(name)) + 2;
       if (x > 3 && x + room > s_.width()) x = 3, y += 1.1 * s_.line();
       s_.put("{}", fmt::format(fmt::runtime(mark), fmt::format("{:.4f},1-{:.4f}/H", x / s_.width(), y),
                                fmt::format("{:.4f},1-{:.4f}/H", (x + 5) / s_.width(), y)));
@@ -105,7 +106,7 @@ class HistoryBars {
   std::size_t put_names(double foot) {
     std::size_t lines = 1;
     for (std::size_t i = 0; i < all_.size(); ++i) {
-      const std::vector<std::string> parts = name_lines(clip(all_[i].device, 40), s_.letters_in(w_ / n_ - 2));
+      const std::vector<std::string> parts = name_lines(report::clip(all_[i].device, 40), s_.letters_in(w_ / n_ - 2));
       lines = std::max(lines, parts.size());
       for (std::size_t k = 0; k < parts.size(); ++k)
         s_.label(parts[k], left_ + w_ * (static_cast<double>(i) + 0.6) / (n_ + 0.2),
@@ -126,19 +127,19 @@ class HistoryBars {
 
   std::string caption() const {
     std::string names;
-    for (const Comparison& c : all_) names += (names.empty() ? "" : ", ") + c.device;
+    for (const compare::Comparison& c : all_) names += (names.empty() ? "" : ", ") + c.device;
     return fmt::format(
         "Root mean square of measured − predicted in {} for the versions {}, over all poses and at held-out poses, to "
         "which tolerances were bent by what the other poses say; placebo: the same change of the predictions with its "
         "sign drawn by lot at every pose. Dashed: what noise and tolerances give with nothing missing, {:.3g} {}. {} "
         "{} {}",
-        unit_.micro, names, floor_, unit_.micro, axes_sentence(all_.front()), data_sentence(all_.front()),
-        noise_sentence(all_.front()));
+        unit_.micro, names, floor_, unit_.micro, report::axes_sentence(all_.front()),
+        report::data_sentence(all_.front()), report::noise_sentence(all_.front()));
   }
 
-  const History& h_;
-  const std::vector<Comparison>& all_;
-  ErrorUnit unit_;
+  const compare::History& h_;
+  const std::vector<compare::Comparison>& all_;
+  report::ErrorUnit unit_;
   double n_;  // versions
   Sheet s_;
   double floor_, most_;                // of noise and tolerances; the largest number
@@ -147,6 +148,6 @@ class HistoryBars {
 
 }  // namespace
 
-Figure history_figure(const History& h, const FigureStyle& style) { return HistoryBars(h, style).draw(); }
+Figure history_figure(const compare::History& h, const FigureStyle& style) { return HistoryBars(h, style).draw(); }
 
-}  // namespace deflect
+}  // namespace deflect::figures

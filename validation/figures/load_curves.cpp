@@ -8,7 +8,7 @@
 #include "validation/report/compare_words.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr double micro = 1e6;
@@ -34,9 +34,9 @@ struct Words {
   bool joined = false;  ///< measured points by a line
 };
 
-std::optional<Figure> panels(const Comparison& c, std::array<Curve, 3> curves, const Words& words,
+std::optional<Figure> panels(const compare::Comparison& c, std::array<Curve, 3> curves, const Words& words,
                              const FigureStyle& style) {
-  const ErrorUnit unit = error_unit(c);
+  const report::ErrorUnit unit = report::error_unit(c);
   std::vector<std::size_t> drawn;
   for (std::size_t k = 0; k < 3; ++k)
     if (curves[k].low_load < INFINITY) drawn.push_back(k);
@@ -57,7 +57,7 @@ std::optional<Figure> panels(const Comparison& c, std::array<Curve, 3> curves, c
   const double left = s.left_of(widest), gap = s.text_mm(widest.letters) + 1.4 * s.line();
   const double w = (s.width() - left - 4 - gap * (n - 1)) / n, h = s.narrow() ? 0.5 * w : std::min(1.25 * w, 54.0);
   s.put("set multiplot\nunset key");
-  double y = s.heading(words.title, {subjects(c)}) + 0.6 * s.line();
+  double y = s.heading(words.title, {report::subjects(c)}) + 0.6 * s.line();
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const std::size_t k = drawn[i];
     s.panel(left + static_cast<double>(i % columns) * (w + gap), y, w, h);
@@ -72,19 +72,20 @@ std::optional<Figure> panels(const Comparison& c, std::array<Curve, 3> curves, c
     if ((i + 1) % columns == 0) y += h + s.below() + (i + 1 < drawn.size() ? 0.5 * s.line() : 0);
   }
   s.put("unset multiplot");
-  return s.figure(y, fmt::format("{} {} {} {}", words.caption, axes_sentence(c), data_sentence(c), noise_sentence(c)));
+  return s.figure(y, fmt::format("{} {} {} {}", words.caption, report::axes_sentence(c), report::data_sentence(c),
+                                 report::noise_sentence(c)));
 }
 
-std::string displacement(const ErrorUnit& unit) { return unit.rotations ? "rotation" : "displacement"; }
+std::string displacement(const report::ErrorUnit& unit) { return unit.rotations ? "rotation" : "displacement"; }
 
 }  // namespace
 
-std::optional<Figure> secant(const Comparison& c, const FigureStyle& style) {
-  const ErrorUnit unit = error_unit(c);
-  const std::vector<ReadingCells> cells = cells_of(c);
+std::optional<Figure> secant(const compare::Comparison& c, const FigureStyle& style) {
+  const report::ErrorUnit unit = report::error_unit(c);
+  const std::vector<report::ReadingCells> cells = report::cells_of(c);
   std::array<Curve, 3> curves;
   for (int k = 0; k < 3; ++k)
-    for (const PoseGroup& group : c.study.data->poses) {
+    for (const measurement::PoseGroup& group : c.study.data->poses) {
       std::vector<std::size_t> order;
       for (const std::size_t i : group.readings)
         if (cells[i].pure && cells[i].load(k) != 0 && std::isfinite(cells[i].measured(k))) order.push_back(i);
@@ -107,12 +108,13 @@ std::optional<Figure> secant(const Comparison& c, const FigureStyle& style) {
       style);
 }
 
-std::optional<Figure> loops(const Comparison& c, const FigureStyle& style) {
-  const ErrorUnit unit = error_unit(c);
-  const std::vector<ReadingCells> cells = cells_of(c);
-  const auto worst = std::max_element(c.by_pose.begin(), c.by_pose.end(),
-                                      [](const Errors& a, const Errors& b) { return a.rmse < b.rmse; });
-  const PoseGroup& group = nth(c.study.data->poses, worst - c.by_pose.begin());
+std::optional<Figure> loops(const compare::Comparison& c, const FigureStyle& style) {
+  const report::ErrorUnit unit = report::error_unit(c);
+  const std::vector<report::ReadingCells> cells = report::cells_of(c);
+  const auto worst =
+      std::max_element(c.by_pose.begin(), c.by_pose.end(),
+                       [](const compare::Errors& a, const compare::Errors& b) { return a.rmse < b.rmse; });
+  const measurement::PoseGroup& group = nth(c.study.data->poses, worst - c.by_pose.begin());
   std::vector<std::size_t> order = group.readings;
   if (c.study.sequence)
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -142,4 +144,4 @@ std::optional<Figure> loops(const Comparison& c, const FigureStyle& style) {
       style);
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

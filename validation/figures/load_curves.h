@@ -7,12 +7,12 @@
 #include "validation/compare/comparison.h"
 #include "validation/figures/gnuplot.h"
 
-namespace deflect {
+namespace deflect::figures {
 
 /// Displacement / load over the load, all poses.
-std::optional<Figure> secant(const Comparison&, const FigureStyle& = {});
+std::optional<Figure> secant(const compare::Comparison&, const FigureStyle& = {});
 
 /// Displacement over load in the order taken, at the pose of the largest misfit.
-std::optional<Figure> loops(const Comparison&, const FigureStyle& = {});
+std::optional<Figure> loops(const compare::Comparison&, const FigureStyle& = {});
 
-}  // namespace deflect
+}  // namespace deflect::figures

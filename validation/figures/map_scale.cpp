@@ -7,12 +7,12 @@
 
 #include "validation/report/map_results.h"
 
-namespace deflect {
+namespace deflect::figures {
 
-StiffnessRange range_of_stiffness(const StiffnessMap& map) {
+StiffnessRange range_of_stiffness(const studies::StiffnessMap& map) {
   StiffnessRange e;
-  for (const MapPose& p : map.poses)
-    if (const MapValues* v = shown(p)) {
+  for (const studies::MapPose& p : map.poses)
+    if (const studies::MapValues* v = report::shown(p)) {
       e.low = std::min(e.low, v->stiffness_N_mm.minCoeff());
       e.high = std::max(e.high, v->stiffness_N_mm.maxCoeff());
     }
@@ -60,4 +60,4 @@ std::string tics_in(const StiffnessRange& e, bool named) {
   return list;
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

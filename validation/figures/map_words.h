@@ -6,12 +6,12 @@
 #include "validation/figures/sheet.h"
 #include "validation/studies/map.h"
 
-namespace deflect {
+namespace deflect::figures {
 
 /// Device and title, load, theory, orientation and a note; y below them, mm.
-double map_heading(Sheet&, const StiffnessMap&, const std::string& title, const std::string& note, double x);
+double map_heading(Sheet&, const studies::StiffnessMap&, const std::string& title, const std::string& note, double x);
 
 /// `what` is drawn, then units, load, axes, sign, poses and theory.
-std::string map_caption(const StiffnessMap&, const std::string& what);
+std::string map_caption(const studies::StiffnessMap&, const std::string& what);
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -8,7 +8,7 @@
 #include "validation/report/compare_words.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr double depth_x = 0.42, depth_z = 0.26;  // of a step along y, into the page
@@ -25,10 +25,10 @@ struct Box {
   double up(const Vector3& p) const { return p.z() + depth_z * (p.y() - low.y()); }
 };
 
-Box box_of(const Comparison& c) {
+Box box_of(const compare::Comparison& c) {
   Vector3 low = Vector3::Constant(INFINITY), high = -low;
   for (std::size_t p = 0; p < c.study.standing->poses(); ++p) {
-    const Vector3 at = mm * c.study.standing->tool(p).p_W;
+    const Vector3 at = report::mm * c.study.standing->tool(p).p_W;
     low = low.cwiseMin(at);
     high = high.cwiseMax(at);
   }
@@ -59,10 +59,10 @@ std::string frame_of(const Box& box) {
 
 }  // namespace
 
-std::vector<SignedResidual> signed_residuals(const Comparison& c) {
-  const std::vector<ReadingCells> cells = cells_of(c);
+std::vector<SignedResidual> signed_residuals(const compare::Comparison& c) {
+  const std::vector<report::ReadingCells> cells = report::cells_of(c);
   std::vector<SignedResidual> out;
-  for (const PoseGroup& pose : c.study.data->poses) {
+  for (const measurement::PoseGroup& pose : c.study.data->poses) {
     Vector3 moved = Vector3::Zero(), load = moved, sum = moved, count = moved;
     for (const std::size_t i : pose.readings) {
       if (cells[i].set_aside) continue;
@@ -87,8 +87,12 @@ namespace {
 /// The figure: one panel for each component and quantity, every pose a mark where the tool point stands.
 class SignedMap {
  public:
-  SignedMap(const Comparison& c, const FigureStyle& style)
-      : c_(c), unit_(error_unit(c)), values_(signed_residuals(c)), box_(box_of(c)), s_("residual-map", style, 160) {
+  SignedMap(const compare::Comparison& c, const FigureStyle& style)
+      : c_(c),
+        unit_(report::error_unit(c)),
+        values_(signed_residuals(c)),
+        box_(box_of(c)),
+        s_("residual-map", style, 160) {
     find_scale();
     seen_ = fmt::format("x to the right {}, y into the page {}, z up {} mm", range(0), range(1), range(2));
   }
@@ -96,7 +100,8 @@ class SignedMap {
   Figure figure() {
     put_data();
     lay_out();
-    const double top = s_.heading("Signed residual by pose", {subjects(c_), seen_ + "; circles > 0, squares < 0"});
+    const double top =
+        s_.heading("Signed residual by pose", {report::subjects(c_), seen_ + "; circles > 0, squares < 0"});
     for (std::size_t i = 0; i < rows_ * columns_; ++i) draw(i, top);
     s_.put("unset multiplot");
     return s_.figure(top + static_cast<double>(rows_) * row_ + (upright() ? 3.2 * s_.line() : 0.5 * s_.line()),
@@ -114,7 +119,7 @@ class SignedMap {
           const double x = (kind == 0 ? v.along : v.mean)(k);
           if (!std::isfinite(x)) continue;
           any_[kind][k] = true;
-          most_ = std::max(most_, um * std::abs(x));
+          most_ = std::max(most_, report::um * std::abs(x));
         }
     most_ = std::max(most_, 1e-3);
     for (const int kind : {0, 1})
@@ -123,7 +128,7 @@ class SignedMap {
       if (any_[0][k] || any_[1][k]) components_.push_back(k);
   }
 
-  Vector3 at_mm(std::size_t pose) const { return mm * c_.study.standing->tool(pose).p_W; }
+  Vector3 at_mm(std::size_t pose) const { return report::mm * c_.study.standing->tool(pose).p_W; }
 
   std::string range(int k) const {
     double low = INFINITY, high = -INFINITY;
@@ -143,7 +148,7 @@ class SignedMap {
       const Vector3 at = at_mm(p), foot(at.x(), at.y(), box_.low.z());
       std::string row = fmt::format("{:.5g} {:.5g} {:.5g}", box_.across(at), box_.up(at), box_.up(foot));
       for (const Vector3& v : {values_[p].along, values_[p].mean})
-        for (int k = 0; k < 3; ++k) row += fmt::format(" {:.5g}", um * v(k));
+        for (int k = 0; k < 3; ++k) row += fmt::format(" {:.5g}", report::um * v(k));
       s_.put("{}", row);
     }
     s_.put("EOD\nset multiplot\nunset key\nunset border\nunset tics\n{}\nset cbrange [{}:{}]", diverging_palette,
@@ -223,13 +228,13 @@ class SignedMap {
         "{5} {6} {7}",
         unit_.micro, most_, meaning,
         c_.set_aside.empty() ? "" : fmt::format(" {} gross outliers are left out.", c_.set_aside.size()), seen_,
-        axes_sentence(c_), data_sentence(c_), noise_sentence(c_));
+        report::axes_sentence(c_), report::data_sentence(c_), report::noise_sentence(c_));
   }
 
   static constexpr double margin = 3, gap = 3;  // mm
 
-  const Comparison& c_;
-  ErrorUnit unit_;
+  const compare::Comparison& c_;
+  report::ErrorUnit unit_;
   std::vector<SignedResidual> values_;
   Box box_;
   Sheet s_;
@@ -243,6 +248,6 @@ class SignedMap {
 
 }  // namespace
 
-Figure residual_map(const Comparison& c, const FigureStyle& style) { return SignedMap(c, style).figure(); }
+Figure residual_map(const compare::Comparison& c, const FigureStyle& style) { return SignedMap(c, style).figure(); }
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -7,7 +7,7 @@
 #include "msa/base/index.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 constexpr double mm_per_pt = 25.4 / 72;
@@ -48,13 +48,13 @@ Tics Sheet::tics(double low, double high, double room_mm, bool upright) const {
     t.step = nice_above(span / steps * (1 - 1e-9));
     t.letters = 1;
     for (const double end : {std::floor(low / t.step) + 1, std::ceil(high / t.step) - 1})
-      t.letters = std::max(t.letters, letters(fmt::format("{:.6g}", end * t.step)));
+      t.letters = std::max(t.letters, report::letters(fmt::format("{:.6g}", end * t.step)));
     const double each = upright ? 1.6 * line() : text_mm(t.letters + 2);
     if ((span / t.step) * each <= room_mm) break;
   }
   while (high > low && std::floor(high / t.step) - std::ceil(low / t.step) < 1) {  // one number says no scale
     t.step = nice_above(t.step * 0.4);
-    t.letters = std::max(t.letters, letters(fmt::format("{:.6g}", std::ceil(low / t.step) * t.step)));
+    t.letters = std::max(t.letters, report::letters(fmt::format("{:.6g}", std::ceil(low / t.step) * t.step)));
   }
   return t;
 }
@@ -63,12 +63,12 @@ double Sheet::heading(const std::string& title, const std::vector<std::string>& 
   title_ = title;
   double y = 0.875 * line();
   const double room = width_ - x - 2;
-  for (const std::string& each : wrap(title, letters_in(room, title_size, true))) {
+  for (const std::string& each : report::wrap(title, letters_in(room, title_size, true))) {
     label(each, x, y, "left " + font(title_size, true));
     y += 1.1 * line();
   }
   for (const std::string& note : notes)
-    for (const std::string& each : wrap(note, letters_in(room, note_size))) {
+    for (const std::string& each : report::wrap(note, letters_in(room, note_size))) {
       label(each, x, y, "left textcolor rgb '#505050' " + font(note_size));
       y += line();
     }
@@ -76,12 +76,12 @@ double Sheet::heading(const std::string& title, const std::vector<std::string>& 
 }
 
 void Sheet::label(std::string_view text, double x, double y, const std::string& how) {
-  put("set label {} {} {} noenhanced {}", ++labels_, gnuplot_quote(with_minus(text)), at(x, y), how);
+  put("set label {} {} {} noenhanced {}", ++labels_, gnuplot_quote(report::with_minus(text)), at(x, y), how);
 }
 
 void Sheet::axis_names(const std::string& across, const std::string& up, const Tics& up_tics) {
   if (!across.empty()) {
-    const double half = static_cast<double>(letters(across)) * style_.size_pt * mm_per_pt * prose / 2 + 1.5;
+    const double half = static_cast<double>(report::letters(across)) * style_.size_pt * mm_per_pt * prose / 2 + 1.5;
     label(across, std::max(half, std::min(x_ + w_ / 2, width_ - half)), y_ + h_ + 2.1 * line(), "center");
   }
   if (!up.empty()) label(up, x_ - left_of(up_tics) + 0.5 * line(), y_ + h_ / 2, "center rotate by 90");
@@ -101,8 +101,8 @@ void Sheet::plot(const std::string& series) {
 std::string Sheet::at(double x, double y) const { return fmt::format("at screen {:.5f},1-{:.4f}/H", x / width_, y); }
 
 Figure Sheet::figure(double height_mm, std::string caption) const {
-  return {name_, fmt::format("H = {:.4f}\n", height_mm) + body_, width_, height_mm, title_, with_minus(caption),
+  return {name_, fmt::format("H = {:.4f}\n", height_mm) + body_, width_, height_mm, title_, report::with_minus(caption),
           style_};
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -9,7 +9,7 @@
 
 #include "validation/figures/gnuplot.h"
 
-namespace deflect {
+namespace deflect::figures {
 
 /// Steps of an axis and the letters of its longest number.
 struct Tics {
@@ -61,4 +61,4 @@ class Sheet {
   int labels_ = 0;
 };
 
-}  // namespace deflect
+}  // namespace deflect::figures

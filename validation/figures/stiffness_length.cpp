@@ -12,16 +12,17 @@
 #include "validation/report/map_results.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::figures {
 namespace {
 
 /// The poses that are reached, the shortest mean length first.
-std::vector<const MapPose*> by_length(const StiffnessMap& map) {
-  std::vector<const MapPose*> poses;
-  for (const MapPose& p : map.poses)
+std::vector<const studies::MapPose*> by_length(const studies::StiffnessMap& map) {
+  std::vector<const studies::MapPose*> poses;
+  for (const studies::MapPose& p : map.poses)
     if (p.reached()) poses.push_back(&p);
-  std::stable_sort(poses.begin(), poses.end(),
-                   [](const MapPose* a, const MapPose* b) { return a->slide_mean_mm < b->slide_mean_mm; });
+  std::stable_sort(poses.begin(), poses.end(), [](const studies::MapPose* a, const studies::MapPose* b) {
+    return a->slide_mean_mm < b->slide_mean_mm;
+  });
   return poses;
 }
 
@@ -30,24 +31,24 @@ std::string length_row(double length, const Vector3& k) {
 }
 
 /// Of many poses some, spread evenly by the golden ratio.
-std::string point_rows(const std::vector<const MapPose*>& poses) {
+std::string point_rows(const std::vector<const studies::MapPose*>& poses) {
   constexpr double most = 1500;
   std::string rows;
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (std::fmod(0.6180339887498949 * static_cast<double>(i), 1) * static_cast<double>(poses.size()) < most)
-      rows += length_row(poses[i]->slide_mean_mm, shown(*poses[i])->stiffness_N_mm);
+      rows += length_row(poses[i]->slide_mean_mm, report::shown(*poses[i])->stiffness_N_mm);
   return rows;
 }
 
 /// Medians of all poses in bins of equally many; nothing for a single bin.
-std::string median_rows(const std::vector<const MapPose*>& poses, std::size_t bins) {
+std::string median_rows(const std::vector<const studies::MapPose*>& poses, std::size_t bins) {
   std::string rows;
   for (std::size_t b = 0; bins > 1 && b < bins; ++b) {
     const std::size_t from = b * poses.size() / bins, to = (b + 1) * poses.size() / bins;
     Vector3 median;
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<double> values;
-      for (std::size_t i = from; i < to; ++i) values.push_back(shown(*poses[i])->stiffness_N_mm(axis));
+      for (std::size_t i = from; i < to; ++i) values.push_back(report::shown(*poses[i])->stiffness_N_mm(axis));
       const auto middle = values.begin() + as_index(values.size() / 2);
       std::nth_element(values.begin(), middle, values.end());
       median(axis) = *middle;
@@ -60,14 +61,14 @@ std::string median_rows(const std::vector<const MapPose*>& poses, std::size_t bi
 /// Three panels in a row, one for each direction of the force; at least one pose is reached.
 class LengthPanels {
  public:
-  LengthPanels(const StiffnessMap& map, const FigureStyle& style)
+  LengthPanels(const studies::StiffnessMap& map, const FigureStyle& style)
       : map_(map),
         e_(range_of_stiffness(map)),
         poses_(by_length(map)),
         bins_(std::clamp<std::size_t>(poses_.size() / 20, 1, 16)),
         s_("stiffness-vs-length", style, 170.5),
         line_(s_.line()),
-        left_(1.8 * line_ + s_.text_mm(letters(fmt::format("{:.0f}", e_.high)))),
+        left_(1.8 * line_ + s_.text_mm(report::letters(fmt::format("{:.0f}", e_.high)))),
         gap_(s_.narrow() ? 3 : 4.5),
         room_((s_.width() - left_ - 5 - 2 * gap_) / 3),
         tall_(std::clamp(1.05 * room_, 8 * line_, 60.0)) {}
@@ -103,10 +104,10 @@ class LengthPanels {
     const double x = left_ + axis * (room_ + gap_);
     s_.panel(x, top_, room_, tall_);
     if (axis == 0) name_axes();
-    s_.label((s_.narrow() ? "force " : "force along ") + std::string(axis_names[axis]), x, top_ - 1.5 * line_,
+    s_.label((s_.narrow() ? "force " : "force along ") + std::string(report::axis_names[axis]), x, top_ - 1.5 * line_,
              fmt::format("left {} textcolor rgb '{}'", s_.font(1, true), colours[axis]));
     s_.put("set ytics ({})", tics_in({e_.low / 1.15, e_.high * 1.15}, axis == 0));
-    const double rho = with_slides(map_, axis).spearman;
+    const double rho = report::with_slides(map_, axis).spearman;
     s_.label(fmt::format("{} = {}{:.2f}", s_.narrow() ? "ρ" : "Spearman’s ρ", rho < 0 ? "−" : "", std::abs(rho)), x,
              top_ - 0.55 * line_, "left textcolor rgb '#505050'");
     s_.plot(fmt::format(
@@ -125,9 +126,9 @@ class LengthPanels {
              "center");
   }
 
-  const StiffnessMap& map_;
+  const studies::StiffnessMap& map_;
   StiffnessRange e_;
-  std::vector<const MapPose*> poses_;
+  std::vector<const studies::MapPose*> poses_;
   std::size_t bins_;
   Sheet s_;
   double line_, left_, gap_, room_, tall_;  // mm; room_ and tall_ are a panel's
@@ -136,9 +137,9 @@ class LengthPanels {
 
 }  // namespace
 
-std::vector<Figure> stiffness_against_length(const StiffnessMap& map, const FigureStyle& style) {
+std::vector<Figure> stiffness_against_length(const studies::StiffnessMap& map, const FigureStyle& style) {
   if (range_of_stiffness(map).high == 0 || map.slides.key.empty()) return {};
   return {LengthPanels(map, style).figure()};
 }
 
-}  // namespace deflect
+}  // namespace deflect::figures

@@ -6,10 +6,10 @@
 #include "validation/figures/gnuplot.h"
 #include "validation/studies/map.h"
 
-namespace deflect {
+namespace deflect::figures {
 
 /// The paper's finding: 1/C_ii at every pose against the mean length of the guideways there, by direction, with the
 /// median over poses of like length. Named "stiffness-vs-length". Empty where no pose is reached.
-std::vector<Figure> stiffness_against_length(const StiffnessMap&, const FigureStyle& = {});
+std::vector<Figure> stiffness_against_length(const studies::StiffnessMap&, const FigureStyle& = {});
 
-}  // namespace deflect
+}  // namespace deflect::figures

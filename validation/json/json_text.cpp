@@ -8,7 +8,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 
-namespace deflect {
+namespace deflect::json {
 namespace {
 
 /// One line, "{"point": 0, "pose": [0.0, …]}": nlohmann's compact form has no spaces.
@@ -95,4 +95,4 @@ Json parse_json(const std::string& text, const std::string& origin, const std::s
   }
 }
 
-}  // namespace deflect
+}  // namespace deflect::json

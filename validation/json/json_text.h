@@ -7,7 +7,7 @@
 
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::json {
 
 using Json = nlohmann::ordered_json;
 
@@ -25,4 +25,9 @@ Json parse_json(const std::string& text, const std::string& origin, const std::s
 /// Indented by two; a list of plain values, or an object in a list, stays on one line.
 std::string json_text(const Json& value);
 
+}  // namespace deflect::json
+
+namespace deflect {
+/// A word of all rooms that read or write results, as Vector6 is: `json::Json` would say it twice.
+using json::Json;
 }  // namespace deflect

@@ -10,7 +10,7 @@
 #include "msa/base/index.h"
 #include "msa/base/motion_text.h"
 
-namespace deflect {
+namespace deflect::matrix {
 namespace {
 
 /// Asymmetry below this is more likely to be the precision of a program than a mistake.
@@ -161,4 +161,4 @@ MatrixCheck check_matrix(const MatrixCheckOptions& o) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -9,7 +9,7 @@
 #include "validation/matrix/elastic_structure.h"
 #include "validation/matrix/explain_matrix.h"
 
-namespace deflect {
+namespace deflect::matrix {
 
 /// Matrices are translation first, in N, rad and the unit of length, at one point and in one set of axes.
 struct MatrixCheckOptions {
@@ -39,4 +39,4 @@ struct MatrixCheck {
 /// Throws InputError where the reference is not symmetric and positive itself.
 MatrixCheck check_matrix(const MatrixCheckOptions&);
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-namespace deflect {
+namespace deflect::matrix {
 namespace {
 
 Vector3 vee_of_difference(const Matrix3& M) { return {M(2, 1) - M(1, 2), M(0, 2) - M(2, 0), M(1, 0) - M(0, 1)}; }
@@ -55,4 +55,4 @@ Matrix6 weighed(const Matrix6& K, double length) {
   return w;
 }
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -13,7 +13,7 @@
 
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::matrix {
 
 /// In N, rad and K's unit of length; base axes.
 struct ElasticStructure {
@@ -34,4 +34,4 @@ double weighing_length(const Matrix6& K);
 /// W⁻¹ K W⁻¹ with W = diag(1, 1, 1, ℓ, ℓ, ℓ): the unit of length no longer matters.
 Matrix6 weighed(const Matrix6& K, double length);
 
-}  // namespace deflect
+}  // namespace deflect::matrix

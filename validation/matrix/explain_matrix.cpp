@@ -7,7 +7,7 @@
 #include "validation/matrix/elastic_structure.h"
 #include "validation/matrix/mistakes.h"
 
-namespace deflect {
+namespace deflect::matrix {
 namespace {
 
 /// Whatever the digits allow, an explanation leaves at most this of the matrix and this part of the difference; or, of
@@ -183,4 +183,4 @@ Check equals_reference(const PrintedMatrix& K, const PrintedMatrix& R) {
   return check;
 }
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -7,7 +7,7 @@
 
 #include "validation/matrix/matrix_checks.h"
 
-namespace deflect {
+namespace deflect::matrix {
 
 struct MatrixDiagnosis {
   std::string id;        ///< "metres"; "negated+metres" where two were made
@@ -31,4 +31,4 @@ Explanation explain(const PrintedMatrix& K, const PrintedMatrix& R, double unit_
 /// |K − R| by entry as part of the largest of R, rotations weighed: the entry that exceeds its digits most.
 Check equals_reference(const PrintedMatrix& K, const PrintedMatrix& R);
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -7,7 +7,7 @@
 
 #include "validation/matrix/elastic_structure.h"
 
-namespace deflect {
+namespace deflect::matrix {
 namespace {
 
 constexpr double computed_to = 1e-9, softest_N_m = 1, stiffest_N_m = 1e12;
@@ -105,4 +105,4 @@ JudgedMatrix judge(const PrintedMatrix& printed, const PrintedMatrix* passive_tw
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -13,7 +13,7 @@
 
 #include "validation/matrix/matrix_file.h"
 
-namespace deflect {
+namespace deflect::matrix {
 
 inline constexpr std::array<const char*, 6> wrench_axes = {"fx", "fy", "fz", "mx", "my", "mz"},
                                             displacement_axes = {"ux", "uy", "uz", "thx", "thy", "thz"};
@@ -51,4 +51,4 @@ PrintedMatrix with_tolerance(PrintedMatrix K, const std::optional<double>& toler
 
 JudgedMatrix judge(const PrintedMatrix& K, const PrintedMatrix* passive_twists, double unit_m, const PlausibleSize&);
 
-}  // namespace deflect
+}  // namespace deflect::matrix

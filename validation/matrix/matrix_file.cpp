@@ -13,7 +13,7 @@
 #include "validation/json/json_text.h"
 #include "validation/matrix/matrix_text.h"
 
-namespace deflect {
+namespace deflect::matrix {
 namespace {
 
 using Eigen::Index;
@@ -202,7 +202,7 @@ PrintedMatrix read_stiffness(const std::filesystem::path& path, const MatrixConv
   const std::string text = read_text(path);
   const auto first = text.find_first_not_of(" \t\r\n");
   const bool is_json = first != text.npos && text[first] == '{';
-  const Json json = is_json ? parse_json(text, path.string(), "JSON has no NaN and no infinity") : Json();
+  const Json json = is_json ? json::parse_json(text, path.string(), "JSON has no NaN and no infinity") : Json();
   // What `solve --json` wrote has its own units and order; older results do not say their kind.
   const bool is_result = is_json && (json.contains("kind") ? json["kind"] == "solve"
                                                            : key == "analytic.stiffness" || key == "msa.stiffness");
@@ -237,4 +237,4 @@ PrintedMatrix read_twists(const std::filesystem::path& path, const MatrixConvent
   return J;
 }
 
-}  // namespace deflect
+}  // namespace deflect::matrix

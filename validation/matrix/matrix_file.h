@@ -12,7 +12,7 @@
 
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::matrix {
 
 /// Numbers and how well they are known from their text. A program prints either with a number of significant digits or
 /// with a number of decimals; the file shows the largest of both, and trailing zeros that were left out are not lost.
@@ -38,4 +38,4 @@ PrintedMatrix read_stiffness(const std::filesystem::path&, const MatrixConventio
 /// Twists as columns, translation first, 6×m with 1 ≤ m ≤ 5; the file may have them as rows.
 PrintedMatrix read_twists(const std::filesystem::path&, const MatrixConvention&);
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -9,7 +9,7 @@
 #include "msa/base/outcome.h"
 #include "msa/base/units.h"
 
-namespace deflect {
+namespace deflect::matrix {
 namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
@@ -206,4 +206,4 @@ MatrixText lay_out(std::string_view text, const std::string& file) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::matrix

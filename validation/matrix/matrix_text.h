@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace deflect {
+namespace deflect::matrix {
 
 struct MatrixRow {
   std::vector<std::string> cells;
@@ -26,4 +26,4 @@ MatrixText lay_out(std::string_view text, const std::string& file);
 /// Begins like a number, NaN and infinity included.
 bool number_like(std::string_view cell);
 
-}  // namespace deflect
+}  // namespace deflect::matrix

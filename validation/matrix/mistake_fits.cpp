@@ -13,7 +13,7 @@
 #include "validation/matrix/elastic_structure.h"
 #include "validation/matrix/matrix_checks.h"
 
-namespace deflect {
+namespace deflect::matrix {
 namespace {
 
 /// What is fitted is known to few digits: components below the last one that is shown are rounding.
@@ -188,4 +188,4 @@ std::optional<Undone> lack_filled(const Matrix6& K, const MistakeContext& c) {
   return Undone{K + lack.part, ": in " + motion_of(lack, c, length)};
 }
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -4,7 +4,7 @@
 
 #include "validation/matrix/mistakes.h"
 
-namespace deflect {
+namespace deflect::matrix {
 
 /// The upper triangle copied down, where the lower is zero.
 std::optional<Undone> mirrored_triangle(const Matrix6& K, const MistakeContext&);
@@ -38,4 +38,4 @@ std::optional<Undone> scaled(const Matrix6& K, const MistakeContext&);
 std::optional<Undone> surplus_taken_away(const Matrix6& K, const MistakeContext&);
 std::optional<Undone> lack_filled(const Matrix6& K, const MistakeContext&);
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -6,7 +6,7 @@
 
 #include "validation/matrix/mistake_fits.h"
 
-namespace deflect {
+namespace deflect::matrix {
 namespace {
 
 constexpr double per_degree = pi / 180;
@@ -230,4 +230,4 @@ const std::vector<Mistake>& mistakes() {
   return rows;
 }
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -14,7 +14,7 @@
 
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::matrix {
 
 /// What an undoing may look at.
 struct MistakeContext {
@@ -40,4 +40,4 @@ struct Mistake {
 
 const std::vector<Mistake>& mistakes();
 
-}  // namespace deflect
+}  // namespace deflect::matrix

@@ -6,7 +6,7 @@
 
 #include "msa/base/units.h"
 
-namespace deflect {
+namespace deflect::measurement {
 namespace {
 
 std::string lower_case(std::string_view text) {
@@ -56,4 +56,4 @@ std::string excerpt(std::string_view text) {
   return end < text.size() ? beginning + "…" : beginning;
 }
 
-}  // namespace deflect
+}  // namespace deflect::measurement

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace deflect {
+namespace deflect::measurement {
 
 using SixNames = std::array<std::string, 6>;
 
@@ -24,4 +24,4 @@ std::string unknown_column(std::string_view name, const std::vector<std::string>
 /// The text on one line, or its beginning and "…" where it is too long for a message.
 std::string excerpt(std::string_view);
 
-}  // namespace deflect
+}  // namespace deflect::measurement

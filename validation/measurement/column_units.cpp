@@ -7,7 +7,7 @@
 
 #include "validation/measurement/column_names.h"
 
-namespace deflect {
+namespace deflect::measurement {
 namespace {
 
 struct ColumnUnit {
@@ -149,4 +149,4 @@ bool is_unit(std::string_view text) {
   return false;
 }
 
-}  // namespace deflect
+}  // namespace deflect::measurement

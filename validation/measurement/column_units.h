@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-namespace deflect {
+namespace deflect::measurement {
 
 struct NamedColumn {
   std::string name;               ///< of the contract: "fx_N", "q3_rad", "pose"
@@ -32,4 +32,4 @@ std::optional<NamedColumn> named_column(std::string_view written, std::string_vi
 /// Whether the text could stand in a row of units: a unit of the above, in brackets or not, or "-" or nothing.
 bool is_unit(std::string_view text);
 
-}  // namespace deflect
+}  // namespace deflect::measurement

@@ -7,7 +7,7 @@
 #include "msa/mechanism/stand.h"
 #include "validation/measurement/measurement_columns.h"
 
-namespace deflect {
+namespace deflect::measurement {
 namespace {
 
 void check_joints(const Mechanism& mechanism, const Measurements& m) {
@@ -42,4 +42,4 @@ std::vector<Configuration> configure_all(const Mechanism& mechanism, const Measu
   return configurations;
 }
 
-}  // namespace deflect
+}  // namespace deflect::measurement

@@ -7,7 +7,7 @@
 #include "msa/mechanism/configuration.h"
 #include "validation/measurement/measurements.h"
 
-namespace deflect {
+namespace deflect::measurement {
 
 /// One configuration per Measurements::poses, by inverse kinematics or, where joint coordinates were commanded, by
 /// forward kinematics. Throws InputError where number or kind (rad, mm) of the joint coordinates is not the device's,
@@ -16,4 +16,4 @@ namespace deflect {
 std::vector<Configuration> configure_all(const Mechanism&, const Measurements&,
                                          std::span<const Configuration> known = {});
 
-}  // namespace deflect
+}  // namespace deflect::measurement

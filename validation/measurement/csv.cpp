@@ -15,7 +15,7 @@
 #include "msa/base/units.h"
 #include "validation/measurement/column_names.h"
 
-namespace deflect {
+namespace deflect::measurement {
 namespace {
 
 std::string_view trim(std::string_view s) {
@@ -352,4 +352,4 @@ CsvTable parse_csv(std::string text, std::string file) { return CsvParser(std::m
 
 CsvTable read_csv(const std::string& file) { return parse_csv(read_text(file), file); }
 
-}  // namespace deflect
+}  // namespace deflect::measurement

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace deflect {
+namespace deflect::measurement {
 
 class CsvTable {
  public:
@@ -67,4 +67,4 @@ CsvTable parse_csv(std::string text, std::string file);
 /// The same of a file.
 CsvTable read_csv(const std::string& file);
 
-}  // namespace deflect
+}  // namespace deflect::measurement

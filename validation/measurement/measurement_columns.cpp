@@ -9,7 +9,7 @@
 
 #include "validation/measurement/column_units.h"
 
-namespace deflect {
+namespace deflect::measurement {
 namespace {
 
 std::vector<std::string> fixed_columns() {
@@ -193,4 +193,4 @@ MeasurementColumns measurement_columns(const CsvTable& table, bool plan) {
   return columns;
 }
 
-}  // namespace deflect
+}  // namespace deflect::measurement

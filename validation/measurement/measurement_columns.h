@@ -8,7 +8,7 @@
 #include "validation/measurement/column_names.h"
 #include "validation/measurement/csv.h"
 
-namespace deflect {
+namespace deflect::measurement {
 
 /// A column and how its numbers become those of the contract: factor · (number + offset).
 struct ReadColumn {
@@ -34,4 +34,4 @@ MeasurementColumns measurement_columns(const CsvTable&, bool plan = false);
 /// "q3_rad", "q3_mm": the column of the joint coordinate, counted from 0 here and from 1 there.
 std::string joint_column(std::size_t joint, bool rotates);
 
-}  // namespace deflect
+}  // namespace deflect::measurement

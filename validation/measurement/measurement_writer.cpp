@@ -10,7 +10,7 @@
 #include "validation/measurement/measurement_columns.h"
 #include "validation/measurement/measurements.h"
 
-namespace deflect {
+namespace deflect::measurement {
 namespace {
 
 /// The shortest number whose double, divided by `per_SI`, is `value`.
@@ -106,4 +106,4 @@ void write_measurements(const std::filesystem::path& path, const Measurements& m
   write_text(path, measurements_text(m));
 }
 
-}  // namespace deflect
+}  // namespace deflect::measurement

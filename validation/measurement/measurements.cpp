@@ -16,7 +16,7 @@
 #include "validation/measurement/csv.h"
 #include "validation/measurement/measurement_columns.h"
 
-namespace deflect {
+namespace deflect::measurement {
 namespace {
 
 constexpr double absolute_zero_C = -273.15;
@@ -265,4 +265,4 @@ std::vector<std::size_t> in_sequence(const Measurements& m, const std::string& p
   return order;
 }
 
-}  // namespace deflect
+}  // namespace deflect::measurement

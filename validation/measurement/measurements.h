@@ -29,7 +29,7 @@
 
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::measurement {
 
 struct Reading {
   std::size_t pose = 0;                               ///< index into Measurements::poses
@@ -83,4 +83,4 @@ Measurements one_pose(const Measurements&, std::size_t pose);
 /// says in the message what needs it.
 std::vector<std::size_t> in_sequence(const Measurements&, const std::string& purpose);
 
-}  // namespace deflect
+}  // namespace deflect::measurement

@@ -8,7 +8,7 @@
 
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::measurement {
 
 class Random {
  public:
@@ -31,4 +31,4 @@ class Random {
   boost::random::mt19937_64 engine_;
 };
 
-}  // namespace deflect
+}  // namespace deflect::measurement

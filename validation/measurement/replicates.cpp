@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-namespace deflect {
+namespace deflect::measurement {
 namespace {
 
 using Six = std::array<double, 6>;
@@ -99,4 +99,4 @@ std::vector<MeasuredValue> measured_values(const Measurements& m) {
   return values;
 }
 
-}  // namespace deflect
+}  // namespace deflect::measurement

@@ -17,7 +17,7 @@
 
 #include "validation/measurement/measurements.h"
 
-namespace deflect {
+namespace deflect::measurement {
 
 enum class Reached { in_same_direction, in_any_direction };
 
@@ -48,4 +48,4 @@ struct MeasuredValue {
 /// All of them, reading by reading.
 std::vector<MeasuredValue> measured_values(const Measurements&);
 
-}  // namespace deflect
+}  // namespace deflect::measurement

@@ -10,7 +10,7 @@
 #include "validation/page/page_template.h"
 #include "validation/result_files/result_file.h"
 
-namespace deflect {
+namespace deflect::page {
 namespace {
 
 constexpr std::size_t most_source = 600'000;   // bytes
@@ -44,7 +44,7 @@ void keep_first_rows(Json& frame) {
 }
 
 Json shown_result(const PageResult& result) {
-  ReadResult read = read_result(result.json, result.origin);
+  result_files::ReadResult read = result_files::read_result(result.json, result.origin);
   if (read.kind == "map") keep_what_is_shown(read.json);
   if (read.kind == "frame") keep_first_rows(read.json);
   return {{"kind", read.kind}, {"origin", result.origin}, {"result", std::move(read.json)}};
@@ -83,7 +83,7 @@ Json page_json(const PageContents& page) {
   data["results"] = Json::array();
   for (const PageResult& result : page.results) data["results"].push_back(shown_result(result));
   data["versions"] = Json::array();
-  for (const Comparison* c : page.versions)
+  for (const compare::Comparison* c : page.versions)
     data["versions"].push_back(residuals_json(*c, most_readings / page.versions.size()));
   data["scene"] = page.scene;
   return data;
@@ -101,4 +101,4 @@ std::string page_html(const PageContents& page) {
   return out.append(whole.substr(at + std::string_view(data_mark).size()));
 }
 
-}  // namespace deflect
+}  // namespace deflect::page

@@ -8,7 +8,7 @@
 #include "validation/compare/comparison.h"
 #include "validation/json/json_text.h"
 
-namespace deflect {
+namespace deflect::page {
 
 /// A file as it was used, for who wants to repeat the result.
 struct PageSource {
@@ -26,7 +26,7 @@ struct PageContents {
   std::optional<PageSource> device, data;
   std::vector<PageResult> results;
   /// Versions of the device against the same data, the first as it was given; may be empty.
-  std::vector<const Comparison*> versions;
+  std::vector<const compare::Comparison*> versions;
   Json scene;  ///< page_scene.h; null without
 };
 
@@ -43,4 +43,4 @@ Json page_json(const PageContents&);
 /// The page. Text of users stands in it as data and never as markup. InputError where pages are not built.
 std::string page_html(const PageContents&);
 
-}  // namespace deflect
+}  // namespace deflect::page

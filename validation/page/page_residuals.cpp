@@ -8,14 +8,14 @@
 #include "validation/report/compare_results.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::page {
 namespace {
 
 /// Of each pose, over the kind of numbers that Errors speak of.
-std::vector<double> rmse_by_pose(const Comparison& c, const VectorX& residual, bool rotations) {
+std::vector<double> rmse_by_pose(const compare::Comparison& c, const VectorX& residual, bool rotations) {
   std::vector<double> squares(c.study.data->poses.size(), 0), count(squares.size(), 0);
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
-    const MeasuredValue& v = c.study.values[i];
+    const measurement::MeasuredValue& v = c.study.values[i];
     if ((v.component >= 3) != rotations) continue;
     const std::size_t pose = c.study.data->readings[v.reading].pose;
     const double r = residual(as_index(i));
@@ -26,14 +26,14 @@ std::vector<double> rmse_by_pose(const Comparison& c, const VectorX& residual, b
   return squares;
 }
 
-VectorX with_nothing_missing(const Comparison& c, std::uint64_t seed) {
-  Random random(seed);
+VectorX with_nothing_missing(const compare::Comparison& c, std::uint64_t seed) {
+  measurement::Random random(seed);
   VectorX eta(c.tolerances.A.cols());
   for (double& each : eta) each = random.normal();
   VectorX r = c.tolerances.A * eta;
   double load = 0;
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
-    const MeasuredValue& v = c.study.values[i];
+    const measurement::MeasuredValue& v = c.study.values[i];
     if (i == 0 || v.reading != c.study.values[i - 1].reading)
       load = c.study.subject->load_tolerance() * random.normal();
     r(as_index(i)) += c.sigma[i] * random.normal() + load * c.study.predicted[v.reading](as_index(v.component));
@@ -41,15 +41,15 @@ VectorX with_nothing_missing(const Comparison& c, std::uint64_t seed) {
   return r;
 }
 
-Json poses_json(const Comparison& c, bool rotations) {
-  const double unit = rotations ? 1 : mm;
+Json poses_json(const compare::Comparison& c, bool rotations) {
+  const double unit = rotations ? 1 : report::mm;
   std::vector<std::vector<double>> healthy;
   for (std::uint64_t seed = 1; seed <= 3; ++seed)
     healthy.push_back(rmse_by_pose(c, with_nothing_missing(c, seed), rotations));
   Json out = Json::array();
   for (std::size_t p = 0; p < c.by_pose.size(); ++p) {
-    const Vector3 at = mm * c.study.standing->tool(p).p_W;
-    const Errors& e = c.by_pose[p];
+    const Vector3 at = report::mm * c.study.standing->tool(p).p_W;
+    const compare::Errors& e = c.by_pose[p];
     Json pose = {{"label", c.study.data->poses[p].label},
                  {"at_mm", {at.x(), at.y(), at.z()}},
                  {"rmse", unit * e.rmse},
@@ -60,42 +60,42 @@ Json poses_json(const Comparison& c, bool rotations) {
   return out;
 }
 
-Json readings_json(const Comparison& c, std::size_t most) {
-  const Measurements& data = *c.study.data;
+Json readings_json(const compare::Comparison& c, std::size_t most) {
+  const measurement::Measurements& data = *c.study.data;
   Json out = Json::array();
   for (std::size_t i = 0; i < std::min(most, data.readings.size()); ++i) {
-    const Reading& r = data.readings[i];
+    const measurement::Reading& r = data.readings[i];
     Vector6 load = r.load;
-    load.tail<3>() *= mm;
+    load.tail<3>() *= report::mm;
     const Json nothing = Json::array({nullptr, nullptr, nullptr, nullptr, nullptr, nullptr});
     Json reading = {{"line", r.line},
                     {"pose", r.pose},
                     {"sequence", r.sequence ? Json(*r.sequence) : Json()},
-                    {"load_N_Nmm", json_numbers(load, "load")},
+                    {"load_N_Nmm", json::json_numbers(load, "load")},
                     {"measured", nothing},
-                    {"predicted", json_numbers(twist_in_mm(c.study.predicted[i]), "predicted")},
+                    {"predicted", json::json_numbers(twist_in_mm(c.study.predicted[i]), "predicted")},
                     {"residual", nothing}};
     if (!data.note_columns.empty()) reading["notes"] = r.notes;
     out.push_back(std::move(reading));
   }
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
-    const MeasuredValue& v = c.study.values[i];
+    const measurement::MeasuredValue& v = c.study.values[i];
     if (v.reading >= out.size()) continue;
-    const double unit = v.component < 3 ? mm : 1;
+    const double unit = v.component < 3 ? report::mm : 1;
     out[v.reading]["measured"][v.component] = unit * v.value;
     out[v.reading]["residual"][v.component] = unit * c.residual(as_index(i));
   }
   return out;
 }
 
-Json curves_json(const Comparison& c) {
+Json curves_json(const compare::Comparison& c) {
   Json out = Json::array();
-  for (const ElongationCurve& curve : c.curves) {
+  for (const compare::ElongationCurve& curve : c.curves) {
     Json json = {{"site", curve.site}, {"rotation", curve.rotation}};
     for (std::size_t i = 0; i < curve.force.size(); ++i) {
-      json["force"].push_back((curve.rotation ? mm : 1) * curve.force[i]);
-      json["elongation"].push_back((curve.rotation ? 1 : mm) * curve.elongation[i]);
-      json["deviation"].push_back((curve.rotation ? 1 : mm) * curve.deviation[i]);
+      json["force"].push_back((curve.rotation ? report::mm : 1) * curve.force[i]);
+      json["elongation"].push_back((curve.rotation ? 1 : report::mm) * curve.elongation[i]);
+      json["deviation"].push_back((curve.rotation ? 1 : report::mm) * curve.deviation[i]);
     }
     out.push_back(std::move(json));
   }
@@ -104,11 +104,11 @@ Json curves_json(const Comparison& c) {
 
 }  // namespace
 
-Json residuals_json(const Comparison& c, std::size_t most) {
-  const bool rotations = rotations_alone(c.study.values);
+Json residuals_json(const compare::Comparison& c, std::size_t most) {
+  const bool rotations = compare::rotations_alone(c.study.values);
   Json out;
   out["device"] = c.device;
-  out["result"] = Json::parse(compare_json(c));
+  out["result"] = Json::parse(report::compare_json(c));
   out["unit"] = rotations ? "rad" : "mm";
   out["poses"] = poses_json(c, rotations);
   out["readings"] = readings_json(c, most);
@@ -118,4 +118,4 @@ Json residuals_json(const Comparison& c, std::size_t most) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::page

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace deflect {
+namespace deflect::page {
 
 /// Empty where the build found no bundler or no libraries.
 std::string_view page_template();
 
-}  // namespace deflect
+}  // namespace deflect::page

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace deflect {
+namespace deflect::parallel {
 
 void for_each_case(std::size_t n, std::size_t chunk, int threads, const std::function<void(std::size_t)>& work,
                    const std::function<void(std::size_t)>& told) {
@@ -48,4 +48,4 @@ Told part_of(const Told& whole, double from, double to) {
   return [whole, from, to](double share) { whole(from + (to - from) * share); };
 }
 
-}  // namespace deflect
+}  // namespace deflect::parallel

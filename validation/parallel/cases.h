@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace deflect {
+namespace deflect::parallel {
 
 /// Calls work(i) for i = 0 … n − 1 on `threads` threads (0: as many as the machine has), `chunk` cases at a time in
 /// order. Of the errors thrown that of the first failing chunk is thrown on, whatever the number of threads; cases
@@ -18,4 +18,4 @@ using Told = std::function<void(double share)>;
 /// What tells of a part of the work, from … to of the whole.
 Told part_of(const Told&, double from, double to);
 
-}  // namespace deflect
+}  // namespace deflect::parallel

@@ -7,7 +7,7 @@
 #include "msa/base/module.h"
 #include "validation/parallel/ranks.h"
 
-namespace deflect::mpi {
+namespace deflect::parallel::mpi {
 
 struct Module : ModuleHead {
   /// All processes of the run; MPI ends with the object. Null, and why, where MPI does not start.
@@ -18,4 +18,4 @@ struct Module : ModuleHead {
 /// Its interface is to be raised when Module or Ranks changes.
 inline constexpr ModuleKind module_kind = {"deflect_mpi.so", "deflect_mpi_module", 1};
 
-}  // namespace deflect::mpi
+}  // namespace deflect::parallel::mpi

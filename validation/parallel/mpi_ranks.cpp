@@ -8,7 +8,7 @@
 #include "msa/base/index.h"
 #include "validation/parallel/mpi_module.h"
 
-namespace deflect::mpi {
+namespace deflect::parallel::mpi {
 namespace {
 
 constexpr int tag = 1;
@@ -97,8 +97,8 @@ std::string library() noexcept {
 constexpr Module table = {{module_kind.interface, DEFLECT_VERSION}, start, library};
 
 }  // namespace
-}  // namespace deflect::mpi
+}  // namespace deflect::parallel::mpi
 
 extern "C" __attribute__((visibility("default"))) const deflect::ModuleHead* deflect_mpi_module() {
-  return &deflect::mpi::table;
+  return &deflect::parallel::mpi::table;
 }

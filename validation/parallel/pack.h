@@ -23,7 +23,7 @@ void serialize(Archive& a, Matrix<double, rows, cols>& x) {
 
 }  // namespace Eigen
 
-namespace deflect {
+namespace deflect::parallel {
 
 template <class T>
 std::string pack(const T& value) {
@@ -40,4 +40,4 @@ T unpack(const std::string& bytes) {
   return value;
 }
 
-}  // namespace deflect
+}  // namespace deflect::parallel

@@ -10,7 +10,7 @@
 
 #include "validation/parallel/ranks.h"
 
-namespace deflect {
+namespace deflect::parallel {
 namespace {
 
 constexpr double patience = 1.0, pause = 0.1;  // s before the first drawing and between two
@@ -68,4 +68,4 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
 }
 
-}  // namespace deflect
+}  // namespace deflect::parallel

@@ -7,7 +7,7 @@
 #include <ostream>
 #include <string>
 
-namespace deflect {
+namespace deflect::parallel {
 
 /// Where progress is shown, if anywhere: on one line that is redrawn, or line after line.
 struct ProgressStream {
@@ -49,4 +49,4 @@ class Progress {
 /// "5 s", "3 min 20 s", "2 h 5 min"; rounded up, so that it does not say 0 before the end.
 std::string duration_text(double seconds);
 
-}  // namespace deflect
+}  // namespace deflect::parallel

@@ -11,7 +11,7 @@
 #include "validation/parallel/mpi_module.h"
 #include "validation/parallel/pack.h"
 
-namespace deflect {
+namespace deflect::parallel {
 
 /// What a rank comes to a meeting with.
 struct Brought {
@@ -104,4 +104,4 @@ int run_on_ranks(const std::function<void(Ranks*)>& work, const std::function<vo
   return end.code;
 }
 
-}  // namespace deflect
+}  // namespace deflect::parallel

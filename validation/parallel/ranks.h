@@ -13,7 +13,7 @@
 
 #include "msa/base/ending.h"
 
-namespace deflect {
+namespace deflect::parallel {
 
 class Ranks {
  public:
@@ -72,4 +72,4 @@ std::unique_ptr<Ranks> launched_ranks();
 /// the exit code (ending.h), the same on all; what went wrong is told to `tell`, on the first rank.
 int run_on_ranks(const std::function<void(Ranks*)>& work, const std::function<void(const Ending&)>& tell);
 
-}  // namespace deflect
+}  // namespace deflect::parallel

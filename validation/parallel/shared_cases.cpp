@@ -7,7 +7,7 @@
 #include "msa/base/outcome.h"
 #include "validation/parallel/pack.h"
 
-namespace deflect {
+namespace deflect::parallel {
 namespace {
 
 // A rank has that many cases between two meetings, at least: what becomes of one that fails is known to all by then,
@@ -65,4 +65,4 @@ void for_each_case(const SharedCases& cases, Ranks* ranks, int threads, const st
   }
 }
 
-}  // namespace deflect
+}  // namespace deflect::parallel

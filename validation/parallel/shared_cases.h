@@ -8,7 +8,7 @@
 #include "validation/parallel/cases.h"
 #include "validation/parallel/ranks.h"
 
-namespace deflect {
+namespace deflect::parallel {
 
 struct SharedCases {
   std::size_t count = 0;
@@ -23,4 +23,4 @@ struct SharedCases {
 /// is thrown on, on all ranks. `told` as by for_each_case(), as if the other ranks were as far as this one.
 void for_each_case(const SharedCases&, Ranks*, int threads, const std::function<void(std::size_t done)>& told = {});
 
-}  // namespace deflect
+}  // namespace deflect::parallel

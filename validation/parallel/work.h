@@ -3,7 +3,7 @@
 
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::parallel {
 
 class Ranks;
 
@@ -21,4 +21,4 @@ struct Work {
 /// In this thread alone, without a word: of work that is done beside other work.
 inline const Work alone = {1};
 
-}  // namespace deflect
+}  // namespace deflect::parallel

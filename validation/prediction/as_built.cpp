@@ -1,7 +1,7 @@
 #include "validation/prediction/as_built.h"
 #include "msa/base/index.h"
 
-namespace deflect {
+namespace deflect::prediction {
 namespace {
 
 constexpr double slack = 5e-3;  // m: a machine does not refuse to stand where its drawing just can
@@ -62,4 +62,4 @@ Configuration configure_as_built(const Mechanism& geometry, const AsBuilt& built
   return c;
 }
 
-}  // namespace deflect
+}  // namespace deflect::prediction

@@ -5,7 +5,7 @@
 
 #include "msa/mechanism/configuration.h"
 
-namespace deflect {
+namespace deflect::prediction {
 
 struct LegAsBuilt {
   Vector3 base_joint = Vector3::Zero();      ///< m, base axes: where the leg stands on the base
@@ -29,4 +29,4 @@ Mechanism with_geometry(const Mechanism& drawn, const AsBuilt&);
 Configuration configure_as_built(const Mechanism& geometry, const AsBuilt&, const Configuration& drawn,
                                  const VectorX& actuator_errors = {});
 
-}  // namespace deflect
+}  // namespace deflect::prediction

@@ -12,7 +12,7 @@
 #include "validation/measurement/random.h"
 #include "validation/studies/workspace.h"
 
-namespace deflect {
+namespace deflect::prediction {
 namespace {
 
 constexpr double most_tilt_deg = 7.5, lever = 0.02;  // m
@@ -32,7 +32,7 @@ class Plan {
   }
 
   void add_points() {
-    for (const ValidationPoint& point : workspace_points(mechanism_)) {
+    for (const studies::ValidationPoint& point : studies::workspace_points(mechanism_)) {
       const Vector6 at = as_written(point.pose_mm_deg);
       configure(mechanism_, pose_from(at));
       pose(point.label, at);
@@ -41,11 +41,11 @@ class Plan {
 
   void add_tilted(int count) {
     const bool tilts = actuators_of(mechanism_).size() >= 6;
-    const Region region = region_of(mechanism_);
+    const studies::Region region = studies::region_of(mechanism_);
     for (int i = 0; i < count; ++i) {
       const auto label = std::to_string(plan_.poses.size());
       for (int tries = 0;; ++tries) {
-        Vector6 at = draw_pose(region, random_);
+        Vector6 at = studies::draw_pose(region, random_);
         const Vector3 tilt = random_.uniform3(-most_tilt_deg, most_tilt_deg);
         if (tilts) at.tail<3>() += tilt;
         at = as_written(at);
@@ -59,7 +59,7 @@ class Plan {
   }
 
   void read(std::size_t pose, const Vector6& load) {
-    Reading r;
+    measurement::Reading r;
     r.pose = pose;
     r.load = load + Vector6::Zero();  // no −0
     r.sequence = static_cast<double>(plan_.readings.size());
@@ -69,23 +69,23 @@ class Plan {
   }
 
   std::size_t poses() const { return plan_.poses.size(); }
-  Random& random() { return random_; }
-  Measurements take() { return std::move(plan_); }
+  measurement::Random& random() { return random_; }
+  measurement::Measurements take() { return std::move(plan_); }
 
  private:
   const Mechanism& mechanism_;
-  Random random_;
-  Measurements plan_;
+  measurement::Random random_;
+  measurement::Measurements plan_;
 };
 
-Measurements paper(Plan plan, double F) {
+measurement::Measurements paper(Plan plan, double F) {
   plan.add_points();
   for (std::size_t p = 0; p < plan.poses(); ++p)
     for (int axis = 0; axis < 3; ++axis) plan.read(p, F * Vector6::Unit(axis));
   return plan.take();
 }
 
-Measurements cycle(Plan plan, double F) {
+measurement::Measurements cycle(Plan plan, double F) {
   plan.add_points();
   for (std::size_t p = 0; p < plan.poses(); ++p)
     for (int axis = 0; axis < 3; ++axis)
@@ -94,7 +94,7 @@ Measurements cycle(Plan plan, double F) {
   return plan.take();
 }
 
-Measurements rich(Plan plan, double F) {
+measurement::Measurements rich(Plan plan, double F) {
   plan.add_points();
   plan.add_tilted(6);
   for (int round = 0; round < 2; ++round)
@@ -107,7 +107,7 @@ Measurements rich(Plan plan, double F) {
   return plan.take();
 }
 
-Measurements random(Plan plan, double F) {
+measurement::Measurements random(Plan plan, double F) {
   plan.add_tilted(20);
   for (std::size_t p = 0; p < plan.poses(); ++p)
     for (int i = 0; i < 14; ++i) {
@@ -122,8 +122,8 @@ Measurements random(Plan plan, double F) {
 
 }  // namespace
 
-Measurements campaign(const std::string& name, const Mechanism& m, double force, std::uint64_t seed) {
-  constexpr Measurements (*plans[])(Plan, double) = {paper, cycle, rich, random};
+measurement::Measurements campaign(const std::string& name, const Mechanism& m, double force, std::uint64_t seed) {
+  constexpr measurement::Measurements (*plans[])(Plan, double) = {paper, cycle, rich, random};
   static_assert(std::size(plans) == std::size(campaign_names));
   const auto found = std::find(std::begin(campaign_names), std::end(campaign_names), name);
   if (found == std::end(campaign_names))
@@ -132,4 +132,4 @@ Measurements campaign(const std::string& name, const Mechanism& m, double force,
   return plans[found - std::begin(campaign_names)](Plan(m, seed), force);
 }
 
-}  // namespace deflect
+}  // namespace deflect::prediction

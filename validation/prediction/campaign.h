@@ -16,12 +16,12 @@
 #include "msa/mechanism/description.h"
 #include "validation/measurement/measurements.h"
 
-namespace deflect {
+namespace deflect::prediction {
 
 inline constexpr const char* campaign_names[] = {"paper", "cycle", "rich", "random"};
 
 /// The plan of that name for the device's workspace (workspace.h): poses, loads and sequence. Poses that the device
 /// cannot reach are drawn anew; a point that it cannot reach is a ModelError. F in N.
-Measurements campaign(const std::string& name, const Mechanism&, double force, std::uint64_t seed);
+measurement::Measurements campaign(const std::string& name, const Mechanism&, double force, std::uint64_t seed);
 
-}  // namespace deflect
+}  // namespace deflect::prediction

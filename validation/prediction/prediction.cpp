@@ -12,19 +12,19 @@
 #include "msa/base/index.h"
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::prediction {
 namespace {
 
 /// 0 … N − 1 by reading, in the order in which they were taken.
-std::vector<double> ranks(const Measurements& m, const std::string& purpose) {
+std::vector<double> ranks(const measurement::Measurements& m, const std::string& purpose) {
   std::vector<double> rank(m.readings.size());
-  const std::vector<std::size_t> order = in_sequence(m, purpose);
+  const std::vector<std::size_t> order = measurement::in_sequence(m, purpose);
   for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = static_cast<double>(i);
   return rank;
 }
 
 /// The readings of a pose in the order in which they were taken.
-std::vector<std::size_t> ordered(const PoseGroup& group, const Measurements& m) {
+std::vector<std::size_t> ordered(const measurement::PoseGroup& group, const measurement::Measurements& m) {
   std::vector<std::size_t> order = group.readings;
   if (m.readings[order.front()].sequence)
     std::sort(order.begin(), order.end(),
@@ -33,7 +33,7 @@ std::vector<std::size_t> ordered(const PoseGroup& group, const Measurements& m) 
 }
 
 /// The poses in the order of their first readings in time. Where a pose is come back to, its readings are one approach.
-std::vector<std::size_t> poses_in_sequence(const Measurements& m) {
+std::vector<std::size_t> poses_in_sequence(const measurement::Measurements& m) {
   std::vector<std::size_t> order(m.poses.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto begun = [&](std::size_t p) { return *m.readings[ordered(m.poses[p], m).front()].sequence; };
@@ -110,7 +110,7 @@ double carried_before(const Configuration& c) {
 }
 
 /// The largest load of a pose (its six numbers in N and Nm together), as true load.
-Vector6 largest_load(const PoseGroup& pose, const Measurements& data, const Matrix6& cell) {
+Vector6 largest_load(const measurement::PoseGroup& pose, const measurement::Measurements& data, const Matrix6& cell) {
   Vector6 largest = Vector6::Zero();
   for (const std::size_t i : pose.readings)
     if (data.readings[i].load.norm() > largest.norm()) largest = data.readings[i].load;
@@ -118,23 +118,23 @@ Vector6 largest_load(const PoseGroup& pose, const Measurements& data, const Matr
 }
 
 /// A load that came and went: the slips that it leaves, and the displacement that these alone leave.
-Vector6 after(const Vector6& F, TheoryAt& machine, Conditions& conditions) {
+Vector6 after(const Vector6& F, theories::TheoryAt& machine, Conditions& conditions) {
   const Vector6 relaxed = machine.predict(Vector6::Zero(), conditions).displacement;  // weight's
   conditions.slips = machine.predict(F, conditions).slips;
-  const Prediction rest = machine.predict(Vector6::Zero(), conditions);
+  const theories::Prediction rest = machine.predict(Vector6::Zero(), conditions);
   conditions.slips = rest.slips;
   return rest.displacement - relaxed;
 }
 
 /// Tells the theory where it will be asked many times.
-void expect(TheoryAt& machine, const PoseGroup& pose, const Measurements& data) {
+void expect(theories::TheoryAt& machine, const measurement::PoseGroup& pose, const measurement::Measurements& data) {
   if (pose.readings.size() <= 8) return;
   machine.expect_many(std::any_of(pose.readings.begin(), pose.readings.end(),
                                   [&](std::size_t i) { return data.readings[i].temperature_C != 20; }));
 }
 
 /// What the sensor's drift adds to readings in their sequence.
-void add_drift(std::vector<Vector6>& readings, const Sensor& sensor, const Measurements& data) {
+void add_drift(std::vector<Vector6>& readings, const Sensor& sensor, const measurement::Measurements& data) {
   const std::vector<double> rank = ranks(data, "drift");
   for (std::size_t i = 0; i < readings.size(); ++i)
     readings[i].head<3>() += sensor.drift * (rank[i] / static_cast<double>(readings.size()));
@@ -150,17 +150,18 @@ Vector6 recorded_displacement(const Sensor& sensor, const Vector6& d) {
   return rotate_twist(rotation_from_vector(sensor.rotation)) * d;
 }
 
-std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration>& machines, const Measurements& data,
-                             const PredictionOptions& o, const Work& work) {
+std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration>& machines,
+                             const measurement::Measurements& data, const PredictionOptions& o,
+                             const parallel::Work& work) {
   std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
   const auto [frictions, beside] = machines.empty() ? std::pair{0, false} : frictions_of(machines.front());
-  if (frictions > 0) in_sequence(data, "friction");
+  if (frictions > 0) measurement::in_sequence(data, "friction");
   const double before = machines.empty() ? 0 : carried_before(machines.front());
   Carried carried;
   const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation)),
                 sensor = rotate_twist(rotation_from_vector(m.sensor.rotation));
   const auto at_pose = [&](std::size_t p) {
-    const std::unique_ptr<TheoryAt> machine = o.theory->at(machines[p], {m.name, o.division});
+    const std::unique_ptr<theories::TheoryAt> machine = o.theory->at(machines[p], {m.name, o.division});
     Conditions conditions(o.geometry.value_or(m.geometry));
     if (conditions.geometry == Geometry::linear) expect(*machine, data.poses[p], data);
     Vector6 unloaded = Vector6::Zero();
@@ -171,9 +172,9 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
       conditions.slips = carried.slips();
     }
     // Without history the same load at the same temperature has the same answer.
-    std::map<std::array<double, 7>, Prediction> known;
-    Prediction last;
-    const auto answer = [&](const Reading& reading) -> const Prediction& {
+    std::map<std::array<double, 7>, theories::Prediction> known;
+    theories::Prediction last;
+    const auto answer = [&](const measurement::Reading& reading) -> const theories::Prediction& {
       conditions.warmer = reading.temperature_C - 20;
       const Vector6 F = cell * reading.load;
       if (frictions > 0 || machine->affine()) return last = machine->predict(F, conditions);
@@ -185,8 +186,8 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
       return found->second;
     };
     for (const std::size_t i : ordered(data.poses[p], data)) {
-      const Reading& reading = data.readings[i];
-      const Prediction& r = answer(reading);
+      const measurement::Reading& reading = data.readings[i];
+      const theories::Prediction& r = answer(reading);
       if (!r.converged)
         throw NumericalError(fmt::format("{}:{}: {} finds no equilibrium under this load{}{}", data.origin,
                                          reading.line, o.theory->spoken, r.reason.empty() ? "" : ": ", r.reason));
@@ -204,11 +205,11 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
     }
   } else {
     const auto told = [&](std::size_t done) { work.progress(static_cast<double>(done) / all); };
-    for_each_case(machines.size(), 1, work.threads, at_pose,
-                  work.progress ? std::function<void(std::size_t)>(told) : nullptr);
+    parallel::for_each_case(machines.size(), 1, work.threads, at_pose,
+                            work.progress ? std::function<void(std::size_t)>(told) : nullptr);
   }
   if (!m.sensor.drift.isZero(0)) add_drift(out, m.sensor, data);
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::prediction

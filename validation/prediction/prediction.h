@@ -17,10 +17,10 @@
 #include "validation/parallel/work.h"
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::prediction {
 
 struct PredictionOptions {
-  const Theory* theory = all_theories().front();
+  const theories::Theory* theory = theories::all_theories().front();
   std::optional<Geometry> geometry;  ///< absent: the device's
   frame::MemberDivision division;    ///< of members in the MSA
 };
@@ -28,11 +28,12 @@ struct PredictionOptions {
 /// d_T_W as recorded, per reading, all six components (m, rad). `machines`: where the device stands, one per pose of
 /// the measurements (configure_all, configure_as_built). Throws NumericalError "file:line: …" where the theory finds no
 /// equilibrium, InputError where the device needs a sequence that the file does not have.
-std::vector<Vector6> predict(const Mechanism&, const std::vector<Configuration>& machines, const Measurements&,
-                             const PredictionOptions& = {}, const Work& = {});
+std::vector<Vector6> predict(const Mechanism&, const std::vector<Configuration>& machines,
+                             const measurement::Measurements&, const PredictionOptions& = {},
+                             const parallel::Work& = {});
 
 /// The true load of a recorded one, and the recorded displacement of a true one without drift.
 Vector6 true_load(const LoadCell&, const Vector6& recorded);
 Vector6 recorded_displacement(const Sensor&, const Vector6& true_displacement);
 
-}  // namespace deflect
+}  // namespace deflect::prediction

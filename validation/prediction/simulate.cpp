@@ -11,10 +11,10 @@
 #include "validation/prediction/as_built.h"
 #include "validation/prediction/prediction.h"
 
-namespace deflect {
+namespace deflect::prediction {
 namespace {
 
-AsBuilt draw(const Mechanism& m, double scale, Random& random) {
+AsBuilt draw(const Mechanism& m, double scale, measurement::Random& random) {
   const Tolerances t = named_tolerances(m);
   AsBuilt built;
   built.modulus = scale * t.modulus * random.normal();
@@ -30,7 +30,7 @@ AsBuilt draw(const Mechanism& m, double scale, Random& random) {
 }
 
 /// The description with the numbers off that have tolerances of their own.
-Mechanism draw_numbers(const Mechanism& m, double scale, Random& random) {
+Mechanism draw_numbers(const Mechanism& m, double scale, measurement::Random& random) {
   if (m.tolerances.numbers.empty()) return m;
   Mechanism out = resolved(m);
   const std::vector<NumberMove> all = number_moves(out);
@@ -39,7 +39,7 @@ Mechanism draw_numbers(const Mechanism& m, double scale, Random& random) {
 }
 
 /// Repeatability is a length: of slides.
-VectorX draw_errors(const std::vector<Actuator>& actuators, double sigma, Random& random) {
+VectorX draw_errors(const std::vector<Actuator>& actuators, double sigma, measurement::Random& random) {
   VectorX errors = VectorX::Zero(std::ssize(actuators));
   for (std::size_t i = 0; i < actuators.size(); ++i)
     if (!actuators[i].rotation) errors(as_index(i)) = sigma * random.normal();
@@ -54,11 +54,12 @@ double rounded(double value, double sigma, double per_SI) {
 
 }  // namespace
 
-Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOptions& o, const Work& work) {
-  Random random(o.seed);
+measurement::Measurements simulate(const Mechanism& m, measurement::Measurements plan, const SimulationOptions& o,
+                                   const parallel::Work& work) {
+  measurement::Random random(o.seed);
   const AsBuilt built = draw(m, o.tolerances, random);
   const Mechanism geometry = o.tolerances > 0 ? with_geometry(draw_numbers(m, o.tolerances, random), built) : m;
-  std::vector<Configuration> machines = configure_all(m, plan);
+  std::vector<Configuration> machines = measurement::configure_all(m, plan);
   for (Configuration& machine : machines) {
     const VectorX errors = draw_errors(machine.actuators, o.tolerances * m.tolerances.actuator_repeatability, random);
     if (o.tolerances > 0) machine = configure_as_built(geometry, built, machine, errors);
@@ -71,17 +72,17 @@ Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOpt
       plan.readings[i].temperature_C =
           std::round(1e3 * (o.temperature + o.swing * std::sin(2 * pi * static_cast<double>(i) / n))) / 1e3;
   }
-  Measurements loaded = plan;
-  for (Reading& r : loaded.readings) r.load *= 1 + o.tolerances * m.tolerances.load * random.normal();
+  measurement::Measurements loaded = plan;
+  for (measurement::Reading& r : loaded.readings) r.load *= 1 + o.tolerances * m.tolerances.load * random.normal();
 
   PredictionOptions p;
-  p.theory = &theory("msa");
+  p.theory = &theories::theory("msa");
   p.geometry = o.geometry;
   p.division = o.division;
   const std::vector<Vector6> exact = predict(geometry, machines, loaded, p, work);
 
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
-    Reading& r = plan.readings[i];
+    measurement::Reading& r = plan.readings[i];
     const bool gross = o.outliers > 0 && random.uniform(0, 1) < o.outliers;
     for (Eigen::Index k = 0; k < 6; ++k) {
       const double sigma = k < 3 ? o.sigma_u : o.sigma_th.value_or(0);
@@ -96,17 +97,17 @@ Measurements simulate(const Mechanism& m, Measurements plan, const SimulationOpt
   return plan;
 }
 
-double share_carried(const Mechanism& m, const Measurements& plan, const SimulationOptions& o) {
-  const std::vector<Configuration> machines = configure_all(m, plan);
+double share_carried(const Mechanism& m, const measurement::Measurements& plan, const SimulationOptions& o) {
+  const std::vector<Configuration> machines = measurement::configure_all(m, plan);
   PredictionOptions p;
-  p.theory = &theory("msa");
+  p.theory = &theories::theory("msa");
   p.geometry = o.geometry;
   p.division = o.division;
   for (std::size_t pose = 0; pose < machines.size(); ++pose) {
     const auto carries = [&](double share) {
-      Measurements some = one_pose(plan, pose);
-      for (Reading& r : some.readings) r.load *= share;
-      return bool(outcome_of<NumericalError>([&] { return predict(m, {machines[pose]}, some, p, alone); }));
+      measurement::Measurements some = measurement::one_pose(plan, pose);
+      for (measurement::Reading& r : some.readings) r.load *= share;
+      return bool(outcome_of<NumericalError>([&] { return predict(m, {machines[pose]}, some, p, parallel::alone); }));
     };
     if (carries(1)) continue;
     double low = 1e-6, high = 1;
@@ -120,4 +121,4 @@ double share_carried(const Mechanism& m, const Measurements& plan, const Simulat
   return 1;
 }
 
-}  // namespace deflect
+}  // namespace deflect::prediction

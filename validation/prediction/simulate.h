@@ -10,7 +10,7 @@
 #include "validation/measurement/measurements.h"
 #include "validation/parallel/work.h"
 
-namespace deflect {
+namespace deflect::prediction {
 
 struct SimulationOptions {
   std::uint64_t seed = 1;
@@ -26,10 +26,11 @@ struct SimulationOptions {
 /// The plan with displacements. One machine is drawn by lot within the device's tolerances (as_built.h), its actuators
 /// once for every pose; every true load differs from the recorded one by the load's tolerance; then the reading's
 /// noise. The same seed gives the same file. Readings are rounded to a thousandth of σ.
-Measurements simulate(const Mechanism&, Measurements plan, const SimulationOptions&, const Work& = {});
+measurement::Measurements simulate(const Mechanism&, measurement::Measurements plan, const SimulationOptions&,
+                                   const parallel::Work& = {});
 
 /// How many times the plan's loads the machine as drawn carries, to a percent, at the first of its poses where it does
 /// not carry all; 1 where it carries all, 0 where it does not carry a millionth.
-double share_carried(const Mechanism&, const Measurements& plan, const SimulationOptions&);
+double share_carried(const Mechanism&, const measurement::Measurements& plan, const SimulationOptions&);
 
-}  // namespace deflect
+}  // namespace deflect::prediction

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace deflect {
+namespace deflect::recording {
 
 Vector6 Rewritten::of(const Vector6& x) const {
   Vector6 out;
@@ -11,9 +11,9 @@ Vector6 Rewritten::of(const Vector6& x) const {
   return out;
 }
 
-Measurements corrected(const Measurements& data, const Correction& c) {
-  Measurements out = data;
-  for (Reading& r : out.readings) {
+measurement::Measurements corrected(const measurement::Measurements& data, const Correction& c) {
+  measurement::Measurements out = data;
+  for (measurement::Reading& r : out.readings) {
     for (std::size_t k = 0; k < 6; ++k) {
       const std::optional<double>& recorded =
           nth(data.readings, &r - out.readings.data()).displacement[c.displacement.from[k]];
@@ -25,8 +25,8 @@ Measurements corrected(const Measurements& data, const Correction& c) {
     r.load.tail<3>() += c.acts_at.cross(Vector3(r.load.head<3>()));
   }
   if (c.pose)
-    for (PoseGroup& group : out.poses) c.pose(group);
+    for (measurement::PoseGroup& group : out.poses) c.pose(group);
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::recording

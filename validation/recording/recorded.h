@@ -7,7 +7,7 @@
 
 #include "validation/measurement/measurements.h"
 
-namespace deflect {
+namespace deflect::recording {
 
 /// Six numbers that are six others, each times a factor: out(k) = factor[k] · in(from[k]).
 struct Rewritten {
@@ -24,13 +24,13 @@ struct Correction {
   std::string id;        ///< "force_in_kgf"
   std::string sentence;  ///< what the data look like, with the remedy: "loads in kgf: fx_N … want N, …"
   Rewritten displacement, load;
-  Vector3 acts_at = Vector3::Zero();     ///< m, base axes: forces act at T + acts_at
-  std::function<void(PoseGroup&)> pose;  ///< empty: poses are as recorded
-  bool sigma_too = true;                 ///< a unit of displacements is the unit of their σ too
-  int fitted = 0;                        ///< numbers that were fitted to the data
+  Vector3 acts_at = Vector3::Zero();                  ///< m, base axes: forces act at T + acts_at
+  std::function<void(measurement::PoseGroup&)> pose;  ///< empty: poses are as recorded
+  bool sigma_too = true;                              ///< a unit of displacements is the unit of their σ too
+  int fitted = 0;                                     ///< numbers that were fitted to the data
 };
 
 /// A number without a partner in its new place (a column that was not recorded) is not measured.
-Measurements corrected(const Measurements&, const Correction&);
+measurement::Measurements corrected(const measurement::Measurements&, const Correction&);
 
-}  // namespace deflect
+}  // namespace deflect::recording

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace deflect {
+namespace deflect::recording {
 namespace {
 
 constexpr const char* base_axis_names = "xyz";
@@ -70,19 +70,19 @@ std::string axes_words(const SignedAxes& a, const std::string& what) {
   return fmt::format("{} of which {} {} the opposite sign", what, turned, turned.size() == 1 ? "has" : "have");
 }
 
-bool measured_any(const Measurements& data, std::size_t first) {
-  for (const Reading& r : data.readings)
+bool measured_any(const measurement::Measurements& data, std::size_t first) {
+  for (const measurement::Reading& r : data.readings)
     for (std::size_t k = first; k < first + 3; ++k)
       if (r.displacement[k]) return true;
   return false;
 }
 
-bool loaded(const Measurements& data, Eigen::Index first) {
+bool loaded(const measurement::Measurements& data, Eigen::Index first) {
   return std::any_of(data.readings.begin(), data.readings.end(),
-                     [&](const Reading& r) { return !r.load.segment<3>(first).isZero(0); });
+                     [&](const measurement::Reading& r) { return !r.load.segment<3>(first).isZero(0); });
 }
 
-void add_mistaken_axes(const Measurements& data, std::vector<Correction>& out) {
+void add_mistaken_axes(const measurement::Measurements& data, std::vector<Correction>& out) {
   const bool u = measured_any(data, 0), th = measured_any(data, 3), f = loaded(data, 0), m = loaded(data, 3);
   for (const SignedAxes& a : all_signed_axes()) {
     const auto add = [&](const std::string& id, const std::string& sentence, auto change) {
@@ -129,7 +129,7 @@ Rewritten scaled_halves(double first, double second) {
   return {{0, 1, 2, 3, 4, 5}, {first, first, first, second, second, second}};
 }
 
-void add_mistaken_units(const Measurements& data, std::vector<Correction>& out) {
+void add_mistaken_units(const measurement::Measurements& data, std::vector<Correction>& out) {
   const bool th = measured_any(data, 3), u = measured_any(data, 0), f = loaded(data, 0), m = loaded(data, 3);
   const auto displacement = [&](const char* id, double t, double r, const char* sentence) {
     if ((t != 1 && !u) || (r != 1 && !th)) return;
@@ -179,14 +179,14 @@ Correction posed(const std::string& id, const std::string& sentence, const std::
   Correction c;
   c.id = id;
   c.sentence = sentence;
-  c.pose = [undo](PoseGroup& group) { undo(group.pose_mm_deg); };
+  c.pose = [undo](measurement::PoseGroup& group) { undo(group.pose_mm_deg); };
   return c;
 }
 
 /// Those that change any pose.
-std::vector<Correction> that_matter(std::vector<Correction> all, const Measurements& data) {
+std::vector<Correction> that_matter(std::vector<Correction> all, const measurement::Measurements& data) {
   std::erase_if(all, [&](const Correction& c) {
-    return std::all_of(data.poses.begin(), data.poses.end(), [&](PoseGroup group) {
+    return std::all_of(data.poses.begin(), data.poses.end(), [&](measurement::PoseGroup group) {
       const Vector6 before = group.pose_mm_deg;
       const VectorX joints = group.joints;
       c.pose(group);
@@ -196,30 +196,30 @@ std::vector<Correction> that_matter(std::vector<Correction> all, const Measureme
   return all;
 }
 
-std::vector<Correction> mistaken_joints(const Measurements& data) {
+std::vector<Correction> mistaken_joints(const measurement::Measurements& data) {
   Correction degrees, turned;
   degrees.id = "joints_in_deg";
   degrees.sentence = "joint coordinates in degrees: q1_rad … want rad";
-  degrees.pose = [rotates = data.joint_rotates](PoseGroup& group) {
+  degrees.pose = [rotates = data.joint_rotates](measurement::PoseGroup& group) {
     for (std::size_t i = 0; i < rotates.size(); ++i)
       if (rotates[i]) group.joints(as_index(i)) *= pi / 180;
   };
   turned.id = "joints_sign";
   turned.sentence = "joint coordinates of the opposite sign: turn the columns q… back";
-  turned.pose = [](PoseGroup& group) { group.joints *= -1; };
+  turned.pose = [](measurement::PoseGroup& group) { group.joints *= -1; };
   return {degrees, turned};
 }
 
 }  // namespace
 
-std::vector<Correction> mistaken_readings(const Measurements& data) {
+std::vector<Correction> mistaken_readings(const measurement::Measurements& data) {
   std::vector<Correction> out;
   add_mistaken_units(data, out);
   add_mistaken_axes(data, out);
   return out;
 }
 
-std::vector<Correction> mistaken_poses(const Measurements& data) {
+std::vector<Correction> mistaken_poses(const measurement::Measurements& data) {
   if (data.by_joints()) return that_matter(mistaken_joints(data), data);
   std::vector<Correction> out;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -252,7 +252,7 @@ std::vector<Correction> mistaken_poses(const Measurements& data) {
   return that_matter(std::move(out), data);
 }
 
-std::vector<Correction> mistaken_pose_lengths(const Measurements& data) {
+std::vector<Correction> mistaken_pose_lengths(const measurement::Measurements& data) {
   if (data.by_joints()) return {};
   std::vector<Correction> out;
   for (const auto& [unit, mm] : {std::pair{"m", 1e3}, {"µm", 1e-3}, {"cm", 10.0}, {"inches", inch}})
@@ -289,4 +289,4 @@ Correction forces_elsewhere(const Vector3& p) {
   return c;
 }
 
-}  // namespace deflect
+}  // namespace deflect::recording

@@ -5,16 +5,16 @@
 
 #include "validation/recording/recorded.h"
 
-namespace deflect {
+namespace deflect::recording {
 
 /// Of displacements and loads: those that would change these data.
-std::vector<Correction> mistaken_readings(const Measurements&);
+std::vector<Correction> mistaken_readings(const measurement::Measurements&);
 
 /// Of commanded poses or joint coordinates: those that would change these data.
-std::vector<Correction> mistaken_poses(const Measurements&);
+std::vector<Correction> mistaken_poses(const measurement::Measurements&);
 
 /// Lengths of poses in another unit: for poses that cannot be reached as they stand.
-std::vector<Correction> mistaken_pose_lengths(const Measurements&);
+std::vector<Correction> mistaken_pose_lengths(const measurement::Measurements&);
 
 /// Every pose off by the same, mm in base axes.
 Correction shifted_poses(const Vector3& by_mm);
@@ -22,4 +22,4 @@ Correction shifted_poses(const Vector3& by_mm);
 /// Every force at T + p, m in base axes.
 Correction forces_elsewhere(const Vector3& p);
 
-}  // namespace deflect
+}  // namespace deflect::recording

@@ -14,7 +14,7 @@
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 constexpr double significant = 1e-3;
@@ -22,11 +22,11 @@ constexpr std::size_t most_poses = 12, poses_of_many = 10;  // in the report
 
 std::string p_text(double p) { return p < 1e-16 ? "< 1e-16" : fmt::format("{:.2g}", p); }
 
-std::string findings_text(const Comparison& c) {
+std::string findings_text(const compare::Comparison& c) {
   const char* unit = error_unit(c).micro;
   std::string out;
   int number = 0;
-  for (const Finding& f : c.findings) {
+  for (const compare::Finding& f : c.findings) {
     out += fmt::format("  {}. {}.\n", ++number, f.sentence);
     out += fmt::format("     {:.2f} {} rms of the readings, {:.0f} % of the misfit beyond noise, p {}{}\n", um * f.size,
                        unit, 100 * f.share, p_text(f.p_value),
@@ -45,8 +45,8 @@ std::string findings_text(const Comparison& c) {
   return out;
 }
 
-void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<Errors>& groups) {
-  for (const Errors& e : groups)
+void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<compare::Errors>& groups) {
+  for (const compare::Errors& e : groups)
     rows.push_back({"  " + e.group, std::to_string(e.readings), fmt::format("{:.2f}", um * e.rmse),
                     fmt::format("{:.2f}", um * e.bias.x()), fmt::format("{:.2f}", um * e.bias.y()),
                     fmt::format("{:.2f}", um * e.bias.z()), fmt::format("{:.2f}", um * e.worst),
@@ -54,22 +54,23 @@ void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<Err
 }
 
 /// Of more poses than a person reads, the worst in descending order.
-std::vector<Errors> poses_shown(const std::vector<Errors>& by_pose) {
+std::vector<compare::Errors> poses_shown(const std::vector<compare::Errors>& by_pose) {
   if (by_pose.size() <= most_poses) return by_pose;
-  std::vector<Errors> worst = by_pose;
-  std::stable_sort(worst.begin(), worst.end(), [](const Errors& a, const Errors& b) { return a.rmse > b.rmse; });
+  std::vector<compare::Errors> worst = by_pose;
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const compare::Errors& a, const compare::Errors& b) { return a.rmse > b.rmse; });
   worst.resize(poses_of_many);
   return worst;
 }
 
-std::string errors_table(const Comparison& c) {
+std::string errors_table(const compare::Comparison& c) {
   std::vector<std::vector<std::string>> rows = {{fmt::format("measured − predicted, {}", error_unit(c).micro),
                                                  "readings", "rms", "mean x", "mean y", "mean z", "worst", "in line"}};
-  Errors all = c.all;
+  compare::Errors all = c.all;
   all.group = "all";
   add_rows(rows, {all});
   for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading}) add_rows(rows, *groups);
-  const std::vector<Errors> shown = poses_shown(c.by_pose);
+  const std::vector<compare::Errors> shown = poses_shown(c.by_pose);
   add_rows(rows, shown);
   std::string out = aligned(rows);
   if (shown.size() < c.by_pose.size())
@@ -78,10 +79,10 @@ std::string errors_table(const Comparison& c) {
   return out;
 }
 
-std::string tests_table(const Comparison& c) {
+std::string tests_table(const compare::Comparison& c) {
   const char* unit = error_unit(c).micro;
   std::vector<std::vector<std::string>> rows = {{"tests without a model of what is missing", "numbers", unit, "p"}};
-  for (const ContrastTest& t : c.contrasts)
+  for (const compare::ContrastTest& t : c.contrasts)
     rows.push_back(
         t.contrasts == 0
             ? std::vector<std::string>{fmt::format("  {}: {}", t.id, t.question), "0", "–", "needs " + t.missing}
@@ -89,39 +90,39 @@ std::string tests_table(const Comparison& c) {
                                        fmt::format("{:.2f}", um * t.size),
                                        p_text(t.p_value) + (t.p_value < significant ? " *" : "")});
   rows.push_back({"patterns, each alone", "columns", unit, "p"});
-  for (const PatternTest& t : c.patterns)
+  for (const compare::PatternTest& t : c.patterns)
     rows.push_back({fmt::format("  {}: {}", t.pattern, t.title), std::to_string(t.alone.freedoms),
                     fmt::format("{:.2f}", um * t.size),
                     p_text(t.alone.p_value) + (t.alone.p_value < significant ? " *" : "")});
   return aligned(rows);
 }
 
-Json errors_json(const std::vector<Errors>& groups) {
+Json errors_json(const std::vector<compare::Errors>& groups) {
   Json out = Json::array();
-  for (const Errors& e : groups)
+  for (const compare::Errors& e : groups)
     out.push_back({{"group", e.group},
                    {"readings", e.readings},
-                   {"rmse_mm", json_number(mm * e.rmse, "rmse")},
+                   {"rmse_mm", json::json_number(mm * e.rmse, "rmse")},
                    {"bias_mm", {mm * e.bias.x(), mm * e.bias.y(), mm * e.bias.z()}},
-                   {"worst_mm", json_number(mm * e.worst, "worst")},
+                   {"worst_mm", json::json_number(mm * e.worst, "worst")},
                    {"worst_line", e.worst_line}});
   return out;
 }
 
 std::vector<double> list_of(const VectorX& x) { return {x.data(), x.data() + x.size()}; }
 
-Json baseline_json(const Comparison& c) {
-  return {{"rmse_mm", json_number(mm * c.all.rmse, "rmse")},
-          {"held_out_rmse_mm", json_number(mm * c.held_out, "held-out rmse")},
-          {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")},
+Json baseline_json(const compare::Comparison& c) {
+  return {{"rmse_mm", json::json_number(mm * c.all.rmse, "rmse")},
+          {"held_out_rmse_mm", json::json_number(mm * c.held_out, "held-out rmse")},
+          {"chi2_per_dof", json::json_number(c.chi2_per_dof, "chi2")},
           {"p_value", c.p_value},
           {"measured_rms_mm", mm * c.all.measured},
           {"worst_mm", mm * c.all.worst}};
 }
 
-Json findings_json(const std::vector<Finding>& findings) {
+Json findings_json(const std::vector<compare::Finding>& findings) {
   Json out = Json::array();
-  for (const Finding& f : findings)
+  for (const compare::Finding& f : findings)
     out.push_back({{"pattern", f.pattern},
                    {"sentence", f.sentence},
                    {"columns", f.columns},
@@ -136,9 +137,9 @@ Json findings_json(const std::vector<Finding>& findings) {
   return out;
 }
 
-Json contrasts_json(const std::vector<ContrastTest>& tests) {
+Json contrasts_json(const std::vector<compare::ContrastTest>& tests) {
   Json out = Json::array();
-  for (const ContrastTest& t : tests) {
+  for (const compare::ContrastTest& t : tests) {
     Json test = {{"test", t.id}, {"question", t.question}, {"numbers", t.contrasts}};
     if (t.contrasts > 0)
       test["size_mm"] = mm * t.size, test["p_value"] = t.p_value;
@@ -149,9 +150,9 @@ Json contrasts_json(const std::vector<ContrastTest>& tests) {
   return out;
 }
 
-Json patterns_json(const std::vector<PatternTest>& tests) {
+Json patterns_json(const std::vector<compare::PatternTest>& tests) {
   Json out = Json::array();
-  for (const PatternTest& t : tests)
+  for (const compare::PatternTest& t : tests)
     out.push_back({{"pattern", t.pattern},
                    {"title", t.title},
                    {"size_mm", mm * t.size},
@@ -162,29 +163,29 @@ Json patterns_json(const std::vector<PatternTest>& tests) {
 }
 
 /// Of the contrasts, those that noise does not explain.
-std::vector<std::string> failing_tests(const Comparison& c) {
+std::vector<std::string> failing_tests(const compare::Comparison& c) {
   std::vector<std::string> out;
-  for (const ContrastTest& t : c.contrasts)
+  for (const compare::ContrastTest& t : c.contrasts)
     if (t.contrasts > 0 && t.p_value < significant) out.push_back(t.id);
   return out;
 }
 
 /// The patterns of the findings.
-std::vector<std::string> found_patterns(const Comparison& c) {
+std::vector<std::string> found_patterns(const compare::Comparison& c) {
   std::vector<std::string> out;
-  for (const Finding& f : c.findings) out.push_back(f.pattern);
+  for (const compare::Finding& f : c.findings) out.push_back(f.pattern);
   return out;
 }
 
 }  // namespace
 
-std::string compare_report(const Comparison& c) {
+std::string compare_report(const compare::Comparison& c) {
   const char* unit = error_unit(c).micro;
   std::string out = fmt::format("{} against {}: {} readings at {} poses\n\n{}\n", c.device, c.data, c.readings, c.poses,
                                 verdict_words(c));
   const std::string found = findings_text(c);
   if (!found.empty()) out += "\n" + found;
-  for (std::size_t i = is_mistaken(c) ? 1 : 0; i < c.mistakes.size(); ++i)  // the headline has been said
+  for (std::size_t i = compare::is_mistaken(c) ? 1 : 0; i < c.mistakes.size(); ++i)  // the headline has been said
     out += fmt::format("\n  {}\n", c.mistakes[i].sentence);
   out += how_read_text(c.study.data->how_read);
   out += fmt::format(
@@ -205,7 +206,7 @@ std::string compare_report(const Comparison& c) {
   return out + "\n" + tests_table(c) + "\n" + errors_table(c);
 }
 
-std::string compare_json(const Comparison& c) {
+std::string compare_json(const compare::Comparison& c) {
   Json j;
   j["kind"] = "comparison";
   j["device"] = c.device;
@@ -214,7 +215,7 @@ std::string compare_json(const Comparison& c) {
   j["poses"] = c.poses;
   j["unit"] = error_unit(c).milli;  // of what ends with _mm
   j["baseline"] = baseline_json(c);
-  j["noise_floor_mm"] = json_number(mm * c.noise_and_tolerances, "noise floor");
+  j["noise_floor_mm"] = json::json_number(mm * c.noise_and_tolerances, "noise floor");
   j["sigma_u_mm"] = mm * c.sigma_u;
   j["sigma_from_residuals"] = c.sigma_from_residuals;
   if (c.pure_error)
@@ -223,7 +224,7 @@ std::string compare_json(const Comparison& c) {
   j["verdict"] = verdict_words(c);
   j["notes"] = c.study.data->how_read;
   j["findings"] = findings_json(c.findings);
-  j["unexplained_chi2_per_dof"] = json_number(c.unexplained_chi2_per_dof, "unexplained chi2");
+  j["unexplained_chi2_per_dof"] = json::json_number(c.unexplained_chi2_per_dof, "unexplained chi2");
   if (c.deformed_shape_fit)
     j["deformed_shape"] = {{"size_mm", mm * c.deformed_shape},
                            {"amplitude", c.deformed_shape_fit->amplitude(0)},
@@ -237,19 +238,19 @@ std::string compare_json(const Comparison& c) {
                  {"by_heading", errors_json(c.by_heading)}};
   j["strained_tolerances"] = strained_json(c.strained);
   j["looks_like"] = Json::array();
-  for (const RecordingMistake& mistake : c.mistakes) j["looks_like"].push_back(mistake.sentence);
+  for (const compare::RecordingMistake& mistake : c.mistakes) j["looks_like"].push_back(mistake.sentence);
   j["mistakes"] = mistakes_json(c.mistakes);
   j["set_aside_lines"] = c.set_aside;
-  return json_text(j);
+  return json::json_text(j);
 }
 
-std::string residuals_csv(const Comparison& c) {
+std::string residuals_csv(const compare::Comparison& c) {
   constexpr const char* names[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
-  const ResidualStudy& s = c.study;
+  const compare::ResidualStudy& s = c.study;
   std::string out = "line,pose,component,unit,measured,predicted,residual,sigma\n";
   for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const MeasuredValue& v = s.values[i];
-    const Reading& r = s.data->readings[v.reading];
+    const measurement::MeasuredValue& v = s.values[i];
+    const measurement::Reading& r = s.data->readings[v.reading];
     const double unit = v.component < 3 ? mm : 1;
     const double residual = c.residual(as_index(i));
     out += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.4g}\n", r.line, csv_cell(s.data->poses[r.pose].label),
@@ -259,36 +260,36 @@ std::string residuals_csv(const Comparison& c) {
   return out;
 }
 
-std::string errors_csv(const Comparison& c) {
+std::string errors_csv(const compare::Comparison& c) {
   std::string out = fmt::format("group,readings,rmse_{0},mean_x_{0},mean_y_{0},mean_z_{0},worst_{0},worst_line\n",
                                 error_unit(c).column);
-  Errors all = c.all;
+  compare::Errors all = c.all;
   all.group = "all";
-  std::vector<Errors> rows = {all};
+  std::vector<compare::Errors> rows = {all};
   for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading, &c.by_pose})
     rows.insert(rows.end(), groups->begin(), groups->end());
-  for (const Errors& e : rows)
+  for (const compare::Errors& e : rows)
     out += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(e.group), e.readings, um * e.rmse,
                        um * e.bias.x(), um * e.bias.y(), um * e.bias.z(), um * e.worst, e.worst_line);
   return out;
 }
 
-std::string tests_csv(const Comparison& c) {
+std::string tests_csv(const compare::Comparison& c) {
   std::string out = fmt::format("kind,name,numbers,size_{},p_value\n", error_unit(c).column);
-  for (const ContrastTest& t : c.contrasts)
+  for (const compare::ContrastTest& t : c.contrasts)
     out += fmt::format("contrast,{},{},{:.6g},{:.6g}\n", t.id, t.contrasts, um * t.size, t.p_value);
-  for (const PatternTest& t : c.patterns)
+  for (const compare::PatternTest& t : c.patterns)
     out += fmt::format("pattern,{},{},{:.6g},{:.6g}\n", t.pattern, t.alone.freedoms, um * t.size, t.alone.p_value);
   return out;
 }
 
-std::string history_report(const History& h) {
-  const std::vector<Comparison>& all = h.versions;
+std::string history_report(const compare::History& h) {
+  const std::vector<compare::Comparison>& all = h.versions;
   std::vector<std::vector<std::string>> rows = {{"device", fmt::format("rms {}", error_unit(all.front()).micro),
                                                  "placebo", "held-out", "chi2/n", "noise and tolerances", "strained",
                                                  "tests that fail", "patterns left"}};
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Comparison& c = all[i];
+    const compare::Comparison& c = all[i];
     const std::optional<double> wrong = h.placebo[i];
     const std::vector<std::string> tests = failing_tests(c), patterns = found_patterns(c);
     rows.push_back({c.device, fmt::format("{:.2f}", um * c.all.rmse), wrong ? fmt::format("{:.2f}", um * *wrong) : "",
@@ -300,7 +301,7 @@ std::string history_report(const History& h) {
   std::string out =
       fmt::format("{}: {} readings at {} poses\n\n", all.front().data, all.front().readings, all.front().poses) +
       aligned(rows);
-  for (const Comparison& c : all) {
+  for (const compare::Comparison& c : all) {
     std::vector<std::pair<std::string, double>> worst = c.strained;
     std::stable_sort(worst.begin(), worst.end(),
                      [](const auto& a, const auto& b) { return std::abs(a.second) > std::abs(b.second); });
@@ -313,36 +314,36 @@ std::string history_report(const History& h) {
   return out;
 }
 
-std::string history_json(const History& h) {
-  const std::vector<Comparison>& all = h.versions;
+std::string history_json(const compare::History& h) {
+  const std::vector<compare::Comparison>& all = h.versions;
   Json j;
   j["kind"] = "history";
   j["data"] = all.front().data;
   j["unit"] = error_unit(all.front()).milli;  // of what ends with _mm
   j["versions"] = Json::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Comparison& c = all[i];
+    const compare::Comparison& c = all[i];
     const std::optional<double> wrong = h.placebo[i];
     j["versions"].push_back({{"device", c.device},
-                             {"rmse_mm", json_number(mm * c.all.rmse, "rmse")},
-                             {"placebo_rmse_mm", wrong ? json_number(mm * *wrong, "placebo") : Json()},
-                             {"held_out_rmse_mm", json_number(mm * c.held_out, "held-out rmse")},
-                             {"chi2_per_dof", json_number(c.chi2_per_dof, "chi2")},
+                             {"rmse_mm", json::json_number(mm * c.all.rmse, "rmse")},
+                             {"placebo_rmse_mm", wrong ? json::json_number(mm * *wrong, "placebo") : Json()},
+                             {"held_out_rmse_mm", json::json_number(mm * c.held_out, "held-out rmse")},
+                             {"chi2_per_dof", json::json_number(c.chi2_per_dof, "chi2")},
                              {"noise_floor_mm", mm * c.noise_and_tolerances},
                              {"failing_tests", failing_tests(c)},
                              {"patterns", found_patterns(c)},
                              {"strained_tolerances", strained_json(c.strained)}});
   }
-  return json_text(j);
+  return json::json_text(j);
 }
 
-std::string history_csv(const History& h) {
-  const std::vector<Comparison>& all = h.versions;
+std::string history_csv(const compare::History& h) {
+  const std::vector<compare::Comparison>& all = h.versions;
   std::string out =
       fmt::format("device,rmse_{0},placebo_rmse_{0},held_out_rmse_{0},chi2_per_dof,noise_and_tolerances_{0},strained\n",
                   error_unit(all.front()).column);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Comparison& c = all[i];
+    const compare::Comparison& c = all[i];
     const std::optional<double> wrong = h.placebo[i];
     out += fmt::format("{},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(c.device), um * c.all.rmse,
                        wrong ? fmt::format("{:.6g}", um * *wrong) : "", um * c.held_out, c.chi2_per_dof,
@@ -351,4 +352,4 @@ std::string history_csv(const History& h) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -8,10 +8,10 @@
 #include "msa/base/index.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
-std::string file_of(const Comparison& c) { return c.data.substr(c.data.find_last_of('/') + 1); }
+std::string file_of(const compare::Comparison& c) { return c.data.substr(c.data.find_last_of('/') + 1); }
 
 std::string range(double low, double high) {
   return std::abs(high - low) < 1e-9 * std::max(std::abs(low), std::abs(high)) + 1e-12
@@ -20,14 +20,15 @@ std::string range(double low, double high) {
 }
 
 /// "fx −50 … 50, fz −20 … 50 N, mx 0 … 100 Nmm".
-std::string loads_text(const Measurements& data) {
+std::string loads_text(const measurement::Measurements& data) {
   constexpr const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
   std::string out;
   for (int kind = 0; kind < 2; ++kind) {
     std::string list;
     for (int k = 3 * kind; k < 3 * kind + 3; ++k) {
       double low = 0, high = 0;
-      for (const Reading& r : data.readings) low = std::min(low, r.load(k)), high = std::max(high, r.load(k));
+      for (const measurement::Reading& r : data.readings)
+        low = std::min(low, r.load(k)), high = std::max(high, r.load(k));
       const double unit = kind == 0 ? 1 : 1e3;
       if (low < high)
         list += fmt::format("{}{} {}", list.empty() ? "" : ", ", names[k], range(unit * low, unit * high));
@@ -39,16 +40,16 @@ std::string loads_text(const Measurements& data) {
 
 }  // namespace
 
-ErrorUnit error_unit(const Comparison& c) {
-  if (!rotations_alone(c.study.values)) return {};
+ErrorUnit error_unit(const compare::Comparison& c) {
+  if (!compare::rotations_alone(c.study.values)) return {};
   return {true, "µrad", "mrad", "urad", "Nm", {"Δθx", "Δθy", "Δθz"}, {"mx", "my", "mz"}};
 }
 
-std::vector<ReadingCells> cells_of(const Comparison& c) {
+std::vector<ReadingCells> cells_of(const compare::Comparison& c) {
   const Eigen::Index first = error_unit(c).rotations ? 3 : 0;
   std::vector<ReadingCells> out(c.readings);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const Reading& r = c.study.data->readings[i];
+    const measurement::Reading& r = c.study.data->readings[i];
     out[i].measured = out[i].residual = Vector3::Constant(NAN);
     out[i].predicted = c.study.predicted[i].segment<3>(first);
     out[i].load = r.load.segment<3>(first);
@@ -56,7 +57,7 @@ std::vector<ReadingCells> cells_of(const Comparison& c) {
     out[i].set_aside = std::find(c.set_aside.begin(), c.set_aside.end(), r.line) != c.set_aside.end();
   }
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
-    const MeasuredValue& v = c.study.values[i];
+    const measurement::MeasuredValue& v = c.study.values[i];
     const Eigen::Index k = as_index(v.component) - first;
     if (k < 0 || k >= 3) continue;
     out[v.reading].measured(k) = v.value;
@@ -65,11 +66,11 @@ std::vector<ReadingCells> cells_of(const Comparison& c) {
   return out;
 }
 
-std::string subjects(const Comparison& c) {
+std::string subjects(const compare::Comparison& c) {
   return fmt::format("{} against {}", clip(c.device, 40), clip(file_of(c), 40));
 }
 
-std::string data_sentence(const Comparison& c) {
+std::string data_sentence(const compare::Comparison& c) {
   Vector3 low = Vector3::Constant(INFINITY), high = -low;
   for (std::size_t p = 0; p < c.poses; ++p) {
     const Vector3 at = 1e3 * c.study.standing->tool(p).p_W;
@@ -81,7 +82,7 @@ std::string data_sentence(const Comparison& c) {
                      range(low.z(), high.z()), loads_text(*c.study.data));
 }
 
-std::string noise_sentence(const Comparison& c) {
+std::string noise_sentence(const compare::Comparison& c) {
   const ErrorUnit unit = error_unit(c);
   return fmt::format(
       "Standard deviation of a reading {:.3g} {}{}; noise and tolerances of manufacture together give "
@@ -90,7 +91,7 @@ std::string noise_sentence(const Comparison& c) {
       1e6 * c.noise_and_tolerances, unit.micro);
 }
 
-std::string axes_sentence(const Comparison& c) {
+std::string axes_sentence(const compare::Comparison& c) {
   return error_unit(c).rotations
              ? "Rotations of the tool frame against the unloaded machine, about base axes; residual = measured − "
                "predicted."
@@ -98,4 +99,4 @@ std::string axes_sentence(const Comparison& c) {
                "predicted.";
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

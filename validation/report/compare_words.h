@@ -7,7 +7,7 @@
 
 #include "validation/compare/comparison.h"
 
-namespace deflect {
+namespace deflect::report {
 
 /// Errors speak of translations, or of rotations where no translation was measured. Both are printed in millionths of
 /// the SI unit.
@@ -20,7 +20,7 @@ struct ErrorUnit {
   const char* components[3] = {"Δx", "Δy", "Δz"};
   const char* loads[3] = {"fx", "fy", "fz"};
 };
-ErrorUnit error_unit(const Comparison&);
+ErrorUnit error_unit(const compare::Comparison&);
 
 /// Of a reading, m or rad as Errors speak of: NaN where not measured. The load in N or Nm.
 struct ReadingCells {
@@ -28,14 +28,14 @@ struct ReadingCells {
   bool pure = false;  ///< nothing but `load`, and of that one component
   bool set_aside = false;
 };
-std::vector<ReadingCells> cells_of(const Comparison&);
+std::vector<ReadingCells> cells_of(const compare::Comparison&);
 
 /// "device against file.csv".
-std::string subjects(const Comparison&);
+std::string subjects(const compare::Comparison&);
 
 /// Captions: "Device … against data …: readings, poses and where they lie, loads." "σ of a reading …, …" and the axes.
-std::string data_sentence(const Comparison&);
-std::string noise_sentence(const Comparison&);
-std::string axes_sentence(const Comparison&);
+std::string data_sentence(const compare::Comparison&);
+std::string noise_sentence(const compare::Comparison&);
+std::string axes_sentence(const compare::Comparison&);
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -12,19 +12,19 @@
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 constexpr const char* mistakes_remedy =
     "No effect was looked for: correct the file and diagnose again, or take it as it is with --as-recorded.\n";
 
-const char* micro(const Diagnosis& d) { return d.rotations ? "µrad" : "µm"; }
+const char* micro(const diagnosis::Diagnosis& d) { return d.rotations ? "µrad" : "µm"; }
 
-std::string candidates_table(const Diagnosis& d) {
+std::string candidates_table(const diagnosis::Diagnosis& d) {
   std::vector<std::vector<std::string>> rows = {
       {"candidate", "probability", fmt::format("rms {}", micro(d)), "held-out", "chi2/n", "values with 95 % interval"}};
   std::size_t shown = 0;
-  for (const Candidate& c : d.candidates) {
+  for (const diagnosis::Candidate& c : d.candidates) {
     if (shown >= 8 || (c.probability < 1e-6 && shown >= 3)) break;
     rows.push_back({"  " + placed_words(c.added()), fmt::format("{:.3g}", c.probability),
                     fmt::format("{:.2f}", um * c.rmse), fmt::format("{:.2f}", um * c.held_out),
@@ -38,48 +38,48 @@ std::string candidates_table(const Diagnosis& d) {
   return aligned(rows);
 }
 
-Json quality_json(const Quality& q) {
-  return {{"rmse_mm", json_number(mm * q.rmse, "rmse")},
-          {"held_out_rmse_mm", json_number(mm * q.held_out, "held-out rmse")},
-          {"chi2_per_dof", json_number(q.chi2_per_dof, "chi2")}};
+Json quality_json(const diagnosis::Quality& q) {
+  return {{"rmse_mm", json::json_number(mm * q.rmse, "rmse")},
+          {"held_out_rmse_mm", json::json_number(mm * q.held_out, "held-out rmse")},
+          {"chi2_per_dof", json::json_number(q.chi2_per_dof, "chi2")}};
 }
 
-Json parameters_json(const Hypothesis& h, const Fit& f, std::size_t from, std::size_t count) {
+Json parameters_json(const diagnosis::Hypothesis& h, const diagnosis::Fit& f, std::size_t from, std::size_t count) {
   Json out = Json::array();
-  const std::vector<const EffectParameter*> all = parameters_of(h);
+  const std::vector<const effects::EffectParameter*> all = diagnosis::parameters_of(h);
   for (std::size_t i = from; i < from + count && f.found; ++i) {
-    const auto [low, high] = interval95(h, f, i);
+    const auto [low, high] = diagnosis::interval95(h, f, i);
     out.push_back({{"name", all[i]->name}, {"value", f.values(as_index(i))}, {"low95", low}, {"high95", high}});
   }
   return out;
 }
 
 /// An effect and its place: in words, where it is one leg as its number, of a law at a place the place.
-Json placed_json(const PlacedEffect& e) {
-  Json out = {{"effect", e.effect->name}, {"title", e.effect->title}, {"site", site_of(e)}};
+Json placed_json(const effects::PlacedEffect& e) {
+  Json out = {{"effect", e.effect->name}, {"title", e.effect->title}, {"site", effects::site_of(e)}};
   if (e.leg) out["leg"] = *e.leg;
   if (e.effect->place) out["place"] = place_json(*e.effect->place, e.leg);
   return out;
 }
 
-Json candidates_json(const std::vector<Candidate>& candidates) {
+Json candidates_json(const std::vector<diagnosis::Candidate>& candidates) {
   Json out = Json::array();
-  for (const Candidate& c : candidates) {
+  for (const diagnosis::Candidate& c : candidates) {
     Json one = placed_json(c.added());
     one["probability"] = c.probability;
     one["parameters"] = parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size());
     one["rmse_mm"] = mm * c.rmse;
     one["held_out_rmse_mm"] = mm * c.held_out;
-    one["chi2_per_dof"] = json_number(c.chi2_per_dof, "chi2");
+    one["chi2_per_dof"] = json::json_number(c.chi2_per_dof, "chi2");
     out.push_back(std::move(one));
   }
   return out;
 }
 
 /// What is left of the misfit, and where it acts.
-Json unexplained_json(const Diagnosis& d) {
+Json unexplained_json(const diagnosis::Diagnosis& d) {
   Json localised = Json::array();
-  for (const Localised& l : d.localised)
+  for (const diagnosis::Localised& l : d.localised)
     localised.push_back({{"what", l.what},
                          {"share", l.share},
                          {"effect", l.effect.effect->name},
@@ -90,10 +90,10 @@ Json unexplained_json(const Diagnosis& d) {
 }
 
 /// The effects of "missing", fitted together.
-Json found_json(const Diagnosis& d) {
+Json found_json(const diagnosis::Diagnosis& d) {
   Json out = Json::array();
   std::size_t from = 0;
-  for (const PlacedEffect& e : d.missing) {
+  for (const effects::PlacedEffect& e : d.missing) {
     Json one = placed_json(e);
     one["parameters"] = parameters_json(d.missing, d.fit, from, e.effect->parameters.size());
     out.push_back(std::move(one));
@@ -102,11 +102,11 @@ Json found_json(const Diagnosis& d) {
   return out;
 }
 
-Json detectable_json(const std::vector<Detectable>& detectable) {
+Json detectable_json(const std::vector<diagnosis::Detectable>& detectable) {
   Json out = Json::array();
-  for (const Detectable& e : detectable) {
+  for (const diagnosis::Detectable& e : detectable) {
     Json names = Json::array();
-    for (const EffectParameter& p : e.effect.effect->parameters) names.push_back(p.name);
+    for (const effects::EffectParameter& p : e.effect.effect->parameters) names.push_back(p.name);
     Json one = placed_json(e.effect);
     one["parameters"] = names;
     one["smallest"] = e.smallest;
@@ -119,19 +119,19 @@ Json detectable_json(const std::vector<Detectable>& detectable) {
 
 }  // namespace
 
-std::string diagnosis_report(const Diagnosis& d, const std::string& device, const std::string& data) {
+std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& device, const std::string& data) {
   std::string out = fmt::format("{} against {}\n\n{}\n\n", device, data, verdict_words(d));
-  for (const RecordingMistake& mistake : d.mistakes)
+  for (const compare::RecordingMistake& mistake : d.mistakes)
     if (!mistake.certain) out += mistake.sentence + "\n\n";
   out += how_read_text(d.how_read);
-  if (is_mistaken(d)) return out + mistakes_remedy;
+  if (diagnosis::is_mistaken(d)) return out + mistakes_remedy;
   if (!d.missing.empty()) out += "fitted: " + fitted_words(d.missing, d.fit) + "\n\n";
   out += candidates_table(d);
   out += fmt::format("\nchance that some effect looks as good in data with nothing missing: {:.2g} ({} sets drawn)\n",
                      d.chance, d.bootstrap_sets);
   if (d.unexplained) {
     out += fmt::format("left unexplained: {:.0f} % of the misfit; of that", 100 * d.share_unexplained);
-    for (const Localised& l : d.localised) out += fmt::format(" {:.0f} % by {};", 100 * l.share, l.what);
+    for (const diagnosis::Localised& l : d.localised) out += fmt::format(" {:.0f} % by {};", 100 * l.share, l.what);
     if (!d.nearest.empty()) out += fmt::format(" the nearest entry, {}, {:.0f} %", d.nearest, 100 * d.nearest_share);
     out += "\n";
   }
@@ -144,23 +144,23 @@ std::string diagnosis_report(const Diagnosis& d, const std::string& device, cons
   return out + left_out_words(d.left_out) + "\n" + detectable_table(d.detectable);
 }
 
-std::string diagnosis_json(const Diagnosis& d) {
+std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   Json j;
   j["kind"] = "diagnosis";
-  j["verdict"] = nth(verdict_names, d.verdict);
+  j["verdict"] = nth(diagnosis::verdict_names, d.verdict);
   j["device"] = d.device;
   j["notes"] = d.how_read;
   j["sentence"] = verdict_words(d);
   j["headline"] = headline_words(d);
   j["mistakes"] = mistakes_json(d.mistakes);
   j["missing"] = Json::array();
-  for (const PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
+  for (const effects::PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
   j["candidates"] = candidates_json(d.candidates);
   j["indistinguishable"] = d.indistinguishable;
   j["baseline"] = quality_json(d.baseline);
   j["final"] = quality_json(d.final);
   j["unit"] = d.rotations ? "mrad" : "mm";  // of what ends with _mm
-  j["noise_floor_mm"] = json_number(mm * d.noise_floor, "noise floor");
+  j["noise_floor_mm"] = json::json_number(mm * d.noise_floor, "noise floor");
   j["unexplained"] = unexplained_json(d);
   j["found"] = found_json(d);
   j["probability_nothing"] = d.probability_nothing;
@@ -173,8 +173,8 @@ std::string diagnosis_json(const Diagnosis& d) {
   j["strained_tolerances"] = strained_json(d.strained);
   j["detectable"] = detectable_json(d.detectable);
   j["left_out"] = Json::array();
-  for (const LeftOut& e : d.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});
-  return json_text(j);
+  for (const diagnosis::LeftOut& e : d.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});
+  return json::json_text(j);
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -12,17 +12,17 @@
 #include "validation/json/json_text.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 constexpr const char* action_names[] = {"set", "append", "multiply", "add"};
 
-const char* scope_name(const Effect& e) { return nth(scope_names, e.scope); }
-const char* action_name(const EffectEdit& e) { return nth(action_names, e.action); }
+const char* scope_name(const effects::Effect& e) { return nth(effects::scope_names, e.scope); }
+const char* action_name(const effects::EffectEdit& e) { return nth(action_names, e.action); }
 
-std::string parameter_names(const Effect& e) {
+std::string parameter_names(const effects::Effect& e) {
   std::string text;
-  for (const EffectParameter& p : e.parameters) text += (text.empty() ? "" : " ") + p.name;
+  for (const effects::EffectParameter& p : e.parameters) text += (text.empty() ? "" : " ") + p.name;
   return text.empty() ? "no parameter" : text;
 }
 
@@ -36,8 +36,8 @@ std::string headed_paragraph(const std::string& heading, const std::string& text
   return out;
 }
 
-std::string parameter_text(const EffectParameter& p) {
-  const std::string unit = printed_unit(p.name);
+std::string parameter_text(const effects::EffectParameter& p) {
+  const std::string unit = effects::printed_unit(p.name);
   std::string absent;
   if (p.vanishes)
     absent = std::isfinite(*p.vanishes) ? fmt::format(", absent at {:g}", *p.vanishes) : ", absent at infinity";
@@ -45,8 +45,8 @@ std::string parameter_text(const EffectParameter& p) {
                      unit.empty() ? "" : " ", unit, p.start, p.log ? ", logarithmic" : "", absent);
 }
 
-Json parameter_json(const EffectParameter& p) {
-  Json j = {{"name", p.name}, {"unit", printed_unit(p.name)},     {"start", p.start}, {"low", p.low},
+Json parameter_json(const effects::EffectParameter& p) {
+  Json j = {{"name", p.name}, {"unit", effects::printed_unit(p.name)}, {"start", p.start}, {"low", p.low},
             {"high", p.high}, {"scale", p.log ? "log" : "linear"}};
   if (p.vanishes && std::isfinite(*p.vanishes)) j["vanishes"] = *p.vanishes;
   if (p.vanishes && !std::isfinite(*p.vanishes)) j["vanishes"] = "infinity";
@@ -54,11 +54,11 @@ Json parameter_json(const EffectParameter& p) {
   return j;
 }
 
-Json effect_json(const Effect& e) {
+Json effect_json(const effects::Effect& e) {
   Json j = {{"effect", e.name}, {"title", e.title}, {"scope", scope_name(e)}, {"parameters", Json::array()}};
-  for (const EffectParameter& p : e.parameters) j["parameters"].push_back(parameter_json(p));
+  for (const effects::EffectParameter& p : e.parameters) j["parameters"].push_back(parameter_json(p));
   j["edits"] = Json::array();
-  for (const EffectEdit& edit : e.edits)
+  for (const effects::EffectEdit& edit : e.edits)
     j["edits"].push_back({{"at", edit.paths}, {"action", action_name(edit)}, {"value", edit.value}});
   j["pages"] = {{"machine", e.pages.machine}, {"data", e.pages.data}, {"bench", e.pages.bench}, {"cure", e.pages.cure}};
   if (!e.see.empty()) j["see"] = e.see;
@@ -67,15 +67,15 @@ Json effect_json(const Effect& e) {
 }
 
 /// One line for each place: its laws; those that may sit in one leg alone.
-std::string laws_at_places(const std::vector<Effect>& all, const Subject& subject) {
+std::string laws_at_places(const std::vector<effects::Effect>& all, const subject::Subject& subject) {
   std::vector<std::string> order;
   std::map<std::string, std::string> kinds, laws, of_one_leg;
-  for (const Effect& e : all) {
+  for (const effects::Effect& e : all) {
     if (!e.place) continue;
-    const std::string id = id_of(*e.place), law = e.name.substr(0, e.name.find('@'));
+    const std::string id = subject::id_of(*e.place), law = e.name.substr(0, e.name.find('@'));
     if (std::find(order.begin(), order.end(), id) == order.end()) order.push_back(id);
-    kinds[id] = nth(place_kind_names, e.place->kind);
-    (e.scope == Scope::one_leg ? of_one_leg : laws)[id] += law + " ";
+    kinds[id] = nth(subject::place_kind_names, e.place->kind);
+    (e.scope == effects::Scope::one_leg ? of_one_leg : laws)[id] += law + " ";
   }
   if (order.empty()) return "";
   std::string out = fmt::format(
@@ -89,25 +89,26 @@ std::string laws_at_places(const std::vector<Effect>& all, const Subject& subjec
 
 }  // namespace
 
-Json place_json(const Place& p, std::optional<int> leg) {
-  Json out = {{"kind", nth(place_kind_names, p.kind)}, {"part", p.part}, {"path", p.path}};
-  if (const std::string motion = motion_of(p); !motion.empty()) out["motion"] = motion;
+Json place_json(const subject::Place& p, std::optional<int> leg) {
+  Json out = {{"kind", nth(subject::place_kind_names, p.kind)}, {"part", p.part}, {"path", p.path}};
+  if (const std::string motion = subject::motion_of(p); !motion.empty()) out["motion"] = motion;
   if (leg) out["leg"] = *leg;
   return out;
 }
 
-std::string effect_table(const std::vector<Effect>& all) {
+std::string effect_table(const std::vector<effects::Effect>& all) {
   std::string out = row("effect", "scope", "what is missing, and its parameters");
-  for (const Effect& e : all) out += row(e.name, scope_name(e), e.title) + row("", "", "  " + parameter_names(e));
+  for (const effects::Effect& e : all)
+    out += row(e.name, scope_name(e), e.title) + row("", "", "  " + parameter_names(e));
   return out;
 }
 
-std::string effects_in_device(const std::vector<Effect>& all, const Subject& subject) {
+std::string effects_in_device(const std::vector<effects::Effect>& all, const subject::Subject& subject) {
   std::string there = fmt::format("effects that {} can have\n", subject.name()), not_there;
-  for (const Effect& e : all)
+  for (const effects::Effect& e : all)
     if (e.place)
       continue;
-    else if (const auto reason = why_not(e, subject))
+    else if (const auto reason = effects::why_not(e, subject))
       not_there += fmt::format("  {:<24} {}\n", e.name, *reason);
     else
       there += fmt::format("  {:<24} {:<9} {}\n", e.name, scope_name(e), parameter_names(e));
@@ -115,34 +116,34 @@ std::string effects_in_device(const std::vector<Effect>& all, const Subject& sub
          laws_at_places(all, subject);
 }
 
-std::string effect_page(const Effect& e) {
+std::string effect_page(const effects::Effect& e) {
   std::string out = fmt::format("{}\n{}. Scope: {}.\n\n", e.name, e.title, scope_name(e));
   out += headed_paragraph("In the machine", e.pages.machine) + headed_paragraph("In the data", e.pages.data) +
          headed_paragraph("On the bench", e.pages.bench) + headed_paragraph("Cure", e.pages.cure);
   if (!e.parameters.empty()) out += "Parameters\n";
-  for (const EffectParameter& p : e.parameters) out += parameter_text(p);
+  for (const effects::EffectParameter& p : e.parameters) out += parameter_text(p);
   out += "Edits of the description\n";
-  for (const EffectEdit& edit : e.edits)
+  for (const effects::EffectEdit& edit : e.edits)
     out += fmt::format("  {} {} {}\n", fmt::join(edit.paths, " or "), action_name(edit), edit.value);
   if (!e.see.empty()) out += headed_paragraph("See", e.see);
   return out;
 }
 
-std::string effects_json(const std::vector<Effect>& all, const std::optional<Subject>& device) {
+std::string effects_json(const std::vector<effects::Effect>& all, const std::optional<subject::Subject>& device) {
   Json list = Json::array();
-  for (const Effect& e : all) {
+  for (const effects::Effect& e : all) {
     Json j = effect_json(e);
     if (device) {
-      const auto reason = why_not(e, *device);
+      const auto reason = effects::why_not(e, *device);
       j["applies"] = !reason;
       if (reason) j["reason"] = *reason;
     }
     list.push_back(std::move(j));
   }
-  return json_text(list);
+  return json::json_text(list);
 }
 
-std::string words(const EffectInstance& i) {
+std::string words(const effects::EffectInstance& i) {
   std::string out = i.effect->name, values;
   if (i.leg) out += fmt::format(" of leg {}", *i.leg);
   for (std::size_t k = 0; k < i.effect->parameters.size(); ++k)
@@ -151,18 +152,18 @@ std::string words(const EffectInstance& i) {
 }
 
 std::string added_json(const std::string& device, const std::string& new_device,
-                       const std::vector<EffectInstance>& added) {
+                       const std::vector<effects::EffectInstance>& added) {
   Json out = {{"kind", "addition"}, {"device", device}, {"new_device", new_device}, {"added", Json::array()}};
-  for (const EffectInstance& i : added) {
+  for (const effects::EffectInstance& i : added) {
     Json parameters = Json::array();
     for (std::size_t k = 0; k < i.effect->parameters.size(); ++k)
       parameters.push_back({{"name", i.effect->parameters[k].name}, {"value", i.values(as_index(k))}});
-    Json one = {{"effect", i.effect->name}, {"site", site_of(i)}};
+    Json one = {{"effect", i.effect->name}, {"site", effects::site_of(i)}};
     if (i.leg) one["leg"] = *i.leg;
     one["parameters"] = parameters;
     out["added"].push_back(std::move(one));
   }
-  return json_text(out);
+  return json::json_text(out);
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -6,7 +6,7 @@
 
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 std::string range_text(double low, double high) {
@@ -19,16 +19,16 @@ std::string in_a_line(std::string text) {
   return text;
 }
 
-std::string remark(const ErratumPrice& p) {
+std::string remark(const studies::ErratumPrice& p) {
   if (!p.refused.empty()) return "no solution";
   return p.failed_check.empty() ? "-" : p.failed_check.substr(0, p.failed_check.find(':'));
 }
 
 }  // namespace
 
-std::string errata_table(const std::vector<ErratumPrice>& prices) {
+std::string errata_table(const std::vector<studies::ErratumPrice>& prices) {
   std::vector<std::vector<std::string>> rows{{"erratum", "equations", "x", "y", "z", "check that fails"}};
-  for (const ErratumPrice& p : prices) {
+  for (const studies::ErratumPrice& p : prices) {
     std::vector<std::string> row{info(p.erratum).name, info(p.erratum).equations};
     for (int axis = 0; axis < 3; ++axis)
       row.push_back(p.refused.empty() ? range_text(p.smallest(axis), p.largest(axis)) : "-");
@@ -39,16 +39,16 @@ std::string errata_table(const std::vector<ErratumPrice>& prices) {
       "Price of each erratum: deflection along the load as printed / corrected, smallest ... largest of "
       "the points.\n" +
       aligned(rows);
-  for (const ErratumPrice& p : prices)
+  for (const studies::ErratumPrice& p : prices)
     if (!p.refused.empty()) text += fmt::format("{}: {}\n", info(p.erratum).name, p.refused);
   return text;
 }
 
-std::string errata_csv(const std::vector<ErratumPrice>& prices) {
+std::string errata_csv(const std::vector<studies::ErratumPrice>& prices) {
   std::string csv = "erratum,equations";
   for (const char axis : {'x', 'y', 'z'}) csv += fmt::format(",ratio_{0}_min,ratio_{0}_max", axis);
   csv += ",failed_check,refused\n";
-  for (const ErratumPrice& p : prices) {
+  for (const studies::ErratumPrice& p : prices) {
     csv += fmt::format("{},{}", info(p.erratum).name, csv_cell(info(p.erratum).equations));
     for (int axis = 0; axis < 3; ++axis)
       csv += p.refused.empty() ? fmt::format(",{},{}", p.smallest(axis), p.largest(axis)) : ",,";
@@ -57,4 +57,4 @@ std::string errata_csv(const std::vector<ErratumPrice>& prices) {
   return csv;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -10,7 +10,7 @@
 #include "validation/report/frame_results.h"
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
@@ -150,4 +150,4 @@ std::string frame_report(const frame::FrameDescription& f, const frame::FrameRes
   return text;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -10,7 +10,7 @@
 #include "validation/json/json_text.h"
 #include "validation/report/large_displacements.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 using frame::CaseResult;
@@ -42,7 +42,7 @@ frame::Freedoms with_stiffness(const frame::FrameSpring& spring) {
 
 void put(Json& json, const Vector6& values, const Names& names, const frame::Freedoms& held, const std::string& what) {
   for (std::size_t i = 0; i < 6; ++i)
-    if (held[i]) json[names[i]] = json_number(values(as_index(i)), what + " " + names[i]);
+    if (held[i]) json[names[i]] = json::json_number(values(as_index(i)), what + " " + names[i]);
 }
 
 Json json_member(const std::string& name, const MemberForces& m, const std::string& where) {
@@ -51,11 +51,11 @@ Json json_member(const std::string& name, const MemberForces& m, const std::stri
   json["member"] = name;
   put(json["start"], forces_mm(m.start), section_names, all_held, what);
   put(json["end"], forces_mm(m.end), section_names, all_held, what);
-  json["largest_My_Nmm"] = json_number(1e3 * m.My.value, what);
-  json["largest_My_at_mm"] = json_number(1e3 * m.My.at, what);
-  json["largest_Mz_Nmm"] = json_number(1e3 * m.Mz.value, what);
-  json["largest_Mz_at_mm"] = json_number(1e3 * m.Mz.at, what);
-  json["energy_Nmm"] = json_number(1e3 * m.energy, what);
+  json["largest_My_Nmm"] = json::json_number(1e3 * m.My.value, what);
+  json["largest_My_at_mm"] = json::json_number(1e3 * m.My.at, what);
+  json["largest_Mz_Nmm"] = json::json_number(1e3 * m.Mz.value, what);
+  json["largest_Mz_at_mm"] = json::json_number(1e3 * m.Mz.at, what);
+  json["energy_Nmm"] = json::json_number(1e3 * m.energy, what);
   return json;
 }
 
@@ -63,7 +63,8 @@ Json json_constraint(const std::string& name, const frame::FrameConstraint& c, d
   const bool moment = c.terms.front().freedom >= 3 && !c.terms.front().arm;
   Json json;
   json["constraint"] = name;
-  json[moment ? "moment_Nmm" : "force_N"] = json_number(moment ? 1e3 * lambda : lambda, what + ", constraint " + name);
+  json[moment ? "moment_Nmm" : "force_N"] =
+      json::json_number(moment ? 1e3 * lambda : lambda, what + ", constraint " + name);
   return json;
 }
 
@@ -73,7 +74,7 @@ Json json_path(const frame::PathSummary& p, const std::string& what) {
   Json json;
   json["converged"] = p.converged;
   json["stable"] = p.stable;
-  json["load_factor"] = json_number(p.load_factor, what + ", load factor");
+  json["load_factor"] = json::json_number(p.load_factor, what + ", load factor");
   json["steps"] = p.steps;
   json["iterations"] = p.iterations;
   json["message"] = p.message;
@@ -87,7 +88,7 @@ Json json_equations(const frame::EquationSummary& e) {
   json["freedoms"] = e.freedoms;
   if (e.error_bound) {
     json["iterations"] = e.iterations;
-    json["error_bound"] = json_number(*e.error_bound, "error bound");
+    json["error_bound"] = json::json_number(*e.error_bound, "error bound");
   }
   return json;
 }
@@ -119,17 +120,17 @@ Json json_case(const FrameDescription& f, const CaseResult& c, bool linear) {
         json_constraint(f.constraints[i].first, f.constraints[i].second, c.constraints[i], what));
   for (std::size_t i = 0; i < f.members.size(); ++i)
     json["members"].push_back(json_member(f.members[i].first, c.members[i], what));
-  json["energy_Nmm"] = json_number(1e3 * c.energy, what + ", energy");
+  json["energy_Nmm"] = json::json_number(1e3 * c.energy, what + ", energy");
   json["shares"] = Json::array();
   for (const auto& [part, energy] : c.energies) {
     Json entry;
     entry["part"] = part;
-    entry["share"] = json_number(share(energy, c.energy), fmt::format("{}, share of {}", what, part));
+    entry["share"] = json::json_number(share(energy, c.energy), fmt::format("{}, share of {}", what, part));
     json["shares"].push_back(std::move(entry));
   }
-  json["checks"]["residual"] = json_number(c.checks.residual, what + ", residual");
-  json["checks"]["equilibrium"] = json_number(c.checks.equilibrium, what + ", equilibrium");
-  if (linear) json["checks"]["energy"] = json_number(c.checks.energy, what + ", energy check");
+  json["checks"]["residual"] = json::json_number(c.checks.residual, what + ", residual");
+  json["checks"]["equilibrium"] = json::json_number(c.checks.equilibrium, what + ", equilibrium");
+  if (linear) json["checks"]["energy"] = json::json_number(c.checks.energy, what + ", energy check");
   return json;
 }
 
@@ -168,10 +169,10 @@ std::string frame_json(const FrameDescription& f, const FrameResult& result) {
   json["cases"] = Json::object();
   const bool linear = result.geometry == Geometry::linear;
   for (const CaseResult& c : result.cases) json["cases"][c.name] = json_case(f, c, linear);
-  if (linear) json["reciprocity"] = json_number(result.reciprocity, "reciprocity");
+  if (linear) json["reciprocity"] = json::json_number(result.reciprocity, "reciprocity");
   if (linear) json["solver"] = json_equations(result.equations);
   json["notes"] = notes_of(f, result);
-  return json_text(json);
+  return json::json_text(json);
 }
 
 std::vector<std::string> notes_of(const FrameDescription& f, const FrameResult& result) {
@@ -225,4 +226,4 @@ FrameTables frame_tables(const FrameDescription& f, const FrameResult& result) {
   return t;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

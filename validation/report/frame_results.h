@@ -7,7 +7,7 @@
 
 #include "msa/frame/file/frame_analysis.h"
 
-namespace deflect {
+namespace deflect::report {
 
 /// {"frame", "geometry", "cases": {name: {"displacements": [{"node", "ux_mm", …, "rz_rad"}], "reactions": [{"node",
 /// "fx_N", …} held freedoms only], "springs": [{"spring", "fx_N", …}], "constraints": [{"constraint", "force_N" or
@@ -30,4 +30,4 @@ FrameTables frame_tables(const frame::FrameDescription&, const frame::FrameResul
 /// Case by case; of a list with more than `most` rows only those with the largest entries.
 std::string frame_report(const frame::FrameDescription&, const frame::FrameResult&, std::size_t most = 24);
 
-}  // namespace deflect
+}  // namespace deflect::report

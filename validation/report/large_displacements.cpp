@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 constexpr double largest_turn = 0.1, largest_share = 0.05;
@@ -36,4 +36,4 @@ std::optional<std::string> large_displacement_note(const Displacements& d, Geome
       geometry == Geometry::linear ? "of the unloaded shape" : "to first order in the displacements", remedy);
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

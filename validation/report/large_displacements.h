@@ -14,7 +14,7 @@
 #include "msa/base/geometry.h"
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::report {
 
 /// Of a structure: m, rad.
 struct Displacements {
@@ -25,4 +25,4 @@ struct Displacements {
 /// A sentence with the sizes and the remedy; nothing where they are small, or the geometry is finite.
 std::optional<std::string> large_displacement_note(const Displacements&, Geometry, const std::string& remedy);
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -6,7 +6,7 @@
 
 #include "validation/report/map_results.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 std::vector<double> ranks(const std::vector<double>& values) {
@@ -42,14 +42,14 @@ Correlation correlation(const std::vector<double>& a, const std::vector<double>&
   return {pearson(a, b), pearson(ranks(a), ranks(b))};
 }
 
-Correlation with_slides(const StiffnessMap& map, int axis) {
+Correlation with_slides(const studies::StiffnessMap& map, int axis) {
   std::vector<double> length, stiffness;
-  for (const MapPose& p : map.poses)
-    if (const MapValues* v = shown(p)) {
+  for (const studies::MapPose& p : map.poses)
+    if (const studies::MapValues* v = shown(p)) {
       length.push_back(p.slide_mean_mm);
       stiffness.push_back(v->stiffness_N_mm(axis));
     }
   return correlation(length, stiffness);
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

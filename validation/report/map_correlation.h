@@ -5,7 +5,7 @@
 
 #include "validation/studies/map.h"
 
-namespace deflect {
+namespace deflect::report {
 
 /// How two series vary together: −1 … 1. Pearson's r; Spearman's ρ is r of the ranks, ties sharing their mean rank.
 /// Both are 0 where a series is constant.
@@ -16,6 +16,6 @@ Correlation correlation(const std::vector<double>& a, const std::vector<double>&
 
 /// Correlation of the stiffness along `axis` with the mean position of the slides over the poses reached, by the
 /// theory that the figures show.
-Correlation with_slides(const StiffnessMap&, int axis);
+Correlation with_slides(const studies::StiffnessMap&, int axis);
 
-}  // namespace deflect
+}  // namespace deflect::report

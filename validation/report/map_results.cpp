@@ -13,67 +13,67 @@
 #include "validation/report/text.h"
 #include "validation/report/theory_words.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 /// A number of MapValues with its name in files, unit included.
 struct Column {
   std::string name;
-  double (*of)(const MapValues&);
+  double (*of)(const studies::MapValues&);
 };
 
 const std::vector<Column>& columns() {
   static const std::vector<Column> list = {
-      {"cxx_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(0, 0); }},
-      {"cxy_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(0, 1); }},
-      {"cxz_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(0, 2); }},
-      {"cyx_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(1, 0); }},
-      {"cyy_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(1, 1); }},
-      {"cyz_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(1, 2); }},
-      {"czx_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(2, 0); }},
-      {"czy_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(2, 1); }},
-      {"czz_mm_per_N", [](const MapValues& v) { return v.compliance_mm_N(2, 2); }},
-      {"stiffness_x_N_per_mm", [](const MapValues& v) { return v.stiffness_N_mm(0); }},
-      {"stiffness_y_N_per_mm", [](const MapValues& v) { return v.stiffness_N_mm(1); }},
-      {"stiffness_z_N_per_mm", [](const MapValues& v) { return v.stiffness_N_mm(2); }},
-      {"smallest_N_per_mm", [](const MapValues& v) { return v.smallest_N_mm; }},
-      {"largest_N_per_mm", [](const MapValues& v) { return v.largest_N_mm; }},
-      {"isotropy", [](const MapValues& v) { return v.isotropy; }},
-      {"kxx_N_per_mm", [](const MapValues& v) { return v.K_ii(0); }},
-      {"kyy_N_per_mm", [](const MapValues& v) { return v.K_ii(1); }},
-      {"kzz_N_per_mm", [](const MapValues& v) { return v.K_ii(2); }},
-      {"kthx_Nmm_per_rad", [](const MapValues& v) { return v.K_ii(3); }},
-      {"kthy_Nmm_per_rad", [](const MapValues& v) { return v.K_ii(4); }},
-      {"kthz_Nmm_per_rad", [](const MapValues& v) { return v.K_ii(5); }}};
+      {"cxx_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(0, 0); }},
+      {"cxy_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(0, 1); }},
+      {"cxz_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(0, 2); }},
+      {"cyx_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(1, 0); }},
+      {"cyy_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(1, 1); }},
+      {"cyz_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(1, 2); }},
+      {"czx_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(2, 0); }},
+      {"czy_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(2, 1); }},
+      {"czz_mm_per_N", [](const studies::MapValues& v) { return v.compliance_mm_N(2, 2); }},
+      {"stiffness_x_N_per_mm", [](const studies::MapValues& v) { return v.stiffness_N_mm(0); }},
+      {"stiffness_y_N_per_mm", [](const studies::MapValues& v) { return v.stiffness_N_mm(1); }},
+      {"stiffness_z_N_per_mm", [](const studies::MapValues& v) { return v.stiffness_N_mm(2); }},
+      {"smallest_N_per_mm", [](const studies::MapValues& v) { return v.smallest_N_mm; }},
+      {"largest_N_per_mm", [](const studies::MapValues& v) { return v.largest_N_mm; }},
+      {"isotropy", [](const studies::MapValues& v) { return v.isotropy; }},
+      {"kxx_N_per_mm", [](const studies::MapValues& v) { return v.K_ii(0); }},
+      {"kyy_N_per_mm", [](const studies::MapValues& v) { return v.K_ii(1); }},
+      {"kzz_N_per_mm", [](const studies::MapValues& v) { return v.K_ii(2); }},
+      {"kthx_Nmm_per_rad", [](const studies::MapValues& v) { return v.K_ii(3); }},
+      {"kthy_Nmm_per_rad", [](const studies::MapValues& v) { return v.K_ii(4); }},
+      {"kthz_Nmm_per_rad", [](const studies::MapValues& v) { return v.K_ii(5); }}};
   return list;
 }
 constexpr std::size_t first_ranged = 9, last_ranged = 14;  // what a person is told the range of
 constexpr const char* ranged_names[] = {"along x, 1/Cxx", "along y, 1/Cyy", "along z, 1/Czz",
                                         "smallest",       "largest",        "isotropy"};
 
-bool several(const StiffnessMap& map) { return map.options.theories.size() > 1; }
+bool several(const studies::StiffnessMap& map) { return map.options.theories.size() > 1; }
 
 /// What belongs to a pose and to no theory.
 struct SlideColumn {
   std::string name;
-  double MapPose::*of;
+  double studies::MapPose::*of;
 };
 
-std::vector<SlideColumn> slide_columns(const StiffnessMap& map) {
+std::vector<SlideColumn> slide_columns(const studies::StiffnessMap& map) {
   if (map.slides.key.empty()) return {};
-  return {{map.slides.key + "_min_mm", &MapPose::slide_min_mm},
-          {map.slides.key + "_mean_mm", &MapPose::slide_mean_mm},
-          {map.slides.key + "_max_mm", &MapPose::slide_max_mm}};
+  return {{map.slides.key + "_min_mm", &studies::MapPose::slide_min_mm},
+          {map.slides.key + "_mean_mm", &studies::MapPose::slide_mean_mm},
+          {map.slides.key + "_max_mm", &studies::MapPose::slide_max_mm}};
 }
 
 struct Spread {
   double smallest = 0, largest = 0;
-  const MapPose *smallest_at = nullptr, *largest_at = nullptr;
+  const studies::MapPose *smallest_at = nullptr, *largest_at = nullptr;
 };
 
-Spread range_of(const StiffnessMap& map, std::size_t theory, const Column& column) {
+Spread range_of(const studies::StiffnessMap& map, std::size_t theory, const Column& column) {
   Spread r;
-  for (const MapPose& p : map.poses) {
+  for (const studies::MapPose& p : map.poses) {
     if (!p.reached()) continue;
     const double value = column.of(p.values[theory]);
     if (!r.smallest_at || value < r.smallest) r.smallest = value, r.smallest_at = &p;
@@ -82,21 +82,22 @@ Spread range_of(const StiffnessMap& map, std::size_t theory, const Column& colum
   return r;
 }
 
-std::size_t reached(const StiffnessMap& map) {
-  return as_size(std::count_if(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); }));
+std::size_t reached(const studies::StiffnessMap& map) {
+  return as_size(
+      std::count_if(map.poses.begin(), map.poses.end(), [](const studies::MapPose& p) { return p.reached(); }));
 }
 
-double largest_difference(const StiffnessMap& map) {
+double largest_difference(const studies::StiffnessMap& map) {
   double largest = 0;
-  for (const MapPose& p : map.poses) largest = std::max(largest, p.relative_difference);
+  for (const studies::MapPose& p : map.poses) largest = std::max(largest, p.relative_difference);
   return largest;
 }
 
-std::string position(const MapPose& p) {
+std::string position(const studies::MapPose& p) {
   return fmt::format("({:.5g}, {:.5g}, {:.5g})", p.pose_mm_deg(0), p.pose_mm_deg(1), p.pose_mm_deg(2));
 }
 
-std::string grid_text(const MapGrid& g) {
+std::string grid_text(const studies::MapGrid& g) {
   return fmt::format(
       "{} × {} × {} poses, x {:.5g} … {:.5g}, y {:.5g} … {:.5g}, z {:.5g} … {:.5g} mm, roll pitch yaw "
       "({:g}, {:g}, {:g})°",
@@ -110,7 +111,7 @@ struct CellShape {
   std::vector<std::array<int, 3>> corners = {{0, 0, 0}};
 };
 
-CellShape cell_shape(const MapGrid& g) {
+CellShape cell_shape(const studies::MapGrid& g) {
   CellShape shape;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (g.counts[axis] < 2) continue;
@@ -125,12 +126,12 @@ CellShape cell_shape(const MapGrid& g) {
 
 /// The poses reached as points of a grid for VTK, and its cells of points by their numbers.
 struct VtkGrid {
-  std::vector<const MapPose*> points;
+  std::vector<const studies::MapPose*> points;
   std::vector<std::vector<int>> cells;
 };
 
 /// Cells between neighbours that are all points; `point` is the number of each pose's, -1 where it has none.
-std::vector<std::vector<int>> whole_cells(const MapGrid& g, const std::vector<int>& point) {
+std::vector<std::vector<int>> whole_cells(const studies::MapGrid& g, const std::vector<int>& point) {
   const CellShape shape = cell_shape(g);
   std::vector<std::vector<int>> cells;
   const auto last = [&](int axis) { return std::max(1, nth(g.counts, axis) - 1); };
@@ -145,7 +146,7 @@ std::vector<std::vector<int>> whole_cells(const MapGrid& g, const std::vector<in
 }
 
 /// Points in no other cell are cells of their own, behind the others.
-VtkGrid vtk_grid(const StiffnessMap& map) {
+VtkGrid vtk_grid(const studies::StiffnessMap& map) {
   VtkGrid grid;
   std::vector<int> point(map.poses.size(), -1);
   for (std::size_t i = 0; i < map.poses.size(); ++i)
@@ -180,7 +181,7 @@ std::string vtk_array(const ArrayHead& head, const Range& range, Print print) {
 }
 
 /// What holds for the whole map.
-std::string vtk_field_data(const MapOptions& o) {
+std::string vtk_field_data(const studies::MapOptions& o) {
   std::string text = "<FieldData>\n";
   text += vtk_array({"Float64", "length_mm", R"( NumberOfTuples="1")"}, std::vector{o.length_mm}, number_text);
   if (o.load_N_Nmm)
@@ -191,24 +192,25 @@ std::string vtk_field_data(const MapOptions& o) {
 }
 
 /// The columns of the CSV.
-std::string vtk_point_data(const StiffnessMap& map, const std::vector<const MapPose*>& points) {
+std::string vtk_point_data(const studies::StiffnessMap& map, const std::vector<const studies::MapPose*>& points) {
   std::string text = "<PointData>\n";
   for (const SlideColumn& slide : slide_columns(map))
-    text += vtk_array({"Float64", slide.name}, points, [&](const MapPose* p) { return number_text(p->*slide.of); });
+    text += vtk_array({"Float64", slide.name}, points,
+                      [&](const studies::MapPose* p) { return number_text(p->*slide.of); });
   for (std::size_t t = 0; t < map.options.theories.size(); ++t)
     for (const Column& column : columns())
       text += vtk_array({"Float64", fmt::format("{}_{}", map.options.theories[t]->name, column.name)}, points,
-                        [&](const MapPose* p) { return number_text(column.of(p->values[t])); });
+                        [&](const studies::MapPose* p) { return number_text(column.of(p->values[t])); });
   if (several(map))
     text += vtk_array({"Float64", "relative_difference"}, points,
-                      [](const MapPose* p) { return number_text(p->relative_difference); });
+                      [](const studies::MapPose* p) { return number_text(p->relative_difference); });
   return text + "</PointData>\n";
 }
 
-std::string vtk_points(const std::vector<const MapPose*>& points) {
+std::string vtk_points(const std::vector<const studies::MapPose*>& points) {
   return "<Points>\n" +
          vtk_array({"Float64", "points_mm", R"( NumberOfComponents="3")"}, points,
-                   [](const MapPose* p) {
+                   [](const studies::MapPose* p) {
                      return fmt::format("{} {} {}", p->pose_mm_deg(0), p->pose_mm_deg(1), p->pose_mm_deg(2));
                    }) +
          "</Points>\n";
@@ -228,7 +230,7 @@ std::string vtk_cells(const std::vector<std::vector<int>>& cells, int type) {
 
 }  // namespace
 
-std::vector<OutOfReach> out_of_reach(const StiffnessMap& map) {
+std::vector<OutOfReach> out_of_reach(const studies::StiffnessMap& map) {
   std::vector<OutOfReach> list;
   for (std::size_t i = 0; i < map.poses.size(); ++i) {
     if (map.poses[i].reached()) continue;
@@ -242,25 +244,25 @@ std::vector<OutOfReach> out_of_reach(const StiffnessMap& map) {
   return list;
 }
 
-const MapValues* shown(const MapPose& p) { return p.values.empty() ? nullptr : &p.values.front(); }
-const Theory& shown_theory(const StiffnessMap& map) { return *map.options.theories.front(); }
+const studies::MapValues* shown(const studies::MapPose& p) { return p.values.empty() ? nullptr : &p.values.front(); }
+const theories::Theory& shown_theory(const studies::StiffnessMap& map) { return *map.options.theories.front(); }
 
-std::string map_load_text(const StiffnessMap& map) {
+std::string map_load_text(const studies::StiffnessMap& map) {
   if (!map.options.load_N_Nmm) return fmt::format("{:g} N along x, y, z in turn", map.options.force_N);
   const Vector6& w = *map.options.load_N_Nmm;
   return fmt::format("force ({:g}, {:g}, {:g}) N, moment ({:g}, {:g}, {:g}) Nmm", w(0), w(1), w(2), w(3), w(4), w(5));
 }
 
-std::string map_kind_text(const StiffnessMap& map) {
+std::string map_kind_text(const studies::StiffnessMap& map) {
   return map.options.load_N_Nmm ? "C and K tangent under the load"
                                 : "C secant from no load to the force, K tangent at the force";
 }
 
-std::string map_report(const StiffnessMap& map) {
+std::string map_report(const studies::StiffnessMap& map) {
   const std::size_t n = reached(map);
   std::string text = fmt::format("{}: stiffness of the tool point over {}\nload: {}: {}\n", map.device,
                                  grid_text(map.options.grid), map_load_text(map), map_kind_text(map));
-  for (const Theory* theory : map.options.theories)
+  for (const theories::Theory* theory : map.options.theories)
     if (theory->divides)
       text += fmt::format("{}: one element per member, which is exact at its nodes\n", theory->title);
   text += fmt::format("reached: {} of {} poses\n", n, map.poses.size());
@@ -301,18 +303,18 @@ std::string map_report(const StiffnessMap& map) {
   return text;
 }
 
-std::string map_csv(const StiffnessMap& map) {
+std::string map_csv(const studies::StiffnessMap& map) {
   std::string text = "x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,";
   text += map.options.load_N_Nmm ? "fx_N,fy_N,fz_N,mx_Nmm,my_Nmm,mz_Nmm," : "force_N,";
   text += "compliance_kind,length_mm,reached,note_out_of_reach";
   for (const SlideColumn& slide : slide_columns(map)) text += "," + slide.name;
-  const Theories& theories = map.options.theories;
-  for (const Theory* theory : theories)
+  const theories::Theories& theories = map.options.theories;
+  for (const theories::Theory* theory : theories)
     for (const Column& column : columns()) text += fmt::format(",{}_{}", theory->name, column.name);
   text += several(map) ? ",relative_difference\n" : "\n";
   const std::string load = map.options.load_N_Nmm ? fmt::format("{},tangent", fmt::join(*map.options.load_N_Nmm, ","))
                                                   : fmt::format("{},secant", map.options.force_N);
-  for (const MapPose& p : map.poses) {
+  for (const studies::MapPose& p : map.poses) {
     text += fmt::format("{},{},{},{},", fmt::join(p.pose_mm_deg, ","), load, map.options.length_mm, int{p.reached()});
     if (!p.out_of_reach.empty()) text += csv_cell(p.out_of_reach);  // the kinematics' words contain commas
     for (const SlideColumn& slide : slide_columns(map)) text += p.reached() ? fmt::format(",{}", p.*slide.of) : ",";
@@ -324,14 +326,14 @@ std::string map_csv(const StiffnessMap& map) {
   return text;
 }
 
-std::string map_json(const StiffnessMap& map) {
-  const MapOptions& o = map.options;
+std::string map_json(const studies::StiffnessMap& map) {
+  const studies::MapOptions& o = map.options;
   Json result, grid, arrays;
   result["kind"] = "map";
   result["device"] = map.device;
   result["theories"] = json_theories(o.theories);
   if (o.load_N_Nmm)
-    result["load"] = json_numbers(*o.load_N_Nmm, "load");
+    result["load"] = json::json_numbers(*o.load_N_Nmm, "load");
   else
     result["force_N"] = o.force_N;
   result["compliance_kind"] = o.load_N_Nmm ? "tangent" : "secant";
@@ -350,23 +352,24 @@ std::string map_json(const StiffnessMap& map) {
         {{"reason", r.reason}, {"poses", r.poses}, {"example", map.poses[r.example].out_of_reach}});
   const auto array = [&](const std::string& name, const auto& of) {
     Json list = Json::array();
-    for (const MapPose& p : map.poses) list.push_back(p.reached() ? json_number(of(p), name) : Json());
+    for (const studies::MapPose& p : map.poses) list.push_back(p.reached() ? json::json_number(of(p), name) : Json());
     return list;
   };
   for (const SlideColumn& slide : slide_columns(map))
-    arrays[slide.name] = array(slide.name, [&](const MapPose& p) { return p.*slide.of; });
+    arrays[slide.name] = array(slide.name, [&](const studies::MapPose& p) { return p.*slide.of; });
   for (std::size_t t = 0; t < o.theories.size(); ++t)
     for (std::size_t c = 0; c < columns().size(); ++c) {
       const Column& column = columns()[c];
       const std::string& theory = o.theories[t]->name;
-      arrays[theory][column.name] = array(column.name, [&](const MapPose& p) { return column.of(p.values[t]); });
+      arrays[theory][column.name] =
+          array(column.name, [&](const studies::MapPose& p) { return column.of(p.values[t]); });
       if (c < first_ranged || c > last_ranged || reached(map) == 0) continue;
       const Spread r = range_of(map, t, column);
       Json& range = result["ranges"][theory][column.name];
       range["smallest"] = r.smallest;
-      range["smallest_at"] = json_numbers(r.smallest_at->pose_mm_deg, "pose");
+      range["smallest_at"] = json::json_numbers(r.smallest_at->pose_mm_deg, "pose");
       range["largest"] = r.largest;
-      range["largest_at"] = json_numbers(r.largest_at->pose_mm_deg, "pose");
+      range["largest_at"] = json::json_numbers(r.largest_at->pose_mm_deg, "pose");
     }
   if (reached(map) > 1 && !map.slides.key.empty())
     for (int axis = 0; axis < 3; ++axis) {
@@ -374,12 +377,13 @@ std::string map_json(const StiffnessMap& map) {
       result[fmt::format("correlation_with_{}_mean", map.slides.key)][axis_names[axis]] = {{"spearman", c.spearman},
                                                                                            {"pearson", c.pearson}};
     }
-  if (several(map)) result["max_relative_difference"] = json_number(largest_difference(map), "max_relative_difference");
+  if (several(map))
+    result["max_relative_difference"] = json::json_number(largest_difference(map), "max_relative_difference");
   result["arrays"] = std::move(arrays);
-  return json_text(result);
+  return json::json_text(result);
 }
 
-std::string map_vtu(const StiffnessMap& map) {
+std::string map_vtu(const studies::StiffnessMap& map) {
   const VtkGrid grid = vtk_grid(map);
   std::string text = R"(<?xml version="1.0" encoding="UTF-8"?>
 <VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
@@ -392,4 +396,4 @@ std::string map_vtu(const StiffnessMap& map) {
   return text + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

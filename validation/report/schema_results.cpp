@@ -9,7 +9,7 @@
 #include "msa/mechanism/device_schema.h"
 #include "validation/json/json_text.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 std::string joined_units(Dimension d) {
@@ -274,4 +274,4 @@ std::string law_lines() {
   return text;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -6,7 +6,7 @@
 
 #include "msa/fields/schema.h"
 
-namespace deflect {
+namespace deflect::report {
 
 /// A kind of file: "device, family chains", with its keys.
 struct NamedSchema {
@@ -23,4 +23,4 @@ std::string schema_json(const std::vector<NamedSchema>&, const std::string& titl
 /// One line for each law: "belt: specific_stiffness (N/mm), width (mm), …"; on a rotation what differs.
 std::string law_lines();
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -10,7 +10,7 @@
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 constexpr std::size_t most_shown = 6;
@@ -20,7 +20,7 @@ std::string and_more(std::size_t all) {
 }
 
 /// "stiffness_N_per_mm 29100".
-std::string sizes_of(const Detectable& e) {
+std::string sizes_of(const diagnosis::Detectable& e) {
   if (e.smallest.empty()) return "none within bounds";
   std::string out;
   for (std::size_t i = 0; i < e.smallest.size(); ++i)
@@ -46,7 +46,7 @@ Json strained_json(const std::vector<std::pair<std::string, double>>& strained) 
   return out;
 }
 
-std::string left_out_words(const std::vector<LeftOut>& all) {
+std::string left_out_words(const std::vector<diagnosis::LeftOut>& all) {
   if (all.empty()) return "";
   std::string out = "not looked at: ";
   for (std::size_t i = 0; i < std::min(most_shown, all.size()); ++i)
@@ -54,15 +54,15 @@ std::string left_out_words(const std::vector<LeftOut>& all) {
   return out + (all.size() > most_shown ? and_more(all.size()) + ", with the reasons\n" : " (why: --json)\n");
 }
 
-std::string detectable_table(const std::vector<Detectable>& all) {
-  std::vector<const Detectable*> order;
-  for (const Detectable& e : all) order.push_back(&e);
+std::string detectable_table(const std::vector<diagnosis::Detectable>& all) {
+  std::vector<const diagnosis::Detectable*> order;
+  for (const diagnosis::Detectable& e : all) order.push_back(&e);
   std::stable_sort(order.begin(), order.end(),
                    [](const auto* a, const auto* b) { return a->lambda_at_start < b->lambda_at_start; });
-  std::set<const Effect*> seen;
+  std::set<const effects::Effect*> seen;
   std::vector<std::vector<std::string>> rows = {
       {"hardest to see with this plan", "smallest size that shows (λ = 4)", "would be mistaken for"}};
-  for (const Detectable* e : order) {
+  for (const diagnosis::Detectable* e : order) {
     if (!seen.insert(e->effect.effect).second || seen.size() > most_shown) continue;
     rows.push_back({"  " + placed_words(e->effect), sizes_of(*e),
                     e->mistaken_for.empty() ? "" : fmt::format("{} (cosine {:.3f})", e->mistaken_for, e->cosine)});
@@ -73,4 +73,4 @@ std::string detectable_table(const std::vector<Detectable>& all) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

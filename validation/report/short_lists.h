@@ -8,7 +8,7 @@
 #include "validation/diagnosis/detectable.h"
 #include "validation/json/json_text.h"
 
-namespace deflect {
+namespace deflect::report {
 
 /// "modulus −90.0, leg 3 guide diameter −9.9, … and 28 more": names with multiples of their standard deviation, the
 /// largest first.
@@ -18,10 +18,10 @@ std::string strained_words(std::vector<std::pair<std::string, double>>);
 Json strained_json(const std::vector<std::pair<std::string, double>>&);
 
 /// "not looked at: joint_preload, motor_compliance (why: --json)", a line; empty where nothing was left out.
-std::string left_out_words(const std::vector<LeftOut>&);
+std::string left_out_words(const std::vector<diagnosis::LeftOut>&);
 
 /// A table of the effects that this plan shows least of, by the size that their search starts with: one line an effect,
 /// of the leg where it is hardest to see.
-std::string detectable_table(const std::vector<Detectable>&);
+std::string detectable_table(const std::vector<diagnosis::Detectable>&);
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -12,17 +12,18 @@
 #include "validation/report/text.h"
 #include "validation/report/theory_words.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 constexpr const char* tool_displacements[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
 constexpr const char* tool_wrench[] = {"fx", "fy", "fz", "mx", "my", "mz"};
 
-Json json_theory(const TheorySolution& solution, const std::string& name, Geometry geometry) {
+Json json_theory(const studies::TheorySolution& solution, const std::string& name, Geometry geometry) {
   Json json;
-  json["displacement"] = json_numbers(solution.displacement_mm_rad, name + ".displacement");
-  json["stiffness"] = json_rows(solution.stiffness_mm, name + ".stiffness");
-  if (geometry != Geometry::linear) json["from_linear"] = json_number(solution.from_linear, name + ".from_linear");
+  json["displacement"] = json::json_numbers(solution.displacement_mm_rad, name + ".displacement");
+  json["stiffness"] = json::json_rows(solution.stiffness_mm, name + ".stiffness");
+  if (geometry != Geometry::linear)
+    json["from_linear"] = json::json_number(solution.from_linear, name + ".from_linear");
   return json;
 }
 
@@ -49,7 +50,7 @@ std::string stiffness_table(const Matrix6& K) {
 }
 
 /// How far one theory's stiffness is from the one that is shown.
-std::string stiffness_difference(const Theory& theory, const Matrix6& K, const Matrix6& shown) {
+std::string stiffness_difference(const theories::Theory& theory, const Matrix6& K, const Matrix6& shown) {
   Vector6 weight = Vector6::Ones();
   weight.tail<3>().setConstant(1e-3);  // rotations at 1 m
   const double rounding = 1e-15 * (weight.asDiagonal() * shown * weight.asDiagonal()).cwiseAbs().maxCoeff();
@@ -70,9 +71,9 @@ std::string stiffness_difference(const Theory& theory, const Matrix6& K, const M
                      tool_wrench[row], tool_displacements[column]);
 }
 
-std::string displacement_table(const SolveResult& result) {
+std::string displacement_table(const studies::SolveResult& result) {
   std::vector<std::vector<std::string>> rows = {{"displacement"}};
-  for (const Theory* theory : result.theories) rows.front().push_back(theory->title);
+  for (const theories::Theory* theory : result.theories) rows.front().push_back(theory->title);
   rows.front().push_back("");
   for (int i = 0; i < 6; ++i) {
     const auto number = [i](double value) {
@@ -80,15 +81,15 @@ std::string displacement_table(const SolveResult& result) {
       return text.find_first_not_of("-0.") == std::string::npos ? text.substr(text.front() == '-') : text;  // no -0
     };
     rows.push_back({std::string("  ") + tool_displacements[i]});
-    for (const TheorySolution& s : result.solutions) rows.back().push_back(number(s.displacement_mm_rad[i]));
+    for (const studies::TheorySolution& s : result.solutions) rows.back().push_back(number(s.displacement_mm_rad[i]));
     rows.back().push_back(i < 3 ? " mm" : "rad");
   }
   return aligned(rows);
 }
 
-const char* geometry_name(const SolveResult& result) { return nth(geometry_names, result.geometry); }
+const char* geometry_name(const studies::SolveResult& result) { return nth(geometry_names, result.geometry); }
 
-std::string geometry_line(const SolveResult& result) {
+std::string geometry_line(const studies::SolveResult& result) {
   std::vector<std::string> shares;
   for (std::size_t t = 0; t < result.theories.size(); ++t)
     shares.push_back(fmt::format("{:.3g} % ({})", 100 * result.solutions[t].from_linear, result.theories[t]->title));
@@ -96,7 +97,7 @@ std::string geometry_line(const SolveResult& result) {
                      geometry_name(result), fmt::join(shares, ", "));
 }
 
-std::string shares_table(const SolveResult& result) {
+std::string shares_table(const studies::SolveResult& result) {
   auto shares = result.shares;
   std::stable_sort(shares.begin(), shares.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::vector<std::string>> rows;
@@ -104,15 +105,15 @@ std::string shares_table(const SolveResult& result) {
   return "share of each part in the elastic energy\n" + aligned(rows);
 }
 
-std::string joints_line(const SolveResult& result) {
+std::string joints_line(const studies::SolveResult& result) {
   std::string line = "joints ";
-  for (const JointValue& joint : result.joints)
+  for (const studies::JointValue& joint : result.joints)
     line += fmt::format("{}{} {:.6g} {}", &joint == result.joints.data() ? "" : ", ", joint.name, joint.value,
                         joint.rotation ? "rad" : "mm");
   return line + "\n";
 }
 
-std::string assembly_table(const Assembly& assembly, const Theories& theories) {
+std::string assembly_table(const studies::Assembly& assembly, const theories::Theories& theories) {
   std::vector<std::vector<std::string>> rows = {{"assembled, without load"}};
   rows.front().insert(rows.front().end(), std::begin(tool_wrench), std::end(tool_wrench));
   double largest = 0;
@@ -136,7 +137,7 @@ std::string assembly_table(const Assembly& assembly, const Theories& theories) {
 }
 
 /// "floats within its play by ux ±0.02 mm, …", the axes along which it does.
-std::string floating_note(const FloatingPlay& play) {
+std::string floating_note(const studies::FloatingPlay& play) {
   Vector6 weight = Vector6::Ones();
   weight.tail<3>().setConstant(1e3);  // rad at 1 m
   const double size = weight.cwiseProduct(play.most_mm_rad - play.least_mm_rad).maxCoeff();
@@ -157,7 +158,7 @@ std::string floating_note(const FloatingPlay& play) {
 }
 
 /// The result's own, and whether its geometry will do.
-std::vector<std::string> solve_notes(const SolveResult& result) {
+std::vector<std::string> solve_notes(const studies::SolveResult& result) {
   std::vector<std::string> notes = result.notes;
   if (!result.rigid_motions.empty())
     notes.insert(notes.begin(), fmt::format("held rigidly: nothing yields in {}: the stiffness is infinite there, and "
@@ -180,17 +181,17 @@ std::vector<std::string> solve_notes(const SolveResult& result) {
 
 }  // namespace
 
-std::string solve_json(const SolveResult& result) {
+std::string solve_json(const studies::SolveResult& result) {
   Json json;
   json["kind"] = "solve";
-  json["pose"] = json_numbers(result.pose_mm_deg, "pose");
-  json["load"] = json_numbers(result.load_N_Nmm, "load");
+  json["pose"] = json::json_numbers(result.pose_mm_deg, "pose");
+  json["load"] = json::json_numbers(result.load_N_Nmm, "load");
   json["theories"] = json_theories(result.theories);
-  json["reference"] = result.theories[reference_of(result.theories)]->name;
+  json["reference"] = result.theories[theories::reference_of(result.theories)]->name;
   for (std::size_t t = 0; t < result.theories.size(); ++t)
     json[result.theories[t]->name] = json_theory(result.solutions[t], result.theories[t]->name, result.geometry);
   if (result.theories.size() > 1)
-    json["relative_difference"] = json_number(result.relative_difference, "relative_difference");
+    json["relative_difference"] = json::json_number(result.relative_difference, "relative_difference");
   json["checks"]["symmetric"] = result.symmetric;
   json["checks"]["positive"] = result.positive;
   if (result.geometry == Geometry::linear) {
@@ -202,21 +203,21 @@ std::string solve_json(const SolveResult& result) {
   for (const auto& [part, share] : result.shares) {
     Json entry;
     entry["part"] = part;
-    entry["share"] = json_number(share, "share of " + part);
+    entry["share"] = json::json_number(share, "share of " + part);
     json["shares"].push_back(std::move(entry));
   }
   json["joints"] = Json::array();
-  for (const JointValue& joint : result.joints)
+  for (const studies::JointValue& joint : result.joints)
     json["joints"].push_back({{"name", joint.name}, {joint.rotation ? "value_rad" : "value_mm", joint.value}});
   json["redundant_constraints"] = result.redundant_constraints;
   if (result.assembly) {
     Json& assembly = json["assembly"];
     for (std::size_t t = 0; t < result.theories.size(); ++t) {
       const std::string name = result.theories[t]->name + "_offset";
-      assembly[name] = json_numbers(result.assembly->offsets_mm_rad[t], "assembly." + name);
+      assembly[name] = json::json_numbers(result.assembly->offsets_mm_rad[t], "assembly." + name);
     }
     for (const auto& [leg, wrench] : result.assembly->leg_wrenches_N_Nmm)
-      assembly["leg_wrenches_N_Nmm"][leg] = json_numbers(wrench, "assembly wrench of " + leg);
+      assembly["leg_wrenches_N_Nmm"][leg] = json::json_numbers(wrench, "assembly wrench of " + leg);
   }
   if (!result.rigid_motions.empty()) json["rigid"] = result.rigid_motions;
   if (result.floating)
@@ -224,10 +225,10 @@ std::string solve_json(const SolveResult& result) {
                         {"least", json_limits(result.floating->least_mm_rad)},
                         {"most", json_limits(result.floating->most_mm_rad)}};
   if (const auto notes = solve_notes(result); !notes.empty()) json["notes"] = notes;
-  return json_text(json);
+  return json::json_text(json);
 }
 
-std::string solve_report(const SolveResult& result) {
+std::string solve_report(const studies::SolveResult& result) {
   const Vector6 &p = result.pose_mm_deg, &F = result.load_N_Nmm;
   const auto check = [](bool held) { return held ? "yes" : "NO"; };
   std::string text = fmt::format("pose   x {:.9g}, y {:.9g}, z {:.9g} mm; roll {:.9g}, pitch {:.9g}, yaw {:.9g} deg\n",
@@ -238,7 +239,7 @@ std::string solve_report(const SolveResult& result) {
   if (result.theories.size() > 1) text += fmt::format("relative difference {:.1e}\n", result.relative_difference);
   if (result.geometry != Geometry::linear) text += geometry_line(result);
   text += "\n";
-  const std::size_t shown = reference_of(result.theories);
+  const std::size_t shown = theories::reference_of(result.theories);
   const Matrix6& K = result.solutions[shown].stiffness_mm;
   text += fmt::format("stiffness by {}, base axes (N/mm, N, Nmm)\n", result.theories[shown]->title);
   text += stiffness_table(K);
@@ -260,4 +261,4 @@ std::string solve_report(const SolveResult& result) {
   return text;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 bool starts_letter(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
@@ -66,4 +66,4 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

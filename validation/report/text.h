@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace deflect {
+namespace deflect::report {
 
 /// Of a line in the terminal.
 inline constexpr std::size_t line_length = 110;
@@ -33,4 +33,4 @@ std::vector<std::string> wrap(std::string_view text, std::size_t most);
 /// the right, nothing behind the last. Rows may have different lengths.
 std::string aligned(const std::vector<std::vector<std::string>>& rows);
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-namespace deflect {
+namespace deflect::report {
 
-Json json_theories(const Theories& theories) {
+Json json_theories(const theories::Theories& theories) {
   Json list = Json::array();
-  for (const Theory* theory : theories)
+  for (const theories::Theory* theory : theories)
     list.push_back({{"name", theory->name}, {"title", theory->title}, {"spoken", theory->spoken}});
   return list;
 }
 
-std::string against_text(const Theories& theories) {
+std::string against_text(const theories::Theories& theories) {
   if (theories.size() < 2) return "";
   if (theories.size() == 2) return fmt::format("{} against {}", theories[0]->title, theories[1]->title);
-  return titles_of(theories) + " against each other";
+  return theories::titles_of(theories) + " against each other";
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -6,13 +6,13 @@
 #include "validation/json/json_text.h"
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::report {
 
 /// [{"name": "analytic", "title": "analytic", "spoken": "the analytic theory"}, …]: members of the result that are
 /// called by the name hold what the theory says.
-Json json_theories(const Theories&);
+Json json_theories(const theories::Theories&);
 
 /// "analytic against MSA", "analytic, MSA and softer against each other"; empty for one theory.
-std::string against_text(const Theories&);
+std::string against_text(const theories::Theories&);
 
-}  // namespace deflect
+}  // namespace deflect::report

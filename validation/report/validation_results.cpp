@@ -13,7 +13,7 @@
 #include "validation/report/text.h"
 #include "validation/report/theory_words.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 /// 7 for "7"; text for "P7", "007" and "+7", which an integer would not give back.
@@ -35,28 +35,29 @@ std::string csv_number(double value, const std::string& what) {
   return fmt::format("{}", value);
 }
 
-std::string row_name(const ValidationRow& row) {
+std::string row_name(const studies::ValidationRow& row) {
   return fmt::format("point {}, load along {}", row.point.label, axis_names[row.axis]);
 }
 
-std::string millimetres(const ValidationRow* row, std::size_t theory) {
+std::string millimetres(const studies::ValidationRow* row, std::size_t theory) {
   return row ? fmt::format("{:.6f}", row->displacements[theory][row->axis]) : "–";
 }
 
 std::string difference(double value) { return fmt::format("{:.1e}", value); }
 
-std::vector<std::vector<std::string>> by_theory(const Validation& validation, const std::vector<PointRows>& points) {
+std::vector<std::vector<std::string>> by_theory(const studies::Validation& validation,
+                                                const std::vector<PointRows>& points) {
   const bool several = validation.theories.size() > 1;
   std::vector<std::vector<std::string>> lines = {{"point"}};
-  for (const Theory* theory : validation.theories)
+  for (const theories::Theory* theory : validation.theories)
     for (const char* axis : axis_names) lines.front().push_back(fmt::format("{} {}", theory->title, axis));
   if (several) lines.front().push_back("difference");
   for (const PointRows& p : points) {
     std::vector<std::string> line = {p.point->label};
     for (std::size_t t = 0; t < validation.theories.size(); ++t)
-      for (const ValidationRow* row : p.rows) line.push_back(millimetres(row, t));
+      for (const studies::ValidationRow* row : p.rows) line.push_back(millimetres(row, t));
     double largest = 0;
-    for (const ValidationRow* row : p.rows)
+    for (const studies::ValidationRow* row : p.rows)
       if (row && (std::isnan(row->relative_difference) || row->relative_difference > largest))
         largest = row->relative_difference;  // nothing is larger than a NaN, so it stays
     if (several) line.push_back(difference(largest));
@@ -65,8 +66,9 @@ std::vector<std::vector<std::string>> by_theory(const Validation& validation, co
   return lines;
 }
 
-std::vector<std::vector<std::string>> with_printed(const Validation& validation, const std::vector<PointRows>& points) {
-  const std::size_t corrected = place_of(validation.theories, "analytic");
+std::vector<std::vector<std::string>> with_printed(const studies::Validation& validation,
+                                                   const std::vector<PointRows>& points) {
+  const std::size_t corrected = theories::place_of(validation.theories, "analytic");
   const bool several = validation.theories.size() > 1;
   std::vector<std::vector<std::string>> lines = {{"point", "load", "as printed"}};
   for (std::size_t t = 0; t < validation.theories.size(); ++t)
@@ -74,7 +76,7 @@ std::vector<std::vector<std::string>> with_printed(const Validation& validation,
   lines.front().push_back("corrected/printed");
   if (several) lines.front().push_back("difference");
   for (const PointRows& p : points)
-    for (const ValidationRow* row : p.rows) {
+    for (const studies::ValidationRow* row : p.rows) {
       if (!row) continue;
       const double printed = row->as_printed ? (*row->as_printed)[row->axis] : 0;
       std::vector<std::string> line = {p.point->label, axis_names[row->axis],
@@ -89,20 +91,20 @@ std::vector<std::vector<std::string>> with_printed(const Validation& validation,
 
 }  // namespace
 
-std::string validation_json(const Validation& validation, const std::vector<ErratumPrice>& prices) {
+std::string validation_json(const studies::Validation& validation, const std::vector<studies::ErratumPrice>& prices) {
   Json points = Json::array();
-  for (const ValidationRow& row : validation.rows) {
+  for (const studies::ValidationRow& row : validation.rows) {
     const std::string name = row_name(row);
     Json entry;
     entry["point"] = json_label(row.point.label);
-    entry["pose"] = json_numbers(row.point.pose_mm_deg, name + ", pose");
+    entry["pose"] = json::json_numbers(row.point.pose_mm_deg, name + ", pose");
     entry["load_axis"] = axis_names[row.axis];
-    entry["load_N"] = json_number(row.load_N, name + ", load_N");
+    entry["load_N"] = json::json_number(row.load_N, name + ", load_N");
     for (std::size_t t = 0; t < row.displacements.size(); ++t) {
       const std::string& theory = validation.theories[t]->name;
-      entry[theory] = json_numbers(row.displacements[t], name + ", " + theory);
+      entry[theory] = json::json_numbers(row.displacements[t], name + ", " + theory);
     }
-    if (row.as_printed) entry["as_printed"] = json_numbers(*row.as_printed, name + ", as_printed");
+    if (row.as_printed) entry["as_printed"] = json::json_numbers(*row.as_printed, name + ", as_printed");
     points.push_back(std::move(entry));
   }
   Json result;
@@ -111,10 +113,12 @@ std::string validation_json(const Validation& validation, const std::vector<Erra
   result["theories"] = json_theories(validation.theories);
   result["points"] = std::move(points);
   if (validation.theories.size() > 1) {
-    result["max_relative_difference"] = json_number(validation.max_relative_difference, "max_relative_difference");
-    result["rms_relative_difference"] = json_number(validation.rms_relative_difference, "rms_relative_difference");
+    result["max_relative_difference"] =
+        json::json_number(validation.max_relative_difference, "max_relative_difference");
+    result["rms_relative_difference"] =
+        json::json_number(validation.rms_relative_difference, "rms_relative_difference");
   }
-  for (const ErratumPrice& p : prices) {
+  for (const studies::ErratumPrice& p : prices) {
     Json price = {{"erratum", info(p.erratum).name}, {"equations", info(p.erratum).equations}};
     for (int axis = 0; axis < 3 && p.refused.empty(); ++axis) {
       price["smallest"].push_back(std::isfinite(p.smallest(axis)) ? Json(p.smallest(axis)) : Json());
@@ -124,21 +128,21 @@ std::string validation_json(const Validation& validation, const std::vector<Erra
     price["failed_check"] = p.failed_check;
     result["errata"].push_back(std::move(price));
   }
-  return json_text(result);
+  return json::json_text(result);
 }
 
-std::string validation_csv(const Validation& validation) {
+std::string validation_csv(const studies::Validation& validation) {
   const bool printed = has_as_printed(validation);
-  std::string text = fmt::format("point,{},load_axis,load_N", fmt::join(pose_columns, ","));
+  std::string text = fmt::format("point,{},load_axis,load_N", fmt::join(measurement::pose_columns, ","));
   const bool several = validation.theories.size() > 1;
   std::vector<std::string> names;
-  for (const Theory* theory : validation.theories) names.push_back(theory->name);
+  for (const theories::Theory* theory : validation.theories) names.push_back(theory->name);
   if (printed) names.push_back("as_printed");
   for (const std::string& name : names)
-    for (const std::string& column : displacement_columns) text += fmt::format(",{}_{}", name, column);
+    for (const std::string& column : measurement::displacement_columns) text += fmt::format(",{}_{}", name, column);
   text += several ? ",relative_difference\n" : "\n";
 
-  for (const ValidationRow& row : validation.rows) {
+  for (const studies::ValidationRow& row : validation.rows) {
     const std::string name = row_name(row);
     const auto numbers = [&](const Vector6& values, const std::string& what) {
       for (const double value : values) text.append(",").append(csv_number(value, name + ", " + what));
@@ -157,7 +161,7 @@ std::string validation_csv(const Validation& validation) {
   return text;
 }
 
-std::string validation_table(const Validation& validation) {
+std::string validation_table(const studies::Validation& validation) {
   const std::vector<PointRows> points = by_point(validation);
   const bool printed = has_as_printed(validation);
   std::string text = fmt::format("{}: deflection of the tool point along a load of {} in x, y, z (mm, base axes)\n",
@@ -174,4 +178,4 @@ std::string validation_table(const Validation& validation) {
                             validation.rows.size());
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -8,22 +8,22 @@
 #include "validation/studies/errata_prices.h"
 #include "validation/studies/validate.h"
 
-namespace deflect {
+namespace deflect::report {
 
 /// {"device", "theories": [{"name", "title"}, …], "points": [{"point", "pose", "load_axis", "load_N", a member for each
 /// theory, "as_printed" where present}, …], "max_relative_difference", "rms_relative_difference"}. "point" is an
 /// integer where the label is one. With prices, "errata": [{"erratum", "equations", "smallest", "largest": ratios
 /// printed / corrected for loads along x, y, z, null where not finite, or "refused"; "failed_check"}, …].
-std::string validation_json(const Validation&, const std::vector<ErratumPrice>& = {});
+std::string validation_json(const studies::Validation&, const std::vector<studies::ErratumPrice>& = {});
 
 /// One line per row: point, x_mm … yaw_deg, load_axis, load_N, analytic_ux_mm … analytic_thz_rad, and so on by theory,
 /// as_printed_… (where any row has it; empty where that row has none), relative_difference.
-std::string validation_csv(const Validation&);
+std::string validation_csv(const studies::Validation&);
 
 /// One line per point: deflection along the load by each theory (mm) and the larger relative difference.
 /// With the theory as printed, one line per point and load: as printed, corrected, MSA and corrected / as
 /// printed, which is how many times too stiff the printed theory is. Ends with the largest and the rms
 /// difference.
-std::string validation_table(const Validation&);
+std::string validation_table(const studies::Validation&);
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -9,7 +9,7 @@
 #include "msa/base/number_words.h"
 #include "validation/report/compare_words.h"
 
-namespace deflect {
+namespace deflect::report {
 namespace {
 
 constexpr double micro_per_SI = 1e6;
@@ -24,37 +24,37 @@ std::string residual_words(double rmse, double chi2_per_dof, const char* unit) {
 
 bool passes_for_noise(double chi2_per_dof) { return as_printed(chi2_per_dof, 2) <= like_noise; }
 
-std::string first_of_all(const std::vector<RecordingMistake>& mistakes) {
+std::string first_of_all(const std::vector<compare::RecordingMistake>& mistakes) {
   return "Before anything else: " + mistakes.front().sentence + ".";
 }
 
-std::string joined_by_and(const Hypothesis& effects) {
+std::string joined_by_and(const diagnosis::Hypothesis& effects) {
   std::string out;
-  for (const PlacedEffect& e : effects)
+  for (const effects::PlacedEffect& e : effects)
     out += (out.empty() ? "" : " and ") + e.effect->title + " (" + placed_words(e) + ")";
   return out;
 }
 
 /// "The guideway of one leg bends more easily than the others: leg 4".
-std::string titled_words(const PlacedEffect& e) {
-  return e.leg ? fmt::format("{}: {}", e.effect->title, site_of(e)) : e.effect->title;
+std::string titled_words(const effects::PlacedEffect& e) {
+  return e.leg ? fmt::format("{}: {}", e.effect->title, effects::site_of(e)) : e.effect->title;
 }
 
-std::string joined_titles(const Hypothesis& effects, const char* between) {
+std::string joined_titles(const diagnosis::Hypothesis& effects, const char* between) {
   std::string out;
-  for (const PlacedEffect& e : effects) out += (out.empty() ? "" : between) + titled_words(e);
+  for (const effects::PlacedEffect& e : effects) out += (out.empty() ? "" : between) + titled_words(e);
   return out;
 }
 
 /// An id of a tie in words; ties are among the candidates.
-std::string title_of(const std::string& id, const Diagnosis& d) {
-  for (const Candidate& c : d.candidates)
-    if (id == placed_words(c.added()) || id == name_of(c.added())) return titled_words(c.added());
+std::string title_of(const std::string& id, const diagnosis::Diagnosis& d) {
+  for (const diagnosis::Candidate& c : d.candidates)
+    if (id == placed_words(c.added()) || id == diagnosis::name_of(c.added())) return titled_words(c.added());
   return id;
 }
 
 /// What the effects that were found take away, in the unit in which it can be seen.
-std::string fall_of_error(const Diagnosis& d, const char* unit) {
+std::string fall_of_error(const diagnosis::Diagnosis& d, const char* unit) {
   const double from = as_printed(micro_per_SI * d.baseline.rmse, 2), to = as_printed(micro_per_SI * d.final.rmse, 2);
   const double percent = from > 0 ? as_printed(100 * (1 - to / from), 0) : 0;
   if (percent >= 1)
@@ -82,8 +82,8 @@ std::string outlier_words(std::size_t set_aside, std::size_t readings) {
       set_aside, readings, percent);
 }
 
-std::string verdict_words(const Comparison& c) {
-  if (is_mistaken(c)) return first_of_all(c.mistakes);
+std::string verdict_words(const compare::Comparison& c) {
+  if (compare::is_mistaken(c)) return first_of_all(c.mistakes);
   const char* unit = error_unit(c).micro;
   const std::string outliers = outlier_words(c.set_aside.size(), c.readings);
   if (c.findings.empty())
@@ -109,28 +109,28 @@ std::string verdict_words(const Comparison& c) {
                         fall_words(c.chi2_per_dof, c.unexplained_chi2_per_dof));
 }
 
-std::string verdict_words(const Diagnosis& d) {
-  if (is_mistaken(d)) return first_of_all(d.mistakes);
+std::string verdict_words(const diagnosis::Diagnosis& d) {
+  if (diagnosis::is_mistaken(d)) return first_of_all(d.mistakes);
   const char* unit = d.rotations ? "µrad" : "µm";
   const std::string outliers = outlier_words(d.set_aside, d.readings);
   const std::string names = joined_by_and(d.missing);
   switch (d.verdict) {
-    case Verdict::nothing_missing:
+    case diagnosis::Verdict::nothing_missing:
       return outliers +
              (passes_for_noise(d.baseline.chi2_per_dof)
                   ? "Nothing is missing that these data can show: what is left is "
                   : "No effect is called for, but noise and tolerances do not explain all: what is left is ") +
              residual_words(d.baseline.rmse, d.baseline.chi2_per_dof, unit) + ".";
-    case Verdict::effect:
+    case diagnosis::Verdict::effect:
       return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d, unit));
-    case Verdict::ambiguous: {
+    case diagnosis::Verdict::ambiguous: {
       std::string group;
       for (const std::vector<std::string>& g : d.indistinguishable)
         group += fmt::format("{}{}", group.empty() ? "" : "; and ", fmt::join(g, " or "));
       return outliers + fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}. {}", group,
                                     names, fall_of_error(d, unit));
     }
-    case Verdict::unknown_effect:
+    case diagnosis::Verdict::unknown_effect:
       return outliers +
              fmt::format(
                  "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
@@ -139,17 +139,17 @@ std::string verdict_words(const Diagnosis& d) {
   return "";
 }
 
-std::string headline_words(const Diagnosis& d) {
-  if (is_mistaken(d)) return verdict_words(d);
+std::string headline_words(const diagnosis::Diagnosis& d) {
+  if (diagnosis::is_mistaken(d)) return verdict_words(d);
   const char* unit = d.rotations ? "µrad" : "µm";
   const std::string outliers = outlier_words(d.set_aside, d.readings);
   switch (d.verdict) {
-    case Verdict::nothing_missing:
+    case diagnosis::Verdict::nothing_missing:
       return verdict_words(d);
-    case Verdict::effect:
+    case diagnosis::Verdict::effect:
       return outliers + fmt::format("{}. This is missing from the model. {}", joined_titles(d.missing, "; and "),
                                     fall_of_error(d, unit));
-    case Verdict::ambiguous: {
+    case diagnosis::Verdict::ambiguous: {
       std::string either;
       for (const std::vector<std::string>& group : d.indistinguishable) {
         if (!either.empty()) either += " And: ";
@@ -159,7 +159,7 @@ std::string headline_words(const Diagnosis& d) {
       return outliers + fmt::format("Something is missing, and these data cannot tell which of these: {} {}", either,
                                     fall_of_error(d, unit));
     }
-    case Verdict::unknown_effect:
+    case diagnosis::Verdict::unknown_effect:
       return outliers +
              fmt::format(
                  "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
@@ -172,23 +172,25 @@ std::string how_read_text(const std::vector<std::string>& how) {
   return how.empty() ? "" : fmt::format("\nhow the file was read:\n  {}\n", fmt::join(how, "\n  "));
 }
 
-std::string placed_words(const PlacedEffect& e) { return fmt::format("{} ({})", e.effect->name, site_of(e)); }
+std::string placed_words(const effects::PlacedEffect& e) {
+  return fmt::format("{} ({})", e.effect->name, effects::site_of(e));
+}
 
-std::string fitted_words(const Hypothesis& h, const Fit& f) {
-  const std::vector<const EffectParameter*> all = parameters_of(h);
+std::string fitted_words(const diagnosis::Hypothesis& h, const diagnosis::Fit& f) {
+  const std::vector<const effects::EffectParameter*> all = diagnosis::parameters_of(h);
   std::string out;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto [low, high] = interval95(h, f, i);
+    const auto [low, high] = diagnosis::interval95(h, f, i);
     out += fmt::format("{}{} = {}", i ? ", " : "", all[i]->name, interval_words(f.values(as_index(i)), low, high));
   }
   return out;
 }
 
-Json mistakes_json(const std::vector<RecordingMistake>& mistakes) {
+Json mistakes_json(const std::vector<compare::RecordingMistake>& mistakes) {
   Json out = Json::array();
-  for (const RecordingMistake& m : mistakes)
+  for (const compare::RecordingMistake& m : mistakes)
     out.push_back({{"ids", m.ids}, {"sentence", m.sentence}, {"certain", m.certain}});
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::report

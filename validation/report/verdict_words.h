@@ -8,13 +8,13 @@
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/json/json_text.h"
 
-namespace deflect {
+namespace deflect::report {
 
-std::string verdict_words(const Comparison&);
-std::string verdict_words(const Diagnosis&);
+std::string verdict_words(const compare::Comparison&);
+std::string verdict_words(const diagnosis::Diagnosis&);
 
 /// The same verdict for the head of a page: what is missing first and in words, without the ids of effects.
-std::string headline_words(const Diagnosis&);
+std::string headline_words(const diagnosis::Diagnosis&);
 
 /// "37 of 720 readings (5.1 %) are gross outliers …" where they are more than one in twenty; empty otherwise.
 std::string outlier_words(std::size_t set_aside, std::size_t readings);
@@ -23,12 +23,12 @@ std::string outlier_words(std::size_t set_aside, std::size_t readings);
 std::string how_read_text(const std::vector<std::string>&);
 
 /// "guide_root_compliance (leg 3)".
-std::string placed_words(const PlacedEffect&);
+std::string placed_words(const effects::PlacedEffect&);
 
 /// "stiffness_Nmm_per_rad = 5.00e6 (4.9e6 … 5.1e6)" of all parameters.
-std::string fitted_words(const Hypothesis&, const Fit&);
+std::string fitted_words(const diagnosis::Hypothesis&, const diagnosis::Fit&);
 
 /// [{"ids": […], "sentence": "…", "certain": true}].
-Json mistakes_json(const std::vector<RecordingMistake>&);
+Json mistakes_json(const std::vector<compare::RecordingMistake>&);
 
-}  // namespace deflect
+}  // namespace deflect::report

@@ -12,7 +12,7 @@
 #include "validation/measurement/column_names.h"
 #include "validation/result_files/result_kinds.h"
 
-namespace deflect {
+namespace deflect::result_files {
 namespace {
 
 using Type = WantedMember::Type;
@@ -55,7 +55,7 @@ std::string words_of(const Json& value) {
   if (value.is_null()) return "null";
   if (value.is_array()) return fmt::format("a list of {}", value.size());
   if (value.is_object()) return "an object";
-  return excerpt(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return measurement::excerpt(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 class ResultCheck {
@@ -137,7 +137,7 @@ std::vector<WantedMember> for_each_theory(const WantedMember& wanted, const Json
 }  // namespace
 
 ReadResult read_result(const std::string& text, const std::string& origin) {
-  Json json = parse_json(text, origin, "give a file that --json wrote, whole");
+  Json json = json::parse_json(text, origin, "give a file that --json wrote, whole");
   for (const ResultKind& kind : result_kinds()) {
     if (!is_of(kind, json)) continue;
     complete_theories(kind.name, json);
@@ -160,4 +160,4 @@ ReadResult read_result(const std::string& text, const std::string& origin) {
                   origin));
 }
 
-}  // namespace deflect
+}  // namespace deflect::result_files

@@ -5,7 +5,7 @@
 
 #include "validation/json/json_text.h"
 
-namespace deflect {
+namespace deflect::result_files {
 
 struct ReadResult {
   std::string
@@ -18,4 +18,4 @@ struct ReadResult {
 /// 'candidates[3].site' …" for a result that lacks what its command writes, and for JSON that is no result at all.
 ReadResult read_result(const std::string& text, const std::string& origin);
 
-}  // namespace deflect
+}  // namespace deflect::result_files

@@ -1,6 +1,6 @@
 #include "validation/result_files/result_kinds.h"
 
-namespace deflect {
+namespace deflect::result_files {
 namespace {
 
 using Type = WantedMember::Type;
@@ -211,4 +211,4 @@ const std::vector<ResultKind>& result_kinds() {
   return all;
 }
 
-}  // namespace deflect
+}  // namespace deflect::result_files

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace deflect {
+namespace deflect::result_files {
 
 /// A member by its path, "candidates[].site", "cases{}.energy_Nmm" of an object with names of its own, and what it must
 /// be: text, number, number or null (an infinite one is written so), truth, list, object; three, six, 6×6 numbers.
@@ -21,4 +21,4 @@ struct ResultKind {
 /// In the order in which a result that does not say its kind is asked for it.
 const std::vector<ResultKind>& result_kinds();
 
-}  // namespace deflect
+}  // namespace deflect::result_files

@@ -11,7 +11,7 @@
 #include "validation/report/text.h"
 #include "validation/scene/scene_numbers.h"
 
-namespace deflect {
+namespace deflect::scene {
 namespace {
 
 using frame::CaseResult;
@@ -43,7 +43,7 @@ void put_members(Json& scene, Json& pose, const FrameDescription& f, const Frame
     const auto& [name, member] = f.members[i];
     const Section* section = find(f.sections, member.section);
     Json body = {{"leg", ""}, {"part", name}, {"kind", "member"}, {"guilty", false}};
-    if (section) put_outline(body, outline_of(*section), properties(*section, 0.3));
+    if (section) put_outline(body, figures::outline_of(*section), properties(*section, 0.3));
     scene["bodies"].push_back(std::move(body));
     const Vector3 along = place_of(f, r, member.to) - place_of(f, r, member.from);
     const Vector3 y = frame::member_axes(along, member.y_axis).col(1);
@@ -88,7 +88,7 @@ void put_line_load(Json& arrows, const FrameDescription& f, const FrameResult& r
     arrows.push_back({{"point", beam.a},
                       {"kind", "line"},
                       {"vector", {scene_digits(q.x()), scene_digits(q.y()), scene_digits(q.z())}},
-                      {"words", middle ? fmt::format("{:.4g} N/mm", q.norm() / mm) : ""}});
+                      {"words", middle ? fmt::format("{:.4g} N/mm", q.norm() / report::mm) : ""}});
   }
 }
 
@@ -102,7 +102,7 @@ std::string other_loads(const frame::LoadCase& load) {
     add(fmt::format("{} member{} warmer or colder", load.temperature.size(), load.temperature.size() == 1 ? "" : "s"));
   if (!load.displacements.empty())
     add(fmt::format("{} support{} moved", load.displacements.size(), load.displacements.size() == 1 ? "" : "s"));
-  return with_minus(out);
+  return report::with_minus(out);
 }
 
 Json shape_of(const FrameDescription& f, const FrameResult& r, const CaseResult& c) {
@@ -134,4 +134,4 @@ Json frame_scene_json(const FrameDescription& f, const FrameResult& result) {
   return scene;
 }
 
-}  // namespace deflect
+}  // namespace deflect::scene

@@ -4,7 +4,7 @@
 #include "msa/frame/file/frame_analysis.h"
 #include "validation/json/json_text.h"
 
-namespace deflect {
+namespace deflect::scene {
 
 /// A frame with more members than this is not drawn in 3D: a browser turns no more of them smoothly.
 inline constexpr std::size_t most_drawn_members = 3000;
@@ -14,4 +14,4 @@ inline constexpr std::size_t most_drawn_members = 3000;
 /// that it is seen to bend; others are drawn as they were solved. Null above `most_drawn_members`.
 Json frame_scene_json(const frame::FrameDescription&, const frame::FrameResult&);
 
-}  // namespace deflect
+}  // namespace deflect::scene

@@ -10,17 +10,17 @@
 #include "validation/scene/scene_numbers.h"
 #include "validation/theories/msa_theory.h"
 
-namespace deflect {
+namespace deflect::scene {
 namespace {
 
 constexpr int scene_elements = 8;  // of a member
 
 /// What each part of the description looks like, by leg and part.
-using Outlines = std::map<std::pair<std::string, std::string>, SectionOutline>;
+using Outlines = std::map<std::pair<std::string, std::string>, figures::SectionOutline>;
 
 Outlines outlines_of(const Mechanism& m, const Configuration& c) {
   Outlines out;
-  for (const DrawnMember& member : drawing_of(m, c).members)
+  for (const figures::DrawnMember& member : figures::drawing_of(m, c).members)
     out[{member.leg, member.part}] = {member.size_y, member.size_z, member.round};
   return out;
 }
@@ -69,7 +69,7 @@ Json ground_of(const Configuration& c) {
 class Drawing {
  public:
   Drawing(const Mechanism& m, const Configuration& c, const frame::MechanismModel& built,
-          const std::vector<ChangedPart>& guilty)
+          const std::vector<effects::ChangedPart>& guilty)
       : configuration_(c), outlines_(outlines_of(m, c)), built_(built), guilty_(guilty) {
     members(c.legs);
     arms();
@@ -81,7 +81,7 @@ class Drawing {
 
   Json json() const {
     Json names = Json::array();
-    for (const ChangedPart& g : guilty_) {
+    for (const effects::ChangedPart& g : guilty_) {
       const std::string words = g.leg.empty() ? g.part : g.leg + " " + (g.part.empty() ? "seat" : g.part);
       if (std::find(names.begin(), names.end(), words) == names.end()) names.push_back(words);
     }
@@ -92,7 +92,7 @@ class Drawing {
 
  private:
   bool is_guilty(const std::string& leg, const std::string& part) const {
-    return std::any_of(guilty_.begin(), guilty_.end(), [&](const ChangedPart& g) {
+    return std::any_of(guilty_.begin(), guilty_.end(), [&](const effects::ChangedPart& g) {
       return g.leg == leg && (g.part == part || (g.part.empty() && !leg.empty()));
     });
   }
@@ -111,7 +111,7 @@ class Drawing {
     const auto [first, last] = built_.members.at(bodies_.size());
     Json body = {{"leg", leg}, {"part", m.part}, {"kind", "member"}, {"guilty", is_guilty(leg, m.part)}};
     const auto outline = outlines_.find({leg, m.part});
-    put_outline(body, outline == outlines_.end() ? SectionOutline{} : outline->second, m.section);
+    put_outline(body, outline == outlines_.end() ? figures::SectionOutline{} : outline->second, m.section);
     bodies_.push_back(std::move(body));
     for (std::size_t i = first; i < last; ++i)
       cells_.push_back({built_.model.beams[i].a, built_.model.beams[i].b, bodies_.size() - 1});
@@ -164,22 +164,22 @@ class Drawing {
   const Configuration& configuration_;
   Outlines outlines_;
   const frame::MechanismModel& built_;
-  const std::vector<ChangedPart>& guilty_;
+  const std::vector<effects::ChangedPart>& guilty_;
   Json bodies_ = Json::array(), cells_ = Json::array(), joints_ = Json::array();
 };
 
 }  // namespace
 
 Json scene_json(const Mechanism& m, const std::vector<SceneStand>& stands, const std::vector<Vector6>& loads,
-                const std::vector<ChangedPart>& guilty, Geometry geometry) {
+                const std::vector<effects::ChangedPart>& guilty, Geometry geometry) {
   Json scene;
   for (const SceneStand& stand : stands) {
-    TheoryOptions options{m.name, frame::equal_division(stand.configuration, scene_elements)};
+    theories::TheoryOptions options{m.name, frame::equal_division(stand.configuration, scene_elements)};
     options.keep_division = true;  // the bodies of the scene are these elements
-    MsaAt msa(stand.configuration, options);
+    theories::MsaAt msa(stand.configuration, options);
     const auto& nodes = msa.mechanism().model.nodes;
     if (scene.is_null()) scene = Drawing(m, stand.configuration, msa.mechanism(), guilty).json();
-    Json pose = {{"label", stand.label}, {"pose_mm_deg", json_numbers(stand.pose_mm_deg, "pose")}};
+    Json pose = {{"label", stand.label}, {"pose_mm_deg", json::json_numbers(stand.pose_mm_deg, "pose")}};
     for (const frame::Node& node : nodes) pose["points_mm"].push_back(scene_position(node.position));
     pose["axes"] = SectionAxes(stand.configuration.legs).json(scene["bodies"].size());
     pose["shapes"] = Json::array();
@@ -187,8 +187,8 @@ Json scene_json(const Mechanism& m, const std::vector<SceneStand>& stands, const
       msa.answer(load, geometry);
       Json shape;
       Vector6 shown = load;
-      shown.tail<3>() *= mm;
-      shape["load_N_Nmm"] = json_numbers(shown, "load");
+      shown.tail<3>() *= report::mm;
+      shape["load_N_Nmm"] = json::json_numbers(shown, "load");
       shape["arrows"] = Json::array();
       put_load_arrows(shape["arrows"], msa.mechanism().tool, load);
       for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -200,4 +200,4 @@ Json scene_json(const Mechanism& m, const std::vector<SceneStand>& stands, const
   return scene;
 }
 
-}  // namespace deflect
+}  // namespace deflect::scene

@@ -9,7 +9,7 @@
 #include "validation/effects/changed_parts.h"
 #include "validation/json/json_text.h"
 
-namespace deflect {
+namespace deflect::scene {
 
 struct SceneStand {
   std::string label;
@@ -31,6 +31,6 @@ struct SceneStand {
 /// "force" | "moment" | "line", "vector": direction, "words": "50 N"}]. All stands are of one device.
 /// `loads`: at T, N and Nm. Throws as MsaAtPose does.
 Json scene_json(const Mechanism&, const std::vector<SceneStand>&, const std::vector<Vector6>& loads,
-                const std::vector<ChangedPart>& guilty, Geometry = Geometry::linear);
+                const std::vector<effects::ChangedPart>& guilty, Geometry = Geometry::linear);
 
-}  // namespace deflect
+}  // namespace deflect::scene

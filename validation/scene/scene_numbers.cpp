@@ -6,7 +6,7 @@
 
 #include "validation/report/text.h"
 
-namespace deflect {
+namespace deflect::scene {
 
 double scene_digits(double x) {
   if (x == 0) return 0;
@@ -15,18 +15,18 @@ double scene_digits(double x) {
 }
 
 Json scene_position(const Vector3& p) {
-  const auto rounded = [](double x) { return std::round(mm * x / 1e-4) * 1e-4; };
+  const auto rounded = [](double x) { return std::round(report::mm * x / 1e-4) * 1e-4; };
   return {rounded(p.x()), rounded(p.y()), rounded(p.z())};
 }
 
 Json scene_displacement(const Vector3& u) {
-  return {scene_digits(mm * u.x()), scene_digits(mm * u.y()), scene_digits(mm * u.z())};
+  return {scene_digits(report::mm * u.x()), scene_digits(report::mm * u.y()), scene_digits(report::mm * u.z())};
 }
 
-void put_outline(Json& body, const SectionOutline& o, const SectionProperties& p) {
+void put_outline(Json& body, const figures::SectionOutline& o, const SectionProperties& p) {
   const bool shaped = o.size_y > 0 && o.size_z > 0;
   const double y = shaped ? o.size_y : 4 * std::sqrt(p.Iz / p.A), z = shaped ? o.size_z : 4 * std::sqrt(p.Iy / p.A);
-  body["size_mm"] = {scene_digits(mm * y), scene_digits(mm * z)};
+  body["size_mm"] = {scene_digits(report::mm * y), scene_digits(report::mm * z)};
   body["round"] = !shaped || o.round;
 }
 
@@ -40,7 +40,7 @@ void put_load_arrows(Json& arrows, int point, const Vector6& load) {
   };
   const Vector3 force = load.head<3>(), moment = load.tail<3>();
   put("force", force, fmt::format("{:.4g} N", force.norm()));
-  put("moment", moment, fmt::format("{:.4g} Nmm", mm * moment.norm()));
+  put("moment", moment, fmt::format("{:.4g} Nmm", report::mm * moment.norm()));
 }
 
-}  // namespace deflect
+}  // namespace deflect::scene

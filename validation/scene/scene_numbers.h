@@ -6,7 +6,7 @@
 #include "validation/figures/drawing.h"
 #include "validation/json/json_text.h"
 
-namespace deflect {
+namespace deflect::scene {
 
 /// m → mm, to 0.1 µm.
 Json scene_position(const Vector3& p);
@@ -17,9 +17,9 @@ double scene_digits(double x);
 
 /// "size_mm" and "round" into a body. Where the file gives no shape, those of an ellipse of the same A, Iy and Iz
 /// (m², m⁴).
-void put_outline(Json& body, const SectionOutline&, const SectionProperties&);
+void put_outline(Json& body, const figures::SectionOutline&, const SectionProperties&);
 
 /// Arrows of a wrench [f; m] in N and Nm at a point of the scene, base axes: one for the force, one for the moment.
 void put_load_arrows(Json& arrows, int point, const Vector6& load);
 
-}  // namespace deflect
+}  // namespace deflect::scene

@@ -2,7 +2,7 @@
 
 #include <Eigen/QR>
 
-namespace deflect {
+namespace deflect::statistics {
 
 MatrixX side_by_side(const std::vector<MatrixX>& parts, Eigen::Index rows) {
   Eigen::Index columns = 0;
@@ -35,4 +35,4 @@ MatrixX orthonormal(const MatrixX& X, double threshold) {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::statistics

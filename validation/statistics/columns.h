@@ -5,7 +5,7 @@
 
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::statistics {
 
 /// All of them in one, each with that many rows.
 MatrixX side_by_side(const std::vector<MatrixX>&, Eigen::Index rows);
@@ -14,4 +14,4 @@ MatrixX side_by_side(const std::vector<MatrixX>&, Eigen::Index rows);
 /// rounding can tell.
 MatrixX orthonormal(const MatrixX&, double threshold = 0);
 
-}  // namespace deflect
+}  // namespace deflect::statistics

@@ -1,7 +1,7 @@
 #include "validation/statistics/parted_columns.h"
 #include "msa/base/index.h"
 
-namespace deflect {
+namespace deflect::statistics {
 
 Eigen::Index PartedColumns::cols() const {
   Eigen::Index out = shared.cols();
@@ -44,4 +44,4 @@ MatrixX PartedColumns::dense() const {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::statistics

@@ -5,7 +5,7 @@
 
 #include "msa/base/spatial.h"
 
-namespace deflect {
+namespace deflect::statistics {
 
 /// Columns that are 0 outside the rows of a group.
 struct GroupColumns {
@@ -47,4 +47,4 @@ void change_groups(const Groups& groups, MatrixX& X, const Change& change) {
   }
 }
 
-}  // namespace deflect
+}  // namespace deflect::statistics

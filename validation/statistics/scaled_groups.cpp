@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace deflect {
+namespace deflect::statistics {
 namespace {
 
 MatrixX part_of(const MatrixX& X, const GroupColumns& g) { return X(g.rows, Eigen::all); }
@@ -122,4 +122,4 @@ ScaledGroups::Gain ScaledGroups::free_gain(const Seen& r, double least) const {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::statistics

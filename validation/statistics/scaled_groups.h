@@ -12,7 +12,7 @@
 
 #include "validation/statistics/parted_columns.h"
 
-namespace deflect {
+namespace deflect::statistics {
 
 class ScaledGroups {
  public:
@@ -53,4 +53,4 @@ class ScaledGroups {
   Eigen::Index flat_ = 0;
 };
 
-}  // namespace deflect
+}  // namespace deflect::statistics

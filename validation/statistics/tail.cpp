@@ -4,7 +4,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <limits>
 
-namespace deflect {
+namespace deflect::statistics {
 
 double chi_squared_tail(double freedoms, double chi2) {
   if (freedoms > 0 && chi2 > std::numeric_limits<double>::max()) return 0;
@@ -18,4 +18,4 @@ double chi_squared_at_tail(double freedoms, double tail) {
 
 double normal_distribution(double x) { return boost::math::cdf(boost::math::normal(), x); }
 
-}  // namespace deflect
+}  // namespace deflect::statistics

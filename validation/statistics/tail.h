@@ -1,7 +1,7 @@
 // Tails of distributions (Boost.Math, instantiated once).
 #pragma once
 
-namespace deflect {
+namespace deflect::statistics {
 
 /// Probability that chance makes χ² with that many degrees of freedom at least as large; 1 without any.
 double chi_squared_tail(double freedoms, double chi2);
@@ -12,4 +12,4 @@ double chi_squared_at_tail(double freedoms, double tail);
 /// Φ(x) of the standard normal distribution.
 double normal_distribution(double x);
 
-}  // namespace deflect
+}  // namespace deflect::statistics

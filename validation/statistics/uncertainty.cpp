@@ -13,9 +13,9 @@
 #include "validation/statistics/scaled_groups.h"
 #include "validation/statistics/tail.h"
 
-namespace deflect {
+namespace deflect::statistics {
 
-MatrixX rows_of(const std::vector<MeasuredValue>& values,
+MatrixX rows_of(const std::vector<measurement::MeasuredValue>& values,
                 const std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_reading) {
   MatrixX out(std::ssize(values), by_reading.empty() ? 0 : by_reading.front().cols());
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -23,7 +23,7 @@ MatrixX rows_of(const std::vector<MeasuredValue>& values,
   return out;
 }
 
-VectorX rows_of(const std::vector<MeasuredValue>& values, const std::vector<Vector6>& by_reading) {
+VectorX rows_of(const std::vector<measurement::MeasuredValue>& values, const std::vector<Vector6>& by_reading) {
   VectorX out(std::ssize(values));
   for (std::size_t i = 0; i < values.size(); ++i)
     out(as_index(i)) = by_reading[values[i].reading](as_index(values[i].component));
@@ -33,7 +33,8 @@ VectorX rows_of(const std::vector<MeasuredValue>& values, const std::vector<Vect
 namespace {
 
 /// Where a pose has tolerances of its own: the rows of its numbers, with room for so many columns.
-std::vector<GroupColumns> room_of_poses(const Measurements& data, const std::vector<MeasuredValue>& values,
+std::vector<GroupColumns> room_of_poses(const measurement::Measurements& data,
+                                        const std::vector<measurement::MeasuredValue>& values,
                                         const std::vector<Eigen::Index>& columns) {
   std::vector<GroupColumns> groups(columns.size());
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -43,9 +44,10 @@ std::vector<GroupColumns> room_of_poses(const Measurements& data, const std::vec
 }
 
 /// Tolerances first … last − 1 of one pose, by its readings alone.
-void move_own(GroupColumns& own, const Deviations& off, std::size_t first, std::size_t last, std::size_t pose,
-              const Measurements& data, const std::vector<MeasuredValue>& values, const VectorX& nominal) {
-  const Measurements of_pose = one_pose(data, pose);
+void move_own(GroupColumns& own, const subject::Deviations& off, std::size_t first, std::size_t last, std::size_t pose,
+              const measurement::Measurements& data, const std::vector<measurement::MeasuredValue>& values,
+              const VectorX& nominal) {
+  const measurement::Measurements of_pose = measurement::one_pose(data, pose);
   // Of the rows of this pose's readings, the reading in `of_pose`.
   std::vector<std::size_t> reading;
   for (const Eigen::Index row : own.rows) {
@@ -53,7 +55,7 @@ void move_own(GroupColumns& own, const Deviations& off, std::size_t first, std::
     reading.push_back(as_size(std::lower_bound(all.begin(), all.end(), nth(values, row).reading) - all.begin()));
   }
   for (std::size_t k = first; k < last; ++k) {
-    const std::vector<Vector6> d = off.with(k)->predict(of_pose, {}, alone);
+    const std::vector<Vector6> d = off.with(k)->predict(of_pose, {}, parallel::alone);
     for (std::size_t i = 0; i < own.rows.size(); ++i)
       own.columns(as_index(i), as_index(k - first)) =
           d[reading[i]](as_index(nth(values, own.rows[i]).component)) - nominal(own.rows[i]);
@@ -62,13 +64,14 @@ void move_own(GroupColumns& own, const Deviations& off, std::size_t first, std::
 
 }  // namespace
 
-ToleranceModel tolerance_model(const Standing& standing, const Measurements& data,
-                               const std::vector<MeasuredValue>& values, const Work& work) {
-  const std::unique_ptr<const Deviations> off = standing.deviations(data);
-  const VectorX nominal = rows_of(values, off->drawn().predict(data, {}, alone));
+ToleranceModel tolerance_model(const subject::Standing& standing, const measurement::Measurements& data,
+                               const std::vector<measurement::MeasuredValue>& values, const parallel::Work& work) {
+  const std::unique_ptr<const subject::Deviations> off = standing.deviations(data);
+  const VectorX nominal = rows_of(values, off->drawn().predict(data, {}, parallel::alone));
   ToleranceModel out;
   out.nuisances = off->tolerances();
-  const auto own = std::find_if(out.nuisances.begin(), out.nuisances.end(), [](const Tolerance& t) { return t.pose; });
+  const auto own =
+      std::find_if(out.nuisances.begin(), out.nuisances.end(), [](const subject::Tolerance& t) { return t.pose; });
   const auto shared = as_size(own - out.nuisances.begin());
   out.A.shared = MatrixX::Zero(nominal.size(), as_index(shared));
   // Of each pose with tolerances of its own, the first and the last of them.
@@ -84,11 +87,11 @@ ToleranceModel tolerance_model(const Standing& standing, const Measurements& dat
   const auto done = [&](std::size_t through) {
     work.progress(static_cast<double>(through) / static_cast<double>(cases));
   };
-  for_each_case(
+  parallel::for_each_case(
       cases, 1, work.threads,
       [&](std::size_t k) {
         if (k < shared) {
-          out.A.shared.col(as_index(k)) = rows_of(values, off->with(k)->predict(data, {}, alone)) - nominal;
+          out.A.shared.col(as_index(k)) = rows_of(values, off->with(k)->predict(data, {}, parallel::alone)) - nominal;
           return;
         }
         const auto [first, last] = of_pose[k - shared];
@@ -99,7 +102,7 @@ ToleranceModel tolerance_model(const Standing& standing, const Measurements& dat
   return out;
 }
 
-Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<MeasuredValue>& values,
+Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<measurement::MeasuredValue>& values,
                          const std::vector<double>& sigma, const std::vector<Vector6>& predicted, double load,
                          const std::vector<bool>& set_aside, int threads)
     : A_(A) {
@@ -230,4 +233,4 @@ Regression regress(const Uncertainty& u, const VectorX& r, const MatrixX& G, con
   return Regressions(u, r, beside).on(G);
 }
 
-}  // namespace deflect
+}  // namespace deflect::statistics

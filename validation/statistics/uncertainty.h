@@ -22,26 +22,26 @@
 #include "validation/statistics/whitening.h"
 #include "validation/subject/subject.h"
 
-namespace deflect {
+namespace deflect::statistics {
 
 /// Columns are patterns, rows the measured numbers: each reading's six components (m, rad), where they were measured.
-MatrixX rows_of(const std::vector<MeasuredValue>&,
+MatrixX rows_of(const std::vector<measurement::MeasuredValue>&,
                 const std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_reading);
-VectorX rows_of(const std::vector<MeasuredValue>&, const std::vector<Vector6>& by_reading);
+VectorX rows_of(const std::vector<measurement::MeasuredValue>&, const std::vector<Vector6>& by_reading);
 
 /// The subject's sensitivity to its tolerances, which are nuisance parameters with a prior.
 struct ToleranceModel {
-  std::vector<Tolerance> nuisances;  ///< of all poses, then pose by pose
-  PartedColumns A;                   ///< measured numbers × nuisances, per standard deviation; m, rad; groups: poses
+  std::vector<subject::Tolerance> nuisances;  ///< of all poses, then pose by pose
+  PartedColumns A;  ///< measured numbers × nuisances, per standard deviation; m, rad; groups: poses
 };
-ToleranceModel tolerance_model(const Standing&, const Measurements&, const std::vector<MeasuredValue>&,
-                               const Work& = {});
+ToleranceModel tolerance_model(const subject::Standing&, const measurement::Measurements&,
+                               const std::vector<measurement::MeasuredValue>&, const parallel::Work& = {});
 
 class Uncertainty {
  public:
   /// `predicted`: by reading; `load`: relative standard deviation of a recorded load. Readings lie within A's groups.
   /// `threads`: of whitening.h.
-  Uncertainty(const PartedColumns& A, const std::vector<MeasuredValue>&, const std::vector<double>& sigma,
+  Uncertainty(const PartedColumns& A, const std::vector<measurement::MeasuredValue>&, const std::vector<double>& sigma,
               const std::vector<Vector6>& predicted, double load, const std::vector<bool>& set_aside = {},
               int threads = 1);
 
@@ -104,4 +104,4 @@ class Regressions {
 };
 Regression regress(const Uncertainty&, const VectorX& residual, const MatrixX& G, const MatrixX& beside = {});
 
-}  // namespace deflect
+}  // namespace deflect::statistics

@@ -7,7 +7,7 @@
 #include "msa/base/index.h"
 #include "validation/parallel/cases.h"
 
-namespace deflect {
+namespace deflect::statistics {
 namespace {
 
 /// f of some columns at a time, as many whatever the threads: so are the sums in products.
@@ -17,7 +17,7 @@ MatrixX by_parts(const MatrixX& X, int threads, const F& f) {
   if (X.cols() <= some) return f(X);
   MatrixX out(X.rows(), X.cols());
   const auto parts = as_size((X.cols() + some - 1) / some);
-  for_each_case(parts, 1, X.size() > little ? threads : 1, [&](std::size_t part) {
+  parallel::for_each_case(parts, 1, X.size() > little ? threads : 1, [&](std::size_t part) {
     const Eigen::Index first = as_index(part) * some, count = std::min(some, X.cols() - first);
     out.middleCols(first, count) = f(X.middleCols(first, count));
   });
@@ -145,4 +145,4 @@ VectorX Whitening::amplitudes(const VectorX& r) const {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::statistics

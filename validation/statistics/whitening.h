@@ -20,7 +20,7 @@
 
 #include "validation/statistics/parted_columns.h"
 
-namespace deflect {
+namespace deflect::statistics {
 
 /// Numbers first … first + size − 1. Without a covariance they do not count: W makes 0 of them.
 struct NoiseBlock {
@@ -81,4 +81,4 @@ class Whitening {
   Root root_;
 };
 
-}  // namespace deflect
+}  // namespace deflect::statistics

@@ -9,7 +9,7 @@
 #include "msa/base/outcome.h"
 #include "msa/base/stiffness_checks.h"
 
-namespace deflect {
+namespace deflect::studies {
 namespace {
 
 /// The checks of a theory as printed, which are told but not enforced.
@@ -69,4 +69,4 @@ std::vector<ErratumPrice> price_errata(const Mechanism& m, const std::vector<Val
   return prices;
 }
 
-}  // namespace deflect
+}  // namespace deflect::studies

@@ -7,7 +7,7 @@
 #include "analytic/model.h"
 #include "validation/studies/validate.h"
 
-namespace deflect {
+namespace deflect::studies {
 
 /// The price of one erratum: deflection along the load as printed / corrected at the points, smallest and largest ratio
 /// for loads along x, y, z. `refused` says why there is no number where the variant has no solution somewhere.
@@ -22,4 +22,4 @@ std::vector<ErratumPrice> price_errata(const Mechanism&, const std::vector<Valid
 /// The closed form as printed under a wrench. NumericalError where it has no equilibrium.
 analytic::AnalyticSolution solved_as_printed(const analytic::AnalyticModel& printed, const Vector6& F_T_W);
 
-}  // namespace deflect
+}  // namespace deflect::studies

@@ -16,7 +16,7 @@
 #include "validation/parallel/shared_cases.h"
 #include "validation/theories/agreement.h"
 
-namespace deflect {
+namespace deflect::studies {
 
 template <class Archive>
 void serialize(Archive& a, MapValues& v) {
@@ -64,9 +64,10 @@ MapValues empty_values() {
 }
 
 /// Of one theory, of its answers to each load.
-MapValues values_of(const std::vector<std::vector<Answer>>& by_load, std::size_t theory, const MapOptions& o) {
+MapValues values_of(const std::vector<std::vector<theories::Answer>>& by_load, std::size_t theory,
+                    const MapOptions& o) {
   MapValues v = empty_values();
-  const auto state = [&](std::size_t load) -> const Answer& { return by_load[load][theory]; };
+  const auto state = [&](std::size_t load) -> const theories::Answer& { return by_load[load][theory]; };
   for (std::size_t i = 0; i < by_load.size(); ++i) add(v, state(i).stiffness, o.length_mm);
   for (int i = 0; i < 3; ++i) {
     const Matrix6 K = stiffness_in_mm(state(o.load_N_Nmm ? 0 : as_size(i)).stiffness);
@@ -83,7 +84,7 @@ MapValues values_of(const std::vector<std::vector<Answer>>& by_load, std::size_t
   return v;
 }
 
-void check_finite(const MapValues& v, const Mechanism& m, const Vector6& pose_mm_deg, const Theory& theory) {
+void check_finite(const MapValues& v, const Mechanism& m, const Vector6& pose_mm_deg, const theories::Theory& theory) {
   if (v.compliance_mm_N.allFinite() && v.stiffness_N_mm.allFinite() && v.K_ii.allFinite() &&
       std::isfinite(v.smallest_N_mm) && std::isfinite(v.largest_N_mm) && std::isfinite(v.isotropy))
     return;
@@ -99,12 +100,13 @@ std::vector<Vector6> loads_of(const MapOptions& o) {
 /// The device from pose to pose, by each theory.
 struct Sweep {
   Posing posing;
-  std::vector<std::unique_ptr<TheoryAt>> theories;
+  std::vector<std::unique_ptr<theories::TheoryAt>> theories;
 
   void stand_in(const Configuration& c, const Mechanism& m, const MapOptions& o) {
     for (const auto& theory : theories) theory->move_to(c);
     if (theories.empty())
-      for (const Theory* theory : o.theories) theories.push_back(theory->at(c, {.device = m.name, .condense = true}));
+      for (const theories::Theory* theory : o.theories)
+        theories.push_back(theory->at(c, {.device = m.name, .condense = true}));
   }
 };
 
@@ -139,18 +141,18 @@ MapPose map_pose(Sweep& sweep, const Mechanism& m, const MapOptions& o, const st
   const Configuration* c = *stands;
   sweep.stand_in(*c, m, o);
   tell_slides(out, *c);
-  std::vector<std::vector<Answer>> by_load(loads.size());
+  std::vector<std::vector<theories::Answer>> by_load(loads.size());
   for (std::size_t t = 0; t < o.theories.size(); ++t) {
     for (std::size_t i = 0; i < loads.size(); ++i) by_load[i].push_back(sweep.theories[t]->answer(loads[i]));
     out.values.push_back(values_of(by_load, t, o));
     check_finite(out.values.back(), m, out.pose_mm_deg, *o.theories[t]);
   }
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    const std::vector<Answer>& answers = by_load[i];
-    require_agreement(o.theories, answers, loads[i], *c, m.name);
+    const std::vector<theories::Answer>& answers = by_load[i];
+    theories::require_agreement(o.theories, answers, loads[i], *c, m.name);
     std::vector<Vector6> displacements;
-    for (const Answer& answer : answers) displacements.push_back(twist_in_mm(answer.displacement));
-    out.relative_difference = std::max(out.relative_difference, largest_difference(displacements));
+    for (const theories::Answer& answer : answers) displacements.push_back(twist_in_mm(answer.displacement));
+    out.relative_difference = std::max(out.relative_difference, theories::largest_difference(displacements));
   }
   return out;
 }
@@ -230,7 +232,7 @@ SlideWords slide_words(const Mechanism& m) {
   return slides ? SlideWords{"slide", "slide position"} : SlideWords();
 }
 
-StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options, const Work& work) {
+StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options, const parallel::Work& work) {
   check(options);
   if (work.threads < 0) throw InputError(fmt::format("{} threads: 0 (all) or more are wanted", work.threads));
   StiffnessMap map{m.name, slide_words(m), options, std::vector<MapPose>(options.grid.size())};
@@ -242,7 +244,7 @@ StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options, const 
   const auto of_chunk = [&](std::size_t k) {
     return std::span(map.poses).subspan(k * chunk, std::min(chunk, poses - k * chunk));
   };
-  SharedCases chunks;
+  parallel::SharedCases chunks;
   chunks.count = (poses + chunk - 1) / chunk;
   chunks.work = [&](std::size_t k) {
     Sweep sweep{Posing(m), {}};
@@ -250,13 +252,14 @@ StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options, const 
   };
   chunks.result = [&](std::size_t k) {
     const auto done = of_chunk(k);
-    return pack(std::vector<MapPose>(done.begin(), done.end()));
+    return parallel::pack(std::vector<MapPose>(done.begin(), done.end()));
   };
   chunks.take = [&](std::size_t k, const std::string& bytes) {
-    std::ranges::move(unpack<std::vector<MapPose>>(bytes), of_chunk(k).begin());
+    std::ranges::move(parallel::unpack<std::vector<MapPose>>(bytes), of_chunk(k).begin());
   };
-  for_each_case(chunks, work.ranks, work.threads, work.progress ? std::function<void(std::size_t)>(progress) : nullptr);
+  parallel::for_each_case(chunks, work.ranks, work.threads,
+                          work.progress ? std::function<void(std::size_t)>(progress) : nullptr);
   return map;
 }
 
-}  // namespace deflect
+}  // namespace deflect::studies

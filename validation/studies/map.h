@@ -18,7 +18,7 @@
 #include "validation/studies/workspace.h"
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::studies {
 
 /// Poses at equal steps from `low` to `high`, both included, x fastest, all with one orientation. One value on an axis
 /// stands in the middle.
@@ -38,11 +38,11 @@ MapGrid workspace_grid(const Mechanism&, const std::array<int, 3>& counts);
 
 struct MapOptions {
   MapGrid grid;
-  std::optional<Region> region;        ///< poses outside of it are left out
-  double force_N = 50;                 ///< along x, y, z in turn, without `load`
-  std::optional<Vector6> load_N_Nmm;   ///< one wrench on T about T, base axes, instead of the three forces
-  Theories theories = all_theories();  ///< asked for
-  double length_mm = 0;                ///< L_c > 0 that weighs rotations in `isotropy`
+  std::optional<Region> region;       ///< poses outside of it are left out
+  double force_N = 50;                ///< along x, y, z in turn, without `load`
+  std::optional<Vector6> load_N_Nmm;  ///< one wrench on T about T, base axes, instead of the three forces
+  theories::Theories theories = theories::all_theories();  ///< asked for
+  double length_mm = 0;                                    ///< L_c > 0 that weighs rotations in `isotropy`
 };
 
 /// What one theory says of T at one pose, base axes. Matrices row by row: ij is the response along i to the force along
@@ -93,6 +93,6 @@ double weighing_length_mm(const Mechanism&);
 /// first has it whole, the others their own poses. A pose that the
 /// kinematics refuse is kept with the reason; every other failure ends the map with the error of the first pose in the
 /// grid's order that has one: ModelError, NumericalError. InputError on options that no map can have.
-StiffnessMap map_stiffness(const Mechanism&, const MapOptions&, const Work& = {});
+StiffnessMap map_stiffness(const Mechanism&, const MapOptions&, const parallel::Work& = {});
 
-}  // namespace deflect
+}  // namespace deflect::studies

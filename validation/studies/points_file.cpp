@@ -10,24 +10,25 @@
 #include "validation/measurement/column_names.h"
 #include "validation/measurement/csv.h"
 
-namespace deflect {
+namespace deflect::studies {
 namespace {
 
-void check_columns(const CsvTable& table) {
+void check_columns(const measurement::CsvTable& table) {
   std::vector<std::string> known = {"pose"};
-  known.insert(known.end(), pose_columns.begin(), pose_columns.end());
+  known.insert(known.end(), measurement::pose_columns.begin(), measurement::pose_columns.end());
   for (const std::string& name : table.header())
-    if (!is_note(name) && std::find(known.begin(), known.end(), name) == known.end())
-      table.refuse_header(unknown_column(name, known));
+    if (!measurement::is_note(name) && std::find(known.begin(), known.end(), name) == known.end())
+      table.refuse_header(measurement::unknown_column(name, known));
   for (std::size_t i = 0; i < 3; ++i)
-    if (!table.column(pose_columns[i]))
-      table.refuse_header(fmt::format("column '{}' is missing: x_mm, y_mm and z_mm are needed", pose_columns[i]));
+    if (!table.column(measurement::pose_columns[i]))
+      table.refuse_header(
+          fmt::format("column '{}' is missing: x_mm, y_mm and z_mm are needed", measurement::pose_columns[i]));
 }
 
 }  // namespace
 
 std::vector<ValidationPoint> read_points(const std::filesystem::path& path) {
-  const CsvTable table = read_csv(path.string());
+  const measurement::CsvTable table = measurement::read_csv(path.string());
   check_columns(table);
   const std::optional<std::size_t> label = table.column("pose");
   std::map<std::string, std::size_t> line_of;
@@ -39,8 +40,8 @@ std::vector<ValidationPoint> read_points(const std::filesystem::path& path) {
     const auto [same, is_new] = line_of.emplace(point.label, table.line(row));
     if (!is_new)
       table.refuse(row, *label, fmt::format("'{}' is already the label of line {}", point.label, same->second));
-    for (std::size_t i = 0; i < pose_columns.size(); ++i)
-      if (const auto column = table.column(pose_columns[i])) {
+    for (std::size_t i = 0; i < measurement::pose_columns.size(); ++i)
+      if (const auto column = table.column(measurement::pose_columns[i])) {
         if (i >= 3) table.angle(row, *column, pi / 180);
         point.pose_mm_deg[as_index(i)] = table.number(row, *column);
       }
@@ -48,4 +49,4 @@ std::vector<ValidationPoint> read_points(const std::filesystem::path& path) {
   return points;
 }
 
-}  // namespace deflect
+}  // namespace deflect::studies

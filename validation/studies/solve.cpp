@@ -9,7 +9,7 @@
 #include "analytic/constraint.h"
 #include "validation/theories/agreement.h"
 
-namespace deflect {
+namespace deflect::studies {
 namespace {
 
 /// No member in fewer than eight elements.
@@ -35,21 +35,22 @@ Vector6 above_rounding(const Vector6& moved, double size) {
 }
 
 /// What dividing members leaves of relative_difference() to the reference.
-double left_by_division(const std::vector<Answer>& answers, const Vector6& displacement_mm) {
+double left_by_division(const std::vector<theories::Answer>& answers, const Vector6& displacement_mm) {
   Eigen::Vector2d left = Eigen::Vector2d::Zero();
-  for (const Answer& answer : answers) left += answer.discretisation;
+  for (const theories::Answer& answer : answers) left += answer.discretisation;
   Vector6 moved = displacement_mm;
   moved.head<3>() += 1e3 * left(0) * Vector3::UnitX();
   moved.tail<3>() += left(1) * Vector3::UnitX();
-  return relative_difference(moved, displacement_mm);
+  return theories::relative_difference(moved, displacement_mm);
 }
 
-std::optional<Assembly> assembly_of(const Configuration& c, const std::vector<std::unique_ptr<TheoryAt>>& at) {
+std::optional<Assembly> assembly_of(const Configuration& c,
+                                    const std::vector<std::unique_ptr<theories::TheoryAt>>& at) {
   const auto fits = [](const PlacedLeg& leg) { return leg.misfit.isZero(0); };
   if (std::all_of(c.legs.begin(), c.legs.end(), fits)) return std::nullopt;
   Assembly out;
   for (const auto& theory : at) {
-    const Assembled assembled = theory->assembled();
+    const theories::Assembled assembled = theory->assembled();
     out.offsets_mm_rad.push_back(twist_in_mm(assembled.offset));
     if (!out.leg_wrenches_N_Nmm.empty()) continue;
     for (const auto& [leg, wrench] : assembled.leg_wrenches)
@@ -59,26 +60,28 @@ std::optional<Assembly> assembly_of(const Configuration& c, const std::vector<st
 }
 
 /// Checks, shares, play and notes: what the answers say beside displacement and stiffness.
-void tell(SolveResult& r, const std::vector<Answer>& answers, const std::vector<std::unique_ptr<TheoryAt>>& at,
-          double size, double turned) {
-  const Answer& reference = answers[reference_of(r.theories)];
+void tell(SolveResult& r, const std::vector<theories::Answer>& answers,
+          const std::vector<std::unique_ptr<theories::TheoryAt>>& at, double size, double turned) {
+  const theories::Answer& reference = answers[theories::reference_of(r.theories)];
   for (std::size_t t = 0; t < answers.size(); ++t) {
-    const Answer& a = answers[t];
+    const theories::Answer& a = answers[t];
     r.symmetric = r.symmetric && a.checks.symmetric;
     r.positive = r.positive && a.checks.positive;
     r.passive_joints_free = r.passive_joints_free && a.checks.passive_joints_free;
     if (r.rigid_motions.empty()) r.rigid_motions = a.rigid_motions;
     for (const std::string& note : at[t]->notes()) r.notes.push_back(note);
     if (!r.mesh.points.empty()) continue;
-    if (std::optional<Structure> s = at[t]->structure()) r.mesh = std::move(s->mesh), r.fields = std::move(s->fields);
+    if (std::optional<theories::Structure> s = at[t]->structure())
+      r.mesh = std::move(s->mesh), r.fields = std::move(s->fields);
   }
-  const double stored = total(reference.energies);
+  const double stored = theories::total(reference.energies);
   if (stored > 0)
     for (const auto& [part, energy] : reference.energies) r.shares.emplace_back(part, energy / stored);
-  if (const Floating& f = reference.floating; !f.loose.empty())
+  if (const theories::Floating& f = reference.floating; !f.loose.empty())
     r.floating = {f.loose, twist_in_mm(above_rounding(f.least, size)), twist_in_mm(above_rounding(f.most, size))};
   if (r.geometry != Geometry::linear) return;
-  if (const double known = std::max(turned, bound_with(0, rounding_of(r.theories, answers, size))); known > 1e-9)
+  if (const double known = std::max(turned, theories::bound_with(0, theories::rounding_of(r.theories, answers, size)));
+      known > 1e-9)
     r.notes.push_back(fmt::format(
         "the device amplifies the rounding of its own numbers: the answer is known to about {:.0e} of its size",
         known));
@@ -87,7 +90,7 @@ void tell(SolveResult& r, const std::vector<Answer>& answers, const std::vector<
 }  // namespace
 
 SolveResult solve(const Mechanism& m, const Stand& stand, const Vector6& load, const frame::MemberDivision& division,
-                  Geometry geometry, const Theories& theories) {
+                  Geometry geometry, const theories::Theories& theories) {
   const bool linear = geometry == Geometry::linear;
   const Configuration& c = stand.configuration;
   const Vector6 F = wrench_from_mm(load);
@@ -96,16 +99,18 @@ SolveResult solve(const Mechanism& m, const Stand& stand, const Vector6& load, c
   r.load_N_Nmm = load;
   r.geometry = geometry;
   r.theories = theories;
-  std::vector<std::unique_ptr<TheoryAt>> at;
-  DeformedAnswers deformed{geometry, {}, {}};
-  std::vector<Answer>& answers = deformed.answers;
+  std::vector<std::unique_ptr<theories::TheoryAt>> at;
+  theories::DeformedAnswers deformed{geometry, {}, {}};
+  std::vector<theories::Answer>& answers = deformed.answers;
   std::vector<Vector6> displacements;
-  for (const Theory* theory : theories) at.push_back(theory->at(c, {m.name, linear ? division : refined(c, division)}));
+  for (const theories::Theory* theory : theories)
+    at.push_back(theory->at(c, {m.name, linear ? division : refined(c, division)}));
   for (const auto& theory : at) {
     std::optional<Vector6> undeformed;
     if (!linear) undeformed = twist_in_mm(theory->answer(F).displacement);
-    const Answer& a = answers.emplace_back(theory->answer(F, geometry));
-    if (!linear) deformed.from_linear.push_back(relative_difference(twist_in_mm(a.displacement), *undeformed));
+    const theories::Answer& a = answers.emplace_back(theory->answer(F, geometry));
+    if (!linear)
+      deformed.from_linear.push_back(theories::relative_difference(twist_in_mm(a.displacement), *undeformed));
     // Of a device that is held rigidly but for some motions, displacements may be the rounding of coordinates.
     displacements.push_back(twist_in_mm(a.rigid > 0 ? above_rounding(a.displacement, c.size) : a.displacement));
     r.solutions.push_back(
@@ -113,13 +118,13 @@ SolveResult solve(const Mechanism& m, const Stand& stand, const Vector6& load, c
   }
   double turned = 0;  // what turning the machine shows of rounding
   if (linear) {
-    turned = require_agreement(theories, answers, F, c, m.name);
+    turned = theories::require_agreement(theories, answers, F, c, m.name);
   } else {
     r.discretisation = deformed.discretisation =
-        left_by_division(answers, twist_in_mm(answers[reference_of(theories)].displacement));
-    require_agreement_deformed(theories, deformed, c, m.name);
+        left_by_division(answers, twist_in_mm(answers[theories::reference_of(theories)].displacement));
+    theories::require_agreement_deformed(theories, deformed, c, m.name);
   }
-  r.relative_difference = largest_difference(displacements);
+  r.relative_difference = theories::largest_difference(displacements);
   tell(r, answers, at, c.size, turned);
   for (const Actuator& joint : c.actuators)
     r.joints.push_back({joint.name, joint.rotation ? joint.value : 1e3 * joint.value, joint.rotation});
@@ -128,4 +133,4 @@ SolveResult solve(const Mechanism& m, const Stand& stand, const Vector6& load, c
   return r;
 }
 
-}  // namespace deflect
+}  // namespace deflect::studies

@@ -9,7 +9,7 @@
 #include "msa/mechanism/stand.h"
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::studies {
 
 /// What one theory says of the tool point T, in base axes.
 struct TheorySolution {
@@ -41,7 +41,7 @@ struct SolveResult {
   Vector6 pose_mm_deg = Vector6::Zero();  ///< x y z (mm), roll pitch yaw (deg)
   Vector6 load_N_Nmm = Vector6::Zero();   ///< on T about T in base axes: fx fy fz (N), mx my mz (Nmm)
   Geometry geometry = Geometry::linear;
-  Theories theories;
+  theories::Theories theories;
   std::vector<TheorySolution> solutions;  ///< by theory
   double relative_difference = 0;         ///< of the displacements, see relative_difference(); the largest of any two
   /// Finite: about what dividing members leaves of relative_difference, of the theories together.
@@ -59,13 +59,13 @@ struct SolveResult {
   FieldData fields;                ///< on it: displacements, member forces
 
   /// By the theory that is shown where one must do (reference_of).
-  const TheorySolution& reference() const { return solutions[reference_of(theories)]; }
+  const TheorySolution& reference() const { return solutions[theories::reference_of(theories)]; }
 };
 
 /// The theories at one pose under one wrench (N, Nmm at T, base axes). Throws NumericalError naming the check where one
 /// fails, where a theory does not converge and where two disagree. In the deformed shape members have at least eight
 /// elements in a theory that divides them.
 SolveResult solve(const Mechanism&, const Stand&, const Vector6& load_N_Nmm, const frame::MemberDivision&,
-                  Geometry = Geometry::linear, const Theories& = all_theories());
+                  Geometry = Geometry::linear, const theories::Theories& = theories::all_theories());
 
-}  // namespace deflect
+}  // namespace deflect::studies

@@ -11,7 +11,7 @@
 #include "validation/studies/workspace.h"
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::studies {
 
 /// One pose, one load along one axis. Displacements of T in base axes: mm and rad.
 struct ValidationRow {
@@ -25,7 +25,7 @@ struct ValidationRow {
 
 struct Validation {
   std::string device;
-  Theories theories;
+  theories::Theories theories;
   std::set<Erratum> as_printed;
   std::vector<ValidationRow> rows;  ///< point by point, x y z each
   double max_relative_difference = 0, rms_relative_difference = 0;
@@ -34,6 +34,6 @@ struct Validation {
 /// `load_N` along x, y and z at every point by each theory, checks at every point and load as in solve(). The theory
 /// as printed is added where errata are asked for; its checks are not enforced.
 Validation validate(const Mechanism&, const std::vector<ValidationPoint>&, double load_N, const std::set<Erratum>&,
-                    const frame::MemberDivision&, const Theories& = all_theories());
+                    const frame::MemberDivision&, const theories::Theories& = theories::all_theories());
 
-}  // namespace deflect
+}  // namespace deflect::studies

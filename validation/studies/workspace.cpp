@@ -11,7 +11,7 @@
 #include "msa/mechanism/configuration.h"
 #include "validation/measurement/random.h"
 
-namespace deflect {
+namespace deflect::studies {
 namespace {
 
 using Point2 = Eigen::Vector2d;
@@ -185,7 +185,7 @@ std::vector<ValidationPoint> workspace_points(const Mechanism& m) {
   return points;
 }
 
-Vector6 draw_pose(const Region& r, Random& random) {
+Vector6 draw_pose(const Region& r, measurement::Random& random) {
   if (!r.poses_mm_deg.empty()) {
     const double i = random.uniform(0, static_cast<double>(r.poses_mm_deg.size()));
     return r.poses_mm_deg[std::min(static_cast<std::size_t>(i), r.poses_mm_deg.size() - 1)];
@@ -200,4 +200,4 @@ Vector6 draw_pose(const Region& r, Random& random) {
   }
 }
 
-}  // namespace deflect
+}  // namespace deflect::studies

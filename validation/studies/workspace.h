@@ -7,9 +7,11 @@
 
 #include "msa/mechanism/description.h"
 
-namespace deflect {
-
+namespace deflect::measurement {
 class Random;
+}
+
+namespace deflect::studies {
 
 /// A pose to be validated: a label for tables ("0" … "8"), x y z roll pitch yaw in mm and deg as written to results.
 struct ValidationPoint {
@@ -40,6 +42,6 @@ Region region_of(const Mechanism&);
 std::vector<ValidationPoint> workspace_points(const Mechanism&);
 
 /// A pose in it, drawn by lot with the centre's orientation; of a list one of its poses.
-Vector6 draw_pose(const Region&, Random&);
+Vector6 draw_pose(const Region&, measurement::Random&);
 
-}  // namespace deflect
+}  // namespace deflect::studies

@@ -9,7 +9,7 @@
 #include "msa/frame/file/frame_file.h"
 #include "validation/subject/subject.h"
 
-namespace deflect {
+namespace deflect::subject {
 namespace {
 
 using frame::FrameDescription;
@@ -51,13 +51,14 @@ class FrameStanding final : public Standing {
   }
 
   /// By the MSA, which alone knows frames.
-  std::vector<Vector6> predict(const Measurements& data, const PredictionOptions& o, const Work&) const override {
+  std::vector<Vector6> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
+                               const parallel::Work&) const override {
     std::vector<Vector6> loads;
-    for (const Reading& reading : data.readings) loads.push_back(reading.load);
+    for (const measurement::Reading& reading : data.readings) loads.push_back(reading.load);
     return displacements(loads, o.geometry.value_or(frame_->geometry));
   }
 
-  std::unique_ptr<const Deviations> deviations(const Measurements&) const override;
+  std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const override;
 
  private:
   /// Of the node under wrenches on it. NumericalError where the frame finds no equilibrium or a check fails.
@@ -96,7 +97,7 @@ class NoDeviations final : public Deviations {
   std::vector<Tolerance> none_;
 };
 
-std::unique_ptr<const Deviations> FrameStanding::deviations(const Measurements&) const {
+std::unique_ptr<const Deviations> FrameStanding::deviations(const measurement::Measurements&) const {
   FrameDescription linear = *frame_;
   linear.geometry = Geometry::linear;
   linear.load_steps = 1;
@@ -114,7 +115,7 @@ class FrameSubject final : public Subject::Kind {
   const std::string& name() const override { return frame_->name; }
   Geometry geometry() const override { return frame_->geometry; }
   double load_tolerance() const override { return 0; }
-  std::shared_ptr<const Standing> stand(const Measurements& data, const Standing*) const override {
+  std::shared_ptr<const Standing> stand(const measurement::Measurements& data, const Standing*) const override {
     return std::make_shared<FrameStanding>(frame_, number_, data.poses.size());
   }
   std::shared_ptr<const Kind> edited(const std::vector<Edit>& edits) const override {
@@ -133,4 +134,4 @@ std::shared_ptr<const Subject::Kind> frame_subject(FrameDescription f, std::stri
   return std::make_shared<FrameSubject>(std::move(f), std::move(node));
 }
 
-}  // namespace deflect
+}  // namespace deflect::subject

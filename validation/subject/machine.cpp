@@ -17,13 +17,13 @@
 #include "validation/subject/machine_transmissions.h"
 #include "validation/subject/subject.h"
 
-namespace deflect {
+namespace deflect::subject {
 namespace {
 
 /// One tolerance, moved by a standard deviation: in every pose, or in one.
 struct Move {
   Tolerance tolerance;
-  AsBuilt built = {};
+  prediction::AsBuilt built = {};
   std::size_t actuator = 0;        ///< of a pose
   Vector6 zero = Vector6::Zero();  ///< of the sensor
   NumberMove number = {};          ///< of the resolved description
@@ -33,38 +33,40 @@ std::vector<Move> shared_moves(const Mechanism& m) {
   const Tolerances t = named_tolerances(m);
   const auto legs = as_size(leg_count(m));
   std::vector<Move> moves;
-  const auto add = [&](const std::string& name, double sigma, const std::function<void(AsBuilt&)>& change) {
+  const auto add = [&](const std::string& name, double sigma, const std::function<void(prediction::AsBuilt&)>& change) {
     if (!(sigma > 0)) return;
     Move move{{name, sigma}};
     move.built.legs.resize(legs);
     change(move.built);
     moves.push_back(std::move(move));
   };
-  add("modulus", t.modulus, [&](AsBuilt& b) { b.modulus = t.modulus; });
+  add("modulus", t.modulus, [&](prediction::AsBuilt& b) { b.modulus = t.modulus; });
   const bool seats = std::holds_alternative<SixPsu>(m.kinematics) || !m.mounts.empty();
   for (std::size_t i = 0; i < legs; ++i) {
     const std::string leg = fmt::format("leg {} ", i + 1);
-    add(leg + "guide diameter", t.guide_diameter, [&](AsBuilt& b) { b.legs[i].guide_diameter = t.guide_diameter; });
+    add(leg + "guide diameter", t.guide_diameter,
+        [&](prediction::AsBuilt& b) { b.legs[i].guide_diameter = t.guide_diameter; });
     if (!seats) continue;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       add(leg + "base joint " + "xyz"[axis], t.joint_position,
-          [&](AsBuilt& b) { b.legs[i].base_joint(axis) = t.joint_position; });
+          [&](prediction::AsBuilt& b) { b.legs[i].base_joint(axis) = t.joint_position; });
       add(leg + "platform joint " + "xyz"[axis], t.joint_position,
-          [&](AsBuilt& b) { b.legs[i].platform_joint(axis) = t.joint_position; });
+          [&](prediction::AsBuilt& b) { b.legs[i].platform_joint(axis) = t.joint_position; });
     }
     if (std::holds_alternative<SixPsu>(m.kinematics))
-      add(leg + "link length", t.link_length, [&](AsBuilt& b) { b.legs[i].link_length = t.link_length; });
+      add(leg + "link length", t.link_length, [&](prediction::AsBuilt& b) { b.legs[i].link_length = t.link_length; });
   }
   return moves;
 }
 
 /// A zero that nobody knows, of each component that is measured: wide beside all that was read.
-std::vector<Move> free_zeros(const Measurements& data) {
+std::vector<Move> free_zeros(const measurement::Measurements& data) {
   static const char* names[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
   std::vector<Move> out;
   for (std::size_t i = 0; i < 6; ++i) {
     double largest = 0;
-    for (const Reading& r : data.readings) largest = std::max(largest, std::abs(r.displacement[i].value_or(0)));
+    for (const measurement::Reading& r : data.readings)
+      largest = std::max(largest, std::abs(r.displacement[i].value_or(0)));
     if (largest == 0) continue;
     Move move{{fmt::format("zero of {}", names[i]), 10 * largest, {}, true}};
     move.zero(as_index(i)) = move.tolerance.sigma;
@@ -73,7 +75,8 @@ std::vector<Move> free_zeros(const Measurements& data) {
   return out;
 }
 
-std::vector<Move> moves_of(const Mechanism& m, const std::vector<Configuration>& drawn, const Measurements& data) {
+std::vector<Move> moves_of(const Mechanism& m, const std::vector<Configuration>& drawn,
+                           const measurement::Measurements& data) {
   std::vector<Move> moves = shared_moves(m);
   if (!m.tolerances.numbers.empty())
     for (NumberMove& number : number_moves(resolved(m)))
@@ -115,15 +118,16 @@ class MachineStanding final : public Standing {
     return model.compliance(model.solve(F));
   }
 
-  std::vector<Vector6> predict(const Measurements& data, const PredictionOptions& o, const Work& work) const override {
-    return deflect::predict(*mechanism_, machines_, data, o, work);
+  std::vector<Vector6> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
+                               const parallel::Work& work) const override {
+    return prediction::predict(*mechanism_, machines_, data, o, work);
   }
 
   std::unique_ptr<const Transmissions> transmissions() const override {
     return transmissions_of(*mechanism_, machines_);
   }
 
-  std::unique_ptr<const Deviations> deviations(const Measurements&) const override;
+  std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const override;
 
   const std::vector<Configuration>& machines() const { return machines_; }
 
@@ -134,9 +138,10 @@ class MachineStanding final : public Standing {
 
 class MachineDeviations final : public Deviations {
  public:
-  MachineDeviations(const Mechanism& m, const std::vector<Configuration>& machines, const Measurements& data)
+  MachineDeviations(const Mechanism& m, const std::vector<Configuration>& machines,
+                    const measurement::Measurements& data)
       : mechanism_(without_drift(m)),
-        same_geometry_(with_geometry(*mechanism_, {})),
+        same_geometry_(prediction::with_geometry(*mechanism_, {})),
         resolved_(resolved(same_geometry_)),
         drawn_(mechanism_, machines),
         moves_(moves_of(m, machines, data)) {
@@ -157,7 +162,7 @@ class MachineDeviations final : public Deviations {
     if (!move.number.shifts.empty()) {
       const auto built = std::make_shared<const Mechanism>(moved(resolved_, move.number));
       std::vector<Configuration> machines;
-      for (const Configuration& c : drawn_.machines()) machines.push_back(configure_as_built(*built, {}, c));
+      for (const Configuration& c : drawn_.machines()) machines.push_back(prediction::configure_as_built(*built, {}, c));
       return std::make_unique<MachineStanding>(built, std::move(machines));
     }
     std::vector<Configuration> moved;
@@ -165,10 +170,11 @@ class MachineDeviations final : public Deviations {
       const Configuration& drawn = drawn_.machines()[*pose];
       VectorX errors = VectorX::Zero(std::ssize(drawn.actuators));
       errors(as_index(move.actuator)) = move.tolerance.sigma;
-      moved.push_back(configure_as_built(same_geometry_, {}, drawn, errors));
+      moved.push_back(prediction::configure_as_built(same_geometry_, {}, drawn, errors));
     } else {
-      const Mechanism geometry = with_geometry(*mechanism_, move.built);
-      for (const Configuration& c : drawn_.machines()) moved.push_back(configure_as_built(geometry, move.built, c));
+      const Mechanism geometry = prediction::with_geometry(*mechanism_, move.built);
+      for (const Configuration& c : drawn_.machines())
+        moved.push_back(prediction::configure_as_built(geometry, move.built, c));
     }
     return std::make_unique<MachineStanding>(mechanism_, std::move(moved));
   }
@@ -182,7 +188,7 @@ class MachineDeviations final : public Deviations {
   std::vector<Tolerance> tolerances_;
 };
 
-std::unique_ptr<const Deviations> MachineStanding::deviations(const Measurements& data) const {
+std::unique_ptr<const Deviations> MachineStanding::deviations(const measurement::Measurements& data) const {
   return std::make_unique<MachineDeviations>(*mechanism_, machines_, data);
 }
 
@@ -197,11 +203,11 @@ class MachineSubject final : public Subject::Kind {
   std::vector<Place> places() const override { return places_of(*mechanism_); }
   const Mechanism* machine() const override { return mechanism_.get(); }
 
-  std::shared_ptr<const Standing> stand(const Measurements& data, const Standing* known) const override {
+  std::shared_ptr<const Standing> stand(const measurement::Measurements& data, const Standing* known) const override {
     const auto* machine = dynamic_cast<const MachineStanding*>(known);
     std::span<const Configuration> before;
     if (machine) before = machine->machines();
-    return std::make_shared<MachineStanding>(mechanism_, configure_all(*mechanism_, data, before));
+    return std::make_shared<MachineStanding>(mechanism_, measurement::configure_all(*mechanism_, data, before));
   }
   std::shared_ptr<const Kind> edited(const std::vector<Edit>& edits) const override {
     return machine_subject(edited_in_turn(*mechanism_, edits));
@@ -217,4 +223,4 @@ std::shared_ptr<const Subject::Kind> machine_subject(Mechanism m) {
   return std::make_shared<MachineSubject>(std::move(m));
 }
 
-}  // namespace deflect
+}  // namespace deflect::subject

@@ -11,7 +11,7 @@
 #include "msa/mechanism/mechanism_tree.h"
 #include "msa/mechanism/place.h"
 
-namespace deflect {
+namespace deflect::subject {
 namespace {
 
 /// A joint beside which nothing moves along: a pivot, with so many free turns.
@@ -154,4 +154,4 @@ std::vector<Place> places_of(const Mechanism& m) {
   return std::move(found.all);
 }
 
-}  // namespace deflect
+}  // namespace deflect::subject

@@ -6,7 +6,7 @@
 #include "msa/mechanism/description.h"
 #include "validation/subject/place.h"
 
-namespace deflect {
+namespace deflect::subject {
 
 /// Of a machine as it is described, in the order of its file: every freedom of every joint, tx and ty of a joint and rx
 /// and ry together where they are held alike (across its axis, tilt), members, their ends where no joint stands there,
@@ -14,4 +14,4 @@ namespace deflect {
 /// and the tool. The same place of all legs stands once.
 std::vector<Place> places_of(const Mechanism&);
 
-}  // namespace deflect
+}  // namespace deflect::subject

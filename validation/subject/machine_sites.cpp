@@ -7,7 +7,7 @@
 #include "analytic/model.h"
 #include "msa/base/index.h"
 
-namespace deflect {
+namespace deflect::subject {
 namespace {
 
 /// What the platform exerts on each leg, at T, under the six unit loads: columns of W.
@@ -95,4 +95,4 @@ std::vector<Site> sites_of(const Configuration& c) {
   return sites;
 }
 
-}  // namespace deflect
+}  // namespace deflect::subject

@@ -7,9 +7,9 @@
 #include "msa/mechanism/configuration.h"
 #include "validation/subject/subject.h"
 
-namespace deflect {
+namespace deflect::subject {
 
 /// The sites of a machine where it stands; none where nothing is driven.
 std::vector<Site> sites_of(const Configuration&);
 
-}  // namespace deflect
+}  // namespace deflect::subject

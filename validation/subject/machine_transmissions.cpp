@@ -11,7 +11,7 @@
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/place.h"
 
-namespace deflect {
+namespace deflect::subject {
 namespace {
 
 /// One freedom where it stands: the force f = gᵀF in it under a load F at T, and the displacement g of T when it gives
@@ -137,7 +137,7 @@ class MachineTransmissions final : public Transmissions {
       : by_pose_(std::move(by_pose)), cell_(m.load_cell), sensor_(m.sensor) {}
 
   std::optional<std::vector<Vector6>> change(const Place& place, std::optional<int> leg, const Law& law,
-                                             const Measurements& data) const override {
+                                             const measurement::Measurements& data) const override {
     std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
     for (std::size_t p = 0; p < data.poses.size(); ++p) {
       std::vector<Vector6> all;
@@ -147,10 +147,10 @@ class MachineTransmissions final : public Transmissions {
           if (at->second.there[i] && (!leg || at->second.leg == *leg)) all.push_back(at->second.g[i]);
       if (all.empty()) return std::nullopt;
       for (const std::size_t i : data.poses[p].readings) {
-        const Vector6 F = true_load(cell_, data.readings[i].load);
+        const Vector6 F = prediction::true_load(cell_, data.readings[i].load);
         Vector6 d = Vector6::Zero();
         for (const Vector6& g : all) d += g * deflection_of(law, g.dot(F));
-        out[i] = recorded_displacement(sensor_, d);
+        out[i] = prediction::recorded_displacement(sensor_, d);
       }
     }
     return out;
@@ -183,4 +183,4 @@ std::unique_ptr<const Transmissions> transmissions_of(const Mechanism& m, const 
   return std::make_unique<MachineTransmissions>(m, std::move(by_pose));
 }
 
-}  // namespace deflect
+}  // namespace deflect::subject

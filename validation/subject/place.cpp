@@ -4,7 +4,7 @@
 
 #include "msa/mechanism/joint_table.h"
 
-namespace deflect {
+namespace deflect::subject {
 
 std::string motion_of(const Place& p) {
   if (p.freedoms.empty()) return "";
@@ -23,4 +23,4 @@ std::string name_of(const Place& p) {
                      motion);
 }
 
-}  // namespace deflect
+}  // namespace deflect::subject

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace deflect {
+namespace deflect::subject {
 
 /// What a place is.
 enum class PlaceKind {
@@ -55,4 +55,4 @@ std::string id_of(const Place&);
 /// "elbow rz", "leg 3 elbow rz".
 std::string name_of(const Place&);
 
-}  // namespace deflect
+}  // namespace deflect::subject

@@ -14,7 +14,7 @@
 #include "validation/prediction/prediction.h"
 #include "validation/subject/place.h"
 
-namespace deflect {
+namespace deflect::subject {
 
 /// Where force can be looked at inside a subject without a model of what is missing: statics alone.
 ///
@@ -53,7 +53,7 @@ class Transmissions {
   /// By reading, the change when every freedom of the place gives way by the law (its materials resolved, no history)
   /// under the force that it carries; in one leg where `leg` is given. Nothing where the place is not known.
   virtual std::optional<std::vector<Vector6>> change(const Place&, std::optional<int> leg, const Law&,
-                                                     const Measurements&) const = 0;
+                                                     const measurement::Measurements&) const = 0;
 };
 
 class Deviations;
@@ -75,13 +75,14 @@ class Standing {
   virtual Matrix6 compliance(std::size_t pose) const = 0;
 
   /// The readings of these measurements, which have the same poses: prediction.h.
-  virtual std::vector<Vector6> predict(const Measurements&, const PredictionOptions& = {}, const Work& = {}) const = 0;
+  virtual std::vector<Vector6> predict(const measurement::Measurements&, const prediction::PredictionOptions& = {},
+                                       const parallel::Work& = {}) const = 0;
 
   /// Null where forces at places are more than shares of the load.
   virtual std::unique_ptr<const Transmissions> transmissions() const { return nullptr; }
 
   /// What it is off by from piece to piece.
-  virtual std::unique_ptr<const Deviations> deviations(const Measurements&) const = 0;
+  virtual std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const = 0;
 };
 
 /// A subject with one of its tolerances off by a standard deviation: in linear geometry, without the sensor's drift,
@@ -118,7 +119,7 @@ class Subject {
 
   /// Throws as configure_all() where it cannot stand. `known`: where a subject stands that may have the same
   /// kinematics, at the poses of the same measurements; the result is the same with it, and sooner there.
-  std::shared_ptr<const Standing> stand(const Measurements&, const Standing* known = nullptr) const;
+  std::shared_ptr<const Standing> stand(const measurement::Measurements&, const Standing* known = nullptr) const;
 
   /// With the edits one after the other, checked like a file. InputError as edited().
   Subject edited(const std::vector<Edit>&) const;
@@ -140,7 +141,7 @@ class Subject::Kind {
   virtual double load_tolerance() const = 0;
   virtual int legs() const { return 0; }
   virtual std::vector<Place> places() const { return {}; }
-  virtual std::shared_ptr<const Standing> stand(const Measurements&, const Standing* known) const = 0;
+  virtual std::shared_ptr<const Standing> stand(const measurement::Measurements&, const Standing* known) const = 0;
   virtual std::shared_ptr<const Kind> edited(const std::vector<Edit>&) const = 0;
   virtual const Mechanism* machine() const { return nullptr; }
 };
@@ -148,4 +149,4 @@ class Subject::Kind {
 std::shared_ptr<const Subject::Kind> machine_subject(Mechanism);
 std::shared_ptr<const Subject::Kind> frame_subject(frame::FrameDescription, std::string node);
 
-}  // namespace deflect
+}  // namespace deflect::subject

@@ -9,7 +9,7 @@
 #include "msa/base/error.h"
 #include "validation/theories/turned.h"
 
-namespace deflect {
+namespace deflect::theories {
 namespace {
 
 constexpr double linear_bound = 1e-9, contact_bound = 1e-7;
@@ -162,4 +162,4 @@ void require_agreement_deformed(const Theories& theories, const DeformedAnswers&
   });
 }
 
-}  // namespace deflect
+}  // namespace deflect::theories

@@ -6,7 +6,7 @@
 
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::theories {
 
 /// The larger of |δa − δb| / |δb| and |θa − θb| / |θb| for displacements in mm and rad, Euclidean norms of translation
 /// and rotation. Where symmetry makes one of the two vanish its rounding is measured by the other: a rotation against
@@ -53,4 +53,4 @@ struct DeformedAnswers {
 void require_agreement_deformed(const Theories&, const DeformedAnswers&, const Configuration&,
                                 const std::string& device);
 
-}  // namespace deflect
+}  // namespace deflect::theories

@@ -9,7 +9,7 @@
 #include "msa/base/outcome.h"
 #include "validation/theories/turned.h"
 
-namespace deflect {
+namespace deflect::theories {
 namespace {
 
 constexpr const char* by_closed_form = "analytic";
@@ -177,4 +177,4 @@ Assembled AnalyticAt::assembled() {
   return out;
 }
 
-}  // namespace deflect
+}  // namespace deflect::theories

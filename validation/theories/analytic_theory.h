@@ -8,7 +8,7 @@
 #include "analytic/pose_sweep.h"
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::theories {
 
 const Theory& analytic_theory();
 
@@ -49,4 +49,4 @@ class AnalyticAt final : public TheoryAt {
   std::optional<Affine> affine_;
 };
 
-}  // namespace deflect
+}  // namespace deflect::theories

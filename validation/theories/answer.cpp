@@ -10,7 +10,7 @@
 #include "msa/mechanism/law_table.h"
 #include "msa/mechanism/stand.h"
 
-namespace deflect {
+namespace deflect::theories {
 namespace {
 
 void enforce(const std::string& failure, const Asked& asked, const char* what) {
@@ -110,4 +110,4 @@ Answer deformed_answer(Answer answer, const Asked& asked, const Found& found) {
   return answer;
 }
 
-}  // namespace deflect
+}  // namespace deflect::theories

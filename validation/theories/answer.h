@@ -10,7 +10,7 @@
 #include "msa/mechanism/conditions.h"
 #include "msa/mechanism/configuration.h"
 
-namespace deflect {
+namespace deflect::theories {
 
 /// Where nothing loads a play, the mechanism floats in it: the displacement is the middle (set_valued_laws.h), from
 /// which T may move by between `least` and `most` along each axis (m, rad) without changing any force.
@@ -112,4 +112,4 @@ Answer swept_answer(const Sweep& sweep, std::vector<LegStiffness>& legs, const A
   return answer;
 }
 
-}  // namespace deflect
+}  // namespace deflect::theories

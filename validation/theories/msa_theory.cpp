@@ -7,7 +7,7 @@
 #include "meshes/structure.h"
 #include "msa/base/error.h"
 
-namespace deflect {
+namespace deflect::theories {
 namespace {
 
 constexpr const char* by_msa = "MSA";
@@ -178,4 +178,4 @@ std::optional<Structure> MsaAt::structure() {
 
 std::vector<std::string> MsaAt::notes() const { return model_ ? model_->notes() : std::vector<std::string>(); }
 
-}  // namespace deflect
+}  // namespace deflect::theories

@@ -12,7 +12,7 @@
 #include "msa/frame/mechanism/msa_sweep.h"
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::theories {
 
 const Theory& msa_theory();
 
@@ -65,4 +65,4 @@ class MsaAt final : public TheoryAt {
   std::optional<AtRest> rest_;
 };
 
-}  // namespace deflect
+}  // namespace deflect::theories

@@ -9,7 +9,7 @@
 #include "validation/theories/analytic_theory.h"
 #include "validation/theories/msa_theory.h"
 
-namespace deflect {
+namespace deflect::theories {
 namespace {
 
 std::vector<std::string> names_of(const Theories& theories) {
@@ -62,4 +62,4 @@ std::string titles_of(const Theories& theories) {
   return fmt::format("{} and {}", fmt::join(titles, ", "), last);
 }
 
-}  // namespace deflect
+}  // namespace deflect::theories

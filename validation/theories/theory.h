@@ -12,7 +12,7 @@
 #include "msa/frame/mechanism/build.h"
 #include "validation/theories/answer.h"
 
-namespace deflect {
+namespace deflect::theories {
 
 struct TheoryOptions {
   std::string device = {};              ///< its name, which begins the messages
@@ -89,4 +89,4 @@ std::size_t place_of(const Theories&, const std::string& name);
 /// "analytic, MSA and softer".
 std::string titles_of(const Theories&);
 
-}  // namespace deflect
+}  // namespace deflect::theories

@@ -5,7 +5,7 @@
 #include "msa/base/outcome.h"
 #include "validation/theories/agreement.h"
 
-namespace deflect {
+namespace deflect::theories {
 namespace {
 
 Vector6 turned_twist(const Matrix3& R, const Vector6& t) {
@@ -83,4 +83,4 @@ double changed_by_turning(const Theory& theory, const Answer& answer, const Conf
   return most;
 }
 
-}  // namespace deflect
+}  // namespace deflect::theories

@@ -3,7 +3,7 @@
 
 #include "validation/theories/theory.h"
 
-namespace deflect {
+namespace deflect::theories {
 
 /// Two turns, i = 0 and 1, about axes that no machine is drawn along.
 const Matrix3& turn_number(std::size_t i);
@@ -19,4 +19,4 @@ Answer turned_back(const Answer&, const Matrix3& R);
 /// a turned machine has no answer.
 double changed_by_turning(const Theory&, const Answer&, const Configuration&, const Vector6& F_T_W);
 
-}  // namespace deflect
+}  // namespace deflect::theories

@@ -51,7 +51,8 @@ std::vector<std::pair<std::string, double>> parse_values(const std::vector<std::
 }
 
 /// Values set on the command line take the place of those found.
-FoundEffect with_values(FoundEffect found, const std::vector<std::pair<std::string, double>>& values) {
+diagnosis::FoundEffect with_values(diagnosis::FoundEffect found,
+                                   const std::vector<std::pair<std::string, double>>& values) {
   for (const auto& given : values) {
     std::erase_if(found.parameters, [&](const auto& p) { return p.first == given.first; });
     found.parameters.push_back(given);
@@ -60,11 +61,11 @@ FoundEffect with_values(FoundEffect found, const std::vector<std::pair<std::stri
 }
 
 /// The effect as the diagnosis found it: missing, or only thought of.
-FoundEffect look_up(const FoundEffects& all, const std::string& effect, std::optional<int> leg,
-                    const std::string& file) {
+diagnosis::FoundEffect look_up(const diagnosis::FoundEffects& all, const std::string& effect, std::optional<int> leg,
+                               const std::string& file) {
   std::vector<std::string> names;
-  for (const std::vector<FoundEffect>* list : {&all.missing, &all.candidates})
-    for (const FoundEffect& f : *list) {
+  for (const std::vector<diagnosis::FoundEffect>* list : {&all.missing, &all.candidates})
+    for (const diagnosis::FoundEffect& f : *list) {
       if (f.effect == effect && (!leg || f.leg == leg)) return f;
       if (std::find(names.begin(), names.end(), f.effect) == names.end()) names.push_back(f.effect);
     }
@@ -72,14 +73,14 @@ FoundEffect look_up(const FoundEffects& all, const std::string& effect, std::opt
                                leg ? fmt::format(" of leg {}", *leg) : "", suggestion(effect, names)));
 }
 
-std::vector<FoundEffect> wanted(const AddArguments& a) {
+std::vector<diagnosis::FoundEffect> wanted(const AddArguments& a) {
   const auto values = parse_values(a.set);
   const std::optional<int> leg = parse_leg(a.leg);
   if (a.from.empty()) {
     if (a.effect.empty()) throw InputError("name the effect to add ('deflect effects' lists them), or give --from");
     return {{a.effect, leg, values}};
   }
-  const FoundEffects all = read_found_effects(a.from);
+  const diagnosis::FoundEffects all = diagnosis::read_found_effects(a.from);
   if (!a.effect.empty()) return {with_values(look_up(all, a.effect, leg, a.from), values)};
   if (all.missing.empty())
     throw InputError(a.from + ": the diagnosis reports no missing effect: name the effect to add");
@@ -87,14 +88,14 @@ std::vector<FoundEffect> wanted(const AddArguments& a) {
   return all.missing;
 }
 
-std::vector<std::string> names_of(const std::vector<EffectInstance>& added) {
+std::vector<std::string> names_of(const std::vector<effects::EffectInstance>& added) {
   std::vector<std::string> out;
-  for (const EffectInstance& i : added) out.push_back(words(i));
+  for (const effects::EffectInstance& i : added) out.push_back(report::words(i));
   return out;
 }
 
 /// The name of the new device is its file's; what was added stands in its one line and above all.
-std::string device_text(Mechanism m, const std::string& device, const std::vector<EffectInstance>& added,
+std::string device_text(Mechanism m, const std::string& device, const std::vector<effects::EffectInstance>& added,
                         const std::string& out) {
   const std::vector<std::string> names = names_of(added);
   m.about += fmt::format("{}with {}", m.about.empty() ? "" : "; ", fmt::join(names, ", "));
@@ -103,13 +104,14 @@ std::string device_text(Mechanism m, const std::string& device, const std::vecto
 }
 
 /// One after the other into the device; a diagnosis that they do not fit is named.
-std::vector<EffectInstance> add_effects(Mechanism& m, const AddArguments& a, const std::vector<Effect>& all) {
-  const std::vector<FoundEffect> effects = wanted(a);
-  std::vector<EffectInstance> added;
+std::vector<effects::EffectInstance> add_effects(Mechanism& m, const AddArguments& a,
+                                                 const std::vector<effects::Effect>& all) {
+  const std::vector<diagnosis::FoundEffect> effects = wanted(a);
+  std::vector<effects::EffectInstance> added;
   try {
-    for (const FoundEffect& found : effects) {
-      added.push_back(instance(find_effect(all, found.effect), found));
-      m = with_effect(m, added.back());
+    for (const diagnosis::FoundEffect& found : effects) {
+      added.push_back(diagnosis::instance(effects::find_effect(all, found.effect), found));
+      m = effects::with_effect(m, added.back());
       tell("effect {} from {}", found.effect, a.from.empty() ? "the command line" : a.from);
     }
   } catch (const InputError& e) {
@@ -133,13 +135,13 @@ void require_other_file(const AddArguments& a) {
 void run(const AddArguments& a) {
   require_other_file(a);
   Mechanism m = read_device(a.device);
-  const std::vector<Effect> all = known_effects(a.files, m);
-  const std::vector<EffectInstance> added = add_effects(m, a, all);
+  const std::vector<effects::Effect> all = known_effects(a.files, m);
+  const std::vector<effects::EffectInstance> added = add_effects(m, a, all);
   const std::string old = m.name, text = device_text(m, old, added, a.out);
   const Mechanism written = parse_mechanism(text, a.out);
   configure(written, home_pose(written));  // it stands
   write_file(a.out, text);
-  if (!a.json.empty()) write_file(a.json, added_json(a.device, a.out, added));
+  if (!a.json.empty()) write_file(a.json, report::added_json(a.device, a.out, added));
   fmt::print("{}: {} with {}\n", a.out, old, fmt::join(names_of(added), ", "));
 }
 

@@ -18,8 +18,8 @@ struct CheckArguments {
   double tolerance = 0;
 };
 
-MatrixConvention convention_of(const CheckArguments& a) {
-  MatrixConvention c;
+matrix::MatrixConvention convention_of(const CheckArguments& a) {
+  matrix::MatrixConvention c;
   if (a.unit != "mm" && a.unit != "m") throw InputError(fmt::format("--unit '{}': write mm or m", a.unit));
   c.unit_m = a.unit == "m" ? 1 : 1e-3;
   if (a.order != "translation-first" && a.order != "rotation-first")
@@ -29,11 +29,11 @@ MatrixConvention convention_of(const CheckArguments& a) {
 }
 
 /// The closed form's stiffness, which has passed its checks, in N and the unit of length.
-PrintedMatrix stiffness_of(const CheckArguments& a, double unit_m) {
+matrix::PrintedMatrix stiffness_of(const CheckArguments& a, double unit_m) {
   const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
-  Matrix6 K = theory("analytic").at(at.configuration, {m.name})->answer(wrench_from_mm(load)).stiffness;
+  Matrix6 K = theories::theory("analytic").at(at.configuration, {m.name})->answer(wrench_from_mm(load)).stiffness;
   if (load.isZero(0) && stiffness_in_mm(K).isZero(1e-9))
     throw InputError("--device " + a.device + ": without load its contacts have no stiffness; give --load");
   K.topLeftCorner<3, 3>() *= unit_m;
@@ -41,16 +41,16 @@ PrintedMatrix stiffness_of(const CheckArguments& a, double unit_m) {
   return {K, Matrix6::Zero()};
 }
 
-MatrixCheckOptions options_of(const CheckArguments& a) {
-  const MatrixConvention convention = convention_of(a);
-  MatrixCheckOptions o;
+matrix::MatrixCheckOptions options_of(const CheckArguments& a) {
+  const matrix::MatrixConvention convention = convention_of(a);
+  matrix::MatrixCheckOptions o;
   o.unit_m = convention.unit_m;
-  o.K = read_stiffness(a.matrix, convention, a.key);
-  if (!a.passive.empty()) o.passive_twists = read_twists(a.passive, convention);
+  o.K = matrix::read_stiffness(a.matrix, convention, a.key);
+  if (!a.passive.empty()) o.passive_twists = matrix::read_twists(a.passive, convention);
   if (!a.reference.empty() && !a.device.empty()) throw InputError("give either --reference or --device");
   if (a.device.empty() && !(a.pose + a.joints + a.load).empty())
     throw InputError("--pose, --joints and --load belong to --device");
-  if (!a.reference.empty()) o.reference = read_stiffness(a.reference, convention, a.key);
+  if (!a.reference.empty()) o.reference = matrix::read_stiffness(a.reference, convention, a.key);
   if (!a.device.empty()) o.reference = stiffness_of(a, o.unit_m);
   if (!(a.tolerance >= 0 && a.tolerance < 1))
     throw InputError(fmt::format("--tolerance {}: give a relative difference between 0 and 1", a.tolerance));
@@ -64,18 +64,18 @@ MatrixCheckOptions options_of(const CheckArguments& a) {
 
 void run(const CheckArguments& a) {
   require_pages(a.report);
-  const MatrixCheck m = timed("checks of " + a.matrix, [&] { return check_matrix(options_of(a)); });
-  const CheckedFiles files{a.matrix, a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints)};
-  const std::string report = check_report(m, files);
-  if (!a.json.empty()) write_file(a.json, check_json(m, files));
+  const matrix::MatrixCheck m = timed("checks of " + a.matrix, [&] { return matrix::check_matrix(options_of(a)); });
+  const report::CheckedFiles files{a.matrix, a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints)};
+  const std::string report = report::check_report(m, files);
+  if (!a.json.empty()) write_file(a.json, report::check_json(m, files));
   if (!a.out.empty()) {
     const std::filesystem::path folder = a.out;
     write_table(folder / "check.txt", report);
-    write_table(folder / "checks.csv", checks_csv(m));
-    write_table(folder / "structure.csv", structure_csv(m));
+    write_table(folder / "checks.csv", report::checks_csv(m));
+    write_table(folder / "structure.csv", report::structure_csv(m));
   }
   fmt::print("{}", report);
-  if (!a.report.empty()) write_report_of_file(a.report, a.matrix, {"check", check_json(m, files)});
+  if (!a.report.empty()) write_report_of_file(a.report, a.matrix, {"check", report::check_json(m, files)});
   if (!m.passes()) throw NumericalError(a.matrix + " fails its checks");
 }
 

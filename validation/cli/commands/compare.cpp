@@ -23,29 +23,29 @@ struct CompareArguments {
 
 void run(const CompareArguments& a) {
   require_pages(a.report);
-  const FigureStyle style = figure_style(a.figures, a.out);
+  const figures::FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
-  const Measurements data = read_data(a.data);
+  const measurement::Measurements data = read_data(a.data);
   tell_size(data, 450);
-  ComparisonOptions o;
+  compare::ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   const int threads = parse_threads(a.threads);
-  const Comparison c =
+  const compare::Comparison c =
       timed_with_progress("compare: closed form at every reading, tolerances, patterns", [&](const auto& told) {
-        return compare(m, data, o, {threads, nullptr, told});
+        return compare::compare(m, data, o, {threads, nullptr, told});
       });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
-    draw(compare_figures(c, style), folder);
-    write_table(folder / "residuals.csv", residuals_csv(c));
-    write_table(folder / "errors.csv", errors_csv(c));
-    write_table(folder / "tests.csv", tests_csv(c));
+    draw(figures::compare_figures(c, style), folder);
+    write_table(folder / "residuals.csv", report::residuals_csv(c));
+    write_table(folder / "errors.csv", report::errors_csv(c));
+    write_table(folder / "tests.csv", report::tests_csv(c));
   }
-  if (!a.json.empty()) write_file(a.json, compare_json(c));
-  fmt::print("{}", compare_report(c));
+  if (!a.json.empty()) write_file(a.json, report::compare_json(c));
+  fmt::print("{}", report::compare_report(c));
   if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
-  if (!a.report.empty()) write_report(a.report, a.device, {c}, {{"compare", compare_json(c)}});
+  if (!a.report.empty()) write_report(a.report, a.device, {c}, {{"compare", report::compare_json(c)}});
 }
 
 }  // namespace

@@ -20,28 +20,28 @@ struct DiagnoseArguments {
   double bootstrap = 1999, threads = 0;
 };
 
-void run(const DiagnoseArguments& a, Ranks* ranks) {
+void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
-  const Measurements data = read_data(a.data);
+  const measurement::Measurements data = read_data(a.data);
   tell_size(data, 1200);
-  const std::vector<Effect> effects = known_effects(a.files, m);
-  DiagnosisOptions o;
+  const std::vector<effects::Effect> effects = known_effects(a.files, m);
+  diagnosis::DiagnosisOptions o;
   o.comparison.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.comparison.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   o.comparison.as_recorded = a.as_recorded;
   o.bootstrap_sets = whole("--bootstrap", a.bootstrap, 99, 1e9);
   const int threads = parse_threads(a.threads, ranks);
-  const Diagnosis d = timed_with_progress("diagnose: fit and weigh every effect", [&](const auto& told) {
-    return diagnose(m, data, effects, o, {threads, ranks, told});
+  const diagnosis::Diagnosis d = timed_with_progress("diagnose: fit and weigh every effect", [&](const auto& told) {
+    return diagnosis::diagnose(m, data, effects, o, {threads, ranks, told});
   });
   if (ranks && !ranks->first()) return;
-  for (const PlacedEffect& found : d.missing) tell("found: {}", name_of(found));
-  if (!a.json.empty()) write_file(a.json, diagnosis_json(d));
-  fmt::print("{}", diagnosis_report(d, m.name, data.origin));
+  for (const effects::PlacedEffect& found : d.missing) tell("found: {}", diagnosis::name_of(found));
+  if (!a.json.empty()) write_file(a.json, report::diagnosis_json(d));
+  fmt::print("{}", report::diagnosis_report(d, m.name, data.origin));
   if (!a.report.empty())
     write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, threads,
-                              {{"diagnose", diagnosis_json(d)}});
+                              {{"diagnose", report::diagnosis_json(d)}});
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ Command diagnose_command() {
        {"--threads", "N", "threads per process (default 0: all cores); they do not change the result", &a->threads},
        {"--json", "FILE", "write the result", &a->json},
        report_option(&a->report)},
-      [a](Ranks* ranks) { run(*a, ranks); }};
+      [a](parallel::Ranks* ranks) { run(*a, ranks); }};
 }
 
 }  // namespace deflect::cli

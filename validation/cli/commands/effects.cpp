@@ -13,19 +13,19 @@
 
 namespace deflect::cli {
 
-std::vector<Effect> known_effects(const std::vector<std::string>& files) {
-  std::vector<Effect> all = catalogue(data_folder() / "effects" / "catalogue");
+std::vector<effects::Effect> known_effects(const std::vector<std::string>& files) {
+  std::vector<effects::Effect> all = effects::catalogue(data_folder() / "effects" / "catalogue");
   tell("effects: {} from {}", all.size(), (data_folder() / "effects" / "catalogue").string());
   for (const std::string& file : files) {
-    add_effect(all, read_effect(file));
+    effects::add_effect(all, effects::read_effect(file));
     tell("effect {} from {}", all.back().name, file);
   }
   return all;
 }
 
-std::vector<Effect> known_effects(const std::vector<std::string>& files, const Subject& subject) {
-  std::vector<Effect> all = known_effects(files);
-  for (Effect& e : place_effects(subject, all)) all.push_back(std::move(e));
+std::vector<effects::Effect> known_effects(const std::vector<std::string>& files, const subject::Subject& subject) {
+  std::vector<effects::Effect> all = known_effects(files);
+  for (effects::Effect& e : effects::place_effects(subject, all)) all.push_back(std::move(e));
   return all;
 }
 
@@ -40,21 +40,22 @@ struct EffectsArguments {
 void run(const EffectsArguments& a) {
   std::optional<Mechanism> device;
   if (!a.device.empty()) device = read_device(a.device);
-  std::vector<Effect> all = device ? known_effects(a.files, *device) : known_effects(a.files);
+  std::vector<effects::Effect> all = device ? known_effects(a.files, *device) : known_effects(a.files);
   if (!device && a.name.find('@') != a.name.npos)
     throw InputError(fmt::format("{}: a law at a place belongs to a device: name it with --device", a.name));
-  if (!a.name.empty()) all = {find_effect(all, a.name)};
+  if (!a.name.empty()) all = {effects::find_effect(all, a.name)};
   if (a.yaml) {
     if (a.name.empty()) throw InputError("--yaml prints the file of one effect: name it");
-    fmt::print("{}", all.front().place ? write_effect(all.front()) : read_text(all.front().origin));
+    fmt::print("{}", all.front().place ? effects::write_effect(all.front()) : read_text(all.front().origin));
     return;
   }
-  if (!a.json.empty()) write_file(a.json, effects_json(all, device ? std::optional<Subject>(*device) : std::nullopt));
+  if (!a.json.empty())
+    write_file(a.json, report::effects_json(all, device ? std::optional<subject::Subject>(*device) : std::nullopt));
   if (!a.name.empty())
-    fmt::print("{}", effect_page(all.front()));
+    fmt::print("{}", report::effect_page(all.front()));
   else if (!device)
-    fmt::print("{}", effect_table(all));
-  if (device) fmt::print("{}{}", a.name.empty() ? "" : "\n", effects_in_device(all, *device));
+    fmt::print("{}", report::effect_table(all));
+  if (device) fmt::print("{}{}", a.name.empty() ? "" : "\n", report::effects_in_device(all, *device));
 }
 
 }  // namespace

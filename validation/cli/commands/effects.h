@@ -10,8 +10,8 @@
 namespace deflect::cli {
 
 /// The catalogue and the user's own files.
-std::vector<Effect> known_effects(const std::vector<std::string>& files);
+std::vector<effects::Effect> known_effects(const std::vector<std::string>& files);
 /// And the laws at the subject's places (place_effects.h).
-std::vector<Effect> known_effects(const std::vector<std::string>& files, const Subject&);
+std::vector<effects::Effect> known_effects(const std::vector<std::string>& files, const subject::Subject&);
 
 }  // namespace deflect::cli

@@ -131,7 +131,7 @@ void run(const ExportArguments& a) {
   deflected_path.replace_filename(path.stem().string() + "-deflected" + format.suffix);
   const Stand at = parse_stand(m, a.pose, a.joints, true);
   const Vector6 load = parse_load(a.load);
-  MsaAt msa(at.configuration, {m.name, divide(m, a.element_size)});
+  theories::MsaAt msa(at.configuration, {m.name, divide(m, a.element_size)});
   const Vector6 d =
       timed("MSA: sparse Cholesky", [&] { return twist_in_mm(msa.answer(wrench_from_mm(load)).displacement); });
   LineMesh mesh = lines_of(msa.mechanism());

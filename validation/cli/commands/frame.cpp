@@ -54,7 +54,7 @@ frame::Equations solver_of(const std::string& name, const frame::FrameDescriptio
 }
 
 void write_results(const fs::path& folder, const frame::FrameDescription& f, const frame::FrameResult& r) {
-  const FrameTables tables = frame_tables(f, r);
+  const report::FrameTables tables = report::frame_tables(f, r);
   write_table(folder / "displacements.csv", tables.displacements);
   write_table(folder / "reactions.csv", tables.reactions);
   write_table(folder / "members.csv", tables.members);
@@ -68,9 +68,9 @@ void write_results(const fs::path& folder, const frame::FrameDescription& f, con
 }
 
 void print_schema(const std::string& json) {
-  const NamedSchema named{"frame files", frame::frame_schema()};
-  if (!json.empty()) write_file(json, schema_json({named}, "deflect frame file"));
-  fmt::print("{}", schema_table(named));
+  const report::NamedSchema named{"frame files", frame::frame_schema()};
+  if (!json.empty()) write_file(json, report::schema_json({named}, "deflect frame file"));
+  fmt::print("{}", report::schema_table(named));
 }
 
 void run(const FrameArguments& a) {
@@ -92,12 +92,12 @@ void run(const FrameArguments& a) {
   if (const std::string failure = frame::failed_check(r); !failure.empty())
     throw NumericalError(fmt::format("{}: {}", f.name, failure));
   if (!a.out.empty()) write_results(a.out, f, r);
-  if (!a.json.empty()) write_file(a.json, frame_json(f, r));
-  fmt::print("{}", frame_report(f, r));
+  if (!a.json.empty()) write_file(a.json, report::frame_json(f, r));
+  fmt::print("{}", report::frame_report(f, r));
   if (!a.out.empty()) fmt::print("Tables and deflected shapes: {}/*.csv, *.msh, *.vtu\n", a.out);
   if (!a.report.empty())
-    write_report_of_file(a.report, frame_file(a.file), {"frame", frame_json(f, r)},
-                         timed("frame: its picture", [&] { return frame_scene_json(f, r); }));
+    write_report_of_file(a.report, frame_file(a.file), {"frame", report::frame_json(f, r)},
+                         timed("frame: its picture", [&] { return scene::frame_scene_json(f, r); }));
 }
 
 }  // namespace

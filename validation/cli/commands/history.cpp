@@ -41,34 +41,35 @@ std::string same_machines(const std::vector<Mechanism>& devices) {
 
 void run(const HistoryArguments& a) {
   require_pages(a.report);
-  const FigureStyle style = figure_style(a.figures, a.out);
-  const Measurements data = read_data(a.data);
-  ComparisonOptions o;
+  const figures::FigureStyle style = figure_style(a.figures, a.out);
+  const measurement::Measurements data = read_data(a.data);
+  compare::ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   const int threads = parse_threads(a.threads);
   std::vector<Mechanism> devices;
   for (const std::string& name : a.devices) devices.push_back(read_device(name));
-  const std::vector<Comparison> all = timed_with_progress("compare with each", [&](const auto& told) {
-    std::vector<Comparison> out;
+  const std::vector<compare::Comparison> all = timed_with_progress("compare with each", [&](const auto& told) {
+    std::vector<compare::Comparison> out;
     const auto versions = static_cast<double>(devices.size());
     for (const Mechanism& m : devices) {
       const auto before = static_cast<double>(out.size());
-      const Work work = Work{threads, nullptr, told}.part(before / versions, (before + 1) / versions);
-      out.push_back(timed("compare with " + m.name, [&] { return compare(m, data, o, work); }));
+      const parallel::Work work =
+          parallel::Work{threads, nullptr, told}.part(before / versions, (before + 1) / versions);
+      out.push_back(timed("compare with " + m.name, [&] { return compare::compare(m, data, o, work); }));
     }
     return out;
   });
-  const History h = timed("placebos", [&] { return history(all); });
+  const compare::History h = timed("placebos", [&] { return compare::history(all); });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
-    draw({history_figure(h, style)}, folder);
-    write_table(folder / "history.csv", history_csv(h));
+    draw({figures::history_figure(h, style)}, folder);
+    write_table(folder / "history.csv", report::history_csv(h));
   }
-  if (!a.json.empty()) write_file(a.json, history_json(h));
-  fmt::print("{}{}", history_report(h), same_machines(devices));
+  if (!a.json.empty()) write_file(a.json, report::history_json(h));
+  fmt::print("{}{}", report::history_report(h), same_machines(devices));
   if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(folder).string());
-  if (!a.report.empty()) write_report(a.report, a.devices.front(), all, {{"history", history_json(h)}});
+  if (!a.report.empty()) write_report(a.report, a.devices.front(), all, {{"history", report::history_json(h)}});
 }
 
 }  // namespace

@@ -29,17 +29,17 @@ struct MapArguments {
 };
 
 /// The workspace, or a box where a range is given.
-void set_grid(const Mechanism& m, const MapArguments& a, MapOptions& o) {
+void set_grid(const Mechanism& m, const MapArguments& a, studies::MapOptions& o) {
   std::array<int, 3> counts = {11, 11, 11};
   if (!a.n.empty()) {
     const std::vector<double> n = parse_list("--n", a.n, {1, 3}, "nx,ny,nz or one number for all");
     for (std::size_t i = 0; i < 3; ++i) counts[i] = whole("--n", n[n.size() == 1 ? 0 : i], 1, 1e6);
   }
   const char* names[] = {"--x", "--y", "--z"};
-  MapGrid& grid = o.grid;
+  studies::MapGrid& grid = o.grid;
   grid.counts = counts;
   const bool all = !a.ranges[0].empty() && !a.ranges[1].empty() && !a.ranges[2].empty();
-  if (!all) grid = workspace_grid(m, counts);
+  if (!all) grid = studies::workspace_grid(m, counts);
   for (int axis = 0; axis < 3; ++axis) {
     const std::string& range = a.ranges[axis];
     if (range.empty()) continue;
@@ -51,7 +51,7 @@ void set_grid(const Mechanism& m, const MapArguments& a, MapOptions& o) {
     const auto i = as_size(axis);
     grid.counts[i] = ends.front() == ends.back() ? 1 : counts[i];
   }
-  if (a.ranges[0].empty() && a.ranges[1].empty() && a.ranges[2].empty()) o.region = region_of(m);
+  if (a.ranges[0].empty() && a.ranges[1].empty() && a.ranges[2].empty()) o.region = studies::region_of(m);
   if (!a.tilt.empty()) {
     const std::vector<double> tilt = parse_list("--tilt", a.tilt, {3}, "roll,pitch,yaw in deg");
     grid.tilt_deg = Vector3(tilt[0], tilt[1], tilt[2]);
@@ -59,10 +59,10 @@ void set_grid(const Mechanism& m, const MapArguments& a, MapOptions& o) {
 }
 
 /// The earlier form: one theory, or both.
-Theories parse_theory(const std::string& name) {
-  if (name == "both") return all_theories();
+theories::Theories parse_theory(const std::string& name) {
+  if (name == "both") return theories::all_theories();
   std::vector<std::string> names;
-  for (const Theory* theory : all_theories()) {
+  for (const theories::Theory* theory : theories::all_theories()) {
     if (theory->name == name) return {theory};
     names.push_back(theory->name);
   }
@@ -70,12 +70,12 @@ Theories parse_theory(const std::string& name) {
 }
 
 double length_mm(const Mechanism& m, const std::string& text) {
-  if (text.empty()) return weighing_length_mm(m);
+  if (text.empty()) return studies::weighing_length_mm(m);
   return 1e3 * parse_length("--length", text);
 }
 
-MapOptions options_of(const Mechanism& m, const MapArguments& a) {
-  MapOptions o;
+studies::MapOptions options_of(const Mechanism& m, const MapArguments& a) {
+  studies::MapOptions o;
   set_grid(m, a, o);
   o.force_N = a.force_N;
   if (!std::isfinite(a.force_N) || a.force_N == 0)
@@ -92,42 +92,42 @@ MapOptions options_of(const Mechanism& m, const MapArguments& a) {
 }
 
 /// ModelError for a map without any reached pose.
-void require_reached(const StiffnessMap& map) {
-  if (std::any_of(map.poses.begin(), map.poses.end(), [](const MapPose& p) { return p.reached(); })) return;
+void require_reached(const studies::StiffnessMap& map) {
+  if (std::any_of(map.poses.begin(), map.poses.end(), [](const studies::MapPose& p) { return p.reached(); })) return;
   throw ModelError(fmt::format(
       "the map is empty: the device reaches none of the {} poses; give --x, --y, --z or --tilt. The first pose: {}",
       map.poses.size(), map.poses.front().out_of_reach));
 }
 
-void run(const MapArguments& a, Ranks* ranks) {
+void run(const MapArguments& a, parallel::Ranks* ranks) {
   require_pages(a.report);
-  const FigureStyle style = figure_style(a.figures, a.out);
+  const figures::FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
-  const MapOptions o = options_of(m, a);
+  const studies::MapOptions o = options_of(m, a);
   const int threads = parse_threads(a.threads, ranks);
-  StiffnessMap map;
+  studies::StiffnessMap map;
   {
     const std::size_t poses = o.grid.size();
-    const Step step(fmt::format("map: {} poses, {}", poses, titles_of(o.theories)));
-    Progress progress(poses, "poses", progress_stream());
+    const Step step(fmt::format("map: {} poses, {}", poses, theories::titles_of(o.theories)));
+    parallel::Progress progress(poses, "poses", progress_stream());
     const auto told = [&](double share) {
       progress.update(static_cast<std::size_t>(std::lround(share * static_cast<double>(poses))));
     };
-    map = map_stiffness(m, o, {threads, ranks, told});
+    map = studies::map_stiffness(m, o, {threads, ranks, told});
   }
   if (ranks && !ranks->first()) return;
   require_reached(map);
   const std::filesystem::path folder = a.out;
   std::string figures;
   if (!a.out.empty()) {
-    write_table(folder / "map.csv", map_csv(map));
-    write_table(folder / "map.vtu", map_vtu(map));
-    std::vector<Figure> drawn = fig11(map, style);
-    for (Figure& figure : stiffness_against_length(map, style)) drawn.push_back(std::move(figure));
+    write_table(folder / "map.csv", report::map_csv(map));
+    write_table(folder / "map.vtu", report::map_vtu(map));
+    std::vector<figures::Figure> drawn = figures::fig11(map, style);
+    for (figures::Figure& figure : figures::stiffness_against_length(map, style)) drawn.push_back(std::move(figure));
     figures = draw(drawn, folder);
   }
-  if (!a.json.empty()) write_file(a.json, map_json(map));
-  fmt::print("{}", map_report(map));
+  if (!a.json.empty()) write_file(a.json, report::map_json(map));
+  fmt::print("{}", report::map_report(map));
   if (!a.out.empty())
     fmt::print("\nTables map.csv, map.vtu and figures {} in {}\n", figures.empty() ? "(none)" : figures,
                std::filesystem::absolute(folder).string());
@@ -135,7 +135,7 @@ void run(const MapArguments& a, Ranks* ranks) {
     const Stand home = parse_stand(m, "", "", true);
     const Vector6 load = o.load_N_Nmm.value_or(o.force_N * Vector6::Unit(2));
     write_report_of_stands(a.report, a.device, m, {{"home", home.pose_mm_deg, home.configuration}}, {load},
-                           {"map", map_json(map)});
+                           {"map", report::map_json(map)});
   }
 }
 
@@ -176,7 +176,7 @@ Command map_command() {
            {"--out", "DIR",
             "write fig11 and stiffness-vs-length as SVG, PDF, PNG with their captions, and map.csv, map.vtu", &a->out}},
           &a->figures),
-      [a](Ranks* ranks) { run(*a, ranks); }};
+      [a](parallel::Ranks* ranks) { run(*a, ranks); }};
 }
 
 }  // namespace deflect::cli

@@ -69,7 +69,7 @@ std::vector<std::string> first_commands(const Template& source, const std::strin
   const Mechanism m = read_mechanism(source.file);
   std::string where;
   if (!actuators_of(m).empty()) {
-    Vector6 pose = ((workspace_points(m).front().pose_mm_deg * 1e6).array().round() / 1e6).matrix();
+    Vector6 pose = ((studies::workspace_points(m).front().pose_mm_deg * 1e6).array().round() / 1e6).matrix();
     pose += Vector6::Zero();  // no −0
     where = fmt::format(" --pose={:.10g}", fmt::join(pose, ","));
   }

@@ -20,16 +20,16 @@ void run(const ReportArguments& a) {
   require_pages(a.output);
   if (a.device.empty() != a.data.empty())
     throw InputError("give --device and --data together, or neither: residuals need both");
-  std::vector<PageResult> results;
+  std::vector<page::PageResult> results;
   for (const std::string& file : a.results) {
     results.push_back({file, read_text(file)});
-    read_result(results.back().json, file);  // before any work
+    result_files::read_result(results.back().json, file);  // before any work
   }
   if (a.device.empty()) {
     write_report_of_results(a.output, std::move(results));
     return;
   }
-  ComparisonOptions o;
+  compare::ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   const Mechanism m = read_device(a.device);

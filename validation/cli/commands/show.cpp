@@ -32,29 +32,30 @@ bool is_frame(const std::string& name) {
   return kind_of(parse_yaml(read_text(file), file.string())) == FileKind::frame;
 }
 
-MachineDrawing drawing(const ShowArguments& a, bool frame) {
+figures::MachineDrawing drawing(const ShowArguments& a, bool frame) {
   if (frame) {
     if (!a.pose.empty() || !a.joints.empty()) throw InputError("--pose and --joints apply to devices, not to frames");
-    return drawing_of(frame::read_frame(frame_file(a.file)));
+    return figures::drawing_of(frame::read_frame(frame_file(a.file)));
   }
   const Mechanism m = read_device(a.file);
-  if (a.pose.empty() && a.joints.empty()) return drawing_of(m);
-  return drawing_of(m, parse_stand(m, a.pose, a.joints, false).configuration);
+  if (a.pose.empty() && a.joints.empty()) return figures::drawing_of(m);
+  return figures::drawing_of(m, parse_stand(m, a.pose, a.joints, false).configuration);
 }
 
 void run(const ShowArguments& a) {
   require_pages(a.report);
-  const FigureStyle style = figure_style(a.figures, a.out);
+  const figures::FigureStyle style = figure_style(a.figures, a.out);
   const bool frame = is_frame(a.file);
-  const MachineDrawing d = timed("the machine as drawn", [&] { return drawing(a, frame); });
+  const figures::MachineDrawing d = timed("the machine as drawn", [&] { return drawing(a, frame); });
   const std::filesystem::path folder = a.out;
-  if (!a.out.empty()) draw({drawing_figure(d, style)}, folder);
-  if (!a.json.empty()) write_file(a.json, drawing_json(d));
-  fmt::print("{}", drawing_report(d));
+  if (!a.out.empty()) draw({figures::drawing_figure(d, style)}, folder);
+  if (!a.json.empty()) write_file(a.json, figures::drawing_json(d));
+  fmt::print("{}", figures::drawing_report(d));
   if (!a.out.empty())
     fmt::print("\nFigure drawing.svg, .pdf, .png in {}\n", std::filesystem::absolute(folder).string());
   if (!a.report.empty())
-    write_report_of_file(a.report, frame ? frame_file(a.file) : device_file(a.file), {"show", drawing_json(d)});
+    write_report_of_file(a.report, frame ? frame_file(a.file) : device_file(a.file),
+                         {"show", figures::drawing_json(d)});
 }
 
 }  // namespace

@@ -32,17 +32,17 @@ struct SimulateArguments {
 };
 
 /// "EFFECT,leg=4,name=value,…": parameters that are not named keep the value at which a search begins.
-EffectInstance parse_with(const std::string& text, const std::vector<Effect>& all) {
+effects::EffectInstance parse_with(const std::string& text, const std::vector<effects::Effect>& all) {
   std::vector<std::string> words;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
     words.push_back(text.substr(at, comma - at));
     at = comma + 1;
   }
-  const Effect& effect = find_effect(all, words.front());
-  EffectInstance out{{&effect, {}}, start_values(effect)};
+  const effects::Effect& effect = effects::find_effect(all, words.front());
+  effects::EffectInstance out{{&effect, {}}, effects::start_values(effect)};
   std::vector<std::string> names = {"leg"};
-  for (const EffectParameter& p : effect.parameters) names.push_back(p.name);
+  for (const effects::EffectParameter& p : effect.parameters) names.push_back(p.name);
   std::vector<bool> given(names.size());
   for (auto word = words.begin() + 1; word != words.end(); ++word) {
     const std::size_t equals = word->find('=');
@@ -66,14 +66,15 @@ EffectInstance parse_with(const std::string& text, const std::vector<Effect>& al
       out.leg = whole("--with leg", value, 1, 1000);
       continue;
     }
-    require_in_bounds(fmt::format("--with '{}': {}={:g}", text, name, value), effect, effect.parameters[at - 1], value);
+    effects::require_in_bounds(fmt::format("--with '{}': {}={:g}", text, name, value), effect,
+                               effect.parameters[at - 1], value);
     out.values(as_index(at - 1)) = value;
   }
   return out;
 }
 
-SimulationOptions options_of(const SimulateArguments& a) {
-  SimulationOptions o;
+prediction::SimulationOptions options_of(const SimulateArguments& a) {
+  prediction::SimulationOptions o;
   if (!(a.seed >= 0 && a.seed < 9e15) || a.seed != std::floor(a.seed))
     throw InputError(fmt::format("--seed {}: give a whole number of at least zero", a.seed));
   o.seed = static_cast<std::uint64_t>(a.seed);
@@ -103,19 +104,19 @@ SimulationOptions options_of(const SimulateArguments& a) {
 }
 
 /// Every member in `elements` equal parts.
-Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64_t seed) {
-  const bool named = std::any_of(std::begin(campaign_names), std::end(campaign_names),
+measurement::Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64_t seed) {
+  const bool named = std::any_of(std::begin(prediction::campaign_names), std::end(prediction::campaign_names),
                                  [&](const char* name) { return a.campaign == name; });
-  if (!named && std::filesystem::exists(a.campaign)) return read_plan(a.campaign);
+  if (!named && std::filesystem::exists(a.campaign)) return measurement::read_plan(a.campaign);
   if (!(std::isfinite(a.force) && a.force != 0))
     throw InputError(fmt::format("--force {}: give a force in N other than zero", a.force));
-  return campaign(a.campaign, m, a.force, seed);
+  return prediction::campaign(a.campaign, m, a.force, seed);
 }
 
 /// What to say of loads that are too large: what the machine carries.
-std::string way_out(const Mechanism& m, const Measurements& plan, const SimulationOptions& o,
+std::string way_out(const Mechanism& m, const measurement::Measurements& plan, const prediction::SimulationOptions& o,
                     const SimulateArguments& a) {
-  const double share = share_carried(m, plan, o);
+  const double share = prediction::share_carried(m, plan, o);
   if (share == 0 || share == 1) return "";
   const bool named = plan.origin == "campaign";
   return fmt::format(": the machine as drawn gives way above {} % of the loads{}", digits_of(100 * share, 2),
@@ -124,30 +125,30 @@ std::string way_out(const Mechanism& m, const Measurements& plan, const Simulati
 
 void run(const SimulateArguments& a) {
   Mechanism m = read_device(a.device);
-  const std::vector<Effect> all = known_effects(a.files, m);
-  SimulationOptions o = options_of(a);
-  Measurements plan = plan_of(a, m, o.seed);
+  const std::vector<effects::Effect> all = known_effects(a.files, m);
+  prediction::SimulationOptions o = options_of(a);
+  measurement::Measurements plan = plan_of(a, m, o.seed);
   std::string hidden;
   for (const std::string& text : a.with) {
-    const EffectInstance effect = parse_with(text, all);
-    m = with_effect(m, effect);
-    tell("hidden: {} ({})", effect.effect->name, site_of(effect));
-    if (is_geometry(*effect.effect)) o.geometry = m.geometry;
-    hidden += fmt::format("{}{} ({})", hidden.empty() ? "" : ", ", effect.effect->name, site_of(effect));
+    const effects::EffectInstance effect = parse_with(text, all);
+    m = effects::with_effect(m, effect);
+    tell("hidden: {} ({})", effect.effect->name, effects::site_of(effect));
+    if (effects::is_geometry(*effect.effect)) o.geometry = m.geometry;
+    hidden += fmt::format("{}{} ({})", hidden.empty() ? "" : ", ", effect.effect->name, effects::site_of(effect));
   }
   o.division = frame::equal_division(configure(m, home_pose(m)), whole("--elements", a.elements, 1, 1000));
   tell("campaign {}: {} readings; {} elements per member, geometry {}", a.campaign, plan.readings.size(), a.elements,
        nth(geometry_names, o.geometry));
   const int threads = parse_threads(a.threads);
-  const Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
+  const measurement::Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
     try {
-      return simulate(m, plan, o, {threads, nullptr, told});
+      return prediction::simulate(m, plan, o, {threads, nullptr, told});
     } catch (const NumericalError& e) {
       throw NumericalError(fmt::format("{}{}", e.what(), way_out(m, plan, o, a)));
     }
   });
   say_new_folder(a.out);
-  write_measurements(a.out, data);
+  measurement::write_measurements(a.out, data);
   fmt::print("{}: {} readings at {} poses of {}{}, seed {}\n", a.out, data.readings.size(), data.poses.size(), m.name,
              hidden.empty() ? ", nothing hidden" : " with " + hidden, o.seed);
 }

@@ -20,7 +20,7 @@ struct SolveArguments {
   std::string device, pose, joints, load, json, out, report, element_size, theories, geometry = "linear";
 };
 
-void write_structure(const std::filesystem::path& folder, const SolveResult& r) {
+void write_structure(const std::filesystem::path& folder, const studies::SolveResult& r) {
   gmsh::write_msh(folder / "deflected.msh", r.mesh, r.fields);
   write_vtu(folder / "deflected.vtu", r.mesh, r.fields);
 }
@@ -35,23 +35,25 @@ void run(const SolveArguments& a) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
   const Vector6 load = parse_load(a.load);
-  const Theories theories = parse_theories(a.theories);
-  if (!a.out.empty() && std::none_of(theories.begin(), theories.end(), [](const Theory* t) { return t->divides; }))
+  const theories::Theories theories = parse_theories(a.theories);
+  if (!a.out.empty() &&
+      std::none_of(theories.begin(), theories.end(), [](const theories::Theory* t) { return t->divides; }))
     throw InputError(
         fmt::format("--out {}: the closed form has no structure to draw: put msa among --theories", a.out));
   const Geometry geometry = parse_geometry(a.geometry);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
-  const SolveResult r = timed(fmt::format("{}, geometry {}", titles_of(theories), a.geometry),
-                              [&] { return solve(m, at, load, division(m, at, a), geometry, theories); });
+  const studies::SolveResult r = timed(fmt::format("{}, geometry {}", theories::titles_of(theories), a.geometry), [&] {
+    return studies::solve(m, at, load, division(m, at, a), geometry, theories);
+  });
   if (!a.out.empty()) write_structure(a.out, r);
-  if (!a.json.empty()) write_file(a.json, solve_json(r));
-  fmt::print("{}\n{}", m.name, solve_report(r));
+  if (!a.json.empty()) write_file(a.json, report::solve_json(r));
+  fmt::print("{}\n{}", m.name, report::solve_report(r));
   if (load.isZero(0) && r.reference().stiffness_mm.isZero(1e-9))
     fmt::print("Without load the contacts have no stiffness; give --load to get the stiffness under that load.\n");
   if (!a.out.empty()) fmt::print("Deflected structure: {0}/deflected.msh, {0}/deflected.vtu\n", a.out);
   if (!a.report.empty())
     write_report_of_stands(a.report, a.device, m, {{"", at.pose_mm_deg, at.configuration}}, {load},
-                           {"solve", solve_json(r)}, geometry);
+                           {"solve", report::solve_json(r)}, geometry);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ struct ValidateArguments {
   FigureArguments figures;
 };
 
-void print_mesh_study(const Mechanism& m, const std::vector<ValidationPoint>& points, double load_N) {
+void print_mesh_study(const Mechanism& m, const std::vector<studies::ValidationPoint>& points, double load_N) {
   fmt::print("\nMesh: largest relative difference of the two theories as the elements shrink.\n");
   fmt::print("{:>12}  {:>16}  {:>10}\n", "element", "elements per leg", "difference");
   for (const double size_mm : {200.0, 100.0, 50.0, 25.0, 10.0, 5.0, 2.0}) {
@@ -38,47 +38,49 @@ void print_mesh_study(const Mechanism& m, const std::vector<ValidationPoint>& po
     std::size_t elements = 0;
     for (const auto& [part, at] : division) elements += at.size() - 1;
     fmt::print("{:>9} mm  {:>16}  {:>10.2g}\n", size_mm, elements,
-               validate(m, points, load_N, {}, division).max_relative_difference);
+               studies::validate(m, points, load_N, {}, division).max_relative_difference);
   }
 }
 
 void run(const ValidateArguments& a) {
   require_pages(a.report);
-  const FigureStyle style = figure_style(a.figures, a.out);
+  const figures::FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
   const std::set<Erratum> as_printed = parse_errata(a.as_printed);
   if (!std::isfinite(a.load_N) || a.load_N == 0)
     throw InputError(fmt::format("--force {}: give a force in N other than zero", a.load_N));
-  const Theories theories = parse_theories(a.theories);
-  if (!as_printed.empty() && std::find(theories.begin(), theories.end(), &theory("analytic")) == theories.end())
+  const theories::Theories theories = parse_theories(a.theories);
+  if (!as_printed.empty() &&
+      std::find(theories.begin(), theories.end(), &theories::theory("analytic")) == theories.end())
     throw InputError(
         fmt::format("--as-printed {}: the errata are the closed form's: put analytic among --theories", a.as_printed));
-  const std::vector<ValidationPoint> points = a.points.empty() ? workspace_points(m) : read_points(a.points);
-  const Validation v = timed(fmt::format("{} at {} points", titles_of(theories), points.size()), [&] {
-    return validate(m, points, a.load_N, as_printed, divide(m, a.element_size), theories);
-  });
-  std::vector<ErratumPrice> prices;
-  if (a.errata) prices = timed("price of the errata", [&] { return price_errata(m, points, a.load_N); });
+  const std::vector<studies::ValidationPoint> points =
+      a.points.empty() ? studies::workspace_points(m) : studies::read_points(a.points);
+  const studies::Validation v =
+      timed(fmt::format("{} at {} points", theories::titles_of(theories), points.size()),
+            [&] { return studies::validate(m, points, a.load_N, as_printed, divide(m, a.element_size), theories); });
+  std::vector<studies::ErratumPrice> prices;
+  if (a.errata) prices = timed("price of the errata", [&] { return studies::price_errata(m, points, a.load_N); });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
-    std::vector<Figure> figures = {fig10(v, style)};
-    if (a.errata) figures.push_back(errata_figure(prices, v, style));
+    std::vector<figures::Figure> figures = {figures::fig10(v, style)};
+    if (a.errata) figures.push_back(figures::errata_figure(prices, v, style));
     draw(figures, folder);
-    write_table(folder / "validation.csv", validation_csv(v));
-    if (a.errata) write_table(folder / "errata.csv", errata_csv(prices));
+    write_table(folder / "validation.csv", report::validation_csv(v));
+    if (a.errata) write_table(folder / "errata.csv", report::errata_csv(prices));
   }
-  if (!a.json.empty()) write_file(a.json, validation_json(v, prices));
-  fmt::print("{}", validation_table(v));
-  if (a.errata) fmt::print("\n{}", errata_table(prices));
+  if (!a.json.empty()) write_file(a.json, report::validation_json(v, prices));
+  fmt::print("{}", report::validation_table(v));
+  if (a.errata) fmt::print("\n{}", report::errata_table(prices));
   if (a.mesh_study) print_mesh_study(m, points, a.load_N);
   if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
   if (!a.report.empty()) {
-    std::vector<SceneStand> stands;
-    for (const ValidationPoint& p : points)
+    std::vector<scene::SceneStand> stands;
+    for (const studies::ValidationPoint& p : points)
       stands.push_back({p.label, p.pose_mm_deg, stand(m, p.pose_mm_deg).configuration});
     std::vector<Vector6> loads;
     for (int axis = 0; axis < 3; ++axis) loads.push_back(a.load_N * Vector6::Unit(axis));
-    write_report_of_stands(a.report, a.device, m, stands, loads, {"validate", validation_json(v, prices)});
+    write_report_of_stands(a.report, a.device, m, stands, loads, {"validate", report::validation_json(v, prices)});
   }
 }
 
