@@ -1,4 +1,4 @@
-// Descriptions with effects in them.
+// Inserts effects into descriptions.
 #pragma once
 
 #include <optional>
@@ -25,37 +25,38 @@ struct EffectInstance : PlacedEffect {
 /// "all legs", "leg 4", "machine" or "rig".
 std::string site_of(const PlacedEffect&);
 
-/// InputError "GIVEN: the value must lie between … and …" with the remedy, where it does not.
+/// Throws InputError "GIVEN: the value must lie between … and …" with the remedy where it does not.
 void require_in_bounds(const std::string& given, const Effect&, const EffectParameter&, double value);
 
-/// The parameters' start.
+/// The start values of the parameters.
 VectorX start_values(const Effect&);
 
-/// A new description with the effect in it, checked like a file. Optional values at the end need not be given. An edit
-/// one of whose parameters has the value at which it vanishes (infinity too) is left out. Values may lie outside the
-/// bounds of a search as long as the description can hold them. InputError "file:line: edits.i: …" naming what does not
-/// fit, and the nearest valid name.
+/// A new description with the effect, checked like a file. Optional values at the end may be omitted. An edit is left
+/// out where one of its parameters has the value at which it vanishes (also infinity). Values may lie outside the
+/// bounds of a search as long as the description allows them. Throws InputError "file:line: edits.i: …" with what does
+/// not fit and the nearest valid name.
 Mechanism with_effect(const Mechanism&, const Effect&, const VectorX& values, std::optional<int> leg = {});
 Mechanism with_effect(const Mechanism&, const EffectInstance&);
 Subject with_effect(const Subject&, const EffectInstance&);
 
-/// Why the effect has no place in the subject (or in that leg of it), in words; nothing when it has one.
+/// Why the effect has no place in the subject (or in that leg); nullopt where it has one.
 std::optional<std::string> why_not(const Effect&, const Subject&, std::optional<int> leg = {});
 
 /// Every place the effect has in the subject: one, or one per leg, or none.
 std::vector<PlacedEffect> places_of(const Effect&, const Subject&);
 
-/// Effects placed in one subject, for many values in a row: the edits are worked out once, so that a call only sets
-/// numbers, and the legs are resolved (see `resolved` in device_file.h): for models, not for files.
+/// Effects placed in one subject, to be evaluated at many values. The edits are worked out once, so that each call only
+/// sets numbers, and the legs are resolved (`resolved` in device_file.h). The results serve models and are not meant to
+/// be written to files.
 class PreparedEffects {
  public:
-  /// The effects must outlive this object. InputError as with_effect.
+  /// The effects must outlive this object. Throws InputError as with_effect() does.
   PreparedEffects(const Subject&, std::vector<PlacedEffect>);
 
-  /// Values of all effects one after the other.
+  /// `values`: of all effects, concatenated.
   Subject operator()(const VectorX& values) const;
 
-  /// The machine with the effects.
+  /// The same as a machine.
   Mechanism machine(const VectorX& values) const;
 
   Eigen::Index parameter_count() const { return std::ssize(parameters_); }
@@ -68,15 +69,15 @@ class PreparedEffects {
   };
 
   Mechanism edited_one_by_one(const VectorX& values) const;
-  VectorX probe(double part) const;  // of the way from the start towards the farther bound
-  bool find_slots();                 // which numbers follow which parameter, seen at a few values
-  bool slots_hold() const;           // at another value
+  VectorX probe(double part) const;  // values at this fraction of the way from the start to the farther bound
+  bool find_slots();                 // finds which numbers depend on which parameter, from a few values
+  bool slots_hold() const;           // checks the slots at another value
 
-  Mechanism bare_, with_;  // without the effects; with them, at some values
+  Mechanism bare_, with_;  // without the effects; with them, at arbitrary values
   std::vector<PlacedEffect> effects_;
   std::vector<const EffectParameter*> parameters_;
   std::vector<Slot> slots_;  // by `at`
-  bool affine_ = true;       // otherwise every call goes the long way
+  bool affine_ = true;       // numbers are affine in parameters; otherwise every call makes the edits
 };
 
 }  // namespace deflect
