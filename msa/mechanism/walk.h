@@ -44,7 +44,7 @@ struct Step {
   const Part* part = nullptr;
   Frame before, after;
   Frame joint, moved;     ///< of a joint: its frame before and after its motion
-  Matrix3 turning;        ///< of a joint: axes that contain the first two axes of its rotation
+  Matrix3 turning;        ///< of a joint: its axes after its first rotation, which contain its first two rotation axes
   std::size_t state = 0;  ///< of a joint
   Vector3 start;          ///< of a member
   std::vector<std::vector<Step>> branches;
