@@ -132,9 +132,9 @@ class Solver {
   double rounding_ = 0;
   bool factored_ = false;
   VectorX factored_tangents_;                          // state of the spring tangents that is factored
-  std::shared_ptr<const ExtendedStructure> extended_;  // made when first needed
+  std::shared_ptr<const ExtendedStructure> extended_;  // made on first use
   VectorX extended_tangents_;                          // its state
-  std::shared_ptr<const Condensed> condensed_;         // made when first needed
+  std::shared_ptr<const Condensed> condensed_;         // made on first use
   bool frictions_soft_ = true;                         // the stiffness that stands in for them there
 };
 
