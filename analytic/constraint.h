@@ -5,11 +5,12 @@
 
 namespace deflect::analytic {
 
-/// How many internal forces equilibrium leaves open, which is how many dimensions must fit for the mechanism to be
-/// assembled without strain: over the legs, and in the same way over the branches of every part that has branches,
+/// The number of internal forces that equilibrium does not determine. This is the number of dimensions that must fit
+/// for assembly without strain. Summed over the legs, and likewise over the branches of every part with branches:
 ///   Σ dim N_i − rank[N_1 … N_n],
-/// N_i the wrenches that branch i carries with actuators held and elastic freedoms in place; those of a leg beside the
-/// others only where it is rigid. 0 of a serial arm.
+/// with N_i the wrenches that branch i carries, where actuators are held and elastic freedoms count as rigid. Joints
+/// and laws in parallel with the legs or with a joint constrain only where they are rigid: their elastic freedoms count
+/// as free. 0 for a serial arm.
 int redundant_constraints(const Configuration&);
 
 }  // namespace deflect::analytic

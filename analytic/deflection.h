@@ -1,5 +1,5 @@
-// The laws of joints and drives as the methodology uses them: deflection for a given force, since forces are what
-// passes through a chain. Equation numbers are those of Ahmad, Andersson, Sellgren.
+// The laws of joints and drives as the methodology uses them: deflection for a given force, because all parts of a
+// chain carry the same force. Equation numbers are those of Ahmad, Andersson, Sellgren.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace deflect::analytic {
 /// Which equations are taken as printed.
 using AsPrinted = std::set<Erratum>;
 
-/// E' of (23) for two bodies of one material: 2/E' = 2 (1 − ν²)/E, as printed 1/E' = the same. Pa.
+/// E' of (23) for two bodies of one material: 2/E' = 2 (1 − ν²)/E; as printed, 1/E' = 2 (1 − ν²)/E. Pa.
 double effective_modulus(const Material&, const AsPrinted& = {});
 
 /// Point contact, from (26): δ = (F / (E' √(8R'/9)))^{2/3} and its derivative, the inverse of (27). SI, F of any sign.
@@ -25,9 +25,9 @@ double point_contact_radius(double R, double E_effective, double force);
 double line_contact_stiffness(double length, double E_effective);
 double line_contact_half_width(double R, double length, double E_effective, double force);
 
-/// The same with the bulk of both cylinders, radii R1 and R2: with p = F/l and κ = (1 − ν²)/(π E),
-/// δ = 2 p κ (ln(2 (R1 + R2)/(p κ)) − 1), which is Johnson's δ = p κ Σ (2 ln(4 R_i/a) − 1) at a² = 8 p κ R1 R2/(R1 +
-/// R2).
+/// Line contact with the compression of the bulk of both cylinders, radii R1 and R2: with p = F/l and κ = (1 − ν²)/(π
+/// E), δ = 2 p κ (ln(2 (R1 + R2)/(p κ)) − 1), which is Johnson's δ = p κ Σ (2 ln(4 R_i/a) − 1) at a² = 8 p κ R1 R2/(R1
+/// + R2).
 double bulk_line_deflection(const HertzLineBulkLaw&, double force);
 double bulk_line_compliance(const HertzLineBulkLaw&, double force);
 
@@ -35,7 +35,7 @@ double bulk_line_compliance(const HertzLineBulkLaw&, double force);
 double pin_bending_stiffness(const Material&, double diameter, double length);
 
 /// Along the slide: motor shaft J G/L (4) through the pulley, k/r² (5); cable EA/L (7), cable pair (8), belt (10). N/m;
-/// of a belt that turns a pulley k r², Nm/rad.
+/// for a belt that turns a pulley, k r² in Nm/rad.
 double motor_shaft_stiffness(const MotorShaftLaw&);
 double cable_stiffness(const Material&, double area, double length);
 double belt_stiffness(const BeltLaw&);
@@ -49,26 +49,26 @@ double hardening_deflection(const HardeningLaw&, double force);
 double hardening_compliance(const HardeningLaw&, double force);
 
 /// Deflection of one law under a force (N; Nm on a rotation), its derivative (infinite for an unloaded point contact)
-/// and the stored energy f δ − ∫δ df. Laws that jump (steps.h) have none here.
+/// and the stored energy f δ − ∫δ df. Laws that jump (steps.h) are not allowed here.
 double deflection(const Law&, double force, const AsPrinted& = {});
 double compliance(const Law&, double force, const AsPrinted& = {});
 double stored_energy(const Law&, double force, const AsPrinted& = {});
 
-/// Laws of one freedom in series; contact and bending of a universal joint's pin as if in parallel where (33) is taken
-/// as printed.
+/// Laws of one freedom in series. Where (33) is taken as printed, contact and bending of a universal joint's pin are
+/// combined as if in parallel.
 double deflection(const std::vector<Law>&, double force, const AsPrinted& = {});
 double compliance(const std::vector<Law>&, double force, const AsPrinted& = {});
 double stored_energy(const std::vector<Law>&, double force, const AsPrinted& = {});
 
-/// What yields in one freedom: laws in series that carry the force P (N, Nm) while none is transmitted, and work about
-/// it. With δ, c, U of the laws, a transmitted force f deflects it by δ(f + P) − δ(P), with the compliance c(f + P),
-/// and stores U(f + P) − U(P) − P (δ(f + P) − δ(P)), the work of f from the preloaded state.
+/// The elastic part of one freedom: laws in series with the preload P (N, Nm), the force that they carry while the
+/// joint transmits none. With δ, c, U of the laws, a transmitted force f deflects it by δ(f + P) − δ(P), with the
+/// compliance c(f + P), and stores U(f + P) − U(P) − P (δ(f + P) − δ(P)), the work of f from the preloaded state.
 struct Spring {
   std::vector<Law> laws;
   double preload = 0;
 };
 double deflection(const Spring&, double force, const AsPrinted& = {});
-/// At a force in the laws of at least `least` in size, where contacts without load are to stay finite.
+/// At a force of magnitude max(|f + P|, `least`) in the laws: `least` > 0 keeps contacts without load finite.
 double compliance(const Spring&, double force, double least = 0, const AsPrinted& = {});
 double stored_energy(const Spring&, double force, const AsPrinted& = {});
 

@@ -1,4 +1,4 @@
-// The paper's errata: what the analytic theory does when an equation is taken as printed.
+// The paper's errata: variants of the analytic theory in which an equation is taken as printed.
 #pragma once
 
 #include <set>
@@ -24,7 +24,7 @@ struct ErratumInfo {
   Erratum erratum;
   const char* name;        ///< on the command line: "passive-joints"
   const char* equations;   ///< "(45), (46)"
-  const char* as_printed;  ///< what the variant does, in one sentence
+  const char* as_printed;  ///< the effect of the variant, in one sentence
 };
 
 const std::vector<ErratumInfo>& errata();

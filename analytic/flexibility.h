@@ -1,5 +1,5 @@
-// What a piece of a mechanism does to the point T when a wrench passes through it: how far it yields, what it lets go,
-// what it carries. Twists [δ; θ] and wrenches [f; m] at T, base axes, SI.
+// Flexibility of a piece of a mechanism at the point T: its compliance, the twists that it does not resist, the
+// wrenches that it carries. Twists [δ; θ] and wrenches [f; m] at T, base axes, SI.
 #pragma once
 
 #include <string>
@@ -9,12 +9,13 @@
 
 namespace deflect::analytic {
 
-/// Under a wrench F = N λ the far end moves against the near one by C F + J q, q arbitrary; JᵀN = 0. C is symmetric and
-/// has a meaning on the wrenches carried only.
+/// Under a wrench F = N λ the far end moves relative to the near one by C F + J q, q arbitrary; JᵀN = 0. C is
+/// symmetric; it is defined only on the wrenches carried.
 ///
-/// `roots` are columns s with C = Σ s sᵀ, one or more of each part. NᵀCN is formed as (rootsᵀN)ᵀ(rootsᵀN), so that
-/// compliances of parts 1e12 apart keep their digits, and what yields only where passive joints yield anyway costs
-/// none. An equation as printed may have a C that is not symmetric: it has no roots, and C itself is taken.
+/// `roots` are columns s with C = Σ s sᵀ, one or more from each part. NᵀCN is formed as (rootsᵀN)ᵀ(rootsᵀN). So
+/// compliances of parts that differ by a factor 1e12 keep their digits, and compliance along the motion of passive
+/// joints costs none. An equation taken as printed may give a C that is not symmetric. It has no roots, and C itself is
+/// used.
 struct Flexibility {
   Matrix6 C = Matrix6::Zero();
   Matrix6X roots = Matrix6X(6, 0);
@@ -23,46 +24,46 @@ struct Flexibility {
   Matrix6X N = Matrix6X(6, 0);  ///< wrenches carried
 };
 
-/// An orthonormal basis of the vectors perpendicular to all columns; these count as dependent within 1e-9.
+/// An orthonormal basis of the vectors perpendicular to all columns; columns count as linearly dependent within 1e-9.
 MatrixX complement(const MatrixX& columns);
 
 /// An orthonormal basis of the wrenches F with JᵀF = 0, moments weighed by `length` (m).
 Matrix6X carried_wrenches(const Matrix6X& J, double length);
 
-/// The same of the twists t with Nᵀt = 0.
+/// The same for the twists t with Nᵀt = 0, rotations weighed by `length`.
 Matrix6X free_twists(const Matrix6X& N, double length);
 
-/// Principal compliances of what is carried: wrenches N V, of which each yields by itself, NᵀCN = V diag(g) Vᵀ, g
-/// falling. A g whose root is lost in the rounding of the largest root is 0: there nothing yields.
+/// Principal compliances on the wrenches carried: NᵀCN = V diag(g) Vᵀ, g in descending order; the wrenches N V yield
+/// independently. Where the square root of g is below the rounding of the largest root, g is set to 0: nothing yields.
 struct Principal {
   MatrixX V;
   VectorX g;
 };
 Principal principal(const Flexibility&, double length);
 
-/// Roots of a symmetric C ⪰ 0, rotations weighed by the length (m).
+/// Roots of a symmetric C ⪰ 0, rotations weighed by `length` (m).
 Matrix6X roots_of(const Matrix6& C, double length);
 
-/// A stiffness that is infinite along some motions: nothing yields under the wrenches `rigid` (columns), so that only
-/// twists t with rigidᵀt = 0 are possible. On these K t is the wrench, up to rigid ones; rotations weighed by a length,
-/// K takes the one perpendicular to them.
+/// A stiffness that is infinite along some motions. Nothing yields under the wrenches `rigid` (columns), so that only
+/// twists t with rigidᵀt = 0 are possible. For these the wrench is K t plus any combination of the rigid wrenches. K is
+/// chosen so that K t is perpendicular to them, with rotations weighed by a length.
 struct Resistance {
   Matrix6 K = Matrix6::Zero();
   Matrix6X rigid = Matrix6X(6, 0);
 };
 Resistance resistance(const Flexibility&, double length);
 
-/// The sum of resistances side by side, its K on the motions that all of them leave.
+/// The sum of resistances in parallel; its K applies to the motions that all of them allow.
 Resistance side_by_side(const std::vector<Resistance>&, double length);
 
-/// "rotation about (0, 0, 1)", for each motion on which the wrenches do work.
+/// Describes each motion on which the wrenches do work: "rotation about (0, 0, 1)".
 std::vector<std::string> motions_resisted_by(const Matrix6X& wrenches, double length);
 
 /// K = N (NᵀCN)⁻¹Nᵀ, which is C⁻¹ − C⁻¹J(JᵀC⁻¹J)⁻¹JᵀC⁻¹ where C⁻¹ exists; 0 where nothing is carried. Throws ModelError
-/// saying of `name` where nothing yields.
+/// with `name` and the motion where nothing yields.
 Matrix6 stiffness(const Flexibility&, double length, const std::string& name);
 
-/// The same of what is known already.
+/// The same from a known Resistance.
 Matrix6 finite(const Resistance&, double length, const std::string& name);
 
 }  // namespace deflect::analytic

@@ -1,7 +1,7 @@
-// Legs with a friction beside each, solved line by line: where every leg carries a force along one line only and the
-// lines are statically determinate, the force in each line follows from statics, and leg and friction share it alone.
-// Legs may hold one-sided laws, whose phase is that of the force.
-// On a line with the wrench w of the leg, λ in all, f in the friction and the friction's motion δ = β wᵀd_leg:
+// Legs with a friction element in parallel with each, solved line by line. Every leg carries only a force along one
+// line, and the lines are statically determinate. So the force in each line follows from statics, and only the leg and
+// its friction element share it. Legs may have one-sided laws, whose phase follows from the sign of the force. With the
+// leg's wrench w, the line's total force λ, the friction force f, and the friction element's motion δ = β wᵀd_leg:
 //   sticks   f = k (β wᵀd_leg(λ − β f) − slip),  |f| ≤ F
 //   slides   f = ±F, the slip follows.
 #pragma once
@@ -15,7 +15,7 @@ namespace deflect::analytic {
 
 class Lines {
  public:
-  /// Nothing where the group is not of that kind: another law that jumps, lines that are not determinate.
+  /// Nullopt where the group is not of this kind: other laws jump, or the lines are not determinate.
   static std::optional<Lines> of(const Group&);
 
   struct Answer {
@@ -23,7 +23,7 @@ class Lines {
     std::vector<Step> steps;    ///< by SteppedLaw::number
     std::vector<double> slips;  ///< by FrictionLaw::number
   };
-  /// `slips` before the load; empty: relaxed. Nothing where a leg has let go.
+  /// `slips`: before the load; empty: relaxed, all zero. Nullopt where a leg carries no force any more.
   std::optional<Answer> solve(const Group&, const Vector6& F, const std::vector<double>& slips,
                               const ChainConditions&) const;
 

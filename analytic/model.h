@@ -1,9 +1,10 @@
-// The first theory: the methodology of Ahmad, Andersson and Sellgren in closed form, errata corrected (or, by name, as
-// printed). Legs in parallel (1), (46) between the compliance of the base and of the tool. It sees the configuration
-// and nothing of the frame solver.
+// The analytic theory: the methodology of Ahmad, Andersson and Sellgren in closed form, with errata corrected or, by
+// name, as printed. Legs act in parallel (1), (46), in series with the compliances of base and tool. It depends on the
+// configuration only, not on the frame solver.
 //
-// Three states: as drawn, parts unstrained; assembled at 20 °C, without load and weight, strained by the misfits only;
-// loaded, with misfits, heat, weight and load. Displacements under load are counted from the assembled state.
+// There are three states: as drawn, with unstrained parts; assembled at 20 °C, without load and weight, strained only
+// by the misfits; loaded, with misfits, temperature, weight and load. Displacements under load are relative to the
+// assembled state.
 #pragma once
 
 #include <memory>
@@ -24,22 +25,23 @@ struct AnalyticSolution {
   /// [δ; θ] of T from the assembled state, by load and weight; θ a rotation vector.
   Vector6 displacement = Vector6::Zero();
   Vector6 load = Vector6::Zero();  ///< without the weight
-  /// What the platform exerts on each leg, at T; they add up to load and weight.
+  /// Wrench of the platform on each leg, at T; they add up to load and weight.
   std::vector<Vector6> leg_wrenches;
   bool converged = false;
   int iterations = 0;
-  double misfit = 0;          ///< how far the legs' ends and the platform disagree, relative to the displacement
-  std::vector<double> slips;  ///< of the frictions after the load, as in Conditions
-  /// Where the mechanism floats in its play, which nothing loads: the parts that have it, the twists by which T may
-  /// move (columns), by between least and most along each axis from the displacement, which is the middle (steps.h).
+  double misfit = 0;          ///< largest gap between legs' ends and platform, relative to the displacement
+  std::vector<double> slips;  ///< of the friction elements after the load, as in Conditions
+  /// Unloaded play, in which the mechanism floats (steps.h): the parts that have it, and the twists by which T may move
+  /// (columns). Along each axis T may move by `least` to `most` from the displacement given, which is the middle.
   std::vector<std::string> loose;
   Matrix6X free = Matrix6X(6, 0);
   Vector6 least = Vector6::Zero(), most = Vector6::Zero();
-  ChainConditions under;  ///< warmth, and the phases of laws that jump (steps.h)
-  std::string message;    ///< where not converged: why, when a law that jumps or the geometry is to blame
-  Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();  ///< of T, m and rad: about what dividing members leaves
+  ChainConditions under;  ///< temperature, and the phases of laws that jump (steps.h)
+  std::string message;    ///< why it did not converge, where a law that jumps or the geometry is the cause
+  Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();  ///< of T, m and rad: estimated discretisation error
   std::shared_ptr<const Deformed> deformed;  ///< the state in a geometry that is not linear (deformed.h)
-  /// Where laws jump in the deformed shape: what of the displacement is the shape's. All else is linear geometry.
+  /// Where laws jump in the deformed shape: the contribution of the shape to the displacement. All else is of linear
+  /// geometry.
   Vector6 shape = Vector6::Zero();
 };
 
@@ -50,36 +52,37 @@ class AnalyticModel {
 
   const std::vector<Chain>& chains() const { return legs_.branches; }
 
-  /// No law's stiffness depends on its load.
+  /// Whether no law's stiffness depends on its load.
   bool linear() const { return through_.linear() && legs_.linear(); }
 
-  /// Some law jumps: a gap, friction.
+  /// Whether some law jumps: clearance, friction, one-sided.
   bool jumps() const { return !stepped_.empty(); }
 
-  /// Legs' forces and the displacement of T in equilibrium, contacts at their load: Newton on the legs' forces. Throws
-  /// ModelError naming the motion when something is free to move, whatever the load; or when rigid legs cannot be
-  /// assembled. Geometries that are not linear: see deformed.h; without forces they are linear, as printed equations
-  /// are always. There what laws that jump and heat do is added as they do it in linear geometry, and the stiffness is
-  /// the linear one where there are such.
+  /// Legs' forces and the displacement of T in equilibrium, contacts at their load, by Newton's method in the legs'
+  /// forces. Throws ModelError with the motion where something is free to move, even under a load that does not move
+  /// it; also where rigid legs cannot be assembled. For nonlinear geometries see deformed.h. Linear geometry is used
+  /// instead where there are no forces, and always for equations as printed. The effects of laws that jump and of
+  /// temperature are then added as in linear geometry, and with such laws the stiffness is the linear one.
   AnalyticSolution solve(const Vector6& F_T_W, const Conditions& = {}) const;
 
-  /// Displacement, slips, convergence and message of solve(), nothing of what is inside: for fits, which ask for many
-  /// loads. Where laws jump in linear geometry, what lies between them is solved for six loads once, and a load costs
-  /// the laws alone.
+  /// Only displacement, slips, convergence and message of solve(): for fits, which need many loads. Where laws jump in
+  /// linear geometry, the linear rest of the mechanism is solved once for six loads, so that each further load solves
+  /// only the laws.
   AnalyticSolution displaced(const Vector6& F_T_W, const Conditions& = {}) const;
 
-  /// The assembled state: displacement of T from the drawing, the legs' wrenches by misfit.
+  /// The assembled state: displacement of T from the drawing, and the legs' wrenches by misfits.
   AnalyticSolution assembled(Geometry = Geometry::linear) const;
 
-  /// Tangent stiffness at T in the solution's state, and of one leg alone. Throws ModelError naming the leg and where
-  /// nothing yields when it is infinite, as in a singular pose of a serial arm. Contacts without load let go.
+  /// Tangent stiffness at T in the solution's state; leg_stiffness(): of one leg. Throws ModelError with the leg and
+  /// the motion where it is infinite, as in a singular pose of a serial arm. Contacts without load have no stiffness.
   Matrix6 stiffness(const AnalyticSolution&) const;
-  /// The same where it is infinite along some motions; never throws for that. A leg's is that of the motions it leaves.
+  /// The same also where the stiffness is infinite along some motions, without throwing. leg_stiffness() is then that
+  /// of the motions that the leg allows.
   Resistance resistance(const AnalyticSolution&) const;
   Matrix6 leg_stiffness(std::size_t leg, const AnalyticSolution&) const;
 
-  /// Tangent compliance at T, also where the stiffness is infinite. Throws ModelError naming the motion where contacts
-  /// without load let something go.
+  /// Tangent compliance at T, also where the stiffness is infinite. Throws ModelError with the motion that contacts
+  /// without load leave free.
   Matrix6 compliance(const AnalyticSolution&) const;
 
   /// Strain energy by part in the solution's state, J, largest first; of preloaded springs see Spring.
@@ -96,13 +99,14 @@ class AnalyticModel {
   Configuration configuration_;
   AsPrinted as_printed_;
   Group legs_;
-  Chain through_;                             ///< base and tool joints, which carry the whole load
+  Chain through_;                             ///< base and tool joints, each carries the whole load
   Vector6 weight_;                            ///< at T
-  double heat_force_ = 0, misfit_force_ = 0;  ///< that the stiffest member would bear: per kelvin, by the misfits
+  double heat_force_ = 0, misfit_force_ = 0;  ///< scale of forces in the stiffest member: per kelvin, and by the
+                                              ///< misfits
   std::vector<SteppedLaw> stepped_;
-  std::optional<Lines> lines_;  ///< where frictions beside the legs are all that jumps
+  std::optional<Lines> lines_;  ///< set where only friction elements beside the legs jump
   int frictions_ = 0;
-  /// What all but the laws that jump does under a load at T, weight included: linear.
+  /// Linear response, to a load at T including weight, of everything except the laws that jump.
   struct Between {
     MatrixX forces;  ///< of the laws, by load
     Matrix6 displacement;
@@ -110,7 +114,7 @@ class AnalyticModel {
   };
   Between between(const Imposed&) const;
 
-  // Made when first needed: a model is for one thread at a time.
+  // Made on first use: a model may be used by one thread at a time.
   mutable std::shared_ptr<const Between> between_;
   mutable std::shared_ptr<Imposed> imposed_;
   mutable std::shared_ptr<const Deformed> rest_;

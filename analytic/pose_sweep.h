@@ -1,12 +1,12 @@
-// The closed form for one device at many poses and loads: what no pose changes is worked out once, what no load changes
-// once per pose, and nothing is allocated afterwards. The same equations as those of a Group of Chains (chain.h), for
-// what sweeps are made of:
+// The closed form for one device at many poses and loads. What does not depend on the pose is computed once, what does
+// not depend on the load once per pose, and nothing is allocated after that. The equations are those of a Group of
+// Chains (chain.h), restricted to what sweeps need:
 //
 //   A_i = N_iᵀ C_i N_i,   K = Σ N_i A_i⁻¹ N_iᵀ                       (45), (46), passive joints released
 //
-// N_i the wrenches at T that the passive joints of leg i carry, C_i the compliance of its members and laws. Where laws
-// depend on their force the legs must be statically determinate: Σ N_i λ_i = F gives λ, and N_iᵀ t = e_i(λ_i), the
-// legs' own deflections, gives the displacement t.
+// with N_i the wrenches at T that the passive joints of leg i carry, and C_i the compliance of its members and laws.
+// Where laws depend on their force the legs must be statically determinate: Σ N_i λ_i = F gives λ, and N_iᵀ t =
+// e_i(λ_i), the legs' own deflections, gives the displacement t.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -22,27 +22,28 @@ namespace deflect::analytic {
 
 class PoseSweep {
  public:
-  /// For configurations of this device: of the same parts, freedoms and laws.
+  /// For configurations of this device: all must have the same parts, freedoms and laws.
   explicit PoseSweep(const Configuration&);
 
-  /// False where the device has what a sweep leaves to AnalyticModel: parts in parallel within a leg, laws that jump,
-  /// joints of given 6×6 stiffness, legs beside, misfits, base or tool that move or yield.
+  /// False where the device needs AnalyticModel: parts in parallel within a leg, laws that jump, joints of given 6×6
+  /// stiffness, joints beside the legs, misfits, a base or tool that moves or yields.
   bool applies() const { return applies_; }
 
-  /// Moves on, for any number of solve(); the configuration may go afterwards.
+  /// Moves to another pose, for any number of solve(). The configuration need not outlive the call.
   void at(const Configuration&);
 
-  /// Response there to the wrench F at T, the weight and so many K above 20 °C, base axes, SI: displacement [δ; θ] of T
-  /// from the assembled state and the tangent stiffness. False, and no result, where a pose or load asks for more: a
-  /// leg that yields nowhere along what it carries, a law of no stiffness at its force, legs that do not hold T, heat
-  /// or laws that depend on their force and legs that are not statically determinate.
+  /// Response at this pose to the wrench F at T, the weight and `warmer` K above 20 °C, base axes, SI: displacement [δ;
+  /// θ] of T from the assembled state, and tangent stiffness. Returns false, without a result, where a pose or load
+  /// needs AnalyticModel: a leg is rigid along a wrench that it carries, a law has no stiffness at its force, the legs
+  /// do not hold T, or, with legs that are not statically determinate, there is a temperature change or a law depends
+  /// on its force.
   bool solve(const Vector6& F_T_W, double warmer = 0);
 
   const Vector6& displacement() const { return displacement_; }
   const Matrix6& stiffness() const { return stiffness_; }
 
   bool linear() const { return linear_; }  ///< no law's stiffness depends on its force
-  /// Of the last solve(): what the platform exerts on a leg, at T; its stiffness; the strain energy of all, J.
+  /// Of the last solve(): wrench of the platform on a leg, at T; stiffness of a leg; strain energy of the mechanism, J.
   Vector6 leg_wrench(std::size_t leg) const { return legs_[leg].N * legs_[leg].lambda; }
   Matrix6 leg_stiffness(std::size_t leg) const;
   double energy() const;
@@ -53,11 +54,12 @@ class PoseSweep {
     std::size_t leg;  ///< from 0
     std::string name;
   };
-  /// What yields, leg by leg from base to platform: members, and joints with laws.
+  /// The flexible parts, leg by leg from base to platform: members, and joints with laws.
   const std::vector<Part>& parts() const { return parts_; }
 
-  /// ∂K/∂ln s by part, s a factor on all of the part's stiffness at its force: N A⁻¹ NᵀC_part N A⁻¹ Nᵀ, symmetric and
-  /// not negative; they add up to K. Of linear laws the derivative of K at constant load. Of the last solve().
+  /// ∂K/∂ln s for each part, with s a factor on the part's stiffness at its force: N A⁻¹ NᵀC_part N A⁻¹ Nᵀ, symmetric
+  /// and positive semidefinite; they add up to K. For linear laws this is the derivative of K at constant load. Of the
+  /// last solve().
   const std::vector<Matrix6>& derivatives();
 
  private:
@@ -68,7 +70,7 @@ class PoseSweep {
     std::size_t part, index;  // of the leg; tx … rz
     std::size_t shared;       // in parts_
     Spring spring;
-    bool given_by_pose;  // a cable as long as the actuator stands out
+    bool given_by_pose;  // a cable whose length is the actuator's extension
     std::array<double, 6> twist{};
     double force = 0, yields = 0;
   };
@@ -99,7 +101,7 @@ class PoseSweep {
   Vector3 weight_ = Vector3::Zero();
   double size_ = 0;
   Eigen::PartialPivLU<Matrix6> statics_;  // of determinate legs
-  Eigen::LDLT<Matrix6> factor_;           // of the stiffness of others, rotations weighed by the size
+  Eigen::LDLT<Matrix6> factor_;           // of the stiffness, for other legs; rotations weighed by size_
   Vector6 displacement_ = Vector6::Zero();
   Matrix6 stiffness_ = Matrix6::Zero();
 };

@@ -1,5 +1,5 @@
-// Rotation vectors φ (axis times angle, rad): R = exp([φ]×), |φ| < 2π. Rotations are kept as what they change, R − I,
-// so that small ones have all their digits.
+// Rotation vectors φ (axis times angle, rad): R = exp([φ]×), |φ| < 2π. Rotations are stored as R − I, so that small
+// ones keep all their digits.
 #pragma once
 
 #include "msa/base/spatial.h"
@@ -12,10 +12,10 @@ Matrix3 turning(const Vector3& phi);
 /// The shortest φ with R = exp([φ]×), |φ| ≤ π, of R − I.
 Vector3 rotation_vector(const Matrix3& turning);
 
-/// a, then b before it: (I + a)(I + b) − I.
+/// The product of two rotations, b applied first: (I + a)(I + b) − I.
 inline Matrix3 combined(const Matrix3& a, const Matrix3& b) { return a + b + a * b; }
 
-/// How exp([φ]×) turns when φ changes: exp([φ + d]×) = exp([ψ]×) exp([φ]×) with
+/// The rotation by which exp([φ]×) changes with φ: exp([φ + d]×) = exp([ψ]×) exp([φ]×) with
 ///   ψ = J d + ½ Q(d, d) + …,  J = I + b [φ]× + c [φ]×²,  b = (1 − cos θ)/θ²,  c = (θ − sin θ)/θ³,  θ = |φ|.
 struct RotationChange {
   explicit RotationChange(const Vector3& phi);
@@ -26,7 +26,7 @@ struct RotationChange {
 
  private:
   Vector3 phi_;
-  double c_, db_, dc_;  // c, and the derivatives of b and c by θ, over θ
+  double c_, db_, dc_;  // c, and db/dθ and dc/dθ divided by θ
 };
 
 }  // namespace deflect::analytic

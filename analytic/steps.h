@@ -1,6 +1,6 @@
-// Laws that jump, and those that bend beside them, by phases: in each the deflection is affine in the force, or the
-// force is known and the deflection is what the structure around asks for (released). With forces the unknowns of a
-// chain, a phase is
+// Laws that jump, and smooth nonlinear laws solved together with them, as phases. In a phase the deflection is affine
+// in the force, or the force is known and the surrounding structure determines the deflection (released). Forces are
+// the unknowns of a chain; the phases are
 //
 //   one-sided  pull, push   δ = c f
 //   clearance  +, −         δ = ±gap
@@ -10,7 +10,7 @@
 //   one that   bends        δ by its tangent at f, where that is known
 //   bends
 //
-// A preloaded law carries f + P where the joint transmits f, and δ counts from its state at P.
+// A preloaded law carries f + P where the joint transmits f, and δ is relative to its state at P.
 #pragma once
 
 #include <functional>
@@ -22,14 +22,13 @@
 
 namespace deflect::analytic {
 
-/// δ = offset + compliance · f in the present phase; released: the offset is imposed, and found so that f is the known
-/// one.
+/// δ = offset + compliance · f in the present phase. Released: the offset is imposed such that f has its known value.
 struct Step {
   double offset = 0, compliance = 0;
   bool released = false;
 };
 
-/// One law that jumps. `number` is its place among the steps of its mechanism.
+/// One law that jumps. `number` is its index among the steps of its mechanism.
 struct SteppedLaw {
   Law law;
   double preload = 0;
@@ -37,14 +36,13 @@ struct SteppedLaw {
   std::string part;
   int number = -1;
 
-  /// By the force alone: friction sticks at no slip.
+  /// The phase by the force alone; friction sticks with zero slip.
   Step at_force(double f) const;
-  /// Of the work done from the preloaded state, what is stored. J.
+  /// The stored part of the work done from the preloaded state, J.
   double stored_energy(double f, const Step&) const;
 };
 
-/// What a mechanism answers to steps: the force in each law, the displacement of T, and the largest force at all; of a
-/// rotation times `length`.
+/// Response of a mechanism to given steps: the force in each law, the displacement of T, and the largest force.
 struct SteppedForces {
   VectorX forces;
   Vector6 displacement;
@@ -53,8 +51,8 @@ struct SteppedForces {
 };
 using AskSteps = std::function<SteppedForces(const std::vector<Step>&)>;
 
-/// How forces and displacement fall with offsets that are imposed on all laws, each in series with a compliance c that
-/// keeps them finite: f = f0 − S o. Where all other laws are linear it is the same for all loads.
+/// How forces and displacement decrease with offsets o imposed on all laws: f = f0 − S o. A compliance c in series with
+/// each law keeps them finite. Where all other laws are linear this is the same for all loads.
 struct Imposed {
   VectorX c;
   MatrixX S, T;  ///< by law; T: displacement of T per offset
@@ -62,21 +60,22 @@ struct Imposed {
 
 struct BalancedSteps {
   std::vector<Step> steps;
-  std::vector<double> slips;  ///< of the frictions, by FrictionLaw::number
-  VectorX offsets;            ///< imposed on the laws beside the compliances of Imposed; empty where not converged
+  std::vector<double> slips;  ///< of the friction elements, by FrictionLaw::number
+  VectorX offsets;            ///< imposed on the laws in addition to the compliances of Imposed; empty where not
+                              ///< converged
   bool converged = false;
-  std::string reason;  ///< where there is no equilibrium, or none was found
-  /// Parts whose play nothing loads. The steps are the middle of the play (set_valued_laws.h); T moves in it by
-  /// `twists` (columns), by between `least` and `most` along each axis.
+  std::string reason;  ///< why there is no equilibrium, or why none was found
+  /// Parts with unloaded play. The steps are at the middle of the play (set_valued_laws.h). In it T can move by
+  /// `twists` (columns), along each axis by `least` to `most`.
   std::vector<std::string> loose;
   Matrix6X twists = Matrix6X(6, 0);
   Vector6 least = Vector6::Zero(), most = Vector6::Zero();
 };
 
-/// The steps in which every law agrees with its force. Forces and deflections of the laws are the least values of a
-/// convex function (set_valued_laws.h), as the forces fall with the offsets; where laws that are no steps bend they are
-/// linearised about the last offsets until they agree. `slips` before the load. `imposed`: of this mechanism, if it is
-/// known; it is found where it is empty.
+/// Finds the steps in which every law is consistent with its force. The forces decrease with the offsets, so that
+/// forces and deflections of the laws minimise a convex function (set_valued_laws.h). Nonlinear laws that are not steps
+/// are linearised about the last offsets until everything agrees. `slips`: before the load. `imposed`: of this
+/// mechanism; computed where it is empty.
 BalancedSteps balance(const std::vector<SteppedLaw>&, const std::vector<double>& slips, const AskSteps&,
                       Imposed& imposed);
 

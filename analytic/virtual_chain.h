@@ -1,30 +1,30 @@
-// Chains of virtual joints: rigid links between virtual freedoms, which yield by the laws of what they stand for. The
-// loaded mechanism after A. Pashkevich, A. Klimchik, D. Chablat, Enhanced stiffness modeling of manipulators with
-// passive joints, Mech. Mach. Theory 46 (2011) 662, with members and groups that have laws of their own.
+// Chains of virtual joints: rigid links connected by virtual freedoms, which yield by the laws of the parts that they
+// represent. The loaded mechanism follows A. Pashkevich, A. Klimchik, D. Chablat, Enhanced stiffness modeling of
+// manipulators with passive joints, Mech. Mach. Theory 46 (2011) 662, extended by members and groups with laws of their
+// own.
 //
-// A chain is the product of the motions of its steps, each in the axes of what stands before it:
-//   joint    tx ty tz, then Rx Ry Rz about its point, as far as they are free or elastic;
-//   member   its tip moves by [u; φ], by its law (beam_column.h); a bent one is several of them in series;
-//   group    its far body moves by [u; φ], by the law of its branches, which are chains.
-// With J the twists at its end E of unit motions of the freedoms x and H the second derivative of the work of its end
-// wrench F = [f; m] by them, of freedom i before j and between rotations of one tip
+// The motion of a chain is the product of the motions of its steps, each in the axes of the step before it:
+//   joint    tx ty tz, then Rx Ry Rz about its point, where free or elastic;
+//   member   its tip moves by [u; φ] by its law (beam_column.h); a bent member is several of them in series;
+//   group    its far body moves by [u; φ] by the law of its branches, which are chains.
+// J are the twists at the chain's end E by unit motions of the freedoms x. H is the second derivative of the work of
+// the end wrench F = [f; m] with respect to x; for freedom i before j, and for rotations of one tip,
 //   H_ij = f·(ω_i × v_j) + ½ m·(ω_i × ω_j),   H_ij = ½ f·(ω_i × v_j + ω_j × v_i),
 // equilibrium and the end's displacement t, linearised, are
 //   JᵀF + H δ = s + K δ,   J δ = t + c,
-// s + K δ being the laws' forces (0 of passive freedoms) and c what the chain's end lacks. So δ and F follow from t:
+// with the laws' forces s + K δ (0 for passive freedoms) and the gap c at the chain's end. So δ and F follow from t:
 //   F = F_0 + K_c t + B μ,   Bᵀt = b.
-// B are the wrenches that nothing in the chain yields to; K_c is symmetric.
+// B are the wrenches under which nothing in the chain yields; K_c is symmetric.
 //
 // Forces and moments are dead: constant in the axes of the start. A dead moment is conjugate to the spin of the end and
-// has no potential; H belongs to one that is conjugate to a rotation vector counted from the state, which differs by
-// −½[m]× in the stiffness by spins (added where Newton's method needs it). Where no outer moment acts those add up to
-// 0.
+// has no potential. H is for a moment conjugate to a rotation vector relative to the state; the stiffness with respect
+// to spins differs by −½[m]× (added where Newton's method needs it). Without an outer moment these terms add up to 0.
 //
-// Passive motions that move nothing but what lies between them, along one screw (a rod between ball joints spins) have
-// neither stiffness nor use; they are held.
+// Passive motions along one screw that move only the parts between them (a rod between ball joints spins) have no
+// stiffness and no effect; they are held.
 //
-// Second order: J and H in the undeformed shape, H δ → H (x + δ), members under the axial force of the state. As in the
-// theory of beam-columns, the stretch of a member makes no lever longer: H has no entries of it.
+// Second order: J and H in the undeformed shape, H δ → H (x + δ), members under the axial force of the state. As in
+// beam-column theory, the stretch of a member lengthens no lever: H has no entries for it.
 #pragma once
 
 #include <algorithm>
@@ -54,11 +54,11 @@ struct RigidMotion {
   }
 };
 
-/// Motion of a body's point p against what stands before it, in axes A.
+/// Motion of a body's point p relative to the step before it, in axes A.
 struct Tip {
   Vector3 p = Vector3::Zero();
   Matrix3 A = Matrix3::Identity();
-  Vector6 x = Vector6::Zero();  ///< [u; φ]; second order adds up increments
+  Vector6 x = Vector6::Zero();  ///< [u; φ]; in second order, the sum of increments
   Matrix3 D = Matrix3::Zero();  ///< exp([φ]×) − I
 
   RigidMotion motion() const;
@@ -68,22 +68,23 @@ struct Tip {
 /// Conditions under which a shape is linearised.
 struct ShapeConditions {
   Geometry geometry = Geometry::finite;
-  double least = 0;     ///< N, Nm: forces below count as this in the compliance of contacts
-  double misfit = 1;    ///< share of the misfits that is in place
-  bool judged = false;  ///< whether the state is stable is asked for
+  double least = 0;     ///< N, Nm: smaller forces count as this in the compliance of contacts
+  double misfit = 1;    ///< share of the misfits that is applied
+  bool judged = false;  ///< whether to test the stability of the state
 };
 
-/// How a body is held, linearised about the state: F = F0 + K t + B μ where Bᵀt = b, t = [δ; ψ] its further motion.
+/// The restraint on a body, linearised about the state: F = F0 + K t + B μ with Bᵀt = b, where t = [δ; ψ] is its
+/// further motion.
 struct Restraint {
   Matrix6 K = Matrix6::Zero();  ///< symmetric
   Vector6 F0 = Vector6::Zero();
   Matrix6X B = Matrix6X(6, 0);
   VectorX b = VectorX(0);
-  Vector3 m = Vector3::Zero();  ///< moment of the state: by spins the stiffness is K − ½[m]×
-  bool stable = true;           ///< while the body is held still; known where the conditions ask for it
+  Vector3 m = Vector3::Zero();  ///< moment of the state: with respect to spins the stiffness is K − ½[m]×
+  bool stable = true;           ///< with the body held fixed; set where ShapeConditions::judged
 };
 
-/// How far freedoms have moved, and in the last step; the largest of them, rotations times length (m).
+/// The largest motion of a freedom so far, and in the last step; rotations times length (m).
 struct Progress {
   double reach = 0, step = 0;
 
@@ -99,17 +100,18 @@ struct VirtualJoint {
 struct VirtualMember {
   PlacedMember member;
   Tip tip;
-  std::size_t number = 0;  ///< of the member that this is (a piece of), in the order of for_each_part
+  std::size_t number = 0;  ///< of the member (or the member divided into this piece), in the order of for_each_part
 };
 
 struct VirtualChain;
 
-/// Branches side by side from a common start to a body that moves by tip.x; T of the mechanism for its legs.
+/// Branches in parallel from a common start to a body that moves by tip.x; for the legs of the mechanism, to T.
 struct VirtualGroup {
   std::string part;
   Tip tip;
   std::vector<VirtualChain> branches;
-  /// About the state as it is, the branches' too, where no condition changes but whether it is judged.
+  /// Restraint about the present state of body and branches, if computed already; valid while no condition other than
+  /// `judged` changes.
   std::optional<Restraint> known = {};
 
   Restraint restrain(const ShapeConditions&);
@@ -119,43 +121,43 @@ struct VirtualGroup {
 
 using VirtualStep = std::variant<VirtualJoint, VirtualMember, VirtualGroup>;
 
-/// Forces and motions of the freedoms x of a chain, linearised about the state.
+/// Forces and motions of a chain's freedoms x, linearised about the state.
 struct Linearised {
   Matrix6X J;
   MatrixX H, K;
   VectorX s, x;
-  VectorX turned;   ///< second order: what H of the state, H x, adds to JᵀF; taken off s
+  VectorX turned;   ///< second order: H x, which adds to JᵀF and is subtracted from s
   MatrixX Z;        ///< δ = offset + Z z: motions that rigid branches of groups allow
   bool all = true;  ///< Z = 1, offset = 0
   VectorX offset;
-  std::vector<bool> kept;  ///< of z: not to be eliminated, passive freedoms and groups
+  std::vector<bool> kept;  ///< of z: not to be eliminated (passive freedoms and groups)
   VectorX scale;           ///< of z: 1/length of rotations
   RigidMotion end;
-  bool stable = true;  ///< of groups and members within
+  bool stable = true;  ///< of the groups and members within
 };
 
 struct VirtualChain {
   std::string name;
-  double length = 1;  ///< m: moments weigh against forces by it
+  double length = 1;  ///< m: weighs moments against forces
   std::vector<VirtualStep> steps;
-  Vector3 p_E = Vector3::Zero();     ///< the end, before any motion
+  Vector3 p_E = Vector3::Zero();     ///< the end in the undeformed state
   Vector6 misfit = Vector6::Zero();  ///< at p_E
   Vector6 F = Vector6::Zero();       ///< on the end about the end, in the axes of the start
 
-  /// About the state under F.
+  /// Linearises about the state under F.
   Linearised linearise(const ShapeConditions&);
-  /// The freedoms move by δ; groups by the wrenches JᵀF + H δ that then pass through them.
+  /// Moves the freedoms by δ; groups move by the wrenches JᵀF + H δ that then pass through them.
   Progress advance(const Linearised&, const VectorX& delta, const ShapeConditions&);
 
-  /// For an end that is held by another body, at `end`; then that body moves further by t under a wrench that B μ
-  /// completes, and freedoms and F follow.
+  /// restrain(): for an end held by another body, at `end`. follow(): that body moves further by t, under a wrench that
+  /// B μ completes; freedoms and F follow.
   Restraint restrain(const Tip& end, const ShapeConditions&);
   Progress follow(const Vector6& t, const VectorX& mu, const ShapeConditions&);
 
-  const Restraint& restraint() const { return restraint_; }  ///< as last asked for
+  const Restraint& restraint() const { return restraint_; }  ///< of the last restrain()
   /// Adds the strain energy of each part in an equilibrium, J.
   void add_energies(const ShapeConditions&, std::map<std::string, double>&) const;
-  /// Axes of the start as the steps before `step` have turned them.
+  /// Axes of the start, rotated by the steps before `step`.
   Matrix3 axes_before(std::size_t step, Geometry) const;
 
  private:
@@ -165,17 +167,17 @@ struct VirtualChain {
   MatrixX response_;  // z by [t + c; 1]
 };
 
-/// How many equal pieces in series stand for each member, in the order of for_each_part; one where that ends.
+/// The number of equal pieces in series for each member, in the order of for_each_part; one beyond the end of the list.
 struct Pieces {
   std::vector<int> of;
-  std::size_t next = 0;  ///< member that virtual_chain_of will come to
+  std::size_t next = 0;  ///< index of the next member that virtual_chain_of() will reach
 };
 
 /// The chain of a leg whose end is the point p_E, misfits given at p_W. Axes: those of the configuration.
 VirtualChain virtual_chain_of(const PlacedLeg&, const Vector3& p_E, const Vector3& p_WT, double length, Pieces&);
 
-/// Puts a chain into the state of one whose members are in fewer pieces: each piece of that is bent as evenly as its
-/// ends allow.
+/// Initialises a chain with the state of one whose members have fewer pieces; each coarser piece is taken to be bent as
+/// evenly as its ends allow.
 void take_state(VirtualChain&, const VirtualChain& coarser);
 
 }  // namespace deflect::analytic

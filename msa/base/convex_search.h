@@ -1,13 +1,13 @@
-// The least value of a convex function of few variables between bounds, by an active set.
+// Minimises a convex function of few variables subject to bounds, by an active-set method.
 //
 //   f(x) = ½ Σ a_j x_j² − bᵀx + Σ φ_i(y_i),   y = e + B x,   low_i ≤ y_i ≤ high_i
 //
-// with a ≥ 0 and φ_i convex and once continuously differentiable. In each round the search goes to the least value on
-// the bounds that are active (Newton, the length of a step by an exact line search), stops at the first bound on the
-// way and makes it active, or lets go one that pushes the wrong way. f falls in every round but those of length zero,
-// where the bound of the least index is taken (Bland), so that no set of bounds returns: the search ends wherever the
-// φ_i consist of finitely many parabolas, and converges as Newton's method does on others.
-// Source: J. Nocedal, S. Wright, Numerical Optimization, 2006, §16.5, for curvatures that may be zero.
+// with a ≥ 0 and φ_i convex and once continuously differentiable. Each round moves towards the minimum on the active
+// bounds (Newton's method with an exact line search). It stops at the first bound on the way and makes it active, or
+// releases a bound whose multiplier has the wrong sign. f decreases in every round except those of length zero. There
+// the bound of least index is taken (Bland's rule), so that no active set repeats. The search ends where the φ_i
+// consist of finitely many parabolas, and converges like Newton's method for others. Source: J. Nocedal, S. Wright,
+// Numerical Optimization, 2006, §16.5, for curvatures that may be zero.
 #pragma once
 
 #include <functional>
@@ -30,19 +30,19 @@ struct ConvexProblem {
   MatrixX B;
   VectorX e;
   std::vector<ConvexRow> rows;
-  double rounding = 0;  ///< of b and of slopes by rows, where these are known to no better; smaller ones are zero
+  double rounding = 0;  ///< accuracy of b and of the slopes; smaller values count as zero
 };
 
 struct ConvexAnswer {
   enum class Outcome { least, unbounded, undecided };
   Outcome outcome = Outcome::undecided;
   VectorX x, y;
-  VectorX push;           ///< by row: what its bound adds to φ'; > 0 at the upper one
-  std::vector<int> side;  ///< by row: −1 and 1 at its bounds, where they are active, otherwise 0
-  VectorX along;          ///< unbounded: by how much y changes along the way on which f falls for ever
+  VectorX push;           ///< by row: multiplier that its bound adds to φ'; > 0 at the upper bound
+  std::vector<int> side;  ///< by row: −1 or 1 where the lower or upper bound is active, else 0
+  VectorX along;          ///< unbounded: change of y along the direction in which f decreases without end
 };
 
-/// From a point x between the bounds.
+/// Starts at a point x within the bounds.
 ConvexAnswer least(const ConvexProblem&, const VectorX& x);
 
 }  // namespace deflect

@@ -1,5 +1,5 @@
-// Eigen, with its decompositions compiled once, in decompositions.cpp: they were a third of what the program takes to
-// compile. Hand over a matrix of one of these sizes, not an expression, which would be compiled where it stands:
+// Eigen with its decompositions compiled only once, in decompositions.cpp; they took a third of the compile time. Pass
+// a matrix of one of these sizes and not an expression, which would be instantiated at the point of use:
 // SelfAdjointEigenSolver<Matrix6>(Matrix6(A + A.transpose())).
 #pragma once
 
@@ -45,13 +45,13 @@ DEFLECT_COMPILED template void CompleteOrthogonalDecomposition<Matrix3d>::_solve
 
 namespace deflect {
 
-/// Q of a QR decomposition: its householderQ().
+/// Q of a QR decomposition as a matrix, from its householderQ().
 Eigen::MatrixXd evaluated(const Eigen::HouseholderSequence<Eigen::MatrixXd, Eigen::VectorXd>& Q);
-/// The first columns of it, for fewer operations.
+/// Only the first columns of Q, with fewer operations.
 Eigen::MatrixXd leading_columns(const Eigen::HouseholderSequence<Eigen::MatrixXd, Eigen::VectorXd>& Q,
                                 Eigen::Index columns);
 
-/// Of the 1-norm, estimated.
+/// Estimate in the 1-norm.
 double reciprocal_condition(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu);
 
 }  // namespace deflect

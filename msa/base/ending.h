@@ -1,4 +1,4 @@
-// How a run ends: exit codes of the program, and errors as values that can be sent elsewhere.
+// How a run ends: exit codes of the program, and errors as values that can be sent to other processes.
 #pragma once
 
 #include <exception>
@@ -15,7 +15,7 @@ struct Ending {
 
 Ending ending_of(const std::exception_ptr&);
 
-/// Throws what has that ending.
+/// Throws an exception with that ending.
 [[noreturn]] void throw_ending(const Ending&);
 
 }  // namespace deflect

@@ -1,5 +1,5 @@
-// The three ways in which work is refused. Solvers return a missing convergence in their result; what asks for an
-// answer and gets none throws it as NumericalError.
+// The three kinds of errors. Solvers report missing convergence in their result; code that needs an answer and gets
+// none throws NumericalError.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,7 @@
 
 namespace deflect {
 
-/// Work that is refused, whichever way.
+/// Base of the three.
 struct Refusal : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -18,19 +18,20 @@ struct InputError : Refusal {
   using Refusal::Refusal;
 };
 
-/// What made a model impossible, without the numbers: equal wherever the same thing is wrong.
+/// Why a model is impossible, without numbers, so that causes of the same kind compare equal.
 struct Cause {
-  std::string reason;  ///< "the link does not reach"; empty where only the message says it
-  int leg = 0;         ///< from 1, where one leg is to blame
+  std::string reason;  ///< "the link does not reach"; empty where only the message has it
+  int leg = 0;         ///< 1-based, where one leg is the cause
 };
 
-/// An impossible model: an unreachable pose, a mechanism that cannot stand, a failed check. Names the part.
+/// An impossible model: an unreachable pose, a mechanism that cannot stand, a failed check. The message names the part.
 struct ModelError : Refusal {
   explicit ModelError(const std::string& message, Cause why = {}) : Refusal(message), cause(std::move(why)) {}
   Cause cause;
 };
 
-/// Correct input whose solution was not found, or whose answer fails a check. Names the place, the check and numbers.
+/// Correct input whose solution was not found, or whose answer fails a check. The message contains the place, the check
+/// and numbers.
 struct NumericalError : Refusal {
   using Refusal::Refusal;
 };

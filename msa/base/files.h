@@ -1,11 +1,11 @@
-// Files are written whole or not at all, and what stands under a name is respected.
+// Reads and writes files. A regular file is written completely or not at all.
 //
-// A regular file, or one that is not there yet, is replaced by renaming a new file beside it (part_file.h) over it: who
-// reads it sees the old text or the new one. Links are followed. A file that is there keeps its mode, owner and group;
-// a new one has what the umask leaves. A file that nobody may write is refused. What a rename would tear off is written
-// in place, not whole: a file with several names (hard links) or of an owner that cannot be kept, one in a folder that
-// takes no new files, a file that is mounted by itself. What is no regular file (a device, a FIFO, /dev/stdout) is
-// written to.
+// A regular or new file is written as a new file in the same folder (part_file.h), which is then renamed: readers see
+// the old text or the new one. Links are followed. An existing file keeps its mode, owner and group; a new one gets the
+// mode by the umask. A file that nobody may write is refused. Files that a rename would break are written in place,
+// without that guarantee: files with several hard links, files whose owner cannot be kept, files in a folder that
+// accepts no new files, files that are mount points. Anything that is not a regular file (a device, a FIFO,
+// /dev/stdout) is written to directly.
 #pragma once
 
 #include <filesystem>
@@ -15,22 +15,22 @@
 
 namespace deflect {
 
-/// What is no regular file (a device, a FIFO) may have no end: more bytes than these are refused.
+/// A device or a FIFO may have no end: more bytes than this are refused.
 inline constexpr std::size_t most_of_a_stream = std::size_t{256} << 20;
 
-/// The file's bytes; InputError "file: cannot be read (reason)".
+/// The file's bytes. Throws InputError "file: cannot be read (reason)".
 std::string read_text(const std::filesystem::path&);
 
-/// Writes as said above, creating missing folders; InputError "file: cannot be written (reason)".
+/// Writes as described above and creates missing folders. Throws InputError "file: cannot be written (reason)".
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-/// For libraries that write files by themselves: `write` fills an empty file whose name ends with `suffix`, and its
-/// text is returned. The file is the part file of `path`, or a temporary one where that is no regular file.
+/// For libraries that write files themselves: `write` fills an empty file whose name ends with `suffix`, and its text
+/// is returned. The file is the part file of `path`, or a temporary file where `path` is not a regular file.
 std::string text_written_by(const std::filesystem::path& path, const std::string& suffix,
                             const std::function<void(const std::filesystem::path&)>& write);
 
-/// A file's name made of a name that somebody chose: letters, digits, '-', '_', '.', spaces and what is not ASCII stay;
-/// anything else, and a dot in front, becomes '_'; at most 200 bytes. It leads out of no folder.
+/// A file name from a name chosen by the user: letters, digits, '-', '_', '.', spaces and non-ASCII characters stay;
+/// others, and a leading dot, become '_'; at most 200 bytes. The result cannot leave its folder.
 std::string safe_file_name(std::string_view);
 
 }  // namespace deflect

@@ -1,4 +1,4 @@
-// Eigen counts in signed numbers, the standard containers in unsigned ones: the conversions between them.
+// Conversions between the signed indices of Eigen and the unsigned ones of the standard containers.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 
 namespace deflect {
 
-/// A place or a number as Eigen counts it, and as the standard containers do: i ≥ 0.
+/// An index or a count i ≥ 0 in the type of Eigen, or of the standard containers.
 constexpr Eigen::Index as_index(std::integral auto i) { return static_cast<Eigen::Index>(i); }
 constexpr std::size_t as_size(std::integral auto i) { return static_cast<std::size_t>(i); }
 
@@ -18,7 +18,7 @@ constexpr decltype(auto) nth(Container&& container, Eigen::Index i) {
   return container[static_cast<std::size_t>(i)];
 }
 
-/// The element of a table in the order of an enumeration.
+/// The element of a table that is in the order of an enumeration.
 template <class Container, class Enum>
 requires std::is_enum_v<Enum>
 constexpr decltype(auto) nth(Container&& table, Enum e) { return table[static_cast<std::size_t>(e)]; }

@@ -7,9 +7,9 @@
 
 namespace deflect {
 
-/// "translation along (0, 0, 1)", or "rotation about (0, 0, 1) through T + (10, 0, 0) mm" with ", advancing 3 mm per
-/// rad" where it does: of the twist [δ; θ] (m, rad) at T, of any magnitude. A rotation counts as none where it moves
-/// nothing within `length` (m).
+/// Describes the twist [δ; θ] (m, rad) at T, of any magnitude: "translation along (0, 0, 1)", or "rotation about (0, 0,
+/// 1) through T + (10, 0, 0) mm", with ", advancing 3 mm per rad" for a screw. A rotation that has no noticeable effect
+/// within `length` (m) is ignored.
 std::string motion_text(const Vector6& d_T_W, double length);
 
 }  // namespace deflect

@@ -1,6 +1,6 @@
-// Work whose refusal is one of its answers, not the end: a pose that is out of reach, an effect that has no place, a
-// trial value with which a machine does not stand. Errors become values, are told with their place, and change threads
-// here and nowhere else.
+// Errors as values, for work whose failure is a normal result: an unreachable pose, an effect without a place, a trial
+// value with which a machine cannot stand. Only this header catches errors, prefixes them with a place, and passes them
+// between threads.
 #pragma once
 
 #include <exception>
@@ -12,11 +12,11 @@
 
 namespace deflect {
 
-/// What some work gave, or why it was refused.
+/// The result of some work, or why it failed.
 template <class T>
 struct Outcome {
   std::optional<T> value;
-  std::string why;  ///< refused: in words, and as data where the model is impossible
+  std::string why;  ///< without a value: the message, and the cause where the model is impossible
   Cause cause = {};
 
   explicit operator bool() const { return value.has_value(); }
@@ -25,7 +25,7 @@ struct Outcome {
   const T* operator->() const { return &*value; }
 };
 
-/// The outcome of work(). Errors of another kind than `Error` are thrown on.
+/// The outcome of work(). Exceptions that are not of type `Error` pass through.
 template <class Error = Refusal, class F>
 auto outcome_of(const F& work) -> Outcome<std::decay_t<decltype(work())>> {
   try {
@@ -36,7 +36,8 @@ auto outcome_of(const F& work) -> Outcome<std::decay_t<decltype(work())>> {
   }
 }
 
-/// work(); its refusals of the kind `Error` begin with what place() says, "leg 3: ". Their cause stays.
+/// Returns work(). Messages of its exceptions of type `Error` get the prefix place(), such as "leg 3: "; the cause is
+/// kept.
 template <class Error, class Place, class F>
 decltype(auto) told_at(const Place& place, const F& work) {
   try {
@@ -49,7 +50,7 @@ decltype(auto) told_at(const Place& place, const F& work) {
   }
 }
 
-/// What work() threw, whatever it was, to be thrown on in another thread or process; null: nothing.
+/// The exception that work() threw, to be rethrown in another thread or process; null: none.
 template <class F>
 std::exception_ptr thrown_by(const F& work) noexcept {
   try {

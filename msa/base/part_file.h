@@ -1,7 +1,7 @@
-// A new file beside the one that is to be written in the end: "NAME.part" and the number of the process.
+// A temporary file in the folder of the file to be written: "NAME.part" plus the process id.
 //
-// It holds a lock (flock) as long as the object lives. A run that was killed leaves its part file without one: the next
-// run that writes NAME removes it, unless a process of that number is alive.
+// It is locked (flock) as long as the object exists. A killed run leaves its part file without a lock; the next run
+// that writes NAME removes it, unless a process with that id is alive.
 #pragma once
 
 #include <sys/types.h>
@@ -14,8 +14,8 @@ namespace deflect {
 
 class PartFile {
  public:
-  /// An empty file of that mode, less what the umask takes, in the folder of `target`. `suffix` stands at the end of
-  /// its name. Throws std::system_error.
+  /// Creates an empty file with that mode (less the umask) in the folder of `target`. Its name ends with `suffix`.
+  /// Throws std::system_error.
   explicit PartFile(const std::filesystem::path& target, const std::string& suffix = "", mode_t mode = 0666);
   ~PartFile();  ///< removes it, unless it was renamed
   PartFile(const PartFile&) = delete;

@@ -1,5 +1,5 @@
-// What nearly every file includes, read by the compiler once for all rooms (CMake's precompiled header). Files include
-// what they use all the same: they compile without it, with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON.
+// Headers that nearly every file includes, compiled once for all libraries (CMake's precompiled header). Files still
+// include what they use: they compile without it, with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,21 +1,20 @@
-// Scalar laws, some of them set-valued, coupled by a linear relation. Mathematics only: what d and s are is the
-// caller's.
+// Scalar laws, some of them set-valued, coupled by a linear relation. Mathematics only; the caller gives d and s their
+// meaning.
 //
 //   d = d0 + P o,   s = (d − o)/c,   c > 0;   diag(c)⁻¹ᐟ² P diag(c)¹ᐟ² symmetric, eigenvalues from 0 to 1
-//   s_i = force_i(d_i), which does not fall, within low_i < d_i < high_i; at most that at low_i, at least that at
-//   high_i
+//   s_i = force_i(d_i), nondecreasing, for low_i < d_i < high_i;
+//   s_i ≤ force_i(low_i) at d_i = low_i,   s_i ≥ force_i(high_i) at d_i = high_i
 //
-// A linear relation between d and s of any kind that is monotone can be written so, with any c: eigenvalues 1 are
-// directions in which d changes and s does not, eigenvalues 0 those in which s changes and d does not. c of the size of
-// dd/ds keeps the digits.
+// Every monotone linear relation between d and s can be written in this form, with any c. Eigenvalues 1 are directions
+// in which d changes and s does not, eigenvalues 0 those in which s changes and d does not. Choosing c of the size of
+// dd/ds preserves accuracy.
 //
-// The solutions are the least values of a convex function of d (convex_search.h), Σ∫force_i dd_i and what the relation
-// stores. Where laws have slack there may be many: they have the same s and their d are a convex polytope. Of these the
-// solution is the middle one, which minimises
+// The solutions minimise a convex function of d (convex_search.h): Σ∫force_i dd_i plus the energy of the relation.
+// Where laws have slack there may be many solutions, with the same s and a convex polytope of d. The middle one is
+// returned, which minimises
 //   Σ ((d_i − middle_i)/half_i)²   over the laws with slack.
-// The sum is strictly convex along the polytope, because a d that no law with slack has is the same for all of it; so
-// there is one middle. Each term is a ratio of a law's own lengths: it does not depend on units, nor on the order of
-// the laws.
+// The sum is strictly convex on the polytope, because only d of laws with slack vary in it; so the middle is unique.
+// Each term is a ratio of lengths of one law: the middle depends neither on units nor on the order of the laws.
 #pragma once
 
 #include <functional>
@@ -28,31 +27,33 @@ namespace deflect {
 struct ScalarLaw {
   double low = 0, high = 0;                      ///< of d; may be infinite
   std::function<double(double)> force, tangent;  ///< within low and high
-  /// half > 0: a law with slack, where force is the same over a range: between low and high, if they are finite,
-  /// otherwise beyond middle − half and beyond middle + half.
+  /// half > 0: a law with slack, whose force is constant over a range: between low and high if these are finite,
+  /// otherwise below middle − half and above middle + half.
   double middle = 0, half = 0;
 };
 
 struct LinearRelation {
   VectorX c, d0;
   MatrixX P;
-  VectorX size;  ///< by law: an s as large as those that drive the relation; 1e-9 of it is no load on slack
+  VectorX size;  ///< by law: scale of s; below 1e-9 of it slack counts as unloaded
 };
 
 struct SetValuedSolution {
   enum class Outcome { solved, no_fit, overcome, undecided };
-  /// no_fit: no d of the relation lies within all of low and high; overcome: no s reaches what d0 wants.
+  /// no_fit: no d of the relation satisfies all bounds; overcome: the laws cannot supply the s that d0 requires.
   Outcome outcome = Outcome::undecided;
   VectorX d, s, o;
-  /// By law: −1 and 1 where d is low or high and that end pushes; without ends, where d is beyond middle ∓ half.
+  /// By law: −1 or 1 where d is at low or high and that end is loaded; without finite ends, where d is below middle −
+  /// half or above middle + half.
   std::vector<int> end;
-  VectorX along;  ///< overcome: how d would go on changing
-  /// d changes along these columns within the slack, s does not; none where the solution is the only one.
+  VectorX along;  ///< overcome: the direction in which d grows without bound
+  /// Columns: directions in which d can change within the slack without a change of s; none where the solution is
+  /// unique.
   MatrixX loose;
-  VectorX least, most;  ///< of watched · (d of the polytope − d)
+  VectorX least, most;  ///< bounds of watched · (d' − d) over d' of the polytope
 };
 
-/// `watched`: linear functions of d (rows), whose extent over the polytope is wanted.
+/// `watched`: linear functions of d (rows) whose range over the polytope is needed.
 SetValuedSolution solve(const LinearRelation&, const std::vector<ScalarLaw>&, const MatrixX& watched);
 
 }  // namespace deflect

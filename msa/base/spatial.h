@@ -38,7 +38,7 @@ inline Matrix6 shift_twist(const Vector3& p_QP) {
   return X;
 }
 
-/// diag(R, R): turns a twist or a wrench into other axes without moving its point.
+/// diag(R, R): transforms a twist or a wrench to other axes, at the same point.
 inline Matrix6 rotate_twist(const Matrix3& R) {
   Matrix6 X = Matrix6::Zero();
   X.topLeftCorner<3, 3>() = R;

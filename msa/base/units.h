@@ -1,4 +1,4 @@
-// Units at the borders. Inside everything is SI (m, N, Pa, rad, kg, K); a text such as "125.5 mm" is read here.
+// Conversion of units on input and output, such as "125.5 mm". All other code uses SI (m, N, Pa, rad, kg, K).
 #pragma once
 
 #include <string>
@@ -32,30 +32,30 @@ enum class Dimension {
 /// Units accepted for a dimension, the preferred one first: {"mm", "m", "um", "in"}.
 std::vector<std::string> units_of(Dimension);
 
-/// "a length", "a stiffness (force per length)": for messages.
+/// "a length", "a stiffness (force per length)", for messages.
 std::string describe(Dimension);
 
-/// The value in SI of "125.5 mm". Throws InputError naming the text and the units that fit: on a missing, unknown
-/// or misplaced unit, on a number that is not finite, on trailing text.
+/// The value in SI of "125.5 mm". Throws InputError with the text and the allowed units: for a missing, unknown or
+/// misplaced unit, for a number that is not finite, for trailing text.
 double parse_quantity(std::string_view text, Dimension);
 
-/// Above it the last binary digit of an angle in rad is worth more than 1e-10 rad: too few digits are left.
+/// Largest angle, rad: above it the last binary digit is worth more than 1e-10 rad, too coarse.
 inline constexpr double largest_angle = 1e6;
 
-/// Largest sizes that models take, m, N and Nm: of a length the last binary digit is then worth 0.1 nm. Areas, second
-/// moments of area, line loads and masses have limits of the same kind.
+/// Largest values allowed in models: m, N and Nm. The last binary digit of the largest length is worth 0.1 nm. Areas,
+/// second moments of area, line loads and masses have limits of the same kind.
 inline constexpr double largest_length = 1e6, largest_force = 1e15, largest_moment = 1e18;
 
-/// Throws InputError saying so where the value in SI, written as `text`, is larger than models take.
+/// Throws InputError where the SI value of `text` is larger than allowed.
 void require_usable_size(double si, Dimension, std::string_view text);
 
-/// Throws InputError saying so where the angle, written as `text`, is larger; parse_quantity does it by itself.
+/// Throws InputError where the angle of `text` is larger than largest_angle; parse_quantity() checks this itself.
 void require_digits_of_angle(double rad, std::string_view text);
 
 /// The shortest text in the preferred unit that parse_quantity turns back into exactly `value`.
 std::string format_quantity(double value, Dimension);
 
-/// A finite decimal number that spans the whole text, or InputError.
+/// The whole text as a finite decimal number. Throws InputError where it is none.
 double parse_number(std::string_view text);
 
 /// The member of `known` with the smallest edit distance to `word`, or "" when none is near.

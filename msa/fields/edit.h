@@ -1,4 +1,4 @@
-// A change of a description, by the path of a field.
+// A change of a description, addressed by the path of a field.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct Edit {
   Action action = Action::set;
 };
 
-/// "edit 'materials.steel.E *= 0.9'": begins the messages about it.
+/// "edit 'materials.steel.E *= 0.9'": the start of messages about it.
 std::string origin_of(const Edit&);
 
 }  // namespace deflect

@@ -1,4 +1,4 @@
-// Values as a file could hold them, for messages.
+// Example values, as in a file, for messages.
 #pragma once
 
 #include "msa/base/units.h"

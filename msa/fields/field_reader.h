@@ -1,5 +1,5 @@
-// From a tree to the description: each describe() asks for its fields by key. Strict: what is not asked for is an
-// error, and of several errors in one map the unknown key is told first, since it explains a missing one.
+// Reads a tree into a description: each describe() requests its fields by key. Strict: a key that is not requested is
+// an error. Of several errors in one map an unknown key is reported first, because it explains a missing one.
 #pragma once
 
 #include <set>
@@ -12,7 +12,7 @@
 
 namespace deflect {
 
-/// A text that is made when an error needs it: refers to a callable that outlives it. Or a text that is there.
+/// A text that is made only when an error needs it. Refers to a callable, or to a text, that must outlive it.
 class LaterText {
  public:
   template <class Make, class = std::enable_if_t<!std::is_same_v<std::decay_t<Make>, LaterText>>>
@@ -32,17 +32,17 @@ class LaterText {
 
 class FieldReader final : public FieldVisitor {
  public:
-  /// Messages begin "origin:line: path: "; without a line where the tree has none. `path`: where the tree stands.
+  /// Messages begin "origin:line: path: ", without a line where the tree has none. `path`: of the tree in its file.
   explicit FieldReader(std::string origin, std::string path = "")
       : origin_(std::move(origin)), path_(std::move(path)) {}
 
-  /// Calls `fields` (a describe) on the map `root`; InputError when the map does not fit.
+  /// Calls `fields` (a describe()) on the map `root`. Throws InputError where the map does not match.
   void read(const YamlNode& root, const std::function<void()>& fields);
 
-  /// Reads `map` as the named entries themselves.
+  /// Reads the children of `map` as named entries.
   void read_entries(const YamlNode& map, Elements&);
 
-  /// Paths met with the tag !ours.
+  /// Paths of values with the tag !ours.
   const std::set<std::string>& ours() const { return ours_; }
 
   /// The numbers met that depend on a parameter.
@@ -69,10 +69,10 @@ class FieldReader final : public FieldVisitor {
   void require(bool, const char*, const std::string&) override;
 
  private:
-  /// The map whose fields are being asked for.
+  /// The map whose fields are being read.
   struct Level {
     const YamlNode* map = nullptr;
-    const YamlNode* only = nullptr;  ///< the one value of an entry that is no map, under the key ""
+    const YamlNode* only = nullptr;  ///< the value of an entry that is not a map, under the key ""
     std::vector<const char*> asked;
     std::string missing, broken;  ///< complete messages, the first of each kind
   };

@@ -1,5 +1,5 @@
-// From the description to a tree that holds every field a file could give here: defaults and absent fields are there
-// too, marked implied, so that an edit can find them. stripped() makes it what the file says.
+// Writes a description to a tree with every field that a file could contain. Defaults and absent fields are included
+// and marked as implied, so that edits can find them; stripped() removes them.
 #pragma once
 
 #include <set>
@@ -12,7 +12,7 @@ namespace deflect {
 
 class FieldWriter final : public FieldVisitor {
  public:
-  /// `ours`: paths that get the tag; `path`: where the tree stands.
+  /// `ours`: paths that get the tag !ours; `path`: of the tree in the file.
   explicit FieldWriter(const std::set<std::string>& ours, std::string path = "") : ours_(ours), path_(std::move(path)) {
     map_.kind = YamlNode::Kind::map;
   }
@@ -48,7 +48,7 @@ class FieldWriter final : public FieldVisitor {
 
   const std::set<std::string>& ours_;
   std::string path_;
-  std::string telling_;  // key of the map that tells its alternative: written in any case
+  std::string telling_;  // key of the map that selects its alternative; always written
   YamlNode map_;
 };
 

@@ -1,4 +1,4 @@
-// What a YAML file describes, told by the keys at its top: for files that are given to the wrong command.
+// Recognises what a YAML file describes by its top-level keys, for files that are given to the wrong command.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ enum class FileKind { unknown, device, frame, effect };
 
 FileKind kind_of(const YamlNode& tree);
 
-/// InputError "origin:line: this file describes a frame, not a device: 'deflect frame FILE' solves it" where the file
-/// is plainly of another kind than the one wanted.
+/// Throws InputError "origin:line: this file describes a frame, not a device: 'deflect frame FILE' solves it" where the
+/// file is clearly of another kind.
 void require_kind(const YamlNode& tree, FileKind wanted, const std::string& origin);
 
 }  // namespace deflect

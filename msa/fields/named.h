@@ -1,4 +1,4 @@
-// Named things in the order of the file.
+// Lists of named values.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace deflect {
 
-/// A list of named things that keeps the order of the file.
+/// A list of named values in the order of the file.
 template <class T>
 using Named = std::vector<std::pair<std::string, T>>;
 

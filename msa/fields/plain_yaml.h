@@ -1,4 +1,4 @@
-// The plain part of YAML, read without a library at a hundred times the speed: long frame files are made of it.
+// A fast parser for a simple subset of YAML, a hundred times faster than the library. Long frame files use this subset.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 
 namespace deflect {
 
-/// Block maps of one-line values: plain words and numbers, and flow maps and lists of these; comments on lines of their
-/// own. Of such a text the same tree as parse_yaml's library makes. Nothing for any other text, valid or not:
-/// quotations, tags, anchors, block lists, values over several lines, doubled keys, other comments, tabs, characters
-/// beyond ASCII outside comments, empty values.
+/// Parses block maps of one-line values (plain words and numbers, and flow maps and lists of these) with comments on
+/// separate lines. Gives the same tree as the library. Nullopt for any other text, valid or not: quotes, tags, anchors,
+/// block lists, values over several lines, repeated keys, other comments, tabs, characters beyond ASCII outside
+/// comments, empty values.
 std::optional<YamlNode> parse_plain_yaml(std::string_view text);
 
-/// The same by the library, whatever the text: parse_yaml without the short way. Its characters have been checked.
+/// parse_yaml() by the library, for any text whose characters have been checked already.
 YamlNode parse_any_yaml(std::string_view text, const std::string& origin);
 
 }  // namespace deflect

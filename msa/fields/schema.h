@@ -1,8 +1,8 @@
-// The keys of device files as data, for people and for editors: asked from the same field lists as the reader asks
-// (fields.h), so that there is nothing to keep in step.
+// The schema of files as data, for users and editors. It is made from the same lists of fields as the reader
+// (fields.h), so that both always agree.
 //
-// A level is the map that a struct is written as. Which fields it has can depend on a word in it (`law: belt`,
-// `joint: custom`) or on which one of several keys is there (`along` or `from`): these are its cases.
+// A level is the map that a struct is written as. Its fields can depend on a word in it (`law: belt`, `joint: custom`)
+// or on which of several keys is present (`along` or `from`): these are its cases.
 #pragma once
 
 #include <cstddef>
@@ -38,26 +38,26 @@ struct SchemaField {
   Dimension dimension = Dimension::none;
   Range range;
   bool required = false;
-  std::string otherwise;           ///< as it would stand in the file; "" where there is no default
-  std::string what;                ///< of a word: "material", "joint type"
-  std::vector<std::string> words;  ///< those allowed; none where they are names that the file gives
+  std::string otherwise;           ///< the default as written in a file; "" where there is none
+  std::string what;                ///< kind of a word: "material", "joint type"
+  std::vector<std::string> words;  ///< those allowed; empty where they are names defined in the file
   std::size_t size = 0;            ///< rows of a matrix, 0: any
-  std::size_t level = no_level;    ///< of what holds fields: index among Schema::levels
-  bool plain = false;              ///< entries of one value each, which is the field "" of the level
-  bool or_word = false;            ///< an object that can be written as one of the words too
+  std::size_t level = no_level;    ///< level of its own fields, if any: index in Schema::levels
+  bool plain = false;              ///< its entries are one value each, the field "" of the level
+  bool or_word = false;            ///< an object that can also be written as one of the words
 
   static constexpr std::size_t no_level = as_size(-1);
 };
 
-/// Fields that go with these words, by key: {"law": {"belt"}}. Of several keys of which one is there the name is both,
-/// and the word the one that is: {"along|from": {"along"}}. Keys on which nothing depends are left out.
+/// The fields for certain words, by key: {"law": {"belt"}}. For alternative keys the name contains all of them and the
+/// word is the one present: {"along|from": {"along"}}. Keys on which nothing depends are left out.
 struct SchemaCase {
   std::map<std::string, std::vector<std::string>> choices;
-  std::vector<SchemaField> fields;  ///< in the order in which they are asked for
+  std::vector<SchemaField> fields;  ///< in the order of the reader
 };
 
 struct SchemaLevel {
-  std::string path;  ///< where it comes first: "leg.NAME.tx"
+  std::string path;  ///< of its first occurrence: "leg.NAME.tx"
   std::vector<SchemaCase> cases;
 };
 
@@ -65,10 +65,11 @@ struct Schema {
   std::vector<SchemaLevel> levels;  ///< the first is the file
 };
 
-/// What a name of the user's stands as in paths.
+/// Placeholder in paths for a name that the user chooses.
 inline constexpr const char* schema_name = "NAME";
 
-/// The fields that `describe` asks for. `fixed`: words by key that are taken as they are, others are tried in turn.
+/// The schema of the fields that `describe` visits. `fixed`: words by key with a fixed value; for other words all
+/// values are tried.
 Schema schema_of(const std::function<void(FieldVisitor&)>& describe, const std::map<std::string, std::string>& fixed);
 
 }  // namespace deflect

@@ -1,4 +1,4 @@
-// Edits of a tree made by FieldWriter: finding the places a path means, and changing what stands there.
+// Edits of a tree made by FieldWriter: resolves paths to places and changes the values there.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ namespace deflect {
 /// A place in a tree: the index of the child at each level.
 using TreePlace = std::vector<std::size_t>;
 
-/// What stands between the dots.
+/// The path split at its dots.
 std::vector<std::string> segments_of(const std::string& path);
 
-/// The places a path means, several where it holds "*". A list of laws that has one element lets its index be left
-/// out. Among the entries that "*" stands for, those of another kind than the path's fields (a joint has no
-/// bending_factor) are left out, as long as one entry has them. InputError, beginning with `where` and the path as
-/// far as it is wrong, when there is no such field.
+/// The places that a path addresses; several where it contains "*". The index of a list of laws with one element may be
+/// omitted. Entries matched by "*" that lack the path's fields (a joint has no bending_factor) are skipped, as long as
+/// one entry has them. Throws InputError, beginning with `where` and the path up to the error, where there is no such
+/// field.
 std::vector<TreePlace> places(const YamlNode& root, const std::string& path, const std::string& where);
 
 /// "leg.universal_joint.tz.0.length".
@@ -26,8 +26,8 @@ std::string path_of(const YamlNode& root, const TreePlace&);
 
 const YamlNode& at(const YamlNode& root, const TreePlace&);
 
-/// What stands at the place after the action. Assumptions ("ours") of an enclosing value pass to the parts of it that
-/// are not edited. InputError, beginning with `where`, when the action does not fit what stands there.
+/// Applies the action to the value at a place. The mark as assumed ("ours") of an enclosing value passes to those of
+/// its parts that are not edited. Throws InputError, beginning with `where`, where the action does not fit the value.
 void change(YamlNode& root, const TreePlace&, Edit::Action, const YamlNode& value, const std::string& where);
 
 /// An edit whose value has been parsed.
@@ -40,7 +40,7 @@ struct TreeEdit {
 TreeEdit parsed(const Edit&);
 std::string origin_of(const TreeEdit&);
 
-/// An edit at every place that its path means. InputError beginning with `origin`, as origin_of() of the edit.
+/// Applies an edit at every place that its path addresses. Throws InputError beginning with origin_of() of the edit.
 void apply(YamlNode& root, const TreeEdit&, const std::string& origin);
 
 }  // namespace deflect

@@ -1,5 +1,5 @@
-// YAML as plain data, so that the library behind it stays in one file. A node knows its line for messages and
-// whether it carries the tag !ours; a tree made from a description knows more (see "written" below).
+// YAML as plain data, so that only one file uses the library. A node has its line for messages and whether it has the
+// tag !ours; a tree made from a description has more (see "written" below).
 #pragma once
 
 #include <cstddef>
@@ -28,14 +28,14 @@ struct YamlNode {
   std::vector<std::string> keys;   ///< of a map, in the order of the file: keys[i] names children[i]
   std::vector<YamlNode> children;  ///< of a map or a list
   bool ours = false;               ///< tagged !ours
-  bool quoted = false;             ///< free text: written in quotes where another reader would see a number or a word
-  int line = 0, key_line = 0;      ///< 1-based, 0 where there is no file: of the value, of its key
+  bool quoted = false;             ///< free text: written in quotes where a reader would take it for a number or a word
+  int line = 0, key_line = 0;      ///< 1-based lines of the value and of its key; 0 without a file
   std::optional<Dependence> depends;  ///< of a scalar that a parameter was filled into
 
   // Written: set by FieldWriter only.
-  bool implied = false;    ///< a default or an absent field: known to edits, not part of the file
+  bool implied = false;    ///< a default or an absent field: visible to edits, not written to the file
   bool entries = false;    ///< a map of named entries, not of fields
-  bool collapses = false;  ///< a list that stands without its dash when it has one element
+  bool collapses = false;  ///< a list that is written without brackets or dash where it has one element
   std::optional<double> number;
   Dimension dimension = Dimension::none;
 
@@ -45,17 +45,17 @@ struct YamlNode {
   bool empty() const { return children.empty(); }
 };
 
-/// One YAML document. InputError "origin:line: path: …" on invalid YAML, a doubled key, a key that is not a name, an
-/// anchor, an alias, a tag other than !ours, control characters, invalid UTF-8, a second document.
+/// One YAML document. Throws InputError "origin:line: path: …" for invalid YAML, a repeated key, a key that is not a
+/// name, an anchor, an alias, a tag other than !ours, control characters, invalid UTF-8, a second document.
 YamlNode parse_yaml(std::string_view text, const std::string& origin);
 
 /// Block style outside, flow style for lists of numbers and for maps of plain values below the top level.
 std::string block_yaml(const YamlNode& map);
 
-/// One line in flow style, without the node's own tag.
+/// One line in flow style, without the tag of the node itself.
 std::string flow_yaml(const YamlNode&);
 
-/// Without what is implied.
+/// A copy without implied nodes.
 YamlNode stripped(const YamlNode&);
 
 /// By the path of the number: "leg.elbow.rz.0.stiffness".
@@ -64,13 +64,13 @@ using Dependences = std::map<std::string, Dependence>;
 /// Puts the dependences at their places in a tree; paths that lead nowhere are passed over.
 void attach(YamlNode& root, const Dependences&);
 
-/// The node and all below it stand on this line.
+/// Sets the line of the node and of all nodes below it.
 void set_line(YamlNode&, int line);
 
-/// "a.b", or the other where one is empty.
+/// "a.b"; where one is empty, the other.
 std::string joined(const std::string& path, std::string_view key);
 
-/// ", did you mean 'x'? (known: …)": the end of a message about a word that is not among `known`.
+/// ", did you mean 'x'? (known: …)": the end of a message about a word that is not in `known`.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace deflect

@@ -1,5 +1,6 @@
-// Kinematics of the family "chains": joint states for a pose of the platform or for actuated coordinates, reached from
-// home along a straight path in small steps, so that the assembly (elbow up or down) stays the one of home.
+// Kinematics of the family "chains": joint states for a pose of the platform or for actuated coordinates. They are
+// reached from home along a straight path in small steps, so that the assembly mode (elbow up or down) stays that of
+// home.
 #pragma once
 
 #include "msa/mechanism/closure.h"
@@ -21,18 +22,18 @@ struct ChainAssembly {
 /// sections and materials may differ.
 bool same_kinematics(const std::vector<LegParts>&, const std::vector<LegParts>&);
 
-/// Throws ModelError when the loops do not close at home, InputError when the controller has another number of rows
-/// than there are actuated coordinates.
+/// Throws ModelError when the loops do not close at home, InputError when the controller matrix does not have one row
+/// for each actuated coordinate.
 ChainAssembly home_assembly(const Mechanism&);
 
-/// Throws ModelError naming the leg: the pose is not reached (and how near it comes), a coordinate leaves its limits,
-/// or the pose is singular: the leg's end can no longer move in a direction, which is named.
+/// Throws ModelError with the leg where the pose is not reached (with the distance left), where a coordinate leaves its
+/// limits, or where the pose is singular (with the direction in which the leg's end can no longer move).
 void move_to(ChainAssembly&, const Pose&);
 
-/// The same for actuated coordinates in the order of the walk; a singular pose is taken as it is.
+/// The same for actuated coordinates in the order of the walk; a singular pose is no error.
 void move_to_coordinates(ChainAssembly&, const VectorX& actuated);
 
-/// Values of the actuated coordinates in the order of the walk, and what they are called.
+/// Values and names of the actuated coordinates, in the order of the walk.
 struct ActuatedCoordinates {
   VectorX values;
   std::vector<std::string> names;
@@ -40,7 +41,7 @@ struct ActuatedCoordinates {
 };
 ActuatedCoordinates actuated(const ChainAssembly&);
 
-/// The same with the joints at home, where the loops need not close.
+/// The same with the joints at home; the loops need not close there.
 ActuatedCoordinates actuated_at_home(const Mechanism&);
 
 }  // namespace deflect

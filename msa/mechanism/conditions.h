@@ -1,4 +1,4 @@
-// Under what a mechanism is asked for its equilibrium, beside the load.
+// Conditions, other than the load, under which an equilibrium is computed.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@ struct Conditions {
 
   Geometry geometry;
   double warmer = 0;  ///< K above 20 °C, at which the mechanism was assembled
-  /// State of the frictions before the load (m, rad), in the order of for_each_law (configuration.h); empty: relaxed,
-  /// all zero. A solution tells the slips after it, the conditions of the next load in a sequence.
+  /// Slips of the friction elements before the load (m, rad), in the order of for_each_law (configuration.h); empty:
+  /// all zero. A solution returns the slips after the load, which are those before the next load in a sequence.
   std::vector<double> slips;
 };
 

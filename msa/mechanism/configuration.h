@@ -1,5 +1,5 @@
-// A mechanism at a pose: every joint and member placed in the base frame, names resolved to numbers. This is all
-// that the two theories get to see.
+// A mechanism at a pose: every joint and member placed in the base frame, names resolved to numbers. The two theories
+// depend on nothing else.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 
 namespace deflect {
 
-/// A joint at p_W with axes R_WJ (columns are the joint's x, y, z in W). Freedoms are those of the joint table;
-/// laws[i] in series on freedom i, materials resolved; a law makes the freedom elastic whatever freedoms[i] says. The
-/// axes turn with what stands before the joint; in finite motions the freedoms move in the order tx ty tz rx ry rz.
+/// A joint at p_W with axes R_WJ (columns are the joint's x, y, z in W). Freedoms are those of the joint table. laws[i]
+/// are in series on freedom i, materials resolved; a law makes the freedom elastic whatever freedoms[i] is. The axes
+/// rotate with the part before the joint. In finite motions the freedoms move in the order tx ty tz rx ry rz.
 struct PlacedJoint {
   std::string part;
   Vector3 p_W = Vector3::Zero();
@@ -51,26 +51,27 @@ struct PlacedMember {
 
 struct PlacedLeg;
 
-/// Branches side by side between two rigid bodies, which hold the points p_W_start and p_W_end.
+/// Branches in parallel between two rigid bodies, which contain the points p_W_start and p_W_end.
 struct PlacedParallel {
   std::string part;
   Vector3 p_W_start = Vector3::Zero(), p_W_end = Vector3::Zero();
   std::vector<PlacedLeg> branches;
-  /// It is one joint of the description, the first branch, with laws side by side, one in each other branch.
+  /// Represents one joint of the description with laws in parallel: the joint is the first branch, each parallel law
+  /// one more branch.
   bool one_joint = false;
 };
 
 using PlacedPart = std::variant<PlacedJoint, PlacedMember, PlacedParallel>;
 
-/// The joint of the description that the part is, with or without laws side by side; null where it is none.
+/// The joint of the description that the part represents, with or without parallel laws; null where it is no joint.
 const PlacedJoint* joint_of(const PlacedPart&);
 
 struct PlacedLeg {
-  std::string name;               ///< "leg 1"; of a branch "leg 1 parallelogram 2"
+  std::string name;               ///< "leg 1"; for a branch "leg 1 parallelogram 2"
   std::vector<PlacedPart> parts;  ///< base to platform; neighbours are rigidly attached to one another
-  /// Small twist [δ; θ] at T, base axes, by which the leg's end, unstrained, stands beside its seat on the platform.
+  /// Small twist [δ; θ] at T, base axes: position of the leg's unstrained end relative to its seat on the platform.
   Vector6 misfit = Vector6::Zero();
-  bool beside = false;  ///< it leads no platform: a joint beside the mechanism's legs
+  bool beside = false;  ///< a joint in parallel with the legs, which does not guide the platform
 };
 
 /// A commanded coordinate: m or rad.
@@ -83,17 +84,17 @@ struct Actuator {
 struct Configuration {
   Pose pose;
   PlacedJoint base, tool;
-  /// Side by side between the base and the platform; a serial arm is one. Those beside come last.
+  /// In parallel between the base and the platform; a serial arm is one leg. Those with `beside` come last.
   std::vector<PlacedLeg> legs;
   std::vector<Actuator> actuators;   ///< leg by leg
   Vector3 weight = Vector3::Zero();  ///< N at T, acts with and without load
-  /// m: the mechanism's extent from T; where ranks are decided, moments weigh against forces by it.
+  /// m: the mechanism's extent from T; weighs moments against forces in rank decisions.
   double size = 0;
   /// Of the family "chains": how its joints stand (chain_kinematics.h).
   std::shared_ptr<const struct ChainAssembly> assembly;
 };
 
-/// Calls f(part) for every PlacedJoint and PlacedMember of the legs, those of branches too, base to platform.
+/// Calls f(part) for every PlacedJoint and PlacedMember of the legs, including branches, base to platform.
 template <class Legs, class F>
 void for_each_part(Legs&& legs, const F& f) {
   for (auto& leg : legs)
@@ -106,7 +107,8 @@ void for_each_part(Legs&& legs, const F& f) {
         f(std::get<PlacedMember>(part));
 }
 
-/// Calls f(law) for every law of a joint: of the legs, as for_each_part, then of base and tool; tx … rz, in order.
+/// Calls f(law) for every law of every joint, first of the legs in the order of for_each_part, then of base and tool;
+/// within a joint from tx to rz.
 template <class Placed, class F>
 void for_each_law(Placed& c, const F& f) {
   const auto of = [&](auto& joint) {
@@ -124,18 +126,19 @@ void for_each_law(Placed& c, const F& f) {
 bool all_linear(const Configuration&);
 bool any_jumps(const Configuration&);
 
-/// Numbers the frictions in the order of for_each_law; returns how many there are.
+/// Numbers the friction laws in the order of for_each_law; returns their count.
 int number_slips(Configuration&);
 
-/// Of the mechanism, those beside not counted.
+/// Number of legs, without joints beside them.
 int leg_count(const Mechanism&);
 
-/// Throws ModelError naming leg and limit when the pose is out of reach, or when it is singular, naming the direction
-/// that is lost; InputError on names that do not resolve. `known`: where a mechanism stands that may have the same
+/// Throws ModelError with leg and limit where the pose is out of reach, or with the lost direction where it is
+/// singular; InputError where a name does not resolve. `known`: where a mechanism stands that may have the same
 /// kinematics at the same pose; if so, its joint states are taken and the result is the same, to the last bit.
 Configuration configure(const Mechanism&, const Pose&, const Configuration* known = nullptr);
 
-/// One device at pose after pose, names resolved once. Of the family "6-psu" nothing is allocated after the first pose.
+/// One device at many poses, with names resolved once. For the family "6-psu" nothing is allocated after the first
+/// pose.
 class Posing {
  public:
   explicit Posing(const Mechanism&);  ///< must outlive it
@@ -143,7 +146,7 @@ class Posing {
   Posing(const Posing&) = delete;
   Posing& operator=(const Posing&) = delete;
 
-  /// As configure(), bit by bit; the same errors. Until the next call.
+  /// Bit-identical to configure(), with the same errors. Valid until the next call.
   const Configuration& at(const Pose&);
 
  private:
@@ -151,14 +154,14 @@ class Posing {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The same from commanded joint coordinates, one per actuator (m, rad), by closing the loops from home; a singular
-/// pose is no error there.
+/// The same from commanded joint coordinates, one per actuator (m, rad), by closing the loops from home. Here a
+/// singular pose is no error.
 Configuration configure_joints(const Mechanism&, const VectorX& coordinates, const Configuration* known = nullptr);
 
-/// Where the kinematics start and the workspace lies.
+/// The pose from which the kinematics start and about which the workspace lies.
 Pose home_pose(const Mechanism&);
 
-/// What configure_joints expects, with the values at home.
+/// The actuators whose coordinates configure_joints() expects, with their values at home.
 std::vector<Actuator> actuators_of(const Mechanism&);
 
 }  // namespace deflect

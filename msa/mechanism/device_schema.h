@@ -1,4 +1,4 @@
-// The keys of device files and of laws as data.
+// The schema of device files and of laws: their keys as data.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace deflect {
 
-/// Of device files of a family (family_names).
+/// For device files of a family (family_names).
 Schema device_schema(const std::string& family);
 
-/// Of a law on a translation or on a rotation: one level with a case for each law.
+/// For a law on a translation or on a rotation: one level with a case for each law.
 Schema law_schema(bool rotation);
 
 }  // namespace deflect

@@ -1,4 +1,4 @@
-// What every family of mechanisms provides: one overload each, listed in the variant Kinematics.
+// Functions that every family of mechanisms (variant Kinematics) provides: one overload for each family.
 #pragma once
 
 #include "msa/mechanism/configuration.h"
@@ -6,7 +6,7 @@
 
 namespace deflect {
 
-/// Where a leg stands on the base and on the platform.
+/// The points at which a leg is attached to base and platform.
 struct Seats {
   Vector3 p_W_base, p_W_platform;
 };
@@ -19,30 +19,30 @@ struct PlacedMechanism {
   std::shared_ptr<const ChainAssembly> assembly = {};
 };
 
-/// Where the parts of a 6-PSU stand at any pose, names resolved.
+/// Places the parts of a 6-PSU at any pose, with names resolved.
 class SixPsuMoves {
  public:
-  /// Throws InputError on names that do not resolve.
+  /// Throws InputError where a name does not resolve.
   SixPsuMoves(const SixPsu&, const Mechanism&);
-  /// Whether they do for what place() makes: every part is placed as one, no joint with laws side by side, no member
-  /// between ends that yield.
+  /// Whether move() can handle the result of place(): every part must be placed as one, without joints with parallel
+  /// laws and without members whose ends yield.
   bool hold(const std::vector<PlacedLeg>&) const;
-  /// What place() made for one pose, moved to another; nothing is allocated. Throws ModelError as place() does.
+  /// Moves the result of place() to another pose without allocation. Throws ModelError as place() does.
   void move(const SixPsu&, const Pose&, std::vector<PlacedLeg>&, std::vector<Actuator>&, std::vector<Seats>&) const;
 
  private:
   struct Move {
     std::size_t leg, first, second;                           // point and axes of a joint, points of a member
-    std::vector<std::pair<std::size_t, std::size_t>> cables;  // freedom and law: as long as the slider stands out
+    std::vector<std::pair<std::size_t, std::size_t>> cables;  // freedom and law; their length is the slider's extension
   };
   std::vector<SixPsuDrawing> drawn_;
-  std::vector<std::vector<Move>> moves_;  // as PlacedMechanism::legs
+  std::vector<std::vector<Move>> moves_;  // one for each of PlacedMechanism::legs
 };
 
 /// InputError where another number of joint coordinates is given than the mechanism has.
 void require_count(const Mechanism&, Eigen::Index has, const VectorX& given);
 
-/// At a pose, from joint coordinates, at home: as configure(), configure_joints(), home_pose() say.
+/// Implement configure(), configure_joints(), home_pose() and actuators_of() for the families.
 PlacedMechanism place(const SixPsu&, const Mechanism&, const Pose&, const ChainAssembly* known);
 PlacedMechanism place_joints(const SixPsu&, const Mechanism&, const VectorX& coordinates, const ChainAssembly* known);
 Pose home_pose(const SixPsu&, const Mechanism&);

@@ -1,4 +1,4 @@
-// What the field lists of fields.cpp and part_fields.cpp have in common.
+// Helpers shared by the field lists of fields.cpp and part_fields.cpp.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ inline std::size_t index_of(std::span<const char* const> all, const std::string&
   return as_size(std::find(all.begin(), all.end(), name) - all.begin());
 }
 
-/// The alternative of that index, made anew where the variant holds another.
+/// Switches the variant to the alternative `index`, default-constructed unless it holds that already.
 template <class... Ts>
 void become(std::variant<Ts...>& variant, std::size_t index) {
   if (index == variant.index()) return;
@@ -43,7 +43,7 @@ inline void describe_placement(FieldVisitor& v, const char* key, Placement& p, c
       key, Need::optional, false, [&] { describe(v, p); }, about);
 }
 
-/// An object that may be absent altogether.
+/// An optional object.
 template <class T>
 void describe_if_given(FieldVisitor& v, const char* key, std::optional<T>& value, const char* about,
                        const auto& fields_of) {
@@ -57,7 +57,7 @@ void describe_if_given(FieldVisitor& v, const char* key, std::optional<T>& value
   v.object(key, Need::optional, absent, body, about);
 }
 
-/// `key: name` says which alternative of the variant holds; its fields follow.
+/// `key: name` selects the alternative of the variant; its fields follow.
 template <class V>
 void tagged(FieldVisitor& v, V& variant, const char* key, const char* what, std::span<const char* const> all,
             const char* about, const auto& fields_of) {
@@ -73,7 +73,7 @@ inline void material_of(FieldVisitor& v, std::string& material) {
 
 void describe_workspace(FieldVisitor&, Workspace&);
 
-/// base and tool: joints whose place is fixed and that hold, except where a law lets them yield.
+/// base and tool: joints at a given place, rigid except where they have a law.
 void describe_fixture(FieldVisitor&, const char* key, Joint&, const char* at, const char* axes, const char* about);
 
 }  // namespace deflect

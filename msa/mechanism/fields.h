@@ -1,4 +1,4 @@
-// The one list of fields of every struct of a device's description (field_visitor.h).
+// The list of fields of every struct in a device's description (field_visitor.h); reader, writer and schema share it.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ void describe(FieldVisitor&, Law&);
 /// A joint beside the legs.
 void describe(FieldVisitor&, Joint&);
 void describe(FieldVisitor&, Variation&);
-/// The part of that index of a chain.
+/// The part at that index of a chain.
 void describe(FieldVisitor&, Named<Part>& chain, std::size_t);
 void describe(FieldVisitor&, Mount&);
 void describe(FieldVisitor&, Misfit&);
@@ -30,10 +30,10 @@ void describe(FieldVisitor&, PolygonSpace::Corner&);
 /// E, and nu or G.
 void describe_elastic(FieldVisitor&, Material&);
 void describe_geometry(FieldVisitor&, Geometry&);
-/// Beam theory of a member; the section, where it is known, must have what the theory needs.
+/// Beam theory of a member. The section, where given, must have the properties that the theory needs.
 void describe_beam_theory(FieldVisitor&, BeamTheory&, const Section*, const std::string& section_name);
 
-/// Only the field `leg` of a mechanism whose other parts are in `surroundings`.
+/// Only the field `leg` of a mechanism; the rest of it is in FieldVisitor::surroundings.
 void describe_leg(FieldVisitor&, Named<Part>&);
 Surroundings surroundings_of(const Mechanism&);
 

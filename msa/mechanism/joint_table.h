@@ -1,4 +1,4 @@
-// Joint types: one row each. Six letters say what the freedoms tx ty tz rx ry rz of the joint's axes are:
+// Joint types, one row each. Six letters give the kind of the freedoms tx ty tz rx ry rz in the joint's axes:
 //   r rigid, f free, a actuated (held at its commanded value).
 // A law given for a freedom makes it elastic, whatever its letter; an actuated freedom without a law is rigid.
 #pragma once
@@ -36,7 +36,7 @@ inline constexpr JointType joint_table[] = {
 /// The row of a type, or nullptr.
 const JointType* find_joint_type(std::string_view name);
 std::vector<std::string> joint_type_names();
-/// Of six letters.
+/// From six letters.
 std::array<Freedom, 6> freedoms_of(std::string_view letters);
 
 }  // namespace deflect

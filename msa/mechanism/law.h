@@ -1,6 +1,6 @@
-// Parameters of the laws that an elastic freedom of a joint can follow: force along (or moment about) one axis
-// against relative displacement. Data only: `analytic/deflection.h` and `msa/frame/component.h` each turn the
-// parameters into mechanics by their own route. What each of them can do is a row of `law_table.h`.
+// Parameters of the laws that an elastic freedom of a joint can follow: force along (or moment about) one axis against
+// relative displacement. Data only: `analytic/deflection.h` and `msa/frame/mechanism/component.h` compute the mechanics
+// from the parameters independently of each other. The kind of each law is a row of `law_table.h`.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace deflect {
 
-/// Isotropic linear-elastic solid. E in Pa. Exactly one of ν and G (Pa) is given, the other follows: E = 2G(1 + ν).
+/// Isotropic linear-elastic solid. E in Pa. Exactly one of ν and G (Pa) is given; the other follows from E = 2G(1 + ν).
 /// expansion: free strain per kelvin above 20 °C, 1/K.
 struct Material {
   double E = 0;
@@ -45,8 +45,9 @@ struct HertzLineLaw {
   bool operator==(const HertzLineLaw&) const = default;
 };
 
-/// Line contact of two cylinders of one material with the bulk of both, from their centres (K. L. Johnson, Contact
-/// Mechanics, 1985, §5.6). Radii and length in m; holds while the contact is much narrower than the radii.
+/// Line contact of two cylinders of one material, with the compression of both between contact and centre (K. L.
+/// Johnson, Contact Mechanics, 1985, §5.6). Radii and length in m; holds while the contact is much narrower than the
+/// radii.
 struct HertzLineBulkLaw {
   std::string material;
   double radius_1 = 0, radius_2 = 0, length = 0;
@@ -62,7 +63,7 @@ struct PinBendingLaw {
   bool operator==(const PinBendingLaw&) const = default;
 };
 
-/// Torsion of a solid round motor shaft (4), felt along a prismatic joint through a pulley of `pulley_radius` (5).
+/// Torsion of a solid round motor shaft (4), acting along a prismatic joint through a pulley of `pulley_radius` (5), m.
 struct MotorShaftLaw {
   std::string material;
   double diameter = 0, length = 0, pulley_radius = 0;
@@ -81,7 +82,7 @@ struct CableLaw {
   bool operator==(const CableLaw&) const = default;
 };
 
-/// Two cables of a rotational transmission, side by side (8).
+/// Two parallel cables of a rotational transmission (8).
 struct CablePairLaw {
   std::string material;
   double area_1 = 0, length_1 = 0, area_2 = 0, length_2 = 0;
@@ -107,8 +108,8 @@ struct PowerLaw {
   bool operator==(const PowerLaw&) const = default;
 };
 
-/// δ = pull · f where f > 0, push · f where f < 0; a compliance of zero, or one that is not given, is rigid. A contact
-/// or a cable without preload has one.
+/// δ = pull · f where f > 0, push · f where f < 0; zero or absent means rigid in that sense. Models a contact or a
+/// cable without preload.
 struct OneSidedLaw {
   std::optional<double> pull, push;
   bool operator==(const OneSidedLaw&) const = default;
@@ -120,22 +121,22 @@ struct HardeningLaw {
   bool operator==(const HardeningLaw&) const = default;
 };
 
-/// Free travel ±gap: δ = +gap under f > 0, −gap under f < 0, between them f = 0. What carries nothing (below 1e-9 of
-/// the largest force) stays in the middle.
+/// Free travel ±gap: δ = +gap under f > 0, −gap under f < 0, f = 0 in between. A clearance that carries nothing (below
+/// 1e-9 of the largest force) stays in the middle.
 struct ClearanceLaw {
   double gap = 0;
   bool operator==(const ClearanceLaw&) const = default;
 };
 
-/// Elastic–Coulomb friction (a Jenkins element): f = stiffness · (δ − slip), |f| ≤ force; where more would be needed,
-/// the slip moves until |f| = force. The slip is history: conditions.h.
+/// Elastic–Coulomb friction (a Jenkins element): f = stiffness · (δ − slip), |f| ≤ force. Beyond that the slip changes
+/// so that |f| = force. The slip is the law's history (conditions.h).
 struct FrictionLaw {
   double force = 0, stiffness = 0;
-  /// −1 … 1: the share of the largest load of a pose that the machine had carried and given up before the first
-  /// reading, which then counts as unloaded. 0: relaxed.
+  /// −1 … 1: initial state. Before the first reading of a pose the machine carried this share of the pose's largest
+  /// load, and the load was removed again; readings are relative to this unloaded state. 0: no earlier load.
   double start = 0;
-  double kept = 1;  ///< 0 … 1: the share of what is in it that a friction beside a leg keeps from pose to pose
-  int number = -1;  ///< among the frictions of a configuration, see number_slips(); no part of what the law is
+  double kept = 1;  ///< 0 … 1: share of its force that a friction element beside a leg keeps from pose to pose
+  int number = -1;  ///< index among the friction laws of a configuration, see number_slips(); not compared
   bool operator==(const FrictionLaw& other) const {
     return force == other.force && stiffness == other.stiffness && start == other.start && kept == other.kept;
   }

@@ -1,5 +1,5 @@
-// What each law is, whatever its numbers: one row for one law. Whoever asks what kind a law is reads it here; the tests
-// of the family take their examples from it.
+// Properties of each law that do not depend on its parameters, one row per law. The tests of all laws take their
+// examples from it.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@ namespace deflect {
 
 enum class Curve {
   straight,  ///< one stiffness at every load
-  smooth,    ///< a stiffness that depends on the load
-  jumps,     ///< force or displacement changes its law at one load: solved by phases
+  smooth,    ///< stiffness depends smoothly on the load
+  jumps,     ///< piecewise: the relation of force and displacement switches at some load; solved by phases
 };
 
 struct LawRow {
   const char* name;   ///< in device files
   const char* along;  ///< an example on a translation, as a device file has it
-  const char* about;  ///< and on a rotation; null: the law is one of machine elements that act along a line
+  const char* about;  ///< an example on a rotation; null: only allowed on translations
   Curve curve;
-  bool has_history = false;       ///< what it carries depends on what was before: conditions.h
-  bool length_from_pose = false;  ///< where its file gives no length it is as long as the actuator stands out
+  bool has_history = false;       ///< its force depends on earlier loads (conditions.h)
+  bool length_from_pose = false;  ///< without a given length it is as long as the actuator's extension
 };
 
 /// In the order of the variant.
@@ -56,14 +56,15 @@ inline constexpr auto law_names = [] {
 
 inline const LawRow& row_of(const Law& law) { return law_rows[law.index()]; }
 
-/// Its stiffness does not depend on its force. A power law of exponent 1 is a straight one.
+/// Whether the stiffness does not depend on the force. A power law with exponent 1 is linear.
 inline bool is_linear(const Law& law) {
   const auto* power = std::get_if<PowerLaw>(&law);
   return row_of(law).curve == Curve::straight || (power && power->exponent == 1);
 }
 inline bool jumps(const Law& law) { return row_of(law).curve == Curve::jumps; }
 
-/// The length that a law takes from the pose, absent where its file gives none; null for a law that takes none.
+/// The field for the length that a law may take from the pose, empty where the file gives no length; null for a law
+/// without such a field.
 inline std::optional<double>* length_from_pose(Law& law) {
   auto* cable = std::get_if<CableLaw>(&law);
   return cable ? &cable->length : nullptr;

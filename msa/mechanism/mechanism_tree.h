@@ -1,4 +1,4 @@
-// Between a tree and a whole mechanism, with everything that a file is checked for.
+// Converts between a YAML tree and a whole mechanism, with all checks of a device file.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ struct DependentMechanism {
   Dependences depends = {};
 };
 
-/// Reads and checks a tree as a device file; InputError "origin:line: path: …".
+/// Reads and checks a tree as a device file. Throws InputError "origin:line: path: …".
 DependentMechanism mechanism_of(const YamlNode& tree, const std::string& origin);
 
 /// As edited_in_turn (device_file.h), for edits into which parameters were filled.
@@ -34,8 +34,8 @@ struct MarkedLeg {
   Dependences depends = {};
 };
 
-/// The leg with one variation in it, checked. `value` is the variation's value as a node: its tags are kept, messages
-/// name `origin` and the node's line.
+/// The leg with one variation applied and checked. `value` is the variation's value as a node: its tags are kept, and
+/// messages contain `origin` and the node's line.
 MarkedLeg varied(const MarkedLeg&, const Variation&, const YamlNode& value, const Mechanism& surroundings,
                  const std::string& origin);
 
@@ -44,7 +44,7 @@ MarkedLeg varied(const MarkedLeg&, const Variation&, const YamlNode& value, cons
 std::map<int, MarkedLeg> varied_legs(const Mechanism& m, const YamlNode* variations, const std::string& origin,
                                      const Dependences& depends = {});
 
-/// The whole description, everything implied included.
+/// The whole description, including implied values.
 YamlNode tree_of(const Mechanism&);
 
 /// The parts of a leg as a map of entries; paths in `ours` begin with "leg.".

@@ -1,4 +1,4 @@
-// Values that are read but can hardly be meant.
+// Warnings about values that are valid but probably not intended.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace deflect {
 
-/// A sentence where a material is so soft that GPa were probably meant: "materials.al.E: 0.07 GPa is …".
+/// A sentence where a material is so soft that its unit is probably wrong: "materials.al.E: 0.07 GPa is …".
 std::optional<std::string> question_about(const std::string& name, const Material&);
 
 }  // namespace deflect

@@ -1,11 +1,11 @@
 // Cross-sections and their geometry.
 //
-// A section lies in the member's local y and z, which are principal axes of every shape; its centroid is on the
-// member's line. Bending about local y (moment of Iy) moves the member along z. How local y is turned about the member
-// is said by the member (y_axis, see description.h and frame_description.h).
+// A section lies in the member's local y–z plane; y and z are principal axes of every shape, and the centroid is on the
+// member's line. Bending about local y (with Iy) moves the member along z. The member defines the direction of local y
+// (y_axis, see description.h and frame_description.h).
 //
-// Forces pass through the member's line: of a channel and an angle, whose shear centre is beside the centroid, the
-// twist that this causes is left out, as is warping.
+// Forces act at the member's line. The shear centre of a channel or an angle is not at the centroid; the twist that
+// this causes is neglected, as is warping.
 #pragma once
 
 #include <iterator>
@@ -29,7 +29,7 @@ struct GivenSection {
   double A = 0, Iy = 0, Iz = 0, J = 0;
   std::optional<double> As_y, As_z;
 };
-/// Outer sides along local y and z, walls of one thickness, sharp corners.
+/// Outer sides along local y and z, walls of equal thickness, sharp corners.
 struct BoxSection {
   double width_y = 0, height_z = 0, wall = 0;
 };
@@ -37,13 +37,13 @@ struct BoxSection {
 struct ISection {
   double width_y = 0, height_z = 0, web = 0, flange = 0;
 };
-/// The same with flanges that leave the web towards one side, local +y.
+/// The same with flanges on one side of the web, towards local +y.
 struct ChannelSection {
   double width_y = 0, height_z = 0, web = 0, flange = 0;
 };
-/// Two legs at a right angle, outer lengths. Local y and z are the principal axes (u and v of section tables): y, about
-/// which the second moment is the larger, leaves the heel between the legs, at the tables' angle α from the short leg;
-/// with equal legs it halves their angle.
+/// Two legs at a right angle, outer lengths. Local y and z are the principal axes (u and v of section tables). y has
+/// the larger second moment; it points from the heel to between the legs, at the tables' angle α from the short leg (45
+/// deg for equal legs).
 struct AngleSection {
   double long_leg = 0, short_leg = 0, wall = 0;
 };
@@ -62,8 +62,8 @@ struct Section {
 ///
 /// J: rectangle by Saint-Venant's series (Timoshenko and Goodier, Theory of Elasticity, §109); box after Bredt with the
 /// torsion of the walls, J = 4 A_m² t/s_m + s_m t³/3, A_m and s_m the area within the midline and its length (EN
-/// 10210-2, annex A); open shapes Σ b t³/3 of their plates, which fillets raise by a third in rolled profiles: give J
-/// then.
+/// 10210-2, annex A); open shapes Σ b t³/3 of their plates, which the fillets of rolled profiles raise by up to a
+/// third: give J directly for those.
 ///
 /// Shear areas: round 9/10 A, rectangle 5/6 A, tube after Cowper (1966) for the given ν; the thin-walled shapes by the
 /// energy of the shear flow (thin_walls.h).

@@ -14,7 +14,7 @@ struct SixPsuLeg {
   double slider = 0;  ///< L1 = |AB|
 };
 
-/// What of a leg no pose changes: A, C in the platform's axes, the link's length.
+/// The data of a leg that do not depend on the pose: A, C in the platform's axes, the link's length.
 struct SixPsuDrawing {
   int leg = 0;
   Vector3 p_WA, p_TC, radial;
@@ -23,12 +23,12 @@ struct SixPsuDrawing {
 SixPsuDrawing drawing_of(const SixPsu&, int leg);
 
 /// Inverse kinematics, ball joint below the platform: L1 = d_z − √(L2² − d_x² − d_y²), d = C − A. `leg` is 1-based.
-/// Throws ModelError naming the leg when its link does not reach or its slider leaves its range.
+/// Throws ModelError with the leg where its link does not reach or its slider leaves its range.
 SixPsuLeg leg_at(const SixPsu&, int leg, const Pose&);
 SixPsuLeg leg_at(const SixPsu&, const SixPsuDrawing&, const Pose&);
 
-/// The pose without tilt above the base centre at which every slider of the drawing stands at `slider`. Throws
-/// ModelError when the links cannot reach from the base circle to the platform circle.
+/// The untilted pose above the base centre at which every slider, as drawn, has the length `slider`. Throws ModelError
+/// when the links cannot reach from the base circle to the platform circle.
 Pose centred_pose(const SixPsu&, double slider);
 
 struct ForwardKinematics {
@@ -38,8 +38,8 @@ struct ForwardKinematics {
   double closure_error = 0;  ///< largest | |BC| − L2 | in m
 };
 
-/// Forward kinematics by Newton on |C_i − B_i|² = L2² from `start`; of the up to 40 assemblies it finds the one that
-/// is connected to the start. Not converged: the sliders fit no assembly near the start, or the pose is singular.
+/// Forward kinematics by Newton's method on |C_i − B_i|² = L2² from `start`. Of the up to 40 assembly modes it finds
+/// the one connected to the start. Not converged: no assembly near the start fits the sliders, or the pose is singular.
 ForwardKinematics forward_kinematics(const SixPsu&, const std::array<double, 6>& sliders, const Pose& start);
 
 }  // namespace deflect

@@ -1,4 +1,4 @@
-// Poses as users have them, and a mechanism that stands in one.
+// Poses in the user's units, and a mechanism at such a pose.
 #pragma once
 
 #include "msa/base/geometry.h"
@@ -11,7 +11,7 @@ namespace deflect {
 Pose pose_from(const Vector6& mm_deg);
 Vector6 mm_deg_from(const Pose&);
 
-/// A mechanism where it stands, and the pose as the user has it: x y z roll pitch yaw in mm and deg.
+/// A mechanism's configuration, and its pose in the user's units: x y z roll pitch yaw in mm and deg.
 struct Stand {
   Vector6 pose_mm_deg;
   Configuration configuration;

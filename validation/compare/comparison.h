@@ -1,4 +1,4 @@
-// Where a model fails: measurements against prediction, without fitting the model to them.
+// Where a model fails: compares measurements with predictions, without fitting the model.
 #pragma once
 
 #include <array>
@@ -26,26 +26,28 @@ struct PatternTest {
 struct Comparison {
   std::string device, data;
   std::size_t readings = 0, poses = 0, numbers = 0;
-  bool sigma_from_residuals = false;  ///< neither σ nor replicates: scatter is what no pattern explains
-  double sigma_u = 0;                 ///< m: root mean square of the readings' σ
+  bool sigma_from_residuals = false;  ///< neither σ nor replicates are given: noise is estimated from what no pattern
+                                      ///< explains
+  double sigma_u = 0;                 ///< m: root mean square of σ over the readings
   std::optional<measurement::NoiseEstimate> pure_error;
   Errors all;
   std::vector<Errors> by_axis, by_pose, by_direction, by_magnitude, by_heading;
-  double kept_rmse = 0;             ///< of the readings that are not set aside, m or rad
-  double chi2_per_dof = 0;          ///< against noise and tolerances
-  double p_value = 1;               ///< of such a χ² by chance
-  double noise_and_tolerances = 0;  ///< m: root mean square expected of a residual with nothing missing
-  double held_out = 0;              ///< m: rmse at each pose with the tolerances learnt at the others
-  double deformed_shape = 0;        ///< m: root mean square of what a linear model leaves out of the equilibrium
-  std::optional<statistics::Regression> deformed_shape_fit;  ///< its amplitude in the data, 1 expected
+  double kept_rmse = 0;                                      ///< of the readings not set aside, m or rad
+  double chi2_per_dof = 0;                                   ///< given noise and tolerances
+  double p_value = 1;                                        ///< probability of so large a χ² by chance
+  double noise_and_tolerances = 0;                           ///< m: root mean square expected where nothing is missing
+  double held_out = 0;                                       ///< m: rmse in cross-validation (held_out.h)
+  double deformed_shape = 0;                                 ///< m: root mean square of ResidualStudy::deformed_shape
+  std::optional<statistics::Regression> deformed_shape_fit;  ///< its amplitude fitted to the data, 1 expected
   std::vector<ContrastTest> contrasts;
   std::vector<PatternTest> patterns;
-  std::vector<Finding> findings;  ///< empty: nothing is missing that these readings can show
+  std::vector<Finding> findings;  ///< empty: these readings show nothing missing
   double unexplained_chi2_per_dof = 0;
-  std::vector<std::size_t> set_aside;                    ///< lines of gross outliers
-  std::vector<std::pair<std::string, double>> strained;  ///< tolerances beyond two standard deviations, with them
-  std::vector<RecordingMistake> mistakes;                ///< plausibility.h: of recording, the headline first
-  std::vector<ElongationCurve> curves;                   ///< of the sites
+  std::vector<std::size_t> set_aside;  ///< file lines of gross outliers
+  /// Tolerances that deviate by more than two standard deviations, each with its number of standard deviations.
+  std::vector<std::pair<std::string, double>> strained;
+  std::vector<RecordingMistake> mistakes;  ///< recording mistakes (plausibility.h), the headline first
+  std::vector<ElongationCurve> curves;     ///< of the sites
   statistics::ToleranceModel tolerances;
   ResidualStudy study;        ///< residuals, forces, sites: for figures
   VectorX residual;           ///< of study.values
@@ -53,14 +55,14 @@ struct Comparison {
 };
 
 struct ComparisonOptions {
-  std::optional<double> sigma_u, sigma_th;  ///< m, rad: where the file has none
-  bool as_recorded = false;                 ///< no mistakes of recording are looked for
+  std::optional<double> sigma_u, sigma_th;  ///< m, rad: used where the file has none
+  bool as_recorded = false;                 ///< recording mistakes are not searched for
 };
 
-/// Whether the first thing to be said of the data is a mistake of recording: no verdict on the machine has a ground.
+/// Whether a certain recording mistake was found: the data then support no verdict on the machine.
 bool is_mistaken(const Comparison&);
 
-/// Throws InputError where the data are too few, ModelError, NumericalError as predict() does.
+/// Throws InputError where there are too few data; ModelError and NumericalError as predict() does.
 Comparison compare(const subject::Subject&, const measurement::Measurements&, const ComparisonOptions& = {},
                    const parallel::Work& = {});
 

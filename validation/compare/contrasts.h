@@ -1,5 +1,5 @@
-// Questions to the readings that need no idea of what may be missing: sums and differences of residuals of the same
-// pose that vanish, but for noise and tolerances, where the model is right in that respect.
+// Tests of the readings that assume nothing about what may be missing. A contrast is a sum or difference of residuals
+// of one pose that vanishes, except for noise and tolerances, where the model is right in that respect.
 //
 //   parity            [r(F) + r(−F)]/2 of pairs of opposite loads: what is even in the load
 //   proportionality   the intercept at no load of r along one line of loads, from two or more magnitudes of one sense:
@@ -21,10 +21,10 @@ namespace deflect::compare {
 
 struct ContrastTest {
   std::string id, question;
-  std::size_t contrasts = 0;  ///< numbers that were compared; 0: the plan does not answer
-  double size = 0;            ///< m: root mean square beyond what noise and tolerances give; 0 where below
+  std::size_t contrasts = 0;  ///< number of contrasts; 0: the plan of measurements does not allow the test
+  double size = 0;            ///< m: root mean square in excess of noise and tolerances; 0 where there is none
   double p_value = 1;
-  std::string missing;  ///< what the plan would have to hold, where it does not answer
+  std::string missing;  ///< what the plan would have to contain for the test
 };
 
 std::vector<ContrastTest> contrast_tests(const ResidualStudy&, const statistics::Uncertainty&, const VectorX& residual,

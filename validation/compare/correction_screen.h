@@ -1,4 +1,4 @@
-// A first look at corrections of recorded data, on some of the readings: what each leaves of the misfit.
+// A quick test of corrections of recorded data on a sample of the readings: how much of the misfit each leaves.
 #pragma once
 
 #include <array>
@@ -10,34 +10,34 @@
 
 namespace deflect::compare {
 
-/// The loss is the mean of ln(1 + z²) + ln(s/|f|) over measured numbers: z what measured and predicted differ by, over
-/// a scale s; f the factor of the correction, so that it is about the density of the numbers as they were recorded (of
-/// Cauchy's form: gross outliers count little). s is the root of the squares of σ, of half a hundredth of what is
-/// usually measured and of a hundredth of the prediction. Corrected loads move the prediction by the tangent
+/// The loss is the mean of ln(1 + z²) + ln(s/|f|) over the measured numbers, with z = (measured − predicted)/s and f
+/// the correction's factor. It is the negative log-density of the numbers as recorded under a Cauchy distribution, up
+/// to constants, so that gross outliers count little. The scale s is √(σ² + (0.5 % of a typical measured number)² + (1
+/// % of the prediction)²); typical is the upper quartile. Corrected loads change the prediction by the tangent
 /// compliance.
 class CorrectionScreen {
  public:
-  /// All must outlive it.
+  /// The comparison must outlive it.
   CorrectionScreen(const subject::Subject&, const Comparison&, int threads);
 
   double as_recorded() const { return as_recorded_; }
-  /// Below this a correction takes a good part away of what noise does not explain.
+  /// A correction with a smaller loss removes a good part of what noise does not explain.
   double promising() const { return promising_; }
-  /// Losses that differ by less say nothing of which correction is right.
+  /// Losses that differ by less do not show which correction is right.
   double equal_within() const { return equal_within_; }
 
-  /// Of a correction of displacements and loads.
+  /// Loss of a correction of displacements and loads.
   double loss(const recording::Correction&) const;
-  /// Of any: with the prediction at the corrected poses; infinite where the machine does not reach them.
+  /// Loss of any correction, with predictions at the corrected poses; infinite where the machine cannot reach them.
   double loss_elsewhere(const recording::Correction&) const;
-  /// The shift of all poses along an axis of the base that leaves least, 0.5 mm or more.
+  /// The shift of all poses along a base axis with the least loss, if it is 0.5 mm or more.
   std::optional<recording::Correction> best_shift(int axis) const;
-  /// The one point at which all forces act that leaves least, more than 1 mm from T: moments about T are then M + p ×
-  /// f.
+  /// The common point p of application of all forces with the least loss, if it is more than 1 mm from T: moments about
+  /// T are then M + p × f.
   std::optional<recording::Correction> best_point() const;
 
  private:
-  /// A measured number against its prediction; rotations times the machine's size.
+  /// A measured number minus its prediction; rotations times the machine's size.
   struct Difference {
     std::size_t row, component;
     double left, scale;
@@ -53,7 +53,7 @@ class CorrectionScreen {
   measurement::Measurements sample_;
   std::vector<std::size_t> rows_;  // readings of the study that are in the sample
   double size_ = 1;                // m: of the machine
-  std::array<double, 2> sigma_{};  // m, rad: of readings that do not say it
+  std::array<double, 2> sigma_{};  // m, rad: for readings without σ
   double as_recorded_ = 0, promising_ = 0, equal_within_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Force–elongation curves of sites, read off the residuals without a law: e = h(f), h piecewise linear over knots
-// on each side of f = 0, where it may jump.
+// Force–elongation curves of sites, estimated from the residuals without assuming a law: e = h(f), with h piecewise
+// linear between knots on each side of f = 0, where it may jump.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace deflect::compare {
 
-/// Elongation beyond the model's at forces over the range that the data cover, knots without data left out; f = 0
-/// stands twice, for what the curve comes to from below and from above.
+/// Elongation in excess of the model's, at forces over the range of the data, without knots that have no data. f = 0
+/// occurs twice: the limits of the curve from below and from above.
 struct ElongationCurve {
   std::string site;
-  bool rotation = false;  ///< Nm and rad, else N and m
+  bool rotation = false;  ///< in Nm and rad, else N and m
   std::vector<double> force, elongation, deviation;
 };
 
 /// One regression of the residual on all sites' knots at once (each site its own curve), by generalised least squares:
-/// determined where the readings load sites independently. Empty without sites.
+/// the curves are determined where the readings load the sites independently. Empty without sites.
 std::vector<ElongationCurve> elongation_curves(const ResidualStudy&, const statistics::Uncertainty&,
                                                const VectorX& residual, int knots = 10);
 

@@ -1,4 +1,4 @@
-// How large residuals are, in all and by group.
+// The size of residuals, overall and by group.
 #pragma once
 
 #include <string>
@@ -9,20 +9,22 @@
 
 namespace deflect::compare {
 
-/// Whether no translation was measured: the errors are then those of rotations, in rad where m is said below.
+/// Whether only rotations were measured. The errors are then those of rotations, in rad instead of m.
 bool rotations_alone(const std::vector<measurement::MeasuredValue>&);
 
-/// Root mean square over the numbers that errors speak of: m, or rad of rotations alone; 0 without any.
+/// Root mean square over the translations (m), or over the rotations (rad) where only these were measured; 0 without
+/// any.
 double rms_of_errors(const std::vector<measurement::MeasuredValue>&, const VectorX&);
 
-/// The same over the readings that are not set aside.
+/// The same over the readings not set aside.
 double rms_of_kept(const std::vector<measurement::MeasuredValue>&, const VectorX&, const std::vector<bool>& set_aside);
 
-/// Of residuals measured − predicted: translations in m, or rotations in rad where none were measured.
+/// Statistics of the residuals measured − predicted: translations in m, or rotations in rad where only these were
+/// measured.
 struct Errors {
   std::string group;  ///< "pose 3", "fx > 0", "30 … 50 N"; empty for all
   std::size_t readings = 0;
-  double rmse = 0;  ///< root mean square of |r| by component
+  double rmse = 0;  ///< root mean square over all components of all readings
   Vector3 bias = Vector3::Zero();
   double worst = 0;            ///< largest |component|
   std::size_t worst_line = 0;  ///< of the file

@@ -9,9 +9,9 @@
 
 namespace deflect::compare {
 
-/// The exponent p of e ∝ x^p that fits best, x a site's force (odd in it; each site with a weight) or the extension of
-/// slides across which it yields, with its standard deviation;
-/// empty where the data do not determine it.
+/// The exponent p of e ∝ x^p that fits best, with its standard deviation. force_exponent(): x is a site's force, e is
+/// odd in it, and each site has a weight. extension_exponent(): x is the extension of slides that yield across their
+/// axis. Nullopt where the data do not determine it.
 struct Exponent {
   double value = 0, deviation = 0;
 };

@@ -1,5 +1,5 @@
-// What a file of measurements shows by itself, or beside one prediction: rows that say nothing, or not what they seem
-// to.
+// Oddities of a measurement file that show in the file alone or against one prediction: rows that carry no information
+// or contradict each other.
 #pragma once
 
 #include "validation/compare/comparison.h"
@@ -9,10 +9,10 @@ namespace deflect::compare {
 /// Nothing measured, nothing loaded, too few readings, a column of zeros, identical rows.
 std::vector<RecordingMistake> file_oddities(const Comparison&);
 
-/// σ in another unit than the readings.
+/// σ in a unit other than that of the readings.
 std::vector<RecordingMistake> sigma_oddities(const Comparison&);
 
-/// Replicates that differ by more than ten standard deviations of a difference, by line.
+/// Replicates that differ by more than ten standard deviations of their difference, with their lines.
 std::vector<RecordingMistake> contradictions(const Comparison&);
 
 }  // namespace deflect::compare

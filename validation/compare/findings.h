@@ -1,4 +1,4 @@
-// Which patterns a residual holds, said in words.
+// Which patterns a residual contains, also in words.
 #pragma once
 
 #include "validation/compare/patterns.h"
@@ -6,35 +6,36 @@
 
 namespace deflect::compare {
 
-/// A pattern that the residual holds, in the order found: each given those before it.
+/// A pattern that the residual contains. Findings are in the order in which they were found, each given those before
+/// it.
 struct Finding {
   PatternId id = PatternId::elastic;
-  std::string pattern;   ///< its name (patterns.h), "elastic at SITE" of a single one
-  std::string site;      ///< of a single one its name
-  std::string sentence;  ///< what, where, how large, with numbers
+  std::string pattern;   ///< its name (patterns.h); "elastic at SITE" for a single site
+  std::string site;      ///< for a single site, its name
+  std::string sentence;  ///< what it is, where and how large, with numbers
   std::vector<std::string> columns;
-  VectorX amplitude, deviation;  ///< with standard deviations; in `unit`
+  VectorX amplitude, deviation;  ///< and standard deviation; in `unit`
   std::string unit;
-  double size = 0;   ///< m: root mean square of what it adds to readings
-  double share = 0;  ///< of the misfit beyond noise and tolerances (χ²) that it explains
-  double gain = 0;   ///< χ² taken away
+  double size = 0;   ///< m: root mean square of its contribution to the readings
+  double share = 0;  ///< of the misfit (χ²) beyond noise and tolerances that it explains
+  double gain = 0;   ///< reduction of χ²
   int freedoms = 0;
   double p_value = 1;
   MatrixX shape;                     ///< columns over the measured numbers
-  std::vector<std::string> instead;  ///< other patterns that would do nearly as well
+  std::vector<std::string> instead;  ///< other patterns that explain nearly as much
 };
 
 struct Findings {
   std::vector<Finding> findings;
-  std::vector<statistics::Regression> alone;  ///< of the residual on each pattern by itself
+  std::vector<statistics::Regression> alone;  ///< regression of the residual on each pattern alone
   MatrixX columns;                            ///< of all findings, over the measured numbers
-  double chi2_left = 0;                       ///< of the residual with them
+  double chi2_left = 0;                       ///< of the residual after all findings
 };
 
-/// One at a time, that which takes most away beyond what chance gives (χ² gain − k ln n for k columns and n readings),
-/// as long as this is more than 10 and chance would do as well in less than one of 10⁴ sets; then what is left is asked
-/// again. Patterns that come within 10 of the best one are named beside it. `columns`: of the patterns, over the
-/// measured numbers. `in_words`: whether sentences are wanted, which take longer than the findings.
+/// Stepwise search: in each step the pattern with the largest score is added, the score being the gain in χ² − k ln n
+/// for k columns and n readings. It ends where the score is not more than 10 or the p-value of the gain not below 1e-4.
+/// Patterns whose score is within 10 of the best are listed in Finding::instead. `columns`: of the patterns, over the
+/// measured numbers. `in_words`: whether to write sentences, which takes longer than the search.
 Findings find_patterns(const ResidualStudy&, const statistics::Uncertainty&, const VectorX& residual,
                        const std::vector<Pattern>&, const std::vector<MatrixX>& columns, bool in_words = true);
 

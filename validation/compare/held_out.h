@@ -1,4 +1,4 @@
-// How well a device predicts where it was not looked at.
+// Cross-validation: how well a device predicts at poses whose readings were not used.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -9,16 +9,17 @@
 
 namespace deflect::compare {
 
-/// Residuals at each pose with the tolerances learnt at all others; poses in ten folds at most: η = (1 + BᵀB)⁻¹Bᵀz over
-/// the readings of the other folds, B and z white within poses (whitening.h), η of what all poses share: of a pose's
-/// own errors the others say nothing. Readings set aside neither teach nor count.
+/// Residuals at each pose with the tolerances estimated from the other poses, in ten folds at most: η = (1 + BᵀB)⁻¹Bᵀz
+/// over the readings of the other folds, with B and z whitened within poses (whitening.h). η contains the errors that
+/// all poses share; a pose's own errors cannot be estimated from the others. Readings set aside are used neither for
+/// the estimate nor for the error.
 class HeldOut {
  public:
-  /// The study must outlive it. Readings that the uncertainty sets aside are those given.
+  /// The study and the uncertainty must outlive it. `set_aside` must be the same as in the uncertainty.
   HeldOut(const ResidualStudy&, const statistics::Uncertainty&, const std::vector<bool>& set_aside);
 
-  /// Root mean square of the translations, m, or of rotations alone, rad. The residual: of all measured numbers, m and
-  /// rad.
+  /// Root mean square of the translations, m, or of the rotations, rad, where only these were measured. `residual`: of
+  /// all measured numbers, m and rad.
   double rmse(const VectorX& residual) const;
 
  private:

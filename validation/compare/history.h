@@ -1,4 +1,5 @@
-// Versions of a device in order, beside the same measurements, and what a placebo in place of each would reach.
+// Successive versions of a device compared with the same measurements, and the error that a placebo in place of each
+// change reaches (placebo.h).
 #pragma once
 
 #include <optional>
@@ -8,10 +9,10 @@
 
 namespace deflect::compare {
 
-/// Versions of a device in order, beside the same measurements; they must outlive it.
+/// The comparisons of the versions in order; they must outlive it.
 struct History {
   const std::vector<Comparison>& versions;
-  /// Of each version but the first: the rmse that a placebo in its place would have reached, m or rad.
+  /// For each version except the first: the rmse of a placebo in its place, m or rad.
   std::vector<std::optional<double>> placebo;
 };
 History history(const std::vector<Comparison>&);

@@ -1,4 +1,4 @@
-// Readings that are out of all proportion to the others.
+// Gross outliers among the readings.
 #pragma once
 
 #include "validation/compare/patterns.h"
@@ -7,12 +7,13 @@
 
 namespace deflect::compare {
 
-/// By reading: those that neither tolerances nor the patterns (columns over the measured numbers) bring within 4.5 of
-/// the others' standard deviations, which chance does to one reading in 50 000. The rest of one that is set aside is
-/// judged by what the others say. A, σ, residual: of the study's values, as in uncertainty.h.
+/// A reading is set aside where, after fitting tolerances and patterns (columns over the measured numbers) to the
+/// readings kept, a component is left that exceeds 4.5 standard deviations of the scatter of the readings; chance does
+/// this to one reading in 50 000. Repeated until nothing changes (at most five times). `A`, `sigma` and `residual`
+/// belong to the study's values, as in uncertainty.h.
 struct Outliers {
   std::vector<bool> aside;
-  statistics::Uncertainty uncertainty;  ///< of the others
+  statistics::Uncertainty uncertainty;  ///< of the readings kept
 };
 Outliers gross_outliers(const ResidualStudy&, const statistics::PartedColumns& A, const std::vector<double>& sigma,
                         const VectorX& residual, const MatrixX& patterns, int threads = 1);

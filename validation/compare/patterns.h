@@ -1,22 +1,22 @@
-// Shapes that a residual can have, each with the physics that leaves it: what the model-free tests of `compare` look
-// for. A pattern is a set of columns over the measured numbers, in which residuals are regressed (uncertainty.h); none
-// of them is a model of a part, so that a fit to one says where and how the model fails and not yet why.
+// Shapes that a residual can have, each with the physics that causes it; the model-free tests of `compare` look for
+// them. A pattern is a set of columns over the measured numbers on which the residual is regressed (uncertainty.h). No
+// pattern models a part: a good fit shows where and how the model fails, but not yet why.
 //
-// With a site's force f under the reading's load and g e what its elongation e does at T (sites.h):
+// f is a site's force under the reading's load, g e the displacement of T by the site's elongation e (Site, subject.h):
 //   elastic          e ∝ f, alike at all sites: a compliance is missing
 //   elastic by site  e ∝ f, each site its own factor
 //   step             e ∝ sign f: free travel, whatever the force
 //   power            e ∝ sign f |f|^⅔: contact
-//   one-sided        e ∝ |f|: gives in one sense only
-//   hysteresis       e ∝ −sign of the last change of f; and along legs' lines a friction element beside the leg, which
-//                    takes over changes of f up to ±r (stop operator, five r from 2 to 40 % of the largest f) and moves
-//                    T as C s does under that force
+//   one-sided        e ∝ |f|: yields in one sense only
+//   hysteresis       e ∝ −sign of the last change of f; for legs' lines also a friction element in parallel with the
+//                    leg. It takes up changes of f to ±r (stop operator; five values of r from 2 to 40 % of the largest
+//                    f) and moves T by C s times its force
 //   base tilt        the whole machine turns about x, y of the base under the load's moment there
 //   tool             T moves against the platform along its axes under the load
-//   deformed shape   what equilibrium in the deformed shape changes in the prediction, known in size: amplitude 1
+//   deformed shape   the change of the prediction by equilibrium in the deformed shape; its size is known: amplitude 1
 //   weight           a constant force along −z at T
 //   offset           the same displacement in every reading
-//   drift            growth with the rank in the sequence; temperature: with the temperature
+//   drift            growth with the rank in the sequence; temperature: growth with the temperature
 //   load gain        prediction times a factor; load axes, sensor axes: small rotations of either
 #pragma once
 
@@ -51,7 +51,7 @@ enum class PatternId {
   elastic_across_slides,
 };
 
-/// What a pattern is called in JSON and tables, and the physics that leaves it. Its sentence is in finding_text.cpp.
+/// The name of a pattern in JSON and tables, and the physics that causes it. Its sentence is in finding_text.cpp.
 struct PatternRow {
   PatternId id;
   const char *name, *title;
@@ -65,10 +65,10 @@ struct Pattern {
   Columns by_reading;
 };
 
-/// Those that the data and the mechanism allow, in the order of the list above.
+/// The patterns that the data and the mechanism allow, in the order of the list above.
 std::vector<Pattern> patterns_of(const ResidualStudy&);
 
-/// e(site, f, extension) at every site, all together in one column.
+/// The displacements by given elongations at all sites, summed into one column per reading.
 Columns site_column(const ResidualStudy&,
                     const std::function<double(std::size_t reading, std::size_t site)>& elongation);
 
@@ -76,7 +76,7 @@ Columns site_column(const ResidualStudy&,
 VectorX rows_of_sites(const ResidualStudy&,
                       const std::function<double(std::size_t reading, std::size_t site)>& elongation);
 
-/// `elongation` in a column of each site's own.
+/// The same with one column for each site.
 Columns site_columns(const ResidualStudy&,
                      const std::function<double(std::size_t reading, std::size_t site)>& elongation);
 

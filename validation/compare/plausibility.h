@@ -1,13 +1,18 @@
-// Data that are not what they say: mistakes of recording, which no physics explains.
+// Recording mistakes: data that are not what the file states, in a way that no physics explains.
 //
-// A mistake is looked for where the readings do not fit. Corrections (recording_mistakes.h) are tried on the prediction
-// of some readings; those that take a good part of the misfit away are tried on all of them, by a comparison of the
-// corrected data. One is told when the corrected data need clearly less to explain them than the recorded ones with the
-// patterns that physics can leave (findings.h), and the misfit beyond noise and tolerances falls to less than a ninth
-// in χ² where they are then right to the noise, to a 36th where something else is left; or, where it is more than a
-// quarter of what was measured, to a sixth. Where it is that large and a change of units or axes makes it right to the
-// noise, that is told before any physics. Fitted corrections, a shift of the poses or of the point of the load, must
-// make it right to the noise.
+// Mistakes are searched for only where the readings fit badly. Corrections (recording_mistakes.h) are first tried on
+// the prediction of some readings. Those that remove a good part of the misfit are tried on all readings, by a
+// comparison of the corrected data. Below, "leaves only noise" means that the corrected data fit to noise and
+// tolerances, and the excess is χ² beyond noise and tolerances. A correction of units or axes is reported
+//   - where the corrected data need clearly less to explain them than the recorded data with the patterns that physics
+//     can leave (findings.h), and the excess falls below 1/9 of its size where the correction leaves only noise, below
+//     1/36 where it leaves more; or, for a misfit of more than a quarter of what was measured, the misfit falls below
+//     1/6 of its size;
+//   - where the misfit is more than a quarter of what was measured and the correction leaves only noise: this comes
+//     before any physics;
+//   - where the correction leaves only noise and less than 1/20 of the misfit.
+// A fitted correction (a shift of the poses or of the point of the load) is reported only where it leaves only noise
+// or, nearly as good, less than 1/20 of the misfit.
 #pragma once
 
 #include <functional>
@@ -26,37 +31,37 @@ namespace deflect::compare {
 
 struct Comparison;
 
-/// Something about a file that comes before what it says of the machine.
+/// A mistake in a file, to be settled before the file says anything about the machine.
 struct RecordingMistake {
-  /// Of the corrections that do equally well, best first; or "nothing_measured", "nothing_loaded", "zero_column",
+  /// Ids of the corrections that do equally well, best first; or "nothing_measured", "nothing_loaded", "zero_column",
   /// "identical_rows", "sigma_unit", "too_few", "contradiction".
   std::vector<std::string> ids;
-  std::string sentence;  ///< what the data look like, with the remedy
-  bool certain = true;   ///< a verdict on the machine has no ground; false: a remark
+  std::string sentence;  ///< what the data look like, and the remedy
+  bool certain = true;   ///< true: the data support no verdict on the machine; false: only a remark
 };
 
-/// What is left of a misfit, and what it took to leave no more.
+/// The misfit that is left, and what was fitted or set aside to reach it.
 struct MisfitAccount {
-  double numbers = 0, chi2 = 0;  ///< without the readings set aside
-  double left = 0;               ///< χ² with the findings; 0: not known yet
+  double numbers = 0, chi2 = 0;  ///< of the readings not set aside
+  double left = 0;               ///< χ² after the findings; 0: not known yet
   int columns = 0;               ///< of the findings
   std::size_t set_aside = 0;     ///< readings
-  double share = 0;              ///< misfit of all readings by what was measured, root mean squares
-  double scatter = 0;            ///< σ by what was measured, where it is estimated from residuals; 0 where given
+  double share = 0;              ///< misfit of all readings over what was measured, as root mean squares
+  double scatter = 0;  ///< σ over what was measured, where σ is estimated from residuals; 0 where it is given
 };
 MisfitAccount account_of(const Comparison&);
 
-/// Whether data of which no more speaks against them than in the account may be right; asked on the way.
+/// Whether data may still be right, judged by a preliminary account; called during a comparison.
 using CanBeRight = std::function<bool(const MisfitAccount&)>;
-/// Compares other data with the same device; empty where they cannot be right.
+/// Compares other data with the same device; nullopt as soon as they cannot be right.
 using ComparedAgain = std::function<std::optional<MisfitAccount>(const measurement::Measurements&, const CanBeRight&)>;
 
-/// The first is the headline where it is certain.
+/// The mistakes found; the first is the headline where it is certain.
 std::vector<RecordingMistake> recording_mistakes(const subject::Subject&, const Comparison&, int threads,
                                                  const ComparedAgain&);
 
-/// What to add to the message about a pose that cannot be reached: which corrections of the poses bring all of them
-/// within reach; empty where none does.
+/// A hint to append to the message about an unreachable pose: the corrections of the poses that make all of them
+/// reachable; empty where there is none.
 std::string within_reach_hint(const subject::Subject&, const measurement::Measurements&);
 
 }  // namespace deflect::compare

@@ -1,4 +1,4 @@
-// The ground of a comparison: where the subject stands, predictions, forces at sites.
+// The basis of a comparison: the subject at its poses, predictions, forces at sites.
 #pragma once
 
 #include <memory>
@@ -10,28 +10,28 @@
 
 namespace deflect::compare {
 
-/// Everything that patterns of the residual are made of: SI, base axes; by reading where not said otherwise.
+/// Everything that patterns of the residual are made of. SI, base axes; by reading unless stated otherwise.
 struct ResidualStudy {
   std::optional<subject::Subject> subject;
   const measurement::Measurements* data = nullptr;
-  std::shared_ptr<const subject::Standing> standing;  ///< where it stands at the poses, as drawn
+  std::shared_ptr<const subject::Standing> standing;  ///< the subject at the poses, as drawn
   std::vector<measurement::MeasuredValue> values;     ///< the measured numbers
-  std::vector<Vector6> predicted;                     ///< as recorded
-  std::vector<Vector6> deformed_shape;  ///< finite − linear geometry; empty where it is predicted or unknown
-  std::vector<std::vector<subject::Site>> sites;  ///< by pose
-  std::vector<Matrix6> compliance;                ///< by pose: tangent at T at rest (contacts as under 1 N)
-  std::vector<VectorX> force;                     ///< of each site, N or Nm
-  std::vector<VectorX> heading;  ///< of each site: sign of the last change of its force, 0 before the first
-  bool sequence = false;         ///< the readings' order is known
+  std::vector<Vector6> predicted;                     ///< predicted readings, as the instruments would record them
+  std::vector<Vector6> deformed_shape;                ///< finite − linear geometry; empty: in `predicted`, or unknown
+  std::vector<std::vector<subject::Site>> sites;      ///< by pose
+  std::vector<Matrix6> compliance;                    ///< by pose: Standing::compliance()
+  std::vector<VectorX> force;                         ///< of each site, N or Nm
+  std::vector<VectorX> heading;  ///< of each site: sign of the last change of its force; 0 before the first
+  bool sequence = false;         ///< whether the order of the readings is known
 };
 
-/// Predicts and looks inside: the data must outlive the study. Without `deformed_shape`.
+/// Computes everything except `deformed_shape`. The data must outlive the study.
 ResidualStudy residual_study(const subject::Subject&, const measurement::Measurements&, const parallel::Work& = {});
 
-/// ResidualStudy::deformed_shape of a subject in linear geometry: most of the time that a study takes.
+/// ResidualStudy::deformed_shape, for a subject in linear geometry. This takes most of the time of a study.
 std::vector<Vector6> deformed_shape_of(const ResidualStudy&, const parallel::Work& = {});
 
-/// About what it is under another load of a reading: even in the load, it goes with the load's square.
+/// Estimates deformed_shape of a reading under another load: it is even in the load and scales with its square.
 Vector6 deformed_shape_under(const ResidualStudy&, std::size_t reading, const Vector6& load);
 
 }  // namespace deflect::compare

@@ -1,4 +1,4 @@
-// How often chance alone would look like an effect: a parametric bootstrap of the null.
+// How often chance alone looks like an effect: a parametric bootstrap of the null hypothesis.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,13 @@
 
 namespace deflect::diagnosis {
 
-/// Told how many of all pieces of work are done, from any thread.
+/// Progress callback, called from any thread with the number of tasks done and of all tasks.
 using Counted = std::function<void(std::size_t done, std::size_t all)>;
 
-/// Chance that in `sets` drawn data with nothing missing some effect looks at least as good (as improbable) as
-/// `least_p`. Of such data r ~ N(0, 1), whitened, all that matters are the components along the signatures, z = Bᵀr ~
-/// N(0, BᵀB). The same for any number of threads and ranks; not below 1/(sets + 1), to which it is resolved.
+/// Probability that, with nothing missing, some effect reaches a p-value of at most `least_p`, from `sets` simulated
+/// data sets. The whitened residual is then r ~ N(0, 1), and only its components along the signatures matter, z = Bᵀr ~
+/// N(0, BᵀB). The result does not depend on the number of threads and ranks. Its resolution and least value are 1/(sets
+/// + 1).
 double chance_of_any(const std::vector<Signature>&, double least_p, int sets, const parallel::Work&,
                      const Counted& = {});
 

@@ -1,5 +1,5 @@
-// Laws in series at places: what a small one does to the readings follows from the forces that statics puts on the
-// place (Transmissions), without a prediction for each.
+// Laws in series at places: their small effect on the readings follows from the forces at the place by statics
+// (Transmissions), without a prediction for each law.
 #pragma once
 
 #include <map>
@@ -14,11 +14,11 @@ namespace deflect::diagnosis {
 
 class ByStatics {
  public:
-  /// Of the effects among these that are laws in series with one parameter, at places where statics agrees with a
-  /// prediction: the readings of the first pose, one law at each place, to a hundredth.
+  /// Covers those of the effects that are laws in series with one parameter, at places where statics agrees with a
+  /// prediction. This is checked for one law at each place on the readings of the first pose, to 1 %.
   ByStatics(const Observations&, const std::vector<effects::PlacedEffect>&, int threads);
 
-  /// The change of the whitened residual at the start values; nothing where it has to be predicted.
+  /// The change of the whitened residual at the start values; nullopt where it has to be predicted.
   std::optional<VectorX> change(const effects::PlacedEffect&) const;
 
  private:
@@ -28,7 +28,7 @@ class ByStatics {
 
   const Observations& observations_;
   std::unique_ptr<const subject::Transmissions> transmissions_;
-  std::map<std::string, bool> known_;  ///< by place
+  std::map<std::string, bool> known_;  ///< by place: whether statics agrees
 };
 
 }  // namespace deflect::diagnosis

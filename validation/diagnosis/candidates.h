@@ -1,4 +1,4 @@
-// Hypotheses side by side: each effect at each place, beside what is there already.
+// Candidates for the next effect: each effect at each place, fitted together with the effects already accepted.
 #pragma once
 
 #include <functional>
@@ -8,14 +8,14 @@
 
 namespace deflect::diagnosis {
 
-/// One hypothesis looked at.
+/// One hypothesis and how well it explains the data.
 struct Candidate {
-  Hypothesis hypothesis;  ///< with the effects beside it, if any, in front
-  Fit fit;                ///< not found: judged by its signature
-  double gain = 0;        ///< in χ² over what is beside it
-  double log_odds = 0;    ///< against what is beside it alone: ln(prior · evidence)
-  /// The same for all together that were fitted and do the same to these data: what is chosen by, so that an entry
-  /// registered twice changes nothing.
+  Hypothesis hypothesis;  ///< the accepted effects first, if any; the added one last
+  Fit fit;                ///< where not found, the candidate is judged by its signature
+  double gain = 0;        ///< in χ² over the accepted effects alone
+  double log_odds = 0;    ///< ln(prior · evidence) against the accepted effects alone
+  /// The same for the whole class: all fitted effects that these data cannot distinguish. Candidates are ranked by it,
+  /// so that an entry registered twice changes nothing.
   double class_log_odds = 0;
   double probability = 0;
   double rmse = 0, held_out = 0;  ///< m
@@ -26,21 +26,22 @@ struct Candidate {
 
 class Candidates {
  public:
-  /// The signatures must outlive it. progress(done, all): of one round.
+  /// The signatures must outlive it. progress(done, all) counts within one round.
   Candidates(const std::vector<Signature>&, int threads, std::function<void(std::size_t, std::size_t)> progress = {});
 
-  /// Every effect beside others that are fitted: in the order of the signatures. Fits are made for those that can come
-  /// near the best and whose log_odds can reach `least`; of two that do all but the same only one can be there.
-  /// `known`: an effect that was fitted beside them before, which is not fitted worse than from those values.
+  /// Every effect added to others that are fitted already, in the order of the signatures. Fits are made only where an
+  /// effect can come near the best and its log_odds can reach `least`. An effect almost indistinguishable from one of
+  /// the others is not added. `known`: an effect that was fitted together with the others before; its new fit also
+  /// starts from those values, so that it is no worse.
   std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                 const std::optional<effects::EffectInstance>& known = {}) const;
 
-  /// ln(prior · evidence) of all that do the same as one of the effects, against their absence.
+  /// ln(prior · evidence) of the whole class of this effect, against its absence.
   double class_log_odds_of(const effects::PlacedEffect&, double gain) const;
 
   int threads() const { return threads_; }
 
-  static constexpr double prior_missing = 0.8, prior_unknown = 0.1;  ///< the second as a share of the first
+  static constexpr double prior_missing = 0.8, prior_unknown = 0.1;  ///< prior_unknown: as a share of prior_missing
 
  private:
   double log_odds(std::size_t i, double gain, double prior) const;
@@ -49,8 +50,8 @@ class Candidates {
   const std::vector<Signature>& signatures_;
   int threads_;
   std::function<void(std::size_t, std::size_t)> progress_;
-  std::vector<std::size_t> classes_;  ///< per signature the first one that does the same to these data
-  /// Places of an entry share what the entry has; those of one class have one share together.
+  std::vector<std::size_t> classes_;  ///< for each signature, the first that these data cannot distinguish from it
+  /// The places of an entry share the entry's prior; the effects of one class have one share together.
   std::vector<double> priors_, class_priors_;
 };
 

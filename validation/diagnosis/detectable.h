@@ -1,16 +1,16 @@
-// What a campaign can show, before it is asked what is missing.
+// What effects a campaign can detect, and how large they must be.
 #pragma once
 
 #include "validation/diagnosis/signatures.h"
 
 namespace deflect::diagnosis {
 
-/// What this campaign would show of an effect.
+/// How well this campaign shows an effect.
 struct Detectable {
   effects::PlacedEffect effect;
   double lambda_at_start = 0;    ///< norm of its signature at the start values
   std::vector<double> smallest;  ///< values at which λ = 4; empty where they are outside the bounds
-  std::string mistaken_for;      ///< the entry that is most like it, where the cosine is above 0.9
+  std::string mistaken_for;      ///< the most similar entry, where the cosine is at least 0.9
   double cosine = 0;
 };
 

@@ -1,12 +1,15 @@
-// Which physical effect is missing: every effect of a catalogue, at every place it has in the device, is fitted to the
-// residual with all tolerances free under their priors; the evidence decides, and says when it cannot.
+// Which physical effect is missing. Every effect of a catalogue, at every place it has in the device, is fitted to the
+// residual with all tolerances free under their priors. The evidence decides, or shows that the data cannot.
+//
+// Recording mistakes come first (plausibility.h): where one is certain, no effect is looked for, unless the option
+// as_recorded is set (ComparisonOptions).
 //
 // Detection: the best effect must beat what the best of all effects reaches by chance in data with nothing missing.
-// Selection: prior · evidence (evidence.h), effects that do the same to these data sharing one prior. Further effects
-// are added as long as they are called for (selection.h). What is left is tested against a structured discrepancy made
-// of all patterns of `compare`; where that wins, something is unknown, and only effects that are called for beside the
-// discrepancy are still said to be missing. Before all of it stand the mistakes of recording (plausibility.h): where
-// one is certain, and the file is not to be taken as it is recorded (ComparisonOptions), no effect is looked for.
+// Selection: by prior · evidence (evidence.h). Effects that these data cannot distinguish share one prior. Further
+// effects are added as long as the evidence supports them (selection.h).
+// Remainder: what is left is tested against a structured discrepancy made of all patterns of `compare`. Where the
+// discrepancy wins, something unknown is missing, and an effect is still reported as missing only where the evidence
+// supports it in addition to the discrepancy.
 #pragma once
 
 #include <string>
@@ -22,41 +25,42 @@ namespace deflect::diagnosis {
 enum class Verdict { nothing_missing, effect, ambiguous, unknown_effect };
 inline constexpr const char* verdict_names[] = {"nothing_missing", "effect", "ambiguous", "unknown_effect"};
 
-/// How well a state of the device describes the data.
+/// How well a version of the device describes the data.
 struct Quality {
   double rmse = 0, held_out = 0, chi2_per_dof = 0;  ///< m, m
 };
 
 struct Diagnosis {
   std::string device;                 ///< its name
-  std::vector<std::string> how_read;  ///< of the measurements: what was converted, skipped or averaged
+  std::vector<std::string> how_read;  ///< what was converted, skipped or averaged in reading the measurements
   Verdict verdict = Verdict::nothing_missing;
-  /// Of recording (plausibility.h). Where the first is certain nothing else was asked: something unknown is said to be
-  /// missing, without candidates.
+  /// Recording mistakes (plausibility.h). Where the first is certain, nothing else was tested: the verdict is
+  /// unknown_effect, without candidates.
   std::vector<compare::RecordingMistake> mistakes;
-  /// Of "nothing" beside the candidates of the first step, and of something unknown: beside what was found, if any.
+  /// Probability of "nothing", among the candidates of the first step, and of something unknown in addition to what was
+  /// found, if anything.
   double probability_nothing = 0, probability_unknown = 0;
-  double chance = 1;                  ///< of any effect looking as good with nothing missing
-  int bootstrap_sets = 0;             ///< drawn to find it
+  double chance = 1;                  ///< that some effect looks as good where nothing is missing
+  int bootstrap_sets = 0;             ///< simulated data sets that `chance` is computed from
   std::vector<Candidate> candidates;  ///< of the first step, best first
   Hypothesis missing;                 ///< in the order in which they were added
   Fit fit;                            ///< of all of them
   std::vector<std::vector<std::string>> indistinguishable;
   Quality baseline, final;
-  bool rotations = false;      ///< none but rotations were measured: rad where m is said
+  bool rotations = false;      ///< only rotations were measured: rad in place of m
   double noise_floor = 0;      ///< m: σ of a reading
-  double tolerance_scale = 1;  ///< how many times the declared tolerances those of the machine look
+  double tolerance_scale = 1;  ///< apparent size of the machine's tolerances over that declared
   std::size_t readings = 0;
-  std::size_t set_aside = 0;  ///< readings that are gross outliers to what was found
+  std::size_t set_aside = 0;  ///< readings that are gross outliers given what was found
   bool unexplained = false;
   double share_unexplained = 0;                          ///< of the misfit beyond noise and tolerances
-  std::string pattern;                                   ///< of what is left
-  std::string nearest;                                   ///< entry that comes nearest to what is left, …
-  double nearest_share = 0;                              ///< … and how much of that it would take off
-  std::vector<Localised> localised;                      ///< where it acts, by the laws at places
-  std::vector<std::pair<std::string, double>> strained;  ///< tolerances beyond two deviations at the end
+  std::string pattern;                                   ///< the pattern of what is left
+  std::string nearest;                                   ///< entry that explains most of what is left, …
+  double nearest_share = 0;                              ///< … and the share of it
+  std::vector<Localised> localised;                      ///< where in the subject it acts, by the laws at places
+  std::vector<std::pair<std::string, double>> strained;  ///< tolerances beyond two standard deviations at the end
   std::vector<Detectable> detectable;
-  std::vector<LeftOut> left_out;  ///< entries that are no hypothesis for this device and these data
+  std::vector<LeftOut> left_out;  ///< entries that cannot be tested on this device and these data
 };
 
 struct DiagnosisOptions {
@@ -64,10 +68,10 @@ struct DiagnosisOptions {
   int bootstrap_sets = 1999;  ///< bootstrap.h
 };
 
-/// Whether a mistake of recording took the place of a diagnosis.
+/// Whether a recording mistake was found instead of a diagnosis.
 bool is_mistaken(const Diagnosis&);
 
-/// The effects must outlive the result. Ranks share the bootstrap alone; all have the result.
+/// The effects must outlive the result. Only the bootstrap is divided among MPI ranks; every rank has the result.
 Diagnosis diagnose(const subject::Subject&, const measurement::Measurements&, const std::vector<effects::Effect>&,
                    const DiagnosisOptions& = {}, const parallel::Work& = {});
 

@@ -1,12 +1,14 @@
-// A structured discrepancy: what is left of a residual, r ~ N(0, 1 + τ² B Bᵀ), B a family of patterns, of length √n
-// each:
-//   sites  all patterns that `compare` knows, site by site where they lie in sites;
+// A structured discrepancy, for what is left of a residual: r ~ N(0, 1 + τ² B Bᵀ). The columns of B are a family of
+// patterns, each of length √n:
+//   sites  all patterns of `compare`; those that act at sites, site by site;
 //   poses  at each pose a displacement and a compliance of its own;
-//   loads  displacements by kinks, steps, squares and products of the load's components, by powers of time and
-//          temperature.
-// Nothing is said of how the patterns come about. Those of poses are kept by pose: of W C, C of a pose alone and W as
-// in whitening.h, r ~ N(0, 1 + τ² W C Cᵀ Wᵀ) is y = W_S⁻¹ r ~ N(0, 1 + B Bᵀ + τ² C̃ C̃ᵀ), C̃ = W_O W_N C still of poses
-// alone and B of the errors that all poses share (scaled_groups.h).
+//   loads  displacements as functions of the load's components (kinks, steps, squares, products) and as powers of time
+//          and temperature.
+// It assumes no cause for the patterns. Those of poses are stored by pose. With W of whitening.h, their columns are
+// W C, where each column of C is nonzero in one pose only. Then
+//   r ~ N(0, 1 + τ² W C Cᵀ Wᵀ)   is equivalent to   y = W_S⁻¹ r ~ N(0, 1 + B Bᵀ + τ² C̃ C̃ᵀ)
+// with C̃ = W_O W_N C, whose columns are still nonzero in one pose only, and with B of the errors that all poses share
+// (scaled_groups.h).
 #pragma once
 
 #include <memory>
@@ -16,11 +18,12 @@
 
 namespace deflect::diagnosis {
 
-/// One per family, over the measured numbers, m and rad per unit of each pattern; groups: poses.
+/// One matrix per family, its rows the measured numbers (m, rad per unit of the pattern); groups: poses.
 using Families = std::vector<statistics::PartedColumns>;
 Families discrepancy_families(const compare::ResidualStudy&);
 
-/// The same white, each column √n long but where it is 0. A family is either of all numbers or of groups.
+/// The same whitened, each column scaled to length √n unless it is 0. A family consists either of columns over all
+/// numbers or of columns by group.
 struct WhitenedFamilies {
   WhitenedFamilies(const Families&, std::shared_ptr<const statistics::Whitening>, int threads = 1);
 
@@ -34,16 +37,16 @@ struct WhitenedFamilies {
 
 class Discrepancy {
  public:
-  /// What `fitted` (whitened too) spans is taken out of the patterns, which keep their size.
+  /// The span of `fitted` (whitened) is projected out of the patterns, which are not rescaled afterwards.
   explicit Discrepancy(std::shared_ptr<const WhitenedFamilies>, const MatrixX& fitted = {});
 
-  /// ln of the evidence against "nothing": mean over the families and over τ, spread evenly in ln τ from 1e-3 to 10:
-  /// none is too small to be one.
+  /// ln of the evidence against "nothing": the mean over the families and over τ, with a prior uniform in ln τ from
+  /// 1e-3 to 10, so that even a small discrepancy counts.
   double log_evidence(const VectorX& r) const;
-  /// Of as much of r in the patterns of some family by chance.
+  /// Probability that chance puts as much of r into the patterns of some family.
   double p_value(const VectorX& r) const;
 
-  /// The family and size that r speaks for.
+  /// The most likely family and size.
   struct Size {
     std::size_t family = 0;
     double tau = 0;
@@ -53,7 +56,7 @@ class Discrepancy {
   double chi2(const VectorX& r, const Size&) const;
 
  private:
-  /// B of all numbers, BBᵀ = Q diag(w) Qᵀ, Q = (1 − FFᵀ) X V.
+  /// B over all numbers: BBᵀ = Q diag(w) Qᵀ, Q = (1 − FFᵀ) X V.
   struct OfAll {
     MatrixX along_fitted;  // XᵀF
     MatrixX V;

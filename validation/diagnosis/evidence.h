@@ -1,8 +1,9 @@
-// How much data speak for an effect.
+// The evidence of data for an effect (Bayes factor).
 //
-// With a gain g in χ² by k parameters the amplitude in its own standard deviations, a, is seen as z = a + N(0, 1), |z|²
-// = g. Its prior is Gaussian of deviation τ per parameter, τ spread evenly in ln τ from 1/2 to 500, so that no scale of
-// an effect is preferred and the bounds of its parameters do not count. The evidence against "nothing" is then
+// Let k parameters reduce χ² by g, and let a be the effect's amplitude in its own standard deviations. It is observed
+// as z = a + N(0, 1) with |z|² = g. The prior of a is Gaussian with standard deviation τ per parameter, and τ is
+// uniform in ln τ from 1/2 to 500, so that no size of an effect is preferred and the bounds of its parameters have no
+// influence. The evidence against "nothing" is then
 //   B = ⟨ (1 + τ²)^(−k/2) exp(½ g τ²/(1 + τ²)) s ⟩_τ,   s = 2 Φ(√g τ/√(1 + τ²)) where the sign is fixed, else 1.
 #pragma once
 
@@ -19,7 +20,7 @@ std::vector<double> normalised(const std::vector<double>& log_weights);
 /// ln of the mean of exp(x).
 double log_mean_exp(const std::vector<double>& x);
 
-/// `count` numbers between low and high, evenly in their logarithm, none at the ends.
+/// `count` numbers between low and high, evenly spaced in their logarithm, none at the ends.
 std::vector<double> log_spaced(double low, double high, int count);
 
 }  // namespace deflect::diagnosis

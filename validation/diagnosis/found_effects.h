@@ -13,24 +13,24 @@ namespace deflect::diagnosis {
 
 struct FoundEffect {
   std::string effect;
-  std::optional<int> leg;  ///< from "leg": 4; where there is none from "site": "leg 4"
+  std::optional<int> leg;  ///< from "leg": 4, else from "site": "leg 4"
   std::vector<std::pair<std::string, double>> parameters;
 };
 
 struct FoundEffects {
   std::vector<FoundEffect>
-      missing;  ///< in the order in which they were added; values of "found", else of the best candidate
+      missing;  ///< in the order in which they were added; values from "found", else from the best candidate
   std::vector<FoundEffect> candidates;  ///< every hypothesis, best first
 };
 
-/// InputError naming the file and the member that is not as the contract says.
+/// Throws InputError with the file and the JSON member that does not match the format.
 FoundEffects read_found_effects(const std::filesystem::path&);
 
-/// The same from the text of a file that messages call `origin`.
+/// The same from text; `origin` takes the place of the file's name in messages.
 FoundEffects parse_found_effects(const std::string& json, const std::string& origin);
 
-/// The effect with the values found. InputError for a parameter that it does not have, one without a value, and a value
-/// out of its bounds.
+/// The effect with the values found. Throws InputError where the effect lacks a parameter, a parameter has no value, or
+/// a value is out of bounds.
 effects::EffectInstance instance(const effects::Effect&, const FoundEffect&);
 
 }  // namespace deflect::diagnosis

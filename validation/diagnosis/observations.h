@@ -1,4 +1,4 @@
-// What a diagnosis has to explain: the measured numbers with all that is known of their scatter.
+// The data that a diagnosis has to explain: the measured numbers and their uncertainty.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,9 @@
 
 namespace deflect::diagnosis {
 
-/// A comparison, its uncertainty kept, and predictions asked for again and again. Tolerances count as large as the
-/// data say where they look larger than declared (Uncertainty::scale_of_tolerances); what equilibrium in the deformed
-/// shape adds is known to a fifth of it, one more nuisance.
+/// Holds a comparison with its uncertainty and computes residuals for any edited subject. Where the data show
+/// tolerances larger than declared, these are scaled up (Uncertainty::scale_of_tolerances). The contribution of
+/// equilibrium in the deformed shape is known to a fifth of its size; this uncertainty is one more nuisance parameter.
 class Observations {
  public:
   Observations(const subject::Subject&, const measurement::Measurements&, const compare::ComparisonOptions&,
@@ -25,39 +25,41 @@ class Observations {
   double tolerance_scale() const { return tolerance_scale_; }
   std::size_t set_aside() const;  ///< readings
 
-  /// Measured − predicted, m and rad, of a subject, small displacements, the deformed shape's share added (see below).
+  /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus the fixed
+  /// contribution of the deformed shape (see granted()).
   VectorX residual(const subject::Subject&) const;
-  /// Σ^(−1/2) of it.
+  /// W times it, with WᵀW = Σ⁻¹ (whitening.h).
   VectorX whitened_residual(const subject::Subject&) const;
-  /// The same for one in which nothing is missing.
+  /// The same for the subject as given, in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
-  /// All patterns that a residual can have (discrepancy.h), white by the uncertainty. Worked out at every call.
+  /// All patterns that a residual can have (discrepancy.h), whitened by the uncertainty. Computed anew at every call.
   std::shared_ptr<const WhitenedFamilies> whitened_patterns() const;
 
-  /// Root mean square of measured − predicted, translations, m (or rotations alone, rad), of the readings that are not
-  /// set aside.
+  /// Root mean square of measured − predicted over the readings not set aside: of translations, m, or, where only
+  /// rotations were measured, of rotations, rad.
   double rmse(const subject::Subject&) const;
-  /// The same at each pose with the tolerances learnt at the others (in ten folds at most).
+  /// The same by cross-validation: at each pose with the tolerances fitted at the other poses (ten folds at most).
   double held_out_rmse(const subject::Subject&) const;
-  /// Tolerances beyond two declared standard deviations where that subject is right, with them.
+  /// Tolerances that would deviate by more than two declared standard deviations if this subject were right; each with
+  /// its number of standard deviations.
   std::vector<std::pair<std::string, double>> strained(const subject::Subject&) const;
 
-  /// The same where what equilibrium in the deformed shape adds to the prediction is that of this subject, and readings
-  /// that are gross outliers to it are set aside, unless they are more than one in twenty.
+  /// A copy for which this subject counts as right: the contribution of the deformed shape is computed for it, and
+  /// readings that are gross outliers to it are set aside, unless they are more than one in twenty.
   Observations granted(const subject::Subject&) const;
 
  private:
-  /// Without the zero of the readings, where nobody knows it.
+  /// Subtracts the estimated zero of the readings where it is unknown.
   VectorX from_zero(VectorX residual) const;
   void weigh(const std::vector<bool>& aside);
   void count_shape();
 
   subject::Subject subject_;
-  // Shared by all that grew out of one another.
+  // Shared by all copies that granted() makes.
   std::shared_ptr<const compare::Comparison> comparison_;
   std::shared_ptr<const Families> patterns_;
   int threads_;
-  statistics::PartedColumns A_;  // the last of the shared columns: of the deformed shape
+  statistics::PartedColumns A_;  // the last shared column is that of the deformed shape
   double tolerance_scale_ = 1;
   std::vector<bool> aside_;
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;

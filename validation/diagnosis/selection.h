@@ -1,5 +1,6 @@
-// Which effects together: added one by one as long as they are called for; after each addition every one of them is
-// asked again, beside the others, whether it is still called for and whether another would do better in its place.
+// Stepwise selection of effects. Effects are added one by one as long as the evidence supports them. After each
+// addition every accepted effect is tested again, given the others: it is dropped where it is no longer needed, and
+// replaced where another does better.
 #pragma once
 
 #include "validation/diagnosis/candidates.h"
@@ -7,19 +8,20 @@
 namespace deflect::diagnosis {
 
 struct Selection {
-  Observations observations;  ///< with what was found granted
+  Observations observations;  ///< with the effects found (Observations::granted)
   Hypothesis effects;         ///< in the order in which they were added
-  Fit fit;                    ///< of all of them; without effects: the null
-  /// Per effect what does nearly as well in its place: names, best first, where together they have 95 % of the
-  /// probability there; empty where one has more than 90 %.
+  Fit fit;                    ///< of all effects together; without effects, of the null hypothesis
+  /// For each effect, the names of those that do nearly as well in its place, best first, until they have 95 % of the
+  /// probability together. Empty where one of them has more than 90 %.
   std::vector<std::vector<std::string>> ties;
   std::vector<LeftOut> left_out;  ///< could not be fitted beside the others
 };
 
-/// ln of the odds from which a further effect is called for.
+/// A further effect is added only where ln of its odds exceeds this.
 inline constexpr double called_for = 4;
 
-/// What is right so far becomes granted (Observations::granted). `first`: candidates of the first step.
+/// After each step the effects found so far count as right (Observations::granted). `first`: candidates of the first
+/// step.
 Selection select(const Observations&, const Candidates&, const std::vector<Candidate>& first);
 
 }  // namespace deflect::diagnosis

@@ -1,4 +1,4 @@
-// What each effect would do to the data, small: directions of the whitened residual.
+// The signature of an effect: the directions in which it changes the whitened residual.
 #pragma once
 
 #include <optional>
@@ -11,54 +11,56 @@ namespace deflect::diagnosis {
 
 struct Signature {
   effects::PlacedEffect effect;
-  /// Unit columns. Of an effect whose parameters are amplitudes: orthonormal, as many as it has. Of one with an
-  /// amplitude and parameters that shape it: the direction at each of a few shapes, of which it takes one.
+  /// Unit columns. For an effect whose parameters are all amplitudes: orthonormal, spanning the changes that it can
+  /// make. For a shaped effect (an amplitude and parameters that determine its shape): one column for each of a few
+  /// shapes, of which only one applies.
   MatrixX basis;
   bool shaped = false;
-  VectorX at_start;        ///< change of the whitened residual at the start values: its length is λ there
-  bool one_sided = false;  ///< physics fixes the amplitude's sign: that of the columns of `basis`, where shaped
+  VectorX at_start;        ///< change of the whitened residual at the start values; λ is its norm
+  bool one_sided = false;  ///< physics fixes the amplitude's sign (where shaped, that of the columns)
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
 };
 
-/// An effect that is no hypothesis for these data, and why.
+/// An effect that cannot be tested on these data, and why.
 struct LeftOut {
   std::string effect, why;
 };
 
-/// Those of the places that effects have in the device and that change what was measured; the others are told in
-/// `left_out`. Equilibrium in the deformed shape is no hypothesis: it is known in size, and in the prediction. The
-/// effects must outlive the result.
+/// One signature for each effect at each of its places in the subject, as long as it changes what was measured. Entries
+/// without one are added to `left_out`. Equilibrium in the deformed shape is not tested as an effect: its size is
+/// known, and the prediction contains it. The effects must outlive the result.
 std::vector<Signature> signatures(const Observations&, const std::vector<effects::Effect>&, int threads,
                                   std::vector<LeftOut>* left_out = nullptr);
 
-/// How much each counts where many are looked at: an entry of the catalogue 1, all laws at places together a share of
-/// all entries, so that they do not outvote them; 1 where there are no entries.
+/// Prior weight of each signature: 1 for one of an entry of the catalogue; all laws at places together at most 15 % of
+/// the entries, so that they do not outvote them. 1 for each where there are no entries.
 std::vector<double> weights_of(const std::vector<Signature>&);
 
-/// What the effect's value would be, were its signature in proportion to its distance from where it vanishes: from the
-/// residual it is to explain. Nothing for effects of several parameters, or of the wrong sign.
+/// The value at which the effect best explains the residual, if its signature grows in proportion to the distance from
+/// the value at which it vanishes (to the compliance, where it vanishes at infinity). Nullopt for effects with several
+/// parameters, and where a stiffness would have the wrong sign.
 std::optional<VectorX> guess(const Signature&, const VectorX& residual);
 
-/// The most that the effect can take off χ² as far as it is linear in its amplitudes, beside what is fitted already:
-/// orthonormal columns (columns.h).
+/// The largest reduction of χ² by the effect, linear in its amplitudes, in addition to what is fitted already.
+/// `beside`: orthonormal columns of that (columns.h).
 double most_gain(const Signature&, const VectorX& residual, const MatrixX& beside);
 
-/// How much of the signature is its own beside what is fitted: the sine of its angle to their span, over
-/// all its directions in the root mean square.
+/// Share of the signature outside the span of what is fitted: the sine of its angle to that span, as root mean square
+/// over all its directions.
 double own_share(const Signature&, const MatrixX& beside);
 
-/// Inner products of all columns of all bases, signature after signature.
+/// Inner products of the columns of all bases, in the order of the signatures.
 MatrixX inner_products(const std::vector<Signature>&);
 
-/// Largest cosine between the spaces of two signatures, by pair.
+/// Largest cosine between the spans of two signatures; cosines(): for every pair.
 double cosine(const Signature&, const Signature&);
 MatrixX cosines(const std::vector<Signature>&);
 
-/// p-value of a gain in χ² by the effect alone, as if it were the only one looked at.
+/// p-value of a gain in χ² as if this were the only effect tested.
 double single_p_value(const Signature&, double gain);
 
-/// The gain that has this p-value; 0 where every gain has a smaller one.
+/// The gain with this p-value; 0 where every gain has a smaller p-value.
 double gain_at_p_value(const Signature&, double p);
 
 }  // namespace deflect::diagnosis

@@ -1,4 +1,4 @@
-// What an edit of a description changed in the machine: the parts that yield, weigh or fit otherwise than before.
+// Which parts of the machine an edit of the description changed in stiffness, weight or misfit.
 #pragma once
 
 #include <string>
@@ -9,14 +9,15 @@
 namespace deflect::effects {
 
 struct ChangedPart {
-  std::string leg;  ///< "leg 4", of a branch "leg 4 parallelogram 2"; empty outside the legs
+  std::string leg;  ///< "leg 4", for a branch "leg 4 parallelogram 2"; empty outside the legs
   std::string
       part;  ///< as in the description; empty for the seat of a leg; "base", "tool", "platform" outside the legs
   bool operator==(const ChangedPart&) const = default;
 };
 
-/// Parts by name, leg by leg: laws, freedoms, preloads of joints, sections and materials of members, misfits of legs,
-/// the weight at the platform, parts and legs that are new. Places do not count: they follow from those.
+/// Compares parts by name, leg by leg: laws, freedoms and preloads of joints, sections and materials of members,
+/// misfits of legs, the weight at the platform. New parts and legs count as changed. Positions are not compared: they
+/// follow from the description.
 std::vector<ChangedPart> changed_parts(const Configuration& before, const Configuration& after);
 
 }  // namespace deflect::effects

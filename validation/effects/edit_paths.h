@@ -1,4 +1,4 @@
-// Paths of effects in a mechanism: selectors and alternatives worked out to paths that edited() knows.
+// Resolves the paths of an effect in a mechanism: selectors and alternatives become paths that edited() accepts.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace deflect::effects {
 
-/// The paths that the first alternative which the mechanism has stands for; those of one leg where it is given
-/// ("leg[4].actuator.tz"). A field of every leg that a variation holds whole in some leg is named there too. InputError
-/// with the nearest valid name when there is none.
+/// The paths of the first alternative that the mechanism has; of one leg only where `leg` is given
+/// ("leg[4].actuator.tz"). Where a variation replaces a whole field in some leg, the path in that leg is added. Throws
+/// InputError with the nearest valid name where no alternative exists.
 std::vector<std::string> paths_of(const EffectEdit&, const Mechanism&, std::optional<int> leg);
 
 }  // namespace deflect::effects

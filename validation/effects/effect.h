@@ -1,6 +1,6 @@
 // An effect: something a model can lack (a clamp that yields, a load cell that reads too little), as data. It is a few
-// edits of the description whose values hold physical parameters. Both theories see it only through the edited
-// description. Effects are read from files, see effect_file.h; the catalogue is a folder of them.
+// edits of the description whose values contain physical parameters. Both theories see it only through the edited
+// description. Effects are read from files (effect_file.h); the catalogue is a folder of such files.
 #pragma once
 
 #include <algorithm>
@@ -14,24 +14,26 @@ namespace deflect::effects {
 
 /// Numbers are in the unit that the name ends with: "stiffness_N_per_mm". A name without one is a plain number.
 struct EffectParameter {
-  std::string name, unit;          ///< unit as a value is written with it, "N/mm"; empty for a plain number
+  std::string name, unit;          ///< as written after a value, "N/mm"; empty for a plain number
   double start = 0;                ///< where a search begins
-  double low = 0, high = 0;        ///< bounds of a search, both allowed
+  double low = 0, high = 0;        ///< bounds of a search, inclusive
   bool log = false;                ///< searched on a logarithmic scale; low > 0
-  std::optional<double> vanishes;  ///< the value, maybe infinity, at which the edits that use it do nothing
+  std::optional<double> vanishes;  ///< the value (may be infinite) at which the edits that use it do nothing
   std::string about;
-  bool optional = false;  ///< where no value is given the start is taken: a state that nobody knows
+  bool optional = false;  ///< need not be given: the default is `start`; for an unknown initial state
 };
 
-/// What is done to the description. `paths` are alternatives for devices of different make: the first that the device
-/// has is taken. Paths of edited(), and with selectors:
-///   leg.<actuated>  every part with a driven freedom, where it stands (in the legs, in mounts of their own, in
-///                   branches);
-///   leg.<line>      the start of every bar that carries a force along itself alone, x along it;
+/// One change of the description. `paths` are alternatives for devices that differ in structure: the first that the
+/// device has is taken. They are paths as edited() takes them, or contain selectors:
+///   leg.<actuated>  every part with a driven freedom (in the legs, in separate mounts, in branches);
+///   leg.<line>      the start of every bar that can carry only a force along itself, x along it;
 ///   leg.<guide>     every driven slide that holds a member;
-///   …<motion>       after leg.<actuated>: each of its driven freedoms; <slide> those along, <turn> those about an
-///   axis; materials.*.<moduli>  E of the material and, where it is given, G.
-/// `value` is YAML in flow style, in which "$name" is a parameter with its unit, "$name unit" one with another unit.
+///   …<motion>       after leg.<actuated>: each of its driven freedoms;
+///   …<slide>        those along an axis;
+///   …<turn>         those about an axis;
+///   materials.*.<moduli>  E of the material and, where it is given, G.
+/// `value` is YAML in flow style. In it "$name" stands for a parameter in its own unit, "$name unit" for one in another
+/// unit.
 struct EffectEdit {
   enum class Action {
     set,       ///< the field takes the value
@@ -45,11 +47,11 @@ struct EffectEdit {
   int line = 0;  ///< in the file
 };
 
-/// What the effect sits in. An effect of one leg is applied to the leg that is asked for: its paths begin with "leg.".
+/// What the effect acts on. An effect of one leg is applied to the leg given; its paths begin with "leg.".
 enum class Scope { all_legs, one_leg, machine, rig };
 inline constexpr const char* scope_names[] = {"all legs", "one leg", "machine", "rig"};
 
-/// For a person, in plain words.
+/// Explanation for the user.
 struct EffectPages {
   std::string machine;  ///< what happens in the machine
   std::string data;     ///< what it looks like in the data
@@ -65,12 +67,13 @@ struct Effect {
   EffectPages pages;
   std::string see;     ///< sources
   std::string origin;  ///< the file, for messages
-  int line = 0;        ///< of its name there
-  /// Of an effect that is a law at a place (place_effects.h), no entry of a file: the place.
+  int line = 0;        ///< of the effect's name in that file
+  /// Set for an effect that is a law at a place (place_effects.h) and not an entry of a file.
   std::optional<subject::Place> place;
 };
 
-/// Whether all it does is to write equilibrium in another shape: it has a size of its own and nothing to fit.
+/// Whether all it changes is the shape in which equilibrium is written (`geometry`): its size is then known and there
+/// is nothing to fit.
 inline bool is_geometry(const Effect& e) {
   return !e.edits.empty() && std::all_of(e.edits.begin(), e.edits.end(), [](const EffectEdit& edit) {
     return edit.paths == std::vector<std::string>{"geometry"};

@@ -1,4 +1,4 @@
-// Values of edits: YAML in which scalars can be parameters, "$name" or "$name unit".
+// Values of edits: YAML whose scalars can refer to parameters, "$name" or "$name unit".
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace deflect::effects {
 
-/// A scalar "$name unit" taken apart; `name` is empty where the scalar is none.
+/// A scalar "$name unit", split; `name` is empty where the scalar does not refer to a parameter.
 struct ParameterUse {
   std::string name, unit;
 };
 ParameterUse parameter_use(std::string_view scalar);
 
-/// The value with numbers in the place of parameters, 17 digits each, which know on which parameter they depend
-/// (counted from `first`). Every name in it is one of the effect's.
+/// The value with parameters replaced by numbers of 17 digits, which know on which parameter they depend (counted from
+/// `first`). Every name in it must be a parameter of the effect.
 YamlNode filled_in(const YamlNode& value, const Effect&, const VectorX& values, std::size_t first = 0);
 
-/// The parameters that the value uses, as a mask over the effect's.
+/// Which of the effect's parameters the value uses, as a mask.
 std::vector<bool> parameters_used(const YamlNode& value, const Effect&);
 
 }  // namespace deflect::effects

@@ -1,4 +1,4 @@
-// The law that an effect of a place puts in series there.
+// The law that an effect at a place (place_effects.h) adds in series there.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace deflect::effects {
 
-/// Of an effect with one parameter whose edits all append one law at freedoms of its place that carry force; nothing of
-/// others. No law of a place names a material.
+/// Returns a law only for an effect with one parameter whose edits all append the same law at load-carrying freedoms of
+/// its place. The law of such an effect never names a material.
 std::optional<Law> law_in_series(const Effect&, const VectorX& values);
 
 }  // namespace deflect::effects

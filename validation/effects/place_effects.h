@@ -1,11 +1,11 @@
-// Effects that no entry of the catalogue names: every law at every place of a subject where physics allows it.
+// Effects beyond the catalogue: every law at every place of a subject where physics allows it.
 //
 //   law        where                                           what it is
 //   linear     rigid directions, elastic ones of another law   a spring in series
 //   factor     freedoms held by one spring, members,           that stiffness, material or dimension times a factor
 //              materials, dimensions of sections
-//   clearance  rigid and elastic directions                    free travel to either side, in series
-//   pull push  rigid and elastic directions                    a spring in series that yields to one sense alone
+//   clearance  rigid and elastic directions                    free travel to both sides, in series
+//   pull push  rigid and elastic directions                    a spring in series that yields in one sense only
 //   contact    rigid and elastic translations                  in series, as the force to the power 2/3
 //   hardening  drives                                          a spring in series that stiffens
 //   friction   free and elastic freedoms                       sticks before it slips, side by side
@@ -21,7 +21,7 @@
 
 namespace deflect::effects {
 
-/// Those of the subject that do not repeat one of the named effects, edit for edit.
+/// The laws at the subject's places, without those whose edits are the same as those of one of the `named` effects.
 std::vector<Effect> place_effects(const subject::Subject&, const std::vector<Effect>& named);
 
 }  // namespace deflect::effects

@@ -1,4 +1,4 @@
-// Descriptions with effects in them.
+// Inserts effects into descriptions.
 #pragma once
 
 #include <optional>
@@ -25,16 +25,16 @@ struct EffectInstance : PlacedEffect {
 /// "all legs", "leg 4", "machine" or "rig".
 std::string site_of(const PlacedEffect&);
 
-/// InputError "GIVEN: the value must lie between … and …" with the remedy, where it does not.
+/// Throws InputError "GIVEN: the value must lie between … and …" with the remedy where it does not.
 void require_in_bounds(const std::string& given, const Effect&, const EffectParameter&, double value);
 
-/// The parameters' start.
+/// The start values of the parameters.
 VectorX start_values(const Effect&);
 
-/// A new description with the effect in it, checked like a file. Optional values at the end need not be given. An edit
-/// one of whose parameters has the value at which it vanishes (infinity too) is left out. Values may lie outside the
-/// bounds of a search as long as the description can hold them. InputError "file:line: edits.i: …" naming what does not
-/// fit, and the nearest valid name.
+/// A new description with the effect, checked like a file. Optional values at the end may be omitted. An edit is left
+/// out where one of its parameters has the value at which it vanishes (also infinity). Values may lie outside the
+/// bounds of a search as long as the description allows them. Throws InputError "file:line: edits.i: …" with what does
+/// not fit and the nearest valid name.
 Mechanism with_effect(const Mechanism&, const Effect&, const VectorX& values, std::optional<int> leg = {});
 Mechanism with_effect(const Mechanism&, const EffectInstance&);
 subject::Subject with_effect(const subject::Subject&, const EffectInstance&);
@@ -42,7 +42,7 @@ subject::Subject with_effect(const subject::Subject&, const EffectInstance&);
 DependentMechanism with_effect(const DependentMechanism&, const Effect&, const VectorX& values, std::optional<int> leg,
                                std::size_t first);
 
-/// Why the effect has no place in the subject (or in that leg of it), in words; nothing when it has one.
+/// Why the effect has no place in the subject (or in that leg); nullopt where it has one.
 std::optional<std::string> why_not(const Effect&, const subject::Subject&, std::optional<int> leg = {});
 
 /// Every place the effect has in the subject: one, or one per leg, or none.
@@ -53,10 +53,10 @@ std::vector<PlacedEffect> places_of(const Effect&, const subject::Subject&);
 /// device_file.h), so the machine is for models, not for files.
 class PreparedEffects {
  public:
-  /// The effects must outlive this object. InputError as with_effect.
+  /// The effects must outlive this object. Throws InputError as with_effect() does.
   PreparedEffects(const subject::Subject&, std::vector<PlacedEffect>);
 
-  /// Values of all effects one after the other.
+  /// `values`: of all effects, concatenated.
   subject::Subject operator()(const VectorX& values) const;
 
   /// The machine with the effects. InputError where its description cannot hold the values.
@@ -74,7 +74,7 @@ class PreparedEffects {
   Mechanism edited_one_by_one(const VectorX& values) const;
   bool find_slots(const Dependences&);
 
-  Mechanism bare_, with_;  // without the effects; with them, at some values
+  Mechanism bare_, with_;  // without the effects; with them, at arbitrary values
   std::vector<PlacedEffect> effects_;
   std::vector<const EffectParameter*> parameters_;
   std::vector<Slot> slots_;  // by `at`

@@ -1,5 +1,5 @@
-// Measurements of a device as an instrument would hand them over, computed by the MSA: never by the theory that
-// diagnoses them.
+// Simulated measurements of a device, as an instrument would record them. Computed by the MSA, so that the theory that
+// diagnoses them is another.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,22 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   double sigma_u = 2e-6;                 ///< m: of a reading; 0: exact readings without σ in the file
   std::optional<double> sigma_th;        ///< rad; absent: rotations are not measured
-  double tolerances = 1;                 ///< times those of the device; 0: built as drawn
+  double tolerances = 1;                 ///< factor on those of the device; 0: built as drawn
   double outliers = 0;                   ///< share of gross outliers among the readings, 10 to 30 σ
-  double temperature = 20, swing = 0;    ///< °C; slow wave about it over the sequence, K
-  Geometry geometry = Geometry::finite;  ///< equilibrium in which shape
+  double temperature = 20, swing = 0;    ///< °C; amplitude of one slow sine wave about it over the sequence, K
+  Geometry geometry = Geometry::finite;  ///< shape in which equilibrium is written
   frame::MemberDivision division;
 };
 
-/// The plan with displacements. One machine is drawn by lot within the device's tolerances (as_built.h), its actuators
-/// once for every pose; every true load differs from the recorded one by the load's tolerance; then the reading's
-/// noise. The same seed gives the same file. Readings are rounded to a thousandth of σ.
+/// The plan with displacements filled in. Drawn at random: one machine within the device's tolerances (as_built.h),
+/// actuator errors for each pose, the difference of each true load from the recorded one within the load's tolerance,
+/// and the noise of each reading. The same seed gives the same file. Readings are rounded to a thousandth of σ or
+/// finer.
 measurement::Measurements simulate(const Mechanism&, measurement::Measurements plan, const SimulationOptions&,
                                    const parallel::Work& = {});
 
-/// How many times the plan's loads the machine as drawn carries, to a percent, at the first of its poses where it does
-/// not carry all; 1 where it carries all, 0 where it does not carry a millionth.
+/// The share of the plan's loads that the machine as drawn can carry, at the first pose where it cannot carry them in
+/// full; known to 1 %. 1 where it carries all loads, 0 where it cannot carry a millionth of them.
 double share_carried(const Mechanism&, const measurement::Measurements& plan, const SimulationOptions&);
 
 }  // namespace deflect::prediction

@@ -1,4 +1,4 @@
-// Matrices as sets of columns, each column a direction of the measured numbers.
+// Matrices as sets of columns; each column is a vector over the measured numbers.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace deflect::statistics {
 
-/// All of them in one, each with that many rows.
+/// All matrices in one, next to each other; each has `rows` rows.
 MatrixX side_by_side(const std::vector<MatrixX>&, Eigen::Index rows);
 
-/// Orthonormal columns with the same span. Directions shorter than `threshold` times the longest are none; 0: what
-/// rounding can tell.
+/// Orthonormal columns with the same span. Directions shorter than `threshold` times the longest are dropped; 0: the
+/// default threshold for rounding.
 MatrixX orthonormal(const MatrixX&, double threshold = 0);
 
 }  // namespace deflect::statistics

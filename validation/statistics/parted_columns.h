@@ -1,4 +1,4 @@
-// A matrix most of whose columns belong to a few of its rows.
+// A matrix in which most columns are nonzero in only a few rows.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ struct GroupColumns {
   MatrixX columns;                 ///< over these rows
 };
 
-/// Columns over all rows, then those of each group; no row is in two groups. Memory grows with the rows.
+/// Columns over all rows, then the columns of each group; no row is in two groups. Memory grows linearly with the rows.
 struct PartedColumns {
   MatrixX shared;
   std::vector<GroupColumns> groups;
@@ -29,7 +29,7 @@ struct PartedColumns {
   MatrixX dense() const;
 };
 
-/// X with the same done to the rows of each group: part ↦ change(group, part).
+/// Applies change(group, part) in place to the rows of each group.
 template <class Groups, class Change>
 void change_groups(const Groups& groups, MatrixX& X, const Change& change) {
   for (const auto& group : groups) {

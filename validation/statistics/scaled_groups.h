@@ -1,10 +1,10 @@
-// The likelihood of residuals some of whose scatter, of groups of rows, is known but for its size:
+// The likelihood of residuals with a part of the scatter, by groups of rows, known except for its size g:
 //   r ~ N(F a, Σ),   Σ = 1 + g ⊕ C_g C_gᵀ + p P Pᵀ,   a unknown ("flat")
-// with F taken out (restricted likelihood): with H = [P√p F]ᵀ (1 + g CCᵀ)⁻¹ [P√p F] + diag(1, 0),
+// As restricted likelihood, with F projected out and H = [P√p F]ᵀ (1 + g CCᵀ)⁻¹ [P√p F] + diag(1, 0),
 //   −2 ln L = χ² + ln |1 + g CCᵀ| + ln |H| + const,   χ² = rᵀ(1 + g CCᵀ)⁻¹r − hᵀH⁻¹h,   h = [P√p F]ᵀ(1 + g CCᵀ)⁻¹ r.
-// With C_gᵀC_g = V diag(w) Vᵀ and U = C V w^(−1/2), (1 + g CCᵀ)⁻¹ = (1 − UUᵀ) + U diag(1/(1 + g w)) Uᵀ: sums of squares
-// throughout, nothing cancels where a column lies in the span of C. What depends on g and p has as many rows as C has
-// columns.
+// With C_gᵀC_g = V diag(w) Vᵀ and U = C V w^(−1/2), (1 + g CCᵀ)⁻¹ = (1 − UUᵀ) + U diag(1/(1 + g w)) Uᵀ: only sums of
+// squares, so that nothing cancels where a column lies in the span of C. Matrices that depend on g and p have only as
+// many rows as C has columns.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -16,10 +16,10 @@ namespace deflect::statistics {
 
 class ScaledGroups {
  public:
-  /// Directions of C whose w is not more than `least` times the largest are none.
+  /// Directions of C with w not above `least` times the largest are dropped.
   ScaledGroups(const std::vector<GroupColumns>& C, const MatrixX& P, const MatrixX& F, double least);
 
-  /// All that counts of a residual: in U, beside it, and along [P F] beside it.
+  /// Sufficient statistics of a residual: inside Uᵀr, along [P F]ᵀ(1 − UUᵀ)r, beside rᵀ(1 − UUᵀ)r.
   struct Seen {
     VectorX inside, along;
     double beside = 0;
@@ -36,8 +36,8 @@ class ScaledGroups {
   double chi2(const Scaled&, const Seen&) const;
   double log_likelihood(const Scaled& s, const Seen& r) const { return -0.5 * (chi2(s, r) + s.log_det); }
 
-  /// What C takes off χ² at p = 1 where its size is free, with the number of its own directions: those whose w is more
-  /// than `least` times the largest, beside F.
+  /// Reduction of χ² at p = 1 by C with each direction free, F being fitted too, and the number of these directions:
+  /// those with w above `least` times the largest.
   struct Gain {
     double gain = 0;
     int freedoms = 0;

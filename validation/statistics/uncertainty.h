@@ -1,13 +1,13 @@
-// What a residual may be without anything missing: the noise of readings and the tolerances of the machine.
+// How large a residual may be where nothing is missing: noise of the readings and tolerances of the machine.
 //
 // Measured numbers y (one per component that was measured) differ from the prediction by r = A η + ε:
-//   η  tolerances in standard deviations, η ~ N(0, 1), of all poses and of each; A by differences of the prediction in
-//      linear geometry of the subject that is off by one of them (subject.h);
-//   ε  reading noise σ, and within a reading the error of its load, relative, which moves along the prediction d:
-//      cov = diag(σ²) + t² d dᵀ.
-// So Σ = A Aᵀ + cov(ε), and everything below weighs by Σ⁻¹. Readings set aside weigh nothing. Errors of the load are of
-// a reading alone and those of the actuators of a pose alone: they are eliminated there (whitening.h), so that time and
-// memory grow as the readings do.
+//   η  tolerances in standard deviations, η ~ N(0, 1), common to all poses or of one pose; A by differences of the
+//      prediction in linear geometry, with the subject deviating in one of them (Deviations, subject.h);
+//   ε  reading noise σ, and the relative error t of a reading's load, which acts along its prediction d: cov = diag(σ²)
+//      + t² d dᵀ.
+// So Σ = A Aᵀ + cov(ε), and everything below weighs by Σ⁻¹; readings set aside have weight 0. Load errors affect one
+// reading only and actuator errors one pose only. They are eliminated there (whitening.h), so that time and memory grow
+// linearly with the readings.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -24,14 +24,15 @@
 
 namespace deflect::statistics {
 
-/// Columns are patterns, rows the measured numbers: each reading's six components (m, rad), where they were measured.
+/// Stacks the components that were measured: from six components by reading (m, rad) to rows over the measured numbers.
+/// Columns are patterns.
 MatrixX rows_of(const std::vector<measurement::MeasuredValue>&,
                 const std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_reading);
 VectorX rows_of(const std::vector<measurement::MeasuredValue>&, const std::vector<Vector6>& by_reading);
 
 /// The subject's sensitivity to its tolerances, which are nuisance parameters with a prior.
 struct ToleranceModel {
-  std::vector<subject::Tolerance> nuisances;  ///< of all poses, then pose by pose
+  std::vector<subject::Tolerance> nuisances;  ///< common to all poses, then pose by pose
   PartedColumns A;  ///< measured numbers × nuisances, per standard deviation; m, rad; groups: poses
 };
 ToleranceModel tolerance_model(const subject::Standing&, const measurement::Measurements&,
@@ -39,25 +40,26 @@ ToleranceModel tolerance_model(const subject::Standing&, const measurement::Meas
 
 class Uncertainty {
  public:
-  /// `predicted`: by reading; `load`: relative standard deviation of a recorded load. Readings lie within A's groups.
-  /// `threads`: of whitening.h.
+  /// `predicted`: by reading; `load`: relative standard deviation of a recorded load. No reading may belong to two
+  /// groups of A. `threads`: as in whitening.h.
   Uncertainty(const PartedColumns& A, const std::vector<measurement::MeasuredValue>&, const std::vector<double>& sigma,
               const std::vector<Vector6>& predicted, double load, const std::vector<bool>& set_aside = {},
               int threads = 1);
 
-  /// W X with WᵀW = Σ⁻¹: with it least squares are those of independent numbers of deviation 1. Rows set aside are 0.
+  /// W X with WᵀW = Σ⁻¹: in least squares the rows are then independent with standard deviation 1. Rows set aside are
+  /// 0.
   MatrixX whitened(const MatrixX& X) const { return (*whitening_)(X); }
   const std::shared_ptr<const Whitening>& whitening() const { return whitening_; }
   /// Xᵀ Σ⁻¹ Y.
   MatrixX inner(const MatrixX& X, const MatrixX& Y) const { return whitened(X).transpose() * whitened(Y); }
-  /// The nuisances η that explain a residual best, with their prior.
+  /// The nuisance parameters η that explain a residual best, given their prior.
   VectorX nuisances(const VectorX& residual) const { return whitening_->amplitudes(residual); }
-  /// How many times the declared tolerances those of the machine look, 1 … 3: where noise, the tolerances so scaled and
-  /// the patterns `beside` (columns over the measured numbers, of any size) make up the residual; 1 unless the data say
-  /// otherwise by more than 2 in ln of the likelihood.
+  /// Estimates by which factor, 1 … 3, the machine's tolerances exceed those declared. The residual is modelled as
+  /// noise, scaled tolerances and the patterns `beside` (columns over the measured numbers, of any size). 1 unless
+  /// another factor raises ln of the likelihood by more than 2.
   double scale_of_tolerances(const VectorX& residual, const MatrixX& beside) const;
-  /// The covariance of T r, noise + E Eᵀ, for contrasts T (rows) of the measured numbers, each within a group of A and
-  /// none of a number that is set aside.
+  /// The covariance of T r, noise + E Eᵀ, for contrasts of the measured numbers (rows of T). Each must lie within one
+  /// group of A and use no number that is set aside.
   struct OfContrasts {
     MatrixX noise;
     PartedColumns errors;  ///< E
@@ -77,16 +79,16 @@ class Uncertainty {
   std::size_t count_ = 0;
 };
 
-/// A regression of residuals on patterns G, weighed by Σ: r = G a + …
+/// A regression of residuals on patterns G, weighed by Σ⁻¹: r = G a + …
 struct Regression {
   VectorX amplitude;   ///< in the patterns' own unit
   MatrixX covariance;  ///< of the amplitudes
-  double gain = 0;     ///< χ² that the patterns take away
+  double gain = 0;     ///< reduction of χ² by the patterns
   int freedoms = 0;    ///< their rank
-  double p_value = 1;  ///< of a gain at least as large by chance
+  double p_value = 1;  ///< probability of a gain at least as large by chance
 };
-/// Regressions of one residual on pattern after pattern, with other patterns `beside` that are fitted in any case.
-/// Directions that the data do not determine stay 0. The uncertainty must outlive it.
+/// Regressions of one residual on one pattern after the other. The patterns `beside` are always fitted too. Directions
+/// that the data do not determine stay 0. The uncertainty must outlive it.
 class Regressions {
  public:
   Regressions(const Uncertainty&, const VectorX& residual, const MatrixX& beside = {});

@@ -1,4 +1,4 @@
-// The places of a machine, from what its parts are.
+// The places of a machine, derived from its parts.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace deflect::subject {
 
-/// Of a machine as it is described, in the order of its file: every freedom of every joint, tx and ty of a joint and rx
-/// and ry together where they are held alike (across its axis, tilt), members, their ends where no joint stands there,
-/// bars that carry a force along themselves alone, materials where there are several, dimensions of sections, the base
-/// and the tool. The same place of all legs stands once.
+/// All places of a machine as described, in the order of its file: every freedom of every joint; tx and ty of a joint
+/// together (across its axis), and rx and ry together (tilt), where both are rigid and of one kind; members; their ends
+/// where no joint is there; bars that can carry only a force along themselves; materials, where there are several;
+/// dimensions of sections; the base and the tool. A place that is the same in all legs is listed once.
 std::vector<Place> places_of(const Mechanism&);
 
 }  // namespace deflect::subject

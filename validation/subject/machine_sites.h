@@ -1,5 +1,5 @@
-// Sites of a machine (subject.h): the lines of legs that carry a force along a line only, tension positive; of other
-// legs and of arms the driven freedoms of their joints.
+// Sites of a machine (subject.h). A leg that can carry only a force along one line has that line as its site, tension
+// positive. Other legs and serial arms have one site for each driven freedom of their joints.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace deflect::subject {
 
-/// The sites of a machine where it stands; none where nothing is driven.
+/// The sites of a machine in this configuration. Legs without a drive have none.
 std::vector<Site> sites_of(const Configuration&);
 
 }  // namespace deflect::subject

@@ -1,4 +1,4 @@
-// What statics makes of loads at the places of a machine (subject.h).
+// How statics passes loads on to the places of a machine (Transmissions in subject.h).
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace deflect::subject {
 
-/// Of a machine that stands in these configurations as drawn, one for each pose. Null where the force at a place is
-/// more than a share of the load: laws that are not linear, weight, misfits, preloads.
+/// The machine stands, as drawn, in these configurations, one for each pose. Null where the force at a place is not
+/// proportional to the load: nonlinear laws, weight, misfits, preloads.
 std::unique_ptr<const Transmissions> transmissions_of(const Mechanism&, const std::vector<Configuration>&);
 
 }  // namespace deflect::subject

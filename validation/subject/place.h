@@ -1,4 +1,4 @@
-// A place of a subject: where an effect can act, whatever the subject calls its parts.
+// A place of a subject: where an effect can act. It follows from what a part is, not from the part's name.
 #pragma once
 
 #include <array>
@@ -13,10 +13,11 @@ namespace deflect::subject {
 enum class PlaceKind {
   drive,       ///< a driven freedom
   joint,       ///< a freedom of a joint that nothing drives: free, elastic or rigid
-  clamp,       ///< a rigid direction in which a member or a slide is held by what stands before it
+  clamp,       ///< a rigid direction in which a joint holds a member, or a member's start is fixed to the part before
+               ///< it
   member,      ///< a member, its material or its section
-  member_end,  ///< where a member passes into what follows without a joint between
-  line,        ///< along a bar that can carry nothing but a force along itself
+  member_end,  ///< where a member meets the next part without a joint
+  line,        ///< along a bar that can carry only a force along itself
   platform,
   base,
   tool,
@@ -34,23 +35,24 @@ enum class Hold { rigid, elastic, free };
 
 struct Place {
   PlaceKind kind = PlaceKind::joint;
-  std::optional<int> leg = {};  ///< 1-based; none: the same place of every leg, or of a part that is in no leg
-  std::string part;             ///< as parts nest in the description: "elbow", "forearm.knee", "base"
+  std::optional<int> leg = {};  ///< 1-based; none: the same place in every leg, or a part outside the legs
+  std::string part;             ///< nested as in the description: "elbow", "forearm.knee", "base"
   std::string path;             ///< of the part in the description: "leg.forearm.leg.knee"
-  /// Those of its freedoms tx ty tz rx ry rz (0 … 5) that are meant, of one kind; none: the part as a whole.
+  /// The freedoms meant, as indices 0 … 5 of tx ty tz rx ry rz: all translations or all rotations. Empty: the part as a
+  /// whole.
   std::vector<std::size_t> freedoms = {};
   Hold hold = Hold::rigid;
-  bool one_stiffness = false;  ///< elastic by one linear law alone
-  bool slides = false;         ///< of a joint that is driven along an axis
+  bool one_stiffness = false;  ///< its only law is one linear law
+  bool slides = false;         ///< the joint is driven along an axis
 
   bool rotation() const { return !freedoms.empty() && freedoms.front() >= 3; }
-  /// In every leg alike, so that an effect may also sit in one of them.
+  /// Whether every leg has this place, so that an effect may also act in one leg only.
   bool in_legs() const { return path.starts_with("leg."); }
 };
 
 /// "rz"; "across" for tx and ty together, "tilt" for rx and ry; "" for a part as a whole.
 std::string motion_of(const Place&);
-/// "elbow.rz": the place in the ids of effects.
+/// "elbow.rz": how the place is written in the ids of effects.
 std::string id_of(const Place&);
 /// "elbow rz", "leg 3 elbow rz".
 std::string name_of(const Place&);

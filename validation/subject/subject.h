@@ -1,6 +1,6 @@
-// A thing that is measured, as a value: a machine at its tool point, or a frame at one of its nodes. It says where it
-// stands, what its readings should be there, what it may be off by, and what it is with an edit. Comparison, diagnosis
-// and reports know no more of it.
+// A subject is the thing measured, as a value: a machine at its tool point, or a frame at one of its nodes. It provides
+// its position at each pose, the readings predicted there, its tolerances, and an edited copy of itself. Comparison,
+// diagnosis and reports use nothing else of it.
 #pragma once
 
 #include <memory>
@@ -16,115 +16,117 @@
 
 namespace deflect::subject {
 
-/// Where force can be looked at inside a subject without a model of what is missing: statics alone.
+/// A point inside a subject whose force is known from statics alone, without a model of what is missing.
 ///
-/// A load F at the measured point puts the force f = gᵀF on a site; by the principle of virtual forces an elongation e
-/// there moves the point by g e, in a determinate structure exactly, otherwise with the forces that the model shares
-/// out. So every reading is a point on a force–elongation curve of every site.
+/// A load F at the measured point causes the force f = gᵀF at the site. By the principle of virtual forces an
+/// elongation e there moves the measured point by g e: exactly in a statically determinate structure, otherwise with
+/// the distribution of forces in the model. So every reading is a point on the force–elongation curve of every site.
 struct Site {
   std::string name;       ///< "leg 3", "shoulder rz"; the same at every pose
-  Place place;            ///< what it is: a drive, or the line of a leg
+  Place place;            ///< a drive, or the line of a leg
   bool rotation = false;  ///< f in Nm and e in rad, else N and m
   Vector6 g = Vector6::Zero();
-  Vector6 s = Vector6::Zero();  ///< of a leg's line: the wrench at T of a unit force along it; 0 at joints
-  double extension = 0;         ///< m: how far the site's slide is out, |L1| of a guideway; 0 without one
-  double along = 1;  ///< of a leg's line: (n·a)², a the axis of its slide; across the slide it is 1 − along
+  Vector6 s = Vector6::Zero();  ///< for a leg's line: the wrench at T of a unit force along it; 0 at joints
+  double extension = 0;         ///< m: extension of the site's slide, |L1| of a guideway; 0 without a slide
+  /// For a leg's line: (n·a)², where n is its direction and a the axis of its slide; the share across the slide is 1 −
+  /// along.
+  double along = 1;
 };
 
-/// A number of the subject that is off from piece to piece: in every pose, or in one.
+/// A number of the subject that varies from one built copy to another: the same in every pose, or of one pose only.
 struct Tolerance {
   std::string name;  ///< "modulus", "leg 3 base joint x", "pose 4 leg 1 slider"
   double sigma = 0;  ///< standard deviation: relative, or m
   std::optional<std::size_t> pose = {};
-  bool zero = false;  ///< where a sensor counts from: no part of the subject
+  bool zero = false;  ///< the zero of a sensor's readings, not a property of the subject
 };
 
-/// A body of the subject where it stands: position (m) and axes in W.
+/// Position (m) and axes of a body of the subject, in W.
 struct BodyFrame {
   Vector3 p_W = Vector3::Zero();
   Matrix3 R_W = Matrix3::Identity();
 };
 
-/// What statics makes of the loads at the places of a subject as drawn: to first order, what a small deflection at a
-/// place does to its readings.
+/// First-order effect of small deflections at places of a subject as drawn on its readings, by statics.
 class Transmissions {
  public:
   virtual ~Transmissions() = default;
-  /// By reading, the change when every freedom of the place gives way by the law (its materials resolved, no history)
-  /// under the force that it carries; in one leg where `leg` is given. Nothing where the place is not known.
+  /// The change of each reading when every freedom of the place yields by the law (materials resolved, no history)
+  /// under the force that it carries; in one leg only where `leg` is given. Empty where the place is not known.
   virtual std::optional<std::vector<Vector6>> change(const Place&, std::optional<int> leg, const Law&,
                                                      const measurement::Measurements&) const = 0;
 };
 
 class Deviations;
 
-/// A subject where it stands at the poses of some measurements.
+/// A subject at the poses of given measurements.
 class Standing {
  public:
   virtual ~Standing() = default;
 
   virtual std::size_t poses() const = 0;
-  /// Of the whole, m: weighs rotations.
+  /// Length of the whole subject, m; weighs rotations against translations.
   virtual double size() const = 0;
-  /// The measured point with the axes of its body; where the subject stands on the ground.
+  /// tool: the measured point with the axes of its body; base: where the subject is fixed to the ground.
   virtual BodyFrame tool(std::size_t pose) const = 0;
   virtual BodyFrame base(std::size_t pose) const = 0;
-  /// None where nothing inside can be looked at.
+  /// Empty where no force inside follows from statics.
   virtual std::vector<Site> sites(std::size_t pose) const = 0;
-  /// Tangent compliance at the measured point at rest; contacts as under 1 N each way.
+  /// Tangent compliance at the measured point without load; where a law is nonlinear (contacts), under a force of 1 N
+  /// along each of x, y and z.
   virtual Matrix6 compliance(std::size_t pose) const = 0;
 
-  /// The readings of these measurements, which have the same poses: prediction.h.
+  /// Predicts the readings of these measurements, which must have the same poses (prediction.h).
   virtual std::vector<Vector6> predict(const measurement::Measurements&, const prediction::PredictionOptions& = {},
                                        const parallel::Work& = {}) const = 0;
 
-  /// Null where forces at places are more than shares of the load.
+  /// Null where forces at places are not proportional to the load.
   virtual std::unique_ptr<const Transmissions> transmissions() const { return nullptr; }
 
-  /// What it is off by from piece to piece.
+  /// Its tolerances, each with the subject that deviates by it.
   virtual std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const = 0;
 };
 
-/// A subject with one of its tolerances off by a standard deviation: in linear geometry, without the sensor's drift,
+/// A subject that deviates in one tolerance by one standard deviation. Linear geometry; without the sensor's drift,
 /// which no tolerance changes.
 class Deviations {
  public:
   virtual ~Deviations() = default;
-  /// Those of all poses, then those of each pose in turn.
+  /// First those common to all poses, then those of each pose in turn.
   virtual const std::vector<Tolerance>& tolerances() const = 0;
-  /// Without any, for differences.
+  /// The subject as drawn, from which differences are taken.
   virtual const Standing& drawn() const = 0;
-  /// With tolerance k; of its pose alone where it is of one.
+  /// Deviates by tolerance k. Where that tolerance belongs to one pose, the result has this pose only.
   virtual std::unique_ptr<const Standing> with(std::size_t k) const = 0;
 };
 
 class Subject {
  public:
-  /// What a kind of subject is behind it.
+  /// Interface that each kind of subject implements.
   class Kind;
 
   /// A machine, measured at its tool point T.
   Subject(Mechanism);  // NOLINT: a machine is a subject
-  /// A frame, loaded and measured at a node. InputError where there is no such node.
+  /// A frame, loaded and measured at a node. Throws InputError where there is no such node.
   Subject(frame::FrameDescription, std::string node);
 
   const std::string& name() const;
   Geometry geometry() const;
   /// Relative standard deviation of a recorded load.
   double load_tolerance() const;
-  /// How many legs it has; 0 of a subject that has none.
+  /// Number of legs; 0 for a subject without legs.
   int legs() const;
-  /// Where effects can act in it.
+  /// The places where effects can act.
   std::vector<Place> places() const;
 
-  /// Throws as configure_all() where it cannot stand. `known`: where a subject stands that may have the same
-  /// kinematics, at the poses of the same measurements; the result is the same with it, and sooner there.
+  /// Throws as configure_all() does where a pose cannot be reached. `known`: where a subject stands that may have the
+  /// same kinematics, at the poses of the same measurements; the result is the same with it, and sooner there.
   std::shared_ptr<const Standing> stand(const measurement::Measurements&, const Standing* known = nullptr) const;
 
-  /// With the edits one after the other, checked like a file. InputError as edited().
+  /// A copy with the edits made in order, checked like a file. Throws InputError as edited() does.
   Subject edited(const std::vector<Edit>&) const;
 
-  /// The machine, of a subject that is one: for what acts on parts of machines (effects, drawings).
+  /// The machine, or null where the subject is none; for code that needs its parts (effects, drawings).
   const Mechanism* machine() const;
 
  private:
@@ -132,7 +134,7 @@ class Subject {
   std::shared_ptr<const Kind> kind_;
 };
 
-/// How a kind of subject is made: one file for each.
+/// One file for each kind of subject.
 class Subject::Kind {
  public:
   virtual ~Kind() = default;

@@ -1,5 +1,5 @@
-// The closed form (analytic/) as a theory: condensed once for all poses where the device allows it (pose_sweep.h),
-// affine in load and temperature where its laws are, else solved anew.
+// The closed form (analytic/) as a Theory. Condensed once for all poses where the device allows it (pose_sweep.h).
+// Where its laws allow, displacements are affine in load and temperature; else each load is solved anew.
 #pragma once
 
 #include <optional>
@@ -40,8 +40,8 @@ class AnalyticAt final : public TheoryAt {
 
   const Configuration* configuration_;
   TheoryOptions options_;
-  std::optional<analytic::PoseSweep> sweep_;       // made when first wanted
-  bool sweep_tried_ = false, sweep_here_ = false;  // whether it was made; whether it stands at this pose
+  std::optional<analytic::PoseSweep> sweep_;       // made on first use
+  bool sweep_tried_ = false, sweep_here_ = false;  // whether making it was tried; whether it is at this pose
   std::vector<LegStiffness> legs_;                 // of the sweep
   std::optional<analytic::AnalyticModel> model_;   // of this pose
   std::optional<double> energy_at_rest_;           // of the assembled mechanism, whose legs may be strained

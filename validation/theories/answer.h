@@ -1,4 +1,4 @@
-// What a theory says of the tool point T under one wrench, and the checks that every answer passes before it is given.
+// A theory's answer at the tool point T under one wrench, and the checks that every answer must pass.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace deflect::theories {
 
-/// Where nothing loads a play, the mechanism floats in it: the displacement is the middle (set_valued_laws.h), from
-/// which T may move by between `least` and `most` along each axis (m, rad) without changing any force.
+/// Unloaded play, in which the mechanism floats. The displacement given is the middle of the play (set_valued_laws.h).
+/// From there T can move by `least` to `most` along each axis (m, rad) without a change of any force.
 struct Floating {
   std::vector<std::string> loose;  ///< the parts with that play; empty: nothing floats
   Vector6 least = Vector6::Zero(), most = Vector6::Zero();
@@ -25,79 +25,80 @@ struct Answer {
   Matrix6 stiffness;                                          ///< tangent, in the state under the load
   std::vector<std::pair<std::string, double>> energies = {};  ///< by part, J, largest first
   StiffnessChecks checks = {};                                ///< of the stiffness; all hold
-  std::vector<double> slips = {};                             ///< of the frictions after the load, as in Conditions
-  /// Finite: about what dividing members leaves of the displacement, m and rad.
+  std::vector<double> slips = {};                             ///< of the friction elements after the load, as in
+                                                              ///< Conditions
+  /// In finite geometry: estimated discretisation error of the displacement, m and rad.
   Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();
   Floating floating = {};
-  /// Motions along which the stiffness is infinite; `stiffness` is that of the others.
+  /// Number of motions with infinite stiffness; `stiffness` is that of the other motions.
   int rigid = 0;
-  std::vector<std::string> rigid_motions = {};  ///< in words, by a theory that knows them
-  double rounding = 0;  ///< by how much the theory amplified the rounding of its own numbers, where it knows
+  std::vector<std::string> rigid_motions = {};  ///< in words, where the theory knows them
+  double rounding = 0;                          ///< estimated relative rounding error, where the theory knows it
 };
 
-/// A displacement alone, not checked: for fits, which ask for many thousands of them and compare them with readings.
+/// Only a displacement, not checked: for fits, which need many thousands of them and compare them with readings.
 struct Prediction {
   Vector6 displacement;
   bool converged;
   std::vector<double> slips = {};
-  std::string reason = {};  ///< where not converged, if it is known
+  std::string reason = {};  ///< why it did not converge, where known
 };
 
-/// Relative: what an answer's checks allow where rounding allows it.
+/// Relative bound of an answer's checks, unless rounding makes a wider one necessary.
 inline constexpr double checked_to = 1e-9;
 
-/// The bound of a check that demands `least`, relative: more where the structure amplifies the rounding of its own
-/// numbers by `rounding` (Solver::rounding()), some dozens of which meet in an answer.
+/// Relative bound of a check: `least`, or 100 times `rounding` (Solver::rounding()) where that is more, because an
+/// answer collects some dozens of rounding errors.
 double bound_with(double least, double rounding);
 
-/// The share of a displacement that rounding of the stiffness may cost: a tenth of ε times the ratio of the largest to
-/// the smallest stiffness, but for infinite ones and those of motions that float, rotations weighed by the length; at
-/// most 1e-7, so that no check loses its meaning.
+/// Estimated relative error of a displacement by rounding of the stiffness: ε/10 times the ratio of the largest to the
+/// smallest stiffness. Infinite stiffnesses and those of floating motions are left out; rotations are weighed by the
+/// length. At most 1e-7, so that the checks stay meaningful.
 double rounding_of(const Answer&, double length);
 
-/// "haptic-6psu at (0, 0, 198.9, 0, 0, 0)", mm and deg: begins the messages of a theory.
+/// "haptic-6psu at (0, 0, 198.9, 0, 0, 0)", mm and deg, for the start of a theory's messages.
 std::string place_text(const std::string& device, const Configuration&);
 
-/// The wrench on T and the weight.
+/// The wrench on T plus the weight.
 Vector6 with_weight(const Vector6& F_T_W, const Configuration&);
 
 /// Strain energy of all parts, J.
 double total(const std::vector<std::pair<std::string, double>>& energies);
 
-/// What the mechanism carries before any load, which the checks of energy must know.
+/// The state of the mechanism before any load, which the checks of energy need.
 struct AtRest {
   bool strained = false;  ///< parts carry forces: misfits, preloads
-  bool history = false;   ///< some law has one: friction
+  bool history = false;   ///< some law has a history: friction
 };
 AtRest at_rest(const Configuration&);
 
-/// Who answers for what: begins the messages, which are made when one is needed.
+/// Which theory answers for which device and configuration; messages begin with it.
 struct Asked {
   const char* theory;
   const std::string& device;
   const Configuration& at;
 };
 
-/// What a theory found beside its answer, for the checks.
+/// Further results of a theory, for the checks.
 struct Found {
-  Vector6 load;         ///< at T, the weight with it
+  Vector6 load;         ///< at T, including the weight
   Vector6 reaction;     ///< of the ground on the mechanism, about T
-  double energy = 0;    ///< stored since rest
+  double energy = 0;    ///< J, stored since rest
   bool linear = true;   ///< no law's stiffness depends on its force
   double rounding = 0;  ///< widens the bounds of the checks
 };
 
-/// The check that an answer in linear geometry fails: sign, equilibrium or energy, and by how much; empty: none.
+/// The check that an answer in linear geometry fails (sign, equilibrium or energy), and by how much; empty: all hold.
 std::string failure_of(const Answer&, const Found&, const AtRest&, const Conditions&);
-/// Throws NumericalError naming theory, place and check where there is one.
+/// Throws NumericalError with theory, place and check where failure_of() is not empty.
 void check_answer(const Answer&, const Asked&, const Found&, const AtRest& = {}, const Conditions& = {});
 
 /// Throws NumericalError where a check of the stiffness failed.
 void enforce_stiffness(const StiffnessChecks&, const Asked&);
 
-/// In the deformed shape (Geometry) legs carry forces that resist their passive joints, and the stored energy is not
-/// ½Fᵀd: there K = Kᵀ of what is left without −½[m]× of the applied moment m, K ⪰ 0, sign and the balance of forces are
-/// checked. Returns the answer with its checks.
+/// Checks an answer in the deformed shape (Geometry). There the forces in legs resist the motion of passive joints, and
+/// the stored energy is not ½Fᵀd. Checked are K = Kᵀ and K ⪰ 0 for K without the term −½[m]× of the applied moment m,
+/// the sign, and the balance of forces. Returns the answer with its checks.
 Answer deformed_answer(Answer, const Asked&, const Found&);
 
 /// The checked answer of a sweep (pose_sweep.h, msa_sweep.h) after its solve(). `legs` have their passive twists.

@@ -1,8 +1,9 @@
-// Matrix structural analysis (msa/frame/) as a theory: legs condensed once for all poses where the device allows it
-// (msa_sweep.h), else the whole structure at each pose.
+// Matrix structural analysis (msa/frame/) as a Theory. Legs are condensed once for all poses where the device allows it
+// (msa_sweep.h); else the whole structure is solved at each pose.
 //
-// In the finite shape elements are halved until what that changes, over 3 (errors fall with the square of the length or
-// faster), is 1e-6 of the displacement or an element is an eighth of what was given. More than 1e-4 is refused.
+// In finite geometry elements are halved until the estimated discretisation error is 1e-6 of the displacement, or
+// elements have an eighth of their first length. The estimate is a third of the change by the last halving, because
+// errors fall with the square of the length or faster. An error of more than 1e-4 is refused.
 #pragma once
 
 #include <memory>
@@ -29,12 +30,12 @@ class MsaAt final : public TheoryAt {
   std::optional<Structure> structure() override;
   std::vector<std::string> notes() const override;
 
-  /// The structure that was last solved, and its displacements by freedom.
+  /// The structure solved last, and its displacements by degree of freedom.
   const frame::MechanismModel& mechanism() { return model().mechanism(); }
   const VectorX& displacements() const { return last_.state.u; }
 
  private:
-  /// Of one linear structure, which needs it once.
+  /// Computed once for a linear structure.
   struct Stiffness {
     VectorX tangents;
     Matrix6 K = Matrix6::Zero();
@@ -54,10 +55,10 @@ class MsaAt final : public TheoryAt {
   const Configuration* configuration_;
   TheoryOptions options_;
   std::optional<frame::MsaSweep> sweep_;
-  bool sweep_tried_ = false, sweep_here_ = false;    // whether it was made; whether it stands at this pose
+  bool sweep_tried_ = false, sweep_here_ = false;    // whether making it was tried; whether it is at this pose
   std::vector<LegStiffness> legs_;                   // of the sweep
   frame::MemberDivision division_;                   // of model_
-  std::unique_ptr<frame::MsaModel> model_, before_;  // before_: as it was before the last of the halvings, if any
+  std::unique_ptr<frame::MsaModel> model_, before_;  // before_: the model before the last halving, if any
   int halvings_ = 0;
   Eigen::Vector2d discretisation_ = Eigen::Vector2d::Zero();  // of last_
   frame::MsaSolution last_;

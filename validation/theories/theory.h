@@ -1,5 +1,5 @@
-// A theory is a value: its names, and how it answers for a mechanism that stands somewhere. A row of the table makes a
-// theory part of every command, result and figure.
+// A theory as a value: its names, and a function that solves a mechanism in a configuration. A theory in the table
+// (all_theories) takes part in every command, result and figure.
 #pragma once
 
 #include <functional>
@@ -15,47 +15,50 @@
 namespace deflect::theories {
 
 struct TheoryOptions {
-  std::string device = {};              ///< its name, which begins the messages
+  std::string device = {};              ///< its name, for messages
   frame::MemberDivision division = {};  ///< of members, for a theory that divides them
-  bool keep_division = false;           ///< not refined where it leaves too much: for a picture of these elements
-  /// Answers at many poses are wanted, and energies by part are not: a theory may condense the device once for all.
+  bool keep_division = false;           ///< no refinement where the error is too large: to draw these elements
+  /// Set where answers at many poses are needed, without energies by part: a theory may then condense the device once
+  /// for all poses.
   bool condense = false;
 };
 
 /// The mechanism assembled with its misfits, without load and weight.
 struct Assembled {
-  Vector6 offset;                                                  ///< T beside its place in the drawing; m, rad
-  std::vector<std::pair<std::string, Vector6>> leg_wrenches = {};  ///< on each leg at T, by a theory that knows them
+  Vector6 offset;                                                  ///< displacement of T from its place in the drawing;
+                                                                   ///< m, rad
+  std::vector<std::pair<std::string, Vector6>> leg_wrenches = {};  ///< on each leg at T, where the theory knows them
 };
 
-/// The structure that a theory solved, to be drawn: lines, and fields on them.
+/// The structure that a theory solved, for drawing: lines, and fields on them.
 struct Structure {
   LineMesh mesh;
   FieldData fields;
 };
 
-/// One theory of one mechanism, from pose to pose. Configurations must outlive their use: the last one given is kept.
+/// One theory applied to one mechanism, pose after pose. It keeps a reference to the last configuration given, which
+/// must outlive its use.
 class TheoryAt {
  public:
   virtual ~TheoryAt() = default;
 
-  /// The same mechanism where it stands now.
+  /// Moves to another configuration of the same mechanism.
   virtual void move_to(const Configuration&) = 0;
 
-  /// Checked: stiffness, sign, equilibrium, energy (answer.h). Throws NumericalError naming theory, place and check, or
-  /// where no equilibrium is found; ModelError where nothing holds or nothing yields.
+  /// Solves and checks stiffness, sign, equilibrium and energy (answer.h). Throws NumericalError with theory, place and
+  /// failed check, or where no equilibrium is found; ModelError where some motion is not held or nothing yields.
   virtual Answer answer(const Vector6& F_T_W, const Conditions& = {}) = 0;
 
   virtual Prediction predict(const Vector6& F_T_W, const Conditions&) = 0;
-  /// Many predictions are to come at this pose, at other temperatures than 20 °C too where `warmer_or_colder`.
+  /// Announces many predictions at this pose; with `warmer_or_colder` also at temperatures other than 20 °C.
   virtual void expect_many(bool warmer_or_colder) = 0;
-  /// Predictions cost next to nothing: they are affine in load and temperature.
+  /// Whether predictions are affine in load and temperature, so that they cost next to nothing.
   virtual bool affine() const = 0;
 
   virtual Assembled assembled() = 0;
-  /// Of the last answer; absent of a theory that has no structure.
+  /// Of the last answer; nullopt for a theory that has no structure.
   virtual std::optional<Structure> structure() { return std::nullopt; }
-  /// What it held or found poor: idle spins, redundant constraints, conditioning.
+  /// Remarks on the structure: spins held because nothing resists them, redundant constraints, poor conditioning.
   virtual std::vector<std::string> notes() const { return {}; }
 };
 
@@ -65,9 +68,10 @@ struct Theory {
   std::string spoken;   ///< "the MSA"
   std::string legend;   ///< in figures: "MSA"
   std::string caption;  ///< below them: "matrix structural analysis (MSA)"
-  /// Relative: how far beside rounding it may be from the others. Infinite: its difference is told, never refused.
+  /// Relative difference from the other theories that is allowed beyond rounding. Infinite: the difference is reported
+  /// but never refused.
   double known_to = 0;
-  bool divides = false;  ///< members into elements, by TheoryOptions::division
+  bool divides = false;  ///< divides members into elements, by TheoryOptions::division
   std::function<std::unique_ptr<TheoryAt>(const Configuration&, const TheoryOptions&)> at;
 };
 
@@ -76,14 +80,15 @@ using Theories = std::vector<const Theory*>;
 
 /// The table.
 const Theories& all_theories();
-/// InputError with the names that there are.
+/// Throws InputError with the known names.
 const Theory& theory(const std::string& name);
-/// "analytic,msa": of the table, in its order; all for an empty text. InputError on names that are not there.
+/// The theories named in a list such as "analytic,msa", in the order of the table; all for an empty list. Throws
+/// InputError for an unknown name.
 Theories theories_named(const std::string& list);
 
-/// The theory whose stiffness and energies are shown where one must do: the last of those that are exact.
+/// Index of the theory whose stiffness and energies are shown where only one is: the last with known_to = 0.
 std::size_t reference_of(const Theories&);
-/// Place of a theory in the list; InputError where it is not.
+/// Index of a theory in the list. Throws InputError where it is not there.
 std::size_t place_of(const Theories&, const std::string& name);
 
 /// "analytic, MSA and softer".

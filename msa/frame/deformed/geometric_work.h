@@ -1,4 +1,5 @@
-// What GeometricSolver keeps while a load grows: geometric_solver.cpp begins and concludes, load_path.cpp goes the way.
+// State of GeometricSolver while a load grows. geometric_solver.cpp begins and concludes a solution; load_path.cpp
+// follows the load path.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,7 @@
 
 namespace deflect::frame {
 
-/// Lengths, and rotations times the size of the structure.
+/// Largest entry, with rotations times `length`.
 inline double size_of(const VectorX& u, std::size_t nodes, double length) {
   double size = 0;
   for (Eigen::Index i = 0; i < u.size(); ++i)
@@ -27,7 +28,7 @@ inline VectorX stiffness_at(const Model& m, double force) {
   return k;
 }
 
-/// A load on its way.
+/// The state of one solve().
 struct GeometricSolver::Work {
   explicit Work(const Model& m)
       : structure(m),
@@ -58,7 +59,7 @@ struct GeometricSolver::Work {
   double energy = 0;     // J, of the last equilibrium
   std::string why;       // the last step failed
 
-  /// Loads alone, whose work is that of their displacements.
+  /// Whether only loads act (no strains, no prescribed values), so that the energy grows by their work.
   bool by_loads_alone() const {
     const auto none = [](double x) { return x == 0; };
     return std::all_of(strains.begin(), strains.end(), none) && std::all_of(values.begin(), values.end(), none);
@@ -70,7 +71,7 @@ struct GeometricSolver::Work {
       sum += stored_energy(structure.springs[i].law, at.elongations(as_index(i)));
     return sum;
   }
-  /// s = k (δ − o) to the structure's springs.
+  /// Sets the springs that jump to s = k (δ − o).
   void set_offsets() {
     for (std::size_t j = 0; j < jumping.springs.size(); ++j) {
       const auto i = as_index(j);
@@ -81,7 +82,7 @@ struct GeometricSolver::Work {
       law.preload = jumping.k(i) * jumping.o(i);
     }
   }
-  /// Heat comes with the load.
+  /// Scales the thermal strains with the load.
   void strain(double factor) {
     for (std::size_t e = 0; e < strains.size(); ++e) with.strains[e] = factor * strains[e];
   }
@@ -91,7 +92,7 @@ struct GeometricSolver::Work {
   }
 };
 
-/// One step of Newton's method; its tangent belongs to the shape before it.
+/// One Newton step; its tangent is that of the shape before the step.
 struct GeometricSolver::Step {
   std::unique_ptr<Tangent> tangent;
   VectorX u;  // empty: the tangent is singular

@@ -1,15 +1,15 @@
-// Forces of a structure and how they change, in a shape of any displacement (finite) or at small displacements with the
-// forces of the state (second order). Base axes; moments conjugate to spins (deformed_beam.h).
+// Forces of a structure and their derivatives: in a shape with displacements of any size (finite), or at small
+// displacements with the forces of the state (second order). Base axes; moments conjugate to spins (deformed_beam.h).
 //
 // With c_k the components of connections and the other linear forms, λ_k the forces of constraints, s_i those of
 // springs, equilibrium is f_beams + Σ s_i ∂c_i − Σ λ_k ∂c_k = f, and its stiffness
 //   K = K_beams + Σ (s_i' ∂c_i ∂c_iᵀ + s_i ∂²c_i) − Σ λ_k ∂²c_k :
-// forces that act through arms and joint axes which turn with their bodies have a geometric stiffness too.
+// forces that act through arms and along joint axes, which rotate with their bodies, have a geometric stiffness too.
 //
 // Second order: all derivatives at the undeformed shape, with the forces that the small displacements u cause there:
 //   f_int = K_E u + K_G u,   K = K_E + K_G,   constraints as in the linear theory.
-// What this leaves out is of the order of strains and of squares of rotations; that a turned member gets longer by half
-// such a square is among it.
+// This neglects terms of the order of strains and of squares of rotations, for example the elongation of a rotated
+// member by half the square of its rotation.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -23,8 +23,8 @@ namespace deflect::frame {
 
 struct Shape {
   std::vector<BodyMotion> nodes;
-  /// By freedom, all increments added up: translations, sums of spins, scalars. Linear forms are evaluated on it; of a
-  /// rotation about a fixed axis the sum is the angle.
+  /// By freedom, the sum of all increments: translations, spins, scalars. Linear forms are evaluated on it. For a
+  /// rotation about a fixed axis the sum of spins is the angle.
   VectorX path;
 
   explicit Shape(const Model&);
@@ -47,7 +47,7 @@ struct Linearisation {
   struct Curvature {
     int constraint;
     std::array<int, 2> nodes;  ///< −1: the ground
-    Matrix12 H;                ///< ∂²c by the freedoms of the two nodes
+    Matrix12 H;                ///< ∂²c with respect to the freedoms of the two nodes
   };
   std::vector<Curvature> curvatures;
   VectorX elongations, spring_forces, spring_tangents;
@@ -56,17 +56,17 @@ struct Linearisation {
   std::size_t nodal = 0;  ///< freedoms of nodes; scalars follow
 };
 
-/// What the solver adds to a structure and its loads.
+/// Conditions that the solver adds to a structure and its loads.
 struct StructureConditions {
-  std::vector<double> strains;  ///< by beam: free strain of heat
-  VectorX least_tangents;       ///< by spring: the stiffness takes no less
-  /// Constraints from here on hold a node against spinning about its own axis, which turns with the node.
+  std::vector<double> strains;  ///< by beam: free thermal strain
+  VectorX least_tangents;       ///< by spring: lower bound of the tangent used
+  /// Constraints from this index on hold a node against spinning about its own axis, which rotates with the node.
   std::size_t first_hold = 0;
 };
 
 Linearisation linearise_finite(const Model&, const Shape&, const StructureConditions&);
 
-/// `lambda`: forces of constraints, as known so far.
+/// `lambda`: present estimate of the constraint forces.
 Linearisation linearise_second_order(const Model&, const Shape&, const VectorX& lambda, const StructureConditions&);
 
 }  // namespace deflect::frame

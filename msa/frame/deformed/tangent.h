@@ -1,9 +1,10 @@
 // The tangent structure of a state: linear response around it under u̇ = T q̇ + G ḃ (elimination.h), constraints taken
 // in the present shape. Sparse LU, since moments that keep their direction make the stiffness unsymmetric.
 //
-// A dead moment m at a node (constant in base axes) has no potential: with the forces' change by spins, whose skew part
-// is −½[m_int]× at each node, and m_int = m in equilibrium, the stiffness is the symmetric K of linearisation.h less
-// ½[m]× there. Without applied moments K is symmetric, also where constraints act: then m_int and their moments cancel.
+// A dead moment m at a node (constant in base axes) has no potential: the derivative of the internal forces with
+// respect to spins has the skew part −½[m_int]× at each node, and m_int = m in equilibrium. So the stiffness is the
+// symmetric K of linearisation.h minus ½[m]× there. Without applied moments K is symmetric, also where constraints act:
+// then m_int and their moments cancel.
 #pragma once
 
 #include <memory>
@@ -13,7 +14,7 @@
 
 namespace deflect::frame {
 
-/// K by freedom: beams, springs, forces of constraints and applied moments.
+/// K by freedom, with the contributions of beams, springs, constraint forces and applied moments.
 Eigen::SparseMatrix<double> tangent_stiffness(const Linearisation&, const VectorX& lambda, const VectorX& loads);
 
 class Tangent {
@@ -21,10 +22,11 @@ class Tangent {
   Tangent(const Elimination&, const Eigen::SparseMatrix<double>& K);
   ~Tangent();
 
-  /// False where K cannot be inverted on the free motions; then there is nothing to solve with.
+  /// False where K is singular on the free motions; solve() must not be called then.
   bool regular() const;
-  /// Equilibrium is stable: K is positive definite on the free motions. Where applied moments make K unsymmetric, which
-  /// is no question of definiteness, a positive determinant stands for it: no such load was passed, or two.
+  /// Whether the equilibrium is stable: K is positive definite on the free motions. Where applied moments make K
+  /// unsymmetric, definiteness is no criterion, and a positive determinant is tested instead: no critical load was
+  /// passed, or two.
   bool stable() const;
   double largest_entry() const;  ///< of K on the free motions, by magnitude
   /// u̇ for columns of load increments and of increments of constraint values.

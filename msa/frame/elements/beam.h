@@ -7,8 +7,8 @@
 
 namespace deflect::frame {
 
-/// Displacements with the digits that their differences need: beside a part 1e12 times softer a stiff part's
-/// deformation is a difference of numbers that agree to twelve digits.
+/// Extended precision for displacements, because differences of them are needed: the deformation of a part 1e12 times
+/// stiffer than its neighbours is a difference of numbers that agree to twelve digits.
 #ifdef __SIZEOF_FLOAT128__
 __extension__ typedef __float128 Extended;
 #else
@@ -33,10 +33,10 @@ struct Beam {
   double length = 0;
   BeamRigidity rigidity;
   std::string name, part;  ///< "leg 1 guideway [2]"; "guideway" groups energies
-  /// First of six scalars that hold the motion of end b relative to the body of end a, [δ; θ] in base axes at b; −1
-  /// where the nodes' own displacements say it well enough. See `relative.h`.
+  /// First of six scalars for the motion of end b relative to the body of end a, [δ; θ] in base axes at b; −1 where the
+  /// nodes' displacements are accurate enough (relative.h).
   int relative = -1;
-  double expansion = 0;  ///< 1/K, for those who warm it
+  double expansion = 0;  ///< 1/K; not used by the beam itself
 };
 
 /// Stiffness in local axes on [u_a; θ_a; u_b; θ_b]. Timoshenko: Φ = 12EI/(GAs L²); Φ = 0 is Euler–Bernoulli
@@ -48,14 +48,14 @@ Matrix12 stiffness(const Beam&);
 
 /// stiffness(beam) · d without forming the matrix: forces on the ends in base axes for displacements in base axes.
 Vector12 pull(const Beam&, const Vector12& d_W);
-/// Each of the four vectors of the ends' displacements or forces, R v.
+/// Rotates each of the four vectors of the ends' displacements or forces: R v.
 Vector12 turned(const Matrix3& R, const Vector12&);
 
-/// [u_a; θ_a; u_b; θ_b] of a structure's displacements u; where the beam has its own relative motion, that motion with
-/// a at rest, which strains it alike.
+/// [u_a; θ_a; u_b; θ_b] of a structure's displacements u; where the beam has relative coordinates, that relative motion
+/// with a at rest, which strains it equally.
 Vector12 end_displacements(const Beam&, const VectorX& u);
 
-/// The same with the rigid motion of end a taken off before anything is rounded, so that stiff beams keep their digits.
+/// The same with the rigid motion of end a subtracted before rounding, so that stiff beams keep their digits.
 Vector12 end_displacements(const Beam&, const ExtendedVector& u);
 
 /// End forces in local axes, [f_a; m_a; f_b; m_b] acting on the beam, for nodal displacements in base axes.

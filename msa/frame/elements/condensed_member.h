@@ -1,5 +1,5 @@
-// A member of several elements as a substructure: its inner nodes condensed, k_ee − k_ei k_ii⁻¹ k_ie over the ends e
-// and the inner nodes i, and kept while length and rigidity stay what they were.
+// A member of several elements as a substructure with its inner nodes condensed, k_ee − k_ei k_ii⁻¹ k_ie for the ends e
+// and the inner nodes i. The result is reused while length and rigidity do not change.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@ namespace deflect::frame {
 
 class CondensedMember {
  public:
-  /// Nodes at these fractions of the length, from 0 to 1.
+  /// `at`: fractions of the length at which nodes are, from 0 to 1.
   explicit CondensedMember(std::vector<double> at) : at_(std::move(at)) {}
 
-  /// False, and no stiffness, where nothing holds an inner node.
+  /// Returns false, without a stiffness, where nothing holds an inner node.
   bool set(const BeamRigidity&, double length);
 
   const Matrix12& stiffness() const { return k_; }  ///< of the two ends, as local_stiffness()

@@ -1,25 +1,26 @@
-// A beam in its deformed shape, co-rotational: rotations of any size, small strains; and at small displacements under
-// given forces, for its geometric stiffness. One derivation serves both.
+// A co-rotational beam: rotations of any size, small strains. Its geometric stiffness at small displacements under
+// given forces follows from the same derivation.
 //
 // The axes of the end sections are A and B (columns, base axes), M their mean (finite_rotation.h). The element is
-// strained by the rotation between its ends and by what its mean axes see of the line between them (p = position):
+// strained by the rotation between its ends and by the vector between them in the mean axes (p = position):
 //   ψ = log(AᵀB),   r = Mᵀ (p_b − p_a),   l = |r|
 // With L the length, Φz = 12 EIz/(GAs_y L²) and the same for y, its energy is
 //   U = ½ EA L ε² + ½ (GJ ψx² + EIy ψy² + EIz ψz²)/L + 6 EIz/((1+Φz) L³) r_y² + 6 EIy/((1+Φy) L³) r_z²
 //   ε = (l − L)/L + (ψy² + ψz²)/24 + (r_y²/(1+Φz)² + r_z²/(1+Φy)²)/(10 L²) − ε₀
-// ψy, ψz bend the element to an arc and r_y, r_z to an S. The quadratic terms of ε are the mean of ½(v'² + w'²) over
-// those shapes, v' being the slope of the centre line, so that a compressed element buckles between its nodes too: at
-// ψ = 0, r = (L, 0, 0) the second derivative is the stiffness of beam.h plus the consistent geometric one (6N/5L, N/10,
+// ψy, ψz bend the element to an arc, r_y, r_z to an S. The quadratic terms of ε are the mean of ½(v'² + w'²) over those
+// shapes, v' being the slope of the centre line, so that a compressed element buckles between its nodes too: at ψ = 0,
+// r = (L, 0, 0) the second derivative is the stiffness of beam.h plus the consistent geometric one (6N/5L, N/10,
 // 2NL/15, −NL/30; J. S. Przemieniecki, Theory of Matrix Structural Analysis, 1968, eq. (15.24)), with shear that of
 // Engesser: N turns with the centre line. Modes after S. Krenk, Non-linear Modeling and Analysis of Solids and
-// Structures, 2009, ch. 5. Errors: relative (h κ)² of an element of length h bent to the curvature κ. Left out: what
-// twist does to the length (Wagner), relative N/EA · E/G · (Iy + Iz)/J, for which closed sections have no use.
+// Structures, 2009, ch. 5. Errors: relative (h κ)² of an element of length h bent to the curvature κ. Neglected:
+// shortening by twist (Wagner effect), relative N/EA · E/G · (Iy + Iz)/J, which is negligible for closed sections.
 //
-// Moments are conjugate to the spins ω of the nodes (base axes, Q̇ = [ω]× Q): the work of m is m·ω dt. The change of
-// those forces with the spins is not symmetric, its skew part −½[m]× at each node depends on the nodal moment alone.
-// K here is the symmetric rest, the second derivative of U by rotation vectors added at the state; see tangent.h.
+// Moments are conjugate to the spins ω of the nodes (base axes, Q̇ = [ω]× Q): the work of m is m·ω dt. The derivative
+// of these forces with respect to the spins is not symmetric; its skew part −½[m]× at each node depends only on the
+// nodal moment. K here is the symmetric part, the second derivative of U with respect to rotation vectors applied to
+// the state; see tangent.h.
 //
-// Valid while the ends of an element turn less than π against each other.
+// Valid while the rotation between the ends of an element is less than π.
 #pragma once
 
 #include "msa/frame/elements/beam.h"
@@ -34,22 +35,21 @@ struct DeformedBeam {
   double energy = 0;                   ///< J
 };
 
-/// `strain`: ε₀, what the unloaded member would stretch by (heat).
+/// `strain`: ε₀, free (thermal) strain.
 DeformedBeam deformed(const Beam&, const BodyMotion& a, const BodyMotion& b, double strain);
 
-/// No less, by and large, than what an element leaves out under its end forces: with λ = L |m|/k + L² |f|/k, μ = L²
-/// |q|/k, k² the product of the two smaller ones of GJ, EIy and EIz, m the larger moment at an end, f the force and q
-/// its part across the element, λ²/12 relative, and of twist the λμ/12 that bending and a force across it make
-/// together.
+/// Approximate upper bound of an element's error under its end forces. With λ = L |m|/k + L² |f|/k, μ = L² |q|/k, k²
+/// the product of the two smaller ones of GJ, EIy and EIz, m the larger end moment, f the force and q its transverse
+/// part: relative error λ²/12, and an error of twist λμ/12 by bending and transverse force together.
 struct LeftOut {
   double relative = 0;
   double twist = 0;  ///< rad
 };
 LeftOut left_out(const Beam&, const Vector12& forces, const Vector3& axis);
 
-/// K_G in base axes: what the end forces [f_a; m_a; f_b; m_b] (local axes; their differences over two count) add to the
-/// stiffness at zero displacement. Stretch is left out of it, as in the theory of beam-columns: that arms get longer by
-/// N/EA changes nothing, and N is the force along the undeformed axis.
+/// K_G in base axes: the stiffness added by the end forces [f_a; m_a; f_b; m_b] (local axes; half their differences
+/// count) at zero displacement. As in beam-column theory the stretch N/EA lengthens no lever, and N is the force along
+/// the undeformed axis.
 Matrix12 geometric_stiffness(const Beam&, const Vector12& ends);
 
 }  // namespace deflect::frame

@@ -1,4 +1,4 @@
-// Springs whose law is not linear as scalar laws that the structure around them couples (set_valued_laws.h).
+// Nonlinear springs as scalar laws, coupled by the surrounding structure (set_valued_laws.h).
 #pragma once
 
 #include "msa/base/set_valued_laws.h"
@@ -6,14 +6,14 @@
 
 namespace deflect::frame {
 
-/// The force beside the preload by the elongation from the state at rest, m or rad. It refers to the law.
+/// The force in excess of the preload as a function of the elongation from the state at rest, m or rad. It refers to
+/// the law, which must outlive it.
 ScalarLaw scalar_law(const SpringLaw&);
 
-/// Stiffness of the law itself where it carries the force s at the elongation d: infinite where it is rigid. `end` as
-/// in SetValuedSolution.
+/// Tangent stiffness of the law at force s and elongation d: infinite where it is rigid. `end` as in SetValuedSolution.
 double tangent_at(const SpringLaw&, double d, double s, int end);
 
-/// Slip after a load that ends there.
+/// Slip after a load, from its final elongation and `end`.
 double slip_at(const FrictionSpring&, double at_rest, double d, int end);
 
 }  // namespace deflect::frame

@@ -50,9 +50,9 @@ struct HardeningSpring {
   }
 };
 
-/// Two cylinders in line contact with the bulk of both: δ = p κ Σ (2 ln(4 R_i/a) − 1) at the half width a of p = F/l,
-/// a² = 8 p κ R1 R2/(R1 + R2), κ = (1 − ν²)/(π E) (K. L. Johnson, Contact Mechanics, 1985, §5.6). F(δ) is found by
-/// Newton; the tangent vanishes at δ = 0.
+/// Two cylinders in line contact, with the compression of the bulk of both: δ = p κ Σ (2 ln(4 R_i/a) − 1) at the half
+/// width a of p = F/l, a² = 8 p κ R1 R2/(R1 + R2), κ = (1 − ν²)/(π E) (K. L. Johnson, Contact Mechanics, 1985, §5.6).
+/// F(δ) by Newton's method; the tangent vanishes at δ = 0.
 struct BulkLineSpring {
   double kappa = 0, R1 = 0, R2 = 0, length = 0;
   double half_width(double p) const { return std::sqrt(8 * p * kappa * R1 * R2 / (R1 + R2)); }
@@ -86,14 +86,13 @@ struct BulkLineSpring {
   double elongation(double f) const { return f == 0 ? 0 : std::copysign(approach(std::abs(f) / length), f); }
 };
 
-/// at_force(f) is the tangent stiffness once the force |f| is reached, elongation(f) the δ at which it is.
-/// A preloaded spring works about the force P that it carries at rest: F = law(δ₀ + δ) − P with law(δ₀) = P, energy
-/// against the state at rest.
+/// at_force(f) is the tangent stiffness at the force |f|, elongation(f) the δ at the force f. A preloaded spring
+/// carries the force P at rest: F = law(δ₀ + δ) − P with law(δ₀) = P; its energy is relative to the state at rest.
 struct SpringLaw : std::variant<LinearSpring, PowerSpring, BulkLineSpring, HardeningSpring, GapSpring, OneSidedSpring,
                                 FrictionSpring> {
   using variant::variant;
   double preload = 0, at_rest = 0;  ///< P, δ₀
-  bool rotation = false;            ///< moments against angles
+  bool rotation = false;            ///< moment and angle in place of force and length
 };
 
 inline SpringLaw preloaded(SpringLaw law, double P) {
@@ -112,30 +111,30 @@ inline double energy(const SpringLaw& law, double d) {
   return std::visit([&](const auto& l) { return l.energy(law.at_rest + d) - l.energy(law.at_rest) - law.preload * d; },
                     law);
 }
-/// Where Newton starts: the tangent once a force of this size has been added to the preload.
+/// Start value for Newton's method: the tangent when a force of this size is added to the preload.
 inline double tangent_at_force(const SpringLaw& law, double f) {
   return std::visit([&](const auto& l) { return l.at_force(std::abs(f) + std::abs(law.preload)); }, law);
 }
-/// δ once the force f has been added to the preload.
+/// δ when the force f is added to the preload.
 inline double elongation(const SpringLaw& law, double f) {
   return std::visit([&](const auto& l) { return l.elongation(f + law.preload) - law.at_rest; }, law);
 }
-/// No stiffness that depends on the load.
+/// Whether the stiffness does not depend on the load.
 inline bool is_linear(const SpringLaw& law) {
   const auto* power = std::get_if<PowerSpring>(&law);
   return std::holds_alternative<LinearSpring>(law) || (power && power->n == 1);
 }
-/// Of stepped_spring.h.
+/// Whether the law is one of stepped_spring.h.
 inline bool jumps(const SpringLaw& law) {
   return std::holds_alternative<GapSpring>(law) || std::holds_alternative<OneSidedSpring>(law) ||
          std::holds_alternative<FrictionSpring>(law);
 }
-/// Tells a spring that jumps the force that it carries beside its preload (λ of stepped_spring.h).
+/// Sets the known force, in excess of the preload, of a spring that jumps (λ of stepped_spring.h).
 inline void know_force(SpringLaw& law, double f) {
   if (auto* gap = std::get_if<GapSpring>(&law)) gap->known = f + law.preload;
   if (auto* one = std::get_if<OneSidedSpring>(&law)) one->known = f + law.preload;
 }
-/// What is stored at an elongation, against the state at rest.
+/// Stored energy at an elongation, relative to the state at rest.
 inline double stored_energy(const SpringLaw& law, double d) {
   return std::visit(
       [&](const auto& l) {

@@ -1,6 +1,5 @@
-// Springs that jump. A gap or a rigid side has no force that a displacement would say. Solvers find it by the law
-// itself (set_valued.cpp); what else asks the spring gets the force λ that it is known to carry and a contact stiffness
-// K:
+// Springs that jump. The force of a gap or of a rigid side is not a function of the displacement. Solvers find it from
+// the set-valued law (set_valued.cpp). Other code uses the known force λ and a contact stiffness K:
 //   w = δ + λ/K,   f(w),   which is λ where δ keeps its law.
 #pragma once
 
@@ -30,8 +29,8 @@ struct GapSpring {
   double true_tangent(double d) const { return beyond(d) != 0 ? HUGE_VAL : 0; }
 };
 
-/// Compliances under forces of either sign, m/N or rad/Nm; zero is rigid. A side that is softer than the contact
-/// stiffness needs none.
+/// Compliances under pull and push, m/N or rad/Nm; zero is rigid. No contact stiffness is used for a side that is
+/// softer than it.
 struct OneSidedSpring {
   double pull = 0, push = 0;
   double contact = 0, known = 0;
@@ -49,11 +48,11 @@ struct OneSidedSpring {
   double true_tangent(double d) const { return 1 / compliance(force(d)); }
 };
 
-/// Elastic–Coulomb friction, by return mapping from the slip before the load. Its energy is the potential of the step,
-/// which has what sliding costs; stored is the elastic part.
+/// Elastic–Coulomb friction, by return mapping from the slip before the load. energy() is the potential of the step,
+/// including the work dissipated by sliding; stored() is the elastic part.
 struct FrictionSpring {
   double k = 0, most = 0;  ///< N/m and N, Nm/rad and Nm
-  int number = -1;         ///< of the friction, see number_slips()
+  int number = -1;         ///< of the friction law, see number_slips()
   double before = 0;       ///< slip
 
   double force(double d) const { return std::clamp(k * (d - before), -most, most); }

@@ -1,5 +1,5 @@
-// Two jobs side by side. What they compute must not depend on each other; then results are the same bits whether the
-// second runs on a thread of its own or after the first.
+// Runs two jobs in parallel. They must not depend on each other; then results are bit-identical whether the second runs
+// on its own thread or after the first.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@ namespace deflect::frame {
 
 class TwoAtOnce {
  public:
-  /// threads: 1: one after the other; else a second thread is kept until the end, for what is called many times.
+  /// `threads`: 1: one after the other; else a second thread is kept until destruction, for many calls.
   explicit TwoAtOnce(int threads);
   ~TwoAtOnce();
 
@@ -21,7 +21,7 @@ class TwoAtOnce {
   std::unique_ptr<Companion> companion_;
 };
 
-/// The wanted number of threads, or as many as the machine has where it is 0.
+/// `wanted`, or the machine's number of threads where it is 0.
 int threads_of(int wanted);
 
 }  // namespace deflect::frame

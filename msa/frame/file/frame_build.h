@@ -1,4 +1,4 @@
-// From a frame's description to a structure and the loads of its cases.
+// Builds the structure, and the loads of its cases, from a frame's description.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace deflect::frame {
 
-/// By member, in the description's order: the fractions of the length at which nodes stand, from 0 to 1. Empty: as many
-/// elements as the description says.
+/// By member, in the description's order: the fractions of the length at which nodes are, from 0 to 1. Empty: as many
+/// elements as in the description.
 using FrameDivision = std::vector<std::vector<double>>;
 
 /// Node i of the model is node i of the description; inner nodes of members and ends with releases follow. Energy
@@ -21,7 +21,8 @@ using FrameDivision = std::vector<std::vector<double>>;
 struct FrameModel {
   Model model;
   NameIndex nodes, members;
-  std::vector<int> first_element;                      ///< by member, and one behind the last: its beams in the model
+  std::vector<int> first_element;                      ///< by member, and one past the last: index of its first beam in
+                                                       ///< the model
   std::vector<double> mass_per_length;                 ///< by member, kg/m; 0 without density
   std::vector<double> expansion;                       ///< by member, 1/K; 0 where not given
   std::vector<std::array<int, 6>> support_constraint;  ///< by support and freedom, −1 where free
@@ -34,13 +35,14 @@ struct FrameModel {
 FrameModel build_frame(const FrameDescription&, const FrameDivision& = {});
 
 struct CaseLoad {
-  VectorX forces;                     ///< by freedom, line loads and heat included
-  VectorX thermal;                    ///< the part of it that heat is equivalent to
+  VectorX forces;                     ///< by freedom, line loads and temperature included
+  VectorX thermal;                    ///< the part of it by temperature
   VectorX values;                     ///< by constraint: displacements of supports
   std::vector<ElementLoad> elements;  ///< by beam
 };
 
-/// Throws InputError naming the case where it acts across the plane of a plane frame, or moves what is not supported.
+/// Throws InputError with the case where it has a load out of the plane of a plane frame, or displaces an unsupported
+/// freedom.
 CaseLoad load_of(const FrameDescription&, const FrameModel&, const std::string& name, const LoadCase&);
 
 }  // namespace deflect::frame

@@ -1,18 +1,18 @@
-// The parts of a frame's analysis: what its linear and its other load cases share.
+// Parts of a frame's analysis that linear and nonlinear load cases share.
 #pragma once
 
 #include "msa/frame/file/frame_analysis.h"
 
 namespace deflect::frame {
 
-/// The load cases in second order or at finite displacement, with the notes of their solver; the structure is that of
-/// `out`, which gets the constraints that hold idle spins.
+/// Solves the load cases in second-order or finite geometry and adds the solver's notes. `out` contains the structure,
+/// to which the constraints that hold idle spins are added.
 void analyse_geometric(const FrameDescription&, FrameResult& out);
 
-/// Energies by group and in all, from those of the members and the elongations of the springs.
+/// Computes energies by group and in total, from those of the members and the elongations of the springs.
 void find_energies(CaseResult&, const FrameDescription&, const FrameModel&, const VectorX& elongations);
 
-/// The one with the larger magnitude stays; rounding does not move it.
+/// Keeps the moment with the larger magnitude; a difference by rounding does not replace it.
 void keep_larger(LargestMoment& largest_so_far, double value, double x);
 
 inline double ratio(double part, double whole) { return part == 0 ? 0 : part / whole; }

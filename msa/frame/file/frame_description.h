@@ -1,5 +1,4 @@
-// A plain frame: what a frame file says, as data without methods. SI units throughout, base axes unless a field says
-// otherwise.
+// A frame: the contents of a frame file as plain data. SI units throughout, base axes unless a field says otherwise.
 //
 // A member's axes: x runs from `from` to `to`; y lies in the plane of x and the vector `y_axis`, on its side; z = x ×
 // y. Without y_axis that vector is the base z (local y points up), and the base x for a member within 1e-3 rad of
@@ -32,8 +31,8 @@ struct FrameMaterial {
   std::optional<double> expansion;  ///< 1/K, for temperature
 };
 
-/// bending_factor multiplies EIy and EIz. A released freedom of an end is not passed on to the node. A truss member
-/// passes on no rotation at either end.
+/// bending_factor multiplies EIy and EIz. A released freedom of an end is not connected to the node. A truss member
+/// connects no rotation at either end.
 struct FrameMember {
   std::string from, to, section, material;
   BeamTheory beam = BeamTheory::euler_bernoulli;
@@ -41,11 +40,11 @@ struct FrameMember {
   Freedoms release_from{}, release_to{};
   bool truss = false;
   double bending_factor = 1;
-  int elements = 1;  ///< equal ones, one behind the other
+  int elements = 1;  ///< number of equal elements in a row
 };
 
-/// Between the body of `node` and the ground, or the body of the node `to`; it sits at `node`, and an arm that is rigid
-/// leads to `to` where that stands elsewhere. N/m, Nm/rad, base axes.
+/// Between the body of `node` and the ground, or the body of the node `to`. It is located at `node`; where `to` is
+/// elsewhere, a rigid arm connects them. N/m, Nm/rad, base axes.
 struct FrameSpring {
   std::string node, to;  ///< to: "" for the ground
   FreedomValues stiffness;
@@ -58,7 +57,7 @@ struct RigidLink {
   Freedoms freedoms{true, true, true, true, true, true};
 };
 
-/// Σ factor · arm · u = 0. `arm` (m) makes a length of a rotation; either all terms are lengths, or all are angles.
+/// Σ factor · arm · u = 0. `arm` (m) turns a rotation into a length; all terms must be lengths, or all angles.
 struct ConstraintTerm {
   std::string node;
   int freedom = 0;
@@ -69,7 +68,7 @@ struct FrameConstraint {
   std::vector<ConstraintTerm> terms;
 };
 
-/// Constant along the member, per length of the member, in base axes or in the member's.
+/// Constant along the member, per unit length of the member, in base axes or in the member's.
 struct LineLoad {
   Vector3 q = Vector3::Zero();  ///< N/m
   bool member_axes = false;
@@ -92,7 +91,7 @@ struct FrameDescription {
   std::string name, about, source;
   Plane plane = Plane::none;
   Geometry geometry = Geometry::linear;
-  int load_steps = 1;  ///< at least, where the geometry is finite
+  int load_steps = 1;  ///< at least; finite geometry only
   Named<FrameMaterial> materials;
   Named<Section> sections;
   Named<Vector3> nodes;  ///< m

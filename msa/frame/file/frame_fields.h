@@ -1,4 +1,4 @@
-// The fields of a frame file, for reading and writing (see msa/mechanism/fields.h), and what its parts share.
+// The fields of a frame file, for reading and writing (see msa/mechanism/fields.h), and helpers that its parts share.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ namespace deflect::frame {
 
 void describe(FieldVisitor&, FrameDescription&);
 
-/// What later parts of the file refer to.
+/// Names that later parts of the file refer to.
 struct FrameNames {
   const FrameDescription& frame;
   NameIndex nodes, members, materials, sections, supports;
@@ -22,7 +22,7 @@ struct FrameNames {
 
 void describe(FieldVisitor&, LoadCase&, const FrameNames&);
 
-/// Named entries described by a function. Plain: an entry is one value under the key "".
+/// Named entries, described by a function. `is_plain`: an entry is one value under the key "".
 template <class T>
 class FrameEntries final : public Elements {
  public:
@@ -50,7 +50,7 @@ class FrameEntries final : public Elements {
 /// "unknown node 'N9', did you mean 'N8'?" with the known names where they are few.
 std::string unknown_name(const char* what, const std::string& name, const std::vector<std::string>& known);
 
-/// Requires that `name`, which stands under `key`, is one of the list's. Returns where, −1 when it is not.
+/// Requires that `name`, the value of `key`, is in the list. Returns its index, or −1 where it is not.
 template <class T>
 int require_known(FieldVisitor& v, const char* key, const char* what, const std::string& name, const NameIndex& index,
                   const Named<T>& list) {

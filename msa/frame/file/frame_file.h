@@ -1,4 +1,4 @@
-// Frame files: YAML in and out. One of each:
+// Frame files: YAML in and out. Every key appears once in this example:
 //
 //   name: portal
 //   geometry: finite
@@ -23,7 +23,7 @@
 //       displacements: {C: {uz: -1 mm}}
 //
 // A material has nu or G; a section any shape of a device file; a support `clamped`, `pinned` (ux uy uz) or a list; a
-// spring without `to` stands on the ground; a link without `freedoms` has all six. What the fields mean:
+// spring without `to` is connected to the ground; a link without `freedoms` has all six. The fields are explained in
 // frame_description.h.
 #pragma once
 
@@ -36,19 +36,19 @@
 
 namespace deflect::frame {
 
-/// Reads a frame. Strict: an unknown or doubled key, a wrong or missing unit, a missing field, a name that does not
-/// resolve, a member without length, a load or a displacement where it cannot act is an InputError "file:line: path:
-/// what, and the nearest valid name".
+/// Reads a frame strictly. Throws InputError "file:line: path: what is wrong, and the nearest valid name" for an
+/// unknown or repeated key, a wrong or missing unit, a missing field, a name that does not resolve, a member without
+/// length, and a load or displacement where it cannot act.
 FrameDescription read_frame(const std::filesystem::path&);
 
-/// The same from text; `origin` stands for the file's name in messages.
+/// The same from text; `origin` takes the place of the file's name in messages.
 FrameDescription parse_frame(std::string_view yaml, const std::string& origin);
 
 /// The description as a frame file; reading it again gives an equal description, to the last bit of every number.
 std::string write_frame(const FrameDescription&);
 
-/// A new description with the edits in it one after the other, checked like a file. InputError naming the edit and what
-/// does not fit, with the nearest valid name.
+/// A copy with the edits made in order, checked like a file. Throws InputError with the edit, what does not fit, and
+/// the nearest valid name.
 FrameDescription edited(const FrameDescription&, const std::vector<Edit>&);
 
 }  // namespace deflect::frame

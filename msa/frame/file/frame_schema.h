@@ -1,4 +1,4 @@
-// The keys of frame files as data: schema.h, from the field list of frames.
+// The schema (schema.h) of frame files, from the list of their fields.
 #pragma once
 
 #include "msa/fields/schema.h"

@@ -1,4 +1,4 @@
-// Where a name stands in a list of named things, in constant time: lists of a frame can be long.
+// Index of a name in a list of named things, in constant time, because the lists of a frame can be long.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ class NameIndex {
     for (const auto& [name, value] : list) index_.emplace(name, static_cast<int>(index_.size()));
   }
 
-  /// −1 where there is none.
+  /// −1 where the name is unknown.
   int find(const std::string& name) const {
     const auto found = index_.find(name);
     return found == index_.end() ? -1 : found->second;

@@ -1,4 +1,4 @@
-// From a mechanism at a pose to a structure.
+// Builds the structure of a mechanism at a pose.
 #pragma once
 
 #include <map>
@@ -11,11 +11,11 @@
 
 namespace deflect::frame {
 
-/// How members are divided: by part name, the fractions of the length at which nodes stand, from 0 to 1. A part that
-/// is not named is one element.
+/// How members are divided: by part name, the fractions of the length at which nodes are, from 0 to 1. A part that is
+/// not listed is one element.
 using MemberDivision = std::map<std::string, std::vector<double>>;
 
-/// Of Young's and shear modulus and section; shear deforms a Timoshenko member only.
+/// From Young's and shear modulus and the section; only a Timoshenko member has shear deformation.
 BeamRigidity rigidity(const PlacedMember&);
 
 /// Every member in that many equal elements.
@@ -27,12 +27,12 @@ MemberDivision halved(const Configuration&, const MemberDivision&);
 struct MechanismModel {
   Model model;
   int ground = 0;    ///< fixed
-  int base = 0;      ///< the base's body; the ground where the base is rigid
+  int base = 0;      ///< node of the base's body; `ground` where the base is rigid
   int platform = 0;  ///< at T, the platform's body
-  int tool = 0;      ///< at T, behind the tool's joint
-  /// Pairs of nodes that a rigid arm of a body lies between; for pictures.
+  int tool = 0;      ///< at T, after the tool's joint
+  /// Pairs of nodes connected by a rigid arm of a body; for drawings.
   std::vector<std::pair<int, int>> arms;
-  /// By leg, what attaches it to the platform: ranges [first, last) of the model's constraints and springs.
+  /// By leg, its attachment to the platform: ranges [first, last) of the model's constraints and springs.
   struct Attachment {
     std::size_t first_constraint = 0, last_constraint = 0, first_spring = 0, last_spring = 0;
   };
@@ -41,11 +41,11 @@ struct MechanismModel {
   std::vector<std::pair<std::size_t, std::size_t>> members;
 };
 
-/// World, base joint, legs, platform, tool joint. Bodies are nodes with lever arms; joints between a member and a body
-/// act on that body's node directly.
+/// Contains world, base joint, legs, platform and tool joint. Bodies are nodes with lever arms; joints between a member
+/// and a body act directly on that body's node.
 MechanismModel build(const Configuration&, const MemberDivision& = {});
 
-/// One leg between the world and a free platform node at T; base and tool joints left out.
+/// One leg between the world and a free platform node at T; without base and tool joints.
 MechanismModel build_leg(const Configuration&, std::size_t leg, const MemberDivision& = {});
 
 }  // namespace deflect::frame

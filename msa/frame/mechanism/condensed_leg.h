@@ -1,18 +1,19 @@
-// A leg condensed to the platform, the elongations θ of its springs of load-dependent stiffness kept beside the
-// platform's twist (static condensation, R. J. Guyan, AIAA Journal 3 (1965) 380, exact in statics).
+// A leg condensed to the platform's twist and the elongations θ of its springs with load-dependent stiffness (static
+// condensation, R. J. Guyan, AIAA Journal 3 (1965) 380, exact in statics).
 //
-// It is walked from the ground. What lies behind a node that moves by d stores ½dᵀK d + dᵀG θ + ½θᵀA θ: K d + G θ pulls
-// the node, Gᵀd + A θ the springs (SI, base axes; K 6×6, G 6×n, A n×n). Over one more member of the ends a, b and the
-// stiffness k
+// The walk starts at the ground. The part of the leg between the ground and a node that moves by d stores the energy
+// ½dᵀK d + dᵀG θ + ½θᵀA θ: the forces on it are K d + G θ at the node and Gᵀd + A θ at the springs (SI, base axes; K
+// 6×6, G 6×n, A n×n). One more member with the ends a, b and the stiffness k gives
 //   d_a = −M⁻¹(k_ab d_b + G θ),   M = k_aa + K,   K' = −XᵀK M⁻¹k_ab,   G' = −k_ba M⁻¹G,   A' = A − GᵀM⁻¹G,
-// X the motion of a with b as one body. K' passes on what pulls a, the two in series; k_bb − k_ba M⁻¹k_ab is the same
-// as a difference of larger numbers, taken only where nothing but joints lies behind.
-// Over a freedom q of a joint with the unit motion t, behind which d = d' − t q, u = K t and g = Gᵀt: a kept one
+// with X the rigid motion of a with b. This K' is the series combination; k_bb − k_ba M⁻¹k_ab is equal, but a
+// difference of larger numbers, and used only where only joints lie before.
+// A freedom q of a joint with the unit motion t gives d = d' − t q; let u = K t and g = Gᵀt. A kept one
 //   adds to G the column −u, to A the row and the column −g and the diagonal tᵀu;
-// one of constant stiffness c, 0 where it is free, goes,
+// one of constant stiffness c (0 where it is free) is eliminated,
 //   q = (uᵀd' + gᵀθ)/a,   a = tᵀu + c,   K' = K − u uᵀ/a,   G' = G − u gᵀ/a,   A' = A − g gᵀ/a.
-// At the start of the first member d_a = Φ q, Φ the motions of the joints before it; those not kept go together. At the
-// platform springs that pull with s + κ θ change the leg by as many ranks as they are (Woodbury's formula):
+// At the start of the first member d_a = Φ q, with Φ the motions of the joints before it; those not kept are eliminated
+// together. At the platform, springs with the force s + κ θ change the leg by a matrix whose rank is their number
+// (Woodbury's formula):
 //   B = (A + diag κ)⁻¹,   θ = −B(Gᵀd + s),   wrench on the platform (K − G B Gᵀ) d − G B s.
 #pragma once
 
@@ -26,40 +27,42 @@ namespace deflect::frame {
 
 class CondensedLeg {
  public:
-  /// For legs of the same parts, freedoms and laws.
+  /// All legs given later must have the same parts, freedoms and laws.
   CondensedLeg(const PlacedLeg&, const MemberDivision&);
 
   /// False where the leg has parts in parallel or no member, more than twelve freedoms before its first member or
-  /// springs of load-dependent stiffness, springs that jump or belong to the pose (a cable as long as the actuator),
-  /// joints of given 6×6 stiffness, a misfit, or stands beside.
+  /// springs of load-dependent stiffness, springs that jump or depend on the pose (a cable as long as the actuator),
+  /// joints of given 6×6 stiffness, a misfit, or where it is a joint beside the legs.
   bool applies() const { return applies_; }
 
-  /// Of load-dependent stiffness. linearise() wants k and s; stretch() finds elongation and force.
+  /// A spring of load-dependent stiffness. linearise() needs k and s; stretch() computes elongation and force.
   struct Spring {
     SpringLaw law;
     double k = 0, s = 0, elongation = 0, force = 0;
   };
   std::vector<Spring>& springs() { return springs_; }
 
-  /// The walk, at a pose; the placed leg may go afterwards. False, and no leg, where something in it is held by
-  /// nothing.
+  /// Condenses the leg at a pose; the placed leg need not outlive the call. Returns false where a part of it is not
+  /// held.
   bool condense(const PlacedLeg&, const Vector3& p_WT);
   double stiffest() const { return stiffest_; }  ///< of its elements along or across, N/m
 
-  /// The springs as they are. False where one is held by nothing. A leg without springs needs it not.
+  /// Takes in the springs with their present k and s. Returns false where one is not held. Not needed for a leg without
+  /// springs.
   bool linearise();
   const Matrix6& stiffness() const { return held_.K; }
-  const Vector6& pull() const { return p_; }  ///< on the platform at rest
-  void stretch(const Vector6& d);             ///< by the displacement of T
+  const Vector6& pull() const { return p_; }  ///< force on the platform at zero displacement
+  void stretch(const Vector6& d);             ///< updates the springs for the displacement d of T
 
   struct LegForces {
     Vector6 reaction = Vector6::Zero();  ///< wrench of the ground on the leg, about T
     double energy = 0;
   };
-  /// Of members and springs themselves, from the platform back to the ground, for the d of the last stretch().
+  /// Reaction and energy computed from members and springs, from the platform back to the ground, for the d of the last
+  /// stretch().
   LegForces follow(const Vector6& d) const;
 
-  /// Twists at T of its passive joints (columns).
+  /// Twists at T of the leg's passive joints (columns).
   Matrix6X passive_twists(const PlacedLeg&, const Vector3& p_WT) const;
 
  private:
@@ -68,7 +71,7 @@ class CondensedLeg {
   using Angles = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
 
-  /// What lies behind a node at `at`; G and A have zeros for springs that lie further on.
+  /// The part of the leg between the ground and a node at `at`; G and A are zero for springs after it.
   struct Behind {
     Vector3 at = Vector3::Zero();
     Matrix6 K = Matrix6::Zero();
@@ -77,11 +80,11 @@ class CondensedLeg {
   };
   struct Freedom {
     std::size_t index;  // tx … rz
-    Eigen::Index kept;  // of the springs; −1: none of them
-    double k = 0;       // of the others; 0: free
+    Eigen::Index kept;  // index among the kept springs; −1: not kept
+    double k = 0;       // stiffness of one that is not kept; 0: free
     Vector6 t = Vector6::Zero(), u = Vector6::Zero();
     Angles g = {};
-    double a = 0;  // 0: an idle freedom, which stays
+    double a = 0;  // 0: an idle freedom, which does not move
   };
   struct Member {
     CondensedMember condensed;

@@ -1,4 +1,4 @@
-// The second theory: matrix structural analysis of a mechanism at a pose. It sees the configuration and nothing of the
+// The MSA theory: matrix structural analysis of a mechanism at a pose. It depends on the configuration only, not on the
 // closed form in `analytic`.
 #pragma once
 
@@ -14,14 +14,15 @@
 
 namespace deflect::frame {
 
-/// Response of the tool point T to one wrench [f; m] at T, base axes, SI; dead: its direction stays. The payload's
-/// weight acts with it. Displacement and energies are those against the mechanism assembled at 20 °C without load and
-/// weight.
+/// Response of the tool point T to one wrench [f; m] at T, base axes, SI; the load is dead: its direction is fixed. The
+/// payload's weight acts with it. Displacement and energies are relative to the mechanism assembled at 20 °C without
+/// load and weight.
 struct MsaSolution {
   Vector6 displacement;  ///< [δ; θ] of T, θ a rotation vector
-  Vector6 load;          ///< the wrench and the weight
-  Solution state;        ///< of MsaModel::model(): not converged is said here, and why in state.geometric
-  /// Strain energy by part, J, largest first. ½ loadᵀd where everything is linear and as warm as it was assembled.
+  Vector6 load;          ///< the wrench plus the weight
+  Solution state;        ///< of MsaModel::model(); whether it converged, and why not (state.geometric)
+  /// Strain energy by part, J, largest first. The sum is ½ loadᵀd where everything is linear and at the temperature of
+  /// assembly.
   std::vector<std::pair<std::string, double>> energies;
   std::vector<double> slips;  ///< of the frictions after the load, as in Conditions
 };
@@ -35,7 +36,7 @@ class MsaModel {
   MsaModel& operator=(const MsaModel&) = delete;
 
   const Model& model() const { return solver_.model(); }
-  /// Idle spins that were held, redundant constraints, poor conditioning.
+  /// Notes on idle spins that were held, redundant constraints, poor conditioning.
   const std::vector<std::string>& notes() const { return solver_.notes(); }
   const MechanismModel& mechanism() const { return built_; }
   /// Solver::rounding() of the answers so far.
@@ -43,19 +44,19 @@ class MsaModel {
 
   bool linear() const { return solver_.linear_springs(); }
 
-  /// Second order and finite: members that bend far or are pressed hard want a division (MemberDivision); one element
-  /// overestimates the buckling load of a cantilever by 0.8 %, two by 0.05 %. Without load both are linear.
+  /// Second order and finite: members with large bending or compression must be divided (MemberDivision); one element
+  /// overestimates the buckling load of a cantilever by 0.8 %, two by 0.05 %. Without load linear geometry is used.
   MsaSolution solve(const Vector6& F_T_W, const Conditions& = {});
 
-  /// The mechanism as assembled, without load and weight: strained where legs stand beside their seats (misfits).
+  /// The mechanism as assembled, without load and weight: strained where legs have misfits.
   const Solution& assembled();
 
-  /// Tangent stiffness at T of the structure in a state, as computed, not symmetrised, and of each leg alone at the
-  /// platform's T: reactions to unit displacements. A direction in which nothing holds T has zero stiffness. Where
-  /// parts are rigid T may move in `motions` alone (orthonormal columns, rotations times the configuration's size):
-  /// fewer than six; K is then that of these motions and resists no other. A leg's K likewise. Of a state that is not
-  /// linear the tool's stiffness has its geometric part, per spin (geometric_solver.h), symmetric where no moment is
-  /// applied, and the legs are left empty: forces between them are no leg's own.
+  /// Tangent stiffness at T of the structure in a state, not symmetrised, and of each leg alone at the platform's T:
+  /// reactions to unit displacements. A direction in which nothing holds T has zero stiffness. Where parts are rigid, T
+  /// may move only in `motions` (fewer than six orthonormal columns, rotations times the configuration's size). K is
+  /// then the stiffness for these motions and zero for others; a leg's K likewise. For a state in nonlinear geometry K
+  /// includes the geometric stiffness, with respect to spins (geometric_solver.h), and is symmetric where no moment is
+  /// applied; `legs` is then empty, because the geometric stiffness cannot be assigned to single legs.
   struct Stiffness {
     Matrix6 K;
     std::vector<Matrix6> legs;
@@ -81,11 +82,11 @@ class MsaModel {
   MemberDivision division_;
   MechanismModel built_;
   Solver solver_;
-  std::unique_ptr<Solution> assembled_;  // made when first asked for
+  std::unique_ptr<Solution> assembled_;  // made on first use
   std::vector<std::pair<std::string, double>> rest_energies_;
-  std::unique_ptr<GeometricSolver> geometric_;  // made when a geometry that is not linear is first asked for
-  std::unique_ptr<Held> tool_held_;             // made when a stiffness is first asked for
-  std::unique_ptr<Reactions> supports_;         // made when a reaction is first asked for
+  std::unique_ptr<GeometricSolver> geometric_;  // made on first use of a nonlinear geometry
+  std::unique_ptr<Held> tool_held_;             // made for the first stiffness
+  std::unique_ptr<Reactions> supports_;         // made for the first reaction
 };
 
 }  // namespace deflect::frame

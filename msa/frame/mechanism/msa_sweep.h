@@ -1,6 +1,6 @@
 // The frame solver for one device at many poses and loads: legs condensed to the platform once per pose
-// (condensed_leg.h), where their stiffness adds up; nothing is allocated from pose to pose. Springs whose stiffness
-// depends on their load are linearised about their forces until these stay, which costs no walk along the legs.
+// (condensed_leg.h), whose stiffnesses add up; nothing is allocated from pose to pose. Springs with load-dependent
+// stiffness are linearised about their forces until these converge, without walking along the legs again.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -12,26 +12,26 @@ namespace deflect::frame {
 
 class MsaSweep {
  public:
-  /// For configurations of this device: of the same parts, freedoms and laws.
+  /// For configurations of this device: all must have the same parts, freedoms and laws.
   explicit MsaSweep(const Configuration&, const MemberDivision& = {});
 
-  /// False where the device has what a sweep leaves to MsaModel: legs that CondensedLeg leaves, base or tool that move
-  /// or yield.
+  /// False where the device needs MsaModel: legs to which CondensedLeg does not apply, a base or tool that moves or
+  /// yields.
   bool applies() const { return applies_; }
 
-  /// Moves on, for any number of solve(); the configuration may go afterwards.
+  /// Moves to another pose, for any number of solve(). The configuration need not outlive the call.
   void at(const Configuration&);
 
-  /// Response there to the wrench F at T and the weight, base axes, SI: displacement [δ; θ] of T and the tangent
-  /// stiffness. False, and no result, where nothing holds T in some direction, a contact carries nothing, the springs'
-  /// forces do not settle, or a member is so stiff beside the whole (10⁵ times) that condensation would lose digits
-  /// (relative.h keeps them).
+  /// Response at this pose to the wrench F at T and the weight, base axes, SI: displacement [δ; θ] of T and tangent
+  /// stiffness. Returns false, without a result, where nothing holds T in some direction, where a contact carries
+  /// nothing, where the springs' forces do not converge, or where a member is so much stiffer than the whole (10⁵
+  /// times) that condensation would lose digits (relative.h avoids this).
   bool solve(const Vector6& F_T_W);
 
   const Vector6& displacement() const { return displacement_; }
   const Matrix6& stiffness() const { return stiffness_; }
   bool linear() const { return linear_; }  ///< no spring's stiffness depends on its load
-  /// Of the last solve(): a leg's stiffness; the wrench of the ground on the legs, about T; the stored energy, J.
+  /// Of the last solve(): stiffness of a leg; wrench of the ground on the legs, about T; stored energy, J.
   const Matrix6& leg_stiffness(std::size_t leg) const { return legs_[leg].stiffness(); }
   const Vector6& reaction() const { return reaction_; }
   double energy() const { return energy_; }

@@ -1,4 +1,4 @@
-// The reduced tangent stiffness Tᵀ K T: pattern and scatter positions once, values for every state of the springs.
+// Assembles the reduced tangent stiffness Tᵀ K T: the pattern once, the values for every state of the springs.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace deflect::frame {
 
 class Assembly {
  public:
-  /// threads: 0: as many as there are, where there are many beams. The same bits for any number.
+  /// `threads`: 0: as many as the machine has, for many beams. Results are bit-identical for any number.
   Assembly(const Model&, const Elimination&, int threads = 0);
 
   const SparsePattern& pattern() const { return pattern_; }
@@ -23,14 +23,14 @@ class Assembly {
     std::vector<int> positions;  // of (i, j), i ≥ j, row by row
   };
   SparsePattern pattern_;
-  std::vector<double> beams_;  // the part that no state changes
+  std::vector<double> beams_;  // the constant part of the values
   std::vector<ReducedSpring> springs_;
 };
 
-/// Σ over beams and springs of what they pull at the freedoms: f_int(u), and the springs' tangents at u.
+/// Internal forces f_int(u) of beams and springs by freedom, and the springs' tangents at u.
 VectorX internal_forces(const Model&, const VectorX& u, VectorX& spring_tangents);
 
-/// By spring, the forces of their laws.
+/// The forces of the springs' laws, by spring.
 VectorX spring_forces(const Model&, const ExtendedVector& u);
 
 /// f_int(u) for given forces of the springs.
@@ -41,7 +41,7 @@ VectorX forces_with(const Model&, const ExtendedVector& u, const VectorX& spring
 VectorX tangent_forces(const Model&, const VectorX& u, const VectorX& spring_tangents);
 VectorX tangent_forces(const Model&, const ExtendedVector& u, const VectorX& spring_tangents);
 
-/// The vector with zeros behind it, where the solver's model has grown.
+/// The vector padded with zeros, because the solver's model may have more freedoms.
 VectorX padded(const VectorX&, Eigen::Index size);
 
 /// form(u).

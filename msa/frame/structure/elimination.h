@@ -1,5 +1,5 @@
-// Exact elimination of linear constraints: u = T q + G b, where b holds the constraints' values and q the freedoms that
-// stay independent. No penalty, no multiplier: the reduced stiffness Tᵀ K T stays symmetric and as definite as K.
+// Exact elimination of linear constraints: u = T q + G b, with b the constraints' values and q the independent
+// freedoms. Without penalties or multipliers: the reduced stiffness Tᵀ K T stays symmetric and as definite as K.
 #pragma once
 
 #include <string>
@@ -31,11 +31,11 @@ struct Elimination {
 };
 
 /// Constraints are taken in order; each eliminates the freedom with the largest coefficient (rotations weighed by the
-/// size of the structure), among comparable ones the least connected. One that the earlier ones imply to 1e-9 is
-/// redundant.
+/// size of the structure), among comparable ones the least connected. A constraint that the earlier ones imply to 1e-9
+/// is redundant.
 Elimination eliminate(const Model&);
 
-/// Throws ModelError naming the constraints when a redundant one contradicts those that imply it for these values.
+/// Throws ModelError with the constraints where, for these values, a redundant one contradicts those that imply it.
 void check_consistent(const Model&, const Elimination&, const VectorX& values);
 
 /// "constraint 'a' is redundant: 'b', 'c' already imply it", for each.

@@ -1,4 +1,4 @@
-// A linear structure solved with extended digits throughout, for the few whose stiffnesses leave doubles none.
+// A linear structure solved in extended precision, for structures whose stiffnesses differ too much for doubles.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace deflect::frame {
 
-/// TᵀKT as the sum of SᵀkS over beams and springs. S gives what strains a part, the motion of a beam's end b beside the
-/// body of its end a, from the freedoms q; k is the part's stiffness in its own axes. Rigid motions strain nothing, to
-/// the digits of Extended, however stiff the part is. Factored as LDLᵀ, which costs n³/6 operations of software: for up
+/// TᵀKT as the sum of SᵀkS over beams and springs. S maps the freedoms q to the strains of a part (motion of a beam's
+/// end b relative to the body of its end a); k is the part's stiffness in its own axes. Rigid motions cause no strain,
+/// to the precision of Extended, however stiff the part. Factored as LDLᵀ, which costs n³/6 software operations; for up
 /// to most_freedoms.
 class ExtendedStructure {
  public:
@@ -19,8 +19,8 @@ class ExtendedStructure {
 
   ExtendedStructure(const Model&, const Elimination&, const VectorX& spring_tangents);
 
-  /// u under a load by freedom, for the constraints' values. Freedoms that nothing resists stay where they are; none
-  /// where the load drives them.
+  /// u under a load by freedom, for the constraints' values. Freedoms without any stiffness stay at 0; nullopt where
+  /// the load acts on them.
   std::optional<ExtendedVector> solve(const VectorX& load, const VectorX& values) const;
 
  private:

@@ -1,5 +1,5 @@
-// A structure: nodes with six freedoms, beams, scalar springs and linear constraints. Data with a few builders; it
-// knows nothing of mechanisms. SI, base axes.
+// A structure: nodes with six freedoms, beams, scalar springs and linear constraints. Data with a few builders,
+// independent of mechanisms. SI, base axes.
 #pragma once
 
 #include <array>
@@ -25,12 +25,12 @@ struct Node {
   Vector3 position;
 };
 
-/// A law between the two sides of a linear form: elongation δ = form(u).
+/// A spring with the elongation δ = form(u).
 struct Spring {
   LinearForm elongation;
   SpringLaw law;
   std::string name, part;
-  int defined_by = -1;  ///< the constraint that makes the elongation a coordinate of its own (relative.h); −1: none
+  int defined_by = -1;  ///< the constraint that defines the elongation as a coordinate (relative.h); −1: none
 };
 
 /// form(u) = value.
@@ -38,11 +38,11 @@ struct Constraint {
   LinearForm form;
   double value = 0;
   std::string name;
-  int eliminates = -1;  ///< the freedom to eliminate with it, where it may; −1 leaves the choice to the elimination
-  bool may_repeat = false;  ///< others may imply it: that is no news
+  int eliminates = -1;      ///< the preferred freedom to eliminate; −1: chosen by the elimination
+  bool may_repeat = false;  ///< redundancy is expected and not reported
 };
 
-/// A freedom that a connection leaves free: nothing resists form(u).
+/// A freedom that a connection leaves free: form(u) is not resisted.
 struct Release {
   LinearForm form;
   std::string name;
@@ -54,9 +54,9 @@ struct ConnectionFreedom {
   std::vector<SpringLaw> laws;
 };
 
-/// What the constraints and springs of a connection are at finite displacement: the components tx … rz of the motion of
-/// the body of node b against that of node a (joint_motion.h). Constraints and springs that no connection names keep
-/// their linear forms, of displacements and of the sums of small rotations about the base axes (spins).
+/// Definition of a connection's constraints and springs at finite displacement: the components tx … rz of the motion of
+/// node b's body relative to node a's (joint_motion.h). Constraints and springs outside connections keep their linear
+/// forms in displacements and sums of spins (small rotations about the base axes).
 struct Connection {
   int a = -1, b = 0;  ///< nodes; a = −1: the ground
   Vector3 p;
@@ -70,10 +70,11 @@ struct Model {
   std::vector<Beam> beams;
   std::vector<Spring> springs;
   std::vector<Constraint> constraints;
-  std::vector<Release> releases;           ///< for words about motions; they take no part in equilibrium
+  std::vector<Release> releases;           ///< for messages about free motions; no effect on equilibrium
   std::vector<std::pair<int, int>> welds;  ///< nodes of one rigid body
-  std::vector<Connection> connections;     ///< what they became stands in the lists above
-  int watched = -1;  ///< the node that is read and loaded; −1: all nodes. Motions that it does not see do no harm.
+  std::vector<Connection> connections;     ///< their springs and constraints are in the lists above
+  int watched = -1;  ///< the node that is read and loaded; −1: all nodes. Free motions that do not move it are
+                     ///< harmless.
 
   int dofs() const { return static_cast<int>(6 * nodes.size() + scalars.size()); }
   /// "node 'leg 1 B' uz".
@@ -84,14 +85,14 @@ struct Model {
   /// u_node = 0, six constraints "name ux" …; their values may be changed to prescribe displacements.
   /// At finite displacement the rotations are the angles of Rx Ry Rz from the base axes.
   void fix(int node, const std::string& name);
-  /// The record of a connection between the ground and a node at its place, in base axes; the caller names what it
-  /// made.
+  /// Adds a connection between the ground and a node at the node's position, in base axes. The caller sets the indices
+  /// of its constraints and springs.
   Connection& grounded(int node);
   /// Node b moves as one body with node a.
   void join(int a, int b, const std::string& name);
   /// A joint at p with axes R (columns x y z) between the body of node a and the body of node b: the relative twist
-  /// Rᵀ(d_b(p) − d_a(p)) is constrained where rigid, sprung where it has laws. Intermediate freedoms of laws in series
-  /// become scalars, so all nodes must have been added before the first connection with two laws on a freedom.
+  /// Rᵀ(d_b(p) − d_a(p)) is constrained where rigid and has springs where it has laws. Intermediate freedoms of laws in
+  /// series become scalars, so all nodes must have been added before the first connection with two laws on a freedom.
   void connect(int a, int b, const Vector3& p, const Matrix3& R, const std::array<ConnectionFreedom, 6>&,
                const std::string& name, const std::string& part);
 };

@@ -7,7 +7,7 @@
 
 namespace deflect::frame {
 
-/// Combines the columns so that each is 1 in a row in which the others rest: motions come apart. Returns these rows.
+/// Separates motions: combines the columns so that each is 1 in a row where the others are 0. Returns these rows.
 std::vector<Eigen::Index> take_apart(MatrixX& U);
 
 }  // namespace deflect::frame

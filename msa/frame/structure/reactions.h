@@ -1,4 +1,4 @@
-// The forces with which constraints act.
+// Constraint forces.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 
 namespace deflect::frame {
 
-/// λ with f_int(u) − f = Cᵀ λ: what a support or joint pushes along its constraint's form, N or Nm by form; zero for
-/// redundant constraints. Factorised once for a structure, used for all its states and loads.
+/// λ with f_int(u) − f = Cᵀ λ: the force of a support or joint along its constraint's form, N or Nm; zero for redundant
+/// constraints. Factorised once for a structure, used for all its states and loads.
 class Reactions {
  public:
   Reactions(const Model&, const Elimination&);

@@ -1,7 +1,7 @@
-// Exactness beside very stiff parts. A member 1e12 times stiffer than its neighbours moves almost as a rigid body: its
-// forces are differences of displacements that agree to twelve digits, and nothing of them is left. Such a part gets
-// the deformation itself as coordinates, u_b = X u_a + s, so that its stiffness acts on s and its rigid motion costs
-// exactly nothing. The structure is the same; any ratio of stiffnesses, up to rigid, has the same digits.
+// Relative coordinates for very stiff parts. A member 1e12 times stiffer than its neighbours moves almost as a rigid
+// body: its forces are differences of displacements that agree to twelve digits, and lose all accuracy. Such a part
+// gets its deformation as coordinates, u_b = X u_a + s, so that its stiffness acts on s and its rigid motion causes
+// exactly no force. The structure is the same, and accuracy does not depend on the ratio of stiffnesses.
 #pragma once
 
 #include "msa/frame/structure/model.h"
@@ -11,8 +11,8 @@ namespace deflect::frame {
 /// Ten times the stiffest part, N/m.
 double contact_stiffness(const Model&);
 
-/// Gives gaps and rigid sides of springs (stepped_spring.h) their contact stiffness: ten times the stiffest part, so
-/// that each step of λ leaves at most a tenth of what it lacks.
+/// Sets the contact stiffness of gaps and rigid sides of springs (stepped_spring.h) to ten times the stiffest part, so
+/// that each update of λ reduces its error to a tenth at most.
 void give_contacts_stiffness(Model&);
 
 /// Whether the next function would find a beam or a spring to change.

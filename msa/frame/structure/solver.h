@@ -21,7 +21,7 @@ namespace deflect::frame {
 struct NewtonOptions {
   int max_iterations = 100;
   double tolerance = 1e-12;  ///< of the last step and of the residual, relative; rounding may stop a little above
-  std::vector<int> watched;  ///< freedoms of which Solution says how far play lets them move
+  std::vector<int> watched;  ///< freedoms for which Solution::least and most are computed
 };
 
 class ExtendedStructure;
@@ -29,17 +29,18 @@ struct GeometricState;  // geometric_solver.h
 
 struct Solution {
   VectorX u;                  ///< by freedom of Solver::model(), the given ones first: m, rad, and the scalars' unit
-  ExtendedVector fine;        ///< the same, for differences; with u's own digits where springs are not linear
+  ExtendedVector fine;        ///< the same in extended precision, for differences; only the precision of u where
+                              ///< springs are nonlinear
   VectorX spring_tangents;    ///< N/m or Nm/rad at u; infinite where a law is rigid
-  VectorX spring_forces;      ///< N or Nm, beside preloads
-  VectorX heat;               ///< among the loads, what members that are warmer push (MsaModel); by freedom
-  std::vector<double> slips;  ///< of frictions after the load, by their numbers
-  /// Springs whose play nothing loads, where the structure floats in it. u is the middle: of all displacements that are
-  /// in equilibrium the one with the least Σ (δ/gap)² over such springs (set_valued_laws.h).
+  VectorX spring_forces;      ///< N or Nm, in excess of preloads
+  VectorX heat;               ///< thermal part of the loads (MsaModel); by freedom
+  std::vector<double> slips;  ///< of friction elements after the load, by their numbers
+  /// Springs with unloaded play in which the structure floats. u is the middle: of all displacements in equilibrium,
+  /// the one with the least Σ (δ/gap)² over these springs (set_valued_laws.h).
   std::vector<std::string> loose;
-  MatrixX free;         ///< columns: how u changes within that play, which changes no force
+  MatrixX free;         ///< columns: changes of u within that play, which change no force
   VectorX least, most;  ///< by NewtonOptions::watched: how far it may move from u
-  std::string message;  ///< where it did not converge, why, if that is known
+  std::string message;  ///< why it did not converge, if known
   bool converged = false;
   int iterations = 0;
   double residual = 0;  ///< |Tᵀ(f − f_int)| relative to |Tᵀf| + |Tᵀ f_int|, largest entry
@@ -50,49 +51,50 @@ struct Solution {
 /// Keeps elimination, ordering and symbolic analysis of one structure for all its load cases and spring states.
 class Solver {
  public:
-  /// Refuses before any load: ModelError for constraints that contradict each other, and for a structure that cannot
-  /// stand (mobility.h), naming every body that moves, how, and what would hold it. Idle motions are held and noted.
-  /// Very stiff members get relative coordinates (relative.h).
+  /// Throws ModelError for contradicting constraints, and for a structure that cannot stand (mobility.h), with every
+  /// body that can move, its motion, and what would hold it. Idle motions are held, with a note. Very stiff members get
+  /// relative coordinates (relative.h).
   explicit Solver(Model);
 
-  /// The structure that is solved: the given one, with the constraints and coordinates that were added behind its own.
+  /// The structure that is solved: the given one, with added constraints and coordinates appended.
   const Model& model() const { return *model_; }
   const Elimination& elimination() const { return *elimination_; }
-  /// Both of these, from a solver that is done.
+  /// Moves both out of a solver that is no longer needed.
   std::pair<Model, Elimination> structure() &&;
-  /// How many of the model's constraints, the last ones, hold idle motions.
+  /// The number of constraints, at the end of the model's list, that hold idle motions.
   std::size_t idle_motions() const { return idle_.size(); }
 
-  /// No spring's stiffness depends on its load.
+  /// Whether no spring's stiffness depends on its load.
   bool linear_springs() const;
 
-  /// What a user should know: idle spins that were held, redundant constraints, poor conditioning.
+  /// Notes for the user: idle spins that were held, redundant constraints, poor conditioning.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Slips of the frictions before the loads that follow, by their numbers; empty: zero.
+  /// Sets the slips of the friction elements before the next loads, by their numbers; empty: zero.
   void begin_slips(const std::vector<double>&);
 
-  /// One load by freedom (of the given model, or of model()), constraint values as in the model. Newton with a line
-  /// search on the potential where a spring is nonlinear; where one jumps (stepped_spring.h), or Newton does not
-  /// converge, the potential condensed to the elongations of these springs (set_valued.cpp), to rounding. Throws
-  /// ModelError when the load drives an idle spin, and when a state loses the stiffness that keeps the structure
-  /// standing.
+  /// One load by freedom (of the given model, or of model()), constraint values as in the model. Nonlinear springs:
+  /// Newton's method with a line search on the potential. Where a spring jumps (stepped_spring.h), or Newton does not
+  /// converge: the potential condensed to the elongations of these springs (set_valued.cpp), solved to rounding. Throws
+  /// ModelError where the load acts on an idle spin, and where in some state the structure loses the stiffness that it
+  /// needs to stand.
   Solution solve(const VectorX& load, const NewtonOptions& options = {});
 
-  /// What solve refuses before it begins: values that contradict each other, a load that drives an idle spin.
+  /// The checks that solve() makes first: throws ModelError for contradicting values and for a load that acts on an
+  /// idle spin.
   void check(const VectorX& load, const VectorX& values) const;
 
   /// As above for other constraint values (prescribed displacements).
   Solution solve(const VectorX& load, const VectorX& values, const NewtonOptions& options = {});
 
   /// Linear response of the tangent structure (springs at `spring_tangents`) to columns of loads and of constraint
-  /// values; the columns of the result are u. Residuals are formed with extended digits until what a correction would
-  /// leave lies below them: the answers' error is that of the structure's own numbers. Throws NumericalError where the
-  /// corrections do not shrink: then the factor has no digits.
+  /// values; the columns of the result are u. Iterative refinement with residuals in extended precision, until the
+  /// error is that of the structure's own numbers. Throws NumericalError where the corrections do not decrease: the
+  /// factorisation then has no accurate digits.
   ExtendedMatrix linear(const VectorX& spring_tangents, const MatrixX& loads, const MatrixX& values);
 
-  /// Of the answers of linear() so far the largest first correction, relative: what rounding costs a plain solution,
-  /// and so the share that the rounding of the structure's numbers may cost any.
+  /// The largest relative first correction in linear() so far. It is the error of a solution without refinement, and an
+  /// estimate of the error that rounding of the structure's numbers causes in any solution.
   double rounding() const { return rounding_; }
 
  private:
@@ -121,7 +123,7 @@ class Solver {
   void factor(const VectorX& spring_tangents);
   VectorX starting_tangents(double force) const;
 
-  std::unique_ptr<Model> model_;  // pointers, so that a solver can be moved and rebuilt
+  std::unique_ptr<Model> model_;  // pointers, so that a solver can be moved
   std::unique_ptr<Elimination> elimination_;
   std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<SparseCholesky> cholesky_;
@@ -129,15 +131,15 @@ class Solver {
   std::vector<IdleMotion> idle_;  // held by the last constraints
   double rounding_ = 0;
   bool factored_ = false;
-  VectorX factored_tangents_;                          // the state that the factor belongs to
-  std::shared_ptr<const ExtendedStructure> extended_;  // made when first needed
+  VectorX factored_tangents_;                          // state of the spring tangents that is factored
+  std::shared_ptr<const ExtendedStructure> extended_;  // made on first use
   VectorX extended_tangents_;                          // its state
-  std::shared_ptr<const Condensed> condensed_;         // made when first needed
+  std::shared_ptr<const Condensed> condensed_;         // made on first use
   bool frictions_soft_ = true;                         // the stiffness that stands in for them there
 };
 
-/// Stored energies by part: beams ½ (d − d0)ᵀ K (d − d0), d0 the free strains' (by beam; none: 0), springs ∫ F dδ,
-/// frictions and what else jumps by their laws; in order of first appearance. J.
+/// Stored energies by part, J, in order of first appearance: beams ½ (d − d0)ᵀ K (d − d0) with d0 by the free strains
+/// (by beam; empty: 0); springs ∫ F dδ; friction elements and other springs that jump by their laws.
 std::vector<std::pair<std::string, double>> energies(const Model&, const ExtendedVector& u,
                                                      const std::vector<double>& strains = {});
 

@@ -15,7 +15,7 @@ struct SparsePattern {
   std::vector<int> row;
 };
 
-/// Pattern once (ordering, symbolic analysis), values many times, right-hand sides many times.
+/// The pattern is analysed once (ordering, symbolic analysis); values and right-hand sides can change many times.
 class SparseCholesky {
  public:
   explicit SparseCholesky(const SparsePattern&);
@@ -23,21 +23,21 @@ class SparseCholesky {
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
-  /// Factors S K S with S = diag(K)^-½, so that the verdict does not depend on units. Returns the reciprocal condition
-  /// estimate of the scaled matrix from the factor's diagonal; 0 where a diagonal or a pivot is not positive, and then
-  /// there is no factor to solve with.
+  /// Factors S K S with S = diag(K)^-½, so that the result does not depend on units. Returns the reciprocal condition
+  /// estimate of the scaled matrix from the factor's diagonal; 0 where a diagonal entry or a pivot is not positive;
+  /// solve() must not be called then.
   double factor(const std::vector<double>& values);
 
-  /// The smallest eigenvalue of what was factored, S K S, and its motion in K's own freedoms, by inverse iteration from
-  /// fixed starts. An upper bound that is sharp to a factor of a few. A singular K, rounded, gives less than n ε,
-  /// whatever its pivots look like.
+  /// The smallest eigenvalue of the factored S K S, and its motion in the freedoms of K, by inverse iteration from
+  /// fixed start vectors. It is an upper bound, within a factor of a few. A singular K with rounding gives less than n
+  /// ε, whatever its pivots.
   struct Softest {
     double eigenvalue = 0;
     VectorX motion;
   };
   Softest softest() const;
 
-  /// K X = B.
+  /// Solves K X = B.
   MatrixX solve(const MatrixX& B) const;
 
  private:

@@ -1,4 +1,4 @@
-// Words about motions that nothing resists (mobility.h): which bodies move, how, and what would hold them.
+// Describes free motions (mobility.h) in words: which bodies move, how, and what would hold them.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ struct Screw {
   double pitch = 0;
 };
 
-/// Nodes that beams and rigid joints hold together, moving as one.
+/// Nodes that beams and rigid joints connect to one moving body.
 struct MovingBody {
   std::string name;  ///< its members ("leg 1 link"), or its nodes
   std::vector<int> nodes;
@@ -29,12 +29,13 @@ struct MovingBody {
 struct FreeMotion {
   VectorX u;  ///< by freedom; largest translation or rotation times the structure's size is 1
   std::vector<MovingBody> bodies;
-  std::vector<std::string> joints;  ///< free freedoms of joints that move: locking any one of them would hold it
+  std::vector<std::string> joints;  ///< free freedoms of joints that move; locking any one of them holds the motion
 };
 
-/// A structure that cannot stand: what() says which bodies move and what would hold them; the rest is for drawing it.
+/// Thrown for a structure that cannot stand. what() says which bodies move and what would hold them; the members are
+/// for drawing it.
 struct CannotStand : ModelError {
-  /// `head` begins the message; then each motion.
+  /// `head` is the start of the message; each motion follows.
   CannotStand(const std::string& head, const Model&, const MatrixX& free);
 
   std::shared_ptr<const Model> model;
@@ -44,16 +45,16 @@ struct CannotStand : ModelError {
   CannotStand(const std::string& head, const Model&, std::vector<FreeMotion>);
 };
 
-/// Free motions (columns) taken apart so that each moves as little as possible.
+/// Free motions (columns) separated so that each moves as few bodies as possible.
 std::vector<FreeMotion> free_motions_of(const Model&, const MatrixX& free);
 
 /// "leg 1 link turns about the axis (0, 0.6, 0.8) through (…) mm; held by locking … or by a support at node …".
 std::string describe(const Model&, const FreeMotion&);
 
-/// What moves idly: "leg 1 link spins idly about its own axis", "node 'a' idly turns about (1, 0, 0) through …".
+/// Name of an idle motion: "leg 1 link spins idly about its own axis", "node 'a' idly turns about (1, 0, 0) through …".
 std::string name_of(const Model&, const IdleMotion&);
 
-/// A sentence for each idle motion that is held, or for all of a kind together where they are many.
+/// A sentence for each idle motion that is held, or one for all of a kind where they are many.
 std::vector<std::string> idle_notes(const Model&, const std::vector<IdleMotion>&);
 
 /// The screw of a body whose point p moves by v (m) while it turns by w (rad).
@@ -62,8 +63,8 @@ Screw screw_of(const Vector3& p, const Vector3& v, const Vector3& w);
 /// u divided by its size: the largest translation, or rotation times the structure's size, becomes 1.
 VectorX normalised(const Model&, VectorX u);
 
-/// Of a structure that stands but with a condition too poor for its digits: the part that its softest motion strains
-/// most, against the stiffest, as a sentence.
+/// A sentence for a structure that can stand but is too ill-conditioned: names the part that its softest motion strains
+/// most, compared with the stiffest.
 std::string explain_condition(const Model&, const VectorX& softest, double reciprocal_condition);
 
 }  // namespace deflect::frame

@@ -1,9 +1,9 @@
-// A proof that a structure can stand, from its connections alone and before any number is computed.
+// Proof that a structure can stand, from its connections only, before any number is computed.
 //
-// A motion that strains nothing moves every beam as a rigid body, where all rigidities are positive, and every weld.
-// What beams and welds hold together then moves as one body, with six numbers; where the constraints that name nodes of
-// that body only, taken with arms, have rank six on these, nothing is left. Whatever else joins the bodies only holds
-// more. The proof does not find every structure that stands: trusses and mechanisms hold by more than one body.
+// In a motion without strain every beam (with positive rigidities) and every weld moves as a rigid body. Nodes that
+// they connect move as one body with six coordinates. Where the constraints on nodes of that body alone, with lever
+// arms, have rank six, the body cannot move; further connections only add restraint. The proof does not cover every
+// structure that can stand: trusses and mechanisms are held by more than one body.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace deflect::frame {
 
-/// Empty where the structure is proved to stand; else the first body that this proof does not hold, as a clause.
+/// Empty where the structure is proved to stand; else a clause with the first body for which the proof fails.
 std::string not_proved_standing(const Model&);
 
 }  // namespace deflect::frame
