@@ -1,6 +1,7 @@
 // A device moved from pose to pose is the device placed there anew.
 #include <gtest/gtest.h>
 
+#include "msa/base/error.h"
 #include "tests/support/devices.h"
 
 namespace deflect {
@@ -79,6 +80,38 @@ TEST(Posing, RefusesWhatConfigureRefusesAndGoesOn) {
   EXPECT_NE(refused, "");
   EXPECT_EQ(words([&] { posing.at(far); }), refused);
   expect_same(posing.at(poses[1]), configure(m, poses[1]));
+}
+
+/// Joint states of another mechanism are taken where its kinematics are the same, and only there.
+TEST(KnownKinematics, GiveTheSameToTheLastBit) {
+  for (const char* name : {"delta", "stewart-6ups", "scara"}) {
+    const Mechanism m = test::device(name);
+    Pose pose = home_pose(m);
+    pose.p_WT += Vector3(3e-3, -2e-3, 1e-3);
+    const Configuration known = configure(m, pose);
+    VectorX q(std::ssize(known.actuators));
+    for (std::size_t i = 0; i < known.actuators.size(); ++i) q(static_cast<Eigen::Index>(i)) = known.actuators[i].value;
+    const Configuration known_by_joints = configure_joints(m, q);
+    const Mechanism softer = test::with(m, "materials.*.E", "0.5", Edit::Action::multiply);
+    expect_same(configure(softer, pose, &known), configure(softer, pose));
+    expect_same(configure_joints(softer, q, &known_by_joints), configure_joints(softer, q));
+    Pose other = pose;  // another pose, or coordinates for a pose
+    other.p_WT.x() += 1e-3;
+    expect_same(configure(m, other, &known), configure(m, other));
+    expect_same(configure_joints(m, q, &known), configure_joints(m, q));
+  }
+  const Mechanism delta = test::device("delta"), longer = test::with(delta, "leg.arm.along", "[525 mm, 0 mm, 0 mm]");
+  const Pose home = home_pose(delta);
+  const Configuration known = configure(delta, home);
+  expect_same(configure(longer, home, &known), configure(longer, home));
+  EXPECT_NE(configure(longer, home, &known).actuators[0].value, known.actuators[0].value);
+}
+
+TEST(KnownKinematics, AreNoWayAroundTheNumberOfCoordinates) {
+  const Mechanism m = test::device("delta");
+  const Configuration known = configure(m, home_pose(m));
+  EXPECT_THROW(configure_joints(m, VectorX::Zero(2), &known), InputError);
+  EXPECT_THROW(configure_joints(m, VectorX::Zero(4)), InputError);
 }
 
 }  // namespace

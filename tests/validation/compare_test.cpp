@@ -81,7 +81,7 @@ const auto nothing = [](int, double, const Leg&) { return 0.0; };
 
 Comparison compared(const Measurements& data) {
   static const Mechanism m = ideal();
-  return compare(m, data);
+  return compare::compare(m, data);
 }
 
 TEST(Sites, LegForcesAreThoseOfStatics) {
@@ -131,7 +131,7 @@ TEST(Compare, TellsHowFarItHasCome) {
     EXPECT_LE(share, 1);
     last = share;
   };
-  compare(ideal(), data, {}, {1, nullptr, told});
+  compare::compare(ideal(), data, {}, {1, nullptr, told});
   EXPECT_GE(last, 0.9);
 }
 
@@ -263,7 +263,7 @@ TEST(Compare, WithoutSigmaScatterComesFromTheResiduals) {
 TEST(Compare, ResultsDoNotDependOnThreads) {
   const Mechanism m = ideal();
   const Measurements data = made(m, "random", nothing);
-  const Comparison a = compare(m, data, {}, {1}), b = compare(m, data, {}, {4});
+  const Comparison a = compare::compare(m, data, {}, {1}), b = compare::compare(m, data, {}, {4});
   EXPECT_EQ(a.residual, b.residual);
   EXPECT_EQ(compare_json(a), compare_json(b));
 }

@@ -66,7 +66,7 @@ class Recording : public testing::TestWithParam<const char*> {};
 TEST_P(Recording, APlantedMistakeIsTheFirstThingSaid) {
   const Mechanism m = test::device(GetParam());
   const Measurements healthy = measured(m, m, "rich", 1, true);
-  const Comparison usual = compare(m, healthy);
+  const Comparison usual = compare::compare(m, healthy);
   ASSERT_FALSE(is_mistaken(usual)) << words(usual);
   ASSERT_GT(usual.all.measured, 10 * usual.sigma_u) << "the campaign must show something";
   const std::vector<test::Planted> all = test::planted_mistakes();
@@ -80,7 +80,7 @@ TEST_P(Recording, APlantedMistakeIsTheFirstThingSaid) {
     if (measurements_text(data) == measurements_text(healthy)) continue;  // such a pose has no yaw
     Comparison c;
     try {
-      c = compare(m, data);
+      c = compare::compare(m, data);
     } catch (const ModelError& e) {  // out of reach: then the message says it
       EXPECT_NE(std::string(e.what()).find("all poses could be reached"), std::string::npos)
           << kind.id << ": " << e.what();
@@ -135,7 +135,7 @@ TEST(RecordingChecks, HealthyMachinesAreNotAccused) {
       continue;  // it does not stand with it
     }
     ++made;
-    const Comparison c = compare(m, data);
+    const Comparison c = compare::compare(m, data);
     EXPECT_FALSE(is_mistaken(c)) << m.name << " with " << hidden << ", " << plans[i % 4] << ", seed " << i + 1 << ": "
                                  << words(c);
   }
@@ -148,7 +148,7 @@ TEST(RecordingChecks, PracticeSetsAreNotAccused) {
     const auto file = test::practice_set(fmt::format("p{:02}", i));
     if (!file) continue;
     const Measurements data = read_measurements(*file);
-    const Comparison c = compare(m, data);
+    const Comparison c = compare::compare(m, data);
     EXPECT_FALSE(is_mistaken(c)) << *file << ": " << words(c);
   }
 }

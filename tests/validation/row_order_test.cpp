@@ -39,7 +39,7 @@ TEST(Compare, TheOrderOfRowsAndTheNamesOfPosesDoNotMatter) {
   o.geometry = Geometry::linear;
   o.division = {};
   const Measurements data = simulate(softer, campaign("paper", m, 50, 1), o);
-  const Comparison a = compare(m, data), b = compare(m, rearranged(data));
+  const Comparison a = compare::compare(m, data), b = compare::compare(m, rearranged(data));
   // Sums of a hundred numbers in another order, weighed by deviations up to some dozens apart.
   const auto same = [](double x, double y) { EXPECT_NEAR(x, y, 1e-10 * std::abs(x)); };
   same(a.chi2_per_dof, b.chi2_per_dof);

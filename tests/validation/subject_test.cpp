@@ -82,8 +82,8 @@ TEST(FrameSubject, IsEditedLikeAMachine) {
 TEST(FrameSubject, IsComparedLikeAMachine) {
   const Subject drawn = beam("B");
   const Measurements right = readings(1, 1e-4), soft = readings(1.2, 1e-4);
-  EXPECT_LT(compare(drawn, right).all.rmse, 2e-7);
-  const Comparison c = compare(drawn, soft);
+  EXPECT_LT(compare::compare(drawn, right).all.rmse, 2e-7);
+  const Comparison c = compare::compare(drawn, soft);
   EXPECT_EQ(c.device, "cantilever");
   EXPECT_GT(c.all.rmse, 1e-5);
   const Diagnosis d = diagnose(drawn, soft, {});

@@ -65,7 +65,7 @@ Mechanism with_effects(const Hidden& h, const std::vector<double>& values) {
 TEST_P(Practice, TheRightEffectLeavesNoiseAndTolerances) {
   const Hidden& h = GetParam();
   const Measurements data = read_measurements(file_);
-  const Comparison c = compare(with_effects(h, h.values), data);
+  const Comparison c = compare::compare(with_effects(h, h.values), data);
   // χ² of n numbers scatters by √(2n); n is 800 to 2100 here.
   EXPECT_NEAR(c.chi2_per_dof, 1, 5 * std::sqrt(2 / static_cast<double>(c.numbers))) << testing::PrintToString(h.values);
   EXPECT_TRUE(c.findings.empty());
@@ -94,7 +94,7 @@ TEST_P(PracticeInWords, CompareSaysWhatTheKeySays) {
   const auto& [set, pattern, words] = GetParam();
   const auto file = test::practice_set(set);
   if (!file) GTEST_SKIP() << "only with DEFLECT_PRACTICE";
-  const Comparison c = compare(test::device("haptic-6psu-ideal-joints"), read_measurements(*file));
+  const Comparison c = compare::compare(test::device("haptic-6psu-ideal-joints"), read_measurements(*file));
   if (pattern.empty()) {
     EXPECT_TRUE(c.findings.empty());
     return;
@@ -166,7 +166,7 @@ TEST(Fanuc, SixJointSpringsFitTheMeasurements) {
   const std::filesystem::path file = DEFLECT_SOURCE_DIR "/validation/measurements/fanuc-r2000ic.csv";
   const Mechanism m = test::device("fanuc-r2000ic");
   const Measurements data = read_measurements(file);
-  const Comparison c = compare(m, data);
+  const Comparison c = compare::compare(m, data);
   const ResidualStudy& s = c.study;
   const MatrixX G =
       rows_of(s.values,

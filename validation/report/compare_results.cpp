@@ -170,6 +170,40 @@ std::vector<std::string> failing_tests(const compare::Comparison& c) {
   return out;
 }
 
+/// By how much one standard deviation of a tolerance moves the readings, root mean square over those of one kind (m, or
+/// rad where rotations alone were measured): those of all poses, the largest first.
+std::vector<std::pair<std::string, double>> sizes_of_tolerances(const compare::Comparison& c) {
+  const bool turns = compare::rotations_alone(c.study.values);
+  const MatrixX& A = c.tolerances.A.shared;
+  std::vector<std::pair<std::string, double>> out;
+  for (Eigen::Index k = 0; k < A.cols(); ++k) {
+    const subject::Tolerance& tolerance = nth(c.tolerances.nuisances, k);
+    if (tolerance.zero) continue;
+    double square = 0, count = 0;
+    for (Eigen::Index i = 0; i < A.rows(); ++i)
+      if (turns || nth(c.study.values, i).component < 3) square += A(i, k) * A(i, k), ++count;
+    out.emplace_back(tolerance.name, std::sqrt(square / std::max(1.0, count)));
+  }
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  return out;
+}
+
+/// "leg 2 motor rz stiffness 1.20 µm, modulus 0.84 µm": the largest.
+std::string tolerances_that_matter(const compare::Comparison& c) {
+  std::string out;
+  const auto all = sizes_of_tolerances(c);
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, all.size()); ++i)
+    out += fmt::format("{}{} {:.2f} {}", i > 0 ? ", " : "", all[i].first, um * all[i].second, error_unit(c).micro);
+  return out;
+}
+
+Json tolerances_json(const compare::Comparison& c) {
+  Json out = Json::array();
+  for (const auto& [name, rms] : sizes_of_tolerances(c))
+    out.push_back({{"name", name}, {"rms_mm", json::json_number(mm * rms, "tolerance")}});
+  return out;
+}
+
 /// The patterns of the findings.
 std::vector<std::string> found_patterns(const compare::Comparison& c) {
   std::vector<std::string> out;
@@ -200,6 +234,8 @@ std::string compare_report(const compare::Comparison& c) {
   if (!c.set_aside.empty())
     out += fmt::format("set aside as gross outliers: {} readings, lines {}\n", c.set_aside.size(),
                        fmt::join(c.set_aside, ", "));
+  if (const std::string matter = tolerances_that_matter(c); !matter.empty())
+    out += fmt::format("tolerances that matter most, by what one standard deviation moves: {}\n", matter);
   if (!c.strained.empty())
     out +=
         fmt::format("tolerances alone would have to be off, in standard deviations: {}\n", strained_words(c.strained));
@@ -236,6 +272,7 @@ std::string compare_json(const compare::Comparison& c) {
                  {"by_direction", errors_json(c.by_direction)},
                  {"by_magnitude", errors_json(c.by_magnitude)},
                  {"by_heading", errors_json(c.by_heading)}};
+  j["tolerances"] = tolerances_json(c);
   j["strained_tolerances"] = strained_json(c.strained);
   j["looks_like"] = Json::array();
   for (const compare::RecordingMistake& mistake : c.mistakes) j["looks_like"].push_back(mistake.sentence);
