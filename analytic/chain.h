@@ -124,6 +124,8 @@ struct Group {
   bool fits() const;
 
  private:
+  double share_of_step(const std::vector<Vector6>& from, const std::vector<Vector6>& step, double least,
+                       const ChainConditions&) const;
   void settle(State&, double least, const ChainConditions&) const;
 };
 

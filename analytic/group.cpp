@@ -94,13 +94,16 @@ class Parallel {
       Y_ = cancelling(A);
       S.bottomRightCorner(k, k) -= Y_ * cancelling(B).transpose();
     }
-    lu_.compute(S);
+    if (k > 0)
+      fine_.compute(S.cast<long double>());
+    else
+      lu_.compute(S);
   }
 
   /// Displacement and the branches' wrenches under F. `size`: of forces, against which contradictions count.
   void solve(const Vector6& F, Vector6& t, std::vector<Vector6>& wrenches, double& size,
              const std::string& name) const {
-    const Eigen::Index r = R_.cols(), k = lu_.cols() - r;
+    const Eigen::Index r = R_.cols(), k = std::ssize(kept_);
     VectorX right(r + k);
     right.head(r) = R_.transpose() * F;
     for (const LinearisedBranch& b : branches_)
@@ -113,7 +116,11 @@ class Parallel {
       throw ModelError(
           fmt::format("{} cannot be assembled: the misfits contradict each other by {:.3g} mm and nothing yields", name,
                       1e3 * c_ * (Y_.transpose() * right.tail(k)).cwiseAbs().maxCoeff()));
-    const VectorX solution = lu_.solve(right);
+    VectorX solution;
+    if (k > 0)
+      solution = fine_.solve(right.cast<long double>()).cast<double>();
+    else
+      solution = lu_.solve(right);
     t = c_ * (R_ * solution.head(r));
     Eigen::Index next = r;
     for (std::size_t i = 0; i < branches_.size(); ++i) {
@@ -126,7 +133,11 @@ class Parallel {
 
   Matrix6 compliance() const {
     const Eigen::Index r = R_.cols();
-    const MatrixX y = lu_.inverse().topLeftCorner(r, r);
+    MatrixX y;
+    if (kept_.empty())
+      y = lu_.inverse();
+    else
+      y = fine_.inverse().topLeftCorner(r, r).cast<double>();
     return c_ * (R_ * y * R_.transpose());
   }
 
@@ -143,6 +154,8 @@ class Parallel {
   std::vector<Kept> kept_;
   MatrixX Y_;
   Eigen::PartialPivLU<MatrixX> lu_;
+  /// Where forces are kept: stiff branches that hold each other leave only their small g to tell how they share a load.
+  Eigen::PartialPivLU<Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>> fine_;
 };
 
 /// The twists J to which no wrench of the branches does work, and the others, R.
@@ -230,7 +243,6 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   // the others at a force far below the largest for rest.
   double least = load > 0 ? load : 1;
   double change = std::numeric_limits<double>::infinity(), size_of_forces = 0;
-  double part = 1;  // of a step that is taken
   double held = 0;  // what free deflections would bring, were the far body to stay
   const bool straight = linear();
   while (!s.converged && s.iterations < 100) {
@@ -253,7 +265,7 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
     for (const Vector6& each : more) change = std::max(change, weighed(each, length).norm());
     // A contact that a misfit strains may be thrown to and fro across its rest, where it is soft: shorter steps end
     // that.
-    if (s.iterations > 5) part = change > 0.7 * before ? std::max(part / 2, 1.0 / 64) : std::min(1.0, 2 * part);
+    const double part = s.iterations > 5 ? share_of_step(s.wrenches, more, least, c) : 1;
     s.t += part * moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
       s.wrenches[i] += part * more[i];
@@ -267,12 +279,37 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
     s.converged = change <= 1e-13 * largest || (s.iterations > 3 && change <= 1e-11 * largest) || stalled ||
                   change <= 1e-15 * held;
     // Where nothing depends on its load the first step is the answer, and the second takes its rounding off.
-    s.converged = s.converged || (straight && s.iterations > 2);
+    s.converged = s.converged || (straight && s.iterations > 2 && !(change < 0.5 * before));
     // Of a contact that is hardly loaded, forces that settle may leave the deflection open.
     if (s.converged) settle(s, least, c);
   }
   if (R.cols() == 0) settle(s, least, c);
   return s;
+}
+
+/// The share of a step at which the complementary energy is least. Its slope along the step, Σ Δᵢᵀ dᵢ(wᵢ + α Δᵢ), rises
+/// with α: the step's forces Δ balance each other, and a deflection grows with its force. 1 where the energy falls all
+/// the way.
+double Group::share_of_step(const std::vector<Vector6>& from, const std::vector<Vector6>& step, double least,
+                            const ChainConditions& c) const {
+  const auto slope = [&](double share) {
+    double sum = 0;
+    for (std::size_t i = 0; i < branches.size(); ++i)
+      sum += step[i].dot(branches[i].respond(from[i] + share * step[i], least, c).d);
+    return sum;
+  };
+  const double start = slope(0);
+  double low = 0, at_low = start, high = 1, at_high = slope(1);
+  if (!(start < 0 && at_high > -0.5 * start)) return 1;
+  double share = 1;
+  for (int i = 0; i < 30; ++i) {  // regula falsi, with halves where one side does not move
+    share = i % 3 == 2 ? (low + high) / 2 : (low * at_high - high * at_low) / (at_high - at_low);
+    const double here = slope(share);
+    if (std::abs(here) < -0.1 * start) break;
+    (here < 0 ? low : high) = share;
+    (here < 0 ? at_low : at_high) = here;
+  }
+  return share;
 }
 
 /// Whether the branches' ends are where the far body is.

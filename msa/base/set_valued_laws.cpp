@@ -50,6 +50,7 @@ class Laws {
       const double u = unit_(i);
       problem_.rows.push_back({law.low / u, law.high / u, [&law, u](double d) { return law.force(u * d) * u; },
                                [&law, u](double d) { return law.tangent(u * d) * u * u; }});
+      if (problem_.B.row(i).squaredNorm() <= rounding) leave_at_rest(i);
     }
   }
 
@@ -101,6 +102,16 @@ class Laws {
 
  private:
   static std::size_t at(Eigen::Index i) { return as_size(i); }
+
+  /// A law whose d the relation fixes: of the s that it may have there, it takes that of its force, none of an end.
+  void leave_at_rest(Eigen::Index i) {
+    ConvexRow& row = problem_.rows[at(i)];
+    const double size = std::max(problem_.e.norm(), relation_.size.cwiseProduct(unit_).norm());
+    if (beyond(i, problem_.e(i)) > 1e-9 * size) return;  // it fits nowhere
+    const double s = row.slope(std::clamp(problem_.e(i), row.low, row.high));
+    row = {-infinite, infinite, [s](double) { return s; }, [](double) { return 0.0; }};
+    problem_.B.row(i).setZero();
+  }
 
   /// Moves the start to where d is within all bounds; false where there is no such place.
   bool feasible() {

@@ -350,7 +350,7 @@ void FieldReader::others(Named<std::string>& values, const char*) {
   values.clear();
   for (std::size_t i = 0; i < level_.map->keys.size(); ++i) {
     const std::string& key = level_.map->keys[i];
-    if (std::find(level_.asked.begin(), level_.asked.end(), key) != level_.asked.end()) continue;
+    if (key.find('.') == key.npos) continue;  // unknown, which is told at the end of the map
     const YamlNode& node = level_.map->children[i];
     const std::string sample = key + ": 10 %", path = joined(path_, key);
     values.emplace_back(key, scalar(node, path, sample));

@@ -96,7 +96,7 @@ class FieldVisitor {
   virtual void list(const char* key, Elements&, const char* about) = 0;
   virtual void one_or_list(const char* key, Elements&, const char* about) = 0;
 
-  /// Every key of this map that no field above asked for, each with a single value, kept as text. Called last.
+  /// Every key of this map that is a path (contains a dot), each with a single value, kept as text. Called last.
   virtual void others(Named<std::string>&, const char* about) = 0;
 
   /// Announces all keys of this map where fields further down refer to others, so that an unknown key is reported

@@ -29,7 +29,7 @@
 #include "msa/base/spatial.h"
 #include "msa/fields/named.h"
 #include "msa/mechanism/law.h"
-#include "msa/mechanism/section.h"
+#include "msa/mechanism/sections/section.h"
 
 namespace deflect {
 

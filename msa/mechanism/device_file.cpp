@@ -43,7 +43,7 @@ void check_tolerances(const Mechanism& m, const YamlNode& tree, const std::strin
   const Mechanism each_leg = resolved(m);
   for (const auto& [key, value] : m.tolerances.numbers) {
     const int line = tree.child("tolerances")->child(key)->line;
-    told_at<InputError>([&] { return fmt::format("{}:{}: tolerances.", origin, line); },
+    told_at<InputError>([&] { return fmt::format("{}:{}: tolerances.{}: ", origin, line, key); },
                         [&] {
                           check_tolerance(each_leg, key, value);
                           return true;

@@ -195,8 +195,7 @@ bool named_for_six_psu(const Mechanism& m, const std::string& key) {
 
 /// What a key could have been.
 std::vector<std::string> known_keys(const std::vector<Number>& all) {
-  std::set<std::string> out = {"modulus",        "guide_diameter", "load",
-                               "joint_position", "link_length",    "actuator_repeatability"};
+  std::set<std::string> out;
   for (const Number& n : all) {
     Segments at = n.at;
     if (at.front().starts_with("leg[")) at.front() = "leg";
@@ -240,21 +239,21 @@ Tolerances named_tolerances(const Mechanism& m) {
 }
 
 void check_tolerance(const Mechanism& m, const std::string& key, const std::string& value) {
-  const auto fail = [&](const std::string& what) { throw InputError(fmt::format("{}: {}", key, what)); };
   const std::vector<Number> all = counted_numbers(m), numbers = meant(all, key);
   const bool named = named_for_six_psu(m, key);
   if (numbers.empty() && !named) {
     const std::string near = nearest(key, known_keys(all));
-    fail(
+    throw InputError(
         fmt::format("no number of this device has this tolerance{}: a key is a kind of place and a field "
                     "('drive.stiffness'), or a path ('leg.elbow.rz.stiffness')",
                     near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
-  if (named && relative(value)) fail(fmt::format("'{}' must be a length: write for example '0.1 mm'", value));
+  if (named && relative(value))
+    throw InputError(fmt::format("'{}' must be a length: write for example '0.1 mm'", value));
   const double sigma = sigma_of(value, named ? Dimension::length : numbers.front().dimension);
-  if (sigma < 0) fail(fmt::format("'{}' is a standard deviation: it must be at least 0", value));
+  if (sigma < 0) throw InputError(fmt::format("'{}' is a standard deviation: it must be at least 0", value));
   if (!named && sigma > 0 && moves_of(numbers, key, value).empty())
-    fail(fmt::format("'{}' is a share of a number that is zero: give a unit instead", value));
+    throw InputError(fmt::format("'{}' is a share of a number that is zero: give a unit instead", value));
 }
 
 }  // namespace deflect

@@ -41,7 +41,7 @@ Mechanism moved(const Mechanism& resolved, const NumberMove&, double times = 1);
 /// The six with names of their own, with those that a key means for a 6-psu.
 Tolerances named_tolerances(const Mechanism&);
 
-/// InputError "KEY: …" where a key means no number, or its value is no standard deviation of one.
+/// InputError where a key means no number, or its value is no standard deviation of one.
 void check_tolerance(const Mechanism& resolved, const std::string& key, const std::string& value);
 
 }  // namespace deflect

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <optional>
 
 #include "analytic/model.h"
@@ -42,13 +43,16 @@ Vector6 in_m(Vector6 mm_rad) {
   return mm_rad;
 }
 
-/// Relative; where the right displacement is zero, to what the load could make of the softest direction.
+/// Relative; where the right displacement is zero, to what the load could make of the softest direction. Of that the
+/// directions of axes, rounded, leave a part of about 1e-16, which is no error.
 double displacement_error(const Vector6& d, const Vector6& right, const Matrix6& D, const Vector6& load, double size) {
   Vector6 w = Vector6::Ones();
   w.tail<3>().setConstant(size);
   const Matrix6 weighed = w.asDiagonal() * D * w.asDiagonal();
   const double least = 1e-6 * weighed.norm() * load.cwiseQuotient(w).norm();
-  const double difference = w.cwiseProduct(d - right).norm(), length = std::max(w.cwiseProduct(right).norm(), least);
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * 1e6 * least;
+  const double difference = std::max(0.0, w.cwiseProduct(d - right).norm() - rounding),
+               length = std::max(w.cwiseProduct(right).norm(), least);
   return difference == 0 ? 0 : difference / length;
 }
 

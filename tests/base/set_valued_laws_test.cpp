@@ -105,6 +105,19 @@ TEST(SetValuedLaws, WhatFloatsIsInTheMiddleOfItsRoom) {
   EXPECT_NEAR(s.most(0), 0.7, 1e-15);
 }
 
+// The structure holds the second law's d at 0, its end, and takes any s there: all of it is the structure's.
+TEST(SetValuedLaws, WhatTheRelationHoldsRigidlyGetsNoForceOfAnEnd) {
+  MatrixX P = MatrixX::Zero(2, 2);
+  P(0, 0) = 0.5;
+  const LinearRelation r{VectorX::Constant(2, 1e-6), VectorX::Unit(2, 0) * 1e-3, P, VectorX::Constant(2, 100)};
+  const SetValuedSolution s = solve(r, {friction(1e6, 1e9), rigid_when_pulled(1e-6)}, MatrixX(0, 2));
+  ASSERT_EQ(s.outcome, SetValuedSolution::Outcome::solved);
+  EXPECT_EQ(s.s(1), 0);
+  EXPECT_EQ(s.d(1), 0);
+  // d = d0 + P (d − c s) and s = 1e6 d, so that d − c s = 0 and d = d0.
+  EXPECT_NEAR(s.d(0), 1e-3, 1e-15);
+}
+
 TEST(SetValuedLaws, WhatDoesNotFitAndWhatSlidesForEverAreOutcomes) {
   LinearRelation apart{VectorX::Ones(2), VectorX(2), MatrixX::Constant(2, 2, 0.5), VectorX::Zero(2)};
   apart.d0 << 3, -3;

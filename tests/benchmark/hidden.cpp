@@ -44,7 +44,8 @@ std::optional<VectorX> values_at(const effects::Effect& e, const VectorX& signs,
 
 }  // namespace
 
-std::optional<Hidden> hidden_effect(const Plan& plan, const effects::Effect& e, double lambda, measurement::Random& random) {
+std::optional<Hidden> hidden_effect(const Plan& plan, const effects::Effect& e, double lambda,
+                                    measurement::Random& random) {
   const std::vector<effects::PlacedEffect> places = places_of(e, *plan.observations->subject().machine());
   if (places.empty()) return std::nullopt;
   const double lot = random.uniform(0, static_cast<double>(places.size()));
@@ -69,7 +70,8 @@ std::vector<VectorX> possible_signs(const effects::Effect& e, std::size_t direct
   return out;
 }
 
-std::optional<Hidden> hidden_effect(const Plan& plan, const effects::PlacedEffect& placed, const VectorX& signs, double lambda) {
+std::optional<Hidden> hidden_effect(const Plan& plan, const effects::PlacedEffect& placed, const VectorX& signs,
+                                    double lambda) {
   const effects::Effect& e = *placed.effect;
   Hidden out;
   static_cast<effects::PlacedEffect&>(out.effect) = placed;

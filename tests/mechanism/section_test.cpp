@@ -1,4 +1,4 @@
-#include "msa/mechanism/section.h"
+#include "msa/mechanism/sections/section.h"
 
 #include <gtest/gtest.h>
 

@@ -106,7 +106,7 @@ TEST(NumberTolerances, AreLeftOutWhereAnEffectTookTheirNumberAway) {
 
 TEST(NumberTolerances, MistakesAreToldWithTheirLine) {
   const std::pair<const char*, std::vector<const char*>> mistakes[] = {
-      {"modulos: 1 %", {"tolerances.modulos: no number", "did you mean 'modulus'?"}},
+      {"modulos: 1 %", {"tolerances.modulos: unknown key", "did you mean 'modulus'?"}},
       {"leg.elbov.rx.stiffness: 1 %", {"tolerances.leg.elbov.rx.stiffness", "did you mean 'leg.elbow.rx.stiffness'?"}},
       {"drive.stifness: 1 %", {"did you mean 'drive.stiffness'?"}},
       {"drive.stiffness: 1 mm", {"tolerances.drive.stiffness", "'1 mm'"}},

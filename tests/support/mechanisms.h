@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "msa/mechanism/configuration.h"
-#include "msa/mechanism/section.h"
+#include "msa/mechanism/sections/section.h"
 #include "tests/support/devices.h"
 
 namespace deflect::test {

@@ -124,7 +124,8 @@ class SchemaRoutes {
     std::set<std::string> reader, schema;
     std::istringstream list(refusal.substr(known + 8, end - known - 8));
     for (std::string key; std::getline(list, key, ',');) reader.insert(key.substr(key.find_first_not_of(' ')));
-    for (const SchemaField& f : c.fields) schema.insert(f.key);
+    for (const SchemaField& f : c.fields)
+      if (f.kind != FieldKind::others) schema.insert(f.key);  // a path is no word
     EXPECT_EQ(reader, schema) << document;
     ++compared_;
   }

@@ -169,7 +169,9 @@ std::string refused(const json& schema, const json& whole, const json& value) {
     if (!value.contains(key.get<std::string>())) return key.dump() + " is missing in " + value.dump();
   for (const auto& [key, each] : value.items()) {
     const bool known = schema.contains("properties") && schema.at("properties").contains(key);
-    const json more = schema.value("additionalProperties", json(true));
+    json more = schema.value("additionalProperties", json(true));
+    for (const auto& [pattern, of_such] : schema.value("patternProperties", json::object()).items())
+      if (std::regex_search(key, std::regex(pattern))) more = of_such;
     if (!known && more == false) return key + " is unknown";
     const std::string why = known              ? refused(schema.at("properties").at(key), whole, each)
                             : more.is_object() ? refused(more, whole, each)

@@ -134,7 +134,7 @@ TEST(MachineSubject, IsOffByTolerancesOfItsNumbers) {
   m.tolerances = {};
   m.tolerances.numbers = {
       {"drive.stiffness", "1 %"}, {"materials.carbon_tube.E", "1 %"}, {"leg[2].arm.along.0", "1 um"}};
-  const Pose home = test::home(m);
+  const Pose home = home_pose(m);
   const Measurements data = parse_measurements(
       test::usual_file(fmt::format("a,0,0,{:.17g},0,0,0,50,0,20,1,1,1\n", 1e3 * home.p_WT.z())), "d.csv");
   const std::unique_ptr<const Deviations> off = Subject(m).stand(data)->deviations(data);

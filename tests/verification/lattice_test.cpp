@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "msa/frame/structure/solver.h"
-#include "msa/mechanism/section.h"
+#include "msa/mechanism/sections/section.h"
 
 namespace deflect::frame {
 namespace {

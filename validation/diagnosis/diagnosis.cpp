@@ -154,6 +154,20 @@ Diagnosis only_mistakes(Diagnosis d, const Observations& o) {
   return d;
 }
 
+/// What is known before any effect is tried.
+Diagnosis before_any_effect(const Observations& o, const measurement::Measurements& data) {
+  Diagnosis d;
+  d.device = o.subject().name();
+  d.how_read = data.how_read;
+  d.mistakes = o.comparison().mistakes;
+  d.readings = o.comparison().readings;
+  d.set_aside = o.set_aside();
+  d.rotations = compare::rotations_alone(o.comparison().study.values);
+  d.noise_floor = o.comparison().sigma_u;
+  d.tolerance_scale = o.tolerance_scale();
+  return d;
+}
+
 Verdict verdict_of(const Diagnosis& d) {
   if (d.unexplained) return Verdict::unknown_effect;
   if (d.missing.empty()) return Verdict::nothing_missing;
@@ -168,15 +182,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
                    const std::vector<effects::Effect>& effects, const DiagnosisOptions& options,
                    const parallel::Work& work) {
   const Observations o(subject, data, options.comparison, work.part(0, 0.2));
-  Diagnosis d;
-  d.device = subject.name();
-  d.how_read = data.how_read;
-  d.mistakes = o.comparison().mistakes;
-  d.readings = o.comparison().readings;
-  d.set_aside = o.set_aside();
-  d.rotations = compare::rotations_alone(o.comparison().study.values);
-  d.noise_floor = o.comparison().sigma_u;
-  d.tolerance_scale = o.tolerance_scale();
+  Diagnosis d = before_any_effect(o, data);
   if (is_mistaken(d)) return only_mistakes(std::move(d), o);
   const std::vector<Signature> all = signatures(o, effects, work.threads, &d.left_out);
   Rounds rounds(work.progress, 0.3);

@@ -195,7 +195,8 @@ std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX
 /// What jumps has valleys of χ² besides the deepest one: friction whose slips come before or after a turn of the load.
 bool has_valleys(const effects::PlacedEffect& e) {
   const std::vector<effects::EffectParameter>& all = e.effect->parameters;
-  const bool shaped = std::any_of(all.begin(), all.end(), [](const effects::EffectParameter& p) { return !p.vanishes; });
+  const bool shaped =
+      std::any_of(all.begin(), all.end(), [](const effects::EffectParameter& p) { return !p.vanishes; });
   return shaped && all.size() > 1;
 }
 constexpr std::size_t valleys = 5;

@@ -140,6 +140,13 @@ void add_drift(std::vector<Vector6>& readings, const Sensor& sensor, const measu
     readings[i].head<3>() += sensor.drift * (rank[i] / static_cast<double>(readings.size()));
 }
 
+void require_equilibrium(const theories::Prediction& r, const theories::Theory& theory,
+                         const measurement::Measurements& data, const measurement::Reading& reading) {
+  if (r.converged) return;
+  throw NumericalError(fmt::format("{}:{}: {} finds no equilibrium under this load{}{}", data.origin, reading.line,
+                                   theory.spoken, r.reason.empty() ? "" : ": ", r.reason));
+}
+
 }  // namespace
 
 Vector6 true_load(const LoadCell& cell, const Vector6& recorded) {
@@ -188,9 +195,7 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
     for (const std::size_t i : ordered(data.poses[p], data)) {
       const measurement::Reading& reading = data.readings[i];
       const theories::Prediction& r = answer(reading);
-      if (!r.converged)
-        throw NumericalError(fmt::format("{}:{}: {} finds no equilibrium under this load{}{}", data.origin,
-                                         reading.line, o.theory->spoken, r.reason.empty() ? "" : ": ", r.reason));
+      require_equilibrium(r, *o.theory, data, reading);
       if (beside) carried.leave_with(r.displacement, r.slips);
       conditions.slips = r.slips;
       out[i] = m.sensor.zero + sensor * (r.displacement - unloaded);

@@ -50,7 +50,7 @@ std::string type_of(const SchemaField& f) {
     case FieldKind::one_or_list:
       return "map or list of maps";
     case FieldKind::others:
-      return "values under keys of your own";
+      return "values by path";
   }
   return "";
 }
@@ -194,10 +194,10 @@ class JsonSchema {
   }
 
   Json case_json(const SchemaCase& c) const {
-    Json properties = Json::object(), required = Json::array(), others = false;
+    Json properties = Json::object(), required = Json::array(), paths;
     for (const SchemaField& f : c.fields) {
       if (f.kind == FieldKind::others) {
-        others = field_json(f);
+        paths[R"(\.)"] = field_json(f);
         continue;
       }
       properties[f.key] = field_json(f);
@@ -212,7 +212,10 @@ class JsonSchema {
         properties[key]["enum"] = words;
       }
     }
-    return {{"type", "object"}, {"properties", properties}, {"required", required}, {"additionalProperties", others}};
+    Json out = {
+        {"type", "object"}, {"properties", properties}, {"required", required}, {"additionalProperties", false}};
+    if (!paths.is_null()) out["patternProperties"] = paths;
+    return out;
   }
 
   Json level_json(const SchemaLevel& level) const {

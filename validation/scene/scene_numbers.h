@@ -2,7 +2,7 @@
 #pragma once
 
 #include "msa/base/spatial.h"
-#include "msa/mechanism/section.h"
+#include "msa/mechanism/sections/section.h"
 #include "validation/figures/drawing.h"
 #include "validation/json/json_text.h"
 

@@ -162,7 +162,8 @@ class MachineDeviations final : public Deviations {
     if (!move.number.shifts.empty()) {
       const auto built = std::make_shared<const Mechanism>(moved(resolved_, move.number));
       std::vector<Configuration> machines;
-      for (const Configuration& c : drawn_.machines()) machines.push_back(prediction::configure_as_built(*built, {}, c));
+      for (const Configuration& c : drawn_.machines())
+        machines.push_back(prediction::configure_as_built(*built, {}, c));
       return std::make_unique<MachineStanding>(built, std::move(machines));
     }
     std::vector<Configuration> moved;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,22 +25,42 @@ std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
   return out;
 }
 
-/// A stiffness of all six freedoms together is Σ λ v vᵀ over its eigenvectors: a spring λ for each, along the relative
-/// motion vᵀ[δ; θ]. Rotations are weighed by the stiffness' own length, so that eigenvectors are well defined.
+/// K = Σ d v vᵀ by LDLᵀ, the largest diagonal entry of what is left first: vᵢ and dᵢ, six at most. Where stiffnesses
+/// differ by many orders, the soft ones keep their digits, which eigenvectors would lose to the rounding of the stiff
+/// ones. `unit`: by which the entries of rotations are divided before they are compared, m.
+std::vector<std::pair<Vector6, double>> squares(const Matrix6& K, double unit) {
+  std::vector<std::pair<Vector6, double>> out;
+  Eigen::Matrix<Extended, 6, 6> left = K.cast<Extended>();
+  const auto weight = [&](Eigen::Index i) { return i < 3 ? Extended(1) : Extended(unit) * Extended(unit); };
+  std::array<bool, 6> done{};
+  for (int step = 0; step < 6; ++step) {
+    Eigen::Index k = -1;
+    for (Eigen::Index i = 0; i < 6; ++i)
+      if (!done[as_size(i)] && (k < 0 || left(i, i) / weight(i) > left(k, k) / weight(k))) k = i;
+    if (!(left(k, k) > 0)) break;
+    const Extended pivot = left(k, k);
+    const Eigen::Matrix<Extended, 6, 1> column = left.col(k) / pivot;
+    out.emplace_back(column.cast<double>(), static_cast<double>(pivot));
+    left -= pivot * column * column.transpose();
+    left.col(k).setZero();
+    left.row(k).setZero();
+    done[as_size(k)] = true;
+  }
+  return out;
+}
+
+/// A stiffness of all six freedoms together: a spring d for each square d (vᵀ[δ; θ])² of its energy.
 void connect_elastic(Model& model, int a, int b, const PlacedJoint& j, const std::string& name) {
   const Matrix6& K = *j.stiffness;
-  Vector6 weight = Vector6::Ones();
-  weight.tail<3>().setConstant(std::sqrt(K.bottomRightCorner<3, 3>().trace() / K.topLeftCorner<3, 3>().trace()));
-  const Matrix6 weighed = weight.cwiseInverse().asDiagonal() * K * weight.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(weighed);
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    const Vector6 v = weight.cwiseProduct(eigen.eigenvectors().col(i));
+  const double unit = std::sqrt(K.bottomRightCorner<3, 3>().trace() / K.topLeftCorner<3, 3>().trace());
+  int number = 0;
+  for (const auto& [v, d] : squares(K, unit)) {
     LinearForm form;
     for (const auto& [node, sign] : {std::pair{b, 1.0}, std::pair{a, -1.0}})
       for (const LinearForm& half : {translation_of(model, node, j.p_W, j.R_WJ * v.head<3>(), sign),
                                      rotation_of(node, j.R_WJ * v.tail<3>(), sign)})
         form.insert(form.end(), half.begin(), half.end());
-    model.springs.push_back({form, LinearSpring{eigen.eigenvalues()(i)}, fmt::format("{} [{}]", name, i + 1), j.part});
+    model.springs.push_back({form, LinearSpring{d}, fmt::format("{} [{}]", name, ++number), j.part});
   }
 }
 

@@ -154,7 +154,8 @@ std::optional<ExtendedVector> ExtendedStructure::solve(const VectorX& load, cons
       for (Eigen::Index i = 0; i < part.k.rows(); ++i)
         for (const auto& [p, a] : nth(part.of_q, i)) q(p) -= a * Extended(part.k(i, j)) * strain;
     }
-  const Extended drives = Extended(no_load) * q.cwiseAbs().sum();
+  // In doubles: Eigen takes abs(int) for numbers of this type.
+  const Extended drives = no_load * q.cast<double>().cwiseAbs().sum();
   for (Eigen::Index j = 0; j < n; ++j) {
     if (L_(j, j) > 0)
       q.tail(n - j - 1) -= q(j) * L_.col(j).tail(n - j - 1);

@@ -60,7 +60,10 @@ class SoftBlock {
   /// 1e-4.
   void find(MatrixX& X, VectorX& sigma) const {
     const SparseCholesky shifted = factor();
-    if (shifted.softest().eigenvalue > 1e-8) return;
+    // The eigenvalue is that of BᵀB with a diagonal of ones; BᵀB has none below it times its own smallest entry there.
+    double least = 1;
+    for (int j = 0; j < pattern_.n; ++j) least = std::min(least, nth(values_, nth(pattern_.column_start, j)));
+    if (shifted.softest().eigenvalue * least > 1e-8) return;
     const int n = pattern_.n;
     for (int block = std::min(8, n);; block = std::min(4 * block, n)) {
       iterate(shifted, block, X);

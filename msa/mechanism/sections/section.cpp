@@ -1,4 +1,4 @@
-#include "msa/mechanism/section.h"
+#include "msa/mechanism/sections/section.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "msa/base/spatial.h"
-#include "msa/mechanism/thin_walls.h"
+#include "msa/mechanism/sections/thin_walls.h"
 
 namespace deflect {
 namespace {

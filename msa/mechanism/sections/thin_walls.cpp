@@ -1,4 +1,4 @@
-#include "msa/mechanism/thin_walls.h"
+#include "msa/mechanism/sections/thin_walls.h"
 
 #include <Eigen/LU>
 #include <cmath>
