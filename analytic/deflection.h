@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analytic/erratum.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 
 namespace deflect::analytic {
 

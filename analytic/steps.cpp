@@ -55,6 +55,12 @@ struct Member {
   }
 };
 
+/// A law that bends, without load: some have no stiffness then.
+bool lets_go(const Member& m, double no_load) {
+  const double own = m.force + m.stepped->preload;
+  return std::abs(own) <= no_load && !std::isfinite(analytic::compliance(m.law(), 0));
+}
+
 /// The force at which a law that bends has a deflection.
 double force_at(const Law& law, double deflection) {
   const double size = std::abs(deflection);
@@ -245,7 +251,7 @@ class Balance {
       else if (std::holds_alternative<FrictionLaw>(m.law()))
         m.phase = found.end[at] > 0 ? Phase::plus : found.end[at] < 0 ? Phase::minus : Phase::sticks;
       else if (!deflect::jumps(m.law()))
-        m.phase = std::abs(found.s(i) + m.stepped->preload) <= no_force * sizes_(i) ? Phase::open : Phase::bends;
+        m.phase = lets_go(m, no_force * sizes_(i)) ? Phase::open : Phase::bends;
       else
         m.phase = found.s(i) + m.stepped->preload < -no_force * sizes_(i) ? Phase::minus : Phase::plus;
     }

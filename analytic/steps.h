@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "msa/base/spatial.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 
 namespace deflect::analytic {
 

@@ -141,18 +141,12 @@ bool same(const std::pair<std::string, Part>&, const std::pair<std::string, Part
 
 bool same(const Placement& a, const Placement& b) { return a.shift == b.shift && a.turn == b.turn; }
 
-bool same(const std::optional<DhRow>& a, const std::optional<DhRow>& b) {
-  if (!a || !b) return a.has_value() == b.has_value();
-  return a->theta == b->theta && a->d == b->d && a->a == b->a && a->alpha == b->alpha;
-}
-
 bool same(const Mount& a, const Mount& b) {
   return same(a.base, b.base) && same(a.platform, b.platform) && same(a.leg, b.leg);
 }
 
 bool same(const Joint& a, const Joint& b) {
-  return a.type == b.type && a.freedoms == b.freedoms && a.axis == b.axis && same(a.dh, b.dh) &&
-         same(a.modified_dh, b.modified_dh) && a.bar == b.bar && a.home == b.home && a.min == b.min && a.max == b.max;
+  return static_cast<const JointKinematics&>(a) == static_cast<const JointKinematics&>(b);
 }
 
 bool same(const Member& a, const Member& b) {

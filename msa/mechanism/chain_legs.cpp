@@ -8,7 +8,7 @@
 #include "msa/base/outcome.h"
 #include "msa/mechanism/chain_kinematics.h"
 #include "msa/mechanism/family.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 #include "msa/mechanism/place.h"
 
 namespace deflect {

@@ -122,7 +122,7 @@ void for_each_law(Placed& c, const F& f) {
   of(c.tool);
 }
 
-/// Whether no law's stiffness depends on its force, and whether any law jumps (law_table.h).
+/// Whether no law's stiffness depends on its force, and whether any law jumps (law.h).
 bool all_linear(const Configuration&);
 bool any_jumps(const Configuration&);
 

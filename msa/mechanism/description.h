@@ -44,25 +44,30 @@ struct Placement {
 /// Craig, Introduction to Robotics, (3.6)): Rx(α) Tx(a) Rz(θ) Tz(d), then the joint about z.
 struct DhRow {
   double theta = 0, d = 0, a = 0, alpha = 0;
+  bool operator==(const DhRow&) const = default;
+};
+
+/// How a joint moves, without its laws: all that its kinematics depend on in the family "chains".
+struct JointKinematics {
+  std::string type = "fixed";
+  std::string freedoms;             ///< six letters of the joint table, for the type "custom"
+  Vector3 axis = Vector3::UnitZ();  ///< z of the joint in the axes of the chain
+  std::optional<DhRow> dh, modified_dh;
+  Vector3 bar = Vector3::Zero();  ///< parallelogram: from its hinges on this side to those on the other, at φ = 0
+  std::array<double, 6> home{};   ///< coordinates (m, rad) from which the kinematics start
+  std::array<std::optional<double>, 6> min, max;  ///< limits of the coordinates
+
+  bool operator==(const JointKinematics&) const = default;
 };
 
 /// A joint between the part before it in the chain and the part after it. Its freedoms are tx ty tz rx ry rz in its
 /// axes and move in this order: translation first, then Rx Ry Rz, each about axes rotated by the ones before. laws[i]
 /// are in series on freedom i; where the list is empty, the freedom is as in the type's row of the joint table.
-struct Joint {
-  std::string type = "fixed";
-  std::string freedoms;  ///< six letters of the joint table, for the type "custom"
-
+struct Joint : JointKinematics {
   std::string at;  ///< family with named points ("6-psu"): the point
   /// "6-psu": the named axes. Chains: "before" or "after", whether the axes of the laws are those before or after the
   /// joint's motion.
   std::string axes;
-
-  Vector3 axis = Vector3::UnitZ();  ///< chains: z of the joint in the axes of the chain
-  std::optional<DhRow> dh, modified_dh;
-  Vector3 bar = Vector3::Zero();  ///< parallelogram: from its hinges on this side to those on the other, at φ = 0
-  std::array<double, 6> home{};   ///< coordinates (m, rad) from which the kinematics start
-  std::array<std::optional<double>, 6> min, max;  ///< limits of the coordinates
 
   std::array<std::vector<Law>, 6> laws;
   std::optional<Matrix6> stiffness;  ///< 6×6, of [δ; θ] in the joint's axes, SI; instead of laws
@@ -72,6 +77,8 @@ struct Joint {
   /// For joints of legs: each of these laws acts in parallel with the series laws[i] (friction of a gear, a rubber
   /// seal). Only where freedom i is free or elastic.
   std::array<std::vector<Law>, 6> beside;
+
+  bool operator==(const Joint&) const = default;
 };
 
 enum class BeamTheory { euler_bernoulli, timoshenko };

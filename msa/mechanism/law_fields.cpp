@@ -2,7 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "msa/mechanism/field_lists.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 
 namespace deflect {
 namespace {

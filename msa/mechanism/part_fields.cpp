@@ -6,7 +6,7 @@
 #include "msa/base/index.h"
 #include "msa/mechanism/field_lists.h"
 #include "msa/mechanism/joint_table.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 
 namespace deflect {
 namespace {

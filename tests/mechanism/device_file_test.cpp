@@ -9,7 +9,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 #include "tests/support/devices.h"
 #include "tests/support/same_mechanism.h"
 

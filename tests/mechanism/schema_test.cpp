@@ -3,7 +3,7 @@
 #include "msa/mechanism/device_schema.h"
 
 #include "msa/mechanism/device_file.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 #include "tests/support/schema_routes.h"
 
 namespace deflect {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 #include "tests/support/devices.h"
 
 namespace deflect::test {

@@ -79,6 +79,8 @@ TEST(CompletionProgram, OffersTheValuesOfAnOption) {
   EXPECT_EQ(offered("deflect solve delta --load ''"), Words{});                        // numbers cannot be listed
   EXPECT_TRUE(offered("deflect effects --effects mine.yaml --y").contains("--yaml"));  // after one of several values
   EXPECT_TRUE(offered("deflect solve delta --geometry finite ''").contains("--load"));
+  EXPECT_EQ(offered("deflect solve delta --theories m"), Words{"msa"});
+  EXPECT_TRUE(offered("deflect new --like trip").contains("tripteron"));
 }
 
 TEST(CompletionProgram, KnowsNoOtherShell) {

@@ -5,6 +5,7 @@
 #include "analytic/constraint.h"
 #include "analytic/model.h"
 #include "msa/frame/mechanism/msa.h"
+#include "msa/mechanism/device_file.h"
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
@@ -316,6 +317,31 @@ TEST(WithoutLoad, NothingMovesAndNothingFails) {
       for (const Geometry geometry : {Geometry::linear, Geometry::second_order, Geometry::finite})
         EXPECT_TRUE(frame::MsaModel(c).solve(Vector6::Zero(), geometry).displacement.isZero(0)) << law << site;
     }
+}
+
+// A law that bends and carries nothing keeps the stiffness that it has at rest; only a contact has none there.
+TEST(WithoutLoad, ALawBesideOneThatJumpsKeepsItsStiffness) {
+  const Mechanism m = parse_mechanism(R"(
+name: foot
+kinematics: {family: chains}
+leg:
+  foot:
+    joint: fixed
+    tx: {law: hardening, stiffness: 500 N/mm, reference: 0.1 mm}
+    ty: {law: linear, stiffness: 300 N/mm}
+    tz: {law: clearance, gap: 0.02 mm}
+workspace: {cube_edge: 1 mm}
+)",
+                                      "foot.yaml");
+  const Configuration c = configure(m, Pose{});
+  Vector6 F = Vector6::Zero();
+  F(2) = 50;
+  const analytic::AnalyticModel analytic(c);
+  frame::MsaModel msa(c);
+  const Matrix6 a = analytic.resistance(analytic.solve(F)).K, f = msa.stiffness(msa.solve(F).state).K;
+  EXPECT_NEAR(a(0, 0), 5e5, 1e-9 * 5e5);
+  EXPECT_NEAR(f(0, 0), 5e5, 1e-9 * 5e5);
+  EXPECT_NEAR(a(1, 1), 3e5, 1e-9 * 3e5);
 }
 
 TEST(Beside, IsNoOverConstraintWhereItYields) {

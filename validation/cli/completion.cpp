@@ -9,6 +9,7 @@
 #include "analytic/erratum.h"
 #include "msa/base/error.h"
 #include "validation/cli/devices.h"
+#include "validation/theories/theory.h"
 
 namespace deflect::cli {
 namespace {
@@ -111,6 +112,8 @@ Choices choices_of(const std::string& value) {
       for (const std::string& frame : names_in("frames")) names.push_back(frame);
     } else if (split(piece, ',').front() == "EFFECT") {
       names = names_in("effects/catalogue");
+    } else if (piece == "THEORIES") {
+      for (const theories::Theory* t : theories::all_theories()) names.push_back(t->name);
     } else if (piece == "ERRATA") {
       for (const ErratumInfo& e : errata()) names.push_back(e.name);
       names.emplace_back("all");

@@ -218,7 +218,7 @@ theories::Theories parse_theories(const std::string& list) try {
 Option theories_option(std::string* list) {
   std::vector<std::string> names;
   for (const theories::Theory* theory : theories::all_theories()) names.push_back(theory->name);
-  return {"--theories", "NAMES", fmt::format("theories, separated by commas (default {})", fmt::join(names, ",")),
+  return {"--theories", "THEORIES", fmt::format("theories, separated by commas (default {})", fmt::join(names, ",")),
           list};
 }
 

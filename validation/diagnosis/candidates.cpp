@@ -78,6 +78,17 @@ double can_gain(const Signature& s, double gain) {
 
 Fit better(Fit a, Fit b) { return b.found && (!a.found || b.chi2 < a.chi2) ? b : a; }
 
+/// The columns of the effects whose shape is fixed: these alone take the place of another that does all but the same.
+/// The derivatives of a friction or a play say what it does near where it is, and it moves when another joins it.
+MatrixX columns_of_unshaped(const Hypothesis& h, const MatrixX& signature) {
+  std::vector<Eigen::Index> columns;
+  Eigen::Index at = 0;
+  for (const effects::PlacedEffect& e : h)
+    for (std::size_t i = 0; i < e.effect->parameters.size(); ++i, ++at)
+      if (!is_shaped(e)) columns.push_back(at);
+  return signature(Eigen::all, columns);
+}
+
 bool same(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
   return a.effect == b.effect && a.leg == b.leg;
 }
@@ -121,6 +132,7 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   std::vector<Candidate> out(signatures_.size());
   std::vector<char> allowed(out.size(), 1);
   const MatrixX fitted = statistics::orthonormal(so_far.signature);
+  const MatrixX proportional = statistics::orthonormal(columns_of_unshaped(before, so_far.signature));
   double best = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Signature& s = signatures_[i];
@@ -128,8 +140,9 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
     c.hypothesis = before;
     c.hypothesis.push_back(s.effect);
     const bool there = std::any_of(before.begin(), before.end(), [&](const auto& p) { return same(p, s.effect); });
-    allowed[i] = !there && own_share(s, fitted) > of_its_own;
-    c.gain = allowed[i] && !wrong_way(s, so_far.residual) ? most_gain(s, so_far.residual, fitted) : 0;
+    allowed[i] = !there && own_share(s, proportional) > of_its_own;
+    if (allowed[i] && !wrong_way(s, so_far.residual))
+      c.gain = std::max(most_gain(s, so_far.residual, fitted), most_gain(s, so_far.residual, proportional));
     best = std::max(best, c.gain);
   }
   // A few directions say less of an effect that parameters shape than of one that is proportional to its size.

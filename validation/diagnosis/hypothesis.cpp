@@ -147,6 +147,11 @@ std::vector<const effects::EffectParameter*> parameters_of(const Hypothesis& h) 
   return out;
 }
 
+bool is_shaped(const effects::PlacedEffect& e) {
+  const std::vector<effects::EffectParameter>& all = e.effect->parameters;
+  return std::any_of(all.begin(), all.end(), [](const effects::EffectParameter& p) { return !p.vanishes; });
+}
+
 bool one_sided(const effects::PlacedEffect& e) {
   if (e.effect->parameters.size() != 1) return false;
   const effects::EffectParameter& p = e.effect->parameters.front();
@@ -193,12 +198,7 @@ std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX
 }
 
 /// What jumps has valleys of χ² besides the deepest one: friction whose slips come before or after a turn of the load.
-bool has_valleys(const effects::PlacedEffect& e) {
-  const std::vector<effects::EffectParameter>& all = e.effect->parameters;
-  const bool shaped =
-      std::any_of(all.begin(), all.end(), [](const effects::EffectParameter& p) { return !p.vanishes; });
-  return shaped && all.size() > 1;
-}
+bool has_valleys(const effects::PlacedEffect& e) { return is_shaped(e) && e.effect->parameters.size() > 1; }
 constexpr std::size_t valleys = 5;
 
 Fit search_from(const Problem& problem, const Start& start, Eigen::Index rows) {

@@ -61,6 +61,9 @@ bool runs_to_a_bound(const Hypothesis&, const Fit&);
 /// ask for a larger effect than the bounds allow.
 bool wants_more_than_there_can_be(const Hypothesis&, const Fit&);
 
+/// Whether it has parameters beside its amplitude, which determine its shape (a friction's stiffness, an exponent).
+bool is_shaped(const effects::PlacedEffect&);
+
 /// Whether physics fixes the sign of the effect's amplitude (one parameter, which vanishes at a bound).
 bool one_sided(const effects::PlacedEffect&);
 

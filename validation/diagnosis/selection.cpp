@@ -44,12 +44,15 @@ class Search {
         return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
       });
       const auto best = std::max_element(all.begin(), all.end(), less_likely);
-      if (!others.empty() && best->class_log_odds < called_for) {
+      // Effects may go together in one order only: then the fit at hand tells what this one gains.
+      const double gained = std::max(0.0, rest.chi2 - s_.fit.chi2);
+      const double odds = own->fit.found ? own->class_log_odds : candidates_.class_log_odds_of(s_.effects[i], gained);
+      if (!others.empty() && std::max(best->class_log_odds, odds) < called_for) {
         grant(others, rest.values);
         return true;
       }
       if (!best->fit.found) continue;
-      const double more = best->class_log_odds - own->class_log_odds;
+      const double more = best->class_log_odds - odds;
       if (more > better || (more == 0 && best->log_odds > own->log_odds + better)) {
         grant(best->hypothesis, best->fit.values);
         return true;

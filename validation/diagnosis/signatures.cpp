@@ -48,7 +48,7 @@ MatrixX directions(const Observations& o, const effects::PlacedEffect& e, const 
     return VectorX(o.whitened_residual(prepared(values)) - o.null_residual());
   };
   std::vector<VectorX> columns;
-  shaped = std::any_of(all.begin(), all.end(), [](const effects::EffectParameter& p) { return !p.vanishes; });
+  shaped = is_shaped(e);
   bool separate = all.size() > 1;
   for (const effects::EffectParameter& p : all) separate = separate && p.vanishes && std::isfinite(*p.vanishes);
   if (separate)

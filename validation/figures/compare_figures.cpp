@@ -13,7 +13,9 @@
 namespace deflect::figures {
 namespace {
 
-Figure residuals(const compare::Comparison& c, const FigureStyle& style) {
+/// By reading in the order taken, x y z apart, with the band of ±2 standard deviations of what noise and tolerances
+/// give; colour by axis.
+std::optional<Figure> residuals(const compare::Comparison& c, const FigureStyle& style) {
   const report::ErrorUnit unit = report::error_unit(c);
   const std::vector<report::ReadingCells> cells = report::cells_of(c);
   Sheet s("residuals", style, 160);
@@ -72,7 +74,8 @@ Figure residuals(const compare::Comparison& c, const FigureStyle& style) {
                   report::noise_sentence(c)));
 }
 
-Figure groups(const compare::Comparison& c, const FigureStyle& style) {
+/// Rms by axis, direction, magnitude, heading against what noise and tolerances give.
+std::optional<Figure> groups(const compare::Comparison& c, const FigureStyle& style) {
   const report::ErrorUnit unit = report::error_unit(c);
   Sheet s("groups", style, 160);
   std::string labels, data = "$data << EOD\n";
@@ -207,17 +210,22 @@ class ElongationPanels {
   double left_ = 0, gap_ = 0, w_ = 0, h_ = 0, top_ = 0, row_ = 0;  // mm
 };
 
+/// Force–elongation curves of the sites beyond the model.
 std::optional<Figure> elongation(const compare::Comparison& c, const FigureStyle& style) {
   if (c.curves.empty()) return std::nullopt;
   return ElongationPanels(c, style).figure();
 }
 
+/// To add a figure: declare it here, give it a row, define it in a file of its own.
+using Draw = std::optional<Figure> (*)(const compare::Comparison&, const FigureStyle&);
+constexpr Draw compared[] = {residuals, residual_map, groups, secant, elongation, loops};
+
 }  // namespace
 
 std::vector<Figure> compare_figures(const compare::Comparison& c, const FigureStyle& style) {
-  std::vector<Figure> out = {residuals(c, style), residual_map(c, style), groups(c, style)};
-  for (const std::optional<Figure>& f : {secant(c, style), elongation(c, style), loops(c, style)})
-    if (f) out.push_back(*f);
+  std::vector<Figure> out;
+  for (const Draw draw : compared)
+    if (std::optional<Figure> f = draw(c, style)) out.push_back(std::move(*f));
   return out;
 }
 

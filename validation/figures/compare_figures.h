@@ -9,14 +9,8 @@
 
 namespace deflect::figures {
 
-/// Those that the data allow:
-///   residuals       by reading in the order taken, x y z apart, with the band of ±2 standard deviations of what noise
-///                   and tolerances give; colour by axis
-///   residual-map    signed residual of each component at each pose of the workspace (residual_map.h)
-///   groups          rms by axis, direction, magnitude, heading against what noise and tolerances give
-///   secant          displacement over load along the load, measured and predicted, over the load (load_curves.h)
-///   elongation      force–elongation curves of the sites beyond the model
-///   loops           displacement over load at the pose of the largest misfit, measured and predicted
+/// Those that the data allow: residuals, residual-map, groups, secant, elongation, loops. What each shows is said where
+/// it is drawn.
 std::vector<Figure> compare_figures(const compare::Comparison&, const FigureStyle& = {});
 
 }  // namespace deflect::figures

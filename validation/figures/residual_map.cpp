@@ -248,6 +248,8 @@ class SignedMap {
 
 }  // namespace
 
-Figure residual_map(const compare::Comparison& c, const FigureStyle& style) { return SignedMap(c, style).figure(); }
+std::optional<Figure> residual_map(const compare::Comparison& c, const FigureStyle& style) {
+  return SignedMap(c, style).figure();
+}
 
 }  // namespace deflect::figures

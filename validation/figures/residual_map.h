@@ -1,6 +1,8 @@
 // The residual over the workspace, signed, component by component.
 #pragma once
 
+#include <optional>
+
 #include "validation/compare/comparison.h"
 #include "validation/figures/gnuplot.h"
 
@@ -17,6 +19,6 @@ std::vector<SignedResidual> signed_residuals(const compare::Comparison&);
 /// "residual-map": both at every pose, the workspace seen obliquely (x to the right, z up, y into the page), colours
 /// from blue (negative) through white to red on one scale that is symmetric about 0; circles positive, squares
 /// negative.
-Figure residual_map(const compare::Comparison&, const FigureStyle& = {});
+std::optional<Figure> residual_map(const compare::Comparison&, const FigureStyle& = {});
 
 }  // namespace deflect::figures

@@ -7,7 +7,7 @@
 #include "msa/base/index.h"
 #include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/joint_table.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 #include "msa/mechanism/mechanism_tree.h"
 #include "msa/mechanism/place.h"
 

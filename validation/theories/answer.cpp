@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "msa/base/error.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 #include "msa/mechanism/stand.h"
 
 namespace deflect::theories {

@@ -20,6 +20,8 @@ std::vector<std::string> names_of(const Theories& theories) {
 
 }  // namespace
 
+/// To add a theory: its file defines a function as analytic_theory() does; declare it here and give it a place in the
+/// table.
 const Theories& all_theories() {
   static const Theories table = {&analytic_theory(), &msa_theory()};
   return table;

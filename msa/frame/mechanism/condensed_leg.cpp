@@ -6,7 +6,7 @@
 
 #include "msa/base/index.h"
 #include "msa/frame/mechanism/component.h"
-#include "msa/mechanism/law_table.h"
+#include "msa/mechanism/law.h"
 
 namespace deflect::frame {
 namespace {

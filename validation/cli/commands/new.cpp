@@ -118,15 +118,15 @@ Command new_command() {
   auto a = std::make_shared<NewArguments>();
   std::vector<std::string> words;
   for (const Likeness& each : likenesses) words.emplace_back(each.word);
-  return {
-      "new",
-      "Write a first file for your own machine: a commented device or frame to edit. It runs unchanged, and the "
-      "comments at its top list commands to try",
-      "deflect new --like scara -o mine.yaml",
-      {{"--like", "NAME", fmt::format("{}, or any built-in device or frame", fmt::join(words, ", ")), &a->like, true},
-       {"-o,--output", "FILE", "file to write", &a->out, true},
-       {"--force", "", "overwrite an existing file", &a->force}},
-      [a] { run(*a); }};
+  return {"new",
+          "Write a first file for your own machine: a commented device or frame to edit. It runs unchanged, and the "
+          "comments at its top list commands to try",
+          "deflect new --like scara -o mine.yaml",
+          {{"--like", "DEVICE|FRAME", fmt::format("{}, or any built-in device or frame", fmt::join(words, ", ")),
+            &a->like, true},
+           {"-o,--output", "FILE", "file to write", &a->out, true},
+           {"--force", "", "overwrite an existing file", &a->force}},
+          [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli
