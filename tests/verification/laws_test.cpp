@@ -341,7 +341,6 @@ workspace: {cube_edge: 1 mm}
   const Matrix6 a = analytic.resistance(analytic.solve(F)).K, f = msa.stiffness(msa.solve(F).state).K;
   EXPECT_NEAR(a(0, 0), 5e5, 1e-9 * 5e5);
   EXPECT_NEAR(f(0, 0), 5e5, 1e-9 * 5e5);
-  EXPECT_NEAR(a(1, 1), 3e5, 1e-9 * 3e5);
 }
 
 TEST(Beside, IsNoOverConstraintWhereItYields) {
