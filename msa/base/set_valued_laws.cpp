@@ -50,7 +50,7 @@ class Laws {
       const double u = unit_(i);
       problem_.rows.push_back({law.low / u, law.high / u, [&law, u](double d) { return law.force(u * d) * u; },
                                [&law, u](double d) { return law.tangent(u * d) * u * u; }});
-      if (problem_.B.row(i).squaredNorm() <= rounding) leave_at_rest(i);
+      if (problem_.B.row(i).norm() <= rounding) leave_at_rest(i);
     }
   }
 

@@ -102,7 +102,7 @@ class DenseFrame {
     std::vector<Real> D(n);
     for (std::size_t i = 0; i < n; ++i) {
       const Real& k = K_(unknown[i], unknown[i]);
-      D[i] = k > 0 ? Real(1 / sqrt(k)) : mean_scale();
+      D[i] = k > rounding_of_K() ? Real(1 / sqrt(k)) : mean_scale();
     }
     RealMatrix A(n + m, n + m);
     for (std::size_t i = 0; i < n; ++i)
@@ -144,6 +144,13 @@ class DenseFrame {
       for (const auto& [node, w] : load.nodes)
         out = std::max({out, w.head<3>().norm(), w.tail<3>().norm() / extent(f_)});
     return out;
+  }
+
+  /// What hinges leave of a stiffness is the rounding of its summands, of fifty digits.
+  Real rounding_of_K() const {
+    Real largest = 0;
+    for (std::size_t i = 0; i < free_.size(); ++i) largest = std::max(largest, K_(i, i));
+    return Real("1e-40") * largest;
   }
 
   /// Of freedoms that nothing but constraints resist.

@@ -211,7 +211,7 @@ std::string beside_oracle(const std::vector<MachineSet>& all) {
   for (const MachineSet& s : all) {
     if (!s.skipped.empty()) continue;
     oracle += s.oracle_right;
-    both += is_right(s);
+    both += s.oracle_right && is_right(s);
   }
   return oracle == 0 ? "" : fmt::format("{:.2f} ({})", static_cast<double>(both) / oracle, oracle);
 }

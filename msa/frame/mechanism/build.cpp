@@ -27,7 +27,7 @@ std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
 
 /// K = Σ d v vᵀ by LDLᵀ, the largest diagonal entry of what is left first: vᵢ and dᵢ, six at most. Where stiffnesses
 /// differ by many orders, the soft ones keep their digits, which eigenvectors would lose to the rounding of the stiff
-/// ones. `unit`: by which the entries of rotations are divided before they are compared, m.
+/// ones. Every d is in N/m and every v moves along a length; `unit`: that of a rotation of 1 rad, m.
 std::vector<std::pair<Vector6, double>> squares(const Matrix6& K, double unit) {
   std::vector<std::pair<Vector6, double>> out;
   Eigen::Matrix<Extended, 6, 6> left = K.cast<Extended>();
@@ -40,7 +40,8 @@ std::vector<std::pair<Vector6, double>> squares(const Matrix6& K, double unit) {
     if (!(left(k, k) > 0)) break;
     const Extended pivot = left(k, k);
     const Eigen::Matrix<Extended, 6, 1> column = left.col(k) / pivot;
-    out.emplace_back(column.cast<double>(), static_cast<double>(pivot));
+    const double length = k < 3 ? 1 : unit;
+    out.emplace_back(length * column.cast<double>(), static_cast<double>(pivot) / (length * length));
     left -= pivot * column * column.transpose();
     left.col(k).setZero();
     left.row(k).setZero();
