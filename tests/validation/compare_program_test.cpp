@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -118,6 +119,21 @@ TEST_F(CompareProgram, JsonHoldsTheSame) {
   ASSERT_FALSE(j["findings"].empty());
   EXPECT_GT(j["findings"][0]["share_of_misfit"].get<double>(), 0.9);
   EXPECT_EQ(j["errors"]["by_pose"].size(), 9u);
+}
+
+// Every part of this device yields as 1/E: 1 % of the modulus moves each reading by 1 %, to first order.
+TEST_F(CompareProgram, SaysWhichTolerancesMatterMost) {
+  const json all = compared(soft_root(), "--out " + path("out"))["tolerances"];
+  ASSERT_GT(all.size(), 1u);
+  EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const json& a, const json& b) {
+    return a["rms_mm"].get<double>() > b["rms_mm"].get<double>();
+  }));
+  double square = 0, count = 0;
+  for (const std::string& line : lines_of(columns(contents(folder / "out" / "residuals.csv"), {"predicted"})))
+    if (line != "predicted") square += std::stod(line) * std::stod(line), ++count;
+  const auto modulus = std::find_if(all.begin(), all.end(), [](const json& t) { return t["name"] == "modulus"; });
+  ASSERT_NE(modulus, all.end());
+  EXPECT_NEAR((*modulus)["rms_mm"].get<double>(), 0.01 * std::sqrt(square / count), 3e-4 * std::sqrt(square / count));
 }
 
 /// The names of all figures that were drawn.

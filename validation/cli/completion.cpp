@@ -110,6 +110,9 @@ Choices choices_of(const std::string& value) {
     } else if (piece == "FRAME") {
       names = names_in("cases");
       for (const std::string& frame : names_in("frames")) names.push_back(frame);
+    } else if (piece == "MACHINE") {  // a built-in one, no file
+      names = device_names();
+      for (const std::string& frame : names_in("frames")) names.push_back(frame);
     } else if (split(piece, ',').front() == "EFFECT") {
       names = names_in("effects/catalogue");
     } else if (piece == "THEORIES") {

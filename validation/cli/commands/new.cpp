@@ -122,8 +122,8 @@ Command new_command() {
           "Write a first file for your own machine: a commented device or frame to edit. It runs unchanged, and the "
           "comments at its top list commands to try",
           "deflect new --like scara -o mine.yaml",
-          {{"--like", "DEVICE|FRAME", fmt::format("{}, or any built-in device or frame", fmt::join(words, ", ")),
-            &a->like, true},
+          {{"--like", "MACHINE", fmt::format("{}, or any built-in device or frame", fmt::join(words, ", ")), &a->like,
+            true},
            {"-o,--output", "FILE", "file to write", &a->out, true},
            {"--force", "", "overwrite an existing file", &a->force}},
           [a] { run(*a); }};
