@@ -90,6 +90,12 @@ bool any_jumps(const Configuration& c) {
   return any;
 }
 
+bool any_history(const Configuration& c) {
+  bool any = false;
+  for_each_law(c, [&](const Law& law) { any = any || row_of(law).has_history; });
+  return any;
+}
+
 int number_slips(Configuration& c) {
   int count = 0;
   for_each_law(c, [&](Law& law) {

@@ -52,6 +52,8 @@ class Problem {
     return std::nullopt;
   }
 
+  bool has_history(const VectorX& x) const { return observations_.has_history(prepared_(values(x))); }
+
   /// For a search: what cannot be predicted is far worse than anything that can.
   VectorX residual_or_wall(const VectorX& x) const { return residual(x).value_or(wall_); }
 
@@ -197,8 +199,8 @@ std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX
   return best;
 }
 
-/// What jumps has valleys of χ² besides the deepest one: friction whose slips come before or after a turn of the load.
-bool has_valleys(const effects::PlacedEffect& e) { return is_shaped(e) && e.effect->parameters.size() > 1; }
+/// Beside friction, χ² has valleys besides the deepest one: a slip comes before or after a turn of the load.
+bool may_have_valleys(const effects::PlacedEffect& e) { return is_shaped(e) && e.effect->parameters.size() > 1; }
 constexpr std::size_t valleys = 5;
 
 Fit search_from(const Problem& problem, const Start& start, Eigen::Index rows) {
@@ -241,7 +243,10 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
     std::vector<Start> begun;
     std::string why;
     if (guess) begun = best_starts(problem, {*guess}, from, 1, why);
-    if (begun.empty()) begun = best_starts(problem, starts(h.back()), from, has_valleys(h.back()) ? valleys : 1, why);
+    if (begun.empty()) {
+      begun = best_starts(problem, starts(h.back()), from, valleys, why);
+      if (begun.size() > 1 && !(may_have_valleys(h.back()) && problem.has_history(begun.front().x))) begun.resize(1);
+    }
     Fit best = not_found(why);
     for (const Start& start : begun) {
       Fit found = search_from(problem, start, o.null_residual().size());
@@ -257,7 +262,7 @@ Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int th
   Eigen::Index first = 0;
   for (const effects::PlacedEffect& e : h) {
     const auto own = std::ssize(e.effect->parameters);
-    if (h.size() > 1 && has_valleys(e)) {
+    if (h.size() > 1 && may_have_valleys(e) && problem.has_history(problem.coordinates(found.values))) {
       const std::vector<VectorX> tries = starts(e);
       std::vector<Start> begun(tries.size());
       parallel::for_each_case(tries.size(), 1, threads, [&](std::size_t i) {

@@ -85,6 +85,10 @@ VectorX Observations::residual(const subject::Subject& subject) const {
   return measured_ - shape_ - statistics::rows_of(s.values, standing->predict(*s.data, o, parallel::alone));
 }
 
+bool Observations::has_history(const subject::Subject& subject) const {
+  return subject.stand(*comparison_->study.data, comparison_->study.standing.get())->has_history();
+}
+
 VectorX Observations::whitened_residual(const subject::Subject& subject) const {
   return uncertainty_->whitened(residual(subject));
 }

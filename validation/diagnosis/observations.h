@@ -35,6 +35,9 @@ class Observations {
   /// All patterns that a residual can have (discrepancy.h), whitened by the uncertainty. Computed anew at every call.
   std::shared_ptr<const WhitenedFamilies> whitened_patterns() const;
 
+  /// Whether the readings of a subject would depend on the loads before them.
+  bool has_history(const subject::Subject&) const;
+
   /// Root mean square of measured − predicted over the readings not set aside: of translations, m, or, where only
   /// rotations were measured, of rotations, rad.
   double rmse(const subject::Subject&) const;

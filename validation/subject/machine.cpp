@@ -118,6 +118,8 @@ class MachineStanding final : public Standing {
     return model.compliance(model.solve(F));
   }
 
+  bool has_history() const override { return any_history(machines_.front()); }
+
   std::vector<Vector6> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
                                const parallel::Work& work) const override {
     return prediction::predict(*mechanism_, machines_, data, o, work);

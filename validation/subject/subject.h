@@ -76,6 +76,9 @@ class Standing {
   /// along each of x, y and z.
   virtual Matrix6 compliance(std::size_t pose) const = 0;
 
+  /// Whether a reading depends on the loads before it: friction. Then the order of the readings matters.
+  virtual bool has_history() const { return false; }
+
   /// Predicts the readings of these measurements, which must have the same poses (prediction.h).
   virtual std::vector<Vector6> predict(const measurement::Measurements&, const prediction::PredictionOptions& = {},
                                        const parallel::Work& = {}) const = 0;

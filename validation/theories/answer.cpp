@@ -36,12 +36,6 @@ bool strained_at_rest(const Configuration& c) {
   return found;
 }
 
-bool has_history(const Configuration& c) {
-  bool found = false;
-  for_each_law(c, [&](const Law& law) { found = found || row_of(law).has_history; });
-  return found;
-}
-
 }  // namespace
 
 double bound_with(double least, double rounding) {
@@ -81,7 +75,7 @@ double total(const std::vector<std::pair<std::string, double>>& energies) {
   return sum;
 }
 
-AtRest at_rest(const Configuration& c) { return {strained_at_rest(c), has_history(c)}; }
+AtRest at_rest(const Configuration& c) { return {strained_at_rest(c), any_history(c)}; }
 
 void enforce_stiffness(const StiffnessChecks& checks, const Asked& asked) {
   enforce(checks.failure, asked, "stiffness");
