@@ -254,8 +254,8 @@ void FieldReader::word(const char* key, std::string& value, const Words& w, cons
     fail(*node, joined(path_, key), fmt::format("unknown {} '{}'{}", w.what, value, suggestion(value, w.allowed)));
 }
 
-void FieldReader::any(const char* key, std::string& yaml, const char* about) {
-  const std::string sample = fmt::format("{}: 0.5", key);
+void FieldReader::any(const char* key, std::string& yaml, const char* example, const char* about) {
+  const std::string sample = fmt::format("{}: {}", key, example);
   const YamlNode* node = find(key, true, sample, about);
   if (!node) return;
   if (node->kind == Kind::null) scalar(*node, joined(path_, key), sample);

@@ -85,7 +85,8 @@ class FieldVisitor {
   virtual void text(const char* key, std::string&, Need, const char* about) = 0;
   virtual void texts(const char* key, std::vector<std::string>&, Need, const char* about) = 0;  ///< one text or a list
   virtual void word(const char* key, std::string&, const Words&, const char* about) = 0;
-  virtual void any(const char* key, std::string& yaml, const char* about) = 0;  ///< YAML, kept in flow style
+  /// YAML, kept in flow style. `example`: what may stand there, for messages.
+  virtual void any(const char* key, std::string& yaml, const char* example, const char* about) = 0;
   /// A word, or a map of fields that contains the word. `more`: the writer must write the map.
   virtual void word_or_object(const char* key, std::string&, const Words&, bool more,
                               const std::function<void()>& fields, const char* about) = 0;

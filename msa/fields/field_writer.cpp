@@ -111,7 +111,7 @@ void FieldWriter::mark(YamlNode& node, const std::string& path) const {
     mark(node.children[i], joined(path, node.kind == Kind::map ? node.keys[i] : std::to_string(i)));
 }
 
-void FieldWriter::any(const char* key, std::string& yaml, const char*) {
+void FieldWriter::any(const char* key, std::string& yaml, const char*, const char*) {
   YamlNode node = parse_yaml(yaml, joined(path_, key));
   set_line(node, 0);
   mark(node, joined(path_, key));

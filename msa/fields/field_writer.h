@@ -28,7 +28,7 @@ class FieldWriter final : public FieldVisitor {
   void text(const char*, std::string&, Need, const char*) override;
   void texts(const char*, std::vector<std::string>&, Need, const char*) override;
   void word(const char*, std::string&, const Words&, const char*) override;
-  void any(const char*, std::string&, const char*) override;
+  void any(const char*, std::string&, const char*, const char*) override;
   void word_or_object(const char*, std::string&, const Words&, bool, const std::function<void()>&,
                       const char*) override;
   void object(const char*, Need, bool absent, const std::function<void()>&, const char*) override;

@@ -116,7 +116,9 @@ class SchemaVisitor final : public FieldVisitor {
     if (f.words.empty()) return;
     value = choose(key, f.words, f.otherwise.empty() ? f.words.front() : f.otherwise);
   }
-  void any(const char* key, std::string&, const char* about) override { add(key, FieldKind::any, true, about); }
+  void any(const char* key, std::string&, const char*, const char* about) override {
+    add(key, FieldKind::any, true, about);
+  }
   void word_or_object(const char* key, std::string&, const Words& w, bool, const std::function<void()>& fields,
                       const char* about) override {
     SchemaField& f = add(key, FieldKind::object, !w.otherwise, about);

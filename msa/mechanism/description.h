@@ -217,6 +217,27 @@ struct Sensor {
   Vector6 zero = Vector6::Zero();      ///< that zero, m and rad, where it is known; not in files
 };
 
+/// A named instrument beside the one at T: it reads a displacement of a point of a body, in one direction, or a
+/// rotation of the body about one axis.
+struct PointSensor {
+  std::string body = "platform";    ///< "platform", or "tool": beyond the tool joint
+  Vector3 point = Vector3::Zero();  ///< m, from T, in platform axes; moves with the body
+  std::string direction;            ///< as in the file: "uz", "rx", "[0, 0, 1]"
+  Vector3 axis = Vector3::UnitZ();  ///< that direction: a unit vector in base axes
+  bool rotation = false;            ///< it reads a rotation about the axis
+  std::string gain_text;            ///< as in the file: "1 ± 0.5 %"; empty: exactly 1
+  double gain = 1, gain_sigma = 0;  ///< recorded over true displacement, and its standard deviation
+  double sigma = 0;                 ///< m or rad, of one reading; 0: not given
+  bool free_zero = false;           ///< as in Sensor
+  double zero = 0;                  ///< m or rad, where it is known; not in files
+};
+
+/// A named point at which loads act, beside T.
+struct LoadPoint {
+  std::string body = "platform";    ///< as in PointSensor
+  Vector3 point = Vector3::Zero();  ///< m, from T, in platform axes
+};
+
 /// Standard deviations of what varies between machines built to one drawing.
 struct Tolerances {
   double modulus = 0, guide_diameter = 0, load = 0;                        ///< relative
@@ -243,6 +264,8 @@ struct Mechanism {
   Workspace workspace;
   LoadCell load_cell;
   Sensor sensor;
+  Named<PointSensor> sensors;
+  Named<LoadPoint> loads;
   /// Kinds of place at which a diagnosis assumes nothing missing: "base", "tool", "load", "load cell", "sensor".
   std::vector<std::string> trusted;
   Tolerances tolerances;

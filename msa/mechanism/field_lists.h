@@ -72,6 +72,7 @@ inline void material_of(FieldVisitor& v, std::string& material) {
 }
 
 void describe_workspace(FieldVisitor&, Workspace&);
+void describe_rig(FieldVisitor&, LoadCell&, Sensor&, std::vector<std::string>& trusted);
 
 /// base and tool: joints at a given place, rigid except where they have a law.
 void describe_fixture(FieldVisitor&, const char* key, Joint&, const char* at, const char* axes, const char* about);

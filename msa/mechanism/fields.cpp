@@ -44,33 +44,6 @@ void place_names(const SixPsu&, Surroundings& s) {
   s.axes = {"base", "guide", "link", "platform"};
 }
 
-constexpr const char* trusted_kinds[] = {"base", "tool", "load", "load cell", "sensor"};
-
-void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<std::string>& trusted) {
-  const auto cell_fields = [&] {
-    v.quantity("gain", cell.gain, optional(1, Dimension::ratio, positive), "true load over recorded load");
-    v.vector3("rotation", cell.rotation, Dimension::angle, "rotation vector from recorded to true load");
-  };
-  const auto sensor_fields = [&] {
-    v.vector3("rotation", sensor.rotation, Dimension::angle, "rotation vector from true to recorded displacement");
-    v.vector3("drift", sensor.drift, Dimension::length, "drift of the reading over a sequence");
-    std::string zero = sensor.free_zero ? "free" : "unloaded";
-    v.word("zero", zero, {"zero of the readings", {"unloaded", "free"}, "unloaded"},
-           "where readings count from: the unloaded machine, or somewhere");
-    sensor.free_zero = zero == "free";
-  };
-  const auto both = [&] {
-    v.object("load_cell", Need::optional, false, cell_fields, "how loads are recorded");
-    v.object("sensor", Need::optional, false, sensor_fields, "how displacements are recorded");
-    v.texts("trusted", trusted, Need::optional, "where nothing is missing: base, tool, load, load cell, sensor");
-    const std::vector<std::string> known{std::begin(trusted_kinds), std::end(trusted_kinds)};
-    for (const std::string& kind : trusted)
-      v.require(std::find(known.begin(), known.end(), kind) != known.end(), "trusted",
-                fmt::format("there is no '{}' to trust{}", kind, suggestion(kind, known)));
-  };
-  v.object("rig", Need::optional, false, both, "how loads and displacements are recorded");
-}
-
 void describe_tolerances(FieldVisitor& v, Tolerances& t) {
   const Quantity relative = optional(0, Dimension::ratio, not_negative),
                  absolute = optional(0, Dimension::length, not_negative);
@@ -124,7 +97,7 @@ void describe(FieldVisitor& v, LegDeviation& d) {
 void describe(FieldVisitor& v, Variation& variation) {
   v.integer("leg", variation.leg, 1, v.surroundings.legs, "number of the leg");
   v.text("path", variation.path, Need::required, "field inside the leg, as in 'guideway.bending_factor'");
-  v.any("value", variation.value, "what stands there in this leg");
+  v.any("value", variation.value, "0.5", "what stands there in this leg");
 }
 
 void describe(FieldVisitor& v, Misfit& misfit) {
@@ -183,6 +156,10 @@ void describe(FieldVisitor& v, Mechanism& m) {
 
   describe_workspace(v, m.workspace);
   describe_rig(v, m.load_cell, m.sensor, m.trusted);
+  NamedElements<PointSensor> sensors(m.sensors);
+  v.entries("sensors", sensors, Need::optional, "instruments by name, beside the one at the tool point");
+  NamedElements<LoadPoint> loads(m.loads);
+  v.entries("loads", loads, Need::optional, "points by name at which loads act, beside the tool point");
   v.object(
       "tolerances", Need::optional, false, [&] { describe_tolerances(v, m.tolerances); },
       "standard deviations from machine to machine");

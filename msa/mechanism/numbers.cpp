@@ -33,7 +33,7 @@ class NumberWalk : public FieldVisitor {
   void text(const char*, std::string&, Need, const char*) override {}
   void texts(const char*, std::vector<std::string>&, Need, const char*) override {}
   void word(const char*, std::string&, const Words&, const char*) override {}
-  void any(const char*, std::string&, const char*) override {}
+  void any(const char*, std::string&, const char*, const char*) override {}
   void word_or_object(const char* key, std::string&, const Words&, bool more, const std::function<void()>& fields,
                       const char*) override {
     if (more) inside(key, fields);

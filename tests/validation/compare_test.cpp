@@ -57,7 +57,7 @@ Measurements made(const Mechanism& m, const std::string& plan, const Elongation&
   PredictionOptions o;
   o.geometry = Geometry::finite;
   const std::vector<Configuration> machines = configure_all(m, data);
-  const std::vector<Vector6> d = predict(m, machines, data, o);
+  const std::vector<VectorX> d = predict(m, machines, data, o);
   Random random(seed + 100);
   for (std::size_t i = 0; i < data.readings.size(); ++i) {
     Reading& r = data.readings[i];

@@ -112,10 +112,10 @@ TEST(Tail, IsThatOfPublishedTables) {
 // Residuals made of noise and tolerances s times as large: s is found, whatever patterns lie on top of them.
 TEST(Uncertainty, ToleranceScaleIsFoundBesidePatterns) {
   std::vector<MeasuredValue> values(600);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = {i / 3, i % 3, 0, {}};
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = tool_point_value(i / 3, i % 3, 0, {});
   const std::vector<double> sigma(600, 1);
   const MatrixX A = 0.5 * noise(600, 80, 4), patterns = noise(600, 5, 5);
-  const Uncertainty u(A, values, sigma, std::vector<Vector6>(200, Vector6::Zero()), 0);
+  const Uncertainty u(A, values, sigma, std::vector<VectorX>(200, Vector6::Zero()), 0);
   for (const double s : {1.0, 2.0, 2.5}) {
     const VectorX r = s * A * noise(80, 1, 6) + noise(600, 1, 7) + patterns * VectorX::Constant(5, 40);
     const double found = u.scale_of_tolerances(r, patterns);

@@ -94,7 +94,7 @@ TEST(Replicates, MeasuredValuesCarryTheirStandardDeviation) {
   ASSERT_EQ(values.size(), std::size(expected));
   for (std::size_t i = 0; i < values.size(); ++i) {
     EXPECT_EQ(values[i].reading, expected[i].reading);
-    EXPECT_EQ(values[i].component, expected[i].component);
+    EXPECT_EQ(values[i].channel, expected[i].component);
     EXPECT_EQ(values[i].value, expected[i].value);
     EXPECT_NEAR(values[i].sigma.value(), expected[i].sigma, 1e-15);
   }

@@ -44,7 +44,7 @@ TEST(Simulate, ExactReadingsOfTheDrawingAreTheMsa) {
   o.geometry = Geometry::linear;
   const Measurements data = simulate(m, campaign("paper", m, 50, 1), o);
   PredictionOptions p;  // the other theory
-  const std::vector<Vector6> d = predict(m, configure_all(m, data), data, p);
+  const std::vector<VectorX> d = predict(m, configure_all(m, data), data, p);
   for (std::size_t i = 0; i < d.size(); ++i)
     for (std::size_t k = 0; k < 6; ++k)
       EXPECT_NEAR(*data.readings[i].displacement[k], d[i](static_cast<Eigen::Index>(k)), 1e-9 * d[i].norm());
@@ -69,7 +69,7 @@ TEST(Simulate, NoiseAndTolerancesHaveTheirSize) {
   o.geometry = Geometry::linear;
   o.sigma_u = 3e-6;
   const Measurements data = simulate(m, campaign("rich", m, 50, 1), o);
-  const std::vector<Vector6> d = predict(m, configure_all(m, data), data, {});
+  const std::vector<VectorX> d = predict(m, configure_all(m, data), data, {});
   double squares = 0;
   for (std::size_t i = 0; i < d.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k)

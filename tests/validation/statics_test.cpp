@@ -32,7 +32,7 @@ TEST_P(StaticsAtPlaces, AgreesWithThePredictionOfASmallSpring) {
   const auto standing = subject.stand(data);
   const auto transmissions = standing->transmissions();
   ASSERT_TRUE(transmissions);
-  const std::vector<Vector6> drawn = standing->predict(data, {}, alone);
+  const std::vector<VectorX> drawn = standing->predict(data, {}, alone);
   int looked_at = 0;
   for (const Effect& e : place_effects(subject, test::all_effects())) {
     if (!e.name.starts_with("linear@")) continue;
@@ -43,10 +43,10 @@ TEST_P(StaticsAtPlaces, AgreesWithThePredictionOfASmallSpring) {
     const std::optional<int> leg = e.scope == Scope::one_leg ? std::optional(2) : std::nullopt;
     const auto told = transmissions->change(*e.place, leg, *law, data);
     ASSERT_TRUE(told) << e.name;
-    const std::vector<Vector6> with = Subject(with_effect(m, e, stiff, leg)).stand(data)->predict(data, {}, alone);
+    const std::vector<VectorX> with = Subject(with_effect(m, e, stiff, leg)).stand(data)->predict(data, {}, alone);
     double off = 0, size = 0, rounding = 0;
     for (std::size_t i = 0; i < with.size(); ++i) {
-      off += (with[i] - drawn[i] - (*told)[i]).squaredNorm();
+      off += (with[i] - drawn[i] - VectorX((*told)[i])).squaredNorm();
       size += (*told)[i].squaredNorm();
       rounding += drawn[i].squaredNorm();
     }

@@ -51,7 +51,7 @@ Measurements readings(double softer, double noise_mm = 0) {
 TEST(FrameSubject, PredictsACantileversTip) {
   const Measurements data = readings(1);
   const std::shared_ptr<const Standing> standing = beam("B").stand(data);
-  const std::vector<Vector6> d = standing->predict(data, {});
+  const std::vector<VectorX> d = standing->predict(data, {});
   for (std::size_t i = 0; i < d.size(); ++i)
     for (const int axis : {1, 2})
       EXPECT_NEAR(d[i](axis), data.readings[i].load(axis) / (3 * EI), 1e-12 * 10 / (3 * EI));
@@ -123,7 +123,7 @@ TEST(MachineSubject, IsOffByItsTolerances) {
   EXPECT_EQ(off->tolerances()[7].pose, 1u);
   EXPECT_EQ(off->with(7)->poses(), 1u);
   const Subject stiffer = Subject(m).edited({{"materials.*.E", "1.0001", Edit::Action::multiply}});
-  const std::vector<Vector6> expected = stiffer.stand(data)->predict(data, {}), d = off->with(0)->predict(data, {});
+  const std::vector<VectorX> expected = stiffer.stand(data)->predict(data, {}), d = off->with(0)->predict(data, {});
   for (std::size_t i = 0; i < d.size(); ++i) EXPECT_LE((d[i] - expected[i]).norm(), 1e-12 * d[i].norm());
 }
 

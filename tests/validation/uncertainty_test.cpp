@@ -27,7 +27,7 @@ using namespace subject;
 struct Small {
   std::vector<MeasuredValue> values;
   std::vector<double> sigma;
-  std::vector<Vector6> d;
+  std::vector<VectorX> d;
   MatrixX A;
   Random random{3};
 
@@ -37,7 +37,7 @@ struct Small {
       x.head<3>() = 1e-4 * random.normal3();
       d.push_back(x);
       for (std::size_t k = 0; k < 3; ++k) {
-        values.push_back({reading, k, x(static_cast<Eigen::Index>(k)), {}});
+        values.push_back(tool_point_value(reading, k, x(static_cast<Eigen::Index>(k)), {}));
         sigma.push_back(1e-6 * random.uniform(1, 3));
       }
     }
@@ -152,7 +152,7 @@ TEST(ToleranceModel, AMachineOfSofterSteelMovesInProportion) {
   const Measurements data = campaign("paper", m, 50, 1);
   std::vector<MeasuredValue> values;
   for (std::size_t i = 0; i < data.readings.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) values.push_back({i, k, 0, {}});
+    for (std::size_t k = 0; k < 3; ++k) values.push_back(tool_point_value(i, k, 0, {}));
   const std::shared_ptr<const Standing> standing = Subject(m).stand(data);
   const ToleranceModel t = tolerance_model(*standing, data, values);
   // One modulus; per leg a diameter, two joints, a link; per pose six sliders.
@@ -176,7 +176,7 @@ TEST(ToleranceModel, ADriftingSensorChangesNothing) {
   const Measurements data = campaign("paper", m, 50, 1);
   std::vector<MeasuredValue> values;
   for (std::size_t i = 0; i < data.readings.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) values.push_back({i, k, 0, {}});
+    for (std::size_t k = 0; k < 3; ++k) values.push_back(tool_point_value(i, k, 0, {}));
   const MatrixX still = tolerance_model(*Subject(m).stand(data), data, values).A.dense();
   m.sensor.drift = Vector3(1e-3, -2e-3, 1e-3);
   EXPECT_EQ((tolerance_model(*Subject(m).stand(data), data, values).A.dense() - still).norm(), 0);

@@ -252,7 +252,7 @@ TEST(Discrepancy, IsTheSameByGroupsAndDense) {
 struct Readings {
   std::vector<MeasuredValue> values;
   std::vector<double> sigma;
-  std::vector<Vector6> d;
+  std::vector<VectorX> d;
   Measurements data;
   ResidualStudy study;
   PartedColumns A, dense;
@@ -268,7 +268,7 @@ struct Readings {
       data.readings.back().pose = reading % 4;
       for (std::size_t k = 0; k < 3; ++k) {
         A.groups[reading % 4].rows.push_back(std::ssize(values));
-        values.push_back({reading, k, d.back()(static_cast<Eigen::Index>(k)), {}});
+        values.push_back(tool_point_value(reading, k, d.back()(static_cast<Eigen::Index>(k)), {}));
         sigma.push_back(1e-6 * random.uniform(1, 3));
       }
     }

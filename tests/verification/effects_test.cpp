@@ -94,8 +94,8 @@ TEST_P(EveryEffect, ActsAlikeInBothTheories) {
   for (int draw = 0; draw < 3; ++draw) {
     const Mechanism m = with_effect(bare, e, drawn_values(e, random), leg_of(e));
     const std::vector<Configuration> machines = configure_all(m, data);
-    const std::vector<Vector6> a = predict(m, machines, data, closed), b = predict(m, machines, data, matrix);
-    const std::vector<Vector6> without = predict(bare, configure_all(bare, data), data, closed);
+    const std::vector<VectorX> a = predict(m, machines, data, closed), b = predict(m, machines, data, matrix);
+    const std::vector<VectorX> without = predict(bare, configure_all(bare, data), data, closed);
     for (std::size_t i = 0; i < a.size(); ++i) {
       worst = std::max(worst, relative_difference(twist_in_mm(a[i]), twist_in_mm(b[i])));
       acts = acts || (a[i] - without[i]).norm() > 1e-6 * without[i].norm();

@@ -16,6 +16,7 @@
 #include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"
+#include "validation/measurement/configure_all.h"
 #include "validation/report/schema_results.h"
 
 namespace deflect::cli {
@@ -92,9 +93,12 @@ Mechanism read_device(const std::string& name) {
   return m;
 }
 
-measurement::Measurements read_data(const std::string& file) {
-  measurement::Measurements data = measurement::read_measurements(file);
+measurement::Measurements read_data(const std::string& file, const Mechanism& m) {
+  measurement::Measurements data =
+      measurement::place_loads(measurement::read_measurements(file, measurement::instruments_of(m)), m);
   const auto count = [&](auto has) { return std::count_if(data.readings.begin(), data.readings.end(), has); };
+  for (const auto& s : data.instruments.sensors) tell("sensor {} is read", s.name);
+  for (const auto& p : data.instruments.load_points) tell("loads at {} are read", p);
   tell(
       "measurements {}: {} readings at {} poses, {} with translations, {} with rotations, {} with their own standard "
       "deviation, {}",
@@ -112,7 +116,8 @@ void tell_size(const measurement::Measurements& data, double numbers_kept) {
   double numbers = 0;
   for (const measurement::Reading& r : data.readings)
     numbers += static_cast<double>(
-        std::count_if(r.displacement.begin(), r.displacement.end(), [](const auto& d) { return d.has_value(); }));
+        std::count_if(r.displacement.begin(), r.displacement.end(), [](const auto& d) { return d.has_value(); }) +
+        std::ssize(r.sensors));
   const std::string text = fmt::format("{} readings at {} poses: about {:.1f} GB of memory", data.readings.size(),
                                        data.poses.size(), 8e-9 * numbers * numbers_kept);
   if (const parallel::ProgressStream stream = progress_stream(); stream.out && !verbose())

@@ -32,8 +32,8 @@ std::filesystem::path frame_file(const std::string& name_or_path);
 /// Reads the device and remarks on implausible materials. Throws InputError like device_file() and read_mechanism().
 Mechanism read_device(const std::string& name_or_path);
 
-/// read_measurements(), with a summary if verbose.
-measurement::Measurements read_data(const std::string& file);
+/// read_measurements() with the instruments of the device and place_loads(), with a summary if verbose.
+measurement::Measurements read_data(const std::string& file, const Mechanism&);
 
 /// For 20 000 readings or more, prints roughly how much memory the work needs if it keeps `numbers_kept` numbers per
 /// measured number. Only if progress is shown or the program is verbose.

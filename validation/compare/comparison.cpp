@@ -28,7 +28,7 @@ std::optional<std::vector<double>> sigma_of(const std::vector<measurement::Measu
                                             const ComparisonOptions& o) {
   std::vector<double> out;
   for (const measurement::MeasuredValue& v : values) {
-    const std::optional<double> sigma = v.sigma ? v.sigma : v.component < 3 ? o.sigma_u : o.sigma_th;
+    const std::optional<double> sigma = v.sigma ? v.sigma : v.rotation ? o.sigma_th : o.sigma_u;
     if (!sigma) return std::nullopt;
     out.push_back(*sigma);
   }
@@ -51,14 +51,14 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
   const VectorX left = r - patterns * fit.amplitude;
   double squares[2] = {0, 0}, n[2] = {0, 0};
   for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const std::size_t kind = s.values[i].component < 3 ? 0 : 1;
+    const std::size_t kind = s.values[i].rotation ? 1 : 0;
     squares[kind] += left(as_index(i)) * left(as_index(i));
     n[kind] += 1;
   }
   const auto count = static_cast<double>(s.values.size());
   std::vector<double> out;
   for (const measurement::MeasuredValue& v : s.values) {
-    const std::size_t kind = v.component < 3 ? 0 : 1;
+    const std::size_t kind = v.rotation ? 1 : 0;
     out.push_back(std::max(1e-12, std::sqrt(squares[kind] / n[kind] * count / std::max(1.0, count - fit.freedoms))));
   }
   return out;
@@ -73,8 +73,8 @@ double expected_rmse(const ResidualStudy& s, const statistics::ToleranceModel& t
     if (t.nuisances[k].zero) tolerances -= t.A.shared.col(as_index(k)).cwiseAbs2();
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const measurement::MeasuredValue& v = s.values[i];
-    if ((v.component >= 3) != rotations) continue;
-    const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.component));
+    if (v.rotation != rotations) continue;
+    const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.channel));
     squares += sigma[i] * sigma[i] + load * load + tolerances(as_index(i));
     n += 1;
   }
@@ -228,12 +228,12 @@ Comparison compared_as_recorded(const subject::Subject& subject, const measureme
 }
 
 /// The deformed shape of readings as it follows from that of others: with the square of the predicted displacement.
-std::vector<Vector6> supposed_shape(const ResidualStudy& known, const ResidualStudy& s) {
+std::vector<VectorX> supposed_shape(const ResidualStudy& known, const ResidualStudy& s) {
   const double size = s.standing->size();
-  const auto squared = [size](const Vector6& d) {
-    return d.head<3>().squaredNorm() + size * size * d.tail<3>().squaredNorm();
+  const auto squared = [size](const VectorX& d) {
+    return d.head<3>().squaredNorm() + size * size * d.segment<3>(3).squaredNorm();
   };
-  std::vector<Vector6> out = known.deformed_shape;
+  std::vector<VectorX> out = known.deformed_shape;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double before = squared(known.predicted[i]);
     out[i] *= before > 0 ? squared(s.predicted[i]) / before : 0;

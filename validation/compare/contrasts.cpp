@@ -69,7 +69,7 @@ class Contrasts {
   Contrasts(const ResidualStudy& s, const std::vector<bool>& set_aside) : aside_(set_aside) {
     row_.assign(s.data->readings.size(), {-1, -1, -1});
     for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (s.values[i].component < 3) row_[s.values[i].reading][s.values[i].component] = as_index(i);
+      if (s.values[i].channel < 3) row_[s.values[i].reading][s.values[i].channel] = as_index(i);
     columns_ = std::ssize(s.values);
   }
 

@@ -23,7 +23,8 @@ constexpr double least_shift_mm = 0.5, most_shift_mm = 100;
 
 /// Some of the readings, spread evenly over the file, at the poses that they have.
 std::pair<measurement::Measurements, std::vector<std::size_t>> sample_of(const measurement::Measurements& data) {
-  measurement::Measurements out{data.origin, data.joint_rotates, {}, data.temperature_recorded, {}, {}};
+  measurement::Measurements out{data.origin, data.joint_rotates, {}, data.temperature_recorded, {}, {},
+                                {},          data.instruments};
   std::vector<std::size_t> rows;
   std::vector<std::size_t> pose(data.poses.size(), data.poses.size());
   const std::size_t n = data.readings.size(), wanted = std::min(n, most_sampled);
@@ -58,7 +59,7 @@ CorrectionScreen::CorrectionScreen(const subject::Subject& subject, const Compar
   if (!c.sigma_from_residuals) {
     std::array<double, 2> sum{}, count{};
     for (std::size_t i = 0; i < study_->values.size(); ++i) {
-      const std::size_t of = study_->values[i].component < 3 ? 0 : 1;
+      const std::size_t of = study_->values[i].rotation ? 1 : 0;
       sum[of] += c.sigma[i] * c.sigma[i], count[of] += 1;
     }
     for (std::size_t of = 0; of < 2; ++of)
@@ -77,16 +78,17 @@ CorrectionScreen::CorrectionScreen(const subject::Subject& subject, const Compar
   double noise = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
     const measurement::MeasuredValue& v = study_->values[i];
-    const double weight = v.component < 3 ? 1 : size_, s = scale.at({v.reading, v.component});
+    if (!v.of_tool_point()) continue;
+    const double weight = v.rotation ? size_ : 1, s = scale.at({v.reading, v.channel});
     const double variance = (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) + tolerances(as_index(i));
     noise += s > 0 ? std::log1p(weight * weight * variance / (s * s)) + std::log(s) : 0;
   }
-  noise /= static_cast<double>(study_->values.size());
+  noise /= static_cast<double>(std::max<std::size_t>(1, scale.size()));
   promising_ = as_recorded_ - good_part * std::max(0.0, as_recorded_ - noise);
 }
 
 std::vector<CorrectionScreen::Difference> CorrectionScreen::differences(const measurement::Measurements& data,
-                                                                        const std::vector<Vector6>& predicted) const {
+                                                                        const std::vector<VectorX>& predicted) const {
   std::vector<double> usual;
   for (const measurement::Reading& r : data.readings)
     for (std::size_t k = 0; k < 6; ++k)
@@ -104,7 +106,7 @@ std::vector<CorrectionScreen::Difference> CorrectionScreen::differences(const me
   return out;
 }
 
-double CorrectionScreen::loss(const measurement::Measurements& data, const std::vector<Vector6>& predicted,
+double CorrectionScreen::loss(const measurement::Measurements& data, const std::vector<VectorX>& predicted,
                               const recording::Rewritten& displacement) const {
   const std::vector<Difference> all = differences(data, predicted);
   double sum = 0;
@@ -116,17 +118,17 @@ double CorrectionScreen::loss(const measurement::Measurements& data, const std::
 
 double CorrectionScreen::loss(const recording::Correction& c) const {
   const measurement::Measurements data = recording::corrected(sample_, c);
-  std::vector<Vector6> predicted(rows_.size());
+  std::vector<VectorX> predicted(rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const measurement::Reading& recorded = study_->data->readings[rows_[i]];
     predicted[i] = study_->predicted[rows_[i]];
     predicted[i] += deformed_shape_under(*study_, rows_[i], data.readings[i].load);
-    predicted[i] += study_->compliance[recorded.pose] * (data.readings[i].load - recorded.load);
+    predicted[i].head<6>() += study_->compliance[recorded.pose] * (data.readings[i].load - recorded.load);
   }
   return loss(data, predicted, c.displacement);
 }
 
-std::optional<std::vector<Vector6>> CorrectionScreen::predicted_with(const recording::Correction& c) const {
+std::optional<std::vector<VectorX>> CorrectionScreen::predicted_with(const recording::Correction& c) const {
   const measurement::Measurements data = recording::corrected(sample_, c);
   // The subject may not reach a pose, or not stand there.
   auto predicted = outcome_of([&] { return subject_.stand(data)->predict(data, {}, {threads_}); });

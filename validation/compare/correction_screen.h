@@ -14,7 +14,7 @@ namespace deflect::compare {
 /// the correction's factor. It is the negative log-density of the numbers as recorded under a Cauchy distribution, up
 /// to constants, so that gross outliers count little. The scale s is √(σ² + (0.5 % of a typical measured number)² + (1
 /// % of the prediction)²); typical is the upper quartile. Corrected loads change the prediction by the tangent
-/// compliance.
+/// compliance. Only readings of the displacement of T count, not those of named sensors.
 class CorrectionScreen {
  public:
   /// The comparison must outlive it.
@@ -42,10 +42,10 @@ class CorrectionScreen {
     std::size_t row, component;
     double left, scale;
   };
-  std::vector<Difference> differences(const measurement::Measurements&, const std::vector<Vector6>& predicted) const;
-  double loss(const measurement::Measurements&, const std::vector<Vector6>& predicted,
+  std::vector<Difference> differences(const measurement::Measurements&, const std::vector<VectorX>& predicted) const;
+  double loss(const measurement::Measurements&, const std::vector<VectorX>& predicted,
               const recording::Rewritten& displacement) const;
-  std::optional<std::vector<Vector6>> predicted_with(const recording::Correction&) const;
+  std::optional<std::vector<VectorX>> predicted_with(const recording::Correction&) const;
 
   subject::Subject subject_;
   const ResidualStudy* study_;

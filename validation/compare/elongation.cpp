@@ -46,7 +46,7 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const sta
     const measurement::MeasuredValue& v = s.values[n];
     const std::vector<subject::Site>& own = s.sites[s.data->readings[v.reading].pose];
     for (Eigen::Index c = 0; c < columns; ++c)
-      shapes(as_index(n), c) = hats(c, as_index(v.reading)) * nth(own, c / knots).g(as_index(v.component));
+      shapes(as_index(n), c) = hats(c, as_index(v.reading)) * v.form.dot(nth(own, c / knots).g);
   }
   hats.resize(0, 0);
   const statistics::Regression fit = statistics::regress(u, r, shapes);

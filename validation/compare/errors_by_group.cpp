@@ -25,13 +25,15 @@ Errors errors_of(const Comparison& c, const std::string& group, bool rotations, 
   std::size_t last = c.readings;
   for (const std::size_t i : values) {
     const measurement::MeasuredValue& v = c.study.values[i];
-    if ((v.component >= 3) != rotations || !belongs(v)) continue;
+    if (v.rotation != rotations || !belongs(v)) continue;
     const double r = c.residual(as_index(i));
     squares += r * r;
     measured += v.value * v.value;
     n += 1;
-    sum(as_index(v.component % 3)) += r;
-    count(as_index(v.component % 3)) += 1;
+    if (v.of_tool_point()) {
+      sum(as_index(v.channel % 3)) += r;
+      count(as_index(v.channel % 3)) += 1;
+    }
     if (v.reading != last) ++e.readings;
     last = v.reading;
     if (std::abs(r) > e.worst) e.worst = std::abs(r), e.worst_line = c.study.data->readings[v.reading].line;
@@ -58,8 +60,7 @@ std::string direction_of(const Vector6& F) {
 }  // namespace
 
 bool rotations_alone(const std::vector<measurement::MeasuredValue>& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](const measurement::MeasuredValue& v) { return v.component >= 3; });
+  return std::all_of(values.begin(), values.end(), [](const measurement::MeasuredValue& v) { return v.rotation; });
 }
 
 double rms_of_kept(const std::vector<measurement::MeasuredValue>& values, const VectorX& x,
@@ -75,7 +76,7 @@ double rms_of_errors(const std::vector<measurement::MeasuredValue>& values, cons
   const bool rotations = rotations_alone(values);
   double squares = 0, n = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
-    if ((values[i].component >= 3) == rotations) {
+    if (values[i].rotation == rotations) {
       squares += x(as_index(i)) * x(as_index(i));
       n += 1;
     }
@@ -93,8 +94,14 @@ void add_errors(Comparison& c) {
   };
   c.all = group("", [](const measurement::MeasuredValue&) { return true; });
   for (std::size_t k = 0; k < 3; ++k) {
+    const Errors e = group(std::string(1, "xyz"[k]), [&](const measurement::MeasuredValue& v) {
+      return v.of_tool_point() && v.channel % 3 == k;
+    });
+    if (e.readings > 0) c.by_axis.push_back(e);
+  }
+  for (std::size_t k = 6; k < 6 + data.instruments.sensors.size(); ++k) {
     const Errors e =
-        group(std::string(1, "xyz"[k]), [&](const measurement::MeasuredValue& v) { return v.component % 3 == k; });
+        group(measurement::channel_name(data, k), [&](const measurement::MeasuredValue& v) { return v.channel == k; });
     if (e.readings > 0) c.by_axis.push_back(e);
   }
   const auto every = [](const measurement::MeasuredValue&) { return true; };

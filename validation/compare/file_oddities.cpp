@@ -35,11 +35,12 @@ struct ByComponent {
   explicit ByComponent(const Comparison& c) {
     for (std::size_t i = 0; i < c.study.values.size(); ++i) {
       const measurement::MeasuredValue& v = c.study.values[i];
-      const double p = c.study.predicted[v.reading](as_index(v.component));
-      measured[v.component] += v.value * v.value;
-      predicted[v.component] += p * p;
-      sigma[v.component] += c.sigma[i] * c.sigma[i];
-      ++count[v.component];
+      if (!v.of_tool_point()) continue;
+      const double p = c.study.predicted[v.reading](as_index(v.channel));
+      measured[v.channel] += v.value * v.value;
+      predicted[v.channel] += p * p;
+      sigma[v.channel] += c.sigma[i] * c.sigma[i];
+      ++count[v.channel];
     }
     for (std::size_t k = 0; k < 6; ++k)
       for (auto* sum : {&measured, &predicted, &sigma})
@@ -50,9 +51,8 @@ struct ByComponent {
 void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
   const measurement::Measurements& data = *c.study.data;
   const ByComponent by(c);
-  const auto zero = [&](std::size_t k) { return by.count[k] == 0 || by.measured[k] == 0; };
-  bool measured = false;
-  for (std::size_t k = 0; k < 6; ++k) measured = measured || !zero(k);
+  const bool measured = std::any_of(c.study.values.begin(), c.study.values.end(),
+                                    [](const measurement::MeasuredValue& v) { return v.value != 0; });
   const bool loaded = std::any_of(data.readings.begin(), data.readings.end(),
                                   [](const measurement::Reading& r) { return !r.load.isZero(0); });
   if (!loaded && !temperature_varies(data))
@@ -83,7 +83,7 @@ void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
 bool finely_written(const Comparison& c) {
   double fine = 0;
   for (const measurement::MeasuredValue& v : c.study.values) {
-    const double unit = v.component < 3 ? 1e3 : 1;
+    const double unit = v.rotation ? 1 : 1e3;
     const double scatter = unit * v.sigma.value_or(1e-3 * (c.all.measured > 0 ? c.all.measured : 1));
     const double steps = std::abs(unit * v.value) / std::pow(10, std::floor(std::log10(scatter)));
     if (std::abs(steps - std::round(steps)) > 1e-6 * std::max(1.0, steps)) ++fine;
@@ -94,13 +94,14 @@ bool finely_written(const Comparison& c) {
 void add_identical_rows(const Comparison& c, std::vector<RecordingMistake>& out) {
   const measurement::Measurements& data = *c.study.data;
   if (c.study.sequence) return;
-  using Row = std::tuple<std::size_t, std::array<double, 6>, std::array<std::optional<double>, 6>, double>;
+  using Row = std::tuple<std::size_t, std::array<double, 6>, std::array<std::optional<double>, 6>,
+                         std::vector<std::optional<double>>, double>;
   std::map<Row, std::size_t> first;  // line
   std::size_t copies = 0, line = 0, of = 0;
   for (const measurement::Reading& r : data.readings) {
     std::array<double, 6> load;
     for (std::size_t k = 0; k < 6; ++k) load[k] = r.load(as_index(k));
-    const auto [same, is_new] = first.emplace(Row{r.pose, load, r.displacement, r.temperature_C}, r.line);
+    const auto [same, is_new] = first.emplace(Row{r.pose, load, r.displacement, r.sensors, r.temperature_C}, r.line);
     if (is_new) continue;
     if (++copies == 1) line = r.line, of = same->second;
   }
@@ -135,7 +136,7 @@ void add_sigma(const Comparison& c, std::vector<RecordingMistake>& out) {
     for (std::size_t i = 0; i < c.study.values.size(); ++i) {
       const measurement::MeasuredValue& v = c.study.values[i];
       const measurement::Reading& r = c.study.data->readings[v.reading];
-      if ((v.component >= 3) != rotation || !(rotation ? r.sigma_th : r.sigma_u)) continue;
+      if (v.rotation != rotation || !v.of_tool_point() || !(rotation ? r.sigma_th : r.sigma_u)) continue;
       const double left = c.residual(as_index(i));
       sigma += c.sigma[i] * c.sigma[i], residual += left * left, n += 1;
     }

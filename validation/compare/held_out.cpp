@@ -52,7 +52,7 @@ double HeldOut::rmse(const VectorX& residual) const {
   double squares = 0;
   std::size_t n = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
-    if (set_aside_[study_->values[i].reading] || (study_->values[i].component >= 3) != rotations) continue;
+    if (set_aside_[study_->values[i].reading] || study_->values[i].rotation != rotations) continue;
     const auto row = as_index(i);
     const double left = residual(row) - uncertainty_->tolerances().shared.row(row).dot(eta[fold_of(i)]);
     squares += left * left;

@@ -26,7 +26,7 @@ Outliers gross_outliers(const ResidualStudy& s, const statistics::PartedColumns&
     std::vector<double> worst(aside.size(), 0);
     for (std::size_t i = 0; i < s.values.size(); ++i) {
       const measurement::MeasuredValue& v = s.values[i];
-      const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.component));
+      const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.channel));
       worst[v.reading] = std::max(worst[v.reading], std::abs(left(as_index(i))) / std::hypot(sigma[i], load));
     }
     std::vector<double> sorted = worst;

@@ -172,7 +172,7 @@ VectorX rows_of_sites(const ResidualStudy& s, const std::function<double(std::si
       moved.setZero();
       for (std::size_t k = 0; k < sites.size(); ++k) moved += sites[k].g * elongation(i, k);
     }
-    out(as_index(n)) = moved(as_index(s.values[n].component));
+    out(as_index(n)) = s.values[n].form.dot(moved);
   }
   return out;
 }
@@ -227,13 +227,14 @@ std::vector<Pattern> patterns_of(const ResidualStudy& s) {
   if (s.data->temperature_recorded)
     out.push_back({PatternId::temperature, axes, "m/K",
                    by_reading(s, [&](std::size_t i) { return translations(s.data->readings[i].temperature_C - 20); })});
-  out.push_back(
-      {PatternId::load_gain, {"gain"}, "1", by_reading(s, [&](std::size_t i) { return Block(s.predicted[i]); })});
+  out.push_back({PatternId::load_gain, {"gain"}, "1", by_reading(s, [&](std::size_t i) {
+                   return Block(s.predicted[i].head<6>());
+                 })});
   out.push_back({PatternId::load_axes, axes, "rad", by_reading(s, [&](std::size_t i) {
                    return turned(s.compliance[s.data->readings[i].pose], load(s, i));
                  })});
   out.push_back({PatternId::sensor_axes, axes, "rad",
-                 by_reading(s, [&](std::size_t i) { return turned(Matrix6::Identity(), s.predicted[i]); })});
+                 by_reading(s, [&](std::size_t i) { return turned(Matrix6::Identity(), s.predicted[i].head<6>()); })});
   return out;
 }
 

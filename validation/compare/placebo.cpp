@@ -26,7 +26,7 @@ double placebo_rmse(const Comparison& before, const Comparison& after) {
     const VectorX left = own > 0 ? VectorX(r - x * (x.dot(r) / own)) : r;
     double squares = 0, n = 0;
     for (std::size_t i = 0; i < s.values.size(); ++i)
-      if ((s.values[i].component >= 3) == rotations) {
+      if (s.values[i].rotation == rotations) {
         squares += left(as_index(i)) * left(as_index(i));
         n += 1;
       }

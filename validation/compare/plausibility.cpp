@@ -46,8 +46,8 @@ double cost_of_scale(const Comparison& c, const recording::Correction& correctio
   double sum = 0;
   for (const measurement::MeasuredValue& v : c.study.values) {
     const measurement::Reading& r = c.study.data->readings[v.reading];
-    const bool told = correction.sigma_too && (v.component < 3 ? r.sigma_u : r.sigma_th).has_value();
-    if (!told) sum -= 2 * std::log(std::abs(correction.displacement.factor[v.component]));
+    const bool told = correction.sigma_too && (v.rotation ? r.sigma_th : r.sigma_u).has_value();
+    if (!told && v.of_tool_point()) sum -= 2 * std::log(std::abs(correction.displacement.factor[v.channel]));
   }
   return sum;
 }

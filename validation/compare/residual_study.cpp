@@ -42,7 +42,7 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
   s.subject = subject;
   s.data = &data;
   s.standing = subject.stand(data);
-  s.values = measurement::measured_values(data);
+  s.values = measurement::measured_values(data, s.standing->sensor_forms(data));
   s.sequence = std::all_of(data.readings.begin(), data.readings.end(),
                            [](const measurement::Reading& r) { return r.sequence.has_value(); });
   s.predicted = s.standing->predict(data, {}, work);
@@ -57,19 +57,19 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
   return s;
 }
 
-std::vector<Vector6> deformed_shape_of(const ResidualStudy& s, const parallel::Work& work) {
+std::vector<VectorX> deformed_shape_of(const ResidualStudy& s, const parallel::Work& work) {
   if (s.subject->geometry() != Geometry::linear) return {};
   prediction::PredictionOptions o;
   o.geometry = Geometry::finite;
   // A load may be beyond what the deformed shape carries, or the subject does not stand in it.
   const auto finite = outcome_of([&] { return s.standing->predict(*s.data, o, work); });
-  std::vector<Vector6> shape = finite.value.value_or(std::vector<Vector6>());
+  std::vector<VectorX> shape = finite.value.value_or(std::vector<VectorX>());
   for (std::size_t i = 0; i < shape.size(); ++i) shape[i] -= s.predicted[i];
   return shape;
 }
 
-Vector6 deformed_shape_under(const ResidualStudy& s, std::size_t reading, const Vector6& load) {
-  if (s.deformed_shape.empty()) return Vector6::Zero();
+VectorX deformed_shape_under(const ResidualStudy& s, std::size_t reading, const Vector6& load) {
+  if (s.deformed_shape.empty()) return VectorX::Zero(s.predicted[reading].size());
   const double size = s.standing->size();
   const auto squared = [size](const Vector6& F) {
     return F.head<3>().squaredNorm() + F.tail<3>().squaredNorm() / (size * size);

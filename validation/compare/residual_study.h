@@ -16,8 +16,8 @@ struct ResidualStudy {
   const measurement::Measurements* data = nullptr;
   std::shared_ptr<const subject::Standing> standing;  ///< the subject at the poses, as drawn
   std::vector<measurement::MeasuredValue> values;     ///< the measured numbers
-  std::vector<Vector6> predicted;                     ///< predicted readings, as the instruments would record them
-  std::vector<Vector6> deformed_shape;                ///< finite − linear geometry; empty: in `predicted`, or unknown
+  std::vector<VectorX> predicted;                     ///< of all channels (Standing::predict)
+  std::vector<VectorX> deformed_shape;                ///< finite − linear geometry; empty: in `predicted`, or unknown
   std::vector<std::vector<subject::Site>> sites;      ///< by pose
   std::vector<Matrix6> compliance;                    ///< by pose: Standing::compliance()
   std::vector<VectorX> force;                         ///< of each site, N or Nm
@@ -29,9 +29,10 @@ struct ResidualStudy {
 ResidualStudy residual_study(const subject::Subject&, const measurement::Measurements&, const parallel::Work& = {});
 
 /// ResidualStudy::deformed_shape, for a subject in linear geometry. This takes most of the time of a study.
-std::vector<Vector6> deformed_shape_of(const ResidualStudy&, const parallel::Work& = {});
+std::vector<VectorX> deformed_shape_of(const ResidualStudy&, const parallel::Work& = {});
 
-/// Estimates deformed_shape of a reading under another load: it is even in the load and scales with its square.
-Vector6 deformed_shape_under(const ResidualStudy&, std::size_t reading, const Vector6& load);
+/// Estimates deformed_shape of a reading under another load: it is even in the load and scales with its square. Zero
+/// where it is not known.
+VectorX deformed_shape_under(const ResidualStudy&, std::size_t reading, const Vector6& load);
 
 }  // namespace deflect::compare

@@ -16,16 +16,17 @@ namespace {
 constexpr std::size_t block = 256;  // sets with one stream of random numbers
 constexpr std::uint64_t seed = 20110101;
 
-/// What the effect gains in χ² from the components of a set along its directions.
+/// What the effect gains in χ² from the components of a set along its directions. `sense`: of the first of them along
+/// the start, for an effect of one sense.
 template <class Components>
-double gain(const Signature& s, const Components& z) {
+double gain(const Signature& s, double sense, const Components& z) {
   if (s.shaped) {
     double most = 0;
     for (const double along : z)
       if (!(s.one_sided && along > 0)) most = std::max(most, along * along);
     return most;
   }
-  const bool wrong_way = s.one_sided && z(0) * s.basis.col(0).dot(s.at_start) > 0;
+  const bool wrong_way = s.one_sided && z(0) * sense > 0;
   return wrong_way ? 0 : z.squaredNorm();
 }
 
@@ -36,6 +37,9 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int sets
   if (all.empty() || !(least_p < 1)) return 1;
   std::vector<double> wanted;
   const std::vector<double> weights = weights_of(all);
+  std::vector<double> senses;
+  for (const Signature& s : all)
+    senses.push_back(s.one_sided && !s.shaped && s.basis.cols() > 0 ? s.basis.col(0).dot(s.at_start) : 0);
   for (std::size_t i = 0; i < all.size(); ++i)
     wanted.push_back(std::max(gain_at_p_value(all[i], least_p * weights[i]), std::numeric_limits<double>::min()));
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(inner_products(all));
@@ -56,7 +60,7 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int sets
       Eigen::Index at = 0;
       bool found = false;
       for (std::size_t i = 0; i < all.size() && !found; ++i) {
-        found = gain(all[i], set.segment(at, all[i].basis.cols())) >= wanted[i];
+        found = gain(all[i], senses[i], set.segment(at, all[i].basis.cols())) >= wanted[i];
         at += all[i].basis.cols();
       }
       as_good[k] += found;

@@ -43,25 +43,24 @@ std::optional<std::vector<Vector6>> ByStatics::by_force(const effects::PlacedEff
 }
 
 bool ByStatics::agrees(const effects::PlacedEffect& e) const {
-  const measurement::Measurements some = measurement::one_pose(*observations_.comparison().study.data, 0);
+  const compare::ResidualStudy& study = observations_.comparison().study;
+  const measurement::Measurements some = measurement::one_pose(*study.data, 0);
   const VectorX small = small_values(*e.effect);
   const auto told = by_force(e, small, some);
   if (!told) return false;
   prediction::PredictionOptions linear;
   linear.geometry = Geometry::linear;
-  const subject::Standing* drawn = observations_.comparison().study.standing.get();
+  const subject::Standing* drawn = study.standing.get();
+  const std::vector<measurement::MeasuredValue> read = measurement::measured_values(some, drawn->sensor_forms(some));
+  const VectorX by_statics = statistics::rows_of(read, *told);
   const auto off = outcome_of([&] {
     const auto predicted = [&](const subject::Subject& s) {
       return s.stand(some, drawn)->predict(some, linear, parallel::alone);
     };
-    const std::vector<Vector6> before = predicted(observations_.subject()),
-                               after = predicted(effects::with_effect(observations_.subject(), {e, small}));
-    double square = 0, size = 0;
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      square += (after[i] - before[i] - (*told)[i]).squaredNorm();
-      size += (*told)[i].squaredNorm();
-    }
-    return std::sqrt(square) - agreed * std::sqrt(size);
+    const VectorX before = statistics::rows_of(read, predicted(observations_.subject())),
+                  after =
+                      statistics::rows_of(read, predicted(effects::with_effect(observations_.subject(), {e, small})));
+    return (after - before - by_statics).norm() - agreed * by_statics.norm();
   });
   return off && *off <= 0;
 }

@@ -60,7 +60,7 @@ statistics::PartedColumns by_poses(const compare::ResidualStudy& s) {
       const measurement::MeasuredValue& v = nth(s.values, g.rows[i]);
       const Vector6& load = s.data->readings[v.reading].load;
       for (Eigen::Index b = 0; b < 4; ++b)
-        g.columns(as_index(i), 6 * b + as_index(v.component)) = b == 0 ? 10 : load(b - 1);
+        g.columns.row(as_index(i)).segment<6>(6 * b) = (b == 0 ? 10 : load(b - 1)) * v.form.transpose();
     }
   }
   return out;
@@ -85,11 +85,11 @@ MatrixX by_loads(const compare::ResidualStudy& s) {
     }
     basis[i].tail<3>() << time * time, time * time * time, warmer * warmer;
   }
-  // Columns of all measured components c: basis(reading, b) in column b · 6 + c.
+  // Of all components c of the displacement: basis(reading, b) in column b · 6 + c.
   MatrixX out = MatrixX::Zero(std::ssize(s.values), 6 * basis.front().size());
   for (std::size_t i = 0; i < s.values.size(); ++i)
     for (Eigen::Index b = 0; b < basis.front().size(); ++b)
-      out(as_index(i), 6 * b + as_index(s.values[i].component)) = basis[s.values[i].reading](b);
+      out.row(as_index(i)).segment<6>(6 * b) = basis[s.values[i].reading](b) * s.values[i].form.transpose();
   return out;
 }
 

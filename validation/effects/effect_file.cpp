@@ -90,7 +90,7 @@ class Edits final : public Elements {
     const std::size_t action =
         v.alternative({std::begin(action_keys), std::end(action_keys)}, static_cast<std::size_t>(edit.action));
     edit.action = static_cast<EffectEdit::Action>(action);
-    v.any(action_keys[action], edit.value, "what stands there then");
+    v.any(action_keys[action], edit.value, "0.5", "what stands there then");
     if (effect_.scope != Scope::one_leg) return;
     for (const std::string& path : edit.paths)
       v.require(path.starts_with("leg."), "at",

@@ -122,6 +122,18 @@ const PlaceLaw laws[] = {
       "Measure it with a caliper.", "Put the measured length in."},
      false,
      EffectEdit::Action::multiply},
+    {"gain",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::sensor; },
+     "reads too much or too little",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{{"gain", "", 0.98, 0.3, 3, true, 1, "recorded over true displacement"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"The scale of {} is off: its calibration, its amplifier, the lever or the angle at which it touches.",
+      "All readings of {} are off by one factor, those of the other instruments are right.",
+      "Move {} by a gauge block and read the step.", "Calibrate it, or put the gain into the description."},
+     false,
+     EffectEdit::Action::set},
     {"clearance",
      [](const subject::Place& p) { return in_series(p) && single(p); },
      "has play",

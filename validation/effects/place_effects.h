@@ -4,6 +4,7 @@
 //   linear     rigid directions, elastic ones of another law   a spring in series
 //   factor     freedoms held by one spring, members,           that stiffness, material or dimension times a factor
 //              materials, dimensions of sections
+//   gain       named sensors                                   what they read, times a factor
 //   clearance  rigid and elastic directions                    free travel to both sides, in series
 //   pull push  rigid and elastic directions                    a spring in series that yields in one sense only
 //   contact    rigid and elastic translations                  in series, as the force to the power 2/3

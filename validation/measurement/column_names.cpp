@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "msa/base/units.h"
+#include "validation/measurement/measurements.h"
 
 namespace deflect::measurement {
 namespace {
@@ -22,6 +23,12 @@ std::string_view without_unit(std::string_view name) { return name.substr(0, nam
 std::string_view unit_of(std::string_view name) { return name.substr(name.rfind('_') + 1); }
 
 }  // namespace
+
+std::string sensor_column(const SensorChannel& sensor) { return sensor.name + (sensor.rotation ? "_rad" : "_mm"); }
+
+std::string load_column(const std::string& point, std::size_t component) {
+  return point + "." + load_columns.at(component);
+}
 
 std::string unknown_column(std::string_view name, const std::vector<std::string>& known) {
   const std::string unknown = fmt::format("unknown column '{}'", excerpt(name));

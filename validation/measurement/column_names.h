@@ -14,6 +14,11 @@ inline const SixNames pose_columns = {"x_mm", "y_mm", "z_mm", "roll_deg", "pitch
 inline const SixNames load_columns = {"fx_N", "fy_N", "fz_N", "mx_Nmm", "my_Nmm", "mz_Nmm"};
 inline const SixNames displacement_columns = {"ux_mm", "uy_mm", "uz_mm", "thx_rad", "thy_rad", "thz_rad"};
 
+struct SensorChannel;
+/// "probe_mm", "tilt_rad"; "handle.fx_N".
+std::string sensor_column(const SensorChannel&);
+std::string load_column(const std::string& point, std::size_t component);
+
 /// Columns of remarks, which mean nothing to the program.
 inline bool is_note(std::string_view name) { return name.starts_with("note"); }
 

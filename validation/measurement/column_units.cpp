@@ -90,6 +90,18 @@ bool is_joint(std::string_view stem) {
          std::all_of(stem.begin() + 1, stem.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
+/// The same of an instrument's column: "probe", "handle.fx".
+std::pair<const std::vector<ColumnUnit>*, std::string> units_of(const std::string& stem, const Instruments& known) {
+  for (const SensorChannel& sensor : known.sensors)
+    if (stem == in_lower_case(sensor.name))
+      return {sensor.rotation ? &radian_units : &length_units, sensor_column(sensor)};
+  for (const std::string& point : known.load_points)
+    for (std::size_t i = 0; i < 6; ++i)
+      if (const std::string name = load_column(point, i); stem == in_lower_case(name.substr(0, name.rfind('_'))))
+        return {i < 3 ? &force_units : &moment_units, name};
+  return {nullptr, ""};
+}
+
 /// The units of a stem, and the name that goes with the first of them.
 std::pair<const std::vector<ColumnUnit>*, std::string> units_of(const std::string& stem) {
   const auto named = [&](const SixNames& names, std::size_t from, std::size_t to) -> std::string {
@@ -111,7 +123,7 @@ std::pair<const std::vector<ColumnUnit>*, std::string> units_of(const std::strin
 
 }  // namespace
 
-std::optional<NamedColumn> named_column(std::string_view written, std::string_view unit) {
+std::optional<NamedColumn> named_column(std::string_view written, std::string_view unit, const Instruments& known) {
   const std::string lower = in_lower_case(written);
   for (const char* name : {"pose", "sequence"})
     if (lower == name) return NamedColumn{name, ""};
@@ -124,7 +136,10 @@ std::optional<NamedColumn> named_column(std::string_view written, std::string_vi
   std::string name;
   const ColumnUnit* found = nullptr;
   const std::vector<ColumnUnit>* units = nullptr;
-  if (is_joint(stem)) {
+  std::tie(units, name) = units_of(stem, known);
+  if (units) {
+    // An instrument's name comes first: a sensor may be called q1.
+  } else if (is_joint(stem)) {
     units = find_unit(radian_units, own) ? &radian_units : &length_units;
     name = stem + (units == &radian_units ? "_rad" : "_mm");
   } else {

@@ -6,6 +6,7 @@
 //   roll pitch yaw, th., sigma_th   deg  rad  mrad  urad  µrad
 //   q. of a joint        one of the last two rows; angles become rad, lengths mm
 //   temperature          C  K  F
+//   a sensor's name      as u. or th., by what it reads;  handle.f., handle.m. at a named point: as f. and m.
 //
 // The unit follows the stem after "_" or in brackets: "fx_kgf", "Fx [kgf]", "FX (N)". Case does not count where it does
 // not tell units apart.
@@ -14,6 +15,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "validation/measurement/measurements.h"
 
 namespace deflect::measurement {
 
@@ -27,7 +30,8 @@ struct NamedColumn {
 
 /// Nothing where the name is none of them; `unit` is that of a row of units, empty without one. A name with a unit of
 /// its own and another in the row of units is nothing either.
-std::optional<NamedColumn> named_column(std::string_view written, std::string_view unit = {});
+std::optional<NamedColumn> named_column(std::string_view written, std::string_view unit = {},
+                                        const Instruments& known = {});
 
 /// Whether the text could stand in a row of units: a unit of the above, in brackets or not, or "-" or nothing.
 bool is_unit(std::string_view text);

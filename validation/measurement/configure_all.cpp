@@ -42,4 +42,32 @@ std::vector<Configuration> configure_all(const Mechanism& mechanism, const Measu
   return configurations;
 }
 
+Instruments instruments_of(const Mechanism& mechanism) {
+  Instruments out;
+  for (const auto& [name, s] : mechanism.sensors)
+    out.sensors.push_back({name, s.rotation, s.sigma > 0 ? std::optional(s.sigma) : std::nullopt});
+  for (const auto& [name, point] : mechanism.loads) out.load_points.push_back(name);
+  return out;
+}
+
+Measurements place_loads(Measurements m, const Mechanism& mechanism) {
+  if (m.instruments.load_points.empty()) return m;
+  std::vector<const LoadPoint*> points;
+  for (const std::string& name : m.instruments.load_points)
+    for (const auto& [known, point] : mechanism.loads)
+      if (known == name) points.push_back(&point);
+  const std::vector<Configuration> machines = configure_all(mechanism, m);
+  for (Reading& r : m.readings) {
+    r.load = r.at_tool;
+    r.on_platform.setZero();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Vector3 arm = machines[r.pose].pose.R_WT * points[k]->point;
+      const Vector6 at_T = shift_twist(arm).transpose() * r.at_points[k];
+      r.load += at_T;
+      if (points[k]->body == "platform") r.on_platform += at_T;
+    }
+  }
+  return m;
+}
+
 }  // namespace deflect::measurement

@@ -16,4 +16,11 @@ namespace deflect::measurement {
 std::vector<Configuration> configure_all(const Mechanism&, const Measurements&,
                                          std::span<const Configuration> known = {});
 
+/// The named sensors and points of load of a device.
+Instruments instruments_of(const Mechanism&);
+
+/// Sets the load at T of every reading from the loads at T and at the device's named points: [f; m + r × f], where r
+/// leads from T to the point at the commanded pose. Does nothing where the measurements have no loads at points.
+Measurements place_loads(Measurements, const Mechanism&);
+
 }  // namespace deflect::measurement

@@ -12,11 +12,14 @@
 namespace deflect::measurement {
 namespace {
 
-std::vector<std::string> fixed_columns() {
+std::vector<std::string> fixed_columns(const Instruments& known) {
   std::vector<std::string> names = {"pose"};
   for (const SixNames* six : {&pose_columns, &load_columns, &displacement_columns})
     names.insert(names.end(), six->begin(), six->end());
   for (const char* name : {"sigma_u_mm", "sigma_th_rad", "sequence", "temperature_C"}) names.emplace_back(name);
+  for (const SensorChannel& sensor : known.sensors) names.push_back(sensor_column(sensor));
+  for (const std::string& point : known.load_points)
+    for (std::size_t i = 0; i < 6; ++i) names.push_back(load_column(point, i));
   return names;
 }
 
@@ -31,11 +34,12 @@ std::size_t joint_number(std::string_view name) {
 /// The columns by the names of the contract.
 class ContractColumns {
  public:
-  explicit ContractColumns(const CsvTable& table) : table_(table), units_(has_units_row()) {
-    const std::vector<std::string> fixed = fixed_columns();
+  ContractColumns(const CsvTable& table, const Instruments& known)
+      : table_(table), instruments_(known), units_(has_units_row()) {
+    const std::vector<std::string> fixed = fixed_columns(known);
     for (std::size_t column = 0; column < table.header().size(); ++column) {
       const std::string& written = table.header()[column];
-      const std::optional<NamedColumn> named = named_column(written, units_ ? table.text(0, column) : "");
+      const std::optional<NamedColumn> named = named_column(written, units_ ? table.text(0, column) : "", known);
       if (!named) refuse(column, fixed);
       if (is_note(written) || is_note(named->name)) {
         notes_.push_back(column);
@@ -74,7 +78,7 @@ class ContractColumns {
       const std::string_view cell = table_.text(0, column);
       if (cell.empty() || is_note(table_.header()[column])) continue;
       if (table_.is_number(0, column)) return false;
-      const std::optional<NamedColumn> named = named_column(table_.header()[column]);
+      const std::optional<NamedColumn> named = named_column(table_.header()[column], {}, instruments_);
       if (named && (named->name == "pose" || named->name == "sequence")) continue;
       if (!is_unit(cell)) return false;
       units += cell != "-";
@@ -84,7 +88,7 @@ class ContractColumns {
 
   [[noreturn]] void refuse(std::size_t column, std::vector<std::string> known) const {
     const std::string& written = table_.header()[column];
-    if (units_ && named_column(written) && !table_.text(0, column).empty())
+    if (units_ && named_column(written, {}, instruments_) && !table_.text(0, column).empty())
       table_.refuse(
           0, column,
           fmt::format("the unit below is '{}': name and unit must say the same", excerpt(table_.text(0, column))));
@@ -94,6 +98,7 @@ class ContractColumns {
   }
 
   const CsvTable& table_;
+  const Instruments& instruments_;
   bool units_;
   std::map<std::string, ReadColumn> columns_;
   std::vector<std::size_t> notes_;
@@ -165,22 +170,35 @@ std::string joint_column(std::size_t joint, bool rotates) {
   return fmt::format("q{}_{}", joint + 1, rotates ? "rad" : "mm");
 }
 
-MeasurementColumns measurement_columns(const CsvTable& table, bool plan) {
-  const ContractColumns known(table);
+MeasurementColumns measurement_columns(const CsvTable& table, const Instruments& instruments, bool plan) {
+  const ContractColumns known(table, instruments);
   MeasurementColumns columns;
+  for (const SensorChannel& sensor : instruments.sensors)
+    if (const auto column = known.find(sensor_column(sensor))) columns.sensors.push_back({sensor, *column});
+  for (const std::string& point : instruments.load_points) {
+    LoadPointColumns at{point, {}};
+    for (std::size_t i = 0; i < 6; ++i) at.load[i] = known.find(load_column(point, i));
+    if (std::any_of(at.load.begin(), at.load.end(), [](const auto& c) { return c.has_value(); }))
+      columns.load_points.push_back(std::move(at));
+  }
   command_columns(table, known, columns);
   const auto label = known.find("pose");
   if (!label) table.refuse_header("column 'pose' is missing: a label for every approach of a pose");
   columns.pose = label->index;
-  if (const std::string missing = missing_of(known, load_columns, 3); !missing.empty())
+  const std::string missing = missing_of(known, load_columns, 3);
+  const bool loads_elsewhere =
+      !columns.load_points.empty() &&
+      missing == fmt::format("{}", fmt::join(load_columns.begin(), load_columns.begin() + 3, ", "));
+  if (!missing.empty() && !loads_elsewhere)
     table.refuse_header(
         fmt::format("columns missing: {}; a load has all three forces (write 0 where one is zero)", missing));
   for (std::size_t i = 0; i < 6; ++i) {
     columns.load[i] = known.find(load_columns[i]);
     columns.displacement[i] = known.find(displacement_columns[i]);
   }
-  if (!plan && std::none_of(columns.displacement.begin(), columns.displacement.end(),
-                            [](const auto& c) { return c.has_value(); }))
+  if (!plan && columns.sensors.empty() &&
+      std::none_of(columns.displacement.begin(), columns.displacement.end(),
+                   [](const auto& c) { return c.has_value(); }))
     table.refuse_header(fmt::format("no displacement is measured: at least one of the columns {} is wanted",
                                     fmt::join(displacement_columns, ", ")));
   columns.sigma_u = known.find("sigma_u_mm");

@@ -7,6 +7,7 @@
 
 #include "validation/measurement/column_names.h"
 #include "validation/measurement/csv.h"
+#include "validation/measurement/measurements.h"
 
 namespace deflect::measurement {
 
@@ -16,11 +17,23 @@ struct ReadColumn {
   double factor = 1, offset = 0;
 };
 
+struct SensorColumn {
+  SensorChannel sensor;
+  ReadColumn column;
+};
+
+struct LoadPointColumns {
+  std::string name;
+  std::array<std::optional<ReadColumn>, 6> load;
+};
+
 struct MeasurementColumns {
   std::size_t pose = 0;
   std::vector<ReadColumn> command;  ///< x y z roll pitch yaw, or the joint coordinates in order
   std::vector<bool> joint_rotates;  ///< of the joint coordinates; empty for poses
   std::array<std::optional<ReadColumn>, 6> load, displacement;
+  std::vector<SensorColumn> sensors;
+  std::vector<LoadPointColumns> load_points;
   std::optional<ReadColumn> sigma_u, sigma_th, temperature;
   std::optional<std::size_t> sequence;
   std::vector<std::size_t> notes;
@@ -29,7 +42,7 @@ struct MeasurementColumns {
 };
 
 /// Throws InputError for unknown columns, missing ones and poses commanded in two ways. A plan wants no displacement.
-MeasurementColumns measurement_columns(const CsvTable&, bool plan = false);
+MeasurementColumns measurement_columns(const CsvTable&, const Instruments& known, bool plan);
 
 /// "q3_rad", "q3_mm": the column of the joint coordinate, counted from 0 here and from 1 there.
 std::string joint_column(std::size_t joint, bool rotates);

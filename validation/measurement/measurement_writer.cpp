@@ -46,6 +46,21 @@ struct Column {
   std::function<std::string(const Reading&)> cell;
 };
 
+void add_loads(std::vector<Column>& columns, const Measurements& m) {
+  const bool elsewhere = !m.instruments.load_points.empty();
+  const auto add = [&](const std::string& name, Eigen::Index i, bool always, const auto& of) {
+    if (always || std::any_of(m.readings.begin(), m.readings.end(), [&](const Reading& r) { return of(r)(i) != 0; }))
+      columns.push_back({name, [i, of](const Reading& r) { return number_text(of(r)(i), i < 3 ? 1 : 1e3); }});
+  };
+  for (Eigen::Index i = 0; i < 6; ++i)
+    add(nth(load_columns, i), i, i < 3,
+        [elsewhere](const Reading& r) -> const Vector6& { return elsewhere ? r.at_tool : r.load; });
+  for (std::size_t p = 0; p < m.instruments.load_points.size(); ++p)
+    for (Eigen::Index i = 0; i < 6; ++i)
+      add(load_column(m.instruments.load_points[p], as_size(i)), i, i == 0,
+          [p](const Reading& r) -> const Vector6& { return r.at_points[p]; });
+}
+
 /// Those that say something: the reader's defaults stand for the others.
 std::vector<Column> columns_of(const Measurements& m) {
   const auto any = [&](const auto& has) { return std::any_of(m.readings.begin(), m.readings.end(), has); };
@@ -65,18 +80,18 @@ std::vector<Column> columns_of(const Measurements& m) {
           {pose_columns[i], [&m, at](const Reading& r) { return number_text(m.poses[r.pose].pose_mm_deg(at)); }});
     }
   }
-  for (std::size_t i = 0; i < 6; ++i) {
-    const auto at = as_index(i);
-    if (i < 3 || any([at](const Reading& r) { return r.load(at) != 0; }))
-      columns.push_back(
-          {load_columns[i], [at](const Reading& r) { return number_text(r.load(at), at < 3 ? 1 : 1e3); }});
-  }
+  add_loads(columns, m);
   if (m.temperature_recorded || any([](const Reading& r) { return r.temperature_C != 20; }))
     columns.push_back({"temperature_C", [](const Reading& r) { return number_text(r.temperature_C); }});
+  const auto& sensors = m.instruments.sensors;
   for (std::size_t i = 0; i < 6; ++i)
-    if (i < 3 || any([i](const Reading& r) { return r.displacement[i].has_value(); }))
+    if ((i < 3 && sensors.empty()) || any([i](const Reading& r) { return r.displacement[i].has_value(); }))
       columns.push_back(
           {displacement_columns[i], [i](const Reading& r) { return number_text(r.displacement[i], i < 3 ? 1e3 : 1); }});
+  for (std::size_t k = 0; k < sensors.size(); ++k)
+    columns.push_back({sensor_column(sensors[k]), [k, per_SI = sensors[k].rotation ? 1.0 : 1e3](const Reading& r) {
+                         return number_text(r.sensors[k], per_SI);
+                       }});
   if (any([](const Reading& r) { return r.sigma_u.has_value(); }))
     columns.push_back({"sigma_u_mm", [](const Reading& r) { return number_text(r.sigma_u, 1e3); }});
   if (any([](const Reading& r) { return r.sigma_th.has_value(); }))

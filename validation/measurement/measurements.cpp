@@ -39,8 +39,10 @@ bool says_not_measured(std::string_view cell) {
 
 class Reader {
  public:
-  Reader(const CsvTable& table, const std::string& origin, bool plan)
-      : table_(table), columns_(measurement_columns(table, plan)) {
+  Reader(const CsvTable& table, const std::string& origin, const Instruments& known, bool plan)
+      : table_(table), columns_(measurement_columns(table, known, plan)) {
+    for (const SensorColumn& s : columns_.sensors) m_.instruments.sensors.push_back(s.sensor);
+    for (const LoadPointColumns& p : columns_.load_points) m_.instruments.load_points.push_back(p.name);
     m_.origin = origin;
     m_.joint_rotates = columns_.joint_rotates;
     m_.temperature_recorded = columns_.temperature.has_value();
@@ -62,6 +64,16 @@ class Reader {
     for (std::size_t i = 0; i < 6; ++i) {
       if (const auto& column = columns_.load[i]) r.load(as_index(i)) = number(row, *column) / (i < 3 ? 1 : 1e3);
       if (const auto value = measured(row, columns_.displacement[i])) r.displacement[i] = *value / (i < 3 ? 1e3 : 1);
+    }
+    for (const SensorColumn& s : columns_.sensors) {
+      r.sensors.push_back(measured(row, s.column));
+      if (r.sensors.back() && !s.sensor.rotation) *r.sensors.back() /= 1e3;
+    }
+    if (!columns_.load_points.empty()) r.at_tool = r.load;
+    for (const LoadPointColumns& p : columns_.load_points) {
+      r.at_points.push_back(Vector6::Zero());
+      for (std::size_t i = 0; i < 6; ++i)
+        if (p.load[i]) r.at_points.back()(as_index(i)) = measured(row, p.load[i]).value_or(0) / (i < 3 ? 1 : 1e3);
     }
     r.sigma_u = sigma(row, columns_.sigma_u, 1e3);
     r.sigma_th = sigma(row, columns_.sigma_th, 1);
@@ -225,25 +237,31 @@ class Reader {
 
 }  // namespace
 
-Measurements parse_measurements(std::string text, const std::string& origin) {
+Measurements parse_measurements(std::string text, const std::string& origin, const Instruments& known) {
   const CsvTable table = parse_csv(std::move(text), origin);
-  return Reader(table, origin, false).read();
+  return Reader(table, origin, known, false).read();
 }
 
-Measurements read_measurements(const std::filesystem::path& path) {
-  return parse_measurements(read_text(path), path.string());
+Measurements read_measurements(const std::filesystem::path& path, const Instruments& known) {
+  return parse_measurements(read_text(path), path.string(), known);
 }
 
-Measurements read_plan(const std::filesystem::path& path) {
+Measurements read_plan(const std::filesystem::path& path, const Instruments& known) {
   const CsvTable table = parse_csv(read_text(path), path.string());
-  Measurements m = Reader(table, path.string(), true).read();
-  for (Reading& r : m.readings) r.displacement = {};
+  Measurements m = Reader(table, path.string(), known, true).read();
+  m.instruments.sensors.clear();
+  for (Reading& r : m.readings) r.displacement = {}, r.sensors.clear();
   return m;
+}
+
+void scale_load(Reading& r, double factor) {
+  for (Vector6* load : {&r.load, &r.at_tool, &r.on_platform}) *load *= factor;
+  for (Vector6& load : r.at_points) load *= factor;
 }
 
 Measurements one_pose(const Measurements& m, std::size_t pose) {
   Measurements out{m.origin, m.joint_rotates, m.note_columns, m.temperature_recorded, {m.poses.at(pose)},
-                   {},       m.how_read};
+                   {},       m.how_read,      m.instruments};
   for (std::size_t& i : out.poses.front().readings) {
     out.readings.push_back(m.readings[i]);
     out.readings.back().pose = 0;

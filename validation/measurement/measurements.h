@@ -11,6 +11,10 @@
 //   fx_N fy_N fz_N mx_Nmm my_Nmm mz_Nmm         load; a moment without a column is zero
 //   ux_mm uy_mm uz_mm thx_rad thy_rad thz_rad   displacement, at least one column; an empty cell was not measured
 //   sigma_u_mm sigma_th_rad                     σ of one reading, > 0; columns and cells may be missing
+//   probe_mm, tilt_rad                          reading of a named sensor of the device, any number of them; with one,
+//                                               the displacement of T need not be there
+//   handle.fx_N … handle.mz_Nmm                 load at a named point of the device, about that point; what has no
+//                                               column is zero, and with one the load at T may have none
 //   sequence                                    order of the readings: numbers, no two alike; all rows or none
 //   temperature_C                               20 where the column or the cell is missing
 //   note…                                       remarks, kept as text
@@ -23,6 +27,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,15 +36,37 @@
 
 namespace deflect::measurement {
 
+/// A named sensor of the subject.
+struct SensorChannel {
+  std::string name;
+  bool rotation = false;        ///< reads rad, else m
+  std::optional<double> sigma;  ///< of one reading, where the description gives it
+};
+
+/// What a subject can be read by and loaded at, beside the tool point T. Their columns begin with these names.
+struct Instruments {
+  std::vector<SensorChannel> sensors;
+  std::vector<std::string> load_points;
+};
+
+/// What a sensor reads of a small displacement of T at a pose, by number of the sensor in Measurements::instruments.
+using SensorForm = std::function<Vector6(std::size_t pose, std::size_t sensor)>;
+
 struct Reading {
   std::size_t pose = 0;                               ///< index into Measurements::poses
-  Vector6 load = Vector6::Zero();                     ///< F_T_W: N, Nm
+  Vector6 load = Vector6::Zero();                     ///< F_T_W: N, Nm; of all loads together (place_loads)
   std::array<std::optional<double>, 6> displacement;  ///< d_T_W: m, rad; empty where not measured
   std::optional<double> sigma_u, sigma_th;            ///< m, rad; empty where not given
   std::optional<double> sequence;                     ///< in all readings or in none
   double temperature_C = 20;
   std::vector<std::string> notes;  ///< one per Measurements::note_columns
   std::size_t line = 0;            ///< of the file
+
+  std::vector<std::optional<double>> sensors;  ///< by Measurements::instruments.sensors: m, rad
+  /// Where the file has loads at named points: the loads at those points, each about its point, and at T itself; and
+  /// the part of `load` that acts on the platform without passing through the tool joint.
+  std::vector<Vector6> at_points;
+  Vector6 at_tool = Vector6::Zero(), on_platform = Vector6::Zero();
 };
 
 /// The readings of one approach of one commanded pose.
@@ -58,23 +85,29 @@ struct Measurements {
   std::vector<PoseGroup> poses;            ///< in the order of their first readings
   std::vector<Reading> readings;           ///< in the file's order
   std::vector<std::string> how_read = {};  ///< sentences about what was converted, skipped or averaged
+  Instruments instruments = {};            ///< that have columns
 
   bool by_joints() const { return !joint_rotates.empty(); }
 };
 
 /// Throws InputError "file:line: column 'name': what, remedy" for whatever the table above does not allow, for one
 /// label at two commanded poses and for a sequence number that stands twice.
-Measurements read_measurements(const std::filesystem::path&);
-Measurements parse_measurements(std::string text, const std::string& origin);
+/// `known`: the instruments whose columns the file may have. Where it has loads at named points, place_loads()
+/// (configure_all.h) must follow.
+Measurements read_measurements(const std::filesystem::path&, const Instruments& known = {});
+Measurements parse_measurements(std::string text, const std::string& origin, const Instruments& known = {});
 
-/// Poses and loads to be measured: the same file, displacements not wanted and not looked at.
-Measurements read_plan(const std::filesystem::path&);
+/// Poses and loads to be measured: the same file, readings not wanted and not looked at.
+Measurements read_plan(const std::filesystem::path&, const Instruments& known = {});
 
 /// The file that reads back as the same measurements, lines aside: every number is the shortest that does, which for
 /// a value in m or Nm that is no multiple of any double in mm or Nmm may be one unit in the last place off. Columns
 /// that would say nothing are left out. Written whole or not at all.
 void write_measurements(const std::filesystem::path&, const Measurements&);
 std::string measurements_text(const Measurements&);
+
+/// All loads of a reading times a factor.
+void scale_load(Reading&, double factor);
 
 /// The readings of one of the poses alone, in the file's order.
 Measurements one_pose(const Measurements&, std::size_t pose);

@@ -84,19 +84,62 @@ PureError pure_error(const Measurements& m, Reached reached) {
   return {u.estimate(), th.estimate()};
 }
 
-std::vector<MeasuredValue> measured_values(const Measurements& m) {
-  const PureError estimated = pure_error(m);
-  std::vector<MeasuredValue> values;
-  for (std::size_t i = 0; i < m.readings.size(); ++i)
-    for (std::size_t component = 0; component < 6; ++component) {
-      const Reading& r = m.readings[i];
-      if (!r.displacement[component]) continue;
-      std::optional<double> sigma = component < 3 ? r.sigma_u : r.sigma_th;
-      const auto& otherwise = component < 3 ? estimated.u : estimated.th;
-      if (!sigma && otherwise) sigma = otherwise->sigma;
-      values.push_back({i, component, *r.displacement[component], sigma});
+namespace {
+
+/// Of each sensor by itself: instruments differ.
+std::vector<std::optional<NoiseEstimate>> pure_error_of_sensors(const Measurements& m) {
+  std::vector<Pool> pools(m.instruments.sensors.size());
+  if (pools.empty()) return {};
+  for (const std::vector<std::size_t>& group : replicates(m))
+    for (std::size_t k = 0; k < pools.size(); ++k) {
+      std::vector<double> values;
+      for (const std::size_t i : group)
+        if (const auto& value = m.readings[i].sensors[k]) values.push_back(*value);
+      pools[k].add_group(std::move(values));
     }
+  std::vector<std::optional<NoiseEstimate>> out;
+  for (const Pool& pool : pools) out.push_back(pool.estimate());
+  return out;
+}
+
+std::optional<double> sigma_of(const std::optional<NoiseEstimate>& noise) {
+  return noise ? std::optional(noise->sigma) : std::nullopt;
+}
+
+}  // namespace
+
+MeasuredValue tool_point_value(std::size_t reading, std::size_t component, double value, std::optional<double> sigma) {
+  return {reading, component, value, sigma, component >= 3, Vector6::Unit(as_index(component))};
+}
+
+std::vector<MeasuredValue> measured_values(const Measurements& m, const SensorForm& form) {
+  const PureError estimated = pure_error(m);
+  const std::vector<std::optional<NoiseEstimate>> of_sensors = pure_error_of_sensors(m);
+  std::vector<MeasuredValue> values;
+  for (std::size_t i = 0; i < m.readings.size(); ++i) {
+    const Reading& r = m.readings[i];
+    for (std::size_t k = 0; k < 6; ++k) {
+      if (!r.displacement[k]) continue;
+      const std::optional<double>& given = k < 3 ? r.sigma_u : r.sigma_th;
+      values.push_back(
+          tool_point_value(i, k, *r.displacement[k], given ? given : sigma_of(k < 3 ? estimated.u : estimated.th)));
+    }
+    for (std::size_t k = 0; k < r.sensors.size(); ++k) {
+      if (!r.sensors[k]) continue;
+      const SensorChannel& sensor = m.instruments.sensors[k];
+      MeasuredValue v{i, 6 + k, *r.sensors[k], sensor.sigma, sensor.rotation};
+      if (!v.sigma) v.sigma = sigma_of(of_sensors[k]);
+      if (!v.sigma) v.sigma = sensor.rotation ? r.sigma_th : r.sigma_u;
+      if (form) v.form = form(r.pose, k);
+      values.push_back(v);
+    }
+  }
   return values;
+}
+
+std::string channel_name(const Measurements& m, std::size_t channel) {
+  constexpr const char* names[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
+  return channel < 6 ? names[channel] : m.instruments.sensors.at(channel - 6).name;
 }
 
 }  // namespace deflect::measurement

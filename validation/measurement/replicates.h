@@ -13,6 +13,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "validation/measurement/measurements.h"
@@ -37,15 +38,26 @@ struct PureError {
 };
 PureError pure_error(const Measurements&, Reached = Reached::in_same_direction);
 
-/// One measured number.
+/// One measured number, of a channel: 0 … 5 are the components of d_T_W = [δ; θ], the sensors follow.
 struct MeasuredValue {
   std::size_t reading = 0;
-  std::size_t component = 0;    ///< of d_T_W = [δ; θ], 0…5
-  double value = 0;             ///< m, rad
-  std::optional<double> sigma;  ///< the file's; else from the replicates; empty where there is neither
+  std::size_t channel = 0;
+  double value = 0;                ///< m, rad
+  std::optional<double> sigma;     ///< the file's; else from the replicates; empty where there is neither
+  bool rotation = false;           ///< rad
+  Vector6 form = Vector6::Zero();  ///< the first-order reading of a small displacement d of T: form · d
+
+  /// Whether it is one of d_T_W's components.
+  bool of_tool_point() const { return channel < 6; }
 };
 
-/// All of them, reading by reading.
-std::vector<MeasuredValue> measured_values(const Measurements&);
+/// That of a component of d_T_W, 0 … 5.
+MeasuredValue tool_point_value(std::size_t reading, std::size_t component, double value, std::optional<double> sigma);
+
+/// All of them, reading by reading. A sensor's σ is the description's, else its replicates', else that of the file.
+std::vector<MeasuredValue> measured_values(const Measurements&, const SensorForm& = nullptr);
+
+/// "ux", "probe".
+std::string channel_name(const Measurements&, std::size_t channel);
 
 }  // namespace deflect::measurement

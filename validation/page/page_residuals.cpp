@@ -16,7 +16,7 @@ std::vector<double> rmse_by_pose(const compare::Comparison& c, const VectorX& re
   std::vector<double> squares(c.study.data->poses.size(), 0), count(squares.size(), 0);
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
     const measurement::MeasuredValue& v = c.study.values[i];
-    if ((v.component >= 3) != rotations) continue;
+    if (v.rotation != rotations) continue;
     const std::size_t pose = c.study.data->readings[v.reading].pose;
     const double r = residual(as_index(i));
     squares[pose] += r * r;
@@ -36,7 +36,7 @@ VectorX with_nothing_missing(const compare::Comparison& c, std::uint64_t seed) {
     const measurement::MeasuredValue& v = c.study.values[i];
     if (i == 0 || v.reading != c.study.values[i - 1].reading)
       load = c.study.subject->load_tolerance() * random.normal();
-    r(as_index(i)) += c.sigma[i] * random.normal() + load * c.study.predicted[v.reading](as_index(v.component));
+    r(as_index(i)) += c.sigma[i] * random.normal() + load * c.study.predicted[v.reading](as_index(v.channel));
   }
   return r;
 }
@@ -73,7 +73,7 @@ Json readings_json(const compare::Comparison& c, std::size_t most) {
                     {"sequence", r.sequence ? Json(*r.sequence) : Json()},
                     {"load_N_Nmm", json::json_numbers(load, "load")},
                     {"measured", nothing},
-                    {"predicted", json::json_numbers(twist_in_mm(c.study.predicted[i]), "predicted")},
+                    {"predicted", json::json_numbers(twist_in_mm(c.study.predicted[i].head<6>()), "predicted")},
                     {"residual", nothing}};
     if (!data.note_columns.empty()) reading["notes"] = r.notes;
     out.push_back(std::move(reading));
@@ -81,9 +81,14 @@ Json readings_json(const compare::Comparison& c, std::size_t most) {
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
     const measurement::MeasuredValue& v = c.study.values[i];
     if (v.reading >= out.size()) continue;
-    const double unit = v.component < 3 ? report::mm : 1;
-    out[v.reading]["measured"][v.component] = unit * v.value;
-    out[v.reading]["residual"][v.component] = unit * c.residual(as_index(i));
+    const double unit = v.rotation ? 1 : report::mm, residual = unit * c.residual(as_index(i));
+    if (v.of_tool_point()) {
+      out[v.reading]["measured"][v.channel] = unit * v.value;
+      out[v.reading]["residual"][v.channel] = residual;
+    } else {
+      out[v.reading]["sensors"][measurement::channel_name(data, v.channel)] = {{"measured", unit * v.value},
+                                                                               {"residual", residual}};
+    }
   }
   return out;
 }

@@ -11,6 +11,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "validation/parallel/cases.h"
+#include "validation/prediction/instruments.h"
 
 namespace deflect::prediction {
 namespace {
@@ -134,14 +135,14 @@ void expect(theories::TheoryAt& machine, const measurement::PoseGroup& pose, con
 }
 
 /// What the sensor's drift adds to readings in their sequence.
-void add_drift(std::vector<Vector6>& readings, const Sensor& sensor, const measurement::Measurements& data) {
+void add_drift(std::vector<VectorX>& readings, const Sensor& sensor, const measurement::Measurements& data) {
   const std::vector<double> rank = ranks(data, "drift");
   for (std::size_t i = 0; i < readings.size(); ++i)
     readings[i].head<3>() += sensor.drift * (rank[i] / static_cast<double>(readings.size()));
 }
 
-void require_equilibrium(const theories::Prediction& r, const theories::Theory& theory,
-                         const measurement::Measurements& data, const measurement::Reading& reading) {
+void require_equilibrium(const Motion& r, const theories::Theory& theory, const measurement::Measurements& data,
+                         const measurement::Reading& reading) {
   if (r.converged) return;
   throw NumericalError(fmt::format("{}:{}: {} finds no equilibrium under this load{}{}", data.origin, reading.line,
                                    theory.spoken, r.reason.empty() ? "" : ": ", r.reason));
@@ -157,10 +158,11 @@ Vector6 recorded_displacement(const Sensor& sensor, const Vector6& d) {
   return rotate_twist(rotation_from_vector(sensor.rotation)) * d;
 }
 
-std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration>& machines,
+std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration>& machines,
                              const measurement::Measurements& data, const PredictionOptions& o,
                              const parallel::Work& work) {
-  std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
+  std::vector<VectorX> out(data.readings.size());
+  const Instruments instruments(m, data);
   const auto [frictions, beside] = machines.empty() ? std::pair{0, false} : frictions_of(machines.front());
   if (frictions > 0) measurement::in_sequence(data, "friction");
   const double before = machines.empty() ? 0 : carried_before(machines.front());
@@ -168,37 +170,40 @@ std::vector<Vector6> predict(const Mechanism& m, const std::vector<Configuration
   const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation)),
                 sensor = rotate_twist(rotation_from_vector(m.sensor.rotation));
   const auto at_pose = [&](std::size_t p) {
-    const std::unique_ptr<theories::TheoryAt> machine = o.theory->at(machines[p], {m.name, o.division});
+    const theories::TheoryOptions options{m.name, o.division};
+    LoadedMachine machine(*o.theory, options, machines[p], instruments, cell);
     Conditions conditions(o.geometry.value_or(m.geometry));
-    if (conditions.geometry == Geometry::linear) expect(*machine, data.poses[p], data);
+    if (conditions.geometry == Geometry::linear) expect(machine.theory(), data.poses[p], data);
     Vector6 unloaded = Vector6::Zero();
     if (before != 0 && !beside)
-      unloaded = after(before * largest_load(data.poses[p], data, cell), *machine, conditions);
+      unloaded = after(before * largest_load(data.poses[p], data, cell), machine.theory(), conditions);
     if (beside) {
       carried.enter(machines[p], o);
       conditions.slips = carried.slips();
     }
     // Without history the same load at the same temperature has the same answer.
-    std::map<std::array<double, 7>, theories::Prediction> known;
-    theories::Prediction last;
-    const auto answer = [&](const measurement::Reading& reading) -> const theories::Prediction& {
+    const bool remember = frictions == 0 && !machine.theory().affine() && machine.by_load_at_T(conditions.geometry);
+    std::map<std::array<double, 7>, Motion> known;
+    Motion last;
+    const auto answer = [&](const measurement::Reading& reading) -> const Motion& {
       conditions.warmer = reading.temperature_C - 20;
-      const Vector6 F = cell * reading.load;
-      if (frictions > 0 || machine->affine()) return last = machine->predict(F, conditions);
+      if (!remember) return last = machine.move(reading, conditions);
       std::array<double, 7> key;
-      std::copy(F.begin(), F.end(), key.begin());
+      std::copy(reading.load.begin(), reading.load.end(), key.begin());
       key[6] = conditions.warmer;
       const auto [found, is_new] = known.try_emplace(key);
-      if (is_new) found->second = machine->predict(F, conditions);
+      if (is_new) found->second = machine.move(reading, conditions);
       return found->second;
     };
     for (const std::size_t i : ordered(data.poses[p], data)) {
       const measurement::Reading& reading = data.readings[i];
-      const theories::Prediction& r = answer(reading);
+      const Motion& r = answer(reading);
       require_equilibrium(r, *o.theory, data, reading);
-      if (beside) carried.leave_with(r.displacement, r.slips);
+      if (beside) carried.leave_with(r.platform, r.slips);
       conditions.slips = r.slips;
-      out[i] = m.sensor.zero + sensor * (r.displacement - unloaded);
+      const Motion seen{r.tool - unloaded, r.platform - unloaded};
+      out[i].resize(6 + std::ssize(data.instruments.sensors));
+      out[i] << m.sensor.zero + sensor * seen.tool, instruments.readings(machines[p], seen, conditions.geometry);
     }
   };
   const auto all = static_cast<double>(machines.size());

@@ -26,10 +26,11 @@ struct PredictionOptions {
   frame::MemberDivision division;    ///< of members, in the MSA
 };
 
-/// d_T_W as recorded, for each reading, all six components (m, rad). `machines`: the configurations of the device, one
+/// By reading, what every channel records (MeasuredValue): d_T_W, all six components, then the sensors; m, rad.
+/// `machines`: the configurations of the device, one
 /// per pose of the measurements (configure_all, configure_as_built). Throws NumericalError "file:line: …" where the
 /// theory finds no equilibrium, InputError where the device needs a sequence that the file does not have.
-std::vector<Vector6> predict(const Mechanism&, const std::vector<Configuration>& machines,
+std::vector<VectorX> predict(const Mechanism&, const std::vector<Configuration>& machines,
                              const measurement::Measurements&, const PredictionOptions& = {},
                              const parallel::Work& = {});
 

@@ -1,5 +1,6 @@
 #include "validation/prediction/simulate.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "msa/base/index.h"
@@ -58,13 +59,17 @@ measurement::Measurements simulate(const Mechanism& m, measurement::Measurements
                                    const parallel::Work& work) {
   measurement::Random random(o.seed);
   const AsBuilt built = draw(m, o.tolerances, random);
-  const Mechanism geometry = o.tolerances > 0 ? with_geometry(draw_numbers(m, o.tolerances, random), built) : m;
+  Mechanism geometry = o.tolerances > 0 ? with_geometry(draw_numbers(m, o.tolerances, random), built) : m;
+  for (auto& [name, sensor] : geometry.sensors)
+    if (sensor.gain_sigma > 0) sensor.gain += o.tolerances * sensor.gain_sigma * random.normal();
   std::vector<Configuration> machines = measurement::configure_all(m, plan);
   for (Configuration& machine : machines) {
     const VectorX errors = draw_errors(machine.actuators, o.tolerances * m.tolerances.actuator_repeatability, random);
     if (o.tolerances > 0) machine = configure_as_built(geometry, built, machine, errors);
   }
 
+  plan.instruments.sensors = measurement::instruments_of(m).sensors;
+  const std::vector<measurement::SensorChannel>& sensors = plan.instruments.sensors;
   const auto n = static_cast<double>(plan.readings.size());
   if (o.swing != 0 || o.temperature != 20) {
     plan.temperature_recorded = true;
@@ -73,26 +78,33 @@ measurement::Measurements simulate(const Mechanism& m, measurement::Measurements
           std::round(1e3 * (o.temperature + o.swing * std::sin(2 * pi * static_cast<double>(i) / n))) / 1e3;
   }
   measurement::Measurements loaded = plan;
-  for (measurement::Reading& r : loaded.readings) r.load *= 1 + o.tolerances * m.tolerances.load * random.normal();
+  for (measurement::Reading& r : loaded.readings) scale_load(r, 1 + o.tolerances * m.tolerances.load * random.normal());
 
   PredictionOptions p;
   p.theory = &theories::theory("msa");
   p.geometry = o.geometry;
   p.division = o.division;
-  const std::vector<Vector6> exact = predict(geometry, machines, loaded, p, work);
+  const std::vector<VectorX> exact = predict(geometry, machines, loaded, p, work);
 
+  // Sensors whose noise the description gives need no σ in the file.
+  const bool all_told = !sensors.empty() &&
+                        std::all_of(sensors.begin(), sensors.end(), [](const auto& s) { return s.sigma.has_value(); });
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
     measurement::Reading& r = plan.readings[i];
     const bool gross = o.outliers > 0 && random.uniform(0, 1) < o.outliers;
-    for (Eigen::Index k = 0; k < 6; ++k) {
-      const double sigma = k < 3 ? o.sigma_u : o.sigma_th.value_or(0);
-      if (k >= 3 && !o.sigma_th) continue;
-      double value = exact[i](k) + sigma * random.normal();
+    const auto read = [&](double value, double sigma, bool rotation) {
+      value += sigma * random.normal();
       if (gross) value += (random.uniform(0, 1) < 0.5 ? -1 : 1) * random.uniform(10, 30) * sigma;
-      nth(r.displacement, k) = sigma > 0 ? rounded(value, sigma, k < 3 ? 1e3 : 1) : value;
+      return sigma > 0 ? rounded(value, sigma, rotation ? 1 : 1e3) : value;
+    };
+    for (std::size_t k = 0; k < sensors.size(); ++k) {
+      const double otherwise = sensors[k].rotation ? o.sigma_th.value_or(0) : o.sigma_u;
+      r.sensors.push_back(read(exact[i](as_index(6 + k)), sensors[k].sigma.value_or(otherwise), sensors[k].rotation));
     }
-    if (o.sigma_u > 0) r.sigma_u = o.sigma_u;
-    if (o.sigma_th && *o.sigma_th > 0) r.sigma_th = o.sigma_th;
+    for (Eigen::Index k = 0; k < 6 && sensors.empty(); ++k)
+      if (k < 3 || o.sigma_th) nth(r.displacement, k) = read(exact[i](k), k < 3 ? o.sigma_u : *o.sigma_th, k >= 3);
+    if (o.sigma_u > 0 && !all_told) r.sigma_u = o.sigma_u;
+    if (o.sigma_th && *o.sigma_th > 0 && !all_told) r.sigma_th = o.sigma_th;
   }
   return plan;
 }
@@ -106,7 +118,7 @@ double share_carried(const Mechanism& m, const measurement::Measurements& plan, 
   for (std::size_t pose = 0; pose < machines.size(); ++pose) {
     const auto carries = [&](double share) {
       measurement::Measurements some = measurement::one_pose(plan, pose);
-      for (measurement::Reading& r : some.readings) r.load *= share;
+      for (measurement::Reading& r : some.readings) scale_load(r, share);
       return bool(outcome_of<NumericalError>([&] { return predict(m, {machines[pose]}, some, p, parallel::alone); }));
     };
     if (carries(1)) continue;

@@ -22,6 +22,7 @@ measurement::Measurements corrected(const measurement::Measurements& data, const
     if (c.sigma_too && r.sigma_u) *r.sigma_u *= std::abs(c.displacement.factor[0]);
     if (c.sigma_too && r.sigma_th) *r.sigma_th *= std::abs(c.displacement.factor[3]);
     r.load = c.load.of(r.load);
+    r.on_platform = c.load.of(r.on_platform);
     r.load.tail<3>() += c.acts_at.cross(Vector3(r.load.head<3>()));
   }
   if (c.pose)

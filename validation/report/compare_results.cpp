@@ -181,7 +181,7 @@ std::vector<std::pair<std::string, double>> sizes_of_tolerances(const compare::C
     if (tolerance.zero) continue;
     double square = 0, count = 0;
     for (Eigen::Index i = 0; i < A.rows(); ++i)
-      if (turns || nth(c.study.values, i).component < 3) square += A(i, k) * A(i, k), ++count;
+      if (turns || !nth(c.study.values, i).rotation) square += A(i, k) * A(i, k), ++count;
     out.emplace_back(tolerance.name, std::sqrt(square / std::max(1.0, count)));
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -282,17 +282,16 @@ std::string compare_json(const compare::Comparison& c) {
 }
 
 std::string residuals_csv(const compare::Comparison& c) {
-  constexpr const char* names[] = {"ux", "uy", "uz", "thx", "thy", "thz"};
   const compare::ResidualStudy& s = c.study;
   std::string out = "line,pose,component,unit,measured,predicted,residual,sigma\n";
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const measurement::MeasuredValue& v = s.values[i];
     const measurement::Reading& r = s.data->readings[v.reading];
-    const double unit = v.component < 3 ? mm : 1;
+    const double unit = v.rotation ? 1 : mm;
     const double residual = c.residual(as_index(i));
     out += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.4g}\n", r.line, csv_cell(s.data->poses[r.pose].label),
-                       names[v.component], v.component < 3 ? "mm" : "rad", unit * v.value, unit * (v.value - residual),
-                       unit * residual, unit * c.sigma[i]);
+                       csv_cell(measurement::channel_name(*s.data, v.channel)), v.rotation ? "rad" : "mm",
+                       unit * v.value, unit * (v.value - residual), unit * residual, unit * c.sigma[i]);
   }
   return out;
 }

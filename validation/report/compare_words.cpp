@@ -58,8 +58,8 @@ std::vector<ReadingCells> cells_of(const compare::Comparison& c) {
   }
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
     const measurement::MeasuredValue& v = c.study.values[i];
-    const Eigen::Index k = as_index(v.component) - first;
-    if (k < 0 || k >= 3) continue;
+    const Eigen::Index k = as_index(v.channel) - first;
+    if (!v.of_tool_point() || k < 0 || k >= 3) continue;
     out[v.reading].measured(k) = v.value;
     out[v.reading].residual(k) = c.residual(as_index(i));
   }

@@ -19,14 +19,20 @@ MatrixX rows_of(const std::vector<measurement::MeasuredValue>& values,
                 const std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_reading) {
   MatrixX out(std::ssize(values), by_reading.empty() ? 0 : by_reading.front().cols());
   for (std::size_t i = 0; i < values.size(); ++i)
-    out.row(as_index(i)) = by_reading[values[i].reading].row(as_index(values[i].component));
+    out.row(as_index(i)) = values[i].form.transpose() * by_reading[values[i].reading];
   return out;
 }
 
 VectorX rows_of(const std::vector<measurement::MeasuredValue>& values, const std::vector<Vector6>& by_reading) {
   VectorX out(std::ssize(values));
+  for (std::size_t i = 0; i < values.size(); ++i) out(as_index(i)) = values[i].form.dot(by_reading[values[i].reading]);
+  return out;
+}
+
+VectorX rows_of(const std::vector<measurement::MeasuredValue>& values, const std::vector<VectorX>& by_reading) {
+  VectorX out(std::ssize(values));
   for (std::size_t i = 0; i < values.size(); ++i)
-    out(as_index(i)) = by_reading[values[i].reading](as_index(values[i].component));
+    out(as_index(i)) = by_reading[values[i].reading](as_index(values[i].channel));
   return out;
 }
 
@@ -55,10 +61,10 @@ void move_own(GroupColumns& own, const subject::Deviations& off, std::size_t fir
     reading.push_back(as_size(std::lower_bound(all.begin(), all.end(), nth(values, row).reading) - all.begin()));
   }
   for (std::size_t k = first; k < last; ++k) {
-    const std::vector<Vector6> d = off.with(k)->predict(of_pose, {}, parallel::alone);
+    const std::vector<VectorX> d = off.with(k)->predict(of_pose, {}, parallel::alone);
     for (std::size_t i = 0; i < own.rows.size(); ++i)
       own.columns(as_index(i), as_index(k - first)) =
-          d[reading[i]](as_index(nth(values, own.rows[i]).component)) - nominal(own.rows[i]);
+          d[reading[i]](as_index(nth(values, own.rows[i]).channel)) - nominal(own.rows[i]);
   }
 }
 
@@ -103,7 +109,7 @@ ToleranceModel tolerance_model(const subject::Standing& standing, const measurem
 }
 
 Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<measurement::MeasuredValue>& values,
-                         const std::vector<double>& sigma, const std::vector<Vector6>& predicted, double load,
+                         const std::vector<double>& sigma, const std::vector<VectorX>& predicted, double load,
                          const std::vector<bool>& set_aside, int threads)
     : A_(A) {
   for (std::size_t first = 0; first < values.size();) {
@@ -116,7 +122,7 @@ Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<measurement::
       block.covariance = MatrixX::Zero(size, size);
       for (Eigen::Index i = 0; i < size; ++i) {
         const std::size_t at = first + as_size(i);
-        d(i) = load * predicted[values[at].reading](as_index(values[at].component));
+        d(i) = load * predicted[values[at].reading](as_index(values[at].channel));
         block.covariance(i, i) = sigma[at] * sigma[at];
       }
       block.covariance += d * d.transpose();

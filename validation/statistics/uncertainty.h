@@ -24,11 +24,13 @@
 
 namespace deflect::statistics {
 
-/// Stacks the components that were measured: from six components by reading (m, rad) to rows over the measured numbers.
-/// Columns are patterns.
+/// Stacks what was measured: from displacements of the measured point by reading (m, rad) to rows over the measured
+/// numbers, to the first order (MeasuredValue::form). Columns are patterns.
 MatrixX rows_of(const std::vector<measurement::MeasuredValue>&,
                 const std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_reading);
 VectorX rows_of(const std::vector<measurement::MeasuredValue>&, const std::vector<Vector6>& by_reading);
+/// The same from the readings of all channels (Standing::predict).
+VectorX rows_of(const std::vector<measurement::MeasuredValue>&, const std::vector<VectorX>& by_reading);
 
 /// The subject's sensitivity to its tolerances, which are nuisance parameters with a prior.
 struct ToleranceModel {
@@ -43,7 +45,7 @@ class Uncertainty {
   /// `predicted`: by reading; `load`: relative standard deviation of a recorded load. No reading may belong to two
   /// groups of A. `threads`: as in whitening.h.
   Uncertainty(const PartedColumns& A, const std::vector<measurement::MeasuredValue>&, const std::vector<double>& sigma,
-              const std::vector<Vector6>& predicted, double load, const std::vector<bool>& set_aside = {},
+              const std::vector<VectorX>& predicted, double load, const std::vector<bool>& set_aside = {},
               int threads = 1);
 
   /// W X with WᵀW = Σ⁻¹: in least squares the rows are then independent with standard deviation 1. Rows set aside are

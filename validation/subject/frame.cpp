@@ -51,11 +51,12 @@ class FrameStanding final : public Standing {
   }
 
   /// By the MSA, which alone knows frames.
-  std::vector<Vector6> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
+  std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
                                const parallel::Work&) const override {
     std::vector<Vector6> loads;
     for (const measurement::Reading& reading : data.readings) loads.push_back(reading.load);
-    return displacements(loads, o.geometry.value_or(frame_->geometry));
+    const std::vector<Vector6> d = displacements(loads, o.geometry.value_or(frame_->geometry));
+    return {d.begin(), d.end()};
   }
 
   std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const override;

@@ -12,6 +12,7 @@
 #include "msa/mechanism/tolerances.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/prediction/as_built.h"
+#include "validation/prediction/instruments.h"
 #include "validation/subject/machine_places.h"
 #include "validation/subject/machine_sites.h"
 #include "validation/subject/machine_transmissions.h"
@@ -26,7 +27,12 @@ struct Move {
   prediction::AsBuilt built = {};
   std::size_t actuator = 0;        ///< of a pose
   Vector6 zero = Vector6::Zero();  ///< of the sensor
-  NumberMove number = {};          ///< of the resolved description
+  struct OfSensor {                ///< a named one
+    std::string name = {};
+    double gain = 0, zero = 0;
+  };
+  OfSensor sensor = {};
+  NumberMove number = {};  ///< of the resolved description
 };
 
 std::vector<Move> shared_moves(const Mechanism& m) {
@@ -75,14 +81,37 @@ std::vector<Move> free_zeros(const measurement::Measurements& data) {
   return out;
 }
 
+/// Gains and zeros of the named sensors.
+std::vector<Move> sensor_moves(const Mechanism& m, const measurement::Measurements& data) {
+  std::vector<Move> out;
+  for (std::size_t k = 0; k < data.instruments.sensors.size(); ++k)
+    for (const auto& [name, sensor] : m.sensors) {
+      if (name != data.instruments.sensors[k].name) continue;
+      if (sensor.gain_sigma > 0) {
+        Move move{{fmt::format("gain of {}", name), sensor.gain_sigma}};
+        move.sensor = {name, sensor.gain_sigma, 0};
+        out.push_back(std::move(move));
+      }
+      double largest = 0;
+      for (const measurement::Reading& r : data.readings)
+        largest = std::max(largest, std::abs(r.sensors[k].value_or(0)));
+      if (!sensor.free_zero || largest == 0) continue;
+      Move move{{fmt::format("zero of {}", name), 10 * largest, {}, true}};
+      move.sensor = {name, 0, move.tolerance.sigma};
+      out.push_back(std::move(move));
+    }
+  return out;
+}
+
 std::vector<Move> moves_of(const Mechanism& m, const std::vector<Configuration>& drawn,
                            const measurement::Measurements& data) {
   std::vector<Move> moves = shared_moves(m);
   if (!m.tolerances.numbers.empty())
     for (NumberMove& number : number_moves(resolved(m)))
-      moves.push_back({{number.name, number.sigma}, {}, 0, Vector6::Zero(), std::move(number)});
+      moves.push_back({{number.name, number.sigma}, {}, 0, Vector6::Zero(), {}, std::move(number)});
   if (m.sensor.free_zero)
     for (Move& zero : free_zeros(data)) moves.push_back(std::move(zero));
+  for (Move& move : sensor_moves(m, data)) moves.push_back(std::move(move));
   const double sigma = m.tolerances.actuator_repeatability;
   if (!(sigma > 0)) return moves;
   for (std::size_t p = 0; p < drawn.size(); ++p)
@@ -120,9 +149,15 @@ class MachineStanding final : public Standing {
 
   bool has_history() const override { return any_history(machines_.front()); }
 
-  std::vector<Vector6> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
+  std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
                                const parallel::Work& work) const override {
     return prediction::predict(*mechanism_, machines_, data, o, work);
+  }
+
+  measurement::SensorForm sensor_forms(const measurement::Measurements& data) const override {
+    return [this, instruments = prediction::Instruments(*mechanism_, data)](std::size_t pose, std::size_t sensor) {
+      return instruments.form(machines_[pose], sensor);
+    };
   }
 
   std::unique_ptr<const Transmissions> transmissions() const override {
@@ -155,9 +190,11 @@ class MachineDeviations final : public Deviations {
 
   std::unique_ptr<const Standing> with(std::size_t k) const override {
     const Move& move = moves_[k];
-    if (!move.zero.isZero(0)) {
+    if (!move.zero.isZero(0) || !move.sensor.name.empty()) {
       Mechanism shifted = *mechanism_;
       shifted.sensor.zero += move.zero;
+      for (auto& [name, sensor] : shifted.sensors)
+        if (name == move.sensor.name) sensor.gain += move.sensor.gain, sensor.zero += move.sensor.zero;
       return std::make_unique<MachineStanding>(std::make_shared<const Mechanism>(std::move(shifted)),
                                                drawn_.machines());
     }

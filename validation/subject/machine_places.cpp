@@ -148,6 +148,8 @@ std::vector<Place> places_of(const Mechanism& m) {
   found.of_joint(m.tool, "tool", "tool", false);
   for (std::size_t i = fixtures; i < found.all.size(); ++i)
     found.all[i].kind = i < tool ? PlaceKind::base : PlaceKind::tool;
+  for (const auto& [name, sensor] : m.sensors)
+    found.all.push_back({PlaceKind::sensor, {}, name, fmt::format("sensors.{}.gain", name)});
   std::erase_if(found.all, [&](const Place& p) {
     return std::find(m.trusted.begin(), m.trusted.end(), nth(place_kind_names, p.kind)) != m.trusted.end();
   });

@@ -147,7 +147,9 @@ class MachineTransmissions final : public Transmissions {
           if (at->second.there[i] && (!leg || at->second.leg == *leg)) all.push_back(at->second.g[i]);
       if (all.empty()) return std::nullopt;
       for (const std::size_t i : data.poses[p].readings) {
-        const Vector6 F = prediction::true_load(cell_, data.readings[i].load);
+        const measurement::Reading& r = data.readings[i];
+        const Vector6 through = place.kind == PlaceKind::tool ? Vector6(r.load - r.on_platform) : r.load;
+        const Vector6 F = prediction::true_load(cell_, through);
         Vector6 d = Vector6::Zero();
         for (const Vector6& g : all) d += g * deflection_of(law, g.dot(F));
         out[i] = prediction::recorded_displacement(sensor_, d);

@@ -80,8 +80,11 @@ class Standing {
   virtual bool has_history() const { return false; }
 
   /// Predicts the readings of these measurements, which must have the same poses (prediction.h).
-  virtual std::vector<Vector6> predict(const measurement::Measurements&, const prediction::PredictionOptions& = {},
+  virtual std::vector<VectorX> predict(const measurement::Measurements&, const prediction::PredictionOptions& = {},
                                        const parallel::Work& = {}) const = 0;
+
+  /// What the named sensors of these measurements read of a small displacement of the measured point (MeasuredValue).
+  virtual measurement::SensorForm sensor_forms(const measurement::Measurements&) const { return nullptr; }
 
   /// Null where forces at places are not proportional to the load.
   virtual std::unique_ptr<const Transmissions> transmissions() const { return nullptr; }

@@ -25,7 +25,7 @@ void run(const CompareArguments& a) {
   require_pages(a.report);
   const figures::FigureStyle style = figure_style(a.figures, a.out);
   const Mechanism m = read_device(a.device);
-  const measurement::Measurements data = read_data(a.data);
+  const measurement::Measurements data = read_data(a.data, m);
   tell_size(data, 450);
   compare::ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);

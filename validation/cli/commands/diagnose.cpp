@@ -23,7 +23,7 @@ struct DiagnoseArguments {
 void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
-  const measurement::Measurements data = read_data(a.data);
+  const measurement::Measurements data = read_data(a.data, m);
   tell_size(data, 1200);
   const std::vector<effects::Effect> effects = known_effects(a.files, m);
   diagnosis::DiagnosisOptions o;

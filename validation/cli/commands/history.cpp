@@ -42,13 +42,13 @@ std::string same_machines(const std::vector<Mechanism>& devices) {
 void run(const HistoryArguments& a) {
   require_pages(a.report);
   const figures::FigureStyle style = figure_style(a.figures, a.out);
-  const measurement::Measurements data = read_data(a.data);
   compare::ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   const int threads = parse_threads(a.threads);
   std::vector<Mechanism> devices;
   for (const std::string& name : a.devices) devices.push_back(read_device(name));
+  const measurement::Measurements data = read_data(a.data, devices.front());
   const std::vector<compare::Comparison> all = timed_with_progress("compare with each", [&](const auto& told) {
     std::vector<compare::Comparison> out;
     const auto versions = static_cast<double>(devices.size());

@@ -1,0 +1,133 @@
+// Fields of how a machine is loaded and read: load cell, sensors, points of load.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+#include "msa/base/index.h"
+#include "msa/mechanism/field_lists.h"
+
+namespace deflect {
+namespace {
+
+constexpr const char* trusted_kinds[] = {"base", "tool", "load", "load cell", "sensor"};
+
+const std::vector<std::string> bodies = {"platform", "tool"};
+
+std::optional<double> number(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// "[0, 0.6, 0.8]".
+std::optional<Vector3> vector(std::string_view text) {
+  if (text.size() < 2 || text.front() != '[' || text.back() != ']') return std::nullopt;
+  text = text.substr(1, text.size() - 2);
+  Vector3 out;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const std::size_t comma = text.find(',');
+    if ((comma == text.npos) != (i == 2)) return std::nullopt;
+    const auto each = number(text.substr(0, comma));
+    if (!each) return std::nullopt;
+    out(i) = *each;
+    if (i < 2) text.remove_prefix(comma + 1);
+  }
+  return out;
+}
+
+/// Sets axis and rotation; false where the text is no direction.
+bool read_direction(PointSensor& s) {
+  constexpr std::string_view words[] = {"ux", "uy", "uz", "rx", "ry", "rz"};
+  for (std::size_t i = 0; i < 6; ++i)
+    if (s.direction == words[i]) {
+      s.axis = Vector3::Unit(as_index(i % 3));
+      s.rotation = i >= 3;
+      return true;
+    }
+  const std::optional<Vector3> along = vector(s.direction);
+  if (!along || !(along->norm() > 0)) return false;
+  s.axis = along->normalized();
+  s.rotation = false;
+  return true;
+}
+
+/// "1", "0.98 ± 0.5 %", "1 +- 0.005".
+bool read_gain(PointSensor& s) {
+  s.gain = 1, s.gain_sigma = 0;
+  if (s.gain_text.empty()) return true;
+  std::string_view text = s.gain_text, deviation;
+  for (const std::string_view sign : {"±", "+-", "+/-"})
+    if (const std::size_t at = text.find(sign); at != text.npos) {
+      deviation = text.substr(at + sign.size());
+      text = text.substr(0, at);
+      break;
+    }
+  const auto gain = number(text);
+  if (!gain || !(*gain > 0)) return false;
+  s.gain = *gain;
+  if (deviation.empty()) return true;
+  const bool percent = deviation.ends_with('%');
+  const auto sigma = number(percent ? deviation.substr(0, deviation.size() - 1) : deviation);
+  if (!sigma || !(*sigma >= 0)) return false;
+  s.gain_sigma = percent ? s.gain * *sigma / 100 : *sigma;
+  return true;
+}
+
+void describe_zero(FieldVisitor& v, bool& free_zero) {
+  std::string zero = free_zero ? "free" : "unloaded";
+  v.word("zero", zero, {"zero of the readings", {"unloaded", "free"}, "unloaded"},
+         "where readings count from: the unloaded machine, or somewhere");
+  free_zero = zero == "free";
+}
+
+}  // namespace
+
+void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<std::string>& trusted) {
+  const auto cell_fields = [&] {
+    v.quantity("gain", cell.gain, optional(1, Dimension::ratio, positive), "true load over recorded load");
+    v.vector3("rotation", cell.rotation, Dimension::angle, "rotation vector from recorded to true load");
+  };
+  const auto sensor_fields = [&] {
+    v.vector3("rotation", sensor.rotation, Dimension::angle, "rotation vector from true to recorded displacement");
+    v.vector3("drift", sensor.drift, Dimension::length, "drift of the reading over a sequence");
+    describe_zero(v, sensor.free_zero);
+  };
+  const auto both = [&] {
+    v.object("load_cell", Need::optional, false, cell_fields, "how loads are recorded");
+    v.object("sensor", Need::optional, false, sensor_fields, "how displacements are recorded");
+    v.texts("trusted", trusted, Need::optional, "where nothing is missing: base, tool, load, load cell, sensor");
+    const std::vector<std::string> known{std::begin(trusted_kinds), std::end(trusted_kinds)};
+    for (const std::string& kind : trusted)
+      v.require(std::find(known.begin(), known.end(), kind) != known.end(), "trusted",
+                fmt::format("there is no '{}' to trust{}", kind, suggestion(kind, known)));
+  };
+  v.object("rig", Need::optional, false, both, "how loads and displacements are recorded");
+}
+
+void describe(FieldVisitor& v, PointSensor& s) {
+  v.word("body", s.body, {"body", bodies, bodies.front()}, "what the sensor reads: platform, or tool beyond its joint");
+  v.vector3("point", s.point, Dimension::length, "the point, from the tool point, in platform axes");
+  v.any("direction", s.direction, "uz", "in base axes: ux, uy, uz, a vector, or rx, ry, rz for a rotation");
+  v.require(read_direction(s), "direction",
+            "must be one of ux, uy, uz, rx, ry, rz, or a vector such as [0, 0.6, 0.8] in base axes");
+  v.text("gain", s.gain_text, Need::optional, "recorded over true displacement, as in '1 ± 0.5 %'");
+  v.require(read_gain(s), "gain", "must be a number above 0, or one with its standard deviation, as in '1 ± 0.5 %'");
+  v.quantity("sigma", s.sigma, optional(0, s.rotation ? Dimension::angle : Dimension::length, not_negative),
+             "standard deviation of one reading");
+  describe_zero(v, s.free_zero);
+}
+
+void describe(FieldVisitor& v, LoadPoint& p) {
+  v.word("body", p.body, {"body", bodies, bodies.front()}, "what the load acts on: platform, or tool beyond its joint");
+  v.vector3("point", p.point, Dimension::length, "the point, from the tool point, in platform axes");
+}
+
+}  // namespace deflect

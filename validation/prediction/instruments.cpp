@@ -1,0 +1,134 @@
+#include "validation/prediction/instruments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "msa/base/error.h"
+#include "msa/base/index.h"
+
+namespace deflect::prediction {
+namespace {
+
+template <class T>
+const T* named(const Named<T>& all, const std::string& name, const char* what, const Mechanism& m,
+               const measurement::Measurements& data) {
+  for (const auto& [known, each] : all)
+    if (known == name) return &each;
+  throw InputError(fmt::format("{}: {} has no {} '{}'", data.origin, m.name, what, name));
+}
+
+bool on_the_platform(const std::string& body) { return body == "platform"; }
+
+Configuration with_rigid_tool(Configuration c) {
+  PlacedJoint rigid;
+  rigid.part = c.tool.part;
+  rigid.p_W = c.tool.p_W;
+  rigid.R_WJ = c.tool.R_WJ;
+  c.tool = std::move(rigid);
+  return c;
+}
+
+bool has_friction(const PlacedJoint& joint) {
+  return std::any_of(joint.laws.begin(), joint.laws.end(), [](const std::vector<Law>& laws) {
+    return std::any_of(laws.begin(), laws.end(), [](const Law& law) { return row_of(law).has_history; });
+  });
+}
+
+}  // namespace
+
+Instruments::Instruments(const Mechanism& m, const measurement::Measurements& data) {
+  for (const measurement::SensorChannel& s : data.instruments.sensors)
+    sensors_.push_back(named(m.sensors, s.name, "sensor", m, data));
+  for (const std::string& name : data.instruments.load_points)
+    points_.push_back(named(m.loads, name, "point of load", m, data));
+}
+
+bool Instruments::on_platform() const {
+  const auto there = [](const auto* each) { return on_the_platform(each->body); };
+  return std::any_of(sensors_.begin(), sensors_.end(), there) || std::any_of(points_.begin(), points_.end(), there);
+}
+
+Vector6 Instruments::form(const Configuration& c, std::size_t k) const {
+  const PointSensor& s = *sensors_.at(k);
+  Vector6 out = Vector6::Zero();
+  if (s.rotation) {
+    out.tail<3>() = s.axis;
+  } else {
+    const Vector3 arm = c.pose.R_WT * s.point;
+    out << s.axis, arm.cross(s.axis);
+  }
+  return s.gain * out;
+}
+
+VectorX Instruments::readings(const Configuration& c, const Motion& motion, Geometry geometry) const {
+  VectorX out(std::ssize(sensors_));
+  for (std::size_t k = 0; k < sensors_.size(); ++k) {
+    const PointSensor& s = *sensors_[k];
+    const Vector6& d = on_the_platform(s.body) ? motion.platform : motion.tool;
+    double reading = form(c, k).dot(d);
+    if (geometry == Geometry::finite && !s.rotation) {
+      const Vector3 arm = c.pose.R_WT * s.point, theta = d.tail<3>();
+      reading += s.gain * s.axis.dot(rotation_from_vector(theta) * arm - arm - theta.cross(arm));
+    }
+    out(as_index(k)) = reading + s.zero;
+  }
+  return out;
+}
+
+Vector6 Instruments::turned(const Configuration& c, const measurement::Reading& r, const Matrix6& cell,
+                            const Vector3& theta) const {
+  Vector6 out = Vector6::Zero();
+  const Matrix3 turn = rotation_from_vector(theta);
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const Vector3 arm = c.pose.R_WT * points_[k]->point, force = (cell * r.at_points[k]).head<3>();
+    out.tail<3>() += (turn * arm - arm).cross(force);
+  }
+  return out;
+}
+
+LoadedMachine::LoadedMachine(const theories::Theory& theory, const theories::TheoryOptions& o, const Configuration& c,
+                             const Instruments& instruments, const Matrix6& cell)
+    : at_(c), instruments_(instruments), cell_(cell), machine_(theory.at(c, o)) {
+  if (c.tool.rigid() || !instruments.on_platform()) return;
+  if (has_friction(c.tool))
+    throw InputError(
+        fmt::format("{}: the tool joint has friction, and a sensor or a load is on the platform: say "
+                    "'body: tool', or leave the friction out",
+                    o.device));
+  rigid_tool_ = with_rigid_tool(c);
+  locked_ = theory.at(*rigid_tool_, o);
+}
+
+/// In the deformed shape loads at points move with the machine, whose motion they cause: the moments are found anew
+/// until the rotation stays. Each round leaves the share k = |r × f| / (stiffness about T) of the error, far below 1
+/// where the machine stands.
+theories::Prediction LoadedMachine::predict(theories::TheoryAt& machine, const measurement::Reading& r,
+                                            const Conditions& conditions) {
+  const Vector6 F = cell_ * r.load;
+  theories::Prediction found = machine.predict(F, conditions);
+  if (!instruments_.any_load() || conditions.geometry != Geometry::finite) return found;
+  for (int round = 0; round < 50 && found.converged; ++round) {
+    const Vector3 theta = found.displacement.tail<3>();
+    found = machine.predict(F + instruments_.turned(at_, r, cell_, theta), conditions);
+    if ((found.displacement.tail<3>() - theta).norm() <= 1e-13 + 1e-10 * theta.norm()) return found;
+  }
+  if (found.converged) found.reason = "the moments of loads that move with the machine do not settle";
+  found.converged = false;
+  return found;
+}
+
+Motion LoadedMachine::move(const measurement::Reading& r, const Conditions& conditions) {
+  theories::Prediction moved = predict(locked_ ? *locked_ : *machine_, r, conditions);
+  Motion out{moved.displacement, moved.displacement, moved.converged, std::move(moved.slips), std::move(moved.reason)};
+  if (!locked_) return out;
+  Conditions undeformed = conditions;
+  if (instruments_.any_load()) undeformed = Conditions(Geometry::linear);
+  const Vector6 F = cell_ * (r.load - r.on_platform);
+  const theories::Prediction whole = machine_->predict(F, undeformed), rigid = locked_->predict(F, undeformed);
+  out.tool += whole.displacement - rigid.displacement;
+  if (!whole.converged || !rigid.converged) out.converged = false, out.reason = whole.reason + rigid.reason;
+  return out;
+}
+
+}  // namespace deflect::prediction

@@ -1,0 +1,75 @@
+// What named sensors read, and what loads at named points do, at one pose of a machine.
+//
+// A sensor at the point P of a body that moves by d = [δ; θ] at T reads gain · n · (δ + (R(θ) − 1) r) + zero, n its
+// direction and r = P − T; to the first order gain · [n; r × n] · d. A load at P moves with the body: its moment about
+// T is (R(θ) r) × f in the deformed shape.
+//
+// Where the tool joint yields, T moves by more than the platform. The platform's motion is then that of the machine
+// with a rigid tool joint under all loads; the tool's own deflection is that under the load at T alone, where there are
+// loads on the platform on the undeformed machine.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "msa/mechanism/configuration.h"
+#include "validation/measurement/measurements.h"
+#include "validation/theories/theory.h"
+
+namespace deflect::prediction {
+
+/// Displacements at T of what is beyond the tool joint, and of the platform; m, rad.
+struct Motion {
+  Vector6 tool = Vector6::Zero(), platform = Vector6::Zero();
+  bool converged = true;
+  std::vector<double> slips = {};
+  std::string reason = {};  ///< why it did not converge, where known
+};
+
+/// The sensors and points of load that a file has columns for, in its order.
+class Instruments {
+ public:
+  /// Throws InputError where the mechanism lacks one. The mechanism must outlive this.
+  Instruments(const Mechanism&, const measurement::Measurements&);
+
+  bool any_load() const { return !points_.empty(); }
+  /// Whether a sensor or a load is on the platform, rather than beyond the tool joint.
+  bool on_platform() const;
+
+  /// First-order reading of a displacement of T by sensor k, gain included.
+  Vector6 form(const Configuration&, std::size_t k) const;
+  /// What the sensors read, in the deformed shape or to the first order.
+  VectorX readings(const Configuration&, const Motion&, Geometry) const;
+  /// By how much the wrench at T of the loads at points changes as the machine turns by θ (rotation vector).
+  Vector6 turned(const Configuration&, const measurement::Reading&, const Matrix6& cell, const Vector3& theta) const;
+
+ private:
+  std::vector<const PointSensor*> sensors_;
+  std::vector<const LoadPoint*> points_;
+};
+
+/// A machine at one pose by one theory, under the loads of readings.
+class LoadedMachine {
+ public:
+  /// `cell`: true from recorded loads. All but the theory and the cell must outlive this. Throws InputError where the
+  /// tool joint has friction and something is on the platform: its loops are not told apart.
+  LoadedMachine(const theories::Theory&, const theories::TheoryOptions&, const Configuration&, const Instruments&,
+                const Matrix6& cell);
+
+  theories::TheoryAt& theory() { return *machine_; }
+  /// Whether the same load at T has the same answer, whatever points it acts at.
+  bool by_load_at_T(Geometry g) const { return !locked_ && !(instruments_.any_load() && g == Geometry::finite); }
+  Motion move(const measurement::Reading&, const Conditions&);
+
+ private:
+  theories::Prediction predict(theories::TheoryAt&, const measurement::Reading&, const Conditions&);
+
+  const Configuration& at_;
+  const Instruments& instruments_;
+  Matrix6 cell_;
+  std::optional<Configuration> rigid_tool_;
+  std::unique_ptr<theories::TheoryAt> machine_, locked_;  // as it is; with a rigid tool joint, where that differs
+};
+
+}  // namespace deflect::prediction
