@@ -47,7 +47,7 @@ double sigma_for(const Mechanism& m) {
   const Measurements plan = campaign("random", m, force, 1);
   const Subject subject = m;
   double square = 0;
-  for (const Vector6& d : subject.stand(plan)->predict(plan, {}, alone)) square += d.head<3>().squaredNorm() / 3;
+  for (const VectorX& d : subject.stand(plan)->predict(plan, {}, alone)) square += d.head<3>().squaredNorm() / 3;
   return std::sqrt(square / static_cast<double>(plan.readings.size())) / 50;
 }
 

@@ -43,7 +43,7 @@ Measurements new_poses(const Mechanism& m, std::uint64_t seed) {
   return out;
 }
 
-VectorX translations(const std::vector<Vector6>& all) {
+VectorX translations(const std::vector<VectorX>& all) {
   VectorX out(3 * static_cast<Eigen::Index>(all.size()));
   for (std::size_t i = 0; i < all.size(); ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = all[i].head<3>();
   return out;

@@ -214,7 +214,7 @@ TEST_P(Cycloid, WhatIsNamedSitsAtTheDriveAndGivesTheLostMotion) {
   EXPECT_TRUE(rubs);
   const Subject found = PreparedEffects(m, d.missing)(d.fit.values);
   std::vector<double> measured, predicted;
-  for (const Vector6& r : found.stand(data)->predict(data, {}, alone)) predicted.push_back(r(5));
+  for (const VectorX& r : found.stand(data)->predict(data, {}, alone)) predicted.push_back(r(5));
   for (const Reading& r : data.readings) measured.push_back(*r.displacement[5]);
   const double seen = lost_motion(data, measured);
   EXPECT_NEAR(lost_motion(data, predicted), seen, 0.1 * seen);

@@ -110,6 +110,10 @@ measurement::Measurements read_data(const std::string& file, const Mechanism& m)
   return data;
 }
 
+measurement::Measurements read_plan(const std::string& file, const Mechanism& m) {
+  return measurement::place_loads(measurement::read_plan(file, measurement::instruments_of(m)), m);
+}
+
 void tell_size(const measurement::Measurements& data, double numbers_kept) {
   constexpr std::size_t large = 20'000;
   if (data.readings.size() < large) return;

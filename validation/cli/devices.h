@@ -35,6 +35,9 @@ Mechanism read_device(const std::string& name_or_path);
 /// read_measurements() with the instruments of the device and place_loads(), with a summary if verbose.
 measurement::Measurements read_data(const std::string& file, const Mechanism&);
 
+/// Poses and loads to be measured with the instruments of the device.
+measurement::Measurements read_plan(const std::string& file, const Mechanism&);
+
 /// For 20 000 readings or more, prints roughly how much memory the work needs if it keeps `numbers_kept` numbers per
 /// measured number. Only if progress is shown or the program is verbose.
 void tell_size(const measurement::Measurements&, double numbers_kept);

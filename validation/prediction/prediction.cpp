@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -141,6 +142,24 @@ void add_drift(std::vector<VectorX>& readings, const Sensor& sensor, const measu
     readings[i].head<3>() += sensor.drift * (rank[i] / static_cast<double>(readings.size()));
 }
 
+/// One pose after the other in time, or all side by side.
+void at_every_pose(const measurement::Measurements& data, bool in_time, const parallel::Work& work,
+                   const std::function<void(std::size_t)>& at_pose) {
+  const auto told = [&](std::size_t done) {
+    work.progress(static_cast<double>(done) / static_cast<double>(data.poses.size()));
+  };
+  if (in_time) {
+    std::size_t done = 0;
+    for (const std::size_t p : poses_in_sequence(data)) {
+      at_pose(p);
+      if (work.progress) told(++done);
+    }
+    return;
+  }
+  parallel::for_each_case(data.poses.size(), 1, work.threads, at_pose,
+                          work.progress ? std::function<void(std::size_t)>(told) : nullptr);
+}
+
 void require_equilibrium(const Motion& r, const theories::Theory& theory, const measurement::Measurements& data,
                          const measurement::Reading& reading) {
   if (r.converged) return;
@@ -206,18 +225,7 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
       out[i] << m.sensor.zero + sensor * seen.tool, instruments.readings(machines[p], seen, conditions.geometry);
     }
   };
-  const auto all = static_cast<double>(machines.size());
-  if (beside) {
-    double done = 0;
-    for (const std::size_t p : poses_in_sequence(data)) {
-      at_pose(p);
-      if (work.progress) work.progress(++done / all);
-    }
-  } else {
-    const auto told = [&](std::size_t done) { work.progress(static_cast<double>(done) / all); };
-    parallel::for_each_case(machines.size(), 1, work.threads, at_pose,
-                            work.progress ? std::function<void(std::size_t)>(told) : nullptr);
-  }
+  at_every_pose(data, beside, work, at_pose);
   if (!m.sensor.drift.isZero(0)) add_drift(out, m.sensor, data);
   return out;
 }

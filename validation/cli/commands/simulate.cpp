@@ -17,7 +17,6 @@
 #include "validation/cli/talk.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
-#include "validation/measurement/configure_all.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
 
@@ -108,8 +107,7 @@ prediction::SimulationOptions options_of(const SimulateArguments& a) {
 measurement::Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64_t seed) {
   const bool named = std::any_of(std::begin(prediction::campaign_names), std::end(prediction::campaign_names),
                                  [&](const char* name) { return a.campaign == name; });
-  if (!named && std::filesystem::exists(a.campaign))
-    return measurement::place_loads(measurement::read_plan(a.campaign, measurement::instruments_of(m)), m);
+  if (!named && std::filesystem::exists(a.campaign)) return read_plan(a.campaign, m);
   if (!(std::isfinite(a.force) && a.force != 0))
     throw InputError(fmt::format("--force {}: give a force in N other than zero", a.force));
   return prediction::campaign(a.campaign, m, a.force, seed);
