@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "msa/base/index.h"
+#include "validation/compare/errors_by_group.h"
 #include "validation/statistics/tail.h"
 
 namespace deflect::compare {
@@ -63,18 +64,24 @@ double chance_of(const VectorX& z, const statistics::Uncertainty::OfContrasts& o
   return statistics::chi_squared_tail(freedoms, chi2);
 }
 
-/// Contrasts of translations: one row for each component that all its readings have.
+/// Contrasts of translations, or, where only rotations were read, of these: one row for each channel that all its
+/// readings have. Channels 0 … 2 are the components at the tool point, the sensors follow.
 class Contrasts {
  public:
   Contrasts(const ResidualStudy& s, const std::vector<bool>& set_aside) : aside_(set_aside) {
-    row_.assign(s.data->readings.size(), {-1, -1, -1});
-    for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (s.values[i].channel < 3) row_[s.values[i].reading][s.values[i].channel] = as_index(i);
+    rotations_ = rotations_alone(s.values);
+    row_.assign(s.data->readings.size(), std::vector<Eigen::Index>(3 + s.data->instruments.sensors.size(), -1));
+    for (std::size_t i = 0; i < s.values.size(); ++i) {
+      const measurement::MeasuredValue& v = s.values[i];
+      if (v.rotation == rotations_) row_[v.reading][v.of_tool_point() ? v.channel % 3 : v.channel - 3] = as_index(i);
+    }
     columns_ = std::ssize(s.values);
   }
 
+  bool rotations() const { return rotations_; }
+
   void add(const Weights& w) {
-    for (std::size_t k = 0; k < 3; ++k) add(w, k, k);
+    for (std::size_t k = 0; k < row_.front().size(); ++k) add_channel(w, k);
   }
 
   /// Weights by component: rows of a matrix that differ.
@@ -116,7 +123,7 @@ class Contrasts {
   }
 
  private:
-  void add(const Weights& w, std::size_t component, std::size_t) {
+  void add_channel(const Weights& w, std::size_t component) {
     std::vector<std::pair<Eigen::Index, double>> row;
     for (const auto& [reading, weight] : w) {
       if (!usable(reading, component)) return;
@@ -126,7 +133,8 @@ class Contrasts {
   }
 
   const std::vector<bool>& aside_;
-  std::vector<std::array<Eigen::Index, 3>> row_;
+  bool rotations_ = false;
+  std::vector<std::vector<Eigen::Index>> row_;
   Eigen::Index columns_ = 0;
   std::vector<std::vector<std::pair<Eigen::Index, double>>> rows_;
 };
@@ -228,16 +236,18 @@ void add_drift(Contrasts& c, const ResidualStudy& s, const ByLoad& loads) {
   }
 }
 
-/// The antisymmetric part of C in u = C f + c0, least squares over the pose's readings under forces alone.
+/// The antisymmetric part of C in u = C f + c0, least squares over the pose's readings under forces alone; of rotations
+/// under moments alone.
 void add_reciprocity(Contrasts& c, const ResidualStudy& s, const measurement::PoseGroup& group) {
   std::vector<std::size_t> readings;
+  const Eigen::Index own = c.rotations() ? 3 : 0, others = 3 - own;
   for (const std::size_t i : group.readings)
-    if (s.data->readings[i].load.tail<3>().isZero(0) && c.usable(i, 0) && c.usable(i, 1) && c.usable(i, 2))
+    if (s.data->readings[i].load.segment<3>(others).isZero(0) && c.usable(i, 0) && c.usable(i, 1) && c.usable(i, 2))
       readings.push_back(i);
   if (readings.size() < 4) return;
   MatrixX X(std::ssize(readings), 4);
   for (std::size_t i = 0; i < readings.size(); ++i)
-    X.row(as_index(i)) << s.data->readings[readings[i]].load.head<3>().transpose(), 0;
+    X.row(as_index(i)) << s.data->readings[readings[i]].load.segment<3>(own).transpose(), 0;
   const double force = X.norm() / std::sqrt(static_cast<double>(readings.size()));
   X.col(3).setConstant(force);
   const Eigen::ColPivHouseholderQR<MatrixX> qr(X);

@@ -42,19 +42,25 @@ Errors errors_of(const Comparison& c, const std::string& group, bool rotations, 
   e.rmse = std::sqrt(squares / n);
   e.measured = std::sqrt(measured / n);
   e.bias = sum.cwiseQuotient(count.cwiseMax(1));
+  for (std::size_t k = 0; k < 3; ++k) e.measured_along[k] = count(as_index(k)) > 0;
   return e;
 }
 
-/// "fx > 0", "mz < 0" where one component is all of the load, "oblique", "no load".
-std::string direction_of(const Vector6& F) {
+/// "fx > 0", "mz < 0", "handle.fx > 0" where one component is all of the load, "oblique", "no load".
+std::string direction_of(const measurement::Reading& r, const measurement::Measurements& data) {
   constexpr const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+  const std::vector<std::string>& points = data.instruments.load_points;
+  std::vector<std::pair<std::string, Vector6>> loads = {{"", points.empty() ? r.load : r.at_tool}};
+  for (std::size_t p = 0; p < points.size(); ++p) loads.emplace_back(points[p] + ".", r.at_points[p]);
+  std::erase_if(loads, [](const auto& load) { return load.second.isZero(0); });
+  if (loads.empty()) return "no load";
+  const auto& [where, F] = loads.front();
   Eigen::Index largest = 0;
   Vector6 weighed = F;
   weighed.tail<3>() *= 10;  // moments against forces on 100 mm
   weighed.cwiseAbs().maxCoeff(&largest);
-  if (weighed(largest) == 0) return "no load";
-  if (weighed.norm() > 1.001 * std::abs(weighed(largest))) return "oblique";
-  return fmt::format("{} {} 0", names[largest], F(largest) > 0 ? ">" : "<");
+  if (loads.size() > 1 || weighed.norm() > 1.001 * std::abs(weighed(largest))) return "oblique";
+  return fmt::format("{}{} {} 0", where, names[largest], F(largest) > 0 ? ">" : "<");
 }
 
 }  // namespace
@@ -113,7 +119,7 @@ void add_errors(Comparison& c) {
   std::map<std::string, std::vector<std::size_t>> directions;
   std::vector<std::vector<std::size_t>*> direction;
   for (const measurement::Reading& r : data.readings) {
-    direction.push_back(&directions[direction_of(r.load)]);
+    direction.push_back(&directions[direction_of(r, data)]);
     most = std::max(most, r.load.head<3>().norm());
   }
   for (const std::size_t i : all) direction[c.study.values[i].reading]->push_back(i);

@@ -1,6 +1,7 @@
 // The size of residuals, overall and by group.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,10 @@ struct Errors {
   std::size_t readings = 0;
   double rmse = 0;  ///< root mean square over all components of all readings
   Vector3 bias = Vector3::Zero();
-  double worst = 0;            ///< largest |component|
-  std::size_t worst_line = 0;  ///< of the file
-  double measured = 0;         ///< root mean square of the measured components
+  std::array<bool, 3> measured_along{};  ///< x, y, z: whether the bias there is of any number of the tool point
+  double worst = 0;                      ///< largest |component|
+  std::size_t worst_line = 0;            ///< of the file
+  double measured = 0;                   ///< root mean square of the measured components
 };
 
 struct Comparison;

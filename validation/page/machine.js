@@ -183,7 +183,8 @@ export function machine(scene3d, measurements, guilt) {
   const worst = version ? [...version.poses].sort((a, b) => b.rmse - a.rmse)[0].label : null;
   const state = {pose: Math.max(0, poses.findIndex((p) => p.label === worst)), shape: 0, scale: poses[0].shapes.length ? scaleOf(0) : 1, arrows: true};
   const {root, materials, rods, knots, tip, ghost} = built(scene3d, size);
-  const residuals = version ? residualArrows(scene3d, version, size) : null;
+  const atTool = version && version.readings.some((r) => r.residual.slice(0, 3).some((x) => x !== null));
+  const residuals = atTool ? residualArrows(scene3d, version, size) : null;
   const ground = groundUnder(scene3d.ground, scene3d.kind === 'machine', box.getCenter(new THREE.Vector3()), size, standpoint(box).up);
   const moving = new THREE.Group(), corner = box.min.clone().addScalar(-0.02 * size);
   root.add(ground.group, moving, triad(corner, 0.1 * size));

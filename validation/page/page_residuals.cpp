@@ -30,6 +30,8 @@ VectorX with_nothing_missing(const compare::Comparison& c, std::uint64_t seed) {
   measurement::Random random(seed);
   VectorX eta(c.tolerances.A.cols());
   for (double& each : eta) each = random.normal();
+  for (std::size_t k = 0; k < c.tolerances.nuisances.size(); ++k)
+    if (c.tolerances.nuisances[k].zero) eta(as_index(k)) = 0;  // the residual is free of it
   VectorX r = c.tolerances.A * eta;
   double load = 0;
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {

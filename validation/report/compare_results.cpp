@@ -46,11 +46,13 @@ std::string findings_text(const compare::Comparison& c) {
 }
 
 void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<compare::Errors>& groups) {
-  for (const compare::Errors& e : groups)
-    rows.push_back({"  " + e.group, std::to_string(e.readings), fmt::format("{:.2f}", um * e.rmse),
-                    fmt::format("{:.2f}", um * e.bias.x()), fmt::format("{:.2f}", um * e.bias.y()),
-                    fmt::format("{:.2f}", um * e.bias.z()), fmt::format("{:.2f}", um * e.worst),
-                    std::to_string(e.worst_line)});
+  for (const compare::Errors& e : groups) {
+    rows.push_back({"  " + e.group, std::to_string(e.readings), fmt::format("{:.2f}", um * e.rmse)});
+    for (std::size_t k = 0; k < 3; ++k)
+      rows.back().push_back(e.measured_along[k] ? fmt::format("{:.2f}", um * e.bias(as_index(k))) : "–");
+    rows.back().push_back(fmt::format("{:.2f}", um * e.worst));
+    rows.back().push_back(std::to_string(e.worst_line));
+  }
 }
 
 /// Of more poses than a person reads, the worst in descending order.
