@@ -185,7 +185,10 @@ class Balance {
         }
       }
       p = o + 2 * imposed_.c.cwiseProduct(s);
+      // Where all other laws are linear, S is right but for rounding, of which small offsets would give it far more.
+      const bool told_by_S = lacking < 1e-3 * std::min(before, 1.0);
       before = lacking;
+      if (told_by_S) continue;
       own_ = imposed_;
       linearise(o, at, 1e-7);
     }

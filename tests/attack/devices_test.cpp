@@ -90,6 +90,18 @@ TEST(NonlinearDevices, LawsThatCarryNothingAreSolved) {
   }
 }
 
+// Forces of a stiff spring that stands in for a law, far larger than any in the device, left their rounding in the
+// MSA's equilibrium; in closed form small offsets told of the linear rest what rounding told, though large ones had
+// told it.
+TEST(NonlinearDevices, OfGroupsWithStiffLawsKeepTheirDigits) {
+  for (const unsigned seed : {697u, 3502u}) {
+    const RandomDevice random = with_nonlinear_laws(random_device(seed));
+    const DeviceJudgement j = judge_apart(random, judge_agreement);
+    EXPECT_EQ(j.outcome, Outcome::answered) << reproduction(random, j);
+    EXPECT_LE(j.between, 1e-9) << reproduction(random, j);
+  }
+}
+
 TEST(NonlinearDevicesOnDemand, AreAnsweredAlikeByBothTheoriesOrRefusedWithTheCause) {
   if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of devices";
   const Table table = judged_nonlinear(0, count_on_demand(), 1);

@@ -28,6 +28,16 @@ TEST_P(RandomFrames, AreAnsweredRightOrRefusedRightly) {
 
 INSTANTIATE_TEST_SUITE_P(Shard, RandomFrames, ::testing::Range(0u, shards));
 
+// The force of a member that spins idly within a rigid body; a rounded axis between two nodes of one body, which passed
+// for a support; loads on clamped nodes, whose work on rounding was compared with itself.
+TEST(RandomFrames, ThatWereOnceAnsweredWronglyOrRefusedWrongly) {
+  for (const unsigned seed : {5995u, 24333u, 24730u, 30537u, 34229u}) {
+    const RandomFrame random = random_frame(seed);
+    const Judgement j = judge(random);
+    EXPECT_FALSE(is_wrong(j.outcome)) << reproduction(random, j);
+  }
+}
+
 TEST(RandomFramesOnDemand, AreAnsweredRightOrRefusedRightly) {
   if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of frames";
   const Table table = judged(0, count_on_demand(), 1);

@@ -37,6 +37,7 @@ struct Beam {
   /// nodes' displacements are accurate enough (relative.h).
   int relative = -1;
   double expansion = 0;  ///< 1/K; not used by the beam itself
+  int defined_by = -1;   ///< the first of the six constraints that define that motion
 };
 
 /// Stiffness in local axes on [u_a; θ_a; u_b; θ_b]. Timoshenko: Φ = 12EI/(GAs L²); Φ = 0 is Euler–Bernoulli

@@ -123,11 +123,24 @@ void check(CaseResult& r, const FrameModel& m, const Elimination& e, const Work&
                                                     std::abs(work.heat) + cancelling * work.gross.energy);
 }
 
-double reciprocity(const std::vector<CaseResult>& cases, const std::vector<Work>& work) {
+/// What loads would do on the largest displacements: where a load stands on supports, rounding is all that it works on.
+double largest_work(const FrameModel& m, const VectorX& forces, const VectorX& u) {
+  Eigen::Vector2d force = Eigen::Vector2d::Zero(), motion = force;  // translations, rotations
+  for (Eigen::Index i = 0; i < std::min(as_index(6 * m.model.nodes.size()), forces.size()); ++i) {
+    const Eigen::Index kind = i % 6 < 3 ? 0 : 1;
+    force(kind) = std::max(force(kind), std::abs(forces(i)));
+    motion(kind) = std::max(motion(kind), std::abs(u(i)));
+  }
+  return force.dot(motion);
+}
+
+double reciprocity(const FrameModel& m, const std::vector<CaseResult>& cases, const std::vector<Work>& work) {
   double worst = 0;
   for (std::size_t i = 0; i < cases.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       double difference = 0, sum = cancelling * std::sqrt(work[i].gross.energy * work[j].gross.energy);
+      sum += cancelling *
+             (largest_work(m, work[i].load.forces, cases[j].u) + largest_work(m, work[j].load.forces, cases[i].u));
       const auto add = [&](const VectorX& a, const VectorX& b, double sign) {
         const auto n = std::min(a.size(), b.size());
         difference += sign * a.head(n).dot(b.head(n));
@@ -179,7 +192,7 @@ void analyse_linear(const FrameDescription& f, const EquationOptions& options, F
     r.loads = work[c].load.elements;
     out.cases.push_back(std::move(r));
   }
-  out.reciprocity = reciprocity(out.cases, work);
+  out.reciprocity = reciprocity(m, out.cases, work);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "msa/frame/structure/extended_structure.h"
 #include "msa/base/index.h"
 
+#include <algorithm>
+#include <array>
 #include <map>
 
 namespace deflect::frame {
@@ -48,6 +50,93 @@ std::vector<std::vector<std::pair<int, Extended>>> extended(const std::vector<Li
   return out;
 }
 
+using Extended3 = Eigen::Matrix<Extended, 3, 1>;
+
+Extended3 position(const Model& m, int node) { return nth(m.nodes, node).position.cast<Extended>(); }
+
+/// Along the beams of these axes that follow each other from the node on, to the end of the last; zero if there is
+/// none.
+Extended3 line_from(const Model& m, int node, const Matrix3& R) {
+  int here = node;
+  const Beam* last = nullptr;
+  for (const Beam* beam = nullptr;; last = beam) {
+    beam = nullptr;
+    for (const Beam& b : m.beams)
+      if ((b.a == here || b.b == here) && &b != last && b.R_WM == R) beam = &b;
+    if (!beam) return position(m, here) - position(m, node);
+    here = beam->a == here ? beam->b : beam->a;
+  }
+}
+
+/// Axes of a connection. Those of a member are set right about the line between its ends: it may spin about that by any
+/// angle and strain nothing.
+std::array<Extended3, 3> exact_axes(const Model& m, const Connection& c, std::size_t half) {
+  const Matrix3& R = c.axes[half];
+  std::array<Extended3, 3> out{R.col(0).cast<Extended>(), R.col(1).cast<Extended>(), R.col(2).cast<Extended>()};
+  const Extended3 line = line_from(m, c.b, R);
+  const Extended squared = line.dot(line);
+  if (squared == 0) return out;
+  for (Extended3* across : {&out[1], &out[2]}) *across -= line * (line.dot(*across) / squared);
+  out[0] = line * (line.dot(out[0]) / squared);
+  return out;
+}
+
+using ExtendedForm = std::vector<std::pair<int, Extended>>;
+
+void set(ExtendedForm& form, int dof, const Extended& value) {
+  const auto at = std::find_if(form.begin(), form.end(), [&](const auto& term) { return term.first == dof; });
+  if (at != form.end())
+    at->second = value;
+  else if (value != 0)
+    form.emplace_back(dof, value);
+}
+
+/// The part of a node in the motion of two bodies at p beside each other, times factor.
+void set_part(ExtendedForm& form, const Model& m, int node, const Extended3& p, const Extended3& axis, bool rotation,
+              int factor) {
+  const Extended3 arm = p - position(m, node), turning = arm.cross(axis);
+  for (int i = 0; i < 3; ++i) {
+    set(form, 6 * node + (rotation ? 3 : 0) + i, factor * axis(i));
+    if (!rotation) set(form, 6 * node + 3 + i, factor * turning(i));
+  }
+}
+
+/// Constraints and springs' elongations with what doubles round in them: arms, which are differences of positions and
+/// add up round a rigid body, and axes of members.
+struct ExactForms {
+  std::vector<ExtendedForm> constraints, elongations;
+
+  explicit ExactForms(const Model& m) {
+    std::vector<LinearForm> forms;
+    for (const Constraint& c : m.constraints) forms.push_back(c.form);
+    constraints = extended(forms);
+    forms.clear();
+    for (const Spring& s : m.springs) forms.push_back(s.elongation);
+    elongations = extended(forms);
+    for (const Connection& c : m.connections)
+      if (c.a >= 0) set_connection(m, c);
+    for (const Beam& beam : m.beams)
+      for (int i = 0; beam.relative >= 0 && i < 3; ++i) {
+        const Extended3 axis = Vector3(Vector3::Unit(i)).cast<Extended>();
+        set_part(nth(constraints, beam.defined_by + i), m, beam.a, position(m, beam.b), axis, false, -1);
+      }
+  }
+
+ private:
+  void set_connection(const Model& m, const Connection& c) {
+    const std::array<std::array<Extended3, 3>, 2> axes{exact_axes(m, c, 0), exact_axes(m, c, 1)};
+    for (int i = 0; i < 6; ++i) {
+      const int spring = nth(c.spring, i);
+      const int constraint = spring < 0 ? nth(c.constraint, i) : nth(m.springs, spring).defined_by;
+      if (constraint < 0 && spring < 0) continue;
+      ExtendedForm& form = constraint >= 0 ? nth(constraints, constraint) : nth(elongations, spring);
+      const Extended3 p = c.p.cast<Extended>(), &axis = nth(nth(axes, i / 3), i % 3);
+      set_part(form, m, c.b, p, axis, i >= 3, 1);
+      set_part(form, m, c.a, p, axis, i >= 3, -1);
+    }
+  }
+};
+
 /// What forms of the freedoms are over others, of which the freedoms are the forms `by`.
 std::vector<std::pair<int, Extended>> through(const std::vector<std::pair<int, Extended>>& form,
                                               const std::vector<std::vector<std::pair<int, Extended>>>& by) {
@@ -67,28 +156,24 @@ Extended at(const std::vector<std::pair<int, Extended>>& form, const ExtendedVec
 
 ExtendedStructure::ExtendedStructure(const Model& m, const Elimination& e, const VectorX& tangents)
     : T_(extended(e.T)), G_(extended(e.G)), L_(ExtendedMatrix::Zero(e.independent, e.independent)) {
-  for (int pass = 0; pass < 2; ++pass) eliminate_again(m, e);
+  const ExactForms exact(m);
+  for (int pass = 0; pass < 2; ++pass) eliminate_again(exact.constraints, e);
   for (const Beam& beam : m.beams)
     add({strains_of(beam), {}, local_stiffness(beam.rigidity, beam.length).bottomRightCorner<6, 6>()});
-  for (std::size_t s = 0; s < m.springs.size(); ++s) {
-    Form form;
-    for (const Term& t : m.springs[s].elongation) form.emplace_back(t.dof, t.coefficient);
-    add({{form}, {}, MatrixX::Constant(1, 1, tangents(as_index(s)))});
-  }
+  for (std::size_t s = 0; s < m.springs.size(); ++s)
+    add({{exact.elongations[s]}, {}, MatrixX::Constant(1, 1, tangents(as_index(s)))});
   factor();
 }
 
 /// A step of Newton's method for T and G, whose rounding a nearly singular system of constraints has amplified: with
 /// constraints C u = b and u = T q + G b, what C T leaves is taken off by G.
-void ExtendedStructure::eliminate_again(const Model& m, const Elimination& e) {
+void ExtendedStructure::eliminate_again(const std::vector<Form>& constraints, const Elimination& e) {
   std::vector<Form> left_of_T, left_of_G;
-  for (std::size_t k = 0; k < m.constraints.size(); ++k) {
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
     left_of_T.emplace_back(), left_of_G.emplace_back();
     if (e.pivot[k] < 0) continue;  // redundant
-    Form form;
-    for (const Term& t : m.constraints[k].form) form.emplace_back(t.dof, t.coefficient);
-    left_of_T[k] = through(form, T_);
-    left_of_G[k] = through(form, G_);
+    left_of_T[k] = through(constraints[k], T_);
+    left_of_G[k] = through(constraints[k], G_);
     left_of_G[k].emplace_back(static_cast<int>(k), -1);
   }
   const auto take = [](Form& from, const Form& more) {

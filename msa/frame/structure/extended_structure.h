@@ -29,7 +29,7 @@ class ExtendedStructure {
     std::vector<Form> of_u, of_q;  // each strain over the structure's freedoms and over q
     MatrixX k;
   };
-  void eliminate_again(const Model&, const Elimination&);
+  void eliminate_again(const std::vector<Form>& constraints, const Elimination&);
   ExtendedVector expand(const ExtendedVector& q, const VectorX& values) const;
   void add(Part);
   void factor();

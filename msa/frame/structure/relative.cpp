@@ -22,8 +22,11 @@ double softest(const Model& m) {
   return least;
 }
 
+int next_constraint(const Model& m) { return static_cast<int>(m.constraints.size()); }
+
 void make_relative(Model& m, Beam& beam) {
   beam.relative = m.dofs();
+  beam.defined_by = next_constraint(m);
   for (int i = 0; i < 6; ++i) m.scalars.push_back(fmt::format("deformation {} of {}", i + 1, beam.name));
   const Vector3 arm = nth(m.nodes, beam.b).position;
   for (int i = 0; i < 6; ++i) {
@@ -45,9 +48,9 @@ void make_relative(Model& m, Spring& spring) {
   });
   const int eliminates = most->dof;
   form.push_back({elongation, -1});
+  spring.defined_by = next_constraint(m);
   m.constraints.push_back({std::move(form), 0, spring.name, eliminates});
   spring.elongation = {{elongation, 1}};
-  spring.defined_by = static_cast<int>(m.constraints.size()) - 1;
 }
 
 bool is_stiff(const Beam& beam, double limit) {

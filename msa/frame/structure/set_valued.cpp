@@ -19,7 +19,8 @@
 namespace deflect::frame {
 namespace {
 
-constexpr double no_force = 1e-11;  // of the load
+constexpr double no_force = 1e-11;        // of the load
+constexpr double out_of_balance = 1e-11;  // of the forces: what is worth a correction
 
 /// The largest entry of a load, N: moments count by `length`.
 double driving_force(const Model& m, const VectorX& load, double length) {
@@ -155,6 +156,21 @@ ExtendedVector Solver::refined(const std::vector<ScalarLaw>& laws, SetValuedSolu
   return best;
 }
 
+/// The offsets of refined(), and u with them. A⁻¹E is known to the rounding of doubles. Where offsets are large, so
+/// that k o is far more than any force, that leaves some of the load: A⁻¹ of what is left belongs to u0.
+ExtendedVector Solver::balanced(const std::vector<ScalarLaw>& laws, SetValuedSolution& found,
+                                const LinearRelation& relation, ExtendedVector u0, const VectorX& load) {
+  const Condensed& c = condensed();
+  for (int pass = 0;; ++pass) {
+    const ExtendedVector offsets = refined(laws, found, relation, u0);
+    ExtendedVector u = u0 + c.u * c.k.cast<Extended>().cwiseProduct(offsets);
+    const VectorX pulls = spring_pulls(model_->springs, u, c.springs, found.s);
+    if (pass == 2 || relative_residual(*model_, *elimination_, load, u, pulls, found.s) < out_of_balance) return u;
+    const VectorX missing = load - forces_with(*model_, u, pulls);
+    u0 += refined(c.tangents, missing, VectorX::Zero(std::ssize(model_->constraints)));
+  }
+}
+
 Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, const std::vector<int>& watched) {
   const Condensed& c = condensed();
   const std::vector<Spring>& springs = model_->springs;
@@ -189,13 +205,12 @@ Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, con
     s.message = reason(found);
     return s;
   }
-  const ExtendedVector offsets = refined(laws, found, relation, u);
+  u = balanced(laws, found, relation, u, load);
   // A law at its kink has forces whose signs are rounding: it takes the stiffness of a pull, as in the closed form.
   for (Eigen::Index i = 0; i < n; ++i) {
     const double rest = -springs[nth(c.springs, i)].law.preload;
     if (std::abs(found.s(i) - rest) <= no_force * relation.size(i)) found.s(i) = rest;
   }
-  u += c.u * c.k.cast<Extended>().cwiseProduct(offsets);
   const VectorX pulls = spring_pulls(springs, u, c.springs, found.s);
   s.residual = relative_residual(*model_, *elimination_, load, u, pulls, found.s);
   s.converged = std::isfinite(s.residual) && s.residual < 1e-7;

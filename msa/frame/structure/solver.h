@@ -119,6 +119,8 @@ class Solver {
   Solution solve_condensed(const VectorX& load, const VectorX& values, const std::vector<int>& watched);
   ExtendedVector refined(const std::vector<ScalarLaw>&, SetValuedSolution&, const LinearRelation&,
                          const ExtendedVector& u0);
+  ExtendedVector balanced(const std::vector<ScalarLaw>&, SetValuedSolution&, const LinearRelation&, ExtendedVector u0,
+                          const VectorX& load);
   std::string reason(const SetValuedSolution&) const;
   void factor(const VectorX& spring_tangents);
   VectorX starting_tangents(double force) const;
