@@ -1,7 +1,7 @@
 // A machine or a frame under load in 3D: where it stands, the shape that a load gives it, the load, the ground, the
 // residuals at the tool, the guilty part.
 import * as THREE from 'three';
-import {groundUnder, lit, loadArrow, piece, put, shapes as bodies3d, triad, triadPoints, vector} from './bodies.js';
+import {groundUnder, label, lit, loadArrow, piece, put, shapes as bodies3d, triad, triadPoints, vector} from './bodies.js';
 import {el, micro, num, tooltip} from './dom.js';
 import {round125, stage, standpoint, view} from './stage.js';
 import {onTheme, theme} from './theme.js';
@@ -27,6 +27,7 @@ function measured(scene3d) {
   const arrow = 0.16 * size, points = [];
   for (const pose of poses) {
     for (const p of pose.points_mm) points.push(vector(p));
+    for (const {arm_mm: arm} of pose.instruments || []) points.push(vector(pose.points_mm[tool]).add(vector(arm)));
     pose.shapes.forEach((shape, i) => {
       shape.displacement_mm.forEach((u, k) => points.push(vector(pose.points_mm[k]).addScaledVector(vector(u), scaleOf(i))));
       for (const a of shape.arrows) {
@@ -75,6 +76,17 @@ function built(scene3d, size) {
   ghost.frustumCulled = false;
   root.add(ghost);
   return {root, materials, rods, knots, tip, ghost};
+}
+
+/** Named sensors, as pointers that touch what they read, and points of load, each with its arm from the tool point. */
+function instrumentsOf(pose, tip, size, material, thin) {
+  return (pose.instruments || []).flatMap(({name, kind, arm_mm: arm, axis}) => {
+    const at = tip.clone().add(vector(arm)), line = new THREE.Line(new THREE.BufferGeometry().setFromPoints([tip, at]), thin);
+    if (axis) return [line, loadArrow(at, {vector: axis, kind: kind === 'sensor' ? 'line' : 'moment', words: name}, 0.08 * size, material, true, 0.028 * size)];
+    const ball = new THREE.Mesh(bodies3d.ball, material), words = label(name, 0.028 * size, [-0.2, 0.5]);
+    ball.position.copy(at), ball.scale.setScalar(0.006 * size), words.position.copy(at);
+    return [line, ball, words];
+  });
 }
 
 /** Measured − predicted at the tool: an arrow for each reading, on one scale. */
@@ -214,6 +226,7 @@ export function machine(scene3d, measurements, guilt) {
     ghost.geometry.dispose();
     ghost.geometry = new THREE.BufferGeometry().setFromPoints(cells.flatMap(([a, b]) => [rest[a], rest[b]]));
     moving.remove(...moving.children);
+    if (tip) moving.add(...instrumentsOf(pose, bent[tool], size, materials.blue, ghost.material));
     moving.add(...loadsOf(scene3d, shape, bent, arrow, size, materials.text), ...(residuals && state.arrows ? residuals.draw(pose) : []));
     scaleWords.textContent = shape ? '× ' + num(state.scale, 3) : '';
     factor.textContent = shape ? `deflection × ${num(state.scale, 3)}` : '';
@@ -224,5 +237,5 @@ export function machine(scene3d, measurements, guilt) {
   onTheme(update);
   explain(shot, looking, [...rods, ...knots, ...(tip ? [tip] : []), ...ground.meshes], () => poses[state.pose].shapes[state.shape]);
   update();
-  return el('div', {}, holder, legend, controlsOf(scene3d, state, scaleWords, scaleOf, Boolean(version), update), readout);
+  return el('div', {}, holder, legend, controlsOf(scene3d, state, scaleWords, scaleOf, Boolean(residuals), update), readout);
 }

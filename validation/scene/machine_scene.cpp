@@ -168,6 +168,20 @@ class Drawing {
   Json bodies_ = Json::array(), cells_ = Json::array(), joints_ = Json::array();
 };
 
+/// Named sensors and points of load: where they are beside T, and along which axis a sensor reads.
+Json instruments_json(const Mechanism& m, const Configuration& c) {
+  Json out = Json::array();
+  const auto add = [&](const std::string& name, const char* kind, const Vector3& point) -> Json& {
+    out.push_back({{"name", name}, {"kind", kind}, {"arm_mm", scene_position(c.pose.R_WT * point)}});
+    return out.back();
+  };
+  for (const auto& [name, sensor] : m.sensors)
+    add(name, sensor.rotation ? "rotation sensor" : "sensor", sensor.point)["axis"] = {sensor.axis.x(), sensor.axis.y(),
+                                                                                       sensor.axis.z()};
+  for (const auto& [name, load] : m.loads) add(name, "point of load", load.point);
+  return out;
+}
+
 }  // namespace
 
 Json scene_json(const Mechanism& m, const std::vector<SceneStand>& stands, const std::vector<Vector6>& loads,
@@ -181,6 +195,7 @@ Json scene_json(const Mechanism& m, const std::vector<SceneStand>& stands, const
     if (scene.is_null()) scene = Drawing(m, stand.configuration, msa.mechanism(), guilty).json();
     Json pose = {{"label", stand.label}, {"pose_mm_deg", json::json_numbers(stand.pose_mm_deg, "pose")}};
     for (const frame::Node& node : nodes) pose["points_mm"].push_back(scene_position(node.position));
+    pose["instruments"] = instruments_json(m, stand.configuration);
     pose["axes"] = SectionAxes(stand.configuration.legs).json(scene["bodies"].size());
     pose["shapes"] = Json::array();
     for (const Vector6& load : loads) {
