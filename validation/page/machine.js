@@ -226,8 +226,7 @@ export function machine(scene3d, measurements, guilt) {
     ghost.geometry.dispose();
     ghost.geometry = new THREE.BufferGeometry().setFromPoints(cells.flatMap(([a, b]) => [rest[a], rest[b]]));
     moving.remove(...moving.children);
-    if (tip) moving.add(...instrumentsOf(pose, bent[tool], size, materials.blue, ghost.material));
-    moving.add(...loadsOf(scene3d, shape, bent, arrow, size, materials.text), ...(residuals && state.arrows ? residuals.draw(pose) : []));
+    moving.add(...loadsOf(scene3d, shape, bent, arrow, size, materials.text), ...(tip ? instrumentsOf(pose, bent[tool], size, materials.blue, ghost.material) : []), ...(residuals && state.arrows ? residuals.draw(pose) : []));
     scaleWords.textContent = shape ? '× ' + num(state.scale, 3) : '';
     factor.textContent = shape ? `deflection × ${num(state.scale, 3)}` : '';
     readout.textContent = describe(scene3d, state);

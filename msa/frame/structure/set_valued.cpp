@@ -157,18 +157,28 @@ ExtendedVector Solver::refined(const std::vector<ScalarLaw>& laws, SetValuedSolu
 }
 
 /// The offsets of refined(), and u with them. A⁻¹E is known to the rounding of doubles. Where offsets are large, so
-/// that k o is far more than any force, that leaves some of the load: A⁻¹ of what is left belongs to u0.
+/// that k o is far more than any force, that leaves some of the load: A⁻¹ of what is left belongs to u0, as far as it
+/// brings the forces nearer to balance.
 ExtendedVector Solver::balanced(const std::vector<ScalarLaw>& laws, SetValuedSolution& found,
                                 const LinearRelation& relation, ExtendedVector u0, const VectorX& load) {
   const Condensed& c = condensed();
-  for (int pass = 0;; ++pass) {
+  const VectorX still = VectorX::Zero(std::ssize(model_->constraints));
+  ExtendedVector best;
+  SetValuedSolution of_best = found;
+  double least = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < 3; ++pass) {
     const ExtendedVector offsets = refined(laws, found, relation, u0);
-    ExtendedVector u = u0 + c.u * c.k.cast<Extended>().cwiseProduct(offsets);
+    const ExtendedVector u = u0 + c.u * c.k.cast<Extended>().cwiseProduct(offsets);
     const VectorX pulls = spring_pulls(model_->springs, u, c.springs, found.s);
-    if (pass == 2 || relative_residual(*model_, *elimination_, load, u, pulls, found.s) < out_of_balance) return u;
-    const VectorX missing = load - forces_with(*model_, u, pulls);
-    u0 += refined(c.tangents, missing, VectorX::Zero(std::ssize(model_->constraints)));
+    const double left = relative_residual(*model_, *elimination_, load, u, pulls, found.s);
+    if (pass > 0 && !(left < 0.5 * least)) break;
+    best = u, of_best = found, least = left;
+    if (left < out_of_balance || !factored_) break;
+    const VectorX missing = elimination_->reduce(load - forces_with(*model_, u, pulls));
+    u0 += elimination_->expand(cholesky_->solve(missing), still).cast<Extended>();
   }
+  found = std::move(of_best);
+  return best;
 }
 
 Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, const std::vector<int>& watched) {
