@@ -9,6 +9,7 @@
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
@@ -158,12 +159,12 @@ std::vector<double> parse_list(const std::string& option, const std::string& tex
   std::vector<double> values;
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t to = std::min(text.find(',', from), text.size());
-    try {
-      values.push_back(parse_number(std::string_view(text).substr(from, to - from)));
-    } catch (const InputError& e) {
+    const auto number =
+        outcome_of<InputError>([&] { return parse_number(std::string_view(text).substr(from, to - from)); });
+    if (!number)
       throw InputError(
-          fmt::format("{} '{}': number {}: {}; write {}", option, text, values.size() + 1, e.what(), wanted));
-    }
+          fmt::format("{} '{}': number {}: {}; write {}", option, text, values.size() + 1, number.why, wanted));
+    values.push_back(*number);
     from = to + 1;
   }
   if (std::find(counts.begin(), counts.end(), values.size()) == counts.end())
@@ -198,15 +199,16 @@ VectorX parse_joints(const Mechanism& m, const std::string& text) {
     throw InputError(fmt::format("--joints '{}': {} coordinate{}; write {}: {}", text, items.size(),
                                  items.size() == 1 ? "" : "s", actuators.size(), fmt::join(names, ", ")));
   VectorX q(std::ssize(items));
-  for (std::size_t i = 0; i < items.size(); ++i) try {
-      const bool unit = items[i].find_first_of("dmr") != std::string::npos;
-      const double value = unit ? parse_quantity(items[i], actuators[i].rotation ? Dimension::angle : Dimension::length)
-                                : parse_number(items[i]) / (actuators[i].rotation ? 1 : 1e3);
-      if (actuators[i].rotation) require_digits_of_angle(value, items[i]);
-      q(as_index(i)) = value;
-    } catch (const InputError& e) {
-      throw InputError(fmt::format("--joints '{}': {}: {}", text, names[i], e.what()));
-    }
+  for (std::size_t i = 0; i < items.size(); ++i)
+    q(as_index(i)) = told_at<InputError>(
+        [&] { return fmt::format("--joints '{}': {}: ", text, names[i]); },
+        [&] {
+          const bool rotation = actuators[i].rotation, unit = items[i].find_first_of("dmr") != std::string::npos;
+          const double value = unit ? parse_quantity(items[i], rotation ? Dimension::angle : Dimension::length)
+                                    : parse_number(items[i]) / (rotation ? 1 : 1e3);
+          if (rotation) require_digits_of_angle(value, items[i]);
+          return value;
+        });
   return q;
 }
 
@@ -218,10 +220,9 @@ Geometry parse_geometry(const std::string& text) {
   throw InputError(fmt::format("--geometry '{}': write {}", text, fmt::join(geometry_names, ", ")));
 }
 
-theories::Theories parse_theories(const std::string& list) try {
-  return theories::theories_named(list);
-} catch (const InputError& e) {
-  throw InputError(fmt::format("--theories {}: {}", list, e.what()));
+theories::Theories parse_theories(const std::string& list) {
+  return told_at<InputError>([&] { return fmt::format("--theories {}: ", list); },
+                             [&] { return theories::theories_named(list); });
 }
 
 Option theories_option(std::string* list) {
@@ -239,11 +240,9 @@ Stand parse_stand(const Mechanism& m, const std::string& pose, const std::string
         "give either --pose x,y,z,roll,pitch,yaw (mm, deg) or --joints q1,...,qn (slides in mm, turns in rad)");
   if (!pose.empty()) {
     const Vector6 mm_deg = parse_six("--pose", pose, {3, 6}, "x,y,z in mm, or x,y,z,roll,pitch,yaw in mm and deg");
-    for (const double deg : mm_deg.tail<3>()) try {
-        require_digits_of_angle(deg * pi / 180, fmt::format("{:g} deg", deg));
-      } catch (const InputError& e) {
-        throw InputError(fmt::format("--pose '{}': {}", pose, e.what()));
-      }
+    for (const double deg : mm_deg.tail<3>())
+      told_at<InputError>([&] { return fmt::format("--pose '{}': ", pose); },
+                          [&] { require_digits_of_angle(deg * pi / 180, fmt::format("{:g} deg", deg)); });
     return stand(m, mm_deg);
   }
   Configuration c = configure_joints(m, parse_joints(m, joints));
@@ -262,12 +261,8 @@ Vector6 parse_load(const std::string& load) {
 }
 
 double parse_length(const std::string& option, const std::string& text) {
-  double length = 0;
-  try {
-    length = parse_quantity(text, Dimension::length);
-  } catch (const InputError& e) {
-    throw InputError(fmt::format("{}: {}", option, e.what()));
-  }
+  const double length =
+      told_at<InputError>([&] { return option + ": "; }, [&] { return parse_quantity(text, Dimension::length); });
   if (!(length > 0)) throw InputError(fmt::format("{}: '{}' must be greater than zero", option, text));
   return length;
 }

@@ -8,6 +8,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/stand.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/talk.h"
@@ -27,12 +28,9 @@ constexpr std::size_t most_stands = 40;
 
 /// What was typed, one space between words, words with others than plain letters in quotes.
 std::string command_line() {
-  std::string raw, out;
-  try {
-    raw = read_text("/proc/self/cmdline");
-  } catch (const InputError&) {
-    return "";
-  }
+  std::string out;
+  const std::string raw = outcome_of<InputError>([] { return read_text("/proc/self/cmdline"); }).value.value_or("");
+  if (raw.empty()) return "";
   for (std::size_t from = 0; from < raw.size();) {
     const std::size_t to = std::min(raw.find('\0', from), raw.size());
     std::string word = raw.substr(from, to - from);
@@ -140,16 +138,19 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
                                const compare::ComparisonOptions& options, int threads,
                                std::vector<page::PageResult> results) {
   std::vector<Mechanism> devices = {m};
-  for (const page::PageResult& result : results) try {
+  for (const page::PageResult& result : results) {
+    const auto added = outcome_of<InputError>([&] {
       for (const effects::EffectInstance& e : found_in(result, m.name, effects)) {
         devices.push_back(effects::with_effect(devices.back(), e));
         devices.back().name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + effects::site_of(e) + ")" : "");
       }
-    } catch (const InputError& e) {
-      if (std::string_view(e.what()).starts_with(result.origin)) throw;
-      throw InputError(fmt::format("{}: its effects do not fit {}: is it a diagnosis of another device? {}",
-                                   result.origin, m.name, e.what()));
-    }
+      return true;
+    });
+    if (added) continue;
+    if (added.why.starts_with(result.origin)) throw InputError(added.why);
+    throw InputError(fmt::format("{}: its effects do not fit {}: is it a diagnosis of another device? {}",
+                                 result.origin, m.name, added.why));
+  }
   std::vector<compare::Comparison> versions;
   for (const Mechanism& each : devices)
     versions.push_back(

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/configuration.h"
@@ -41,11 +42,9 @@ std::vector<std::pair<std::string, double>> parse_values(const std::vector<std::
     const std::string name = text.substr(0, equals);
     for (const auto& [other, value] : out)
       if (other == name) throw InputError(fmt::format("--set '{}': '{}' is set twice", text, name));
-    try {
-      out.emplace_back(name, parse_number(std::string_view(text).substr(equals + 1)));
-    } catch (const InputError& e) {
-      throw InputError(fmt::format("--set '{}': {}; the name gives the unit", text, e.what()));
-    }
+    const auto value = outcome_of<InputError>([&] { return parse_number(std::string_view(text).substr(equals + 1)); });
+    if (!value) throw InputError(fmt::format("--set '{}': {}; the name gives the unit", text, value.why));
+    out.emplace_back(name, *value);
   }
   return out;
 }
@@ -108,15 +107,14 @@ std::vector<effects::EffectInstance> add_effects(Mechanism& m, const AddArgument
                                                  const std::vector<effects::Effect>& all) {
   const std::vector<diagnosis::FoundEffect> effects = wanted(a);
   std::vector<effects::EffectInstance> added;
-  try {
-    for (const diagnosis::FoundEffect& found : effects) {
-      added.push_back(diagnosis::instance(effects::find_effect(all, found.effect), found));
-      m = effects::with_effect(m, added.back());
-      tell("effect {} from {}", found.effect, a.from.empty() ? "the command line" : a.from);
-    }
-  } catch (const InputError& e) {
-    throw InputError(a.from.empty() ? e.what() : fmt::format("{}: {}", a.from, e.what()));
-  }
+  told_at<InputError>([&] { return a.from.empty() ? "" : a.from + ": "; },
+                      [&] {
+                        for (const diagnosis::FoundEffect& found : effects) {
+                          added.push_back(diagnosis::instance(effects::find_effect(all, found.effect), found));
+                          m = effects::with_effect(m, added.back());
+                          tell("effect {} from {}", found.effect, a.from.empty() ? "the command line" : a.from);
+                        }
+                      });
   return added;
 }
 

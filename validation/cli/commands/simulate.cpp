@@ -8,6 +8,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/number_words.h"
+#include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/configuration.h"
@@ -56,12 +57,8 @@ effects::EffectInstance parse_with(const std::string& text, const std::vector<ef
     const auto at = as_size(found - names.begin());
     if (given[at]) throw InputError(fmt::format("--with '{}': '{}' is set twice", text, name));
     given[at] = true;
-    double value = 0;
-    try {
-      value = parse_number(std::string_view(*word).substr(equals + 1));
-    } catch (const InputError& e) {
-      throw InputError(fmt::format("--with '{}': {}", text, e.what()));
-    }
+    const double value = told_at<InputError>([&] { return fmt::format("--with '{}': ", text); },
+                                             [&] { return parse_number(std::string_view(*word).substr(equals + 1)); });
     if (at == 0) {
       out.leg = whole("--with leg", value, 1, 1000);
       continue;
@@ -141,11 +138,9 @@ void run(const SimulateArguments& a) {
        nth(geometry_names, o.geometry));
   const int threads = parse_threads(a.threads);
   const measurement::Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
-    try {
-      return prediction::simulate(m, plan, o, {threads, nullptr, told});
-    } catch (const NumericalError& e) {
-      throw NumericalError(fmt::format("{}{}", e.what(), way_out(m, plan, o, a)));
-    }
+    auto made = outcome_of<NumericalError>([&] { return prediction::simulate(m, plan, o, {threads, nullptr, told}); });
+    if (!made) throw NumericalError(made.why + way_out(m, plan, o, a));
+    return std::move(*made);
   });
   say_new_folder(a.out);
   measurement::write_measurements(a.out, data);
