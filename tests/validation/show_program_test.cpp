@@ -43,6 +43,22 @@ leg:
   upper: {member: bar, material: steel, along: [0 mm, 200 mm, 0 mm]}
 )";
 
+TEST_F(ShowProgram, SensorsAndPointsOfLoadAreShown) {
+  const std::string held = std::regex_replace(loose, std::regex("revolute"), "fixed");
+  write("d.yaml", held +
+                      "sensors: {probe: {point: [50 mm, 0 mm, 0 mm], direction: [0.6, 0, 0.8]}}\n"
+                      "loads: {handle: {body: tool, point: [0 mm, 0 mm, 25 mm]}}\n");
+  const json d = shown(path("d.yaml"));
+  ASSERT_EQ(d.at("instruments").size(), 2u) << d;
+  EXPECT_EQ(d["instruments"][0], json({{"name", "probe"},
+                                       {"words", "sensor on the platform"},
+                                       {"at_mm", {350.0, 200.0, 0.0}},
+                                       {"axis", {0.6, 0.0, 0.8}}}));
+  EXPECT_EQ(d["instruments"][1],
+            json({{"name", "handle"}, {"words", "load on the tool"}, {"at_mm", {300.0, 200.0, 25.0}}}));
+  EXPECT_NE(out.find("sensor on the platform"), std::string::npos) << out;
+}
+
 TEST_F(ShowProgram, MembersAndJointsStandAsTheyAreDrawn) {
   const json d = shown("scara");
   EXPECT_EQ(d.at("drawing"), "device");

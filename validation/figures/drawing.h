@@ -49,6 +49,13 @@ struct DrawnPoint {
   Matrix3 axes = Matrix3::Identity();
 };
 
+/// A named sensor or a point of load of a machine.
+struct DrawnInstrument {
+  std::string name, words;  ///< "sensor on the platform", "load on the tool"
+  Vector3 at;
+  std::optional<Vector3> axis;  ///< along which, or about which, a sensor reads
+};
+
 /// A motion that nothing resists; displacements of the points, largest a tenth of the machine's size, m.
 struct DrawnMotion {
   std::string words;
@@ -68,7 +75,8 @@ struct MachineDrawing {
   std::vector<Line> lines;
   std::vector<DrawnMember> members;
   std::vector<DrawnJoint> joints;
-  std::vector<DrawnPoint> frames;    ///< base and tool of a machine; of a frame its nodes
+  std::vector<DrawnPoint> frames;  ///< base and tool of a machine; of a frame its nodes
+  std::vector<DrawnInstrument> instruments;
   std::vector<DrawnMotion> motions;  ///< where it cannot stand
   std::string trouble;               ///< why, or which loops are open; "" where all is well
 

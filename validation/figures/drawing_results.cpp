@@ -86,6 +86,13 @@ std::vector<std::vector<std::string>> joint_rows(const MachineDrawing& d) {
   return rows;
 }
 
+std::vector<std::vector<std::string>> instrument_rows(const MachineDrawing& d) {
+  std::vector<std::vector<std::string>> rows = {{"instrument", "what it is", "at mm", "reads along"}};
+  for (const DrawnInstrument& i : d.instruments)
+    rows.push_back({i.name, i.words, in_mm(i.at), i.axis ? direction(*i.axis) : ""});
+  return rows;
+}
+
 std::vector<std::vector<std::string>> node_rows(const MachineDrawing& d) {
   std::vector<std::vector<std::string>> rows = {{"node", "at mm", "held"}};
   for (const DrawnPoint& p : d.frames) rows.push_back({p.name, in_mm(p.at), p.held});
@@ -112,7 +119,7 @@ std::string drawing_report(const MachineDrawing& d) {
   std::vector<std::string> driven;
   for (const Actuator& a : d.driven) driven.push_back(coordinate(a));
   if (!d.frame) text += driven.empty() ? "nothing is driven\n" : fmt::format("driven: {}\n", fmt::join(driven, ", "));
-  text += table(member_rows(d)) + table(joint_rows(d));
+  text += table(member_rows(d)) + table(joint_rows(d)) + table(instrument_rows(d));
   if (d.frame) text += table(node_rows(d));
   if (!d.trouble.empty()) text += fmt::format("\n{}\n", d.trouble);
   for (const DrawnMotion& motion : d.motions) text += fmt::format("  {}\n", motion.words);
@@ -131,7 +138,8 @@ std::string drawing_json(const MachineDrawing& d) {
     out["driven"].push_back({{"name", a.name},
                              {"value", a.rotation ? a.value * 180 / pi : report::mm * a.value},
                              {"unit", a.rotation ? "deg" : "mm"}});
-  for (const char* list : {"members", "joints", "frames", "points_mm", "lines", "motions"}) out[list] = Json::array();
+  for (const char* list : {"members", "joints", "frames", "instruments", "points_mm", "lines", "motions"})
+    out[list] = Json::array();
   for (const DrawnMember& m : d.members)
     out["members"].push_back({{"leg", m.leg},
                               {"part", m.part},
@@ -155,6 +163,10 @@ std::string drawing_json(const MachineDrawing& d) {
   for (const DrawnPoint& p : d.frames)
     out["frames"].push_back(
         {{"name", p.name}, {"at_mm", list_in_mm(p.at)}, {"axes", axes_json(p.axes)}, {"held", p.held}});
+  for (const DrawnInstrument& i : d.instruments) {
+    out["instruments"].push_back({{"name", i.name}, {"words", i.words}, {"at_mm", list_in_mm(i.at)}});
+    if (i.axis) out["instruments"].back()["axis"] = {tidy(i.axis->x()), tidy(i.axis->y()), tidy(i.axis->z())};
+  }
   for (const Vector3& p : d.points) out["points_mm"].push_back(list_in_mm(p));
   for (const MachineDrawing::Line& line : d.lines) out["lines"].push_back({line.a, line.b, line.member});
   for (const DrawnMotion& motion : d.motions) {

@@ -1,7 +1,7 @@
 // The machine as its file draws it: members with their sections and axes, joints, frames of reference, names and lengths;
 // where it cannot stand, the motions that nothing resists, moving.
 import * as THREE from 'three';
-import {groundUnder, label, lit, piece, put, shapes, vector} from './bodies.js';
+import {groundUnder, label, lit, loadArrow, piece, put, shapes, vector} from './bodies.js';
 import {attempt, el, figure, num, numbers, tooltip} from './dom.js';
 import {stage, standpoint, view} from './stage.js';
 import {onTheme, theme} from './theme.js';
@@ -102,6 +102,10 @@ function picture(d) {
   for (const m of d.members) tag(`${m.part} ${num(m.length_mm, 4)} mm`, m.start_mm.map((x, i) => (x + m.end_mm[i]) / 2));
   for (const j of d.joints) tag(j.part + (j.driven ? ' (driven)' : ''), j.at_mm);
   for (const f of d.frames) tag(f.name, f.at_mm);
+  for (const i of d.instruments) {
+    tag(i.name, i.at_mm);
+    if (i.axis) layers.frames.add(loadArrow(vector(i.at_mm), {vector: i.axis, kind: i.words.startsWith('rotation') ? 'moment' : 'line'}, 0.08 * size, materials.blue, true, 0.028 * size));
+  }
 
   const holder = el('div', {class: 'view', id: 'machine-view'});
   const shot = stage(holder, 'The machine as drawn, in 3D', (renderer, width, height) => {
@@ -185,10 +189,15 @@ export function drawn(d) {
     columns: d.drawing === 'frame' ? ['node', 'at_mm', 'held'] : ['frame', 'at_mm', 'x', 'y', 'z'],
     rows: d.frames.map((f) => (d.drawing === 'frame' ? [f.name, place(f.at_mm), f.held] : [f.name, place(f.at_mm), ...f.axes.map(axis)])),
   });
+  const instruments = () => ({
+    columns: ['name', 'what it is', 'at_mm', 'reads along'],
+    rows: d.instruments.map((i) => [i.name, i.words, place(i.at_mm), i.axis ? axis(i.axis) : '']),
+  });
   return [
     figure('machine', d.trouble ? 'As drawn: it does not stand' : 'As drawn, unloaded', 'Before any solution. Drag to turn, scroll or pinch to zoom; a part under the pointer says what it is.', attempt('The machine', () => picture(d))),
     figure('members', 'Members', 'Lengths from node to node; axes of the section in axes of the base.', numbers('members', members, {open: d.members.length <= 30})),
     d.joints.length ? figure('joints', 'Joints', 'tx ty tz along, rx ry rz about the axes x y z of the joint.', numbers('joints', joints, {open: d.joints.length <= 30})) : null,
+    d.instruments.length ? figure('instruments', 'Sensors and points of load', null, numbers('instruments', instruments, {open: true})) : null,
     figure('frames', d.drawing === 'frame' ? 'Nodes' : 'Frames', null, numbers('frames', frames, {open: d.frames.length <= 30})),
   ];
 }
