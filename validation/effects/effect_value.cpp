@@ -37,7 +37,7 @@ YamlNode filled_in(const YamlNode& value, const Effect& e, const VectorX& values
   const ParameterUse use = parameter_use(value.kind == YamlNode::Kind::scalar ? value.text : "");
   if (const std::size_t i = index_of(e, use.name); i < e.parameters.size()) {
     const std::string& unit = use.unit.empty() ? e.parameters[i].unit : use.unit;
-    out.text = fmt::format("{:.17g}{}{}", values(as_index(i)), unit.empty() ? "" : " ", unit);
+    out.text = fmt::format("{}{}{}", values(as_index(i)), unit.empty() ? "" : " ", unit);
     out.quoted = false;
     if (const double x = values(as_index(i)); x != 0) out.depends = Dependence{first + i, x};
   }

@@ -19,8 +19,8 @@ std::string id_of(const Place& p) {
 
 std::string name_of(const Place& p) {
   const std::string motion = motion_of(p);
-  return fmt::format("{}{}{}{}", p.leg ? fmt::format("leg {} ", *p.leg) : "", p.part, motion.empty() ? "" : " ",
-                     motion);
+  const std::string where = p.kind == PlaceKind::sensor ? "sensor " : p.leg ? fmt::format("leg {} ", *p.leg) : "";
+  return fmt::format("{}{}{}{}", where, p.part, motion.empty() ? "" : " ", motion);
 }
 
 }  // namespace deflect::subject

@@ -54,7 +54,7 @@ struct Place {
 std::string motion_of(const Place&);
 /// "elbow.rz": how the place is written in the ids of effects.
 std::string id_of(const Place&);
-/// "elbow rz", "leg 3 elbow rz".
+/// "elbow rz", "leg 3 elbow rz", "sensor probe".
 std::string name_of(const Place&);
 
 }  // namespace deflect::subject
