@@ -138,6 +138,20 @@ TEST(Instruments, ColumnsAreReadAndWritten) {
   EXPECT_NE(refusal(",fx_N,fy_N,left_mm,tilt_rad").find("columns missing: fz_N"), std::string::npos);
 }
 
+// "ux_mm" would be read as another thing than the contract says.
+TEST(Instruments, ASensorIsNotCalledLikeAColumn) {
+  for (const char* name : {"ux", "x", "q1", "sigma_u", "note_1"}) {
+    measurement::Instruments known;
+    known.sensors.push_back({name, false, {}});
+    try {
+      parse_measurements(command + ",fx_N,fy_N,fz_N,uz_mm\n" + pose + ",1,2,3,0\n", "data.csv", known);
+      ADD_FAILURE() << name;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("give the sensor another name"), std::string::npos) << e.what();
+    }
+  }
+}
+
 TEST(Instruments, NoiseIsEachSensorsOwn) {
   Mechanism m = test::with(instrumented(), "sensors.left.sigma", "3 um");
   std::string rows;

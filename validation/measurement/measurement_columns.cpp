@@ -174,6 +174,11 @@ MeasurementColumns measurement_columns(const CsvTable& table, const Instruments&
   const ContractColumns known(table, instruments);
   MeasurementColumns columns;
   for (const SensorChannel& sensor : instruments.sensors)
+    if (named_column(sensor_column(sensor)))
+      table.refuse_header(fmt::format(
+          "the device calls a sensor '{}', and '{}' is a column of every file: give the sensor another name",
+          sensor.name, sensor_column(sensor)));
+  for (const SensorChannel& sensor : instruments.sensors)
     if (const auto column = known.find(sensor_column(sensor))) columns.sensors.push_back({sensor, *column});
   for (const std::string& point : instruments.load_points) {
     LoadPointColumns at{point, {}};
