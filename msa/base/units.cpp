@@ -96,6 +96,7 @@ const std::vector<Row>& table() {
       {Dimension::rotational_compliance,
        "a rotational compliance (angle per moment)",
        {{"rad/Nm", 1}, {"rad/Nmm", 1e3}, {"mrad/Nm", 1, 1e3}, {"rad/(lbf*in)", 1 / (lbf * inch)}}},
+      {Dimension::strain, "a strain", {{"um/m", 1, 1e6}, {"mm/m", 1, 1e3}, {"m/m", 1}}},
   };
   return rows;
 }

@@ -27,6 +27,7 @@ enum class Dimension {
   mass,                   ///< kg
   compliance,             ///< m/N
   rotational_compliance,  ///< rad/(Nm)
+  strain,                 ///< 1
 };
 
 /// Units accepted for a dimension, the preferred one first: {"mm", "m", "um", "in"}.

@@ -40,6 +40,8 @@ const char* example_of(Dimension d) {
       return "0.001 mm/N";
     case Dimension::rotational_compliance:
       return "0.01 rad/Nm";
+    case Dimension::strain:
+      return "100 um/m";
     case Dimension::mass:
       return "2 kg";
   }

@@ -217,19 +217,23 @@ struct Sensor {
   Vector6 zero = Vector6::Zero();      ///< that zero, m and rad, where it is known; not in files
 };
 
+/// How an instrument records: recorded = gain · true + zero. SI, by what it reads.
+struct InstrumentErrors {
+  std::string gain_text;            ///< as in the file: "1 ± 0.5 %"; empty: exactly 1
+  double gain = 1, gain_sigma = 0;  ///< and its standard deviation
+  double sigma = 0;                 ///< of one reading; 0: not given
+  bool free_zero = false;           ///< as in Sensor
+  double zero = 0;                  ///< where it is known; not in files
+};
+
 /// A named instrument beside the one at T: it reads a displacement of a point of a body, in one direction, or a
 /// rotation of the body about one axis.
-struct PointSensor {
+struct PointSensor : InstrumentErrors {
   std::string body = "platform";    ///< "platform", or "tool": beyond the tool joint
   Vector3 point = Vector3::Zero();  ///< m, from T, in platform axes; moves with the body
   std::string direction;            ///< as in the file: "uz", "rx", "[0, 0, 1]"
   Vector3 axis = Vector3::UnitZ();  ///< that direction: a unit vector in base axes
   bool rotation = false;            ///< it reads a rotation about the axis
-  std::string gain_text;            ///< as in the file: "1 ± 0.5 %"; empty: exactly 1
-  double gain = 1, gain_sigma = 0;  ///< recorded over true displacement, and its standard deviation
-  double sigma = 0;                 ///< m or rad, of one reading; 0: not given
-  bool free_zero = false;           ///< as in Sensor
-  double zero = 0;                  ///< m or rad, where it is known; not in files
 };
 
 /// A named point at which loads act, beside T.

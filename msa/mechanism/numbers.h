@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "msa/base/units.h"
+#include "msa/fields/number_walk.h"
 #include "msa/mechanism/description.h"
 
 namespace deflect {
@@ -16,14 +16,6 @@ namespace deflect {
 void for_each_number(Mechanism&, const std::function<void(std::size_t, double&)>& f);
 
 std::vector<double> numbers_of(const Mechanism&);
-
-struct DescribedNumber {
-  /// As fields nest in the file: "materials.steel.E", "leg.elbow.rz.0.stiffness", "mounts.2.base.shift.0"; in a leg of
-  /// a resolved mechanism "leg[3].elbow.rz.0.stiffness".
-  std::string path;
-  Dimension dimension = Dimension::none;
-  double value = 0;  ///< SI
-};
 
 /// In the order of for_each_number: element i describes number i.
 std::vector<DescribedNumber> described_numbers(const Mechanism&);

@@ -9,7 +9,9 @@
 #include <string_view>
 
 #include "msa/base/index.h"
+#include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/field_lists.h"
+#include "msa/mechanism/rig_fields.h"
 
 namespace deflect {
 namespace {
@@ -43,24 +45,24 @@ std::optional<Vector3> vector(std::string_view text) {
   return out;
 }
 
-/// Sets axis and rotation; false where the text is no direction.
-bool read_direction(PointSensor& s) {
+/// False where the text is no direction.
+bool read_direction(const std::string& text, Vector3& axis, bool& rotation) {
   constexpr std::string_view words[] = {"ux", "uy", "uz", "rx", "ry", "rz"};
   for (std::size_t i = 0; i < 6; ++i)
-    if (s.direction == words[i]) {
-      s.axis = Vector3::Unit(as_index(i % 3));
-      s.rotation = i >= 3;
+    if (text == words[i]) {
+      axis = Vector3::Unit(as_index(i % 3));
+      rotation = i >= 3;
       return true;
     }
-  const std::optional<Vector3> along = vector(s.direction);
+  const std::optional<Vector3> along = vector(text);
   if (!along || !(along->norm() > 0)) return false;
-  s.axis = along->normalized();
-  s.rotation = false;
+  axis = along->normalized();
+  rotation = false;
   return true;
 }
 
 /// "1", "0.98 ± 0.5 %", "1 +- 0.005".
-bool read_gain(PointSensor& s) {
+bool read_gain(InstrumentErrors& s) {
   s.gain = 1, s.gain_sigma = 0;
   if (s.gain_text.empty()) return true;
   std::string_view text = s.gain_text, deviation;
@@ -90,6 +92,19 @@ void describe_zero(FieldVisitor& v, bool& free_zero) {
 
 }  // namespace
 
+void describe_direction(FieldVisitor& v, std::string& text, Vector3& axis, bool& rotation) {
+  v.any("direction", text, "uz", "in base axes: ux, uy, uz, a vector, or rx, ry, rz for a rotation");
+  v.require(read_direction(text, axis, rotation), "direction",
+            "must be one of ux, uy, uz, rx, ry, rz, or a vector such as [0, 0.6, 0.8] in base axes");
+}
+
+void describe_errors(FieldVisitor& v, InstrumentErrors& e, Dimension d) {
+  v.text("gain", e.gain_text, Need::optional, "recorded over true value, as in '1 ± 0.5 %'");
+  v.require(read_gain(e), "gain", "must be a number above 0, or one with its standard deviation, as in '1 ± 0.5 %'");
+  v.quantity("sigma", e.sigma, optional(0, d, not_negative), "standard deviation of one reading");
+  describe_zero(v, e.free_zero);
+}
+
 void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<std::string>& trusted) {
   const auto cell_fields = [&] {
     v.quantity("gain", cell.gain, optional(1, Dimension::ratio, positive), "true load over recorded load");
@@ -115,14 +130,8 @@ void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<s
 void describe(FieldVisitor& v, PointSensor& s) {
   v.word("body", s.body, {"body", bodies, bodies.front()}, "what the sensor reads: platform, or tool beyond its joint");
   v.vector3("point", s.point, Dimension::length, "the point, from the tool point, in platform axes");
-  v.any("direction", s.direction, "uz", "in base axes: ux, uy, uz, a vector, or rx, ry, rz for a rotation");
-  v.require(read_direction(s), "direction",
-            "must be one of ux, uy, uz, rx, ry, rz, or a vector such as [0, 0.6, 0.8] in base axes");
-  v.text("gain", s.gain_text, Need::optional, "recorded over true displacement, as in '1 ± 0.5 %'");
-  v.require(read_gain(s), "gain", "must be a number above 0, or one with its standard deviation, as in '1 ± 0.5 %'");
-  v.quantity("sigma", s.sigma, optional(0, s.rotation ? Dimension::angle : Dimension::length, not_negative),
-             "standard deviation of one reading");
-  describe_zero(v, s.free_zero);
+  describe_direction(v, s.direction, s.axis, s.rotation);
+  describe_errors(v, s, s.rotation ? Dimension::angle : Dimension::length);
 }
 
 void describe(FieldVisitor& v, LoadPoint& p) {

@@ -21,16 +21,10 @@
 #include <utility>
 #include <vector>
 
+#include "msa/fields/number_walk.h"
 #include "msa/mechanism/description.h"
 
 namespace deflect {
-
-/// One standard deviation of one tolerance, as changes of numbers.
-struct NumberMove {
-  std::string name;  ///< "leg 2 elbow rz stiffness", "steel E", "leg 1 forearm length"
-  double sigma = 0;  ///< as declared: relative, or SI
-  std::vector<std::pair<std::size_t, double>> shifts;  ///< index of the number (numbers.h), what is added to it
-};
 
 /// Of a resolved mechanism (device_file.h). Tolerances whose number an effect has taken away are left out.
 std::vector<NumberMove> number_moves(const Mechanism& resolved);

@@ -11,13 +11,14 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "msa/base/units.h"
+#include "msa/fields/file_kind.h"
+#include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/device_schema.h"
 #include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"
-#include "validation/measurement/configure_all.h"
 #include "validation/report/schema_results.h"
 
 namespace deflect::cli {
@@ -94,9 +95,38 @@ Mechanism read_device(const std::string& name) {
   return m;
 }
 
-measurement::Measurements read_data(const std::string& file, const Mechanism& m) {
+frame::FrameDescription read_frame(const std::string& name) {
+  const fs::path file = frame_file(name);
+  frame::FrameDescription f = timed("frame: reading", [&] { return frame::read_frame(file); });
+  tell("frame {}: {}, {} nodes, {} members, {} sensors", f.name, file.string(), f.nodes.size(), f.members.size(),
+       f.sensors.size());
+  for (const auto& [each, material] : f.materials)
+    if (const auto question = question_about(each, material.elastic))
+      remark(fmt::format("{}: {}", file.string(), *question));
+  return f;
+}
+
+namespace {
+
+bool is_frame(const std::string& name) {
+  if (is_among(name, device_names())) return false;
+  if (is_among(name, frame_names())) return true;
+  if (!fs::exists(name)) return false;
+  return kind_of(parse_yaml(read_text(name), name)) == FileKind::frame;
+}
+
+}  // namespace
+
+fs::path subject_file(const std::string& name) { return is_frame(name) ? frame_file(name) : device_file(name); }
+
+subject::Subject read_subject(const std::string& name) {
+  if (is_frame(name)) return read_frame(name);
+  return read_device(name);
+}
+
+measurement::Measurements read_data(const std::string& file, const subject::Subject& subject) {
   measurement::Measurements data =
-      measurement::place_loads(measurement::read_measurements(file, measurement::instruments_of(m)), m);
+      subject.placed(measurement::read_measurements(file, subject.instruments()));
   const auto count = [&](auto has) { return std::count_if(data.readings.begin(), data.readings.end(), has); };
   for (const auto& s : data.instruments.sensors) tell("sensor {} is read", s.name);
   for (const auto& p : data.instruments.load_points) tell("loads at {} are read", p);
@@ -111,8 +141,8 @@ measurement::Measurements read_data(const std::string& file, const Mechanism& m)
   return data;
 }
 
-measurement::Measurements read_plan(const std::string& file, const Mechanism& m) {
-  return measurement::place_loads(measurement::read_plan(file, measurement::instruments_of(m)), m);
+measurement::Measurements read_plan(const std::string& file, const subject::Subject& subject) {
+  return subject.placed(measurement::read_plan(file, subject.instruments()));
 }
 
 void tell_size(const measurement::Measurements& data, double numbers_kept) {

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "msa/frame/file/frame_description.h"
 #include "msa/frame/mechanism/build.h"
 #include "msa/mechanism/description.h"
 #include "msa/mechanism/stand.h"
 #include "validation/cli/command.h"
 #include "validation/measurement/measurements.h"
 #include "validation/parallel/ranks.h"
+#include "validation/subject/subject.h"
 #include "validation/theories/theory.h"
 
 namespace deflect::cli {
@@ -32,11 +34,19 @@ std::filesystem::path frame_file(const std::string& name_or_path);
 /// Reads the device and remarks on implausible materials. Throws InputError like device_file() and read_mechanism().
 Mechanism read_device(const std::string& name_or_path);
 
-/// read_measurements() with the instruments of the device and place_loads(), with a summary if verbose.
-measurement::Measurements read_data(const std::string& file, const Mechanism&);
+/// Reads a frame. Throws InputError like frame_file() and frame::read_frame().
+frame::FrameDescription read_frame(const std::string& name_or_path);
 
-/// Poses and loads to be measured with the instruments of the device.
-measurement::Measurements read_plan(const std::string& file, const Mechanism&);
+/// Reads what is measured: a device, or a frame, told by the file's keys.
+subject::Subject read_subject(const std::string& name_or_path);
+/// The file of either.
+std::filesystem::path subject_file(const std::string& name_or_path);
+
+/// read_measurements() with the instruments of the subject, with a summary if verbose.
+measurement::Measurements read_data(const std::string& file, const subject::Subject&);
+
+/// Poses and loads to be measured with the instruments of the subject.
+measurement::Measurements read_plan(const std::string& file, const subject::Subject&);
 
 /// For 20 000 readings or more, prints roughly how much memory the work needs if it keeps `numbers_kept` numbers per
 /// measured number. Only if progress is shown or the program is verbose.

@@ -20,6 +20,7 @@
 #include "validation/measurement/configure_all.h"
 #include "validation/report/compare_results.h"
 #include "validation/result_files/result_file.h"
+#include "validation/scene/frame_scene.h"
 
 namespace deflect::cli {
 namespace {
@@ -53,7 +54,7 @@ page::PageContents contents(const std::string& device) {
   page::PageContents page;
   page.version = DEFLECT_VERSION;
   page.command = command_line();
-  if (!device.empty()) page.device = source_of(device_file(device).string());
+  if (!device.empty()) page.device = source_of(subject_file(device).string());
   return page;
 }
 
@@ -79,7 +80,7 @@ std::vector<scene::SceneStand> stands_of(const compare::Comparison& c, const std
 }
 
 /// For each component that the readings load, its largest size alone.
-std::vector<Vector6> loads_of(const measurement::Measurements& data) {
+std::vector<Vector6> largest_loads(const measurement::Measurements& data) {
   Vector6 largest = Vector6::Zero();
   for (const measurement::Reading& r : data.readings) largest = largest.cwiseMax(r.load.cwiseAbs());
   std::vector<Vector6> out;
@@ -99,6 +100,12 @@ std::vector<effects::EffectInstance> found_in(const page::PageResult& result, co
   for (const diagnosis::FoundEffect& found : diagnosis::parse_found_effects(result.json, result.origin).missing)
     out.push_back(diagnosis::instance(effects::find_effect(effects, found.effect), found));
   return out;
+}
+
+/// The frame under each of its load cases; marked are the parts in which the last version differs from the first.
+Json scene_of_frames(const compare::Comparison& first, const compare::Comparison& last) {
+  const frame::FrameDescription &f = *first.study.subject->frame(), &latest = *last.study.subject->frame();
+  return scene::frame_scene_json(f, frame::analyse(f), scene::changed_parts(f, latest));
 }
 
 }  // namespace
@@ -125,36 +132,41 @@ void write_report(const std::string& file, const std::string& device, const std:
   if (versions.size() > 1 && origin != "history")
     page.results.push_back({origin, report::history_json(compare::history(versions))});
   for (const compare::Comparison& c : versions) page.versions.push_back(&c);
+  if (first.study.subject->frame()) {
+    page.scene = scene_of_frames(first, last);
+    return write_page(file, page);
+  }
   const Mechanism &m = *first.study.subject->machine(), &latest = *last.study.subject->machine();
   const std::vector<Configuration> machines = measurement::configure_all(m, *first.study.data);
   const Configuration changed = measurement::configure_all(latest, measurement::one_pose(*first.study.data, 0)).front();
-  page.scene = scene::scene_json(m, stands_of(first, machines), loads_of(*first.study.data),
+  page.scene = scene::scene_json(m, stands_of(first, machines), largest_loads(*first.study.data),
                                  effects::changed_parts(machines.front(), changed), m.geometry);
   write_page(file, page);
 }
 
-void write_report_of_diagnosis(const std::string& file, const std::string& device, const Mechanism& m,
+void write_report_of_diagnosis(const std::string& file, const std::string& device, const subject::Subject& m,
                                const measurement::Measurements& data, const std::vector<effects::Effect>& effects,
                                const compare::ComparisonOptions& options, int threads,
                                std::vector<page::PageResult> results) {
-  std::vector<Mechanism> devices = {m};
+  std::vector<subject::Subject> devices = {m};
+  std::string name = m.name();
   for (const page::PageResult& result : results) {
     const auto added = outcome_of<InputError>([&] {
-      for (const effects::EffectInstance& e : found_in(result, m.name, effects)) {
-        devices.push_back(effects::with_effect(devices.back(), e));
-        devices.back().name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + effects::site_of(e) + ")" : "");
+      for (const effects::EffectInstance& e : found_in(result, m.name(), effects)) {
+        name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + effects::site_of(e) + ")" : "");
+        devices.push_back(effects::with_effect(devices.back(), e).named(name));
       }
       return true;
     });
     if (added) continue;
     if (added.why.starts_with(result.origin)) throw InputError(added.why);
     throw InputError(fmt::format("{}: its effects do not fit {}: is it a diagnosis of another device? {}",
-                                 result.origin, m.name, added.why));
+                                 result.origin, m.name(), added.why));
   }
   std::vector<compare::Comparison> versions;
-  for (const Mechanism& each : devices)
+  for (const subject::Subject& each : devices)
     versions.push_back(
-        timed("compare with " + each.name, [&] { return compare::compare(each, data, options, {threads}); }));
+        timed("compare with " + each.name(), [&] { return compare::compare(each, data, options, {threads}); }));
   write_report(file, device, versions, std::move(results));
 }
 

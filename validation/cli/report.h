@@ -26,7 +26,7 @@ void write_report(const std::string& file, const std::string& device, const std:
 
 /// The page of results. If one is a diagnosis, the versions are the device and the device with each effect found, added
 /// one after the other.
-void write_report_of_diagnosis(const std::string& file, const std::string& device, const Mechanism&,
+void write_report_of_diagnosis(const std::string& file, const std::string& device, const subject::Subject&,
                                const measurement::Measurements&, const std::vector<effects::Effect>&,
                                const compare::ComparisonOptions&, int threads, std::vector<page::PageResult> results);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -28,7 +29,9 @@ std::optional<std::vector<double>> sigma_of(const std::vector<measurement::Measu
                                             const ComparisonOptions& o) {
   std::vector<double> out;
   for (const measurement::MeasuredValue& v : values) {
-    const std::optional<double> sigma = v.sigma ? v.sigma : v.rotation ? o.sigma_th : o.sigma_u;
+    const std::optional<double> sigma = v.sigma ? v.sigma : v.quantity == measurement::Quantity::length  ? o.sigma_u
+                                        : v.quantity == measurement::Quantity::angle ? o.sigma_th
+                                                                                     : std::nullopt;
     if (!sigma) return std::nullopt;
     out.push_back(*sigma);
   }
@@ -37,7 +40,7 @@ std::optional<std::vector<double>> sigma_of(const std::vector<measurement::Measu
 
 constexpr int fewest_left = 10;  // freedoms, for a scatter to within a quarter of itself
 
-/// The scatter that no pattern explains, alike for all translations and for all rotations.
+/// The scatter that no pattern explains, alike for all numbers of one quantity.
 std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const MatrixX& patterns) {
   const std::vector<double> one(s.values.size(), 1e-6);
   const statistics::Uncertainty u(statistics::PartedColumns(MatrixX(r.size(), 0)), s.values, one, s.predicted, 0);
@@ -46,36 +49,45 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
     throw InputError(
         fmt::format("{}: neither σ nor replicates, and {} measured numbers are too few to read the scatter off what no "
                     "pattern explains: add a column sigma_u_mm (sigma_th_rad), repeat readings, or give --sigma "
-                    "(--sigma-rotation)",
+                    "(--sigma-rotation), or sigma of the sensors in the description",
                     s.data->origin, s.values.size()));
   const VectorX left = r - patterns * fit.amplitude;
-  double squares[2] = {0, 0}, n[2] = {0, 0};
+  std::array<double, measurement::quantity_rows.size()> squares{}, n{};
   for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const std::size_t kind = s.values[i].rotation ? 1 : 0;
+    const auto kind = static_cast<std::size_t>(s.values[i].quantity);
     squares[kind] += left(as_index(i)) * left(as_index(i));
     n[kind] += 1;
   }
   const auto count = static_cast<double>(s.values.size());
   std::vector<double> out;
   for (const measurement::MeasuredValue& v : s.values) {
-    const std::size_t kind = v.rotation ? 1 : 0;
+    const auto kind = static_cast<std::size_t>(v.quantity);
     out.push_back(std::max(1e-12, std::sqrt(squares[kind] / n[kind] * count / std::max(1.0, count - fit.freedoms))));
   }
   return out;
 }
 
-/// Root mean square of a residual that Errors speak of, with nothing missing.
-double expected_rmse(const ResidualStudy& s, const statistics::ToleranceModel& t, const std::vector<double>& sigma) {
-  double squares = 0, n = 0;
-  const bool rotations = rotations_alone(s.values);
-  VectorX tolerances = t.A.squared_row_norms();
+/// Variances of measured numbers by noise and tolerances, without unknown zeros.
+VectorX expected_variances(const ResidualStudy& s, const statistics::ToleranceModel& t,
+                           const std::vector<double>& sigma) {
+  VectorX out = t.A.squared_row_norms();
   for (std::size_t k = 0; k < t.nuisances.size(); ++k)
-    if (t.nuisances[k].zero) tolerances -= t.A.shared.col(as_index(k)).cwiseAbs2();
+    if (t.nuisances[k].zero) out -= t.A.shared.col(as_index(k)).cwiseAbs2();
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const measurement::MeasuredValue& v = s.values[i];
-    if (v.rotation != rotations) continue;
     const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.channel));
-    squares += sigma[i] * sigma[i] + load * load + tolerances(as_index(i));
+    out(as_index(i)) += sigma[i] * sigma[i] + load * load;
+  }
+  return out.cwiseMax(0);
+}
+
+/// Root mean square of a residual that Errors speak of, with nothing missing.
+double expected_rmse(const ResidualStudy& s, const VectorX& variances) {
+  double squares = 0, n = 0;
+  const measurement::Quantity quantity = quantity_of_errors(s.values);
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    if (s.values[i].quantity != quantity) continue;
+    squares += variances(as_index(i));
     n += 1;
   }
   return n > 0 ? std::sqrt(squares / n) : 0;
@@ -102,7 +114,7 @@ class Comparing {
     c.study = residual_study(subject, data, work.part(0, 0.05));
     const ResidualStudy& s = c.study;
     c.numbers = s.values.size();
-    c.pure_error = rotations_alone(s.values) ? measurement::pure_error(data).th : measurement::pure_error(data).u;
+    c.pure_error = measurement::pure_error_of(data, quantity_of_errors(s.values));
     VectorX measured(std::ssize(s.values));
     for (std::size_t i = 0; i < s.values.size(); ++i) measured(as_index(i)) = s.values[i].value;
     c.residual = measured - statistics::rows_of(s.values, s.predicted);
@@ -115,10 +127,7 @@ class Comparing {
     const ResidualStudy& s = c.study;
     c.tolerances = statistics::tolerance_model(*s.standing, *s.data, s.values, work_.part(0.5, 0.8));
     patterns_ = patterns_of(s);
-    for (Pattern& p : patterns_) {
-      columns_.push_back(statistics::rows_of(s.values, p.by_reading));
-      p.by_reading = {};
-    }
+    for (Pattern& p : patterns_) columns_.push_back(std::move(p.rows));
   }
 
   /// χ², and which readings are set aside.
@@ -150,7 +159,7 @@ class Comparing {
     c.chi2_per_dof = chi2 / freedoms;
     c.p_value = statistics::chi_squared_tail(freedoms, chi2);
     c.sigma_u = rms_of_errors(s.values, Eigen::Map<const VectorX>(c.sigma.data(), std::ssize(c.sigma)));
-    c.noise_and_tolerances = expected_rmse(s, c.tolerances, c.sigma);
+    c.noise_and_tolerances = expected_rmse(s, expected_variances(s, c.tolerances, c.sigma));
   }
 
   /// By how much the χ² of what is left may change, up to chance, where the deformed shape is off by a fifth of itself.
@@ -270,6 +279,10 @@ std::optional<MisfitAccount> compared_again(const Comparison& recorded, const me
 }
 
 }  // namespace
+
+VectorX expected_deviations(const Comparison& c) {
+  return expected_variances(c.study, c.tolerances, c.sigma).cwiseSqrt();
+}
 
 bool is_mistaken(const Comparison& c) { return !c.mistakes.empty() && c.mistakes.front().certain; }
 

@@ -59,6 +59,10 @@ struct ComparisonOptions {
   bool as_recorded = false;                 ///< recording mistakes are not searched for
 };
 
+/// By measured number: the standard deviation that noise and tolerances give its residual with nothing missing. Unknown
+/// zeros do not count, because the residual is free of them.
+VectorX expected_deviations(const Comparison&);
+
 /// Whether a certain recording mistake was found: the data then support no verdict on the machine.
 bool is_mistaken(const Comparison&);
 

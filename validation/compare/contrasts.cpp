@@ -69,16 +69,16 @@ double chance_of(const VectorX& z, const statistics::Uncertainty::OfContrasts& o
 class Contrasts {
  public:
   Contrasts(const ResidualStudy& s, const std::vector<bool>& set_aside) : aside_(set_aside) {
-    rotations_ = rotations_alone(s.values);
+    quantity_ = quantity_of_errors(s.values);
     row_.assign(s.data->readings.size(), std::vector<Eigen::Index>(3 + s.data->instruments.sensors.size(), -1));
     for (std::size_t i = 0; i < s.values.size(); ++i) {
       const measurement::MeasuredValue& v = s.values[i];
-      if (v.rotation == rotations_) row_[v.reading][v.of_tool_point() ? v.channel % 3 : v.channel - 3] = as_index(i);
+      if (v.quantity == quantity_) row_[v.reading][v.of_tool_point() ? v.channel % 3 : v.channel - 3] = as_index(i);
     }
     columns_ = std::ssize(s.values);
   }
 
-  bool rotations() const { return rotations_; }
+  bool rotations() const { return quantity_ == measurement::Quantity::angle; }
 
   void add(const Weights& w) {
     for (std::size_t k = 0; k < row_.front().size(); ++k) add_channel(w, k);
@@ -133,16 +133,18 @@ class Contrasts {
   }
 
   const std::vector<bool>& aside_;
-  bool rotations_ = false;
+  measurement::Quantity quantity_ = measurement::Quantity::length;
   std::vector<std::vector<Eigen::Index>> row_;
   Eigen::Index columns_ = 0;
   std::vector<std::vector<std::pair<Eigen::Index, double>>> rows_;
 };
 
+using Key = std::vector<long long>;
+
 /// A load to 1e-9 N and Nm, so that equal ones meet.
-std::array<long long, 6> key(const Vector6& F) {
-  std::array<long long, 6> out;
-  for (std::size_t i = 0; i < 6; ++i) out[i] = std::llround(1e9 * F(as_index(i)));
+Key key(const VectorX& F) {
+  Key out;
+  for (const double each : F) out.push_back(std::llround(1e9 * each));
   return out;
 }
 
@@ -157,16 +159,16 @@ Weights operator+(Weights a, const Weights& b) {
   return a;
 }
 
-using ByLoad = std::map<std::array<long long, 6>, std::vector<std::size_t>>;
+using ByLoad = std::map<Key, std::vector<std::size_t>>;
 
 ByLoad by_load(const ResidualStudy& s, const measurement::PoseGroup& group, const std::vector<bool>& aside) {
   ByLoad out;
   for (const std::size_t i : group.readings)
-    if (aside.empty() || !aside[i]) out[key(s.data->readings[i].load)].push_back(i);
+    if (aside.empty() || !aside[i]) out[key(s.loads.col(as_index(i)))].push_back(i);
   return out;
 }
 
-std::array<long long, 6> opposite(std::array<long long, 6> k) {
+Key opposite(Key k) {
   for (long long& x : k) x = -x;
   return k;
 }
@@ -182,10 +184,10 @@ void add_parity(Contrasts& c, const ByLoad& loads) {
 
 /// Lines of loads: unit vector to readings of that sense, and their magnitudes.
 void add_intercepts(Contrasts& c, const ResidualStudy& s, const ByLoad& loads) {
-  std::map<std::array<long long, 6>, std::vector<std::pair<double, std::size_t>>> lines;
+  std::map<Key, std::vector<std::pair<double, std::size_t>>> lines;
   for (const auto& [load, readings] : loads)
     for (const std::size_t i : readings) {
-      const Vector6& F = s.data->readings[i].load;
+      const VectorX F = s.loads.col(as_index(i));
       if (F.isZero(0)) continue;
       lines[key(F / F.norm() * 1e-3)].emplace_back(F.norm(), i);
     }
@@ -206,15 +208,15 @@ void add_hysteresis(Contrasts& c, const ResidualStudy& s, const measurement::Pos
   std::vector<std::size_t> order = group.readings;
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return s.data->readings[a].sequence < s.data->readings[b].sequence; });
-  std::map<std::size_t, Vector6> change;
-  Vector6 before = Vector6::Zero();
+  std::map<std::size_t, VectorX> change;
+  VectorX before = VectorX::Zero(s.loads.rows());
   for (const std::size_t i : order) {
-    change[i] = s.data->readings[i].load - before;
-    before = s.data->readings[i].load;
+    change[i] = s.loads.col(as_index(i)) - before;
+    before = s.loads.col(as_index(i));
   }
   for (const auto& [load, readings] : loads) {
     std::vector<std::size_t> up, down;
-    const Vector6& F = s.data->readings[readings.front()].load;
+    const VectorX F = s.loads.col(as_index(readings.front()));
     for (const std::size_t i : readings) {
       double along = change[i].dot(F);
       if (F.isZero(0)) along = change[i].sum();
@@ -287,9 +289,9 @@ std::vector<ContrastTest> contrast_tests(const ResidualStudy& s, const statistic
       add_hysteresis(contrasts[hysteresis], s, group, loads);
       add_drift(contrasts[drift], s, loads);
     }
-    if (const auto unloaded = loads.find({}); unloaded != loads.end())
+    if (const auto unloaded = loads.find(Key(as_size(s.loads.rows()))); unloaded != loads.end())
       for (const std::size_t i : unloaded->second) contrasts[zero].add(Weights{{i, 1}});
-    add_reciprocity(contrasts[reciprocity], s, group);
+    if (s.standing->has_tool_point()) add_reciprocity(contrasts[reciprocity], s, group);
   }
   for (std::size_t i = 0; i < tests.size(); ++i) {
     tests[i] = contrasts[i].judge(std::move(tests[i]), u, residual);

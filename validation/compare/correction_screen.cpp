@@ -59,7 +59,7 @@ CorrectionScreen::CorrectionScreen(const subject::Subject& subject, const Compar
   if (!c.sigma_from_residuals) {
     std::array<double, 2> sum{}, count{};
     for (std::size_t i = 0; i < study_->values.size(); ++i) {
-      const std::size_t of = study_->values[i].rotation ? 1 : 0;
+      const std::size_t of = study_->values[i].quantity == measurement::Quantity::angle ? 1 : 0;
       sum[of] += c.sigma[i] * c.sigma[i], count[of] += 1;
     }
     for (std::size_t of = 0; of < 2; ++of)
@@ -79,7 +79,7 @@ CorrectionScreen::CorrectionScreen(const subject::Subject& subject, const Compar
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
     const measurement::MeasuredValue& v = study_->values[i];
     if (!v.of_tool_point()) continue;
-    const double weight = v.rotation ? size_ : 1, s = scale.at({v.reading, v.channel});
+    const double weight = v.quantity == measurement::Quantity::angle ? size_ : 1, s = scale.at({v.reading, v.channel});
     const double variance = (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) + tolerances(as_index(i));
     noise += s > 0 ? std::log1p(weight * weight * variance / (s * s)) + std::log(s) : 0;
   }

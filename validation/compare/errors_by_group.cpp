@@ -16,16 +16,18 @@ namespace {
 /// Whether a measured number belongs to the group.
 using Belongs = std::function<bool(const measurement::MeasuredValue&)>;
 
-Errors errors_of(const Comparison& c, const std::string& group, bool rotations, const std::vector<std::size_t>& values,
+Errors errors_of(const Comparison& c, const std::string& group, measurement::Quantity quantity,
+                 const std::vector<std::size_t>& values,
                  const Belongs& belongs) {
   Errors e;
   e.group = group;
+  e.quantity = quantity;
   double squares = 0, measured = 0, n = 0;
   Vector3 sum = Vector3::Zero(), count = Vector3::Zero();
   std::size_t last = c.readings;
   for (const std::size_t i : values) {
     const measurement::MeasuredValue& v = c.study.values[i];
-    if (v.rotation != rotations || !belongs(v)) continue;
+    if (v.quantity != quantity || !belongs(v)) continue;
     const double r = c.residual(as_index(i));
     squares += r * r;
     measured += v.value * v.value;
@@ -46,6 +48,27 @@ Errors errors_of(const Comparison& c, const std::string& group, bool rotations, 
   return e;
 }
 
+/// Of a frame: "load.snow > 0", "node.B.fz < 0".
+std::string direction_of(const std::vector<measurement::LoadChannel>& channels, const VectorX& load) {
+  std::string out;
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    if (load(as_index(k)) == 0) continue;
+    if (!out.empty()) return "several loads";
+    out = fmt::format("{} {} 0", channels[k].name, load(as_index(k)) > 0 ? ">" : "<");
+  }
+  return out.empty() ? "no load" : out;
+}
+
+/// Of each reading: a machine's force, N; of a frame the largest of its loads, each as a share of its own largest.
+VectorX sizes_of_loads(const ResidualStudy& s) {
+  if (s.standing->has_tool_point()) return s.loads.topRows(3).colwise().norm();
+  const VectorX most = s.loads.cwiseAbs().rowwise().maxCoeff().cwiseMax(1e-300);
+  VectorX out = VectorX::Zero(s.loads.cols());
+  for (Eigen::Index i = 0; i < out.size() && most.size() > 0; ++i)
+    out(i) = s.loads.col(i).cwiseAbs().cwiseQuotient(most).maxCoeff();
+  return out;
+}
+
 /// "fx > 0", "mz < 0", "handle.fx > 0" where one component is all of the load, "oblique", "no load".
 std::string direction_of(const measurement::Reading& r, const measurement::Measurements& data) {
   constexpr const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
@@ -63,10 +86,24 @@ std::string direction_of(const measurement::Reading& r, const measurement::Measu
   return fmt::format("{}{} {} 0", where, names[largest], F(largest) > 0 ? ">" : "<");
 }
 
+/// By reading: by how much its load is larger than that of the reading before; of a subject without sites.
+VectorX size_changes(const ResidualStudy& s, const VectorX& size) {
+  VectorX out = VectorX::Zero(size.size());
+  if (s.standing->has_tool_point()) return out;
+  double before = 0;
+  for (const std::size_t i : measurement::in_sequence(*s.data, "loading and unloading")) {
+    out(as_index(i)) = size(as_index(i)) - before;
+    before = size(as_index(i));
+  }
+  return out;
+}
+
 }  // namespace
 
-bool rotations_alone(const std::vector<measurement::MeasuredValue>& values) {
-  return std::all_of(values.begin(), values.end(), [](const measurement::MeasuredValue& v) { return v.rotation; });
+measurement::Quantity quantity_of_errors(const std::vector<measurement::MeasuredValue>& values) {
+  measurement::Quantity first = values.empty() ? measurement::Quantity::length : values.front().quantity;
+  for (const measurement::MeasuredValue& v : values) first = std::min(first, v.quantity);
+  return first;
 }
 
 double rms_of_kept(const std::vector<measurement::MeasuredValue>& values, const VectorX& x,
@@ -79,10 +116,10 @@ double rms_of_kept(const std::vector<measurement::MeasuredValue>& values, const 
 }
 
 double rms_of_errors(const std::vector<measurement::MeasuredValue>& values, const VectorX& x) {
-  const bool rotations = rotations_alone(values);
+  const measurement::Quantity quantity = quantity_of_errors(values);
   double squares = 0, n = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (values[i].rotation == rotations) {
+    if (values[i].quantity == quantity) {
       squares += x(as_index(i)) * x(as_index(i));
       n += 1;
     }
@@ -92,11 +129,11 @@ double rms_of_errors(const std::vector<measurement::MeasuredValue>& values, cons
 void add_errors(Comparison& c) {
   for (auto* list : {&c.by_axis, &c.by_pose, &c.by_direction, &c.by_magnitude, &c.by_heading}) list->clear();
   const measurement::Measurements& data = *c.study.data;
-  const bool rotations = rotations_alone(c.study.values);
+  const measurement::Quantity quantity = quantity_of_errors(c.study.values);
   std::vector<std::size_t> all(c.study.values.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const auto group = [&](const std::string& name, const Belongs& belongs) {
-    return errors_of(c, name, rotations, all, belongs);
+    return errors_of(c, name, quantity, all, belongs);
   };
   c.all = group("", [](const measurement::MeasuredValue&) { return true; });
   for (std::size_t k = 0; k < 3; ++k) {
@@ -106,39 +143,44 @@ void add_errors(Comparison& c) {
     if (e.readings > 0) c.by_axis.push_back(e);
   }
   for (std::size_t k = 6; k < 6 + data.instruments.sensors.size(); ++k) {
-    const Errors e =
-        group(measurement::channel_name(data, k), [&](const measurement::MeasuredValue& v) { return v.channel == k; });
+    const Errors e = errors_of(c, measurement::channel_name(data, k), data.instruments.sensors[k - 6].quantity, all,
+                               [&](const measurement::MeasuredValue& v) { return v.channel == k; });
     if (e.readings > 0) c.by_axis.push_back(e);
   }
   const auto every = [](const measurement::MeasuredValue&) { return true; };
   std::vector<std::vector<std::size_t>> of_pose(data.poses.size());
   for (const std::size_t i : all) of_pose[data.readings[c.study.values[i].reading].pose].push_back(i);
   for (std::size_t p = 0; p < data.poses.size(); ++p)
-    c.by_pose.push_back(errors_of(c, "pose " + data.poses[p].label, rotations, of_pose[p], every));
-  double most = 0;
+    c.by_pose.push_back(errors_of(c, "pose " + data.poses[p].label, quantity, of_pose[p], every));
   std::map<std::string, std::vector<std::size_t>> directions;
   std::vector<std::vector<std::size_t>*> direction;
-  for (const measurement::Reading& r : data.readings) {
-    direction.push_back(&directions[direction_of(r, data)]);
-    most = std::max(most, r.load.head<3>().norm());
-  }
+  const std::vector<measurement::LoadChannel> channels = measurement::load_channels(data);
+  for (std::size_t i = 0; i < data.readings.size(); ++i)
+    direction.push_back(&directions[data.instruments.stationary ? direction_of(channels, c.study.loads.col(as_index(i)))
+                                                                : direction_of(data.readings[i], data)]);
   for (const std::size_t i : all) direction[c.study.values[i].reading]->push_back(i);
-  for (const auto& [name, values] : directions) c.by_direction.push_back(errors_of(c, name, rotations, values, every));
+  for (const auto& [name, values] : directions) c.by_direction.push_back(errors_of(c, name, quantity, values, every));
+  const VectorX size = sizes_of_loads(c.study);
+  const double most = size.maxCoeff();
   if (most > 0)
     for (int third = 0; third < 3; ++third) {
       const double low = most * third / 3, high = most * (third + 1) / 3;
       const auto within = [&, third](const measurement::MeasuredValue& v) {
-        const double F = data.readings[v.reading].load.head<3>().norm();
+        const double F = size(as_index(v.reading));
         return F > low * (1 + 1e-9) && F <= high * (1 + 1e-9) && (third > 0 || F > 0);
       };
-      const Errors e = group(fmt::format("{:.3g} … {:.3g} N", low, high), within);
+      const Errors e = group(data.instruments.stationary
+                                 ? fmt::format("{:.0f} … {:.0f} % of the largest load", 100 * low, 100 * high)
+                                 : fmt::format("{:.3g} … {:.3g} N", low, high),
+                             within);
       if (e.readings > 0) c.by_magnitude.push_back(e);
     }
   if (!c.study.sequence) return;
-  // Whether the largest site force had risen or fallen in size.
+  const VectorX risen = size_changes(c.study, size);
+  // Whether the largest site force, or without sites the load, had risen or fallen in size.
   const auto heading = [&](const measurement::MeasuredValue& v) {
     const VectorX &f = c.study.force[v.reading], &h = c.study.heading[v.reading];
-    if (f.size() == 0) return 0.0;
+    if (f.size() == 0) return risen(as_index(v.reading));
     Eigen::Index k = 0;
     f.cwiseAbs().maxCoeff(&k);
     return f(k) * h(k);

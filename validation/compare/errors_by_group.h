@@ -10,20 +10,20 @@
 
 namespace deflect::compare {
 
-/// Whether only rotations were measured. The errors are then those of rotations, in rad instead of m.
-bool rotations_alone(const std::vector<measurement::MeasuredValue>&);
+/// The quantity that errors of all numbers together are of: the first that was measured of displacements, rotations,
+/// forces, moments, strains. Numbers of the others are left out of them.
+measurement::Quantity quantity_of_errors(const std::vector<measurement::MeasuredValue>&);
 
-/// Root mean square over the translations (m), or over the rotations (rad) where only these were measured; 0 without
-/// any.
+/// Root mean square over the numbers of that quantity, SI; 0 without any.
 double rms_of_errors(const std::vector<measurement::MeasuredValue>&, const VectorX&);
 
 /// The same over the readings not set aside.
 double rms_of_kept(const std::vector<measurement::MeasuredValue>&, const VectorX&, const std::vector<bool>& set_aside);
 
-/// Statistics of the residuals measured − predicted: translations in m, or rotations in rad where only these were
-/// measured.
+/// Statistics of the residuals measured − predicted, SI; of the quantity of errors, those of one channel of its own.
 struct Errors {
   std::string group;  ///< "pose 3", "fx > 0", "30 … 50 N"; empty for all
+  measurement::Quantity quantity = measurement::Quantity::length;
   std::size_t readings = 0;
   double rmse = 0;  ///< root mean square over all components of all readings
   Vector3 bias = Vector3::Zero();

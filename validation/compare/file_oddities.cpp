@@ -16,8 +16,8 @@ constexpr double sigma_out_of_scale = 50;       // between σ as stated and as s
 constexpr std::size_t replicates_to_trust = 5;  // degrees of freedom
 constexpr const char* measured_names[] = {"ux_mm", "uy_mm", "uz_mm", "thx_rad", "thy_rad", "thz_rad"};
 
-std::string size_words(double value, bool rotation) {
-  return fmt::format("{:.3g} {}", 1e6 * value, rotation ? "µrad" : "µm");
+std::string size_words(double value, measurement::Quantity q) {
+  return fmt::format("{:.3g} {}", measurement::row_of(q).fine_per_SI * value, measurement::row_of(q).fine);
 }
 
 bool temperature_varies(const measurement::Measurements& data) {
@@ -53,20 +53,18 @@ void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
   const ByComponent by(c);
   const bool measured = std::any_of(c.study.values.begin(), c.study.values.end(),
                                     [](const measurement::MeasuredValue& v) { return v.value != 0; });
-  const bool loaded = std::any_of(data.readings.begin(), data.readings.end(),
-                                  [](const measurement::Reading& r) { return !r.load.isZero(0); });
+  const bool loaded = !c.study.loads.isZero(0);
   if (!loaded && !temperature_varies(data))
     out.push_back({{"nothing_loaded"},
                    "nothing was loaded: every load is 0 in all readings, and the stiffness of a machine shows under "
                    "load only"});
   if (!measured) {
-    const bool rotations = rotations_alone(c.study.values);
     out.push_back(
         {{"nothing_measured"},
-         fmt::format("nothing was measured: every displacement is 0, where {} rms are predicted; leave the "
+         fmt::format("nothing was measured: every reading is 0, where {} rms are predicted; leave the "
                      "cells empty that were not measured",
                      size_words(rms_of_errors(c.study.values, statistics::rows_of(c.study.values, c.study.predicted)),
-                                rotations))});
+                                quantity_of_errors(c.study.values)))});
     return;
   }
   for (std::size_t k = 0; k < 6; ++k)
@@ -75,7 +73,7 @@ void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
           {{fmt::format("zero_column_{}", measured_names[k])},
            fmt::format("{} is 0 in every reading, where {} rms are predicted: was its sensor connected? Leave "
                        "the column away if it was not measured",
-                       measured_names[k], size_words(by.predicted[k], k >= 3))});
+                       measured_names[k], size_words(by.predicted[k], measurement::displacement_quantity(k)))});
 }
 
 /// Whether readings are written more finely than they scatter, so that chance does not make them alike: most of them
@@ -83,7 +81,7 @@ void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
 bool finely_written(const Comparison& c) {
   double fine = 0;
   for (const measurement::MeasuredValue& v : c.study.values) {
-    const double unit = v.rotation ? 1 : 1e3;
+    const double unit = measurement::row_of(v.quantity).per_SI;
     const double scatter = unit * v.sigma.value_or(1e-3 * (c.all.measured > 0 ? c.all.measured : 1));
     const double steps = std::abs(unit * v.value) / std::pow(10, std::floor(std::log10(scatter)));
     if (std::abs(steps - std::round(steps)) > 1e-6 * std::max(1.0, steps)) ++fine;
@@ -94,13 +92,14 @@ bool finely_written(const Comparison& c) {
 void add_identical_rows(const Comparison& c, std::vector<RecordingMistake>& out) {
   const measurement::Measurements& data = *c.study.data;
   if (c.study.sequence) return;
-  using Row = std::tuple<std::size_t, std::array<double, 6>, std::array<std::optional<double>, 6>,
+  using Row = std::tuple<std::size_t, std::vector<double>, std::array<std::optional<double>, 6>,
                          std::vector<std::optional<double>>, double>;
   std::map<Row, std::size_t> first;  // line
   std::size_t copies = 0, line = 0, of = 0;
-  for (const measurement::Reading& r : data.readings) {
-    std::array<double, 6> load;
-    for (std::size_t k = 0; k < 6; ++k) load[k] = r.load(as_index(k));
+  for (std::size_t i = 0; i < data.readings.size(); ++i) {
+    const measurement::Reading& r = data.readings[i];
+    const auto column = c.study.loads.col(as_index(i));
+    const std::vector<double> load(column.begin(), column.end());
     const auto [same, is_new] = first.emplace(Row{r.pose, load, r.displacement, r.sensors, r.temperature_C}, r.line);
     if (is_new) continue;
     if (++copies == 1) line = r.line, of = same->second;
@@ -132,11 +131,12 @@ std::string sigma_unit_words(double factor, bool rotation) {
 void add_sigma(const Comparison& c, std::vector<RecordingMistake>& out) {
   const measurement::PureError pure = measurement::pure_error(*c.study.data);
   for (const bool rotation : {false, true}) {
+    const auto quantity = rotation ? measurement::Quantity::angle : measurement::Quantity::length;
     double sigma = 0, n = 0, residual = 0;
     for (std::size_t i = 0; i < c.study.values.size(); ++i) {
       const measurement::MeasuredValue& v = c.study.values[i];
       const measurement::Reading& r = c.study.data->readings[v.reading];
-      if (v.rotation != rotation || !v.of_tool_point() || !(rotation ? r.sigma_th : r.sigma_u)) continue;
+      if (v.quantity != quantity || !v.of_tool_point() || !(rotation ? r.sigma_th : r.sigma_u)) continue;
       const double left = c.residual(as_index(i));
       sigma += c.sigma[i] * c.sigma[i], residual += left * left, n += 1;
     }
@@ -152,9 +152,9 @@ void add_sigma(const Comparison& c, std::vector<RecordingMistake>& out) {
     const char* column = rotation ? "sigma_th_rad" : "sigma_u_mm";
     out.push_back({{"sigma_unit"},
                    fmt::format("{} {}: it says {}, where {} {}: {} wants {}", column,
-                               sigma_unit_words(factor, rotation), size_words(sigma, rotation),
+                               sigma_unit_words(factor, rotation), size_words(sigma, quantity),
                                replicated ? "replicates scatter by" : "measured and predicted differ by",
-                               size_words(scatter, rotation), column, rotation ? "rad" : "mm")});
+                               size_words(scatter, quantity), column, rotation ? "rad" : "mm")});
   }
 }
 

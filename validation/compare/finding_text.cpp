@@ -103,6 +103,45 @@ std::string power(const ResidualStudy& s, const statistics::Regressions& regress
       less ? "a contact that stiffens under load" : "near a contact that stiffens under load, but not that alone");
 }
 
+/// "lvdt 3.1 ± 0.2 µm, F3 12 ± 1 N": each channel in units of its own.
+std::string by_channel(const Finding& f, const ResidualStudy& s, const char* per) {
+  std::string out;
+  for (std::size_t i = 0; i < f.columns.size(); ++i)
+    for (const measurement::SensorChannel& sensor : s.data->instruments.sensors) {
+      if (sensor.name != f.columns[i]) continue;
+      const measurement::QuantityRow& row = measurement::row_of(sensor.quantity);
+      out += fmt::format("{}{} {}{}", out.empty() ? "" : ", ", sensor.name,
+                         plus_minus(f.amplitude(as_index(i)), f.deviation(as_index(i)), row.fine_per_SI, row.fine), per);
+    }
+  return out;
+}
+
+/// Patterns of a subject that is read by sensors alone; empty for the others.
+std::string of_channels(const Finding& f, const ResidualStudy& s) {
+  switch (f.id) {
+    case PatternId::offset:
+      return "every reading of a sensor is off alike, whatever the load: " + by_channel(f, s, "");
+    case PatternId::drift:
+      return "readings drift with time, over the sequence by " + by_channel(f, s, "");
+    case PatternId::temperature:
+      return "readings follow the temperature: " + by_channel(f, s, "/K");
+    case PatternId::load_gain:
+      return fmt::format("all readings are {} than predicted by one factor, {}: the loads as recorded, or, where "
+                         "displacements are read, the modulus of everything",
+                         f.amplitude(0) > 0 ? "larger" : "smaller",
+                         plus_minus_words(1 + f.amplitude(0), f.deviation(0)));
+    case PatternId::sensor_gain: {
+      std::string out;
+      for (std::size_t i = 0; i < f.columns.size(); ++i)
+        out += fmt::format("{}{} {}", i ? ", " : "", f.columns[i],
+                           plus_minus_words(1 + f.amplitude(as_index(i)), f.deviation(as_index(i))));
+      return "each sensor reads a factor of its own of what is predicted: " + out;
+    }
+    default:
+      return "";
+  }
+}
+
 }  // namespace
 
 std::string sentence_of(const Finding& f, const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& r,
@@ -112,6 +151,8 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const statisti
   const auto amplitude = [&](double scale, const char* unit) {
     return plus_minus(std::abs(f.amplitude(0)), f.deviation(0), scale, unit);
   };
+  if (!s.standing->has_tool_point())
+    if (const std::string words = of_channels(f, s); !words.empty()) return words;
   switch (f.id) {
     case PatternId::elastic:
     case PatternId::elastic_by_site:
@@ -157,6 +198,8 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const statisti
       return "the misfit is perpendicular to the model's answer and not reciprocal: loads are recorded in axes turned "
              "by " +
              by_column(f, 1e3, "mrad") + ": misaligned";
+    case PatternId::sensor_gain:
+      return of_channels(f, s);
     case PatternId::sensor_axes:
       return "the misfit is perpendicular to the displacement and not reciprocal: the sensor's axes are turned by " +
              by_column(f, 1e3, "mrad") + ": misaligned";

@@ -2,14 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "msa/base/index.h"
 #include "validation/compare/comparison.h"
 
 namespace deflect::compare {
+namespace {
+
+/// Of each reading: its pose; where a subject without tool point has one pose alone, which of its loads act, and in
+/// which sense.
+std::vector<std::size_t> groups_of(const ResidualStudy& s) {
+  std::vector<std::size_t> out;
+  const bool by_load = !s.standing->has_tool_point() && s.data->poses.size() == 1;
+  std::map<std::vector<int>, std::size_t> known;
+  for (std::size_t i = 0; i < s.data->readings.size(); ++i) {
+    std::vector<int> signs;
+    for (const double load : s.loads.col(as_index(i))) signs.push_back(load > 0 ? 1 : load < 0 ? -1 : 0);
+    out.push_back(by_load ? known.emplace(signs, known.size()).first->second : s.data->readings[i].pose);
+  }
+  return out;
+}
+
+}  // namespace
 
 HeldOut::HeldOut(const ResidualStudy& s, const statistics::Uncertainty& u, const std::vector<bool>& set_aside)
-    : study_(&s), uncertainty_(&u), set_aside_(set_aside), folds_(std::min<std::size_t>(10, s.data->poses.size())) {
+    : study_(&s), uncertainty_(&u), set_aside_(set_aside), group_(groups_of(s)) {
+  folds_ = std::min<std::size_t>(10, 1 + *std::max_element(group_.begin(), group_.end()));
   const MatrixX& B = u.whitening()->shared();
   if (folds_ < 2 || B.cols() == 0) return;
   std::vector<std::vector<Eigen::Index>> rows(folds_);
@@ -28,7 +47,7 @@ HeldOut::HeldOut(const ResidualStudy& s, const statistics::Uncertainty& u, const
 }
 
 std::size_t HeldOut::fold_of(std::size_t value) const {
-  return study_->data->readings[study_->values[value].reading].pose % folds_;
+  return group_[study_->values[value].reading] % folds_;
 }
 
 double HeldOut::rmse(const VectorX& residual) const {
@@ -48,11 +67,11 @@ double HeldOut::rmse(const VectorX& residual) const {
       eta[fold] = others_[fold].solve(all);
     }
   }
-  const bool rotations = rotations_alone(study_->values);
+  const measurement::Quantity quantity = quantity_of_errors(study_->values);
   double squares = 0;
   std::size_t n = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
-    if (set_aside_[study_->values[i].reading] || study_->values[i].rotation != rotations) continue;
+    if (set_aside_[study_->values[i].reading] || study_->values[i].quantity != quantity) continue;
     const auto row = as_index(i);
     const double left = residual(row) - uncertainty_->tolerances().shared.row(row).dot(eta[fold_of(i)]);
     squares += left * left;

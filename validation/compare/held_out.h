@@ -18,7 +18,7 @@ class HeldOut {
   /// The study and the uncertainty must outlive it. `set_aside` must be the same as in the uncertainty.
   HeldOut(const ResidualStudy&, const statistics::Uncertainty&, const std::vector<bool>& set_aside);
 
-  /// Root mean square of the translations, m, or of the rotations, rad, where only these were measured. `residual`: of
+  /// Root mean square over the numbers of the quantity of errors (errors_by_group.h). `residual`: of
   /// all measured numbers, m and rad.
   double rmse(const VectorX& residual) const;
 
@@ -28,7 +28,8 @@ class HeldOut {
   const ResidualStudy* study_;
   const statistics::Uncertainty* uncertainty_;
   std::vector<bool> set_aside_;
-  std::size_t folds_;
+  std::vector<std::size_t> group_;  // of each reading; held out together
+  std::size_t folds_ = 1;
   std::vector<Eigen::LLT<MatrixX>> others_;  // of 1 + BᵀB over all folds but one
 };
 

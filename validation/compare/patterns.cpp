@@ -1,5 +1,6 @@
 #include "validation/compare/patterns.h"
 #include "msa/base/index.h"
+#include "validation/statistics/uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,14 @@ namespace deflect::compare {
 namespace {
 
 using Block = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// A pattern as displacements of T.
+struct ToolPattern {
+  PatternId id;
+  std::vector<std::string> columns;
+  std::string unit;
+  Columns by_reading;
+};
 
 constexpr PatternRow pattern_rows[] = {
     {PatternId::elastic, "elastic", "a compliance is missing, alike everywhere"},
@@ -27,6 +36,7 @@ constexpr PatternRow pattern_rows[] = {
     {PatternId::load_gain, "load gain", "loads are recorded with a wrong factor"},
     {PatternId::load_axes, "load axes", "loads are recorded in turned axes"},
     {PatternId::sensor_axes, "sensor axes", "displacements are recorded in turned axes"},
+    {PatternId::sensor_gain, "sensor gain", "a sensor reads with a wrong factor"},
     {PatternId::elastic_at, "elastic at", "a compliance is missing at one site"},
     {PatternId::elastic_along_slides, "elastic along slides", "a compliance is missing along slides"},
     {PatternId::elastic_across_slides, "elastic across slides", "a compliance is missing across slides"},
@@ -79,7 +89,7 @@ std::vector<double> ranks(const measurement::Measurements& m) {
   return out;
 }
 
-Pattern base_tilt(const ResidualStudy& s) {
+ToolPattern base_tilt(const ResidualStudy& s) {
   return {PatternId::base_tilt, {"rx", "ry"}, "rad/Nm", by_reading(s, [&](std::size_t i) {
             const std::size_t pose = s.data->readings[i].pose;
             const subject::BodyFrame base = s.standing->base(pose);
@@ -95,7 +105,7 @@ Pattern base_tilt(const ResidualStudy& s) {
           })};
 }
 
-Pattern tool(const ResidualStudy& s) {
+ToolPattern tool(const ResidualStudy& s) {
   return {PatternId::tool, axes, "m/N", by_reading(s, [&](std::size_t i) {
             const Matrix3 R = s.standing->tool(s.data->readings[i].pose).R_W;
             Block out = Block::Zero(6, 3);
@@ -130,8 +140,8 @@ std::vector<MatrixX> stop_forces(const ResidualStudy& s) {
   return out;
 }
 
-Pattern hysteresis(const ResidualStudy& s, bool rotation) {
-  Pattern p{PatternId::hysteresis, {"lag"}, rotation ? "rad" : "m", site_column(s, [&](std::size_t i, std::size_t k) {
+ToolPattern hysteresis(const ResidualStudy& s, bool rotation) {
+  ToolPattern p{PatternId::hysteresis, {"lag"}, rotation ? "rad" : "m", site_column(s, [&](std::size_t i, std::size_t k) {
               return -s.heading[i](as_index(k));
             })};
   if (s.sites.front().front().s.isZero(0)) return p;
@@ -186,8 +196,10 @@ Columns site_columns(const ResidualStudy& s, const std::function<double(std::siz
   });
 }
 
-std::vector<Pattern> patterns_of(const ResidualStudy& s) {
-  std::vector<Pattern> out;
+namespace {
+
+std::vector<ToolPattern> tool_patterns(const ResidualStudy& s) {
+  std::vector<ToolPattern> out;
   const auto& sites = s.sites.front();
   const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](as_index(k)); };
   std::vector<std::string> names;
@@ -235,6 +247,49 @@ std::vector<Pattern> patterns_of(const ResidualStudy& s) {
                  })});
   out.push_back({PatternId::sensor_axes, axes, "rad",
                  by_reading(s, [&](std::size_t i) { return turned(Matrix6::Identity(), s.predicted[i].head<6>()); })});
+  return out;
+}
+
+/// One column for each channel that was read: what `value` gives for a number of it.
+Pattern by_channel(const ResidualStudy& s, PatternId id, const std::string& unit,
+                   const std::function<double(const measurement::MeasuredValue&)>& value) {
+  Pattern p{id, {}, unit, {}};
+  std::vector<Eigen::Index> column(6 + s.data->instruments.sensors.size(), -1);
+  for (const measurement::MeasuredValue& v : s.values)
+    if (Eigen::Index& k = column[v.channel]; k < 0) {
+      k = std::ssize(p.columns);
+      p.columns.push_back(measurement::channel_name(*s.data, v.channel));
+    }
+  p.rows = MatrixX::Zero(std::ssize(s.values), std::ssize(p.columns));
+  for (std::size_t i = 0; i < s.values.size(); ++i)
+    p.rows(as_index(i), column[s.values[i].channel]) = value(s.values[i]);
+  return p;
+}
+
+std::vector<Pattern> channel_patterns(const ResidualStudy& s) {
+  std::vector<Pattern> out;
+  const auto predicted = [&](const measurement::MeasuredValue& v) {
+    return s.predicted[v.reading](as_index(v.channel));
+  };
+  out.push_back(by_channel(s, PatternId::offset, "SI", [](const auto&) { return 1; }));
+  if (s.sequence)
+    out.push_back(by_channel(s, PatternId::drift, "SI", [rank = ranks(*s.data)](const auto& v) { return rank[v.reading]; }));
+  if (s.data->temperature_recorded)
+    out.push_back(by_channel(s, PatternId::temperature, "SI/K", [&](const auto& v) {
+      return s.data->readings[v.reading].temperature_C - 20;
+    }));
+  out.push_back({PatternId::load_gain, {"gain"}, "1", statistics::rows_of(s.values, s.predicted)});
+  out.push_back(by_channel(s, PatternId::sensor_gain, "1", predicted));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Pattern> patterns_of(const ResidualStudy& s) {
+  if (!s.standing->has_tool_point()) return channel_patterns(s);
+  std::vector<Pattern> out;
+  for (ToolPattern& p : tool_patterns(s))
+    out.push_back({p.id, std::move(p.columns), std::move(p.unit), statistics::rows_of(s.values, p.by_reading)});
   return out;
 }
 

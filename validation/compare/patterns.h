@@ -18,6 +18,9 @@
 //   offset           the same displacement in every reading
 //   drift            growth with the rank in the sequence; temperature: growth with the temperature
 //   load gain        prediction times a factor; load axes, sensor axes: small rotations of either
+//
+// A subject without tool point (a frame) has, of these, load gain, and by channel offset, drift, temperature and
+//   sensor gain      the prediction of one channel times a factor
 #pragma once
 
 #include <functional>
@@ -46,6 +49,7 @@ enum class PatternId {
   load_gain,
   load_axes,
   sensor_axes,
+  sensor_gain,
   elastic_at,  ///< one site alone
   elastic_along_slides,
   elastic_across_slides,
@@ -62,7 +66,7 @@ struct Pattern {
   PatternId id;
   std::vector<std::string> columns;  ///< what each amplitude belongs to
   std::string unit;                  ///< of the amplitudes
-  Columns by_reading;
+  MatrixX rows;                      ///< over the measured numbers
 };
 
 /// The patterns that the data and the mechanism allow, in the order of the list above.

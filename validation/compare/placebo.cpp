@@ -13,7 +13,7 @@ double placebo_rmse(const Comparison& before, const Comparison& after) {
   const VectorX change =
       statistics::rows_of(s.values, after.study.predicted) - statistics::rows_of(s.values, s.predicted);
   const VectorX& r = before.residual;
-  const bool rotations = rotations_alone(s.values);
+  const measurement::Quantity quantity = quantity_of_errors(s.values);
   measurement::Random random(20110101);
   std::vector<double> reached;
   for (int draw = 0; draw < 99; ++draw) {
@@ -26,7 +26,7 @@ double placebo_rmse(const Comparison& before, const Comparison& after) {
     const VectorX left = own > 0 ? VectorX(r - x * (x.dot(r) / own)) : r;
     double squares = 0, n = 0;
     for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (s.values[i].rotation == rotations) {
+      if (s.values[i].quantity == quantity) {
         squares += left(as_index(i)) * left(as_index(i));
         n += 1;
       }

@@ -46,7 +46,7 @@ double cost_of_scale(const Comparison& c, const recording::Correction& correctio
   double sum = 0;
   for (const measurement::MeasuredValue& v : c.study.values) {
     const measurement::Reading& r = c.study.data->readings[v.reading];
-    const bool told = correction.sigma_too && (v.rotation ? r.sigma_th : r.sigma_u).has_value();
+    const bool told = correction.sigma_too && (v.quantity == measurement::Quantity::angle ? r.sigma_th : r.sigma_u).has_value();
     if (!told && v.of_tool_point()) sum -= 2 * std::log(std::abs(correction.displacement.factor[v.channel]));
   }
   return sum;
@@ -222,7 +222,7 @@ std::vector<RecordingMistake> recording_mistakes(const subject::Subject& subject
   // Where nearly all is misfit it may be the readings that are in another unit than their σ: they are asked first.
   const std::vector<RecordingMistake> sigma = sigma_oddities(c);
   if (out.empty() && before.share < gross_misfit) out = sigma;
-  if (out.empty() && fits_badly(c, before)) {
+  if (out.empty() && c.study.standing->has_tool_point() && fits_badly(c, before)) {
     const CorrectionScreen screen(subject, c, threads);
     MistakeSearch search(c, before, screen.equal_within(), again);
     search.look_among(promising_readings(c, screen));

@@ -42,6 +42,7 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
   s.subject = subject;
   s.data = &data;
   s.standing = subject.stand(data);
+  s.loads = measurement::loads_of(data);
   s.values = measurement::measured_values(data, s.standing->sensor_forms(data));
   s.sequence = std::all_of(data.readings.begin(), data.readings.end(),
                            [](const measurement::Reading& r) { return r.sequence.has_value(); });
@@ -58,9 +59,9 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
 }
 
 std::vector<VectorX> deformed_shape_of(const ResidualStudy& s, const parallel::Work& work) {
-  if (s.subject->geometry() != Geometry::linear) return {};
+  if (s.subject->geometry() != Geometry::linear || s.subject->true_geometry() == Geometry::linear) return {};
   prediction::PredictionOptions o;
-  o.geometry = Geometry::finite;
+  o.geometry = s.subject->true_geometry();
   // A load may be beyond what the deformed shape carries, or the subject does not stand in it.
   const auto finite = outcome_of([&] { return s.standing->predict(*s.data, o, work); });
   std::vector<VectorX> shape = finite.value.value_or(std::vector<VectorX>());

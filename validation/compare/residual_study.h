@@ -16,6 +16,7 @@ struct ResidualStudy {
   const measurement::Measurements* data = nullptr;
   std::shared_ptr<const subject::Standing> standing;  ///< the subject at the poses, as drawn
   std::vector<measurement::MeasuredValue> values;     ///< the measured numbers
+  MatrixX loads;                                      ///< by load channel and reading (loads_of)
   std::vector<VectorX> predicted;                     ///< of all channels (Standing::predict)
   std::vector<VectorX> deformed_shape;                ///< finite − linear geometry; empty: in `predicted`, or unknown
   std::vector<std::vector<subject::Site>> sites;      ///< by pose
@@ -28,7 +29,7 @@ struct ResidualStudy {
 /// Computes everything except `deformed_shape`. The data must outlive the study.
 ResidualStudy residual_study(const subject::Subject&, const measurement::Measurements&, const parallel::Work& = {});
 
-/// ResidualStudy::deformed_shape, for a subject in linear geometry. This takes most of the time of a study.
+/// ResidualStudy::deformed_shape, for a subject in linear geometry that is really in another (true_geometry). This takes most of the time of a study.
 std::vector<VectorX> deformed_shape_of(const ResidualStudy&, const parallel::Work& = {});
 
 /// Estimates deformed_shape of a reading under another load: it is even in the load and scales with its square. Zero

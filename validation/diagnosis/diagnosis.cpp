@@ -34,9 +34,9 @@ Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
 /// What is left, in words.
 std::string left_over_pattern(const Observations& o, const subject::Subject& subject) {
   const compare::ResidualStudy& s = o.comparison().study;
-  const std::vector<compare::Pattern> patterns = compare::patterns_of(s);
+  std::vector<compare::Pattern> patterns = compare::patterns_of(s);
   std::vector<MatrixX> columns;
-  for (const compare::Pattern& p : patterns) columns.push_back(statistics::rows_of(s.values, p.by_reading));
+  for (compare::Pattern& p : patterns) columns.push_back(std::move(p.rows));
   std::string out;
   for (const compare::Finding& f :
        compare::find_patterns(s, o.uncertainty(), o.residual(subject), patterns, columns).findings)
@@ -162,7 +162,7 @@ Diagnosis before_any_effect(const Observations& o, const measurement::Measuremen
   d.mistakes = o.comparison().mistakes;
   d.readings = o.comparison().readings;
   d.set_aside = o.set_aside();
-  d.rotations = compare::rotations_alone(o.comparison().study.values);
+  d.quantity = compare::quantity_of_errors(o.comparison().study.values);
   d.noise_floor = o.comparison().sigma_u;
   d.tolerance_scale = o.tolerance_scale();
   return d;

@@ -47,8 +47,8 @@ struct Diagnosis {
   Fit fit;                            ///< of all of them
   std::vector<std::vector<std::string>> indistinguishable;
   Quality baseline, final;
-  bool rotations = false;      ///< only rotations were measured: rad in place of m
-  double noise_floor = 0;      ///< m: σ of a reading
+  measurement::Quantity quantity = measurement::Quantity::length;  ///< of errors (errors_by_group.h)
+  double noise_floor = 0;                                          ///< σ of a reading, SI
   double tolerance_scale = 1;  ///< apparent size of the machine's tolerances over that declared
   std::size_t readings = 0;
   std::size_t set_aside = 0;  ///< readings that are gross outliers given what was found

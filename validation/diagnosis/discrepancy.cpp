@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "msa/base/index.h"
 #include "validation/compare/slides.h"
@@ -22,7 +23,7 @@ const std::vector<double>& scales() {
 MatrixX by_sites(const compare::ResidualStudy& s) {
   std::vector<MatrixX> parts;
   for (const compare::Pattern& p : compare::patterns_of(s))
-    parts.push_back(statistics::rows_of(s.values, p.by_reading));
+    parts.push_back(p.rows);
   if (!s.sites.front().empty()) {
     const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](as_index(k)); };
     const auto site = [&](std::size_t i, std::size_t k) -> const subject::Site& {
@@ -48,19 +49,46 @@ MatrixX by_sites(const compare::ResidualStudy& s) {
   return statistics::side_by_side(parts, std::ssize(s.values));
 }
 
-/// At each pose and for each component (b · 6 + c): as much as 10 N do, and what is in proportion to each force.
+/// The freedoms that a number's channel is one of: the six of T, or the sensors of a subject without T.
+VectorX freedoms_of(const compare::ResidualStudy& s, const measurement::MeasuredValue& v) {
+  if (s.standing->has_tool_point()) return v.form;
+  return VectorX::Unit(std::ssize(s.data->instruments.sensors), as_index(v.channel) - 6);
+}
+
+/// The loads that patterns are made of, by reading (columns): forces at T, or the most used loads of a frame, each as a
+/// share of its largest.
+MatrixX leading_loads(const compare::ResidualStudy& s) {
+  if (s.standing->has_tool_point()) return s.loads.topRows(3);
+  constexpr Eigen::Index most = 6;
+  std::vector<Eigen::Index> order(as_size(s.loads.rows()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const VectorX largest = s.loads.cwiseAbs().rowwise().maxCoeff();
+  const auto used = [&](Eigen::Index k) { return (s.loads.row(k).array() != 0).count(); };
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return used(a) > used(b); });
+  MatrixX out(std::min(most, s.loads.rows()), s.loads.cols());
+  for (Eigen::Index k = 0; k < out.rows(); ++k)
+    out.row(k) = s.loads.row(nth(order, k)) / std::max(largest(nth(order, k)), 1e-300);
+  return out;
+}
+
+/// At each pose and for each freedom c of what is read (column b n + c): as much as 10 N do (in a frame all loads), and
+/// what is in proportion to each load.
 statistics::PartedColumns by_poses(const compare::ResidualStudy& s) {
   statistics::PartedColumns out(MatrixX(std::ssize(s.values), 0));
   out.groups.resize(s.data->poses.size());
   for (std::size_t i = 0; i < s.values.size(); ++i)
     out.groups[s.data->readings[s.values[i].reading].pose].rows.push_back(as_index(i));
+  const MatrixX loads = leading_loads(s);
+  const double unit_load = s.standing->has_tool_point() ? 10 : 1;
   for (statistics::GroupColumns& g : out.groups) {
-    g.columns = MatrixX::Zero(std::ssize(g.rows), 24);
     for (std::size_t i = 0; i < g.rows.size(); ++i) {
       const measurement::MeasuredValue& v = nth(s.values, g.rows[i]);
-      const Vector6& load = s.data->readings[v.reading].load;
-      for (Eigen::Index b = 0; b < 4; ++b)
-        g.columns.row(as_index(i)).segment<6>(6 * b) = (b == 0 ? 10 : load(b - 1)) * v.form.transpose();
+      const VectorX freedoms = freedoms_of(s, v);
+      const Eigen::Index n = freedoms.size();
+      if (i == 0) g.columns = MatrixX::Zero(std::ssize(g.rows), n * (1 + loads.rows()));
+      for (Eigen::Index b = 0; b <= loads.rows(); ++b)
+        g.columns.row(as_index(i)).segment(n * b, n) =
+            (b == 0 ? unit_load : loads(b - 1, as_index(v.reading))) * freedoms.transpose();
     }
   }
   return out;
@@ -68,28 +96,34 @@ statistics::PartedColumns by_poses(const compare::ResidualStudy& s) {
 
 MatrixX by_loads(const compare::ResidualStudy& s) {
   const std::vector<measurement::Reading>& readings = s.data->readings;
-  std::vector<VectorX> basis(readings.size(), VectorX(15));
+  const MatrixX loads = leading_loads(s);
+  const Eigen::Index count = loads.rows();
+  std::vector<VectorX> basis(readings.size(), VectorX(4 * count + 3));
   double first = INFINITY, last = -INFINITY;
   for (const measurement::Reading& r : readings)
     if (r.sequence) first = std::min(first, *r.sequence), last = std::max(last, *r.sequence);
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    const Vector3 f = readings[i].load.head<3>();
+    const VectorX f = loads.col(as_index(i));
     const double time =
         readings[i].sequence && last > first ? 2 * (*readings[i].sequence - first) / (last - first) - 1 : 0;
     const double warmer = readings[i].temperature_C - 20;
     Eigen::Index at = 0;
-    for (Eigen::Index k = 0; k < 3; ++k) {
+    for (Eigen::Index k = 0; k < count; ++k) {
       const double sign = f(k) > 0 ? 1 : f(k) < 0 ? -1 : 0;
-      for (const double value : {sign, std::abs(f(k)), sign * f(k) * f(k), f(k) * f((k + 1) % 3)})
+      for (const double value : {sign, std::abs(f(k)), sign * f(k) * f(k), f(k) * f((k + 1) % count)})
         basis[i](at++) = value;
     }
     basis[i].tail<3>() << time * time, time * time * time, warmer * warmer;
   }
-  // Of all components c of the displacement: basis(reading, b) in column b · 6 + c.
-  MatrixX out = MatrixX::Zero(std::ssize(s.values), 6 * basis.front().size());
-  for (std::size_t i = 0; i < s.values.size(); ++i)
+  // Of all freedoms c of what is read: basis(reading, b) in column b n + c.
+  MatrixX out;
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    const VectorX freedoms = freedoms_of(s, s.values[i]);
+    const Eigen::Index n = freedoms.size();
+    if (i == 0) out = MatrixX::Zero(std::ssize(s.values), n * basis.front().size());
     for (Eigen::Index b = 0; b < basis.front().size(); ++b)
-      out.row(as_index(i)).segment<6>(6 * b) = basis[s.values[i].reading](b) * s.values[i].form.transpose();
+      out.row(as_index(i)).segment(n * b, n) = basis[s.values[i].reading](b) * freedoms.transpose();
+  }
   return out;
 }
 

@@ -30,9 +30,10 @@ std::shared_ptr<const statistics::Uncertainty> uncertainty_of(const compare::Com
 /// What equilibrium in the deformed shape adds to a subject's readings; nothing where it does not stand in it.
 std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject) {
   const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
+  if (subject.true_geometry() == Geometry::linear) return std::nullopt;
   prediction::PredictionOptions linear, finite;
   linear.geometry = Geometry::linear;
-  finite.geometry = Geometry::finite;
+  finite.geometry = subject.true_geometry();
   return outcome_of([&] {
            return VectorX(statistics::rows_of(s.values, standing->predict(*s.data, finite)) -
                           statistics::rows_of(s.values, standing->predict(*s.data, linear)));
@@ -53,8 +54,11 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
       uncertainty_(uncertainty_of(*comparison_, A_, aside_)) {
   const compare::ResidualStudy& s = comparison_->study;
   measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
-  shape_ = s.deformed_shape.empty() ? VectorX(VectorX::Zero(measured_.size()))
-                                    : statistics::rows_of(s.values, s.deformed_shape);
+  shape_ = VectorX::Zero(measured_.size());
+  if (!s.deformed_shape.empty())
+    shape_ = statistics::rows_of(s.values, s.deformed_shape);
+  else if (subject.geometry() != Geometry::linear)
+    shape_ = deformed_shape_of(s, subject).value_or(shape_);
   tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);

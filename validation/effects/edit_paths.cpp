@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "msa/base/error.h"
@@ -10,6 +11,7 @@
 #include "msa/base/outcome.h"
 #include "msa/fields/field_writer.h"
 #include "msa/fields/tree_edit.h"
+#include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/fields.h"
@@ -64,8 +66,12 @@ std::vector<Drive> drives_of(const Mechanism& m, std::optional<int> leg) {
   return found;
 }
 
+const Material& elastic(const Material& m) { return m; }
+const Material& elastic(const frame::FrameMaterial& m) { return m.elastic; }
+
 /// "materials.*.<moduli>" as E of each material and G of those that give it.
-std::vector<std::string> moduli(const std::string& path, const Mechanism& m) {
+template <class Description>
+std::vector<std::string> moduli(const std::string& path, const Description& m) {
   const std::vector<std::string> at = segments_of(path);
   if (at.size() != 3 || at[0] != "materials")
     throw InputError(
@@ -74,7 +80,7 @@ std::vector<std::string> moduli(const std::string& path, const Mechanism& m) {
   for (const auto& [name, material] : m.materials) {
     if (at[1] != "*" && at[1] != name) continue;
     out.push_back(fmt::format("materials.{}.E", name));
-    if (material.G) out.push_back(fmt::format("materials.{}.G", name));
+    if (elastic(material).G) out.push_back(fmt::format("materials.{}.G", name));
   }
   if (out.empty()) throw InputError(fmt::format("{}: there is no such material", path));
   return out;
@@ -167,23 +173,50 @@ std::vector<std::string> in_varied_legs_too(std::vector<std::string> paths, cons
   return paths;
 }
 
-std::vector<std::string> first_alternative(const EffectEdit& edit, const Mechanism& m, std::optional<int> leg) {
-  if (edit.paths.size() == 1) return selected(edit.paths.front(), m, leg);
-  const YamlNode tree = tree_of(m);
+/// What the first of the paths that is there becomes.
+std::vector<std::string> first_there(const EffectEdit& edit,
+                                     const std::function<std::vector<std::string>(const std::string&)>& become) {
   std::string first_error;
   for (const std::string& path : edit.paths) {
-    auto found = outcome_of<InputError>([&] {
-      std::vector<std::string> all = selected(path, m, leg);
-      for (const std::string& each : all) require_there(tree, each, m);
-      return all;
-    });
+    auto found = outcome_of<InputError>([&] { return become(path); });
     if (found) return std::move(*found);
     if (first_error.empty()) first_error = found.why;
   }
   throw InputError(first_error);
 }
 
+std::vector<std::string> first_alternative(const EffectEdit& edit, const Mechanism& m, std::optional<int> leg) {
+  if (edit.paths.size() == 1) return selected(edit.paths.front(), m, leg);
+  const YamlNode tree = tree_of(m);
+  return first_there(edit, [&](const std::string& path) {
+    std::vector<std::string> all = selected(path, m, leg);
+    for (const std::string& each : all) require_there(tree, each, m);
+    return all;
+  });
+}
+
+std::vector<std::string> selected(const std::string& path, const frame::FrameDescription& f) {
+  if (path.ends_with(".<moduli>")) return moduli(path, f);
+  if (path.find('<') != path.npos || path.starts_with("leg.") || path.starts_with("leg["))
+    throw InputError(fmt::format("{}: a frame has no legs and nothing that is driven", path));
+  return {path};
+}
+
 }  // namespace
+
+std::vector<std::string> paths_of(const EffectEdit& edit, const frame::FrameDescription& f) {
+  if (edit.paths.size() == 1) return selected(edit.paths.front(), f);
+  const YamlNode tree = frame::tree_of(f);
+  return first_there(edit, [&](const std::string& path) {
+    std::vector<std::string> all = selected(path, f);
+    for (const std::string& each : all) places(tree, each, "");
+    return all;
+  });
+}
+
+std::vector<std::string> paths_of(const EffectEdit& edit, const subject::Subject& s) {
+  return s.frame() ? paths_of(edit, *s.frame()) : paths_of(edit, *s.machine(), std::nullopt);
+}
 
 std::vector<std::string> paths_of(const EffectEdit& edit, const Mechanism& m, std::optional<int> leg) {
   return in_varied_legs_too(first_alternative(edit, m, leg), m);

@@ -7,6 +7,7 @@
 
 #include "msa/mechanism/description.h"
 #include "validation/effects/effect.h"
+#include "validation/subject/subject.h"
 
 namespace deflect::effects {
 
@@ -14,5 +15,9 @@ namespace deflect::effects {
 /// ("leg[4].actuator.tz"). Where a variation replaces a whole field in some leg, the path in that leg is added. Throws
 /// InputError with the nearest valid name where no alternative exists.
 std::vector<std::string> paths_of(const EffectEdit&, const Mechanism&, std::optional<int> leg);
+/// The same of a frame, which has no legs and no drives. Of the selectors it knows <moduli>.
+std::vector<std::string> paths_of(const EffectEdit&, const frame::FrameDescription&);
+/// Of either; every leg where it has legs.
+std::vector<std::string> paths_of(const EffectEdit&, const subject::Subject&);
 
 }  // namespace deflect::effects

@@ -39,6 +39,10 @@ EffectParameter spring(const subject::Place& p, const char* words) {
 
 bool in_series(const subject::Place& p) { return !p.freedoms.empty() && p.hold != subject::Hold::free; }
 bool single(const subject::Place& p) { return p.freedoms.size() == 1; }
+/// A frame has many ends of members: there only what is common is looked for.
+bool may_be_loose(const subject::Place& p) {
+  return in_series(p) && single(p) && !(p.kind == subject::PlaceKind::member_end && p.path.starts_with("members."));
+}
 
 /// One law where it can act.
 struct PlaceLaw {
@@ -98,6 +102,35 @@ const PlaceLaw laws[] = {
      EffectEdit::Action::multiply,
      ".bending_factor"},
     {"factor",
+     [](const subject::Place& p) { return p.path.starts_with("members.") && p.freedoms.empty(); },
+     "is not as stiff as described",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.9, 0.01, 50, true, 1, "true stiffness over the one in the description"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"{} is softer or stiffer than its section and material say: another section or grade, corrosion, a crack, a loose "
+      "connection, cladding that carries. A factor near zero is a member that does nothing.",
+      "Readings are off in proportion to the force in {}, and its share of the load goes to its neighbours.",
+      "Measure its section; tap it and listen; read the strain on it under a known load.",
+      "Repair it, or put the factor into the model."},
+     false,
+     EffectEdit::Action::multiply,
+     ".factor"},
+    {"factor",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::load; },
+     "is not as large as described",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{{"factor", "", 0.95, 0.1, 10, true, 1, "true load over the recorded one"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"The load {} is another one than described: a weight that was not weighed, a jack with friction, a wrong unit.",
+      "All readings under {} are off by one factor, those under other loads are right.",
+      "Weigh it, or put a load cell under it.", "Put the measured load in."},
+     false,
+     EffectEdit::Action::multiply,
+     ".factor"},
+    {"factor",
      [](const subject::Place& p) { return p.path.starts_with("materials."); },
      "is stiffer or softer than described",
      [](const subject::Place&) {
@@ -135,7 +168,7 @@ const PlaceLaw laws[] = {
      false,
      EffectEdit::Action::set},
     {"clearance",
-     [](const subject::Place& p) { return in_series(p) && single(p); },
+     may_be_loose,
      "has play",
      [](const subject::Place& p) {
        const Units& u = units(p);
@@ -147,7 +180,7 @@ const PlaceLaw laws[] = {
       "A step where the force in {} changes sign, of the same size at every load; nothing grows with the load.",
       "Push and pull by a small force: it jumps by the whole play.", "Preload {} or take up the play."}},
     {"pull",
-     [](const subject::Place& p) { return in_series(p) && single(p); },
+     may_be_loose,
      "yields to positive force alone",
      [](const subject::Place& p) {
        const Units& u = units(p);
@@ -161,7 +194,7 @@ const PlaceLaw laws[] = {
       "The displacement is too large for one sense of the load and right for the other.",
       "Load both senses: two slopes that meet at zero.", "Preload {}."}},
     {"push",
-     [](const subject::Place& p) { return in_series(p) && single(p); },
+     may_be_loose,
      "yields to negative force alone",
      [](const subject::Place& p) {
        const Units& u = units(p);
@@ -257,7 +290,7 @@ std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p, c
   if (law.id == std::string("friction") && p.hold == subject::Hold::elastic) head += ".beside";
   std::vector<EffectEdit> out;
   for (const std::size_t i : p.freedoms)
-    out.push_back({law.action, {fmt::format("{}.{}{}", head, freedom_names.at(i), law.field)}, value});
+    out.push_back({law.action, {fmt::format("{}.{}{}", head, subject::freedom_name(p, i), law.field)}, value});
   if (p.freedoms.empty()) out.push_back({law.action, {head + law.field}, value});
   return out;
 }
@@ -282,11 +315,11 @@ Effect effect_of(const PlaceLaw& law, const subject::Place& p, bool several_legs
 }
 
 /// What an effect does to the machine, without the names of its parameters; nothing where it has no place in it.
-std::optional<std::string> key_of(const Effect& e, const Mechanism& m) {
+std::optional<std::string> key_of(const Effect& e, const subject::Subject& subject) {
   static const std::regex names(R"(\$[A-Za-z0-9_-]+)");
   std::set<std::string> edits;
   for (const EffectEdit& edit : e.edits) {
-    const auto paths = outcome_of([&] { return paths_of(edit, m, std::nullopt); });
+    const auto paths = outcome_of([&] { return paths_of(edit, subject); });
     if (!paths) return std::nullopt;
     for (const std::string& path : *paths)
       edits.insert(
@@ -298,15 +331,13 @@ std::optional<std::string> key_of(const Effect& e, const Mechanism& m) {
 }  // namespace
 
 std::vector<Effect> place_effects(const subject::Subject& subject, const std::vector<Effect>& named) {
-  if (!subject.machine()) return {};
-  const Mechanism& m = *subject.machine();
   std::set<std::string> known;
   for (const Effect& e : named)
-    if (const auto key = key_of(e, m)) known.insert(*key);
+    if (const auto key = key_of(e, subject)) known.insert(*key);
   const bool several = subject.legs() > 1;
   std::vector<Effect> out;
   const auto add = [&](Effect e) {
-    const auto key = key_of(e, m);
+    const auto key = key_of(e, subject);
     if (key && known.insert(*key).second) out.push_back(std::move(e));
   };
   for (const subject::Place& place : subject.places())

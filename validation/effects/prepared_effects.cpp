@@ -17,26 +17,47 @@ double plain_value(const EffectParameter& p) {
   return p.start + 0.11 * (to - p.start);
 }
 
+// What differs between machines and frames.
+const Mechanism& description(const DependentMechanism& d) { return d.mechanism; }
+const frame::FrameDescription& description(const frame::DependentFrame& d) { return d.frame; }
+DependentMechanism with_one(const DependentMechanism& m, const PlacedEffect& p, const VectorX& values,
+                            std::size_t first) {
+  return with_effect(m, *p.effect, values, p.leg, first);
+}
+frame::DependentFrame with_one(const frame::DependentFrame& f, const PlacedEffect& p, const VectorX& values,
+                               std::size_t first) {
+  return with_effect(f, *p.effect, values, first);
+}
+DependentMechanism dependent(const Mechanism& m) { return {m}; }
+frame::DependentFrame dependent(const frame::FrameDescription& f) { return {f}; }
+frame::DependentFrame resolved(frame::DependentFrame f) { return f; }
+frame::FrameDescription resolved(frame::FrameDescription f) { return f; }
+
 }  // namespace
 
 PreparedEffects::PreparedEffects(const subject::Subject& subject, std::vector<PlacedEffect> effects)
     : effects_(std::move(effects)) {
-  if (!subject.machine()) throw InputError(subject.name() + ": effects act on parts of machines, this is a frame");
-  bare_ = *subject.machine();
-  DependentMechanism with{bare_};
+  if (subject.frame())
+    prepare(frame::DependentFrame{*subject.frame()});
+  else
+    prepare(DependentMechanism{*subject.machine()});
+}
+
+template <class Dependent>
+void PreparedEffects::prepare(Dependent with) {
+  auto bare = description(with);
   for (const PlacedEffect& p : effects_) {
     VectorX values(std::ssize(p.effect->parameters));
     for (Eigen::Index i = 0; i < values.size(); ++i) values(i) = plain_value(nth(p.effect->parameters, i));
-    with = with_effect(with, *p.effect, values, p.leg, parameters_.size());
+    with = with_one(with, p, values, parameters_.size());
     for (const EffectParameter& each : p.effect->parameters) parameters_.push_back(&each);
   }
-  with = resolved(with);
-  with_ = std::move(with.mechanism);
-  affine_ = find_slots(with.depends);
+  with = resolved(std::move(with));
+  affine_ = find_slots(described_numbers(description(with)), with.depends);
+  versions_ = Versions<decltype(bare)>{std::move(bare), description(with)};
 }
 
-bool PreparedEffects::find_slots(const Dependences& depends) {
-  const std::vector<DescribedNumber> numbers = described_numbers(with_);
+bool PreparedEffects::find_slots(const std::vector<DescribedNumber>& numbers, const Dependences& depends) {
   std::vector<bool> used(parameters_.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto found = depends.find(numbers[i].path);
@@ -49,25 +70,25 @@ bool PreparedEffects::find_slots(const Dependences& depends) {
   return std::all_of(used.begin(), used.end(), [](bool each) { return each; });
 }
 
-Mechanism PreparedEffects::edited_one_by_one(const VectorX& values) const {
-  Mechanism out = bare_;
+template <class Description>
+Description PreparedEffects::edited_one_by_one(const Description& bare, const VectorX& values) const {
+  auto out = dependent(bare);
   Eigen::Index from = 0;
   for (const PlacedEffect& p : effects_) {
     const auto count = std::ssize(p.effect->parameters);
-    out = with_effect(out, *p.effect, values.segment(from, count), p.leg);
+    out = dependent(description(with_one(out, p, values.segment(from, count), 0)));
     from += count;
   }
-  return resolved(out);
+  return resolved(description(out));
 }
 
-subject::Subject PreparedEffects::operator()(const VectorX& values) const { return machine(values); }
-
-Mechanism PreparedEffects::machine(const VectorX& values) const {
+template <class Description>
+Description PreparedEffects::at(const Versions<Description>& versions, const VectorX& values) const {
   bool vanishes = false;
   for (std::size_t i = 0; i < parameters_.size(); ++i)
     vanishes = vanishes || parameters_[i]->vanishes == values(as_index(i));
-  if (!affine_ || vanishes) return edited_one_by_one(values);
-  Mechanism out = with_;
+  if (!affine_ || vanishes) return edited_one_by_one(versions.bare, values);
+  Description out = versions.with;
   auto slot = slots_.begin();
   for_each_number(out, [&](std::size_t at, double& x) {
     if (slot == slots_.end() || slot->at != at) return;
@@ -75,6 +96,14 @@ Mechanism PreparedEffects::machine(const VectorX& values) const {
     ++slot;
   });
   return out;
+}
+
+subject::Subject PreparedEffects::operator()(const VectorX& values) const {
+  return std::visit([&](const auto& versions) { return subject::Subject(at(versions, values)); }, versions_);
+}
+
+Mechanism PreparedEffects::machine(const VectorX& values) const {
+  return at(std::get<Versions<Mechanism>>(versions_), values);
 }
 
 }  // namespace deflect::effects

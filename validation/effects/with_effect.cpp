@@ -7,6 +7,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/mechanism_tree.h"
@@ -16,8 +17,21 @@
 namespace deflect::effects {
 namespace {
 
-/// The effect's edits as edits of this mechanism; edits whose parameters vanish are left out.
-std::vector<TreeEdit> edits_of(const Effect& e, const EffectEdit& edit, const Mechanism& m, const VectorX& values,
+// What differs between machines and frames.
+const Mechanism& description(const DependentMechanism& d) { return d.mechanism; }
+const frame::FrameDescription& description(const frame::DependentFrame& d) { return d.frame; }
+int legs_of(const Mechanism& m) { return leg_count(m); }
+int legs_of(const frame::FrameDescription&) { return 0; }
+std::vector<std::string> paths(const EffectEdit& edit, const Mechanism& m, std::optional<int> leg) {
+  return paths_of(edit, m, leg);
+}
+std::vector<std::string> paths(const EffectEdit& edit, const frame::FrameDescription& f, std::optional<int>) {
+  return paths_of(edit, f);
+}
+
+/// The effect's edits as edits of this description; edits whose parameters vanish are left out.
+template <class Description>
+std::vector<TreeEdit> edits_of(const Effect& e, const EffectEdit& edit, const Description& m, const VectorX& values,
                                std::optional<int> leg, std::size_t first) {
   const YamlNode value = parse_yaml(edit.value, e.origin);
   const std::vector<bool> used = parameters_used(value, e);
@@ -28,16 +42,19 @@ std::vector<TreeEdit> edits_of(const Effect& e, const EffectEdit& edit, const Me
   YamlNode filled = filled_in(value, e, values, first);
   set_line(filled, 0);
   std::vector<TreeEdit> out;
-  for (const std::string& path : paths_of(edit, m, leg))
+  for (const std::string& path : paths(edit, m, leg))
     out.push_back({path, filled, static_cast<Edit::Action>(edit.action)});
   return out;
 }
 
-void check_arguments(const Effect& e, const Mechanism& m, const VectorX& values, std::optional<int> leg) {
+template <class Description>
+void check_arguments(const Effect& e, const Description& m, const VectorX& values, std::optional<int> leg) {
   if (as_size(values.size()) != e.parameters.size())
     throw InputError(fmt::format("effect '{}' has {} parameter{}, {} values are given", e.name, e.parameters.size(),
                                  e.parameters.size() == 1 ? "" : "s", values.size()));
-  const int legs = leg_count(m);
+  const int legs = legs_of(m);
+  if (e.scope == Scope::one_leg && legs == 0)
+    throw InputError(fmt::format("effect '{}' belongs to one leg: {} has none", e.name, m.name));
   if (e.scope == Scope::one_leg && !leg)
     throw InputError(fmt::format("effect '{}' belongs to one leg: say which, 1 to {}", e.name, legs));
   if (e.scope != Scope::one_leg && leg)
@@ -62,30 +79,34 @@ std::string line_of(const Effect& e, std::size_t edit) {
 }
 
 /// Edit by edit, so that a message can name the line that does not fit, and an edit can reach into the one before.
-DependentMechanism one_by_one(const DependentMechanism& m, const Effect& e, const VectorX& values,
-                              std::optional<int> leg, std::size_t first) {
-  DependentMechanism so_far = m;
+template <class Dependent>
+Dependent one_by_one(const Dependent& m, const Effect& e, const VectorX& values, std::optional<int> leg,
+                     std::size_t first) {
+  Dependent so_far = m;
   for (std::size_t i = 0; i < e.edits.size(); ++i)
     so_far = told_at<InputError>([&] { return line_of(e, i); },
                                  [&] {
                                    const std::vector<TreeEdit> edits =
-                                       edits_of(e, e.edits[i], so_far.mechanism, values, leg, first);
+                                       edits_of(e, e.edits[i], description(so_far), values, leg, first);
                                    return edited_in_turn(so_far, edits);
                                  });
   return so_far;
 }
 
 /// The kind of place that the effect sits in, where the device says that nothing is missing there.
-std::optional<std::string> trusted_place(const Effect& e, const Mechanism& m) {
+std::optional<std::string> trusted_place(const Effect& e, const std::vector<std::string>& trusted) {
   static const std::pair<const char*, const char*> kinds[] = {{"base", "base"},
                                                               {"tool", "tool"},
                                                               {"payload", "load"},
                                                               {"rig.load_cell", "load cell"},
-                                                              {"rig.sensor", "sensor"}};
+                                                              {"rig.sensor", "sensor"},
+                                                              {"sensors.", "sensor"},
+                                                              {"loads.", "load"},
+                                                              {"supports.", "support"}};
   for (const EffectEdit& edit : e.edits)
     for (const std::string& path : edit.paths)
       for (const auto& [head, kind] : kinds)
-        if (path.starts_with(head) && std::find(m.trusted.begin(), m.trusted.end(), kind) != m.trusted.end())
+        if (path.starts_with(head) && std::find(trusted.begin(), trusted.end(), kind) != trusted.end())
           return kind;
   return std::nullopt;
 }
@@ -98,6 +119,20 @@ std::string reason(const std::string& message, const Effect& e) {
   if (const std::size_t end = text.find("': "); text.starts_with("edit '") && end != text.npos)
     text = text.substr(end + 3);
   return text;
+}
+
+template <class Dependent>
+Dependent with_effect_in(const Dependent& m, const Effect& e, const VectorX& given, std::optional<int> leg,
+                         std::size_t first) {
+  const VectorX values = with_optional(e, given);
+  check_arguments(e, description(m), values, leg);
+  auto at_once = outcome_of<InputError>([&] {
+    std::vector<TreeEdit> all;
+    for (const EffectEdit& edit : e.edits)
+      for (TreeEdit& each : edits_of(e, edit, description(m), values, leg, first)) all.push_back(std::move(each));
+    return edited_in_turn(m, all);
+  });
+  return at_once ? std::move(*at_once) : one_by_one(m, e, values, leg, first);
 }
 
 }  // namespace
@@ -114,15 +149,12 @@ VectorX start_values(const Effect& e) {
 
 DependentMechanism with_effect(const DependentMechanism& m, const Effect& e, const VectorX& given,
                                std::optional<int> leg, std::size_t first) {
-  const VectorX values = with_optional(e, given);
-  check_arguments(e, m.mechanism, values, leg);
-  auto at_once = outcome_of<InputError>([&] {
-    std::vector<TreeEdit> all;
-    for (const EffectEdit& edit : e.edits)
-      for (TreeEdit& each : edits_of(e, edit, m.mechanism, values, leg, first)) all.push_back(std::move(each));
-    return edited_in_turn(m, all);
-  });
-  return at_once ? std::move(*at_once) : one_by_one(m, e, values, leg, first);
+  return with_effect_in(m, e, given, leg, first);
+}
+
+frame::DependentFrame with_effect(const frame::DependentFrame& f, const Effect& e, const VectorX& given,
+                                  std::size_t first) {
+  return with_effect_in(f, e, given, std::nullopt, first);
 }
 
 Mechanism with_effect(const Mechanism& m, const Effect& e, const VectorX& given, std::optional<int> leg) {
@@ -134,19 +166,18 @@ Mechanism with_effect(const Mechanism& m, const EffectInstance& i) {
 }
 
 subject::Subject with_effect(const subject::Subject& subject, const EffectInstance& i) {
-  if (!subject.machine()) throw InputError(subject.name() + ": effects act on parts of machines, this is a frame");
-  return with_effect(*subject.machine(), i);
+  if (subject.machine()) return with_effect(*subject.machine(), i);
+  return with_effect_in(frame::DependentFrame{*subject.frame()}, *i.effect, i.values, i.leg, 0).frame;
 }
 
 std::optional<std::string> why_not(const Effect& e, const subject::Subject& subject, std::optional<int> leg) {
-  if (!subject.machine()) return "acts on parts of machines: this is a frame";
-  const Mechanism& m = *subject.machine();
-  if (const auto kind = trusted_place(e, m)) return fmt::format("the device trusts its {}", *kind);
+  if (const auto kind = trusted_place(e, subject.frame() ? subject.frame()->trusted : subject.machine()->trusted))
+    return fmt::format("the {} trusts its {}", subject.frame() ? "frame" : "device", *kind);
   std::optional<std::string> first;
-  const bool each = e.scope == Scope::one_leg && !leg;
-  for (int i = 1; i <= (each ? leg_count(m) : 1); ++i) {
-    const auto with =
-        outcome_of<InputError>([&] { return with_effect(m, e, start_values(e), each ? std::optional(i) : leg); });
+  const bool each = e.scope == Scope::one_leg && !leg && subject.legs() > 0;
+  for (int i = 1; i <= (each ? subject.legs() : 1); ++i) {
+    const EffectInstance at_start{{&e, each ? std::optional(i) : leg}, start_values(e)};
+    const auto with = outcome_of<InputError>([&] { return with_effect(subject, at_start); });
     if (with) return std::nullopt;
     if (!first) first = reason(with.why, e);
   }

@@ -3,8 +3,10 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/mechanism_tree.h"
 #include "validation/effects/effect.h"
 #include "validation/subject/subject.h"
@@ -41,6 +43,8 @@ subject::Subject with_effect(const subject::Subject&, const EffectInstance&);
 /// The same, with the numbers that depend on the effect's parameters, which are counted from `first`.
 DependentMechanism with_effect(const DependentMechanism&, const Effect&, const VectorX& values, std::optional<int> leg,
                                std::size_t first);
+frame::DependentFrame with_effect(const frame::DependentFrame&, const Effect&, const VectorX& values,
+                                  std::size_t first);
 
 /// Why the effect has no place in the subject (or in that leg); nullopt where it has one.
 std::optional<std::string> why_not(const Effect&, const subject::Subject&, std::optional<int> leg = {});
@@ -59,7 +63,7 @@ class PreparedEffects {
   /// `values`: of all effects, concatenated.
   subject::Subject operator()(const VectorX& values) const;
 
-  /// The machine with the effects. InputError where its description cannot hold the values.
+  /// The machine with the effects, where the subject is one. InputError where its description cannot hold the values.
   Mechanism machine(const VectorX& values) const;
 
   Eigen::Index parameter_count() const { return std::ssize(parameters_); }
@@ -71,10 +75,20 @@ class PreparedEffects {
     double offset = 0, factor = 0;
   };
 
-  Mechanism edited_one_by_one(const VectorX& values) const;
-  bool find_slots(const Dependences&);
+  template <class Description>
+  struct Versions {
+    Description bare, with;  // without the effects; with them, at arbitrary values
+  };
 
-  Mechanism bare_, with_;  // without the effects; with them, at arbitrary values
+  template <class Dependent>
+  void prepare(Dependent);
+  template <class Description>
+  Description at(const Versions<Description>&, const VectorX& values) const;
+  template <class Description>
+  Description edited_one_by_one(const Description& bare, const VectorX& values) const;
+  bool find_slots(const std::vector<DescribedNumber>&, const Dependences&);
+
+  std::variant<Versions<Mechanism>, Versions<frame::FrameDescription>> versions_;
   std::vector<PlacedEffect> effects_;
   std::vector<const EffectParameter*> parameters_;
   std::vector<Slot> slots_;  // by `at`

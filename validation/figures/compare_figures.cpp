@@ -1,9 +1,12 @@
 #include "validation/figures/compare_figures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "msa/base/index.h"
+#include "validation/figures/channels.h"
 #include "validation/figures/load_curves.h"
 #include "validation/figures/residual_map.h"
 #include "validation/figures/sheet.h"
@@ -81,15 +84,16 @@ std::optional<Figure> groups(const compare::Comparison& c, const FigureStyle& st
   std::string labels, data = "$data << EOD\n";
   int at = 0;
   std::size_t longest = 1;
-  const double floor = report::um * c.noise_and_tolerances;
+  const double floor = unit.fine * c.noise_and_tolerances;
   double most = floor;
   for (const auto* list : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading}) {
     if (list->empty()) continue;
     for (const compare::Errors& e : *list) {
-      data += fmt::format("{} {:.5g}\n", at, report::um * e.rmse);
+      if (e.quantity != unit.quantity) continue;
+      data += fmt::format("{} {:.5g}\n", at, unit.fine * e.rmse);
       labels += fmt::format("{}{} {}", labels.empty() ? "" : ", ", gnuplot_tic_label(e.group), at);
       longest = std::max(longest, report::letters(e.group));
-      most = std::max(most, report::um * e.rmse);
+      most = std::max(most, unit.fine * e.rmse);
       ++at;
     }
     ++at;
@@ -219,12 +223,13 @@ std::optional<Figure> elongation(const compare::Comparison& c, const FigureStyle
 /// To add a figure: declare it here, give it a row, define it in a file of its own.
 using Draw = std::optional<Figure> (*)(const compare::Comparison&, const FigureStyle&);
 constexpr Draw compared[] = {residuals, residual_map, groups, secant, elongation, loops};
+constexpr std::array<Draw, 2> of_channels = {channels, groups};
 
 }  // namespace
 
 std::vector<Figure> compare_figures(const compare::Comparison& c, const FigureStyle& style) {
   std::vector<Figure> out;
-  for (const Draw draw : compared)
+  for (const Draw draw : c.study.standing->has_tool_point() ? std::span<const Draw>(compared) : of_channels)
     if (std::optional<Figure> f = draw(c, style)) out.push_back(std::move(*f));
   return out;
 }

@@ -44,7 +44,7 @@ class HistoryBars {
         unit_(report::error_unit(all_.front())),
         n_(static_cast<double>(all_.size())),
         s_("history", style, 160),
-        floor_(report::um * all_.back().noise_and_tolerances),
+        floor_(unit_.fine * all_.back().noise_and_tolerances),
         most_(floor_) {}
 
   Figure draw() {
@@ -73,10 +73,10 @@ class HistoryBars {
   void put_data() {
     std::string data = "$data << EOD\n";
     for (std::size_t i = 0; i < all_.size(); ++i) {
-      const double wrong = h_.placebo[i] ? report::um * *h_.placebo[i] : NAN;
-      data += fmt::format("{} {:.6g} {:.6g} {:.6g}\n", i, report::um * all_[i].all.rmse, report::um * all_[i].held_out,
+      const double wrong = h_.placebo[i] ? unit_.fine * *h_.placebo[i] : NAN;
+      data += fmt::format("{} {:.6g} {:.6g} {:.6g}\n", i, unit_.fine * all_[i].all.rmse, unit_.fine * all_[i].held_out,
                           wrong);
-      for (const double x : {report::um * all_[i].all.rmse, report::um * all_[i].held_out, wrong})
+      for (const double x : {unit_.fine * all_[i].all.rmse, unit_.fine * all_[i].held_out, wrong})
         if (std::isfinite(x)) most_ = std::max(most_, x);
     }
     s_.put("{}EOD\nset multiplot\nunset key", data);

@@ -18,13 +18,20 @@ std::string lower_case(std::string_view text) {
 }
 
 /// "sigma_u_mm" → "sigma_u".
-std::string_view without_unit(std::string_view name) { return name.substr(0, name.rfind('_')); }
+std::size_t unit_at(std::string_view name) {
+  constexpr std::string_view strain = "_um_per_m";
+  return name.ends_with(strain) ? name.size() - strain.size() : name.rfind('_');
+}
 
-std::string_view unit_of(std::string_view name) { return name.substr(name.rfind('_') + 1); }
+std::string_view without_unit(std::string_view name) { return name.substr(0, unit_at(name)); }
+
+std::string_view unit_of(std::string_view name) { return name.substr(unit_at(name) + 1); }
 
 }  // namespace
 
-std::string sensor_column(const SensorChannel& sensor) { return sensor.name + (sensor.rotation ? "_rad" : "_mm"); }
+std::string sensor_column(const SensorChannel& sensor) {
+  return sensor.name + "_" + row_of(sensor.quantity).unit;
+}
 
 std::string load_column(const std::string& point, std::size_t component) {
   return point + "." + load_columns.at(component);
@@ -49,7 +56,10 @@ std::string unknown_column(std::string_view name, const std::vector<std::string>
   // Far longer than any known name it is no misspelling, and the edit distance would take long.
   const std::string near = name.size() < 40 ? nearest(name, known) : "";
   if (!near.empty()) return fmt::format("{}, did you mean '{}'?", unknown, near);
-  return fmt::format("{} (columns: {}; the names of remarks begin with note)", unknown, fmt::join(known, ", "));
+  constexpr std::size_t most = 40;
+  std::vector<std::string> some = known;
+  if (some.size() > most) some.resize(most), some.push_back("…");
+  return fmt::format("{} (columns: {}; the names of remarks begin with note)", unknown, fmt::join(some, ", "));
 }
 
 std::string excerpt(std::string_view text) {

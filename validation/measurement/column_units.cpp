@@ -35,6 +35,8 @@ const std::vector<ColumnUnit> degree_units = {
     {"deg"}, {"°"}, {"rad", 1 / deg_rad}, {"mrad", 1e-3 / deg_rad}, {"urad", 1e-6 / deg_rad}, {"µrad", 1e-6 / deg_rad}};
 const std::vector<ColumnUnit> radian_units = {{"rad"},        {"deg", deg_rad}, {"°", deg_rad},
                                               {"mrad", 1e-3}, {"urad", 1e-6},   {"µrad", 1e-6}};
+const std::vector<ColumnUnit> strain_units = {{"um_per_m"}, {"µm/m"}, {"um/m"}, {"ustrain"}, {"µε"}, {"mm_per_m", 1e3},
+                                              {"mm/m", 1e3}, {"1", 1e6}, {"%", 1e4}};
 const std::vector<ColumnUnit> temperature_units = {{"C"}, {"°C"}, {"K", 1, -273.15}, {"F", 5.0 / 9, -32}};
 
 std::string in_lower_case(std::string_view text) {
@@ -80,8 +82,10 @@ std::pair<std::string, std::string_view> stem_and_unit(std::string_view written)
   const std::string lower = in_lower_case(written);
   for (const char* stem : {"sigma_u", "sigma_th"})
     if (lower == stem) return {lower, {}};
-  const std::size_t at = written.rfind('_');
+  std::size_t at = written.rfind('_');
   if (at == written.npos) return {lower, {}};
+  for (const std::string_view strain : {"_um_per_m", "_mm_per_m"})
+    if (lower.ends_with(strain)) at = written.size() - strain.size();
   return {lower.substr(0, at), written.substr(at + 1)};
 }
 
@@ -90,11 +94,26 @@ bool is_joint(std::string_view stem) {
          std::all_of(stem.begin() + 1, stem.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
+const std::vector<ColumnUnit>* units_of(Quantity q) {
+  switch (q) {
+    case Quantity::length:
+      return &length_units;
+    case Quantity::angle:
+      return &radian_units;
+    case Quantity::force:
+      return &force_units;
+    case Quantity::moment:
+      return &moment_units;
+    case Quantity::strain:
+      return &strain_units;
+  }
+  return nullptr;
+}
+
 /// The same of an instrument's column: "probe", "handle.fx".
 std::pair<const std::vector<ColumnUnit>*, std::string> units_of(const std::string& stem, const Instruments& known) {
   for (const SensorChannel& sensor : known.sensors)
-    if (stem == in_lower_case(sensor.name))
-      return {sensor.rotation ? &radian_units : &length_units, sensor_column(sensor)};
+    if (stem == in_lower_case(sensor.name)) return {units_of(sensor.quantity), sensor_column(sensor)};
   for (const std::string& point : known.load_points)
     for (std::size_t i = 0; i < 6; ++i)
       if (const std::string name = load_column(point, i); stem == in_lower_case(name.substr(0, name.rfind('_'))))
@@ -128,6 +147,8 @@ std::optional<NamedColumn> named_column(std::string_view written, std::string_vi
   for (const char* name : {"pose", "sequence"})
     if (lower == name) return NamedColumn{name, ""};
   if (is_note(lower)) return NamedColumn{lower, ""};
+  for (const std::string& load_case : known.load_cases)
+    if (written == "load." + load_case) return NamedColumn{std::string(written), ""};
   auto [stem, own] = stem_and_unit(written);
   unit = trimmed(without_brackets(trimmed(unit)));
   if (unit == "-") unit = {};
@@ -159,7 +180,7 @@ bool is_unit(std::string_view text) {
   text = trimmed(without_brackets(trimmed(text)));
   if (text.empty() || text == "-" || text == "1") return true;
   for (const auto* units :
-       {&force_units, &moment_units, &length_units, &degree_units, &radian_units, &temperature_units})
+       {&force_units, &moment_units, &length_units, &degree_units, &radian_units, &strain_units, &temperature_units})
     if (find_unit(*units, text)) return true;
   return false;
 }

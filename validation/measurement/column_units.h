@@ -6,7 +6,8 @@
 //   roll pitch yaw, th., sigma_th   deg  rad  mrad  urad  µrad
 //   q. of a joint        one of the last two rows; angles become rad, lengths mm
 //   temperature          C  K  F
-//   a sensor's name      as u. or th., by what it reads;  handle.f., handle.m. at a named point: as f. and m.
+//   strain               um_per_m  um/m  µm/m  µε  mm/m  1  %
+//   a sensor's name      as u., th., f., m. or strain, by what it reads;  handle.f., handle.m. at a named point: as f. and m.
 //
 // The unit follows the stem after "_" or in brackets: "fx_kgf", "Fx [kgf]", "FX (N)". Case does not count where it does
 // not tell units apart.

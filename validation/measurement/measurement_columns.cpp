@@ -12,12 +12,15 @@
 namespace deflect::measurement {
 namespace {
 
+constexpr const SixNames* machine_columns[] = {&pose_columns, &load_columns, &displacement_columns};
+
 std::vector<std::string> fixed_columns(const Instruments& known) {
   std::vector<std::string> names = {"pose"};
-  for (const SixNames* six : {&pose_columns, &load_columns, &displacement_columns})
-    names.insert(names.end(), six->begin(), six->end());
+  if (!known.stationary)
+    for (const SixNames* six : machine_columns) names.insert(names.end(), six->begin(), six->end());
   for (const char* name : {"sigma_u_mm", "sigma_th_rad", "sequence", "temperature_C"}) names.emplace_back(name);
   for (const SensorChannel& sensor : known.sensors) names.push_back(sensor_column(sensor));
+  for (const std::string& load_case : known.load_cases) names.push_back("load." + load_case);
   for (const std::string& point : known.load_points)
     for (std::size_t i = 0; i < 6; ++i) names.push_back(load_column(point, i));
   return names;
@@ -31,6 +34,13 @@ std::size_t joint_number(std::string_view name) {
   return number;
 }
 
+/// Whether only a machine's file has this column.
+bool of_machines(const std::string& name) {
+  return joint_number(name) > 0 || std::any_of(std::begin(machine_columns), std::end(machine_columns), [&](const SixNames* six) {
+           return std::find(six->begin(), six->end(), name) != six->end();
+         });
+}
+
 /// The columns by the names of the contract.
 class ContractColumns {
  public:
@@ -40,7 +50,9 @@ class ContractColumns {
     for (std::size_t column = 0; column < table.header().size(); ++column) {
       const std::string& written = table.header()[column];
       const std::optional<NamedColumn> named = named_column(written, units_ ? table.text(0, column) : "", known);
-      if (!named) refuse(column, fixed);
+      if (!named || (known.stationary && of_machines(named->name) &&
+                     std::find(fixed.begin(), fixed.end(), named->name) == fixed.end()))
+        refuse(column, fixed);
       if (is_note(written) || is_note(named->name)) {
         notes_.push_back(column);
         continue;
@@ -93,7 +105,8 @@ class ContractColumns {
           0, column,
           fmt::format("the unit below is '{}': name and unit must say the same", excerpt(table_.text(0, column))));
     const std::size_t number = std::max<std::size_t>(joint_number(written), 1);
-    known.insert(known.end(), {joint_column(number - 1, true), joint_column(number - 1, false)});
+    if (!instruments_.stationary)
+      known.insert(known.end(), {joint_column(number - 1, true), joint_column(number - 1, false)});
     table_.refuse_header(unknown_column(written, known));
   }
 
@@ -164,6 +177,39 @@ void command_columns(const CsvTable& table, const ContractColumns& known, Measur
   }
 }
 
+void other_columns(const ContractColumns& known, MeasurementColumns& columns) {
+  columns.sigma_u = known.find("sigma_u_mm");
+  columns.sigma_th = known.find("sigma_th_rad");
+  if (const auto sequence = known.find("sequence")) columns.sequence = sequence->index;
+  columns.temperature = known.find("temperature_C");
+  columns.notes = known.notes();
+  columns.first_row = known.has_units() ? 1 : 0;
+  columns.how_read = known.how_read();
+}
+
+/// A frame is loaded and, unless it is a plan, read.
+void require_stationary(const CsvTable& table, const Instruments& instruments, bool plan,
+                        const MeasurementColumns& columns) {
+  const auto some = [](std::vector<std::string> names) {
+    if (names.size() > 8) names.resize(8), names.push_back("…");
+    return fmt::format("{}", fmt::join(names, ", "));
+  };
+  std::vector<std::string> sensors, cases;
+  for (const SensorChannel& sensor : instruments.sensors) sensors.push_back(sensor_column(sensor));
+  for (const std::string& name : instruments.load_cases) cases.push_back("load." + name);
+  for (const std::string& point : instruments.load_points) cases.push_back(load_column(point, 0));
+  if (sensors.empty())
+    table.refuse_header("the frame has no sensors, so nothing of this file can be compared: describe them in the frame "
+                        "file, as in 'sensors: {lvdt: {node: B, direction: uz}}'");
+  if (!plan && columns.sensors.empty())
+    table.refuse_header(
+        fmt::format("no sensor of the frame is read: at least one of the columns {} is wanted", some(sensors)));
+  if (columns.load_cases.empty() && columns.load_points.empty())
+    table.refuse_header(fmt::format(
+        "no load: at least one column with a factor on a load case or with a load at a node is wanted ({})",
+        some(cases)));
+}
+
 }  // namespace
 
 std::string joint_column(std::size_t joint, bool rotates) {
@@ -186,10 +232,16 @@ MeasurementColumns measurement_columns(const CsvTable& table, const Instruments&
     if (std::any_of(at.load.begin(), at.load.end(), [](const auto& c) { return c.has_value(); }))
       columns.load_points.push_back(std::move(at));
   }
+  for (const std::string& load_case : instruments.load_cases)
+    if (const auto column = known.find("load." + load_case)) columns.load_cases.push_back({load_case, *column});
+  if (const auto label = known.find("pose")) columns.pose = label->index;
+  other_columns(known, columns);
+  if (instruments.stationary) {
+    require_stationary(table, instruments, plan, columns);
+    return columns;
+  }
   command_columns(table, known, columns);
-  const auto label = known.find("pose");
-  if (!label) table.refuse_header("column 'pose' is missing: a label for every approach of a pose");
-  columns.pose = label->index;
+  if (!columns.pose) table.refuse_header("column 'pose' is missing: a label for every approach of a pose");
   const std::string missing = missing_of(known, load_columns, 3);
   const bool loads_elsewhere =
       !columns.load_points.empty() &&
@@ -206,13 +258,6 @@ MeasurementColumns measurement_columns(const CsvTable& table, const Instruments&
                    [](const auto& c) { return c.has_value(); }))
     table.refuse_header(fmt::format("no displacement is measured: at least one of the columns {} is wanted",
                                     fmt::join(displacement_columns, ", ")));
-  columns.sigma_u = known.find("sigma_u_mm");
-  columns.sigma_th = known.find("sigma_th_rad");
-  if (const auto sequence = known.find("sequence")) columns.sequence = sequence->index;
-  columns.temperature = known.find("temperature_C");
-  columns.notes = known.notes();
-  columns.first_row = known.has_units() ? 1 : 0;
-  columns.how_read = known.how_read();
   return columns;
 }
 

@@ -27,13 +27,19 @@ struct LoadPointColumns {
   std::array<std::optional<ReadColumn>, 6> load;
 };
 
+struct LoadCaseColumn {
+  std::string name;
+  ReadColumn column;
+};
+
 struct MeasurementColumns {
-  std::size_t pose = 0;
+  std::optional<std::size_t> pose;  ///< only a stationary subject's file may have none
   std::vector<ReadColumn> command;  ///< x y z roll pitch yaw, or the joint coordinates in order
   std::vector<bool> joint_rotates;  ///< of the joint coordinates; empty for poses
   std::array<std::optional<ReadColumn>, 6> load, displacement;
   std::vector<SensorColumn> sensors;
   std::vector<LoadPointColumns> load_points;
+  std::vector<LoadCaseColumn> load_cases;
   std::optional<ReadColumn> sigma_u, sigma_th, temperature;
   std::optional<std::size_t> sequence;
   std::vector<std::size_t> notes;

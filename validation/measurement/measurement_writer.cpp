@@ -52,12 +52,15 @@ void add_loads(std::vector<Column>& columns, const Measurements& m) {
     if (always || std::any_of(m.readings.begin(), m.readings.end(), [&](const Reading& r) { return of(r)(i) != 0; }))
       columns.push_back({name, [i, of](const Reading& r) { return number_text(of(r)(i), i < 3 ? 1 : 1e3); }});
   };
-  for (Eigen::Index i = 0; i < 6; ++i)
+  for (std::size_t k = 0; k < m.instruments.load_cases.size(); ++k)
+    columns.push_back(
+        {"load." + m.instruments.load_cases[k], [k](const Reading& r) { return number_text(r.factors[k]); }});
+  for (Eigen::Index i = 0; i < 6 && !m.instruments.stationary; ++i)
     add(nth(load_columns, i), i, i < 3,
         [elsewhere](const Reading& r) -> const Vector6& { return elsewhere ? r.at_tool : r.load; });
   for (std::size_t p = 0; p < m.instruments.load_points.size(); ++p)
     for (Eigen::Index i = 0; i < 6; ++i)
-      add(load_column(m.instruments.load_points[p], as_size(i)), i, i == 0,
+      add(load_column(m.instruments.load_points[p], as_size(i)), i, i == 0 && !m.instruments.stationary,
           [p](const Reading& r) -> const Vector6& { return r.at_points[p]; });
 }
 
@@ -68,7 +71,8 @@ std::vector<Column> columns_of(const Measurements& m) {
       {"pose", [&m](const Reading& r) { return quoted_where_needed(m.poses[r.pose].label); }}};
   if (any([](const Reading& r) { return r.sequence.has_value(); }))
     columns.push_back({"sequence", [](const Reading& r) { return number_text(r.sequence); }});
-  for (std::size_t i = 0; i < (m.by_joints() ? m.joint_rotates.size() : 6); ++i) {
+  const std::size_t commands = m.instruments.stationary ? 0 : m.by_joints() ? m.joint_rotates.size() : 6;
+  for (std::size_t i = 0; i < commands; ++i) {
     const auto at = as_index(i);
     if (m.by_joints()) {
       const double per_SI = m.joint_rotates[i] ? 1 : 1e3;
@@ -89,7 +93,7 @@ std::vector<Column> columns_of(const Measurements& m) {
       columns.push_back(
           {displacement_columns[i], [i](const Reading& r) { return number_text(r.displacement[i], i < 3 ? 1e3 : 1); }});
   for (std::size_t k = 0; k < sensors.size(); ++k)
-    columns.push_back({sensor_column(sensors[k]), [k, per_SI = sensors[k].rotation ? 1.0 : 1e3](const Reading& r) {
+    columns.push_back({sensor_column(sensors[k]), [k, per_SI = row_of(sensors[k].quantity).per_SI](const Reading& r) {
                          return number_text(r.sensors[k], per_SI);
                        }});
   if (any([](const Reading& r) { return r.sigma_u.has_value(); }))

@@ -43,6 +43,8 @@ class Reader {
       : table_(table), columns_(measurement_columns(table, known, plan)) {
     for (const SensorColumn& s : columns_.sensors) m_.instruments.sensors.push_back(s.sensor);
     for (const LoadPointColumns& p : columns_.load_points) m_.instruments.load_points.push_back(p.name);
+    for (const LoadCaseColumn& c : columns_.load_cases) m_.instruments.load_cases.push_back(c.name);
+    m_.instruments.stationary = known.stationary;
     m_.origin = origin;
     m_.joint_rotates = columns_.joint_rotates;
     m_.temperature_recorded = columns_.temperature.has_value();
@@ -67,8 +69,9 @@ class Reader {
     }
     for (const SensorColumn& s : columns_.sensors) {
       r.sensors.push_back(measured(row, s.column));
-      if (r.sensors.back() && !s.sensor.rotation) *r.sensors.back() /= 1e3;
+      if (r.sensors.back()) *r.sensors.back() /= row_of(s.sensor.quantity).per_SI;
     }
+    for (const LoadCaseColumn& c : columns_.load_cases) r.factors.push_back(measured(row, c.column).value_or(0));
     if (!columns_.load_points.empty()) r.at_tool = r.load;
     for (const LoadPointColumns& p : columns_.load_points) {
       r.at_points.push_back(Vector6::Zero());
@@ -88,8 +91,8 @@ class Reader {
 
   /// Index of the row's pose group, which is made where the label is new.
   std::size_t group(std::size_t row) {
-    const std::string_view label = table_.text(row, columns_.pose);
-    if (label.empty()) table_.refuse(row, columns_.pose, "the label is empty: give every approach of a pose a label");
+    const std::string_view label = columns_.pose ? table_.text(row, *columns_.pose) : "all";
+    if (label.empty()) table_.refuse(row, *columns_.pose, "the label is empty: give every approach of a pose a label");
     const auto [found, is_new] = group_of_.emplace(label, m_.poses.size());
     if (is_new) {
       m_.poses.push_back(new_group(row));
@@ -105,7 +108,7 @@ class Reader {
 
   PoseGroup new_group(std::size_t row) const {
     PoseGroup group;
-    group.label = table_.text(row, columns_.pose);
+    group.label = columns_.pose ? table_.text(row, *columns_.pose) : "all";
     const std::vector<ReadColumn>& columns = columns_.command;
     if (m_.by_joints()) group.joints.resize(std::ssize(columns));
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -133,7 +136,7 @@ class Reader {
             fmt::format("{} here and {} in line {}, both of pose '{}': one label is one approach of one "
                         "commanded pose, which may scatter by {} mm and {} deg; use another label",
                         excerpt(table_.text(row, column)), excerpt(table_.text(first, column)), table_.line(first),
-                        excerpt(table_.text(row, columns_.pose)), scatter_mm, scatter_deg));
+                        excerpt(table_.text(row, *columns_.pose)), scatter_mm, scatter_deg));
       VectorX& sum = beside_first_[group];
       if (sum.size() == 0) sum = VectorX::Zero(std::ssize(columns));
       sum(as_index(i)) += beside;
@@ -257,6 +260,55 @@ Measurements read_plan(const std::filesystem::path& path, const Instruments& kno
 void scale_load(Reading& r, double factor) {
   for (Vector6* load : {&r.load, &r.at_tool, &r.on_platform}) *load *= factor;
   for (Vector6& load : r.at_points) load *= factor;
+  for (double& each : r.factors) each *= factor;
+}
+
+namespace {
+
+/// Components at named points that some reading has, by point and component.
+std::vector<std::pair<std::size_t, std::size_t>> loaded_components(const Measurements& m) {
+  std::vector<std::pair<std::size_t, std::size_t>> out;
+  for (std::size_t p = 0; p < m.instruments.load_points.size(); ++p)
+    for (std::size_t i = 0; i < 6; ++i)
+      if (std::any_of(m.readings.begin(), m.readings.end(),
+                      [&](const Reading& r) { return r.at_points[p](as_index(i)) != 0; }))
+        out.emplace_back(p, i);
+  return out;
+}
+
+constexpr const char* wrench_names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+
+}  // namespace
+
+std::vector<LoadChannel> load_channels(const Measurements& m) {
+  std::vector<LoadChannel> out;
+  if (!m.instruments.stationary) {
+    for (std::size_t i = 0; i < 6; ++i) out.push_back({wrench_names[i], i >= 3});
+    return out;
+  }
+  for (const std::string& name : m.instruments.load_cases) out.push_back({"load." + name});
+  for (const auto& [point, component] : loaded_components(m))
+    out.push_back({m.instruments.load_points[point] + "." + wrench_names[component], component >= 3});
+  return out;
+}
+
+MatrixX loads_of(const Measurements& m) {
+  const auto readings = std::ssize(m.readings);
+  if (!m.instruments.stationary) {
+    MatrixX out(6, readings);
+    for (Eigen::Index i = 0; i < readings; ++i) out.col(i) = nth(m.readings, i).load;
+    return out;
+  }
+  const auto components = loaded_components(m);
+  const auto cases = std::ssize(m.instruments.load_cases);
+  MatrixX out(cases + std::ssize(components), readings);
+  for (Eigen::Index i = 0; i < readings; ++i) {
+    const Reading& r = nth(m.readings, i);
+    for (Eigen::Index k = 0; k < cases; ++k) out(k, i) = nth(r.factors, k);
+    for (std::size_t k = 0; k < components.size(); ++k)
+      out(cases + as_index(k), i) = r.at_points[components[k].first](as_index(components[k].second));
+  }
+  return out;
 }
 
 Measurements one_pose(const Measurements& m, std::size_t pose) {

@@ -15,6 +15,9 @@
 //                                               the displacement of T need not be there
 //   handle.fx_N … handle.mz_Nmm                 load at a named point of the device, about that point; what has no
 //                                               column is zero, and with one the load at T may have none
+//   load.snow                                   of a frame: factor on a load case; node.B.fx_N … node.B.mz_Nmm: load at
+//                                               a node. What has no column, or an empty cell, is zero
+//   F3_N, M1_Nmm, S2_um_per_m                   reading of a sensor of force, moment, strain
 //   sequence                                    order of the readings: numbers, no two alike; all rows or none
 //   temperature_C                               20 where the column or the cell is missing
 //   note…                                       remarks, kept as text
@@ -33,20 +36,25 @@
 #include <vector>
 
 #include "msa/base/spatial.h"
+#include "validation/measurement/quantity.h"
 
 namespace deflect::measurement {
 
 /// A named sensor of the subject.
 struct SensorChannel {
   std::string name;
-  bool rotation = false;        ///< reads rad, else m
-  std::optional<double> sigma;  ///< of one reading, where the description gives it
+  Quantity quantity = Quantity::length;
+  std::optional<double> sigma;  ///< SI; of one reading, where the description gives it
 };
 
 /// What a subject can be read by and loaded at, beside the tool point T. Their columns begin with these names.
 struct Instruments {
   std::vector<SensorChannel> sensors;
-  std::vector<std::string> load_points;
+  std::vector<std::string> load_points;  ///< of a frame: "node.B", in base axes
+  std::vector<std::string> load_cases;   ///< of a frame; column "load.NAME" is a factor on the case
+  /// A subject without tool point and commanded poses: a frame. It is read by its sensors, loaded by load cases and at
+  /// nodes, and `pose` is a label that may be missing.
+  bool stationary = false;
 };
 
 /// What a sensor reads of a small displacement of T at a pose, by number of the sensor in Measurements::instruments.
@@ -66,6 +74,7 @@ struct Reading {
   /// Where the file has loads at named points: the loads at those points, each about its point, and at T itself; and
   /// the part of `load` that acts on the platform without passing through the tool joint.
   std::vector<Vector6> at_points;
+  std::vector<double> factors;  ///< by Measurements::instruments.load_cases
   Vector6 at_tool = Vector6::Zero(), on_platform = Vector6::Zero();
 };
 
@@ -105,6 +114,17 @@ Measurements read_plan(const std::filesystem::path&, const Instruments& known = 
 /// that would say nothing are left out. Written whole or not at all.
 void write_measurements(const std::filesystem::path&, const Measurements&);
 std::string measurements_text(const Measurements&);
+
+/// One number of a load: a component at T, at a named point, or a factor on a load case.
+struct LoadChannel {
+  std::string name;  ///< "fx", "node.B.fz", "load.snow"
+  bool moment = false;
+};
+/// What loads_of() gives. A stationary subject: load cases, then the components at nodes that some reading has. Else the
+/// six components at T, in which loads at named points are contained.
+std::vector<LoadChannel> load_channels(const Measurements&);
+/// The loads of all readings (columns), by load channel; N, Nm, 1.
+MatrixX loads_of(const Measurements&);
 
 /// All loads of a reading times a factor.
 void scale_load(Reading&, double factor);

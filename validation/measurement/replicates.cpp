@@ -9,26 +9,32 @@
 namespace deflect::measurement {
 namespace {
 
-using Six = std::array<double, 6>;
+using Numbers = std::vector<double>;
 
-Six to_1e9(const Vector6& load) {
-  Six rounded;
-  for (std::size_t i = 0; i < 6; ++i) rounded[i] = std::round(load(as_index(i)) * 1e9);
-  return rounded;
+/// The loads of each reading, rounded.
+std::vector<Numbers> to_1e9(const MatrixX& loads) {
+  std::vector<Numbers> out;
+  for (const auto& load : loads.colwise()) {
+    out.emplace_back();
+    for (const double each : load) out.back().push_back(std::round(each * 1e9));
+  }
+  return out;
 }
 
-/// Signs of the six changes by which each reading's load was reached; zero without a sequence.
-std::vector<Six> directions(const Measurements& m) {
-  std::vector<Six> signs(m.readings.size(), Six{});
+/// Signs of the changes by which each reading's load was reached; zero without a sequence.
+std::vector<Numbers> directions(const Measurements& m, const std::vector<Numbers>& loads) {
+  std::vector<Numbers> signs(m.readings.size());
   if (m.readings.empty() || !m.readings.front().sequence) return signs;
-  Six before{};
+  const Numbers none(loads.front().size());
+  const Numbers* before = &none;
   std::optional<std::size_t> pose;
   for (const std::size_t i : in_sequence(m, "the direction of loading")) {
-    if (m.readings[i].pose != pose) before = {};
+    if (m.readings[i].pose != pose) before = &none;
     pose = m.readings[i].pose;
-    const Six load = to_1e9(m.readings[i].load);
-    for (std::size_t k = 0; k < 6; ++k) signs[i][k] = load[k] > before[k] ? 1 : load[k] < before[k] ? -1 : 0;
-    before = load;
+    const Numbers& load = loads[i];
+    for (std::size_t k = 0; k < load.size(); ++k)
+      signs[i].push_back(load[k] > (*before)[k] ? 1 : load[k] < (*before)[k] ? -1 : 0);
+    before = &load;
   }
   return signs;
 }
@@ -59,12 +65,13 @@ class Pool {
 }  // namespace
 
 std::vector<std::vector<std::size_t>> replicates(const Measurements& m, Reached reached) {
-  const std::vector<Six> direction =
-      reached == Reached::in_same_direction ? directions(m) : std::vector<Six>(m.readings.size(), Six{});
+  const std::vector<Numbers> loads = to_1e9(loads_of(m));
+  const std::vector<Numbers> direction =
+      reached == Reached::in_same_direction ? directions(m, loads) : std::vector<Numbers>(m.readings.size());
   std::vector<std::vector<std::size_t>> groups;
   for (const PoseGroup& pose : m.poses) {
-    std::map<std::pair<Six, Six>, std::vector<std::size_t>> alike;
-    for (const std::size_t i : pose.readings) alike[{to_1e9(m.readings[i].load), direction[i]}].push_back(i);
+    std::map<std::pair<Numbers, Numbers>, std::vector<std::size_t>> alike;
+    for (const std::size_t i : pose.readings) alike[{loads[i], direction[i]}].push_back(i);
     for (auto& [key, group] : alike)
       if (group.size() > 1) groups.push_back(std::move(group));
   }
@@ -108,8 +115,25 @@ std::optional<double> sigma_of(const std::optional<NoiseEstimate>& noise) {
 
 }  // namespace
 
+std::optional<NoiseEstimate> pure_error_of(const Measurements& m, Quantity quantity) {
+  Pool pool;
+  for (const std::vector<std::size_t>& group : replicates(m)) {
+    const auto add = [&](const auto& value_of) {
+      std::vector<double> values;
+      for (const std::size_t i : group)
+        if (const auto& value = value_of(m.readings[i])) values.push_back(*value);
+      pool.add_group(std::move(values));
+    };
+    for (std::size_t k = 0; k < 6; ++k)
+      if (displacement_quantity(k) == quantity) add([k](const Reading& r) { return r.displacement[k]; });
+    for (std::size_t k = 0; k < m.instruments.sensors.size(); ++k)
+      if (m.instruments.sensors[k].quantity == quantity) add([k](const Reading& r) { return r.sensors[k]; });
+  }
+  return pool.estimate();
+}
+
 MeasuredValue tool_point_value(std::size_t reading, std::size_t component, double value, std::optional<double> sigma) {
-  return {reading, component, value, sigma, component >= 3, Vector6::Unit(as_index(component))};
+  return {reading, component, value, sigma, displacement_quantity(component), Vector6::Unit(as_index(component))};
 }
 
 std::vector<MeasuredValue> measured_values(const Measurements& m, const SensorForm& form) {
@@ -127,9 +151,10 @@ std::vector<MeasuredValue> measured_values(const Measurements& m, const SensorFo
     for (std::size_t k = 0; k < r.sensors.size(); ++k) {
       if (!r.sensors[k]) continue;
       const SensorChannel& sensor = m.instruments.sensors[k];
-      MeasuredValue v{i, 6 + k, *r.sensors[k], sensor.sigma, sensor.rotation};
+      MeasuredValue v{i, 6 + k, *r.sensors[k], sensor.sigma, sensor.quantity};
       if (!v.sigma) v.sigma = sigma_of(of_sensors[k]);
-      if (!v.sigma) v.sigma = sensor.rotation ? r.sigma_th : r.sigma_u;
+      if (!v.sigma && sensor.quantity == Quantity::length) v.sigma = r.sigma_u;
+      if (!v.sigma && sensor.quantity == Quantity::angle) v.sigma = r.sigma_th;
       if (form) v.form = form(r.pose, k);
       values.push_back(v);
     }

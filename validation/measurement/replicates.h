@@ -34,17 +34,19 @@ struct NoiseEstimate {
 /// Empty where it cannot be told: no replicates, or replicates alike to the last digit, which are rounded more coarsely
 /// than they scatter.
 struct PureError {
-  std::optional<NoiseEstimate> u, th;
+  std::optional<NoiseEstimate> u, th;  ///< of T's components
 };
 PureError pure_error(const Measurements&, Reached = Reached::in_same_direction);
+/// Of all numbers of one quantity, T's components and sensors.
+std::optional<NoiseEstimate> pure_error_of(const Measurements&, Quantity);
 
 /// One measured number, of a channel: 0 … 5 are the components of d_T_W = [δ; θ], the sensors follow.
 struct MeasuredValue {
   std::size_t reading = 0;
   std::size_t channel = 0;
-  double value = 0;                ///< m, rad
+  double value = 0;                ///< SI
   std::optional<double> sigma;     ///< the file's; else from the replicates; empty where there is neither
-  bool rotation = false;           ///< rad
+  Quantity quantity = Quantity::length;
   Vector6 form = Vector6::Zero();  ///< the first-order reading of a small displacement d of T: form · d
 
   /// Whether it is one of d_T_W's components.

@@ -24,6 +24,9 @@ export function num(x, digits = 4) {
 
 export const um = (mm) => (mm === null || mm === undefined ? null : 1e3 * mm);
 export const micro = (mm) => num(um(mm)) + ' µm';
+/** The unit in which errors are read, and how many of it are in one of the unit of the data. */
+export const fineOf = (unit) => ({mm: ['µm', 1e3], mrad: ['µrad', 1e3], rad: ['µrad', 1e6], um_per_m: ['µm/m', 1]}[unit] || [unit || 'µm', unit ? 1 : 1e3]);
+export const sized = (x, unit) => `${num(fineOf(unit)[1] * x)} ${fineOf(unit)[0]}`;
 export const fileName = (path) => path.split('/').pop();
 
 function csvCell(value) {

@@ -89,6 +89,11 @@ function instrumentsOf(pose, tip, size, material, thin) {
   });
 }
 
+/** Sensors of a frame: an arrow with the name where and along what it reads. */
+function frameSensors(scene3d, size, materials) {
+  return (scene3d.sensors || []).map((s) => loadArrow(vector(s.at_mm), {vector: s.axis, kind: 'line', words: s.name}, 0.07 * size, materials[s.guilty ? 'guilty' : 'blue'], true, 0.028 * size));
+}
+
 /** Measured − predicted at the tool: an arrow for each reading, on one scale. */
 function residualArrows(scene3d, version, size) {
   const lengths = (version ? version.readings : []).map((r) => Math.hypot(...r.residual.slice(0, 3).map((x) => x || 0))).sort((a, b) => a - b);
@@ -166,6 +171,7 @@ function legendOf(scene3d, state, guilt, residuals) {
   return [
     scene3d.guilty.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--guilty)'}}), guilt + ': ' + shorten(scene3d.guilty)) : null,
     el('div', {}, `Thin lines: unloaded; solid: deflection × ${num(state.scale, 3)}`),
+    (scene3d.sensors || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--blue)'}}), 'sensors') : null,
     shape && shape.arrows.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--text)'}}), scene3d.kind === 'frame' ? 'loads' : 'load on the tool') : null,
     scene3d.ground.length ? el('div', {}, el('span', {class: 'swatch hatched'}), scene3d.kind === 'frame' ? 'supports' : 'ground') : null,
     residuals && state.arrows ? el('div', {}, `Arrows: measured − predicted × ${num(residuals.times, 3)}, by axis of the load: `,
@@ -199,7 +205,7 @@ export function machine(scene3d, measurements, guilt) {
   const residuals = atTool ? residualArrows(scene3d, version, size) : null;
   const ground = groundUnder(scene3d.ground, scene3d.kind === 'machine', box.getCenter(new THREE.Vector3()), size, standpoint(box).up);
   const moving = new THREE.Group(), corner = box.min.clone().addScalar(-0.02 * size);
-  root.add(ground.group, moving, triad(corner, 0.1 * size));
+  root.add(ground.group, moving, triad(corner, 0.1 * size), ...frameSensors(scene3d, size, materials));
 
   const holder = el('div', {class: 'view', id: 'machine-view'}), factor = el('div', {class: 'factor'});
   const shot = stage(holder, 'The ' + scene3d.kind + ' under load, in 3D', (renderer, width, height) => {

@@ -1,6 +1,6 @@
 // The page from its data: what was found in a sentence, then pictures, each with its numbers, then how it was made.
 import {checked, checkHeadline} from './checks.js';
-import {attempt, download, el, figure, fileName, micro, num, numbers, table} from './dom.js';
+import {attempt, download, el, figure, fileName, micro, num, numbers, sized, table} from './dom.js';
 import {drawingHeadline, drawn} from './drawing.js';
 import {frameHeadline, framed} from './frames.js';
 import {loadWords, machine} from './machine.js';
@@ -13,7 +13,7 @@ const of = (kind) => data.results.filter((r) => r.kind === kind).map((r) => r.re
 
 function historyHeadline(history) {
   const first = history.versions[0], last = history.versions[history.versions.length - 1], falls = last.rmse_mm <= first.rmse_mm;
-  return {words: `The error ${falls ? 'falls' : 'rises'} from ${micro(first.rmse_mm)} to ${micro(last.rmse_mm)} rms; noise and tolerances alone give ${micro(last.noise_floor_mm)}.`,
+  return {words: `The error ${falls ? 'falls' : 'rises'} from ${sized(first.rmse_mm, history.unit)} to ${sized(last.rmse_mm, history.unit)} rms; noise and tolerances alone give ${sized(last.noise_floor_mm, history.unit)}.`,
           small: `From ${first.device} to ${last.device}.`};
 }
 
@@ -33,7 +33,7 @@ function headline() {
 function facts() {
   const list = [], add = (name, value) => value !== undefined && value !== null && list.push(el('div', {}, el('dt', {}, name), el('dd', {}, value)));
   const [diagnosis] = of('diagnosis'), [comparison] = of('comparison').concat(data.versions.map((v) => v.result));
-  if (comparison) add('readings', String(comparison.readings)), add('poses', String(comparison.poses)), add('χ² per degree of freedom', num(comparison.baseline.chi2_per_dof, 3));
+  if (comparison) add('readings', String(comparison.readings)), data.scene?.kind !== 'frame' && add('poses', String(comparison.poses)), add('χ² per degree of freedom', num(comparison.baseline.chi2_per_dof, 3));
   if (diagnosis) add('χ² with what was found', num(diagnosis.final.chi2_per_dof, 3)), add('chance of such a finding', diagnosis.chance_of_any === undefined ? null : num(diagnosis.chance_of_any, 2));
   return list.length ? el('dl', {class: 'facts'}, list) : null;
 }
@@ -46,6 +46,7 @@ function guilt() {
 }
 
 function machineFigure() {
+  if (data.scene.kind === 'frame' && data.versions.length) return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom. Arrows with names: sensors.', attempt('The frame', () => machine(data.scene, null, guilt())));
   if (data.scene.kind === 'frame') return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom.', attempt('The frame', () => machine(data.scene, null, '')));
   const version = data.versions[0];
   const moves = () => ({
@@ -69,7 +70,7 @@ function source() {
       : el('div', {class: 'with-csv'}, el('details', {}, el('summary', {}, `${file.bytes} bytes`), el('pre', {}, file.text)),
            el('button', {type: 'button', class: 'csv', 'data-name': file.name, onclick: () => download(file.name, file.text, 'text/plain')}, 'Save'))) : null);
   return figure('source', 'To repeat it', `deflect ${data.version}, ${data.made_with}.`,
-    el('p', {}, el('code', {}, data.command)), block(of('check').length ? 'Matrix' : of('frame').length ? 'Frame' : 'Device', data.device), block('Measurements', data.data),
+    el('p', {}, el('code', {}, data.command)), block(of('check').length ? 'Matrix' : of('frame').length || data.scene?.kind === 'frame' ? 'Frame' : 'Device', data.device), block('Measurements', data.data),
     data.results.map((r) => el('div', {class: 'with-csv'}, el('span', {}, `Result of ${fileName(r.origin)} (${r.kind})`),
       el('button', {type: 'button', class: 'csv', 'data-name': r.kind + '.json', onclick: () => download(r.kind + '.json', JSON.stringify(r.result, null, 2), 'application/json')}, 'JSON'))));
 }

@@ -1,17 +1,18 @@
 // Sections of a comparison with measurements: where it fails, tests, residuals, force–elongation curves.
 import {axis, chart, labelled} from './charts.js';
-import {attempt, el, figure, micro, num, numbers, table} from './dom.js';
+import {attempt, el, figure, fineOf, num, numbers, sized, table} from './dom.js';
 import {workspace} from './workspace.js';
 
 const components = ['ux_mm', 'uy_mm', 'uz_mm', 'thx_rad', 'thy_rad', 'thz_rad'];
 const loads = ['fx_N', 'fy_N', 'fz_N', 'mx_Nmm', 'my_Nmm', 'mz_Nmm'];
-/** Where only rotations were measured the members called mm hold mrad. */
-const unitOf = (version) => (version.unit === 'rad' ? 'µrad' : 'µm');
+/** The members called mm hold numbers in the unit of the result: where only rotations were measured mrad, of forces N. */
+const unitOf = (version) => version.result.unit;
 const strength = (p) => (p === null || p === undefined ? null : Math.min(16, -Math.log10(Math.max(p, 1e-16))) / 16);
 const pWords = (p) => (p === null || p === undefined ? '–' : p < 1e-16 ? '< 1e-16' : num(p, 2));
 
 export function failureMap(version) {
-  const rotation = version.unit === 'rad', times = rotation ? 1e6 : 1e3, unit = rotation ? 'µrad' : 'µm';
+  if (version.channels) return null;
+  const [unit, times] = fineOf(version.unit);
   const maps = [{title: 'measured − predicted', values: version.poses.map((p) => p.rmse)},
                 ...[0, 1, 2].map((k) => ({title: `nothing missing, draw ${k + 1}`, values: version.poses.map((p) => p.with_nothing_missing[k])}))];
   return figure('failure', 'Where it fails',
@@ -32,7 +33,7 @@ export function testHeat(versions) {
     for (const name of ids) {
       const entries = versions.map((v) => v.result[list].find((t) => t[id] === name));
       const first = entries.find(Boolean);
-      rows.push([`${name}: ${first[words]}`, ...entries.map((t) => (!t ? '–' : t.p_value === undefined ? 'not asked' : `${num(1e3 * t.size_mm)} ${unit}, p ${pWords(t.p_value)}`))]);
+      rows.push([`${name}: ${first[words]}`, ...entries.map((t) => (!t ? '–' : t.p_value === undefined ? 'not asked' : `${sized(t.size_mm, unit)}, p ${pWords(t.p_value)}`))]);
       levels.push([null, ...entries.map((t) => (t ? strength(t.p_value) : null))]);
       cells.push([name, list === 'tests' ? 'test' : 'pattern', ...entries.flatMap((t) => [t?.size_mm ?? null, t?.p_value ?? null])]);
     }
@@ -45,19 +46,51 @@ export function testHeat(versions) {
 
 export function errorHeat(version) {
   const groups = Object.entries(version.result.errors).flatMap(([by, list]) => list.map((e) => [by.replace('by_', ''), e]));
-  const unit = unitOf(version);
-  const worst = Math.max(...groups.map(([, e]) => e.worst_mm)), largest = Math.max(...groups.map(([, e]) => e.rmse_mm));
+  const same = groups.filter(([, e]) => (e.unit || unitOf(version)) === unitOf(version));
+  const unit = fineOf(unitOf(version))[0];
+  const worst = Math.max(...same.map(([, e]) => e.worst_mm)), largest = Math.max(...same.map(([, e]) => e.rmse_mm));
   const rows = groups.map(([by, e]) => [by === 'pose' ? e.group : `${by}: ${e.group}`, e.rmse_mm, ...e.bias_mm, e.worst_mm, e.worst_line]);
   return figure('errors', 'Errors by group', `Root mean square, mean by axis and worst of measured − predicted, ${unit}. ${version.device}.`,
     table(['group', 'rms', 'mean x', 'mean y', 'mean z', 'worst', 'in line'], rows, {
-      shade: (i, j) => (j === 0 || j === 6 ? null : Math.abs(rows[i][j]) / (j === 5 ? worst : largest)),
-      show: (x, i, j) => (j === 0 || j === 6 ? String(x) : num(1e3 * x)),
+      shade: (i, j) => (j === 0 || j === 6 || !same.includes(groups[i]) ? null : Math.abs(rows[i][j]) / (j === 5 ? worst : largest)),
+      show: (x, i, j) => (j === 0 || j === 6 ? String(x) : same.includes(groups[i]) ? num(fineOf(unitOf(version))[1] * x) : sized(x, groups[i][1].unit)),
     }),
     numbers('errors-by-group', () => ({columns: ['by', 'group', 'readings', 'rmse_mm', 'mean_x_mm', 'mean_y_mm', 'mean_z_mm', 'worst_mm', 'worst_line'],
       rows: groups.map(([by, e]) => [by, e.group, e.readings, e.rmse_mm, ...e.bias_mm, e.worst_mm, e.worst_line])})));
 }
 
+/** Of a frame: each number as a multiple of the standard deviation that noise and tolerances give it. */
+function channelResiduals(version, index) {
+  const sequence = version.readings.every((r) => r.sequence !== null), x = (r, i) => (sequence ? r.sequence : i);
+  const left = version.readings_left_out ? ` The first ${version.readings.length} readings; ${version.readings_left_out} more are left out.` : '';
+  const picture = chart('Residuals channel by channel', 360, (t) => {
+    const colours = [t.blue, t.orange, t.green, t.purple, t.pale, t.grey], ranks = version.readings.map(x), first = Math.min(...ranks), last = Math.max(...ranks);
+    const edge = (y, more) => ({type: 'line', label: 'two deviations', data: [{x: first, y}, {x: last, y}], borderColor: t.grey, borderDash: [5, 4], borderWidth: 1.5, pointRadius: 0, ...more});
+    return {
+      type: 'scatter',
+      data: {datasets: [
+        ...version.channels.map((c, k) => ({label: c.name, pointRadius: 2.4, backgroundColor: colours[k % colours.length], borderWidth: 0, pointStyle: ['circle', 'triangle', 'rect'][Math.floor(k / colours.length) % 3],
+          data: version.readings.map((r, i) => ({x: x(r, i), y: r.sensors && r.sensors[c.name] && c.deviation > 0 ? r.sensors[c.name].residual / c.deviation : null, i})).filter((p) => p.y !== null)})),
+        edge(2, {}), edge(-2, {})]},
+      options: {
+        scales: {x: axis(sequence ? 'in the order taken' : 'in the order of the file', t, {min: first, max: last}), y: axis('standard deviations', t)},
+        plugins: {legend: {position: 'bottom', labels: {usePointStyle: true, filter: (item) => item.datasetIndex <= version.channels.length}}, tooltip: {callbacks: {label: (item) => {
+          const r = version.readings[item.raw.i], of = r && r.sensors && r.sensors[item.dataset.label];
+          return of ? `${item.dataset.label} ${num(of.residual)} ${of.unit}, line ${r.line}` : `${num(item.parsed.y)}`;
+        }}}},
+      },
+    };
+  });
+  const names = version.channels.map((c) => c.name), loads = [...new Set(version.readings.flatMap((r) => Object.keys(r.loads || {})))];
+  return figure('residuals-' + index, 'Residuals channel by channel', `Measured − predicted, each in standard deviations of what noise and tolerances give with nothing missing. ${version.device}.${left}`, picture,
+    numbers('readings-' + index, () => ({
+      columns: ['line', 'sequence', ...loads, ...version.channels.flatMap((c) => [`measured_${c.name}_${c.unit}`, `residual_${c.name}_${c.unit}`]), ...version.note_columns],
+      rows: version.readings.map((r) => [r.line, r.sequence, ...loads.map((l) => (r.loads || {})[l] ?? 0), ...names.flatMap((n) => [r.sensors?.[n]?.measured ?? null, r.sensors?.[n]?.residual ?? null]), ...(r.notes || [])]),
+    })));
+}
+
 export function residuals(version, index) {
+  if (version.channels) return channelResiduals(version, index);
   const rotation = version.unit === 'rad', from = rotation ? 3 : 0, times = rotation ? 1e6 : 1e3, unit = rotation ? 'µrad' : 'µm';
   const sequence = version.readings.every((r) => r.sequence !== null);
   const x = (r, i) => (sequence ? r.sequence : i);
@@ -124,8 +157,9 @@ export function curves(versions) {
 }
 
 export function findings(result) {
+  const unit = result.unit;
   if (!result.findings.length && !result.looks_like.length) return null;
   return figure('findings', 'What the residual holds', null,
     el('ul', {class: 'findings'}, result.looks_like.map((s) => el('li', {}, s)), result.findings.map((f) => el('li', {}, `${f.sentence}. `,
-      el('span', {class: 'quiet'}, `${micro(f.size_mm)} rms, ${num(100 * f.share_of_misfit, 3)} % of the misfit beyond noise, p ${pWords(f.p_value)}${f.instead.length ? '; nearly as well: ' + f.instead.join(', ') : ''}`)))));
+      el('span', {class: 'quiet'}, `${sized(f.size_mm, unit)} rms, ${num(100 * f.share_of_misfit, 3)} % of the misfit beyond noise, p ${pWords(f.p_value)}${f.instead.length ? '; nearly as well: ' + f.instead.join(', ') : ''}`)))));
 }

@@ -12,11 +12,12 @@ namespace deflect::page {
 namespace {
 
 /// Of each pose, over the kind of numbers that Errors speak of.
-std::vector<double> rmse_by_pose(const compare::Comparison& c, const VectorX& residual, bool rotations) {
+std::vector<double> rmse_by_pose(const compare::Comparison& c, const VectorX& residual,
+                                 measurement::Quantity quantity) {
   std::vector<double> squares(c.study.data->poses.size(), 0), count(squares.size(), 0);
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
     const measurement::MeasuredValue& v = c.study.values[i];
-    if (v.rotation != rotations) continue;
+    if (v.quantity != quantity) continue;
     const std::size_t pose = c.study.data->readings[v.reading].pose;
     const double r = residual(as_index(i));
     squares[pose] += r * r;
@@ -43,11 +44,11 @@ VectorX with_nothing_missing(const compare::Comparison& c, std::uint64_t seed) {
   return r;
 }
 
-Json poses_json(const compare::Comparison& c, bool rotations) {
-  const double unit = rotations ? 1 : report::mm;
+Json poses_json(const compare::Comparison& c, measurement::Quantity quantity) {
+  const double unit = measurement::row_of(quantity).per_SI;
   std::vector<std::vector<double>> healthy;
   for (std::uint64_t seed = 1; seed <= 3; ++seed)
-    healthy.push_back(rmse_by_pose(c, with_nothing_missing(c, seed), rotations));
+    healthy.push_back(rmse_by_pose(c, with_nothing_missing(c, seed), quantity));
   Json out = Json::array();
   for (std::size_t p = 0; p < c.by_pose.size(); ++p) {
     const Vector3 at = report::mm * c.study.standing->tool(p).p_W;
@@ -64,6 +65,7 @@ Json poses_json(const compare::Comparison& c, bool rotations) {
 
 Json readings_json(const compare::Comparison& c, std::size_t most) {
   const measurement::Measurements& data = *c.study.data;
+  const std::vector<measurement::LoadChannel> channels = measurement::load_channels(data);
   Json out = Json::array();
   for (std::size_t i = 0; i < std::min(most, data.readings.size()); ++i) {
     const measurement::Reading& r = data.readings[i];
@@ -77,19 +79,22 @@ Json readings_json(const compare::Comparison& c, std::size_t most) {
                     {"measured", nothing},
                     {"predicted", json::json_numbers(twist_in_mm(c.study.predicted[i].head<6>()), "predicted")},
                     {"residual", nothing}};
+    for (std::size_t k = 0; data.instruments.stationary && k < channels.size(); ++k)
+      if (const double load_there = c.study.loads(as_index(k), as_index(i)); load_there != 0)
+        reading["loads"][channels[k].name] = load_there * (channels[k].moment ? report::mm : 1);
     if (!data.note_columns.empty()) reading["notes"] = r.notes;
     out.push_back(std::move(reading));
   }
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
     const measurement::MeasuredValue& v = c.study.values[i];
     if (v.reading >= out.size()) continue;
-    const double unit = v.rotation ? 1 : report::mm, residual = unit * c.residual(as_index(i));
+    const double unit = measurement::row_of(v.quantity).per_SI, residual = unit * c.residual(as_index(i));
     if (v.of_tool_point()) {
       out[v.reading]["measured"][v.channel] = unit * v.value;
       out[v.reading]["residual"][v.channel] = residual;
     } else {
-      out[v.reading]["sensors"][measurement::channel_name(data, v.channel)] = {{"measured", unit * v.value},
-                                                                               {"residual", residual}};
+      out[v.reading]["sensors"][measurement::channel_name(data, v.channel)] = {
+          {"measured", unit * v.value}, {"residual", residual}, {"unit", measurement::row_of(v.quantity).unit}};
     }
   }
   return out;
@@ -109,19 +114,41 @@ Json curves_json(const compare::Comparison& c) {
   return out;
 }
 
+/// Each channel with its unit and the standard deviation of its residual with nothing missing.
+Json channels_json(const compare::Comparison& c) {
+  const std::vector<measurement::SensorChannel>& sensors = c.study.data->instruments.sensors;
+  const VectorX deviation = compare::expected_deviations(c);
+  std::vector<double> variance(sensors.size(), 0), count(sensors.size(), 0);
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const std::size_t k = c.study.values[i].channel - 6;
+    variance[k] += deviation(as_index(i)) * deviation(as_index(i));
+    count[k] += 1;
+  }
+  Json out = Json::array();
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    const measurement::QuantityRow& row = measurement::row_of(sensors[k].quantity);
+    if (count[k] > 0)
+      out.push_back({{"name", sensors[k].name},
+                     {"unit", row.unit},
+                     {"deviation", row.per_SI * std::sqrt(variance[k] / count[k])}});
+  }
+  return out;
+}
+
 }  // namespace
 
 Json residuals_json(const compare::Comparison& c, std::size_t most) {
-  const bool rotations = compare::rotations_alone(c.study.values);
+  const measurement::Quantity quantity = compare::quantity_of_errors(c.study.values);
   Json out;
   out["device"] = c.device;
   out["result"] = Json::parse(report::compare_json(c));
-  out["unit"] = rotations ? "rad" : "mm";
-  out["poses"] = poses_json(c, rotations);
+  out["unit"] = measurement::row_of(quantity).unit;
+  out["poses"] = poses_json(c, quantity);
   out["readings"] = readings_json(c, most);
   out["readings_left_out"] = c.study.data->readings.size() - out["readings"].size();
   out["note_columns"] = c.study.data->note_columns;
   out["curves"] = curves_json(c);
+  if (!c.study.standing->has_tool_point()) out["channels"] = channels_json(c);
   return out;
 }
 

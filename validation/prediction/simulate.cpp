@@ -92,17 +92,19 @@ measurement::Measurements simulate(const Mechanism& m, measurement::Measurements
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
     measurement::Reading& r = plan.readings[i];
     const bool gross = o.outliers > 0 && random.uniform(0, 1) < o.outliers;
-    const auto read = [&](double value, double sigma, bool rotation) {
+    const auto read = [&](double value, double sigma, measurement::Quantity quantity) {
       value += sigma * random.normal();
       if (gross) value += (random.uniform(0, 1) < 0.5 ? -1 : 1) * random.uniform(10, 30) * sigma;
-      return sigma > 0 ? rounded(value, sigma, rotation ? 1 : 1e3) : value;
+      return sigma > 0 ? rounded(value, sigma, measurement::row_of(quantity).per_SI) : value;
     };
     for (std::size_t k = 0; k < sensors.size(); ++k) {
-      const double otherwise = sensors[k].rotation ? o.sigma_th.value_or(0) : o.sigma_u;
-      r.sensors.push_back(read(exact[i](as_index(6 + k)), sensors[k].sigma.value_or(otherwise), sensors[k].rotation));
+      const bool rotation = sensors[k].quantity == measurement::Quantity::angle;
+      const double otherwise = rotation ? o.sigma_th.value_or(0) : o.sigma_u;
+      r.sensors.push_back(read(exact[i](as_index(6 + k)), sensors[k].sigma.value_or(otherwise), sensors[k].quantity));
     }
     for (Eigen::Index k = 0; k < 6 && sensors.empty(); ++k)
-      if (k < 3 || o.sigma_th) nth(r.displacement, k) = read(exact[i](k), k < 3 ? o.sigma_u : *o.sigma_th, k >= 3);
+      if (k < 3 || o.sigma_th) nth(r.displacement, k) = read(exact[i](k), k < 3 ? o.sigma_u : *o.sigma_th,
+                                         measurement::displacement_quantity(as_size(k)));
     if (o.sigma_u > 0 && !all_told) r.sigma_u = o.sigma_u;
     if (o.sigma_th && *o.sigma_th > 0 && !all_told) r.sigma_th = o.sigma_th;
   }

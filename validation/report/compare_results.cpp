@@ -17,6 +17,11 @@
 namespace deflect::report {
 namespace {
 
+/// " at 9 poses"; nothing of a subject that stands still.
+std::string poses_words(const compare::Comparison& c) {
+  return c.study.standing->has_tool_point() || c.poses > 1 ? fmt::format(" at {} poses", c.poses) : "";
+}
+
 constexpr double significant = 1e-3;
 constexpr std::size_t most_poses = 12, poses_of_many = 10;  // in the report
 
@@ -24,11 +29,12 @@ std::string p_text(double p) { return p < 1e-16 ? "< 1e-16" : fmt::format("{:.2g
 
 std::string findings_text(const compare::Comparison& c) {
   const char* unit = error_unit(c).micro;
+  const double fine = error_unit(c).fine;
   std::string out;
   int number = 0;
   for (const compare::Finding& f : c.findings) {
     out += fmt::format("  {}. {}.\n", ++number, f.sentence);
-    out += fmt::format("     {:.2f} {} rms of the readings, {:.0f} % of the misfit beyond noise, p {}{}\n", um * f.size,
+    out += fmt::format("     {:.2f} {} rms of the readings, {:.0f} % of the misfit beyond noise, p {}{}\n", fine * f.size,
                        unit, 100 * f.share, p_text(f.p_value),
                        f.instead.empty() ? "" : fmt::format("; nearly as well: {}", fmt::join(f.instead, ", ")));
   }
@@ -40,17 +46,20 @@ std::string findings_text(const compare::Comparison& c) {
     out += fmt::format(
         "  Equilibrium in the deformed shape, which this linear device leaves out, is taken into account: {:.2f} {} "
         "rms; the data ask for {:.2f} ± {:.2f} times that.\n",
-        um * c.deformed_shape, unit, c.deformed_shape_fit->amplitude(0),
+        fine * c.deformed_shape, unit, c.deformed_shape_fit->amplitude(0),
         std::sqrt(c.deformed_shape_fit->covariance(0, 0)));
   return out;
 }
 
-void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<compare::Errors>& groups) {
+/// In the unit of the table; those of another quantity with their own.
+void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<compare::Errors>& groups,
+              measurement::Quantity quantity) {
   for (const compare::Errors& e : groups) {
-    rows.push_back({"  " + e.group, std::to_string(e.readings), fmt::format("{:.2f}", um * e.rmse)});
+    const double fine = fine_of(e.quantity);
+    rows.push_back({e.quantity == quantity ? "  " + e.group : fmt::format("  {} ({})", e.group, fine_unit(e.quantity)), std::to_string(e.readings), fmt::format("{:.2f}", fine * e.rmse)});
     for (std::size_t k = 0; k < 3; ++k)
-      rows.back().push_back(e.measured_along[k] ? fmt::format("{:.2f}", um * e.bias(as_index(k))) : "–");
-    rows.back().push_back(fmt::format("{:.2f}", um * e.worst));
+      rows.back().push_back(e.measured_along[k] ? fmt::format("{:.2f}", fine * e.bias(as_index(k))) : "–");
+    rows.back().push_back(fmt::format("{:.2f}", fine * e.worst));
     rows.back().push_back(std::to_string(e.worst_line));
   }
 }
@@ -70,10 +79,12 @@ std::string errors_table(const compare::Comparison& c) {
                                                  "readings", "rms", "mean x", "mean y", "mean z", "worst", "in line"}};
   compare::Errors all = c.all;
   all.group = "all";
-  add_rows(rows, {all});
-  for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading}) add_rows(rows, *groups);
+  const measurement::Quantity quantity = error_unit(c).quantity;
+  add_rows(rows, {all}, quantity);
+  for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading})
+    add_rows(rows, *groups, quantity);
   const std::vector<compare::Errors> shown = poses_shown(c.by_pose);
-  add_rows(rows, shown);
+  if (c.study.standing->has_tool_point() || shown.size() > 1) add_rows(rows, shown, quantity);
   std::string out = aligned(rows);
   if (shown.size() < c.by_pose.size())
     out += fmt::format("  these poses are the worst; {} more are in the files of --json and --out\n",
@@ -83,46 +94,51 @@ std::string errors_table(const compare::Comparison& c) {
 
 std::string tests_table(const compare::Comparison& c) {
   const char* unit = error_unit(c).micro;
+  const double fine = error_unit(c).fine;
   std::vector<std::vector<std::string>> rows = {{"tests without a model of what is missing", "numbers", unit, "p"}};
   for (const compare::ContrastTest& t : c.contrasts)
     rows.push_back(
         t.contrasts == 0
             ? std::vector<std::string>{fmt::format("  {}: {}", t.id, t.question), "0", "–", "needs " + t.missing}
             : std::vector<std::string>{fmt::format("  {}: {}", t.id, t.question), std::to_string(t.contrasts),
-                                       fmt::format("{:.2f}", um * t.size),
+                                       fmt::format("{:.2f}", fine * t.size),
                                        p_text(t.p_value) + (t.p_value < significant ? " *" : "")});
   rows.push_back({"patterns, each alone", "columns", unit, "p"});
   for (const compare::PatternTest& t : c.patterns)
     rows.push_back({fmt::format("  {}: {}", t.pattern, t.title), std::to_string(t.alone.freedoms),
-                    fmt::format("{:.2f}", um * t.size),
+                    fmt::format("{:.2f}", fine * t.size),
                     p_text(t.alone.p_value) + (t.alone.p_value < significant ? " *" : "")});
   return aligned(rows);
 }
 
 Json errors_json(const std::vector<compare::Errors>& groups) {
   Json out = Json::array();
-  for (const compare::Errors& e : groups)
+  for (const compare::Errors& e : groups) {
+    const double coarse = measurement::row_of(e.quantity).coarse_per_SI;
     out.push_back({{"group", e.group},
                    {"readings", e.readings},
-                   {"rmse_mm", json::json_number(mm * e.rmse, "rmse")},
-                   {"bias_mm", {mm * e.bias.x(), mm * e.bias.y(), mm * e.bias.z()}},
-                   {"worst_mm", json::json_number(mm * e.worst, "worst")},
+                   {"unit", measurement::row_of(e.quantity).coarse},
+                   {"rmse_mm", json::json_number(coarse * e.rmse, "rmse")},
+                   {"bias_mm", {coarse * e.bias.x(), coarse * e.bias.y(), coarse * e.bias.z()}},
+                   {"worst_mm", json::json_number(coarse * e.worst, "worst")},
                    {"worst_line", e.worst_line}});
+  }
   return out;
 }
 
 std::vector<double> list_of(const VectorX& x) { return {x.data(), x.data() + x.size()}; }
 
 Json baseline_json(const compare::Comparison& c) {
-  return {{"rmse_mm", json::json_number(mm * c.all.rmse, "rmse")},
-          {"held_out_rmse_mm", json::json_number(mm * c.held_out, "held-out rmse")},
+  const double coarse = error_unit(c).coarse;
+  return {{"rmse_mm", json::json_number(coarse * c.all.rmse, "rmse")},
+          {"held_out_rmse_mm", json::json_number(coarse * c.held_out, "held-out rmse")},
           {"chi2_per_dof", json::json_number(c.chi2_per_dof, "chi2")},
           {"p_value", c.p_value},
-          {"measured_rms_mm", mm * c.all.measured},
-          {"worst_mm", mm * c.all.worst}};
+          {"measured_rms_mm", coarse * c.all.measured},
+          {"worst_mm", coarse * c.all.worst}};
 }
 
-Json findings_json(const std::vector<compare::Finding>& findings) {
+Json findings_json(const std::vector<compare::Finding>& findings, double coarse) {
   Json out = Json::array();
   for (const compare::Finding& f : findings)
     out.push_back({{"pattern", f.pattern},
@@ -131,7 +147,7 @@ Json findings_json(const std::vector<compare::Finding>& findings) {
                    {"amplitude_SI", list_of(f.amplitude)},
                    {"deviation_SI", list_of(f.deviation)},
                    {"unit_SI", f.unit},
-                   {"size_mm", mm * f.size},
+                   {"size_mm", coarse * f.size},
                    {"share_of_misfit", f.share},
                    {"chi2_gain", f.gain},
                    {"p_value", f.p_value},
@@ -139,12 +155,12 @@ Json findings_json(const std::vector<compare::Finding>& findings) {
   return out;
 }
 
-Json contrasts_json(const std::vector<compare::ContrastTest>& tests) {
+Json contrasts_json(const std::vector<compare::ContrastTest>& tests, double coarse) {
   Json out = Json::array();
   for (const compare::ContrastTest& t : tests) {
     Json test = {{"test", t.id}, {"question", t.question}, {"numbers", t.contrasts}};
     if (t.contrasts > 0)
-      test["size_mm"] = mm * t.size, test["p_value"] = t.p_value;
+      test["size_mm"] = coarse * t.size, test["p_value"] = t.p_value;
     else
       test["needs"] = t.missing;
     out.push_back(test);
@@ -152,12 +168,12 @@ Json contrasts_json(const std::vector<compare::ContrastTest>& tests) {
   return out;
 }
 
-Json patterns_json(const std::vector<compare::PatternTest>& tests) {
+Json patterns_json(const std::vector<compare::PatternTest>& tests, double coarse) {
   Json out = Json::array();
   for (const compare::PatternTest& t : tests)
     out.push_back({{"pattern", t.pattern},
                    {"title", t.title},
-                   {"size_mm", mm * t.size},
+                   {"size_mm", coarse * t.size},
                    {"chi2_gain", t.alone.gain},
                    {"columns", t.alone.freedoms},
                    {"p_value", t.alone.p_value}});
@@ -172,10 +188,10 @@ std::vector<std::string> failing_tests(const compare::Comparison& c) {
   return out;
 }
 
-/// By how much one standard deviation of a tolerance moves the readings, root mean square over those of one kind (m, or
-/// rad where rotations alone were measured): those of all poses, the largest first.
+/// By how much one standard deviation of a tolerance moves the readings, root mean square over those of the quantity of
+/// errors, SI: those of all poses, the largest first.
 std::vector<std::pair<std::string, double>> sizes_of_tolerances(const compare::Comparison& c) {
-  const bool turns = compare::rotations_alone(c.study.values);
+  const measurement::Quantity quantity = error_unit(c).quantity;
   const MatrixX& A = c.tolerances.A.shared;
   std::vector<std::pair<std::string, double>> out;
   for (Eigen::Index k = 0; k < A.cols(); ++k) {
@@ -183,7 +199,7 @@ std::vector<std::pair<std::string, double>> sizes_of_tolerances(const compare::C
     if (tolerance.zero) continue;
     double square = 0, count = 0;
     for (Eigen::Index i = 0; i < A.rows(); ++i)
-      if (turns || !nth(c.study.values, i).rotation) square += A(i, k) * A(i, k), ++count;
+      if (nth(c.study.values, i).quantity == quantity) square += A(i, k) * A(i, k), ++count;
     out.emplace_back(tolerance.name, std::sqrt(square / std::max(1.0, count)));
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -192,17 +208,19 @@ std::vector<std::pair<std::string, double>> sizes_of_tolerances(const compare::C
 
 /// "leg 2 motor rz stiffness 1.20 µm, modulus 0.84 µm": the largest.
 std::string tolerances_that_matter(const compare::Comparison& c) {
+  const double fine = error_unit(c).fine;
   std::string out;
   const auto all = sizes_of_tolerances(c);
   for (std::size_t i = 0; i < std::min<std::size_t>(3, all.size()); ++i)
-    out += fmt::format("{}{} {:.2f} {}", i > 0 ? ", " : "", all[i].first, um * all[i].second, error_unit(c).micro);
+    out += fmt::format("{}{} {:.2f} {}", i > 0 ? ", " : "", all[i].first, fine * all[i].second, error_unit(c).micro);
   return out;
 }
 
 Json tolerances_json(const compare::Comparison& c) {
+  const double coarse = error_unit(c).coarse;
   Json out = Json::array();
   for (const auto& [name, rms] : sizes_of_tolerances(c))
-    out.push_back({{"name", name}, {"rms_mm", json::json_number(mm * rms, "tolerance")}});
+    out.push_back({{"name", name}, {"rms_mm", json::json_number(coarse * rms, "tolerance")}});
   return out;
 }
 
@@ -217,8 +235,9 @@ std::vector<std::string> found_patterns(const compare::Comparison& c) {
 
 std::string compare_report(const compare::Comparison& c) {
   const char* unit = error_unit(c).micro;
-  std::string out = fmt::format("{} against {}: {} readings at {} poses\n\n{}\n", c.device, c.data, c.readings, c.poses,
-                                verdict_words(c));
+  const double fine = error_unit(c).fine;
+  std::string out =
+      fmt::format("{} against {}: {} readings{}\n\n{}\n", c.device, c.data, c.readings, poses_words(c), verdict_words(c));
   const std::string found = findings_text(c);
   if (!found.empty()) out += "\n" + found;
   for (std::size_t i = compare::is_mistaken(c) ? 1 : 0; i < c.mistakes.size(); ++i)  // the headline has been said
@@ -227,11 +246,11 @@ std::string compare_report(const compare::Comparison& c) {
   out += fmt::format(
       "\nresidual {:.2f} {} rms (held-out poses {:.2f}), σ of a reading {:.2f} {}{}, noise and tolerances {:.2f} {}, "
       "chi2 per degree of freedom {:.2f}\n",
-      um * c.all.rmse, unit, um * c.held_out, um * c.sigma_u, unit,
+      fine * c.all.rmse, unit, fine * c.held_out, fine * c.sigma_u, unit,
       c.sigma_from_residuals ? " (from the residuals: neither σ nor replicates in the file)" : "",
-      um * c.noise_and_tolerances, unit, c.chi2_per_dof);
+      fine * c.noise_and_tolerances, unit, c.chi2_per_dof);
   if (c.pure_error)
-    out += fmt::format("replicates scatter by {:.2f} {} ({} degrees of freedom)\n", um * c.pure_error->sigma, unit,
+    out += fmt::format("replicates scatter by {:.2f} {} ({} degrees of freedom)\n", fine * c.pure_error->sigma, unit,
                        c.pure_error->degrees_of_freedom);
   if (!c.set_aside.empty())
     out += fmt::format("set aside as gross outliers: {} readings, lines {}\n", c.set_aside.size(),
@@ -245,6 +264,7 @@ std::string compare_report(const compare::Comparison& c) {
 }
 
 std::string compare_json(const compare::Comparison& c) {
+  const double coarse = error_unit(c).coarse;
   Json j;
   j["kind"] = "comparison";
   j["device"] = c.device;
@@ -253,22 +273,22 @@ std::string compare_json(const compare::Comparison& c) {
   j["poses"] = c.poses;
   j["unit"] = error_unit(c).milli;  // of what ends with _mm
   j["baseline"] = baseline_json(c);
-  j["noise_floor_mm"] = json::json_number(mm * c.noise_and_tolerances, "noise floor");
-  j["sigma_u_mm"] = mm * c.sigma_u;
+  j["noise_floor_mm"] = json::json_number(coarse * c.noise_and_tolerances, "noise floor");
+  j["sigma_u_mm"] = coarse * c.sigma_u;
   j["sigma_from_residuals"] = c.sigma_from_residuals;
   if (c.pure_error)
-    j["pure_error"] = {{"sigma_mm", mm * c.pure_error->sigma},
+    j["pure_error"] = {{"sigma_mm", coarse * c.pure_error->sigma},
                        {"degrees_of_freedom", c.pure_error->degrees_of_freedom}};
   j["verdict"] = verdict_words(c);
   j["notes"] = c.study.data->how_read;
-  j["findings"] = findings_json(c.findings);
+  j["findings"] = findings_json(c.findings, coarse);
   j["unexplained_chi2_per_dof"] = json::json_number(c.unexplained_chi2_per_dof, "unexplained chi2");
   if (c.deformed_shape_fit)
-    j["deformed_shape"] = {{"size_mm", mm * c.deformed_shape},
+    j["deformed_shape"] = {{"size_mm", coarse * c.deformed_shape},
                            {"amplitude", c.deformed_shape_fit->amplitude(0)},
                            {"deviation", std::sqrt(c.deformed_shape_fit->covariance(0, 0))}};
-  j["tests"] = contrasts_json(c.contrasts);
-  j["patterns"] = patterns_json(c.patterns);
+  j["tests"] = contrasts_json(c.contrasts, coarse);
+  j["patterns"] = patterns_json(c.patterns, coarse);
   j["errors"] = {{"by_axis", errors_json(c.by_axis)},
                  {"by_pose", errors_json(c.by_pose)},
                  {"by_direction", errors_json(c.by_direction)},
@@ -289,10 +309,11 @@ std::string residuals_csv(const compare::Comparison& c) {
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const measurement::MeasuredValue& v = s.values[i];
     const measurement::Reading& r = s.data->readings[v.reading];
-    const double unit = v.rotation ? 1 : mm;
+    const measurement::QuantityRow& row = measurement::row_of(v.quantity);
+    const double unit = row.per_SI;
     const double residual = c.residual(as_index(i));
     out += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.4g}\n", r.line, csv_cell(s.data->poses[r.pose].label),
-                       csv_cell(measurement::channel_name(*s.data, v.channel)), v.rotation ? "rad" : "mm",
+                       csv_cell(measurement::channel_name(*s.data, v.channel)), row.unit,
                        unit * v.value, unit * (v.value - residual), unit * residual, unit * c.sigma[i]);
   }
   return out;
@@ -301,28 +322,36 @@ std::string residuals_csv(const compare::Comparison& c) {
 std::string errors_csv(const compare::Comparison& c) {
   std::string out = fmt::format("group,readings,rmse_{0},mean_x_{0},mean_y_{0},mean_z_{0},worst_{0},worst_line\n",
                                 error_unit(c).column);
+  const measurement::Quantity quantity = error_unit(c).quantity;
   compare::Errors all = c.all;
   all.group = "all";
   std::vector<compare::Errors> rows = {all};
   for (const auto* groups : {&c.by_axis, &c.by_direction, &c.by_magnitude, &c.by_heading, &c.by_pose})
     rows.insert(rows.end(), groups->begin(), groups->end());
-  for (const compare::Errors& e : rows)
-    out += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(e.group), e.readings, um * e.rmse,
-                       um * e.bias.x(), um * e.bias.y(), um * e.bias.z(), um * e.worst, e.worst_line);
+  for (const compare::Errors& e : rows) {
+    const double fine = fine_of(e.quantity);
+    const std::string name =
+        e.quantity == quantity ? e.group
+                               : fmt::format("{} ({})", e.group, measurement::row_of(e.quantity).fine_column);
+    out += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(name), e.readings, fine * e.rmse,
+                       fine * e.bias.x(), fine * e.bias.y(), fine * e.bias.z(), fine * e.worst, e.worst_line);
+  }
   return out;
 }
 
 std::string tests_csv(const compare::Comparison& c) {
+  const double fine = error_unit(c).fine;
   std::string out = fmt::format("kind,name,numbers,size_{},p_value\n", error_unit(c).column);
   for (const compare::ContrastTest& t : c.contrasts)
-    out += fmt::format("contrast,{},{},{:.6g},{:.6g}\n", t.id, t.contrasts, um * t.size, t.p_value);
+    out += fmt::format("contrast,{},{},{:.6g},{:.6g}\n", t.id, t.contrasts, fine * t.size, t.p_value);
   for (const compare::PatternTest& t : c.patterns)
-    out += fmt::format("pattern,{},{},{:.6g},{:.6g}\n", t.pattern, t.alone.freedoms, um * t.size, t.alone.p_value);
+    out += fmt::format("pattern,{},{},{:.6g},{:.6g}\n", t.pattern, t.alone.freedoms, fine * t.size, t.alone.p_value);
   return out;
 }
 
 std::string history_report(const compare::History& h) {
   const std::vector<compare::Comparison>& all = h.versions;
+  const double fine = error_unit(all.front()).fine;
   std::vector<std::vector<std::string>> rows = {{"device", fmt::format("rms {}", error_unit(all.front()).micro),
                                                  "placebo", "held-out", "chi2/n", "noise and tolerances", "strained",
                                                  "tests that fail", "patterns left"}};
@@ -330,14 +359,14 @@ std::string history_report(const compare::History& h) {
     const compare::Comparison& c = all[i];
     const std::optional<double> wrong = h.placebo[i];
     const std::vector<std::string> tests = failing_tests(c), patterns = found_patterns(c);
-    rows.push_back({c.device, fmt::format("{:.2f}", um * c.all.rmse), wrong ? fmt::format("{:.2f}", um * *wrong) : "",
-                    fmt::format("{:.2f}", um * c.held_out), fmt::format("{:.2f}", c.chi2_per_dof),
-                    fmt::format("{:.2f}", um * c.noise_and_tolerances), std::to_string(c.strained.size()),
+    rows.push_back({c.device, fmt::format("{:.2f}", fine * c.all.rmse), wrong ? fmt::format("{:.2f}", fine * *wrong) : "",
+                    fmt::format("{:.2f}", fine * c.held_out), fmt::format("{:.2f}", c.chi2_per_dof),
+                    fmt::format("{:.2f}", fine * c.noise_and_tolerances), std::to_string(c.strained.size()),
                     tests.empty() ? "none" : fmt::format("{}", fmt::join(tests, ", ")),
                     patterns.empty() ? "none" : fmt::format("{}", fmt::join(patterns, ", "))});
   }
   std::string out =
-      fmt::format("{}: {} readings at {} poses\n\n", all.front().data, all.front().readings, all.front().poses) +
+      fmt::format("{}: {} readings{}\n\n", all.front().data, all.front().readings, poses_words(all.front())) +
       aligned(rows);
   for (const compare::Comparison& c : all) {
     std::vector<std::pair<std::string, double>> worst = c.strained;
@@ -354,6 +383,7 @@ std::string history_report(const compare::History& h) {
 
 std::string history_json(const compare::History& h) {
   const std::vector<compare::Comparison>& all = h.versions;
+  const double coarse = error_unit(all.front()).coarse;
   Json j;
   j["kind"] = "history";
   j["data"] = all.front().data;
@@ -363,11 +393,11 @@ std::string history_json(const compare::History& h) {
     const compare::Comparison& c = all[i];
     const std::optional<double> wrong = h.placebo[i];
     j["versions"].push_back({{"device", c.device},
-                             {"rmse_mm", json::json_number(mm * c.all.rmse, "rmse")},
-                             {"placebo_rmse_mm", wrong ? json::json_number(mm * *wrong, "placebo") : Json()},
-                             {"held_out_rmse_mm", json::json_number(mm * c.held_out, "held-out rmse")},
+                             {"rmse_mm", json::json_number(coarse * c.all.rmse, "rmse")},
+                             {"placebo_rmse_mm", wrong ? json::json_number(coarse * *wrong, "placebo") : Json()},
+                             {"held_out_rmse_mm", json::json_number(coarse * c.held_out, "held-out rmse")},
                              {"chi2_per_dof", json::json_number(c.chi2_per_dof, "chi2")},
-                             {"noise_floor_mm", mm * c.noise_and_tolerances},
+                             {"noise_floor_mm", coarse * c.noise_and_tolerances},
                              {"failing_tests", failing_tests(c)},
                              {"patterns", found_patterns(c)},
                              {"strained_tolerances", strained_json(c.strained)}});
@@ -377,15 +407,16 @@ std::string history_json(const compare::History& h) {
 
 std::string history_csv(const compare::History& h) {
   const std::vector<compare::Comparison>& all = h.versions;
+  const double fine = error_unit(all.front()).fine;
   std::string out =
       fmt::format("device,rmse_{0},placebo_rmse_{0},held_out_rmse_{0},chi2_per_dof,noise_and_tolerances_{0},strained\n",
                   error_unit(all.front()).column);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const compare::Comparison& c = all[i];
     const std::optional<double> wrong = h.placebo[i];
-    out += fmt::format("{},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(c.device), um * c.all.rmse,
-                       wrong ? fmt::format("{:.6g}", um * *wrong) : "", um * c.held_out, c.chi2_per_dof,
-                       um * c.noise_and_tolerances, c.strained.size());
+    out += fmt::format("{},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(c.device), fine * c.all.rmse,
+                       wrong ? fmt::format("{:.6g}", fine * *wrong) : "", fine * c.held_out, c.chi2_per_dof,
+                       fine * c.noise_and_tolerances, c.strained.size());
   }
   return out;
 }

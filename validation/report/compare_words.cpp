@@ -1,6 +1,7 @@
 #include "validation/report/compare_words.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,11 +39,28 @@ std::string loads_text(const measurement::Measurements& data) {
   return out.empty() ? "no load" : "loads on the tool point " + out;
 }
 
+std::string short_list(std::vector<std::string> names, std::size_t most) {
+  const std::size_t more = names.size() > most ? names.size() - most : 0;
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
 }  // namespace
 
 ErrorUnit error_unit(const compare::Comparison& c) {
-  if (!compare::rotations_alone(c.study.values)) return {};
-  return {true, "µrad", "mrad", "urad", "Nm", {"Δθx", "Δθy", "Δθz"}, {"mx", "my", "mz"}};
+  ErrorUnit out;
+  out.quantity = compare::quantity_of_errors(c.study.values);
+  const measurement::QuantityRow& row = measurement::row_of(out.quantity);
+  out.micro = row.fine, out.milli = row.coarse, out.column = row.fine_column;
+  out.fine = row.fine_per_SI, out.coarse = row.coarse_per_SI;
+  if (out.quantity != measurement::Quantity::angle || !c.study.standing->has_tool_point()) return out;
+  out.rotations = true;
+  out.load = "Nm";
+  for (int k = 0; k < 3; ++k) {
+    constexpr const char *turns[] = {"Δθx", "Δθy", "Δθz"}, *moments[] = {"mx", "my", "mz"};
+    out.components[k] = turns[k], out.loads[k] = moments[k];
+  }
+  return out;
 }
 
 std::vector<ReadingCells> cells_of(const compare::Comparison& c) {
@@ -71,6 +89,13 @@ std::string subjects(const compare::Comparison& c) {
 }
 
 std::string data_sentence(const compare::Comparison& c) {
+  if (!c.study.standing->has_tool_point()) {
+    std::vector<std::string> loads, sensors;
+    for (const measurement::LoadChannel& each : measurement::load_channels(*c.study.data)) loads.push_back(each.name);
+    for (const measurement::SensorChannel& each : c.study.data->instruments.sensors) sensors.push_back(each.name);
+    return fmt::format("Frame {}, measurements {}: {} readings of {} under {}.", c.device, file_of(c), c.readings,
+                       short_list(sensors, 8), short_list(loads, 6));
+  }
   Vector3 low = Vector3::Constant(INFINITY), high = -low;
   for (std::size_t p = 0; p < c.poses; ++p) {
     const Vector3 at = 1e3 * c.study.standing->tool(p).p_W;
@@ -87,11 +112,12 @@ std::string noise_sentence(const compare::Comparison& c) {
   return fmt::format(
       "Standard deviation of a reading {:.3g} {}{}; noise and tolerances of manufacture together give "
       "{:.3g} {} rms.",
-      1e6 * c.sigma_u, unit.micro, c.sigma_from_residuals ? " (estimated from the residuals)" : "",
-      1e6 * c.noise_and_tolerances, unit.micro);
+      unit.fine * c.sigma_u, unit.micro, c.sigma_from_residuals ? " (estimated from the residuals)" : "",
+      unit.fine * c.noise_and_tolerances, unit.micro);
 }
 
 std::string axes_sentence(const compare::Comparison& c) {
+  if (!c.study.standing->has_tool_point()) return "Readings against the unloaded frame; residual = measured − predicted.";
   return error_unit(c).rotations
              ? "Rotations of the tool frame against the unloaded machine, about base axes; residual = measured − "
                "predicted."

@@ -9,18 +9,22 @@
 
 namespace deflect::report {
 
-/// Errors speak of translations, or of rotations where no translation was measured. Both are printed in millionths of
-/// the SI unit.
+/// The units of errors (quantity_of_errors).
 struct ErrorUnit {
-  bool rotations = false;
-  const char* micro = "µm";  ///< of 1e6 times the error
-  const char* milli = "mm";  ///< of 1e3 times
+  measurement::Quantity quantity = measurement::Quantity::length;
+  const char* micro = "µm";  ///< of `fine` times the error
+  const char* milli = "mm";  ///< of `coarse` times
   const char* column = "um";
+  double fine = 1e6, coarse = 1e3;
+  bool rotations = false;
   const char* load = "N";  ///< of the load that goes with them
   const char* components[3] = {"Δx", "Δy", "Δz"};
   const char* loads[3] = {"fx", "fy", "fz"};
 };
 ErrorUnit error_unit(const compare::Comparison&);
+/// "µm", "N": of errors of one quantity; the number of them in an SI unit.
+inline const char* fine_unit(measurement::Quantity q) { return measurement::row_of(q).fine; }
+inline double fine_of(measurement::Quantity q) { return measurement::row_of(q).fine_per_SI; }
 
 /// Of a reading, m or rad as Errors speak of: NaN where not measured. The load in N or Nm.
 struct ReadingCells {

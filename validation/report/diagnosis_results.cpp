@@ -18,7 +18,9 @@ namespace {
 constexpr const char* mistakes_remedy =
     "No effect was looked for: correct the file and diagnose again, or take it as it is with --as-recorded.\n";
 
-const char* micro(const diagnosis::Diagnosis& d) { return d.rotations ? "µrad" : "µm"; }
+const char* micro(const diagnosis::Diagnosis& d) { return measurement::row_of(d.quantity).fine; }
+double fine(const diagnosis::Diagnosis& d) { return measurement::row_of(d.quantity).fine_per_SI; }
+double coarse(const diagnosis::Diagnosis& d) { return measurement::row_of(d.quantity).coarse_per_SI; }
 
 std::string candidates_table(const diagnosis::Diagnosis& d) {
   std::vector<std::vector<std::string>> rows = {
@@ -27,20 +29,20 @@ std::string candidates_table(const diagnosis::Diagnosis& d) {
   for (const diagnosis::Candidate& c : d.candidates) {
     if (shown >= 8 || (c.probability < 1e-6 && shown >= 3)) break;
     rows.push_back({"  " + placed_words(c.added()), fmt::format("{:.3g}", c.probability),
-                    fmt::format("{:.2f}", um * c.rmse), fmt::format("{:.2f}", um * c.held_out),
+                    fmt::format("{:.2f}", fine(d) * c.rmse), fmt::format("{:.2f}", fine(d) * c.held_out),
                     fmt::format("{:.2f}", c.chi2_per_dof), c.fit.found ? fitted_words(c.hypothesis, c.fit) : "no fit"});
     ++shown;
   }
   rows.push_back({"  nothing", fmt::format("{:.3g}", d.probability_nothing),
-                  fmt::format("{:.2f}", um * d.baseline.rmse), fmt::format("{:.2f}", um * d.baseline.held_out),
+                  fmt::format("{:.2f}", fine(d) * d.baseline.rmse), fmt::format("{:.2f}", fine(d) * d.baseline.held_out),
                   fmt::format("{:.2f}", d.baseline.chi2_per_dof), ""});
   rows.push_back({"  something unknown", fmt::format("{:.3g}", d.probability_unknown)});
   return aligned(rows);
 }
 
-Json quality_json(const diagnosis::Quality& q) {
-  return {{"rmse_mm", json::json_number(mm * q.rmse, "rmse")},
-          {"held_out_rmse_mm", json::json_number(mm * q.held_out, "held-out rmse")},
+Json quality_json(const diagnosis::Quality& q, double coarse) {
+  return {{"rmse_mm", json::json_number(coarse * q.rmse, "rmse")},
+          {"held_out_rmse_mm", json::json_number(coarse * q.held_out, "held-out rmse")},
           {"chi2_per_dof", json::json_number(q.chi2_per_dof, "chi2")}};
 }
 
@@ -62,14 +64,14 @@ Json placed_json(const effects::PlacedEffect& e) {
   return out;
 }
 
-Json candidates_json(const std::vector<diagnosis::Candidate>& candidates) {
+Json candidates_json(const std::vector<diagnosis::Candidate>& candidates, double coarse) {
   Json out = Json::array();
   for (const diagnosis::Candidate& c : candidates) {
     Json one = placed_json(c.added());
     one["probability"] = c.probability;
     one["parameters"] = parameters_json(c.hypothesis, c.fit, 0, c.added().effect->parameters.size());
-    one["rmse_mm"] = mm * c.rmse;
-    one["held_out_rmse_mm"] = mm * c.held_out;
+    one["rmse_mm"] = coarse * c.rmse;
+    one["held_out_rmse_mm"] = coarse * c.held_out;
     one["chi2_per_dof"] = json::json_number(c.chi2_per_dof, "chi2");
     out.push_back(std::move(one));
   }
@@ -155,12 +157,12 @@ std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   j["mistakes"] = mistakes_json(d.mistakes);
   j["missing"] = Json::array();
   for (const effects::PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
-  j["candidates"] = candidates_json(d.candidates);
+  j["candidates"] = candidates_json(d.candidates, coarse(d));
   j["indistinguishable"] = d.indistinguishable;
-  j["baseline"] = quality_json(d.baseline);
-  j["final"] = quality_json(d.final);
-  j["unit"] = d.rotations ? "mrad" : "mm";  // of what ends with _mm
-  j["noise_floor_mm"] = json::json_number(mm * d.noise_floor, "noise floor");
+  j["baseline"] = quality_json(d.baseline, coarse(d));
+  j["final"] = quality_json(d.final, coarse(d));
+  j["unit"] = measurement::row_of(d.quantity).coarse;  // of what ends with _mm
+  j["noise_floor_mm"] = json::json_number(coarse(d) * d.noise_floor, "noise floor");
   j["unexplained"] = unexplained_json(d);
   j["found"] = found_json(d);
   j["probability_nothing"] = d.probability_nothing;

@@ -12,14 +12,13 @@
 namespace deflect::report {
 namespace {
 
-constexpr double micro_per_SI = 1e6;
 constexpr double like_noise = 1.3;          // χ² per degree of freedom up to which a residual passes for noise
 constexpr double headline_of_outliers = 5;  // % of the readings
 
 /// "2.13 µm rms, 1.02 times what noise and tolerances give (chi2 per degree of freedom)".
-std::string residual_words(double rmse, double chi2_per_dof, const char* unit) {
+std::string residual_words(double rmse, double chi2_per_dof, measurement::Quantity q) {
   return fmt::format("{:.2f} {} rms, {:.2f} times what noise and tolerances give (chi2 per degree of freedom)",
-                     micro_per_SI * rmse, unit, chi2_per_dof);
+                     fine_of(q) * rmse, fine_unit(q), chi2_per_dof);
 }
 
 bool passes_for_noise(double chi2_per_dof) { return as_printed(chi2_per_dof, 2) <= like_noise; }
@@ -54,7 +53,9 @@ std::string title_of(const std::string& id, const diagnosis::Diagnosis& d) {
 }
 
 /// What the effects that were found take away, in the unit in which it can be seen.
-std::string fall_of_error(const diagnosis::Diagnosis& d, const char* unit) {
+std::string fall_of_error(const diagnosis::Diagnosis& d) {
+  const char* unit = fine_unit(d.quantity);
+  const double micro_per_SI = fine_of(d.quantity);
   const double from = as_printed(micro_per_SI * d.baseline.rmse, 2), to = as_printed(micro_per_SI * d.final.rmse, 2);
   const double percent = from > 0 ? as_printed(100 * (1 - to / from), 0) : 0;
   if (percent >= 1)
@@ -85,13 +86,14 @@ std::string outlier_words(std::size_t set_aside, std::size_t readings) {
 std::string verdict_words(const compare::Comparison& c) {
   if (compare::is_mistaken(c)) return first_of_all(c.mistakes);
   const char* unit = error_unit(c).micro;
+  const double micro_per_SI = error_unit(c).fine;
   const std::string outliers = outlier_words(c.set_aside.size(), c.readings);
   if (c.findings.empty())
     return outliers +
            (passes_for_noise(c.unexplained_chi2_per_dof)
                 ? "Nothing is missing that these readings can show: what is left is "
                 : "Something is missing, and none of the patterns looked for describes it: what is left is ") +
-           residual_words(c.kept_rmse, c.unexplained_chi2_per_dof, unit) + ".";
+           residual_words(c.kept_rmse, c.unexplained_chi2_per_dof, error_unit(c).quantity) + ".";
   const double rmse = as_printed(micro_per_SI * c.kept_rmse, 2);
   const double beyond =
       std::sqrt(std::max(0.0, c.kept_rmse * c.kept_rmse - c.noise_and_tolerances * c.noise_and_tolerances));
@@ -111,7 +113,6 @@ std::string verdict_words(const compare::Comparison& c) {
 
 std::string verdict_words(const diagnosis::Diagnosis& d) {
   if (diagnosis::is_mistaken(d)) return first_of_all(d.mistakes);
-  const char* unit = d.rotations ? "µrad" : "µm";
   const std::string outliers = outlier_words(d.set_aside, d.readings);
   const std::string names = joined_by_and(d.missing);
   switch (d.verdict) {
@@ -120,15 +121,15 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
              (passes_for_noise(d.baseline.chi2_per_dof)
                   ? "Nothing is missing that these data can show: what is left is "
                   : "No effect is called for, but noise and tolerances do not explain all: what is left is ") +
-             residual_words(d.baseline.rmse, d.baseline.chi2_per_dof, unit) + ".";
+             residual_words(d.baseline.rmse, d.baseline.chi2_per_dof, d.quantity) + ".";
     case diagnosis::Verdict::effect:
-      return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d, unit));
+      return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d));
     case diagnosis::Verdict::ambiguous: {
       std::string group;
       for (const std::vector<std::string>& g : d.indistinguishable)
         group += fmt::format("{}{}", group.empty() ? "" : "; and ", fmt::join(g, " or "));
       return outliers + fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}. {}", group,
-                                    names, fall_of_error(d, unit));
+                                    names, fall_of_error(d));
     }
     case diagnosis::Verdict::unknown_effect:
       return outliers +
@@ -141,14 +142,13 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
 
 std::string headline_words(const diagnosis::Diagnosis& d) {
   if (diagnosis::is_mistaken(d)) return verdict_words(d);
-  const char* unit = d.rotations ? "µrad" : "µm";
   const std::string outliers = outlier_words(d.set_aside, d.readings);
   switch (d.verdict) {
     case diagnosis::Verdict::nothing_missing:
       return verdict_words(d);
     case diagnosis::Verdict::effect:
       return outliers + fmt::format("{}. This is missing from the model. {}", joined_titles(d.missing, "; and "),
-                                    fall_of_error(d, unit));
+                                    fall_of_error(d));
     case diagnosis::Verdict::ambiguous: {
       std::string either;
       for (const std::vector<std::string>& group : d.indistinguishable) {
@@ -157,7 +157,7 @@ std::string headline_words(const diagnosis::Diagnosis& d) {
         either += ".";
       }
       return outliers + fmt::format("Something is missing, and these data cannot tell which of these: {} {}", either,
-                                    fall_of_error(d, unit));
+                                    fall_of_error(d));
     }
     case diagnosis::Verdict::unknown_effect:
       return outliers +

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "msa/base/index.h"
+#include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/member_axes.h"
 #include "validation/figures/drawing.h"
 #include "validation/report/text.h"
@@ -34,15 +35,20 @@ std::optional<FrameResult> in_more_elements(const FrameDescription& f, const Fra
   return frame::analyse(f, options);
 }
 
+bool is_among(const std::string& name, const std::vector<std::string>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 Vector3 place_of(const FrameDescription& f, const FrameResult& r, const std::string& node) {
   return nth(f.nodes, r.structure.nodes.find(node)).second;
 }
 
-void put_members(Json& scene, Json& pose, const FrameDescription& f, const FrameResult& r) {
+void put_members(Json& scene, Json& pose, const FrameDescription& f, const FrameResult& r,
+                 const std::vector<std::string>& guilty) {
   for (std::size_t i = 0; i < f.members.size(); ++i) {
     const auto& [name, member] = f.members[i];
     const Section* section = find(f.sections, member.section);
-    Json body = {{"leg", ""}, {"part", name}, {"kind", "member"}, {"guilty", false}};
+    Json body = {{"leg", ""}, {"part", name}, {"kind", "member"}, {"guilty", is_among("member " + name, guilty)}};
     if (section) put_outline(body, figures::outline_of(*section), properties(*section, 0.3));
     scene["bodies"].push_back(std::move(body));
     const Vector3 along = place_of(f, r, member.to) - place_of(f, r, member.from);
@@ -59,7 +65,7 @@ void put_members(Json& scene, Json& pose, const FrameDescription& f, const Frame
   pose["axes"].push_back(nullptr);
 }
 
-Json supports_of(const FrameDescription& f, const FrameResult& r) {
+Json supports_of(const FrameDescription& f, const FrameResult& r, const std::vector<std::string>& guilty) {
   Json out = Json::array();
   for (const auto& [node, held] : f.supports) {
     std::string words;
@@ -68,6 +74,7 @@ Json supports_of(const FrameDescription& f, const FrameResult& r) {
     if (!words.empty())
       out.push_back({{"at_mm", scene_position(place_of(f, r, node))},
                      {"words", fmt::format("{}: {} held", node, words)},
+                     {"guilty", is_among("support " + node, guilty)},
                      {"whole", std::count(held.begin(), held.end(), true) == 6}});
   }
   return out;
@@ -118,17 +125,74 @@ Json shape_of(const FrameDescription& f, const FrameResult& r, const CaseResult&
   return shape;
 }
 
+/// Where an entry differs, as the file has it.
+std::vector<std::string> changed_entries(const YamlNode& before, const YamlNode& after, const char* list) {
+  std::vector<std::string> out;
+  const YamlNode *a = before.child(list), *b = after.child(list);
+  for (std::size_t i = 0; b && i < b->children.size(); ++i) {
+    const YamlNode* old = a ? a->child(b->keys[i]) : nullptr;
+    if (!old || flow_yaml(*old) != flow_yaml(b->children[i])) out.push_back(b->keys[i]);
+  }
+  return out;
+}
+
+Vector3 between(const Vector3& a, const Vector3& b, double share) { return a + share * (b - a); }
+
+/// Where each sensor is, what it reads and along which direction.
+Json sensors_of(const FrameDescription& f, const std::vector<std::string>& guilty) {
+  using Reads = frame::FrameSensor::Reads;
+  Json out = Json::array();
+  for (const auto& [name, s] : f.sensors) {
+    Vector3 at = Vector3::Zero(), axis = s.axis;
+    std::string words = fmt::format("{}: {} of {}", name, s.direction, s.of);
+    if (const frame::FrameMember* member = find(f.members, s.of); member && s.reads != Reads::displacement) {
+      const Vector3 from = *find(f.nodes, member->from), to = *find(f.nodes, member->to);
+      at = between(from, to, s.at);
+      axis = (to - from).normalized();
+      words = s.reads == Reads::strain ? fmt::format("{}: strain of {}", name, s.of)
+                                       : fmt::format("{}: {} force in {}", name, frame::section_force_names[s.component], s.of);
+    } else if (const Vector3* node = find(f.nodes, s.of)) {
+      at = *node;
+      if (s.reads == Reads::reaction) {
+        axis = Vector3::Unit(as_index(s.component % 3));
+        words = fmt::format("{}: reaction {} of {}", name, frame::wrench_names[s.component], s.of);
+      }
+    }
+    out.push_back({{"name", name},
+                   {"at_mm", scene_position(at)},
+                   {"axis", {scene_digits(axis.x()), scene_digits(axis.y()), scene_digits(axis.z())}},
+                   {"words", words},
+                   {"guilty", is_among("sensor " + name, guilty)}});
+  }
+  return out;
+}
+
 }  // namespace
 
-Json frame_scene_json(const FrameDescription& f, const FrameResult& result) {
+std::vector<std::string> changed_parts(const FrameDescription& before, const FrameDescription& after) {
+  const YamlNode a = frame::tree_of(before), b = frame::tree_of(after);
+  std::vector<std::string> out;
+  for (const auto& [list, word] : {std::pair{"members", "member"}, {"supports", "support"}, {"springs", "spring"},
+                                   {"sensors", "sensor"}, {"loads", "load"}})
+    for (const std::string& name : changed_entries(a, b, list)) out.push_back(fmt::format("{} {}", word, name));
+  const std::vector<std::string> sections = changed_entries(a, b, "sections"), materials = changed_entries(a, b, "materials");
+  for (const auto& [name, member] : after.members)
+    if ((is_among(member.section, sections) || is_among(member.material, materials)) &&
+        !is_among("member " + name, out))
+      out.push_back("member " + name);
+  return out;
+}
+
+Json frame_scene_json(const FrameDescription& f, const FrameResult& result, const std::vector<std::string>& guilty) {
   if (f.members.size() > most_drawn_members) return nullptr;
   const std::optional<FrameResult> finer = in_more_elements(f, result);
   const FrameResult& r = finer ? *finer : result;
-  Json scene = {{"kind", "frame"}, {"tool", nullptr}, {"guilty", Json::array()}, {"ground", supports_of(f, r)}};
+  Json scene = {{"kind", "frame"}, {"tool", nullptr}, {"guilty", guilty}, {"ground", supports_of(f, r, guilty)}};
   for (const char* list : {"bodies", "cells", "joints", "poses"}) scene[list] = Json::array();
   Json pose = {{"label", ""}, {"pose_mm_deg", nullptr}, {"axes", Json::array()}, {"shapes", Json::array()}};
   for (const frame::Node& node : r.structure.model.nodes) pose["points_mm"].push_back(scene_position(node.position));
-  put_members(scene, pose, f, r);
+  put_members(scene, pose, f, r, guilty);
+  scene["sensors"] = sensors_of(f, guilty);
   for (const CaseResult& c : r.cases) pose["shapes"].push_back(shape_of(f, r, c));
   scene["poses"].push_back(std::move(pose));
   return scene;

@@ -1,26 +1,20 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
-#include "msa/frame/file/frame_analysis.h"
-#include "msa/frame/file/frame_fields.h"
 #include "msa/frame/file/frame_file.h"
+#include "msa/frame/file/frame_tolerances.h"
+#include "validation/subject/frame_places.h"
+#include "validation/subject/frame_readings.h"
 #include "validation/subject/subject.h"
 
 namespace deflect::subject {
 namespace {
 
 using frame::FrameDescription;
-
-std::size_t node_number(const FrameDescription& f, const std::string& node) {
-  for (std::size_t i = 0; i < f.nodes.size(); ++i)
-    if (f.nodes[i].first == node) return i;
-  std::vector<std::string> known;
-  for (const auto& [name, at] : f.nodes) known.push_back(name);
-  throw InputError(fmt::format("{}: {}", f.name, frame::unknown_name("node", node, known)));
-}
 
 /// The largest distance of two corners of the box around its nodes.
 double size_of(const FrameDescription& f) {
@@ -29,110 +23,145 @@ double size_of(const FrameDescription& f) {
   return (high - low).norm();
 }
 
-/// A frame does not move: it has one pose, whatever the measurements call it.
+measurement::Quantity quantity_of(const frame::FrameSensor& s) {
+  using Reads = frame::FrameSensor::Reads;
+  using measurement::Quantity;
+  if (s.reads == Reads::strain) return Quantity::strain;
+  if (s.reads == Reads::displacement) return s.rotation ? Quantity::angle : Quantity::length;
+  return s.component < 3 ? Quantity::force : Quantity::moment;
+}
+
+/// A frame does not move: it has one pose, whatever labels the measurements have.
 class FrameStanding final : public Standing {
  public:
-  FrameStanding(std::shared_ptr<const FrameDescription> f, std::size_t node, std::size_t poses)
-      : frame_(std::move(f)), node_(node), poses_(poses) {}
+  FrameStanding(std::shared_ptr<const FrameDescription> f, std::size_t poses) : frame_(std::move(f)), poses_(poses) {}
 
   std::size_t poses() const override { return poses_; }
   double size() const override { return size_of(*frame_); }
-  BodyFrame tool(std::size_t) const override { return {frame_->nodes[node_].second, Matrix3::Identity()}; }
-  BodyFrame base(std::size_t) const override { return {}; }
-  std::vector<Site> sites(std::size_t) const override { return {}; }
-
-  Matrix6 compliance(std::size_t) const override {
-    std::vector<Vector6> unit;
-    for (Eigen::Index i = 0; i < 6; ++i) unit.push_back(Vector6::Unit(i));
-    const std::vector<Vector6> d = displacements(unit, Geometry::linear);
-    Matrix6 C;
-    for (Eigen::Index i = 0; i < 6; ++i) C.col(i) = nth(d, i);
-    return C;
-  }
+  bool has_history() const override { return subject::has_history(*frame_); }
 
   /// By the MSA, which alone knows frames.
   std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
                                const parallel::Work&) const override {
-    std::vector<Vector6> loads;
-    for (const measurement::Reading& reading : data.readings) loads.push_back(reading.load);
-    const std::vector<Vector6> d = displacements(loads, o.geometry.value_or(frame_->geometry));
-    return {d.begin(), d.end()};
+    return predicted_readings(*frame_, data, o.geometry.value_or(frame_->geometry));
   }
 
   std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const override;
 
  private:
-  /// Of the node under wrenches on it. NumericalError where the frame finds no equilibrium or a check fails.
-  std::vector<Vector6> displacements(const std::vector<Vector6>& loads, Geometry geometry) const {
-    FrameDescription f = *frame_;
-    f.geometry = geometry;
-    if (geometry != Geometry::finite) f.load_steps = 1;
-    f.loads.clear();
-    for (std::size_t i = 0; i < loads.size(); ++i) {
-      frame::LoadCase load;
-      load.nodes.emplace_back(f.nodes[node_].first, loads[i]);
-      f.loads.emplace_back(std::to_string(i), std::move(load));
+  std::shared_ptr<const FrameDescription> frame_;
+  std::size_t poses_;
+};
+
+/// One tolerance, moved by a standard deviation.
+struct FrameMove {
+  Tolerance tolerance;
+  NumberMove number = {};
+  std::string sensor = {};
+  double gain = 0, zero = 0;  ///< of the sensor
+};
+
+std::vector<FrameMove> frame_moves(const FrameDescription& f, const measurement::Measurements& data) {
+  std::vector<FrameMove> out;
+  for (NumberMove& number : frame::number_moves(f)) {
+    FrameMove move{{number.name, number.sigma}};
+    move.number = std::move(number);
+    out.push_back(std::move(move));
+  }
+  const std::vector<measurement::SensorChannel>& channels = data.instruments.sensors;
+  for (std::size_t k = 0; k < channels.size(); ++k)
+    for (const auto& [name, sensor] : f.sensors) {
+      if (name != channels[k].name) continue;
+      if (sensor.gain_sigma > 0)
+        out.push_back({{fmt::format("gain of {}", name), sensor.gain_sigma}, {}, name, sensor.gain_sigma, 0});
+      double largest = 0;
+      for (const measurement::Reading& r : data.readings)
+        largest = std::max(largest, std::abs(r.sensors[k].value_or(0)));
+      if (sensor.free_zero && largest > 0)
+        out.push_back({{fmt::format("zero of {}", name), 10 * largest, {}, true}, {}, name, 0, 10 * largest});
     }
-    const frame::FrameResult result = frame::analyse(f);
-    if (const std::string failed = frame::failed_check(result); !failed.empty())
-      throw NumericalError(fmt::format("{}: {}", f.name, failed));
-    std::vector<Vector6> out;
-    for (const frame::CaseResult& each : result.cases) out.push_back(each.displacements[node_]);
-    return out;
+  return out;
+}
+
+class FrameDeviations final : public Deviations {
+ public:
+  FrameDeviations(std::shared_ptr<const FrameDescription> linear, std::size_t poses,
+                  const measurement::Measurements& data)
+      : frame_(linear), poses_(poses), drawn_(std::move(linear), poses), moves_(frame_moves(*frame_, data)) {
+    for (const FrameMove& move : moves_) tolerances_.push_back(move.tolerance);
   }
 
-  std::shared_ptr<const FrameDescription> frame_;
-  std::size_t node_, poses_;
-};
-
-/// Frame files declare no tolerances.
-class NoDeviations final : public Deviations {
- public:
-  explicit NoDeviations(FrameStanding drawn) : drawn_(std::move(drawn)) {}
-  const std::vector<Tolerance>& tolerances() const override { return none_; }
+  const std::vector<Tolerance>& tolerances() const override { return tolerances_; }
   const Standing& drawn() const override { return drawn_; }
-  std::unique_ptr<const Standing> with(std::size_t) const override { return std::make_unique<FrameStanding>(drawn_); }
+  std::unique_ptr<const Standing> with(std::size_t k) const override {
+    const FrameMove& move = moves_[k];
+    FrameDescription built = move.number.shifts.empty() ? *frame_ : frame::moved(*frame_, move.number);
+    for (auto& [name, sensor] : built.sensors)
+      if (name == move.sensor) sensor.gain += move.gain, sensor.zero += move.zero;
+    return std::make_unique<FrameStanding>(std::make_shared<const FrameDescription>(std::move(built)), poses_);
+  }
 
  private:
+  std::shared_ptr<const FrameDescription> frame_;
+  std::size_t poses_;
   FrameStanding drawn_;
-  std::vector<Tolerance> none_;
+  std::vector<FrameMove> moves_;
+  std::vector<Tolerance> tolerances_;
 };
 
-std::unique_ptr<const Deviations> FrameStanding::deviations(const measurement::Measurements&) const {
+std::unique_ptr<const Deviations> FrameStanding::deviations(const measurement::Measurements& data) const {
   FrameDescription linear = *frame_;
   linear.geometry = Geometry::linear;
   linear.load_steps = 1;
-  return std::make_unique<NoDeviations>(
-      FrameStanding(std::make_shared<const FrameDescription>(std::move(linear)), node_, poses_));
+  return std::make_unique<FrameDeviations>(std::make_shared<const FrameDescription>(std::move(linear)), poses_, data);
 }
 
 class FrameSubject final : public Subject::Kind {
  public:
-  FrameSubject(FrameDescription f, std::string node)
-      : number_(node_number(f, node)),
-        frame_(std::make_shared<const FrameDescription>(std::move(f))),
-        node_(std::move(node)) {}
+  explicit FrameSubject(FrameDescription f) : frame_(std::make_shared<const FrameDescription>(std::move(f))) {}
 
   const std::string& name() const override { return frame_->name; }
+  const std::string& about() const override { return frame_->about; }
+  std::string file_text(const std::string& name, const std::string& about) const override {
+    FrameDescription f = *frame_;
+    f.name = name, f.about = about;
+    return frame::write_frame(f);
+  }
   Geometry geometry() const override { return frame_->geometry; }
-  double load_tolerance() const override { return 0; }
+  double load_tolerance() const override { return frame_->tolerances.load; }
+  std::vector<Place> places() const override { return places_of(*frame_); }
+  const FrameDescription* frame() const override { return frame_.get(); }
+
+  measurement::Instruments instruments() const override {
+    measurement::Instruments out;
+    out.stationary = true;
+    for (const auto& [name, s] : frame_->sensors)
+      out.sensors.push_back({name, quantity_of(s), s.sigma > 0 ? std::optional(s.sigma) : std::nullopt});
+    for (const auto& [name, load] : frame_->loads) out.load_cases.push_back(name);
+    for (const auto& [name, at] : frame_->nodes) out.load_points.push_back("node." + name);
+    return out;
+  }
+
   std::shared_ptr<const Standing> stand(const measurement::Measurements& data, const Standing*) const override {
-    return std::make_shared<FrameStanding>(frame_, number_, data.poses.size());
+    return std::make_shared<FrameStanding>(frame_, data.poses.size());
+  }
+  std::shared_ptr<const Kind> named(const std::string& name) const override {
+    FrameDescription f = *frame_;
+    f.name = name;
+    return frame_subject(std::move(f));
   }
   std::shared_ptr<const Kind> edited(const std::vector<Edit>& edits) const override {
-    return frame_subject(frame::edited(*frame_, edits), node_);
+    return frame_subject(frame::edited(*frame_, edits));
   }
 
  private:
-  std::size_t number_;
   std::shared_ptr<const FrameDescription> frame_;
-  std::string node_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Subject::Kind> frame_subject(FrameDescription f, std::string node) {
-  return std::make_shared<FrameSubject>(std::move(f), std::move(node));
+std::shared_ptr<const Subject::Kind> frame_subject(FrameDescription f) {
+  return std::make_shared<FrameSubject>(std::move(f));
 }
 
 }  // namespace deflect::subject

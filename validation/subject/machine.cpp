@@ -135,6 +135,7 @@ class MachineStanding final : public Standing {
       : mechanism_(std::move(m)), machines_(std::move(machines)) {}
 
   std::size_t poses() const override { return machines_.size(); }
+  bool has_tool_point() const override { return true; }
   double size() const override { return machines_.front().size; }
   BodyFrame tool(std::size_t pose) const override { return {machines_[pose].pose.p_WT, machines_[pose].pose.R_WT}; }
   BodyFrame base(std::size_t pose) const override { return {machines_[pose].base.p_W, machines_[pose].base.R_WJ}; }
@@ -237,7 +238,20 @@ class MachineSubject final : public Subject::Kind {
   explicit MachineSubject(Mechanism m) : mechanism_(std::make_shared<const Mechanism>(std::move(m))) {}
 
   const std::string& name() const override { return mechanism_->name; }
+  const std::string& about() const override { return mechanism_->about; }
+  std::string file_text(const std::string& name, const std::string& about) const override {
+    Mechanism m = *mechanism_;
+    m.name = name, m.about = about;
+    return write_mechanism(m);
+  }
   Geometry geometry() const override { return mechanism_->geometry; }
+  Geometry true_geometry() const override {
+    return mechanism_->geometry == Geometry::linear ? Geometry::finite : mechanism_->geometry;
+  }
+  measurement::Instruments instruments() const override { return measurement::instruments_of(*mechanism_); }
+  measurement::Measurements placed(measurement::Measurements m) const override {
+    return measurement::place_loads(std::move(m), *mechanism_);
+  }
   double load_tolerance() const override { return mechanism_->tolerances.load; }
   int legs() const override { return leg_count(*mechanism_); }
   std::vector<Place> places() const override { return places_of(*mechanism_); }
@@ -248,6 +262,11 @@ class MachineSubject final : public Subject::Kind {
     std::span<const Configuration> before;
     if (machine) before = machine->machines();
     return std::make_shared<MachineStanding>(mechanism_, measurement::configure_all(*mechanism_, data, before));
+  }
+  std::shared_ptr<const Kind> named(const std::string& name) const override {
+    Mechanism m = *mechanism_;
+    m.name = name;
+    return machine_subject(std::move(m));
   }
   std::shared_ptr<const Kind> edited(const std::vector<Edit>& edits) const override {
     return machine_subject(edited_in_turn(*mechanism_, edits));

@@ -6,10 +6,15 @@
 
 namespace deflect::subject {
 
+std::string freedom_name(const Place& p, std::size_t freedom) {
+  const char* name = freedom_names.at(freedom);
+  return p.base_axes && freedom < 3 ? fmt::format("u{}", name[1]) : name;
+}
+
 std::string motion_of(const Place& p) {
   if (p.freedoms.empty()) return "";
   if (p.freedoms.size() > 1) return p.rotation() ? "tilt" : "across";
-  return freedom_names.at(p.freedoms.front());
+  return freedom_name(p, p.freedoms.front());
 }
 
 std::string id_of(const Place& p) {
@@ -19,7 +24,9 @@ std::string id_of(const Place& p) {
 
 std::string name_of(const Place& p) {
   const std::string motion = motion_of(p);
-  const std::string where = p.kind == PlaceKind::sensor ? "sensor " : p.leg ? fmt::format("leg {} ", *p.leg) : "";
+  const std::string where = p.kind == PlaceKind::sensor    ? "sensor "
+                            : p.kind == PlaceKind::support ? "support "
+                            : p.leg ? fmt::format("leg {} ", *p.leg) : "";
   return fmt::format("{}{}{}{}", where, p.part, motion.empty() ? "" : " ", motion);
 }
 

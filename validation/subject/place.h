@@ -44,12 +44,15 @@ struct Place {
   Hold hold = Hold::rigid;
   bool one_stiffness = false;  ///< its only law is one linear law
   bool slides = false;         ///< the joint is driven along an axis
+  bool base_axes = false;      ///< of a frame's node: its freedoms are ux … rz
 
   bool rotation() const { return !freedoms.empty() && freedoms.front() >= 3; }
   /// Whether every leg has this place, so that an effect may also act in one leg only.
   bool in_legs() const { return path.starts_with("leg."); }
 };
 
+/// "tx", "rz"; at a frame's node "ux".
+std::string freedom_name(const Place&, std::size_t freedom);
 /// "rz"; "across" for tx and ty together, "tilt" for rx and ry; "" for a part as a whole.
 std::string motion_of(const Place&);
 /// "elbow.rz": how the place is written in the ids of effects.

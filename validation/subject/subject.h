@@ -1,6 +1,6 @@
-// A subject is the thing measured, as a value: a machine at its tool point, or a frame at one of its nodes. It provides
-// its position at each pose, the readings predicted there, its tolerances, and an edited copy of itself. Comparison,
-// diagnosis and reports use nothing else of it.
+// A subject is the thing measured, as a value: a machine, or a frame. It provides its instruments, its position at each
+// pose, the readings predicted there, its tolerances, and an edited copy of itself. Comparison, diagnosis and reports
+// use nothing else of it.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,13 @@
 #include <vector>
 
 #include "msa/fields/edit.h"
-#include "msa/frame/file/frame_description.h"
 #include "validation/measurement/measurements.h"
 #include "validation/prediction/prediction.h"
 #include "validation/subject/place.h"
+
+namespace deflect::frame {
+struct FrameDescription;
+}
 
 namespace deflect::subject {
 
@@ -67,14 +70,17 @@ class Standing {
   virtual std::size_t poses() const = 0;
   /// Length of the whole subject, m; weighs rotations against translations.
   virtual double size() const = 0;
-  /// tool: the measured point with the axes of its body; base: where the subject is fixed to the ground.
-  virtual BodyFrame tool(std::size_t pose) const = 0;
-  virtual BodyFrame base(std::size_t pose) const = 0;
+  /// Whether it is loaded and read at a tool point T, beside what its named instruments do. The next four describe T;
+  /// without one they are zero.
+  virtual bool has_tool_point() const { return false; }
+  /// tool: T with the axes of its body; base: where the subject is fixed to the ground.
+  virtual BodyFrame tool(std::size_t) const { return {}; }
+  virtual BodyFrame base(std::size_t) const { return {}; }
+  /// Tangent compliance at T without load; where a law is nonlinear (contacts), under a force of 1 N along each of x, y
+  /// and z.
+  virtual Matrix6 compliance(std::size_t) const { return Matrix6::Zero(); }
   /// Empty where no force inside follows from statics.
-  virtual std::vector<Site> sites(std::size_t pose) const = 0;
-  /// Tangent compliance at the measured point without load; where a law is nonlinear (contacts), under a force of 1 N
-  /// along each of x, y and z.
-  virtual Matrix6 compliance(std::size_t pose) const = 0;
+  virtual std::vector<Site> sites(std::size_t) const { return {}; }
 
   /// Whether a reading depends on the loads before it: friction. Then the order of the readings matters.
   virtual bool has_history() const { return false; }
@@ -113,11 +119,22 @@ class Subject {
 
   /// A machine, measured at its tool point T.
   Subject(Mechanism);  // NOLINT: a machine is a subject
-  /// A frame, loaded and measured at a node. Throws InputError where there is no such node.
-  Subject(frame::FrameDescription, std::string node);
+  /// A frame, loaded by load cases and at nodes, read by its sensors.
+  Subject(frame::FrameDescription);  // NOLINT: so is a frame
 
   const std::string& name() const;
+  /// One line about it, from its file.
+  const std::string& about() const;
+  /// A file that reads back as the subject under another name and line.
+  std::string file_text(const std::string& name, const std::string& about) const;
   Geometry geometry() const;
+  /// In which equilibrium is really written: finite for a machine that is described as linear, because that is what is
+  /// measured; for a frame as described.
+  Geometry true_geometry() const;
+  /// What its files can have columns for.
+  measurement::Instruments instruments() const;
+  /// Measurements that were read with these instruments, with all that follows from where their loads act.
+  measurement::Measurements placed(measurement::Measurements) const;
   /// Relative standard deviation of a recorded load.
   double load_tolerance() const;
   /// Number of legs; 0 for a subject without legs.
@@ -129,11 +146,14 @@ class Subject {
   /// same kinematics, at the poses of the same measurements; the result is the same with it, and sooner there.
   std::shared_ptr<const Standing> stand(const measurement::Measurements&, const Standing* known = nullptr) const;
 
+  /// A copy under another name.
+  Subject named(const std::string&) const;
   /// A copy with the edits made in order, checked like a file. Throws InputError as edited() does.
   Subject edited(const std::vector<Edit>&) const;
 
-  /// The machine, or null where the subject is none; for code that needs its parts (effects, drawings).
+  /// The machine or the frame, or null where the subject is none; for code that needs its parts (effects, drawings).
   const Mechanism* machine() const;
+  const frame::FrameDescription* frame() const;
 
  private:
   explicit Subject(std::shared_ptr<const Kind>);
@@ -145,16 +165,23 @@ class Subject::Kind {
  public:
   virtual ~Kind() = default;
   virtual const std::string& name() const = 0;
+  virtual const std::string& about() const = 0;
+  virtual std::string file_text(const std::string& name, const std::string& about) const = 0;
   virtual Geometry geometry() const = 0;
+  virtual Geometry true_geometry() const { return geometry(); }
+  virtual measurement::Instruments instruments() const = 0;
+  virtual measurement::Measurements placed(measurement::Measurements m) const { return m; }
   virtual double load_tolerance() const = 0;
   virtual int legs() const { return 0; }
   virtual std::vector<Place> places() const { return {}; }
   virtual std::shared_ptr<const Standing> stand(const measurement::Measurements&, const Standing* known) const = 0;
+  virtual std::shared_ptr<const Kind> named(const std::string&) const = 0;
   virtual std::shared_ptr<const Kind> edited(const std::vector<Edit>&) const = 0;
   virtual const Mechanism* machine() const { return nullptr; }
+  virtual const frame::FrameDescription* frame() const { return nullptr; }
 };
 
 std::shared_ptr<const Subject::Kind> machine_subject(Mechanism);
-std::shared_ptr<const Subject::Kind> frame_subject(frame::FrameDescription, std::string node);
+std::shared_ptr<const Subject::Kind> frame_subject(frame::FrameDescription);
 
 }  // namespace deflect::subject

@@ -194,7 +194,7 @@ void describe_freedom_values(FieldVisitor& v, FreedomValues& values, Dimension t
 
 void describe(FieldVisitor& v, FrameDescription& f) {
   v.keys({"name", "about", "source", "geometry", "load_steps", "plane", "materials", "sections", "nodes", "members",
-          "supports", "springs", "rigid_links", "constraints", "loads"});
+          "supports", "springs", "rigid_links", "constraints", "loads", "sensors", "rig", "tolerances"});
   describe_name(v, f.name, "name of the frame");
   v.text("about", f.about, Need::optional, "one line about the frame");
   v.text("source", f.source, Need::optional, "where the numbers are from");
@@ -239,6 +239,7 @@ void describe(FieldVisitor& v, FrameDescription& f) {
   v.entries("constraints", constraints, Need::optional, "linear conditions on displacements, by name");
   FrameEntries<LoadCase> loads(f.loads, [&](auto& w, auto&, auto& c) { describe(w, c, names); });
   v.entries("loads", loads, Need::required, "load cases by name");
+  describe_rig(v, f, names);
 }
 
 }  // namespace deflect::frame

@@ -22,6 +22,9 @@ struct FrameNames {
 
 void describe(FieldVisitor&, LoadCase&, const FrameNames&);
 
+/// Sensors and how loads are recorded.
+void describe_rig(FieldVisitor&, FrameDescription&, const FrameNames&);
+
 /// Named entries, described by a function. `is_plain`: an entry is one value under the key "".
 template <class T>
 class FrameEntries final : public Elements {

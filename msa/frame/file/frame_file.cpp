@@ -1,25 +1,45 @@
 #include "msa/frame/file/frame_file.h"
 
+#include <fmt/format.h>
+
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/outcome.h"
 #include "msa/fields/field_reader.h"
 #include "msa/fields/field_writer.h"
 #include "msa/fields/file_kind.h"
 #include "msa/fields/tree_edit.h"
 #include "msa/frame/file/frame_fields.h"
+#include "msa/frame/file/frame_tolerances.h"
 
 namespace deflect::frame {
 
 namespace {
 
-FrameDescription frame_of(const YamlNode& tree, const std::string& origin) {
+/// Each value of a key must be a tolerance of some number.
+void check_tolerances(const FrameDescription& f, const YamlNode& tree, const std::string& origin) {
+  const YamlNode* given = tree.child("tolerances");
+  for (const auto& [key, value] : f.tolerances.numbers) {
+    const YamlNode* node = given ? given->child(key) : nullptr;
+    const auto place = [&] {
+      return fmt::format("{}{}: tolerances.{}: ", origin, node && node->line > 0 ? fmt::format(":{}", node->line) : "",
+                         key);
+    };
+    told_at<InputError>(place, [&] { require_tolerance(f, key, value); });
+  }
+}
+
+DependentFrame frame_of(const YamlNode& tree, const std::string& origin) {
   if (tree.ours) throw InputError(origin + ": !ours marks single values, not a whole file");
   FrameDescription f;
   FieldReader reader(origin);
   reader.read(tree, [&] { describe(reader, f); });
   f.ours = reader.ours();
-  return f;
+  check_tolerances(f, tree, origin);
+  return {std::move(f), reader.depends()};
 }
+
+}  // namespace
 
 YamlNode tree_of(const FrameDescription& f) {
   FrameDescription copy = f;
@@ -28,12 +48,10 @@ YamlNode tree_of(const FrameDescription& f) {
   return writer.tree();
 }
 
-}  // namespace
-
 FrameDescription parse_frame(std::string_view yaml, const std::string& origin) {
   const YamlNode tree = parse_yaml(yaml, origin);
   require_kind(tree, FileKind::frame, origin);
-  return frame_of(tree, origin);
+  return frame_of(tree, origin).frame;
 }
 
 FrameDescription read_frame(const std::filesystem::path& path) { return parse_frame(read_text(path), path.string()); }
@@ -41,10 +59,29 @@ FrameDescription read_frame(const std::filesystem::path& path) { return parse_fr
 std::string write_frame(const FrameDescription& f) { return block_yaml(stripped(tree_of(f))); }
 
 FrameDescription edited(const FrameDescription& f, const std::vector<Edit>& edits) {
-  if (edits.empty()) return f;
-  YamlNode tree = tree_of(f);
-  for (const Edit& edit : edits) apply(tree, parsed(edit), origin_of(edit));
+  std::vector<TreeEdit> all;
+  for (const Edit& edit : edits) all.push_back(parsed(edit));
+  return edited_in_turn({f}, all).frame;
+}
+
+DependentFrame edited_in_turn(DependentFrame before, const std::vector<TreeEdit>& edits) {
+  if (edits.empty()) return before;
+  YamlNode tree = tree_of(before.frame);
+  attach(tree, before.depends);
+  for (const TreeEdit& edit : edits) apply(tree, edit, origin_of(edit));
   return frame_of(stripped(tree), origin_of(edits.back()));
+}
+
+void for_each_number(FrameDescription& f, const std::function<void(std::size_t, double&)>& call) {
+  NumberCalls walk(call);
+  describe(walk, f);
+}
+
+std::vector<DescribedNumber> described_numbers(const FrameDescription& f) {
+  FrameDescription copy = f;
+  NumberList walk;
+  describe(walk, copy);
+  return std::move(walk.found);
 }
 
 }  // namespace deflect::frame

@@ -21,6 +21,13 @@
 //       temperature: {beam: 30 K}
 //       gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]
 //       displacements: {C: {uz: -1 mm}}
+//   sensors:
+//     lvdt: {node: B, direction: ux, sigma: 0.01 mm, zero: free, gain: 1 ± 0.5 %}
+//     cell: {member: beam, force: axial, at: 0.5, sigma: 2 N}
+//     gauge: {member: post, strain: {at: 0.1, y: 30 mm, z: 0 mm}, sigma: 2 um/m}
+//     pad: {support: C, reaction: fz, gain: 1 ± 3 %}
+//   rig: {load_cell: {gain: 1}, trusted: [load]}
+//   tolerances: {modulus: 1 %, load: 0.5 %, node.position: 1 mm, member.bending_factor: 5 %}
 //
 // A material has nu or G; a section any shape of a device file; a support `clamped`, `pinned` (ux uy uz) or a list; a
 // spring without `to` is connected to the ground; a link without `freedoms` has all six. The fields are explained in
@@ -28,10 +35,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
 #include "msa/fields/edit.h"
+#include "msa/fields/number_walk.h"
+#include "msa/fields/tree_edit.h"
 #include "msa/frame/file/frame_description.h"
 
 namespace deflect::frame {
@@ -46,6 +56,22 @@ FrameDescription parse_frame(std::string_view yaml, const std::string& origin);
 
 /// The description as a frame file; reading it again gives an equal description, to the last bit of every number.
 std::string write_frame(const FrameDescription&);
+
+/// Every number of the description in a fixed order, to be read or replaced: as for_each_number and described_numbers
+/// of a mechanism (numbers.h).
+void for_each_number(FrameDescription&, const std::function<void(std::size_t, double&)>& f);
+std::vector<DescribedNumber> described_numbers(const FrameDescription&);
+
+/// A frame, and which of its numbers depend on parameters that were filled into its tree.
+struct DependentFrame {
+  FrameDescription frame;
+  Dependences depends = {};
+};
+/// As edited(), for edits into which parameters were filled.
+DependentFrame edited_in_turn(DependentFrame, const std::vector<TreeEdit>&);
+
+/// The whole description as a tree, implied values included.
+YamlNode tree_of(const FrameDescription&);
 
 /// A copy with the edits made in order, checked like a file. Throws InputError with the edit, what does not fit, and
 /// the nearest valid name.

@@ -7,6 +7,7 @@
 #include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "msa/fields/yaml_tree.h"
+#include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
@@ -94,16 +95,27 @@ std::vector<std::string> names_of(const std::vector<effects::EffectInstance>& ad
 }
 
 /// The name of the new device is its file's; what was added stands in its one line and above all.
-std::string device_text(Mechanism m, const std::string& device, const std::vector<effects::EffectInstance>& added,
-                        const std::string& out) {
+std::string device_text(const subject::Subject& s, const std::string& device,
+                        const std::vector<effects::EffectInstance>& added, const std::string& out) {
   const std::vector<std::string> names = names_of(added);
-  m.about += fmt::format("{}with {}", m.about.empty() ? "" : "; ", fmt::join(names, ", "));
-  m.name = std::filesystem::path(out).stem().string();
-  return fmt::format("# {} with\n#   {}\n{}", device, fmt::join(names, "\n#   "), write_mechanism(m));
+  const std::string before = s.about();
+  const std::string about = fmt::format("{}{}with {}", before, before.empty() ? "" : "; ", fmt::join(names, ", "));
+  return fmt::format("# {} with\n#   {}\n{}", device, fmt::join(names, "\n#   "),
+                     s.file_text(std::filesystem::path(out).stem().string(), about));
+}
+
+/// What was written can be read, and stands.
+void require_whole(const std::string& text, const std::string& out, bool is_frame) {
+  if (is_frame) {
+    frame::parse_frame(text, out);
+    return;
+  }
+  const Mechanism written = parse_mechanism(text, out);
+  configure(written, home_pose(written));
 }
 
 /// One after the other into the device; a diagnosis that they do not fit is named.
-std::vector<effects::EffectInstance> add_effects(Mechanism& m, const AddArguments& a,
+std::vector<effects::EffectInstance> add_effects(subject::Subject& m, const AddArguments& a,
                                                  const std::vector<effects::Effect>& all) {
   const std::vector<diagnosis::FoundEffect> effects = wanted(a);
   std::vector<effects::EffectInstance> added;
@@ -121,7 +133,7 @@ std::vector<effects::EffectInstance> add_effects(Mechanism& m, const AddArgument
 /// What is read is not written over without a word.
 void require_other_file(const AddArguments& a) {
   std::vector<std::string> inputs = a.files;
-  inputs.push_back(device_file(a.device).string());
+  inputs.push_back(subject_file(a.device).string());
   if (!a.from.empty()) inputs.push_back(a.from);
   for (const std::string& input : inputs) {
     std::error_code error;
@@ -132,12 +144,11 @@ void require_other_file(const AddArguments& a) {
 
 void run(const AddArguments& a) {
   require_other_file(a);
-  Mechanism m = read_device(a.device);
+  subject::Subject m = read_subject(a.device);
   const std::vector<effects::Effect> all = known_effects(a.files, m);
   const std::vector<effects::EffectInstance> added = add_effects(m, a, all);
-  const std::string old = m.name, text = device_text(m, old, added, a.out);
-  const Mechanism written = parse_mechanism(text, a.out);
-  configure(written, home_pose(written));  // it stands
+  const std::string old = m.name(), text = device_text(m, old, added, a.out);
+  require_whole(text, a.out, m.frame());
   write_file(a.out, text);
   if (!a.json.empty()) write_file(a.json, report::added_json(a.device, a.out, added));
   fmt::print("{}: {} with {}\n", a.out, old, fmt::join(names_of(added), ", "));
@@ -151,7 +162,7 @@ Command add_command() {
           "Write a new device file: the device with an added effect. The effect's values come from --set or from a "
           "diagnosis. With --from and without EFFECT, all effects that the diagnosis reports as missing are added",
           "deflect add haptic-6psu guide_root_compliance --set stiffness_Nmm_per_rad=5e6 -o softer.yaml",
-          {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+          {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
            {"effect", "EFFECT", "effect to add; 'deflect effects' lists them", &a->effect},
            {"--set", "NAME=VALUE", "value of a parameter, in the unit at the end of its name", &a->set},
            {"--leg", "NUMBER", "the leg, for an effect of one leg", &a->leg},

@@ -24,7 +24,7 @@ struct CompareArguments {
 void run(const CompareArguments& a) {
   require_pages(a.report);
   const figures::FigureStyle style = figure_style(a.figures, a.out);
-  const Mechanism m = read_device(a.device);
+  const subject::Subject m = read_subject(a.device);
   const measurement::Measurements data = read_data(a.data, m);
   tell_size(data, 450);
   compare::ComparisonOptions o;
@@ -58,7 +58,7 @@ Command compare_command() {
       "the model fails. It gives tests that need no hypothesis, patterns of the residual, and errors by pose, "
       "direction and magnitude",
       "deflect compare haptic-6psu-ideal-joints measurements.csv --out comparison --json comparison.json",
-      with_figures({{"device", "DEVICE", "built-in device or device file", &a->device, true},
+      with_figures({{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
                     {"data", "DATA", "measurements (CSV)", &a->data, true},
                     {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
                     {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},

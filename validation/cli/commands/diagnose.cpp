@@ -22,7 +22,7 @@ struct DiagnoseArguments {
 
 void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   require_pages(a.report);
-  const Mechanism m = read_device(a.device);
+  const subject::Subject m = read_subject(a.device);
   const measurement::Measurements data = read_data(a.data, m);
   tell_size(data, 1200);
   const std::vector<effects::Effect> effects = known_effects(a.files, m);
@@ -38,7 +38,7 @@ void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   if (ranks && !ranks->first()) return;
   for (const effects::PlacedEffect& found : d.missing) tell("found: {}", diagnosis::name_of(found));
   if (!a.json.empty()) write_file(a.json, report::diagnosis_json(d));
-  fmt::print("{}", report::diagnosis_report(d, m.name, data.origin));
+  fmt::print("{}", report::diagnosis_report(d, m.name(), data.origin));
   if (!a.report.empty())
     write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, threads,
                               {{"diagnose", report::diagnosis_json(d)}});
@@ -58,7 +58,7 @@ Command diagnose_command() {
       "campaign cannot detect. The exit code is 0 for every verdict. Under mpirun the processes share the "
       "sets of --bootstrap and the first one writes; the result is the same",
       "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
-      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+      {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
        {"data", "DATA", "measurements (CSV)", &a->data, true},
        {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
        {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},

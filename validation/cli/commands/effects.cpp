@@ -38,8 +38,8 @@ struct EffectsArguments {
 };
 
 void run(const EffectsArguments& a) {
-  std::optional<Mechanism> device;
-  if (!a.device.empty()) device = read_device(a.device);
+  std::optional<subject::Subject> device;
+  if (!a.device.empty()) device = read_subject(a.device);
   std::vector<effects::Effect> all = device ? known_effects(a.files, *device) : known_effects(a.files);
   if (!device && a.name.find('@') != a.name.npos)
     throw InputError(fmt::format("{}: a law at a place belongs to a device: name it with --device", a.name));
@@ -50,7 +50,7 @@ void run(const EffectsArguments& a) {
     return;
   }
   if (!a.json.empty())
-    write_file(a.json, report::effects_json(all, device ? std::optional<subject::Subject>(*device) : std::nullopt));
+    write_file(a.json, report::effects_json(all, device));
   if (!a.name.empty())
     fmt::print("{}", report::effect_page(all.front()));
   else if (!device)
@@ -68,7 +68,7 @@ Command effects_command() {
           "(LAW@PLACE). With --yaml, print the effect's file to start your own from",
           "deflect effects guide_root_compliance --device haptic-6psu",
           {{"name", "EFFECT", "effect to explain (default: list all)", &a->name},
-           {"--device", "DEVICE", "list the effects that this device can have, and why it cannot have the others",
+           {"--device", "DEVICE", "list the effects that this device or frame can have, and why it cannot have the others",
             &a->device},
            {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
            {"--yaml", "", "print the effect's file", &a->yaml},

@@ -32,7 +32,7 @@ void run(const ReportArguments& a) {
   compare::ComparisonOptions o;
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
-  const Mechanism m = read_device(a.device);
+  const subject::Subject m = read_subject(a.device);
   write_report_of_diagnosis(a.output, a.device, m, read_data(a.data, m), known_effects(a.effects, m), o,
                             parse_threads(a.threads), std::move(results));
 }
@@ -48,7 +48,7 @@ Command report_command() {
           "deflect report diagnosis.json solve.json --device haptic-6psu-ideal-joints --data measurements.csv "
           "-o report.html",
           {{"results", "RESULT.json", "results written by --json", &a->results, true},
-           {"--device", "DEVICE", "built-in device or device file", &a->device},
+           {"--device", "DEVICE", "built-in device or frame, or a file of one", &a->device},
            {"--data", "DATA", "measurements (CSV)", &a->data},
            {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->effects},
            {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},

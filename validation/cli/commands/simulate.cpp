@@ -20,6 +20,7 @@
 #include "validation/effects/with_effect.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
+#include "validation/subject/simulate_frame.h"
 
 namespace deflect::cli {
 namespace {
@@ -120,8 +121,39 @@ std::string way_out(const Mechanism& m, const measurement::Measurements& plan, c
                      named ? fmt::format(", --force {} N", digits_of(share * a.force, 2)) : "");
 }
 
+void tell_done(const SimulateArguments& a, const measurement::Measurements& data, const std::string& name,
+               const std::string& hidden, std::uint64_t seed) {
+  say_new_folder(a.out);
+  measurement::write_measurements(a.out, data);
+  const std::string poses = data.instruments.stationary ? "" : fmt::format(" at {} poses", data.poses.size());
+  fmt::print("{}: {} readings{} of {}{}, seed {}\n", a.out, data.readings.size(), poses, name,
+             hidden.empty() ? ", nothing hidden" : " with " + hidden, seed);
+}
+
+/// A frame is computed in the geometry that its file names.
+void run_frame(const SimulateArguments& a, subject::Subject s) {
+  const std::vector<effects::Effect> all = known_effects(a.files, s);
+  const prediction::SimulationOptions o = options_of(a);
+  const bool named = std::any_of(std::begin(prediction::campaign_names), std::end(prediction::campaign_names),
+                                 [&](const char* name) { return a.campaign == name; });
+  measurement::Measurements plan = !named && std::filesystem::exists(a.campaign)
+                                       ? read_plan(a.campaign, s)
+                                       : subject::frame_campaign(a.campaign, *s.frame(), o.seed);
+  std::string hidden;
+  for (const std::string& text : a.with) {
+    const effects::EffectInstance effect = parse_with(text, all);
+    s = effects::with_effect(s, effect);
+    hidden += fmt::format("{}{}", hidden.empty() ? "" : ", ", effect.effect->name);
+  }
+  const measurement::Measurements data =
+      timed("simulate: MSA at every reading", [&] { return subject::simulate_frame(*s.frame(), plan, o); });
+  tell_done(a, data, s.name(), hidden, o.seed);
+}
+
 void run(const SimulateArguments& a) {
-  Mechanism m = read_device(a.device);
+  const subject::Subject given = read_subject(a.device);
+  if (given.frame()) return run_frame(a, given);
+  Mechanism m = *given.machine();
   const std::vector<effects::Effect> all = known_effects(a.files, m);
   prediction::SimulationOptions o = options_of(a);
   measurement::Measurements plan = plan_of(a, m, o.seed);
@@ -142,10 +174,7 @@ void run(const SimulateArguments& a) {
     if (!made) throw NumericalError(made.why + way_out(m, plan, o, a));
     return std::move(*made);
   });
-  say_new_folder(a.out);
-  measurement::write_measurements(a.out, data);
-  fmt::print("{}: {} readings at {} poses of {}{}, seed {}\n", a.out, data.readings.size(), data.poses.size(), m.name,
-             hidden.empty() ? ", nothing hidden" : " with " + hidden, o.seed);
+  tell_done(a, data, m.name, hidden, o.seed);
 }
 
 }  // namespace
@@ -159,13 +188,14 @@ Command simulate_command() {
       "the deformed shape. The same seed gives the same file",
       "deflect simulate haptic-6psu-ideal-joints --with joint_clearance,gap_mm=0.01 --campaign rich --seed 7 -o "
       "hidden.csv",
-      {{"device", "DEVICE", "built-in device or device file", &a->device, true},
+      {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
        {"--with", "EFFECT,NAME=VALUE,...",
         "hide an effect with values of its parameters, and leg=4 if it is of one leg; repeat for several effects",
         &a->with},
        {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
        {"--campaign", "paper|cycle|rich|random|FILE",
-        "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280); or a "
+        "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280), or for a frame the "
+        "same kinds made of its load cases; or a "
         "measurement file that gives poses, loads, sequence and temperatures",
         &a->campaign},
        {"--force", "N", "largest force of a named campaign (default 50)", &a->force},

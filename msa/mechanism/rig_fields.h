@@ -1,0 +1,17 @@
+// Fields that every named instrument has, of machines and frames.
+#pragma once
+
+#include <string>
+
+#include "msa/mechanism/fields.h"
+
+namespace deflect {
+
+/// "uz", "rx" or "[0, 0.6, 0.8]" under the key `direction`; sets the unit vector in base axes and whether it is a
+/// rotation about it.
+void describe_direction(FieldVisitor&, std::string& text, Vector3& axis, bool& rotation);
+
+/// gain, sigma (of this dimension) and zero.
+void describe_errors(FieldVisitor&, InstrumentErrors&, Dimension);
+
+}  // namespace deflect

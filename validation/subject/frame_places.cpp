@@ -1,0 +1,101 @@
+#include "validation/subject/frame_places.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "msa/base/index.h"
+#include "msa/frame/file/frame_file.h"
+#include "msa/frame/file/member_axes.h"
+
+namespace deflect::subject {
+namespace {
+
+using frame::FrameDescription;
+
+/// Whether a plane frame cannot move in this freedom of a node.
+bool out_of_plane(const FrameDescription& f, std::size_t freedom) {
+  return f.plane != frame::Plane::none && (as_index(freedom % 3) == static_cast<int>(f.plane)) == (freedom < 3);
+}
+
+void add_supports(const FrameDescription& f, std::vector<Place>& out) {
+  for (const auto& [node, held] : f.supports)
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (out_of_plane(f, i)) continue;
+      Place p{PlaceKind::support, {}, node, "supports." + node, {i}};
+      p.hold = held[i] ? Hold::rigid : Hold::free;
+      p.base_axes = true;
+      out.push_back(std::move(p));
+    }
+}
+
+void add_springs(const FrameDescription& f, std::vector<Place>& out) {
+  for (const auto& [name, spring] : f.springs)
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (!spring.stiffness[i] || out_of_plane(f, i)) continue;
+      Place p{PlaceKind::joint, {}, name, "springs." + name, {i}};
+      p.hold = Hold::elastic;
+      p.one_stiffness = p.base_axes = true;
+      out.push_back(std::move(p));
+    }
+}
+
+/// Whether a turn about the member's local y (4) or z (5) stays in the plane.
+bool bends_in_plane(const FrameDescription& f, const frame::FrameMember& m, std::size_t freedom) {
+  const Vector3 along = *find(f.nodes, m.to) - *find(f.nodes, m.from);
+  const Vector3 axis = frame::member_axes(along, m.y_axis).col(as_index(freedom) - 3);
+  return std::abs(axis(static_cast<int>(f.plane))) > 0.5;
+}
+
+/// A member's ends bend about y and z; in a plane frame, whose members lie in it, about one of them.
+void add_members(const FrameDescription& f, std::vector<Place>& out) {
+  for (const auto& [name, member] : f.members) {
+    out.push_back({PlaceKind::member, {}, name, "members." + name});
+    if (member.truss) continue;
+    for (const char* end : {"start", "end"}) {
+      const frame::Freedoms& released = end[0] == 's' ? member.release_from : member.release_to;
+      Place p{PlaceKind::member_end, {}, fmt::format("{}.{}", name, end), fmt::format("members.{}.{}", name, end)};
+      const auto add = [&](std::vector<std::size_t> freedoms) {
+        p.hold = released[freedoms.front()] ? Hold::free : Hold::rigid;
+        p.freedoms = std::move(freedoms);
+        out.push_back(p);
+      };
+      if (f.plane == frame::Plane::none && released[4] == released[5] && !released[4]) {
+        add({4, 5});
+        continue;
+      }
+      for (const std::size_t i : {std::size_t{4}, std::size_t{5}})
+        if (f.plane == frame::Plane::none || bends_in_plane(f, member, i)) add({i});
+    }
+  }
+}
+
+/// Every length of every section; every material where there are several.
+void add_stock(const FrameDescription& f, std::vector<Place>& out) {
+  if (f.materials.size() > 1)
+    for (const auto& [name, material] : f.materials)
+      out.push_back({PlaceKind::member, {}, "materials." + name, "materials." + name});
+  for (const DescribedNumber& n : frame::described_numbers(f))
+    if (n.path.starts_with("sections.") && n.dimension == Dimension::length && n.value != 0)
+      out.push_back({PlaceKind::member, {}, n.path, n.path});
+}
+
+}  // namespace
+
+std::vector<Place> places_of(const FrameDescription& f) {
+  std::vector<Place> out;
+  add_supports(f, out);
+  add_springs(f, out);
+  add_members(f, out);
+  add_stock(f, out);
+  for (const auto& [name, load] : f.loads) out.push_back({PlaceKind::load, {}, name, "loads." + name});
+  for (const auto& [name, sensor] : f.sensors)
+    out.push_back({PlaceKind::sensor, {}, name, fmt::format("sensors.{}.gain", name)});
+  std::erase_if(out, [&](const Place& p) {
+    return std::find(f.trusted.begin(), f.trusted.end(), nth(place_kind_names, p.kind)) != f.trusted.end();
+  });
+  return out;
+}
+
+}  // namespace deflect::subject

@@ -1,0 +1,16 @@
+// The places of a frame, derived from its parts.
+#pragma once
+
+#include <vector>
+
+#include "msa/frame/file/frame_description.h"
+#include "validation/subject/place.h"
+
+namespace deflect::subject {
+
+/// All places of a frame, in the order of its file: each freedom of each support, those that it leaves free too; each
+/// freedom of each spring; members, and the rotations of their ends; materials, where there are several; dimensions of
+/// sections; load cases; sensors. In a plane frame without the freedoms that leave the plane.
+std::vector<Place> places_of(const frame::FrameDescription&);
+
+}  // namespace deflect::subject

@@ -1,0 +1,148 @@
+#include "validation/subject/frame_readings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/frame/file/frame_analysis.h"
+#include "msa/frame/file/frame_fields.h"
+#include "msa/frame/file/frame_sensors.h"
+
+namespace deflect::subject {
+namespace {
+
+using frame::FrameDescription;
+using frame::LoadCase;
+
+template <class T>
+const T& named(const Named<T>& list, const char* what, const std::string& name, const std::string& origin) {
+  std::vector<std::string> known;
+  for (const auto& [each, value] : list) {
+    if (each == name) return value;
+    known.push_back(each);
+  }
+  throw InputError(fmt::format("{}: {}", origin, frame::unknown_name(what, name, known)));
+}
+
+/// "node.B" without the beginning.
+std::string node_of(const std::string& load_point) { return load_point.substr(load_point.find('.') + 1); }
+
+std::vector<const frame::FrameSensor*> sensors_of(const FrameDescription& f, const measurement::Measurements& data) {
+  std::vector<const frame::FrameSensor*> out;
+  for (const measurement::SensorChannel& s : data.instruments.sensors)
+    out.push_back(&named(f.sensors, "sensor", s.name, f.name));
+  return out;
+}
+
+void add(LoadCase& sum, const LoadCase& each, double times) {
+  for (const auto& [node, wrench] : each.nodes) sum.nodes.emplace_back(node, times * wrench);
+  for (const auto& [member, load] : each.members)
+    sum.members.emplace_back(member, frame::LineLoad{times * load.q, load.member_axes});
+  for (const auto& [member, kelvin] : each.temperature) sum.temperature.emplace_back(member, times * kelvin);
+  sum.gravity += times * each.gravity;
+  for (const auto& [node, values] : each.displacements) {
+    auto found = std::find_if(sum.displacements.begin(), sum.displacements.end(),
+                              [&name = node](const auto& other) { return other.first == name; });
+    if (found == sum.displacements.end()) found = sum.displacements.insert(found, {node, {}});
+    for (std::size_t i = 0; i < 6; ++i)
+      if (values[i]) found->second[i] = found->second[i].value_or(0) + times * *values[i];
+  }
+}
+
+/// The loads of one reading, true ones.
+LoadCase load_of(const FrameDescription& f, const measurement::Measurements& data, const measurement::Reading& r) {
+  LoadCase out;
+  for (std::size_t k = 0; k < r.factors.size(); ++k)
+    if (r.factors[k] != 0)
+      add(out, named(f.loads, "load case", data.instruments.load_cases[k], f.name), f.load_gain * r.factors[k]);
+  for (std::size_t p = 0; p < r.at_points.size(); ++p)
+    if (!r.at_points[p].isZero(0))
+      out.nodes.emplace_back(node_of(data.instruments.load_points[p]), f.load_gain * r.at_points[p]);
+  return out;
+}
+
+/// One case for each channel of load, in the order of load_channels().
+Named<LoadCase> unit_loads(const FrameDescription& f, const measurement::Measurements& data) {
+  Named<LoadCase> out;
+  for (const std::string& name : data.instruments.load_cases)
+    out.emplace_back("load." + name, named(f.loads, "load case", name, f.name));
+  for (const measurement::LoadChannel& c : measurement::load_channels(data)) {
+    if (c.name.starts_with("load.")) continue;
+    const std::size_t dot = c.name.rfind('.');
+    const auto component = std::find(frame::wrench_names.begin(), frame::wrench_names.end(), c.name.substr(dot + 1)) -
+                           frame::wrench_names.begin();
+    LoadCase unit;
+    unit.nodes.emplace_back(node_of(c.name.substr(0, dot)), Vector6::Unit(component));
+    out.emplace_back(c.name, std::move(unit));
+  }
+  return out;
+}
+
+frame::FrameResult analysed(FrameDescription f, Named<LoadCase> loads, const frame::FrameOptions& o) {
+  f.loads = std::move(loads);
+  return frame::analyse(f, o);
+}
+
+std::vector<VectorX> by_superposition(const FrameDescription& f, const measurement::Measurements& data) {
+  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
+  const MatrixX loads = f.load_gain * measurement::loads_of(data);
+  MatrixX S = MatrixX::Zero(std::ssize(sensors), loads.rows());  // true readings of unit loads
+  if (loads.rows() > 0) {
+    const frame::FrameResult result = analysed(f, unit_loads(f, data), {});
+    if (const std::string failed = frame::failed_check(result); !failed.empty())
+      throw NumericalError(fmt::format("{}: {}", f.name, failed));
+    for (std::size_t c = 0; c < result.cases.size(); ++c)
+      for (std::size_t k = 0; k < sensors.size(); ++k)
+        S(as_index(k), as_index(c)) = frame::true_reading(*sensors[k], f, result.structure, result.cases[c]);
+  }
+  const MatrixX read = S * loads;
+  std::vector<VectorX> out;
+  for (const auto& column : read.colwise()) {
+    out.emplace_back(VectorX::Zero(6 + column.size()));
+    for (Eigen::Index k = 0; k < column.size(); ++k)
+      out.back()(6 + k) = nth(sensors, k)->gain * column(k) + nth(sensors, k)->zero;
+  }
+  return out;
+}
+
+bool has_linear_laws(const FrameDescription&) { return true; }
+
+std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Measurements& data) {
+  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
+  std::vector<std::size_t> order(data.readings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  frame::FrameOptions options;
+  if (has_history(f)) order = measurement::in_sequence(data, "friction");
+  Named<LoadCase> loads;
+  for (const std::size_t i : order)
+    loads.emplace_back(fmt::format("line {}", data.readings[i].line), load_of(f, data, data.readings[i]));
+  const frame::FrameResult result = analysed(f, std::move(loads), options);
+  if (const std::string failed = frame::failed_check(result); !failed.empty())
+    throw NumericalError(fmt::format("{}: {}: {}", data.origin, f.name, failed));
+  std::vector<VectorX> out(data.readings.size());
+  for (std::size_t c = 0; c < order.size(); ++c) {
+    VectorX& read = out[order[c]];
+    read = VectorX::Zero(6 + std::ssize(sensors));
+    for (std::size_t k = 0; k < sensors.size(); ++k)
+      read(6 + as_index(k)) = frame::recorded_by(*sensors[k], f, result.structure, result.cases[c]);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<VectorX> predicted_readings(const FrameDescription& frame, const measurement::Measurements& data,
+                                        Geometry geometry) {
+  FrameDescription f = frame;
+  f.geometry = geometry;
+  if (geometry != Geometry::finite) f.load_steps = 1;
+  const bool sums = geometry == Geometry::linear && has_linear_laws(f);
+  return sums ? by_superposition(f, data) : one_by_one(f, data);
+}
+
+bool has_history(const FrameDescription&) { return false; }
+
+}  // namespace deflect::subject
