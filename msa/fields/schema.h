@@ -45,6 +45,7 @@ struct SchemaField {
   std::size_t level = no_level;    ///< level of its own fields, if any: index in Schema::levels
   bool plain = false;              ///< its entries are one value each, the field "" of the level
   bool or_word = false;            ///< an object that can also be written as one of the words
+  std::string alone;               ///< its maps can also be written as the value of this key of theirs
 
   static constexpr std::size_t no_level = as_size(-1);
 };

@@ -32,6 +32,9 @@ void describe(FieldVisitor&, PolygonSpace::Corner&);
 /// E, and nu or G.
 void describe_elastic(FieldVisitor&, Material&);
 void describe_geometry(FieldVisitor&, Geometry&);
+/// The field `stiffness`: {rows: [[…]], units}, symmetric and positive definite. `where_free`: the remedy where it is
+/// not.
+void describe_stiffness(FieldVisitor&, std::optional<Matrix6>& stiffness, const char* where_free);
 /// Beam theory of a member. The section, where given, must have the properties that the theory needs.
 void describe_beam_theory(FieldVisitor&, BeamTheory&, const Section*, const std::string& section_name);
 

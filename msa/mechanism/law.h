@@ -1,7 +1,7 @@
 // The laws that an elastic freedom of a joint can follow: force along (or moment about) one axis against relative
 // displacement. First the parameters of each law, then the table with one row for each: properties that do not depend
 // on the parameters, and examples, from which the tests of all laws are made. `analytic/deflection.h` and
-// `msa/frame/mechanism/component.h` compute the mechanics from the parameters independently of each other.
+// `msa/frame/laws/component.h` compute the mechanics from the parameters independently of each other.
 #pragma once
 
 #include <array>

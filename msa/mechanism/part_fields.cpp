@@ -123,24 +123,7 @@ void describe_beside(FieldVisitor& v, Joint& joint) {
 
 /// A stiffness of all freedoms together.
 void describe_stiffness(FieldVisitor& v, Joint& joint) {
-  MatrixX rows;
-  std::string units = "N-mm";
-  if (joint.stiffness) rows = stiffness_in_mm(*joint.stiffness);
-  const bool absent = !joint.stiffness;
-  joint.stiffness.reset();
-  const auto body = [&] {
-    v.word("units", units, {"set of units", {"N-mm", "N-m"}, "N-mm"}, "N/mm, N, Nmm or N/m, N, Nm");
-    v.matrix("rows", rows, 6, Need::required, "stiffness [f; m] over [translation; rotation] in the joint's axes");
-    if (rows.size() == 0) return;
-    Matrix6 K = rows;
-    if (units == "N-mm") K = stiffness_from_mm(K);
-    const bool symmetric = (K - K.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * K.cwiseAbs().maxCoeff();
-    v.require(symmetric, "rows", "a stiffness is symmetric; this one is not");
-    v.require(!symmetric || Eigen::LLT<Matrix6>(K).info() == Eigen::Success, "rows",
-              "a stiffness is positive definite; this one is not: leave a free freedom to the joint type");
-    joint.stiffness = (K + K.transpose()) / 2;
-  };
-  v.object("stiffness", Need::optional, absent, body, "stiffness of all six freedoms together");
+  deflect::describe_stiffness(v, joint.stiffness, "leave a free freedom to the joint type");
   const bool laws = std::any_of(joint.laws.begin(), joint.laws.end(), [](const auto& l) { return !l.empty(); });
   v.require(!joint.stiffness || !laws, "stiffness", "a joint has a stiffness of all freedoms or laws, not both");
 }
@@ -287,6 +270,32 @@ void describe_ends(FieldVisitor& v, Member& member) {
 }
 
 }  // namespace
+
+void describe_stiffness(FieldVisitor& v, std::optional<Matrix6>& stiffness, const char* where_free) {
+  MatrixX rows;
+  std::string units = "N-mm";
+  if (stiffness) {
+    const Matrix6 in_mm = stiffness_in_mm(*stiffness);
+    const bool exact = stiffness_from_mm(in_mm) == *stiffness;  // to the last bit when it is read again
+    units = exact ? "N-mm" : "N-m";
+    rows = exact ? in_mm : *stiffness;
+  }
+  const bool absent = !stiffness;
+  stiffness.reset();
+  const auto body = [&] {
+    v.word("units", units, {"set of units", {"N-mm", "N-m"}, "N-mm"}, "N/mm, N, Nmm or N/m, N, Nm");
+    v.matrix("rows", rows, 6, Need::required, "stiffness [f; m] over [translation; rotation] in its axes");
+    if (rows.size() == 0) return;
+    Matrix6 K = rows;
+    if (units == "N-mm") K = stiffness_from_mm(K);
+    const bool symmetric = (K - K.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * K.cwiseAbs().maxCoeff();
+    v.require(symmetric, "rows", "a stiffness is symmetric; this one is not");
+    v.require(!symmetric || Eigen::LLT<Matrix6>(K).info() == Eigen::Success, "rows",
+              fmt::format("a stiffness is positive definite; this one is not: {}", where_free));
+    stiffness = (K + K.transpose()) / 2;
+  };
+  v.object("stiffness", Need::optional, absent, body, "stiffness of all six freedoms together");
+}
 
 void describe_beam_theory(FieldVisitor& v, BeamTheory& beam, const Section* section, const std::string& section_name) {
   choice(v, "beam", beam, "beam theory", beam_theory_names, "beam theory");

@@ -51,7 +51,7 @@ void add_terms(FrameConstraint& c, const std::string& node, int freedom, const M
 }
 
 void supports_as_constraints(FrameDescription& f, const Matrix3& R) {
-  Named<Freedoms> kept;
+  Named<frame::FrameSupport> kept;
   for (const auto& [node, held] : f.supports) {
     Freedoms whole{};
     for (int first = 0; first < 6; first += 3) {
@@ -104,6 +104,19 @@ Vector3 local_y(const FrameDescription& f, const frame::FrameMember& m) {
 }  // namespace
 
 FrameDescription scaled(FrameDescription f, double s) {
+  const auto scale_laws = [s](frame::FreedomLaws& laws) {
+    for (std::size_t i = 0; i < 6; ++i)
+      for (const bool beside : {false, true}) {
+        std::vector<Law> list = laws.at(i, beside);
+        for (Law& law : list) std::get<LinearLaw>(law).stiffness *= i < 3 ? s : s * s * s;
+        laws.set(i, list, beside);
+      }
+  };
+  for (auto& [name, m] : f.members) scale_laws(m.start), scale_laws(m.end);
+  for (auto& [node, support] : f.supports) scale_laws(support.laws);
+  for (auto& [name, spring] : f.springs)
+    if (spring.coupled)
+      for (Eigen::Index i = 0; i < 6; ++i) (*spring.coupled)(i, i) *= i < 3 ? s : s * s * s;  // diagonal here
   for (auto& [name, p] : f.nodes) p *= s;
   for (auto& [name, section] : f.sections) scale(section, s);
   for (auto& [name, spring] : f.springs)

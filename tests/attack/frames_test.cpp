@@ -3,15 +3,18 @@
 #include <gtest/gtest.h>
 
 #include "tests/attack/count.h"
+#include "tests/attack/law_forms.h"
 #include "tests/attack/table.h"
 
 namespace deflect::attack {
 namespace {
 
-Table judged(unsigned first, unsigned last, unsigned step) {
+using Roll = RandomFrame (*)(unsigned seed);
+
+Table judged(unsigned first, unsigned last, unsigned step, Roll roll = random_frame) {
   Table table;
   for (unsigned seed = first; seed < last; seed += step) {
-    const RandomFrame random = random_frame(seed);
+    const RandomFrame random = roll(seed);
     const Judgement j = judge(random);
     table.add(standing_names[static_cast<int>(j.standing)], j.outcome, j.error, j.condition);
     if (is_wrong(j.outcome)) table.failures += reproduction(random, j) + "\n";
@@ -23,6 +26,11 @@ class RandomFrames : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomFrames, AreAnsweredRightOrRefusedRightly) {
   const Table table = judged(GetParam(), usual_count, shards);
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+TEST_P(RandomFrames, WithLawsAreAnsweredRightOrRefusedRightly) {
+  const Table table = judged(GetParam(), usual_count, shards, random_law_frame);
   EXPECT_TRUE(table.failures.empty()) << table.failures;
 }
 
@@ -42,6 +50,13 @@ TEST(RandomFramesOnDemand, AreAnsweredRightOrRefusedRightly) {
   if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of frames";
   const Table table = judged(0, count_on_demand(), 1);
   fmt::print("{}", table.text("frames"));
+  EXPECT_TRUE(table.failures.empty()) << table.failures;
+}
+
+TEST(RandomFramesOnDemand, WithLawsAreAnsweredRightOrRefusedRightly) {
+  if (count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of frames";
+  const Table table = judged(0, count_on_demand(), 1, random_law_frame);
+  fmt::print("{}", table.text("frames with laws"));
   EXPECT_TRUE(table.failures.empty()) << table.failures;
 }
 

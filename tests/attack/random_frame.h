@@ -6,6 +6,8 @@
 // match. Then displacements are `unit` times those of the ideal frame, rotations the same.
 #pragma once
 
+#include <optional>
+
 #include "msa/frame/file/frame_description.h"
 
 namespace deflect::attack {
@@ -19,6 +21,10 @@ struct RandomFrame {
   FrameKind kind = FrameKind::chain;
   frame::FrameDescription ideal;
   double unit = 1;
+  /// The ideal frame in other words, which the program gets (law_forms.h); its nodes are the first of the ideal one's.
+  std::optional<frame::FrameDescription> written = {};
+
+  const frame::FrameDescription& words() const { return written ? *written : ideal; }
 };
 
 /// The same seed gives the same frame on every machine.

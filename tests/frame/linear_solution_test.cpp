@@ -82,7 +82,7 @@ TEST(LinearSolution, AChainIsAnsweredAtOnce) {  // the incomplete factor of a ch
     m.from = std::to_string(i - 1), m.to = std::to_string(i), m.section = "rod", m.material = "steel";
     f.members.push_back({"m" + std::to_string(i), m});
   }
-  f.supports.push_back({"0", {true, true, true, true, true, true}});
+  f.supports.push_back({"0", Freedoms{true, true, true, true, true, true}});
   f.loads[0].second.nodes.push_back({"5", Vector6::Unit(2)});
   const FrameResult r = solved(f, Equations::iterative);
   ASSERT_EQ(r.equations.solver, "iterative") << r.equations.why;
@@ -131,7 +131,7 @@ TEST(LinearSolution, AnIllConditionedChainFallsBack) {
   m.from = "0", m.to = "1", m.section = "rod", m.material = "steel", m.elements = 3000;
   f.nodes = {{"0", Vector3::Zero()}, {"1", {300, 0, 0}}};
   f.members = {{"chain", m}};
-  f.supports.push_back({"0", {true, true, true, true, true, true}});
+  f.supports.push_back({"0", Freedoms{true, true, true, true, true, true}});
   f.loads[0].second.nodes.push_back({"1", Vector6::Unit(2)});
   const FrameResult r = solved(f, Equations::iterative);
   EXPECT_EQ(r.equations.solver, "direct");
@@ -149,7 +149,7 @@ std::string refusal(const FrameDescription& f, Equations solver) {
 
 TEST(LinearSolution, MechanismsAreNamedAsByTheDirectWay) {
   FrameDescription sliding = test::lattice(3);
-  for (auto& [node, freedoms] : sliding.supports) freedoms = {false, true, true, false, false, false};
+  for (auto& [node, freedoms] : sliding.supports) freedoms = Freedoms{false, true, true, false, false, false};
   FrameDescription loose = test::lattice(3);  // an end node that all its members let go
   const std::string tip = test::lattice_node(2, 2, 2);
   for (auto& [name, member] : loose.members) {

@@ -36,7 +36,7 @@ inline frame::FrameDescription lattice(int n, double diameter = 0.006) {
           member.section = "rod", member.material = "steel";
           f.members.push_back({name + " " + std::to_string(d), member});
         }
-        if (z == 0) f.supports.push_back({name, {true, true, true, true, true, true}});
+        if (z == 0) f.supports.push_back({name, frame::Freedoms{true, true, true, true, true, true}});
         if (z == n - 1) f.loads[0].second.nodes.push_back({name, (Vector6() << 1, 0, -1, 0, 0, 0).finished()});
       }
   return f;

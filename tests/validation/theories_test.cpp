@@ -7,7 +7,7 @@
 
 #include "analytic/model.h"
 #include "msa/base/stiffness_checks.h"
-#include "msa/frame/mechanism/component.h"
+#include "msa/frame/laws/component.h"
 #include "msa/frame/mechanism/msa.h"
 #include "tests/support/devices.h"
 #include "tests/support/theories.h"

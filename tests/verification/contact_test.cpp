@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "analytic/deflection.h"
-#include "msa/frame/mechanism/component.h"
+#include "msa/frame/laws/component.h"
 
 namespace deflect {
 namespace {

@@ -67,8 +67,9 @@ void add_loads(std::vector<Column>& columns, const Measurements& m) {
 /// Those that say something: the reader's defaults stand for the others.
 std::vector<Column> columns_of(const Measurements& m) {
   const auto any = [&](const auto& has) { return std::any_of(m.readings.begin(), m.readings.end(), has); };
-  std::vector<Column> columns = {
-      {"pose", [&m](const Reading& r) { return quoted_where_needed(m.poses[r.pose].label); }}};
+  std::vector<Column> columns;
+  if (!m.instruments.stationary || m.poses.size() > 1)
+    columns.push_back({"pose", [&m](const Reading& r) { return quoted_where_needed(m.poses[r.pose].label); }});
   if (any([](const Reading& r) { return r.sequence.has_value(); }))
     columns.push_back({"sequence", [](const Reading& r) { return number_text(r.sequence); }});
   const std::size_t commands = m.instruments.stationary ? 0 : m.by_joints() ? m.joint_rotates.size() : 6;

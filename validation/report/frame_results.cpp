@@ -32,12 +32,6 @@ Vector6 forces_mm(const Vector6& SI) {
   return f;
 }
 
-frame::Freedoms with_stiffness(const frame::FrameSpring& spring) {
-  frame::Freedoms held{};
-  for (std::size_t i = 0; i < 6; ++i) held[i] = spring.stiffness[i].has_value();
-  return held;
-}
-
 // JSON
 
 void put(Json& json, const Vector6& values, const Names& names, const frame::Freedoms& held, const std::string& what) {
@@ -111,10 +105,10 @@ Json json_case(const FrameDescription& f, const CaseResult& c, bool linear) {
         row("node", f.nodes[i].first, twist_in_mm(c.displacements[i]), displacement_names, all_held));
   for (std::size_t i = 0; i < f.supports.size(); ++i)
     json["reactions"].push_back(
-        row("node", f.supports[i].first, forces_mm(c.reactions[i]), force_names, f.supports[i].second));
+        row("node", f.supports[i].first, forces_mm(c.reactions[i]), force_names, f.supports[i].second.acting()));
   for (std::size_t i = 0; i < f.springs.size(); ++i)
     json["springs"].push_back(
-        row("spring", f.springs[i].first, forces_mm(c.springs[i]), force_names, with_stiffness(f.springs[i].second)));
+        row("spring", f.springs[i].first, forces_mm(c.springs[i]), force_names, f.springs[i].second.acting()));
   for (std::size_t i = 0; i < f.constraints.size(); ++i)
     json["constraints"].push_back(
         json_constraint(f.constraints[i].first, f.constraints[i].second, c.constraints[i], what));
@@ -169,7 +163,7 @@ std::string frame_json(const FrameDescription& f, const FrameResult& result) {
   json["cases"] = Json::object();
   const bool linear = result.geometry == Geometry::linear;
   for (const CaseResult& c : result.cases) json["cases"][c.name] = json_case(f, c, linear);
-  if (linear) json["reciprocity"] = json::json_number(result.reciprocity, "reciprocity");
+  if (linear && result.linear_laws) json["reciprocity"] = json::json_number(result.reciprocity, "reciprocity");
   if (linear) json["solver"] = json_equations(result.equations);
   json["notes"] = notes_of(f, result);
   return json::json_text(json);
@@ -204,11 +198,11 @@ FrameTables frame_tables(const FrameDescription& f, const FrameResult& result) {
     }
     for (std::size_t i = 0; i < f.supports.size(); ++i) {
       const std::string name = fmt::format("{},support,{}", c.name, f.supports[i].first);
-      t.reactions += name + cells(forces_mm(c.reactions[i]), name, f.supports[i].second) + "\n";
+      t.reactions += name + cells(forces_mm(c.reactions[i]), name, f.supports[i].second.acting()) + "\n";
     }
     for (std::size_t i = 0; i < f.springs.size(); ++i) {
       const std::string name = fmt::format("{},spring,{}", c.name, f.springs[i].first);
-      t.reactions += name + cells(forces_mm(c.springs[i]), name, with_stiffness(f.springs[i].second)) + "\n";
+      t.reactions += name + cells(forces_mm(c.springs[i]), name, f.springs[i].second.acting()) + "\n";
     }
     for (std::size_t i = 0; i < f.members.size(); ++i) {
       const std::string name = fmt::format("{},{}", c.name, f.members[i].first);

@@ -18,6 +18,10 @@ std::string joined_units(Dimension d) {
   return d == Dimension::ratio ? "number or %" : fmt::format("{}", fmt::join(units, ", "));
 }
 
+std::string alone(const SchemaField& f) {
+  return f.alone.empty() ? "" : fmt::format(", or the value of its {} alone", f.alone);
+}
+
 /// What stands behind the key, in a few words.
 std::string type_of(const SchemaField& f) {
   const auto word = [&] {
@@ -44,11 +48,11 @@ std::string type_of(const SchemaField& f) {
     case FieldKind::object:
       return f.or_word ? word() + ", or a map" : "map";
     case FieldKind::entries:
-      return f.plain ? "values by name" : "maps by name";
+      return (f.plain ? "values by name" : "maps by name") + alone(f);
     case FieldKind::list:
       return "list of maps";
     case FieldKind::one_or_list:
-      return "map or list of maps";
+      return "map or list of maps" + alone(f);
     case FieldKind::others:
       return "values by path";
   }
@@ -182,15 +186,22 @@ class JsonSchema {
         return f.or_word ? Json{{"anyOf", {word_json(f), reference(f.level)}}} : reference(f.level);
       case FieldKind::entries: {
         const Json each =
-            f.plain ? bare_json(schema_.levels[f.level].cases.front().fields.front()) : reference(f.level);
+            f.plain ? bare_json(schema_.levels[f.level].cases.front().fields.front()) : or_alone(f, reference(f.level));
         return {{"type", "object"}, {"additionalProperties", each}};
       }
       case FieldKind::list:
         return array_of(reference(f.level), 0);
       case FieldKind::one_or_list:
-        return {{"anyOf", {reference(f.level), array_of(reference(f.level), 0)}}};
+        return or_alone(f, {{"anyOf", {reference(f.level), array_of(reference(f.level), 0)}}});
     }
     return {};
+  }
+
+  Json or_alone(const SchemaField& f, const Json& map) const {
+    for (const SchemaCase& c : schema_.levels[f.level].cases)
+      if (const SchemaField* field = f.alone.empty() ? nullptr : find_field(c, f.alone))
+        return {{"anyOf", {map, bare_json(*field)}}};
+    return map;
   }
 
   Json case_json(const SchemaCase& c) const {

@@ -14,17 +14,24 @@ namespace {
 
 using frame::FrameDescription;
 
+/// How laws, where there are any, hold a freedom.
+void set_hold(Place& p, const frame::FreedomLaws& laws, std::size_t freedom, bool rigid) {
+  p.hold = laws.has(freedom) ? Hold::elastic : rigid ? Hold::rigid : Hold::free;
+  const std::vector<Law> all = laws.at(freedom);
+  p.one_stiffness = all.size() == 1 && std::holds_alternative<LinearLaw>(all.front());
+}
+
 /// Whether a plane frame cannot move in this freedom of a node.
 bool out_of_plane(const FrameDescription& f, std::size_t freedom) {
   return f.plane != frame::Plane::none && (as_index(freedom % 3) == static_cast<int>(f.plane)) == (freedom < 3);
 }
 
 void add_supports(const FrameDescription& f, std::vector<Place>& out) {
-  for (const auto& [node, held] : f.supports)
+  for (const auto& [node, support] : f.supports)
     for (std::size_t i = 0; i < 6; ++i) {
       if (out_of_plane(f, i)) continue;
-      Place p{PlaceKind::support, {}, node, "supports." + node, {i}};
-      p.hold = held[i] ? Hold::rigid : Hold::free;
+      Place p{PlaceKind::support, {}, "support." + node, "supports." + node, {i}};
+      set_hold(p, support.laws, i, support[i]);
       p.base_axes = true;
       out.push_back(std::move(p));
     }
@@ -33,10 +40,11 @@ void add_supports(const FrameDescription& f, std::vector<Place>& out) {
 void add_springs(const FrameDescription& f, std::vector<Place>& out) {
   for (const auto& [name, spring] : f.springs)
     for (std::size_t i = 0; i < 6; ++i) {
-      if (!spring.stiffness[i] || out_of_plane(f, i)) continue;
-      Place p{PlaceKind::joint, {}, name, "springs." + name, {i}};
-      p.hold = Hold::elastic;
-      p.one_stiffness = p.base_axes = true;
+      if (!spring.acting()[i] || spring.coupled || out_of_plane(f, i)) continue;
+      Place p{PlaceKind::joint, {}, "spring." + name, "springs." + name, {i}};
+      set_hold(p, spring.laws, i, false);
+      if (spring.stiffness[i]) p.hold = Hold::elastic, p.one_stiffness = true;
+      p.base_axes = true;
       out.push_back(std::move(p));
     }
 }
@@ -55,13 +63,14 @@ void add_members(const FrameDescription& f, std::vector<Place>& out) {
     if (member.truss) continue;
     for (const char* end : {"start", "end"}) {
       const frame::Freedoms& released = end[0] == 's' ? member.release_from : member.release_to;
+      const frame::FreedomLaws& laws = end[0] == 's' ? member.start : member.end;
       Place p{PlaceKind::member_end, {}, fmt::format("{}.{}", name, end), fmt::format("members.{}.{}", name, end)};
       const auto add = [&](std::vector<std::size_t> freedoms) {
-        p.hold = released[freedoms.front()] ? Hold::free : Hold::rigid;
+        set_hold(p, laws, freedoms.front(), !released[freedoms.front()]);
         p.freedoms = std::move(freedoms);
         out.push_back(p);
       };
-      if (f.plane == frame::Plane::none && released[4] == released[5] && !released[4]) {
+      if (f.plane == frame::Plane::none && released[4] == released[5] && !released[4] && !laws.has(4) && !laws.has(5)) {
         add({4, 5});
         continue;
       }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 #include "msa/base/error.h"
@@ -37,7 +38,8 @@ std::vector<const frame::FrameSensor*> sensors_of(const FrameDescription& f, con
   return out;
 }
 
-void add(LoadCase& sum, const LoadCase& each, double times) {
+void add(LoadCase& sum, const LoadCase& each, double share) {
+  const double times = share * each.factor;
   for (const auto& [node, wrench] : each.nodes) sum.nodes.emplace_back(node, times * wrench);
   for (const auto& [member, load] : each.members)
     sum.members.emplace_back(member, frame::LineLoad{times * load.q, load.member_axes});
@@ -108,14 +110,35 @@ std::vector<VectorX> by_superposition(const FrameDescription& f, const measureme
   return out;
 }
 
-bool has_linear_laws(const FrameDescription&) { return true; }
+/// Whether some law of the frame is so.
+bool any_law(const FrameDescription& f, const std::function<bool(const Law&)>& is) {
+  const auto in = [&](const frame::FreedomLaws& laws) {
+    for (std::size_t i = 0; i < 6; ++i)
+      for (const bool beside : {false, true}) {
+        const std::vector<Law> all = laws.at(i, beside);
+        if (std::any_of(all.begin(), all.end(), is)) return true;
+      }
+    return false;
+  };
+  return std::any_of(f.supports.begin(), f.supports.end(), [&](const auto& s) { return in(s.second.laws); }) ||
+         std::any_of(f.springs.begin(), f.springs.end(), [&](const auto& s) { return in(s.second.laws); }) ||
+         std::any_of(f.members.begin(), f.members.end(),
+                     [&](const auto& m) { return in(m.second.start) || in(m.second.end); });
+}
+
+bool has_linear_laws(const FrameDescription& f) {
+  return !any_law(f, [](const Law& law) { return !is_linear(law); });
+}
 
 std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Measurements& data) {
   const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
   std::vector<std::size_t> order(data.readings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   frame::FrameOptions options;
-  if (has_history(f)) order = measurement::in_sequence(data, "friction");
+  if (has_history(f)) {
+    order = measurement::in_sequence(data, "friction");
+    options.in_sequence = true;
+  }
   Named<LoadCase> loads;
   for (const std::size_t i : order)
     loads.emplace_back(fmt::format("line {}", data.readings[i].line), load_of(f, data, data.readings[i]));
@@ -143,6 +166,8 @@ std::vector<VectorX> predicted_readings(const FrameDescription& frame, const mea
   return sums ? by_superposition(f, data) : one_by_one(f, data);
 }
 
-bool has_history(const FrameDescription&) { return false; }
+bool has_history(const FrameDescription& f) {
+  return any_law(f, [](const Law& law) { return row_of(law).has_history; });
+}
 
 }  // namespace deflect::subject

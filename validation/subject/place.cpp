@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "msa/mechanism/joint_table.h"
 
 namespace deflect::subject {
@@ -24,10 +26,10 @@ std::string id_of(const Place& p) {
 
 std::string name_of(const Place& p) {
   const std::string motion = motion_of(p);
-  const std::string where = p.kind == PlaceKind::sensor    ? "sensor "
-                            : p.kind == PlaceKind::support ? "support "
-                            : p.leg ? fmt::format("leg {} ", *p.leg) : "";
-  return fmt::format("{}{}{}{}", where, p.part, motion.empty() ? "" : " ", motion);
+  const std::string where = p.kind == PlaceKind::sensor ? "sensor " : p.leg ? fmt::format("leg {} ", *p.leg) : "";
+  std::string part = p.part;  // "support.B" of a frame
+  if (p.base_axes) std::replace(part.begin(), part.end(), '.', ' ');
+  return fmt::format("{}{}{}{}", where, part, motion.empty() ? "" : " ", motion);
 }
 
 }  // namespace deflect::subject

@@ -141,6 +141,11 @@ measurement::Measurements simulate_frame(const frame::FrameDescription& f, measu
     zero.push_back(f.sensors[k].second.free_zero ? 1e3 * usual * random.normal() : 0);
   }
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
+    for (std::size_t k = 0; k < sensors.size(); ++k) {
+      if (sensors[k].sigma || sigma[k] == 0) continue;
+      if (sensors[k].quantity == measurement::Quantity::length) plan.readings[i].sigma_u = sigma[k];
+      if (sensors[k].quantity == measurement::Quantity::angle) plan.readings[i].sigma_th = sigma[k];
+    }
     const bool gross = o.outliers > 0 && random.uniform(0, 1) < o.outliers;
     for (std::size_t k = 0; k < sensors.size(); ++k) {
       double value = exact[i](as_index(6 + k)) + zero[k] + sigma[k] * random.normal();

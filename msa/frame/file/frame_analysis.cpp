@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "msa/base/index.h"
-#include "msa/frame/iterative/linear_solution.h"
+#include "msa/frame/structure/relative.h"
 
 namespace deflect::frame {
 namespace {
@@ -27,10 +27,11 @@ struct Gross {
 
 /// A case between its solution and its checks.
 struct Work {
-  CaseLoad load;
-  ExtendedVector fine;  // u, for differences
-  VectorX lambda;
-  Gross gross;
+  const CaseLoad& load;
+  const ExtendedVector& fine;  // u, for differences
+  VectorX pulls;               // of springs
+  VectorX lambda = {};
+  Gross gross = {};
   double heat = 0, clamped = 0;  // Σ N ε L; what line loads store in clamped elements
 };
 
@@ -63,22 +64,19 @@ void find_member_forces(CaseResult& r, const FrameModel& m, Work& work) {
   }
 }
 
-void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& m, const Work& work) {
-  const VectorX& lambda = work.lambda;
-  for (const std::array<int, 6>& constraints : m.support_constraint) {
-    r.reactions.push_back(Vector6::Zero());
-    for (std::size_t i = 0; i < 6; ++i)
-      if (constraints[i] >= 0) r.reactions.back()(as_index(i)) = lambda(constraints[i]);
-  }
-  for (const int constraint : m.constraint) r.constraints.push_back(lambda(constraint));
-  for (std::size_t k = 0; k < f.springs.size(); ++k) {
-    r.springs.push_back(Vector6::Zero());
-    for (std::size_t i = 0; i < 6; ++i) {
-      if (m.spring[k][i] < 0) continue;
-      const Spring& spring = nth(m.model.springs, m.spring[k][i]);
-      r.springs.back()(as_index(i)) = -force(spring.law, evaluate(spring.elongation, work.fine));
-    }
-  }
+/// What a support or spring does to its node.
+Vector6 on_node(const Holding& holding, const Work& work) {
+  Vector6 wrench = Vector6::Zero();
+  for (std::size_t i = 0; i < 6; ++i)
+    if (holding.constraint[i] >= 0) wrench(as_index(i)) = work.lambda(holding.constraint[i]);
+  for (const auto& [freedom, spring] : holding.direct) wrench(freedom) -= work.pulls(spring);
+  return wrench;
+}
+
+void find_reactions(CaseResult& r, const FrameModel& m, const Work& work) {
+  for (const Holding& support : m.supports) r.reactions.push_back(on_node(support, work));
+  for (const int constraint : m.constraint) r.constraints.push_back(work.lambda(constraint));
+  for (const Holding& spring : m.springs) r.springs.push_back(on_node(spring, work));
 }
 
 /// Resultant about the first node of loads, constraints and springs; those between nodes have none.
@@ -92,8 +90,7 @@ double equilibrium(const FrameModel& m, const Work& work) {
   };
   for (std::size_t k = 0; k < m.model.constraints.size(); ++k)
     add(m.model.constraints[k].form, work.lambda(as_index(k)));
-  for (const Spring& spring : m.model.springs)
-    add(spring.elongation, -force(spring.law, evaluate(spring.elongation, work.fine)));
+  for (std::size_t s = 0; s < m.model.springs.size(); ++s) add(m.model.springs[s].elongation, -work.pulls(as_index(s)));
   Vector3 resultant = Vector3::Zero(), moment = Vector3::Zero();
   double forces = cancelling * work.gross.force, moments = 0;
   for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
@@ -108,19 +105,28 @@ double equilibrium(const FrameModel& m, const Work& work) {
   return std::max(ratio(resultant.norm(), forces), ratio(moment.norm(), moments));
 }
 
-void check(CaseResult& r, const FrameModel& m, const Elimination& e, const Work& work) {
+void check(CaseResult& r, const FrameModel& m, const Elimination& e, const VectorX& u, const Work& work) {
   const VectorX load = padded(work.load.forces, m.model.dofs());
-  const VectorX pulls = forces_with(m.model, work.fine, spring_forces(m.model, work.fine));
+  const VectorX pulls = forces_with(m.model, work.fine, work.pulls);
   const VectorX free = e.reduce(load), held = e.reduce(pulls);
   r.checks.residual = ratio(largest(free - held), largest(load) + largest(pulls) + cancelling * work.gross.force);
   r.checks.equilibrium = equilibrium(m, work);
 
   const VectorX forces = work.load.forces - work.load.thermal;
-  const double loads = forces.dot(r.u.head(forces.size())),
+  const double loads = forces.dot(u.head(forces.size())),
                supports = work.lambda.head(work.load.values.size()).dot(work.load.values);
-  const double difference = 2 * (r.energy - work.clamped) - loads - supports + work.heat;
-  r.checks.energy = ratio(std::abs(difference), 2 * r.energy + std::abs(loads) + std::abs(supports) +
-                                                    std::abs(work.heat) + cancelling * work.gross.energy);
+  double members = 0, springs = 0, gross = work.gross.energy;
+  for (const MemberForces& member : r.members) members += member.energy;
+  const double length = characteristic_length(m.model), contact = contact_stiffness(m.model);
+  for (std::size_t s = 0; s < m.model.springs.size(); ++s) {
+    const Spring& spring = m.model.springs[s];
+    const double force = work.pulls(as_index(s));
+    springs += force * evaluate(spring.elongation, work.fine);
+    if (jumps(spring.law)) gross += force * force / (contact * (spring.law.rotation ? length * length : 1));
+  }
+  const double difference = 2 * (members - work.clamped) + springs - loads - supports + work.heat;
+  r.checks.energy = ratio(std::abs(difference), 2 * members + std::abs(springs) + std::abs(loads) + std::abs(supports) +
+                                                    std::abs(work.heat) + cancelling * gross);
 }
 
 /// What loads would do on the largest displacements: where a load stands on supports, rounding is all that it works on.
@@ -134,65 +140,85 @@ double largest_work(const FrameModel& m, const VectorX& forces, const VectorX& u
   return force.dot(motion);
 }
 
-double reciprocity(const FrameModel& m, const std::vector<CaseResult>& cases, const std::vector<Work>& work) {
+double reciprocity(const FrameModel& m, const std::vector<VectorX>& u, const std::vector<Work>& work) {
   double worst = 0;
-  for (std::size_t i = 0; i < cases.size(); ++i)
+  for (std::size_t i = 0; i < u.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       double difference = 0, sum = cancelling * std::sqrt(work[i].gross.energy * work[j].gross.energy);
-      sum += cancelling *
-             (largest_work(m, work[i].load.forces, cases[j].u) + largest_work(m, work[j].load.forces, cases[i].u));
+      sum += cancelling * (largest_work(m, work[i].load.forces, u[j]) + largest_work(m, work[j].load.forces, u[i]));
       const auto add = [&](const VectorX& a, const VectorX& b, double sign) {
         const auto n = std::min(a.size(), b.size());
         difference += sign * a.head(n).dot(b.head(n));
         sum += a.head(n).cwiseAbs().dot(b.head(n).cwiseAbs());
       };
-      add(work[i].load.forces, cases[j].u, 1);
+      add(work[i].load.forces, u[j], 1);
       add(work[i].lambda, work[j].load.values, 1);
-      add(work[j].load.forces, cases[i].u, -1);
+      add(work[j].load.forces, u[i], -1);
       add(work[j].lambda, work[i].load.values, -1);
       worst = std::max(worst, ratio(std::abs(difference), sum));
     }
   return worst;
 }
 
-VectorX elongations(const Model& m, const ExtendedVector& u) {
+VectorX stored_energies(const Model& m, const ExtendedVector& u) {
   VectorX out(std::ssize(m.springs));
-  for (std::size_t i = 0; i < m.springs.size(); ++i) out(as_index(i)) = evaluate(m.springs[i].elongation, u);
+  for (std::size_t i = 0; i < m.springs.size(); ++i)
+    out(as_index(i)) = stored_energy(m.springs[i].law, evaluate(m.springs[i].elongation, u));
   return out;
 }
 
-void analyse_linear(const FrameDescription& f, const EquationOptions& options, FrameResult& out) {
+void take_laws(Model& m, const LinearState& state) {
+  for (std::size_t s = 0; s < state.laws.size(); ++s) m.springs[s].law = state.laws[s];
+}
+
+/// The result of a case; `assembled`: as the frame was before, nullptr without misfits.
+CaseResult result_of(const FrameDescription& f, const FrameModel& m, const Elimination& e, const Reactions& reactions,
+                     Work& work, const LinearState& state, const LinearState* assembled) {
+  CaseResult r;
+  r.path = state.path;
+  r.slips = state.slips;
+  const VectorX u = work.fine.cast<double>();
+  work.lambda =
+      reactions.forces(forces_with(m.model, work.fine, work.pulls) - padded(work.load.forces, m.model.dofs()));
+  find_reactions(r, m, work);
+  find_member_forces(r, m, work);
+  find_energies(r, f, m, stored_energies(m.model, work.fine));
+  check(r, m, e, u, work);
+  r.loads = work.load.elements;
+  r.u = assembled ? VectorX((work.fine - assembled->fine).cast<double>()) : u;
+  for (std::size_t i = 0; i < f.nodes.size(); ++i) r.displacements.push_back(r.u.segment<6>(as_index(6 * i)));
+  return r;
+}
+
+void analyse_linear(const FrameDescription& f, const FrameOptions& options, FrameResult& out) {
   FrameModel& m = out.structure;
+  const bool assembly = m.prestressed();
+  std::vector<CaseLoad> loads;
+  if (assembly) loads.push_back(load_of(f, m, "", {}));
+  for (const auto& [name, load] : f.loads) loads.push_back(load_of(f, m, name, load));
+  Elimination elimination;
+  const std::vector<LinearState> states = solve_states(loads, assembly, options, out, elimination);
+  const Reactions reactions(m.model, elimination);
+
   std::vector<Work> work;
-  for (const auto& [name, load] : f.loads) work.push_back({load_of(f, m, name, load), {}, {}, {}, 0, 0});
-  const auto columns = std::ssize(work);
-  MatrixX loads(m.model.dofs(), columns), values(std::ssize(m.model.constraints), columns);
-  for (Eigen::Index c = 0; c < columns; ++c) {
-    loads.col(c) = nth(work, c).load.forces;
-    values.col(c) = nth(work, c).load.values;
-  }
-
-  LinearSolution solution = solve_linear(std::move(m.model), loads, values, options);
-  m.model = std::move(solution.model);  // with what the solver added to it
-  out.notes = std::move(solution.notes);
-  out.equations = std::move(solution.summary);
-  const Elimination& elimination = solution.elimination;
-
-  for (std::size_t c = 0; c < work.size(); ++c) {
-    CaseResult r;
-    r.name = f.loads[c].first;
-    r.u = solution.u.col(as_index(c));
-    for (std::size_t i = 0; i < f.nodes.size(); ++i) r.displacements.push_back(r.u.segment<6>(as_index(6 * i)));
-    work[c].fine = solution.fine.col(as_index(c));
-    work[c].lambda = constraint_forces(m.model, elimination, work[c].fine, padded(work[c].load.forces, m.model.dofs()));
-    find_reactions(r, f, m, work[c]);
-    find_member_forces(r, m, work[c]);
-    find_energies(r, f, m, elongations(m.model, work[c].fine));
-    check(r, m, elimination, work[c]);
-    r.loads = work[c].load.elements;
+  std::vector<VectorX> u;
+  for (std::size_t c = assembly ? 1 : 0; c < states.size(); ++c) {
+    take_laws(m.model, states[c]);
+    work.push_back({loads[c], states[c].fine, spring_forces(m.model, states[c].fine)});
+    CaseResult r =
+        result_of(f, m, elimination, reactions, work.back(), states[c], assembly ? &states.front() : nullptr);
+    r.name = f.loads[out.cases.size()].first;
+    if (assembly && !states.front().path.converged) {
+      r.path = states.front().path;
+      r.path.message = "the frame as assembled: " + r.path.message;
+    }
+    for (const std::string& spring : states[c].loose)
+      out.notes.push_back(
+          fmt::format("load case '{}': {} floats in its play, of which the middle is given", r.name, spring));
+    u.push_back(states[c].fine.cast<double>());
     out.cases.push_back(std::move(r));
   }
-  out.reciprocity = reciprocity(m, out.cases, work);
+  if (out.linear_laws) out.reciprocity = reciprocity(m, u, work);
 }
 
 }  // namespace
@@ -201,16 +227,17 @@ void keep_larger(LargestMoment& largest_so_far, double value, double x) {
   if (std::abs(value) > std::abs(largest_so_far.value) * (1 + 1e-12)) largest_so_far = {value, x};
 }
 
-void find_energies(CaseResult& r, const FrameDescription& f, const FrameModel& m, const VectorX& elongations) {
+void find_energies(CaseResult& r, const FrameDescription& f, const FrameModel& m, const VectorX& of_springs) {
   NameIndex sections(f.sections);
-  std::vector<double> by_section(f.sections.size(), 0), by_spring(f.springs.size(), 0);
+  std::vector<double> by_section(f.sections.size(), 0);
   for (std::size_t i = 0; i < f.members.size(); ++i)
     nth(by_section, sections.find(f.members[i].second.section)) += r.members[i].energy;
-  for (std::size_t i = 0; i < f.springs.size(); ++i)
-    for (const int s : m.spring[i])
-      if (s >= 0) by_spring[i] += energy(nth(m.model.springs, s).law, elongations(s));
   for (std::size_t i = 0; i < by_section.size(); ++i) r.energies.emplace_back(f.sections[i].first, by_section[i]);
-  for (std::size_t i = 0; i < by_spring.size(); ++i) r.energies.emplace_back(f.springs[i].first, by_spring[i]);
+  for (const auto& [place, springs] : m.elastic) {
+    double sum = 0;
+    for (int s = springs.first; s < springs.second; ++s) sum += of_springs(s);
+    r.energies.emplace_back(place, sum);
+  }
   for (const auto& [group, part] : r.energies) r.energy += part;
   std::stable_sort(r.energies.begin(), r.energies.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -221,10 +248,12 @@ FrameResult analyse(const FrameDescription& f, const FrameOptions& options) {
   out.name = f.name;
   out.geometry = f.geometry;
   out.structure = build_frame(f, options.division);
+  const std::vector<Spring>& springs = out.structure.model.springs;
+  out.linear_laws = std::all_of(springs.begin(), springs.end(), [](const Spring& s) { return is_linear(s.law); });
   if (f.geometry == Geometry::linear)
-    analyse_linear(f, options.equations, out);
+    analyse_linear(f, options, out);
   else
-    analyse_geometric(f, out);
+    analyse_geometric(f, options, out);
   return out;
 }
 

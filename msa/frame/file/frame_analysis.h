@@ -1,6 +1,11 @@
 // Analysis of a frame under its load cases: displacements, reactions, member forces, energies, and checks of them.
-// Linear: one factorisation for all cases. Second order and finite: each case has its own load path
-// (geometric_solver.h).
+// Linear geometry: one factorisation for all cases, one solver where laws are not linear (solver.h). Second order and
+// finite: each case has its own load path (geometric_solver.h).
+//
+// A frame is assembled without load. Where members have misfits it is strained then: forces, reactions and energies of
+// a case are those of the loaded frame, its displacements and rotations are relative to the frame as assembled. In
+// linear geometry with linear laws a misfit changes no displacement. Frictions have slipped as the assembly made them
+// slip.
 #pragma once
 
 #include <string>
@@ -13,7 +18,9 @@ namespace deflect::frame {
 
 struct FrameOptions {
   FrameDivision division;     ///< empty: as in the description; one element is exact at its nodes in linear geometry
-  EquationOptions equations;  ///< linear only; nonlinear geometry always uses the direct solver
+  EquationOptions equations;  ///< linear only; nonlinear geometry and laws always use the direct solver
+  bool in_sequence = false;   ///< cases follow one another, and frictions keep their slips from each to the next; else
+                              ///< each case begins with the frame as assembled
 };
 
 /// The bending moment with the largest magnitude along a member.
@@ -33,19 +40,21 @@ struct MemberForces {
 };
 
 /// Relative errors, 0 where everything is exact. The reference is at least 1e-7 of the sum of the magnitudes of the
-/// cancelling terms, so that a case without reactions (free expansion) does not fail by rounding.
+/// cancelling terms, so that a case without reactions (free expansion) does not fail by rounding; springs that jump
+/// count there with what their forces would store in a contact stiffness (relative.h), for those that are rigid do no
+/// work.
 struct FrameChecks {
   double residual = 0;  ///< Tᵀ(f − f_int): equilibrium of the free freedoms; nonlinear: size of the next Newton step
   /// Loads + reactions: resultant force and moment on the whole frame. Finite: in the deformed shape. Second order:
   /// only the force.
   double equilibrium = 0;
-  /// Linear only: 2U = f·u + λ·v − Σ N ε L: the work of loads and of moved supports (displacements v, reactions λ)
-  /// minus that of the axial forces on the free expansion. From K d = f + K d0 + Cᵀλ, times d − d0; ½f·d where there is
-  /// neither.
+  /// Linear geometry only: 2U + Σ F δ = f·u + λ·v − Σ N ε L. U of the members, F and δ of springs, which follow any
+  /// law: the work of loads and of moved supports (displacements v, reactions λ) minus that of the axial forces on the
+  /// free expansion. From K d + E F = f + K d0 + Cᵀλ, times d − d0; ½f·d = U where there is neither.
   double energy = 0;
 };
 
-/// How a case in nonlinear geometry was solved.
+/// How a case in nonlinear geometry, or with laws that are not linear, was solved.
 struct PathSummary {
   bool converged = true, stable = true;
   int steps = 0, iterations = 0;
@@ -57,15 +66,19 @@ struct PathSummary {
 struct CaseResult {
   std::string name;
   PathSummary path;
-  std::vector<Vector6> displacements;  ///< by node of the description: m, rad
-  std::vector<Vector6> reactions;      ///< by support, [f; m] on the frame; 0 where free or redundant
+  std::vector<Vector6> displacements;  ///< by node of the description, from the frame as assembled: m, rad
+  std::vector<Vector6> reactions;      ///< by support, [f; m] on the frame, rigid and elastic; 0 where free or
+                                       ///< redundant
   std::vector<Vector6> springs;        ///< by spring, [f; m] on its `node`
   std::vector<double> constraints;     ///< by general constraint, λ: the force on a freedom is factor · arm · λ
   std::vector<MemberForces> members;
-  Named<double> energies;  ///< J by section and spring, largest first
+  Named<double> energies;  ///< J by section, and by spring, support ("support A") and end of a member ("beam start")
+                           ///< that have laws; largest first
   double energy = 0;       ///< J
   FrameChecks checks;
-  VectorX u;                         ///< by freedom of FrameResult::structure
+  VectorX u;                         ///< by freedom of FrameResult::structure, from the frame as assembled
+  std::vector<double> slips;         ///< of friction elements after the load, m or rad: of members' ends, supports and
+                                     ///< springs in turn; empty without friction
   std::vector<ElementLoad> loads;    ///< by beam of it
   std::vector<Vector12> end_forces;  ///< by beam of it, local axes; finite: those of the sections at the ends
 };
@@ -77,8 +90,9 @@ struct FrameResult {
   std::vector<CaseResult> cases;
   std::vector<std::string> notes;  ///< redundant constraints by name, idle spins that were held
   EquationSummary equations;       ///< which solver was used, and why; linear only
+  bool linear_laws = true;         ///< whether no law's stiffness depends on its load
   /// Betti: f_i·u_j + λ_i·v_j = f_j·u_i + λ_j·v_i between all cases, with the equivalent thermal forces included in f;
-  /// largest difference, relative. Linear only.
+  /// largest difference, relative. Linear geometry and laws only.
   double reciprocity = 0;
 };
 

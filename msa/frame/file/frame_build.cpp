@@ -8,12 +8,12 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/frame/file/law_springs.h"
 #include "msa/frame/file/member_axes.h"
+#include "msa/frame/structure/coupled_spring.h"
 
 namespace deflect::frame {
 namespace {
-
-constexpr std::array<int, 6> nowhere = {-1, -1, -1, -1, -1, -1};
 
 std::size_t at(const NameIndex& index, const char* what, const std::string& name) {
   const int found = index.find(name);
@@ -42,7 +42,8 @@ class Rigidities {
 
   BeamRigidity operator()(const FrameMember& m) {
     const SectionProperties& s = section(m);
-    const double E = material(m).elastic.E, G = material(m).elastic.shear_modulus(), c = m.bending_factor;
+    const double E = m.factor * material(m).elastic.E, G = m.factor * material(m).elastic.shear_modulus();
+    const double c = m.bending_factor;
     const double none = std::numeric_limits<double>::infinity();
     BeamRigidity r{E * s.A, c * E * s.Iy, c * E * s.Iz, G * s.J, none, none};
     if (m.beam == BeamTheory::timoshenko) r.GAs_y = G * s.As_y, r.GAs_z = G * s.As_z;
@@ -55,34 +56,54 @@ class Rigidities {
   std::map<std::pair<std::size_t, std::size_t>, SectionProperties> known_;
 };
 
+int spring_count(const Model& m) { return static_cast<int>(m.springs.size()); }
+
 std::array<ConnectionFreedom, 6> rigid_where(const Freedoms& rigid) {
   std::array<ConnectionFreedom, 6> out;
   for (std::size_t i = 0; i < 6; ++i) out[i].rigid = rigid[i];
   return out;
 }
 
-/// The node of a member's end: the named one, or one of its own behind the releases.
-int end_node(Model& m, int node, const Freedoms& released, const Matrix3& R_WM, const std::string& name) {
-  if (released == Freedoms{}) return node;
+/// A connection that waits until all nodes are there.
+struct Pending {
+  int a, b;
+  Matrix3 R;
+  std::array<ConnectionFreedom, 6> freedoms;
+  std::string name, place;  // place: empty without laws
+};
+
+/// Which end of which member.
+struct End {
+  const Freedoms& released;
+  const FreedomLaws& laws;
+  bool start;
+  std::string place;
+};
+
+/// The node of a member's end: the named one, or one of its own behind releases and laws.
+int end_node(Model& m, int node, const End& end, const Matrix3& R_WM, const std::string& name, LawSprings& springs,
+             std::vector<Pending>& pending) {
+  if (end.released == Freedoms{} && end.laws.empty()) return node;
   Freedoms rigid{};
-  std::transform(released.begin(), released.end(), rigid.begin(), [](bool free) { return !free; });
-  const Vector3 p = nth(m.nodes, node).position;
-  const int end = m.add_node(name, p);
-  m.connect(node, end, p, R_WM, rigid_where(rigid), name, name);
-  return end;
+  std::transform(end.released.begin(), end.released.end(), rigid.begin(), [](bool free) { return !free; });
+  const int own = m.add_node(name, nth(m.nodes, node).position);
+  const bool turned = !end.start && !end.laws.empty();  // the member is the near side of its laws
+  pending.push_back({turned ? own : node, turned ? node : own, R_WM, springs.freedoms(rigid, end.laws), name,
+                     end.laws.empty() ? "" : end.place});
+  return own;
 }
 
 void add_member(FrameModel& out, const std::string& name, const FrameMember& member, const BeamRigidity& rigidity,
-                const std::vector<double>& fractions) {
+                const std::vector<double>& fractions, LawSprings& springs, std::vector<Pending>& pending) {
   Model& m = out.model;
   const auto a = node_number(out.nodes, member.from), b = node_number(out.nodes, member.to);
   const Vector3 start = nth(m.nodes, a).position, end = nth(m.nodes, b).position;
   const Matrix3 R_WM = member_axes(end - start, member.y_axis);
   constexpr Freedoms hinged{false, false, false, true, true, true};
-  int previous =
-      end_node(m, a, member.truss ? hinged : member.release_from, R_WM, fmt::format("{} at {}", name, member.from));
-  const int last =
-      end_node(m, b, member.truss ? hinged : member.release_to, R_WM, fmt::format("{} at {}", name, member.to));
+  const End at_start{member.truss ? hinged : member.release_from, member.start, true, name + " start"},
+      at_end{member.truss ? hinged : member.release_to, member.end, false, name + " end"};
+  int previous = end_node(m, a, at_start, R_WM, fmt::format("{} at {}", name, member.from), springs, pending);
+  const int last = end_node(m, b, at_end, R_WM, fmt::format("{} at {}", name, member.to), springs, pending);
   for (std::size_t i = 1; i + 1 < fractions.size(); ++i) {
     const int next = m.add_node(fmt::format("{} {:.4g}", name, fractions[i]), start + fractions[i] * (end - start));
     m.add_beam(previous, next, R_WM, rigidity, fmt::format("{} [{}]", name, i), member.section);
@@ -90,6 +111,7 @@ void add_member(FrameModel& out, const std::string& name, const FrameMember& mem
   }
   m.add_beam(previous, last, R_WM, rigidity,
              fractions.size() > 2 ? fmt::format("{} [{}]", name, fractions.size() - 1) : name, member.section);
+  out.misfit.push_back(member.misfit / (end - start).norm());
 }
 
 std::vector<double> equal_parts(int elements) {
@@ -98,33 +120,50 @@ std::vector<double> equal_parts(int elements) {
   return fractions;
 }
 
-void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision& division) {
+void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision& division, LawSprings& springs,
+                 Named<std::pair<int, int>>& elastic_ends) {
   Rigidities rigidity(f);
+  std::vector<Pending> pending;
   for (std::size_t i = 0; i < f.members.size(); ++i) {
     const auto& [name, member] = f.members[i];
     out.first_element.push_back(static_cast<int>(out.model.beams.size()));
-    add_member(out, name, member, rigidity(member), division.empty() ? equal_parts(member.elements) : division[i]);
+    add_member(out, name, member, rigidity(member), division.empty() ? equal_parts(member.elements) : division[i],
+               springs, pending);
     const FrameMaterial& material = rigidity.material(member);
     out.mass_per_length.push_back(material.density.value_or(0) * rigidity.section(member).A);
     out.expansion.push_back(material.expansion.value_or(0));
   }
   out.first_element.push_back(static_cast<int>(out.model.beams.size()));
+  Model& m = out.model;
+  for (const Pending& p : pending) {
+    const int first = spring_count(m);
+    m.connect(p.a, p.b, nth(m.nodes, p.b).position, p.R, p.freedoms, p.name, p.place.empty() ? p.name : p.place);
+    if (!p.place.empty()) elastic_ends.emplace_back(p.place, std::pair{first, spring_count(m)});
+  }
 }
 
-void add_supports(FrameModel& out, const FrameDescription& f) {
-  for (const auto& [name, freedoms] : f.supports) {
+/// What the connection that was made last does to the node of its far side.
+Holding last_holding(const Model& m, std::size_t first_connection, int first_spring) {
+  Holding out;
+  out.first = first_spring;
+  out.last = spring_count(m);
+  out.constraint = m.connections[first_connection].constraint;
+  for (std::size_t c = first_connection; c < m.connections.size(); ++c)
+    for (int i = 0; i < 6; ++i)
+      if (const int s = nth(m.connections[c].spring, i); s >= 0) out.direct.emplace_back(i, s);
+  return out;
+}
+
+void add_supports(FrameModel& out, const FrameDescription& f, LawSprings& springs) {
+  Model& m = out.model;
+  for (const auto& [name, support] : f.supports) {
     const auto node = node_number(out.nodes, name);
-    out.support_constraint.push_back(nowhere);
-    Connection& record = out.model.grounded(node);
-    for (int i = 0; i < 6; ++i) {
-      const auto k = as_size(i);
-      if (!freedoms[k]) continue;
-      record.constraint[k] = out.support_constraint.back()[k] = static_cast<int>(out.model.constraints.size());
-      Constraint c;
-      c.form = {{6 * node + i, 1}};
-      c.name = fmt::format("support {} {}", name, node_freedoms[k]);
-      out.model.constraints.push_back(std::move(c));
-    }
+    const int first = spring_count(m);
+    const std::size_t connection = m.connections.size();
+    const std::string title = fmt::format("support {}", name);
+    m.connect(-1, node, nth(m.nodes, node).position, Matrix3::Identity(), springs.freedoms(support, support.laws),
+              title, title, node_freedoms);
+    out.supports.push_back(last_holding(m, connection, first));
   }
 }
 
@@ -150,28 +189,35 @@ void add_constraints(FrameModel& out, const FrameDescription& f) {
   }
 }
 
-void add_springs(FrameModel& out, const FrameDescription& f) {
+void add_springs(FrameModel& out, const FrameDescription& f, LawSprings& springs) {
   Model& m = out.model;
   for (const auto& [name, spring] : f.springs) {
     const auto node = node_number(out.nodes, spring.node);
+    const int other = spring.to.empty() ? -1 : node_number(out.nodes, spring.to);
     const Vector3 p = nth(m.nodes, node).position;
-    std::array<ConnectionFreedom, 6> laws = rigid_where({});
-    out.spring.push_back(nowhere);
-    auto next = static_cast<int>(m.springs.size());
-    Connection* record = spring.to.empty() ? &m.grounded(node) : nullptr;
-    for (std::size_t i = 0; i < 6; ++i) {
-      if (!spring.stiffness[i]) continue;
-      const LinearSpring law{*spring.stiffness[i]};
-      laws[i].laws = {law};
-      out.spring.back()[i] = next++;
-      if (!record) continue;
-      record->spring[i] = out.spring.back()[i];
-      m.springs.push_back(
-          {{{6 * node + static_cast<int>(i), 1}}, law, fmt::format("{} {}", name, node_freedoms[i]), name});
+    const int first = spring_count(m);
+    const std::size_t connection = m.connections.size();
+    if (spring.coupled) {
+      connect_coupled(m, other, node, p, *spring.coupled, name, name);
+    } else {
+      std::array<ConnectionFreedom, 6> freedoms = springs.freedoms({}, spring.laws);
+      for (std::size_t i = 0; i < 6; ++i)
+        if (spring.stiffness[i]) freedoms[i].laws = {LinearSpring{*spring.stiffness[i]}};
+      m.connect(other, node, p, Matrix3::Identity(), freedoms, name, name,
+                spring.to.empty() ? node_freedoms : connection_freedoms);
     }
-    if (!spring.to.empty())
-      m.connect(node_number(out.nodes, spring.to), node, p, Matrix3::Identity(), laws, name, name);
+    out.springs.push_back(last_holding(m, connection, first));
   }
+}
+
+void list_elastic(FrameModel& out, const FrameDescription& f, const Named<std::pair<int, int>>& ends) {
+  for (std::size_t i = 0; i < f.springs.size(); ++i)
+    out.elastic.emplace_back(f.springs[i].first, std::pair{out.springs[i].first, out.springs[i].last});
+  for (std::size_t i = 0; i < f.supports.size(); ++i)
+    if (out.supports[i].first != out.supports[i].last)
+      out.elastic.emplace_back("support " + f.supports[i].first,
+                               std::pair{out.supports[i].first, out.supports[i].last});
+  out.elastic.insert(out.elastic.end(), ends.begin(), ends.end());
 }
 
 bool out_of_plane(Plane plane, int freedom) {
@@ -210,40 +256,58 @@ FrameModel build_frame(const FrameDescription& f, const FrameDivision& division)
   out.nodes = NameIndex(f.nodes);
   out.members = NameIndex(f.members);
   for (const auto& [name, position] : f.nodes) out.model.add_node(name, position);
-  add_members(out, f, division);
-  add_supports(out, f);
+  LawSprings springs(f);
+  Named<std::pair<int, int>> elastic_ends;
+  add_members(out, f, division, springs, elastic_ends);
+  add_supports(out, f, springs);
   add_links(out, f);
   add_constraints(out, f);
-  add_springs(out, f);
+  add_springs(out, f, springs);
+  list_elastic(out, f, elastic_ends);
   hold_plane(out.model, f.plane);
   return out;
 }
+
+bool FrameModel::prestressed() const {
+  return std::any_of(misfit.begin(), misfit.end(), [](double strain) { return strain != 0; });
+}
+
+namespace {
+
+/// Loads and strains of the elements.
+std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameModel& m, const LoadCase& c) {
+  std::vector<ElementLoad> out(m.model.beams.size());
+  const auto elements_of = [&](std::size_t member, const auto& change) {
+    for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e)
+      change(nth(out, e), nth(m.model.beams, e));
+  };
+  for (const auto& [name, load] : c.members)
+    elements_of(at(m.members, "member", name), [&, &load = load](ElementLoad& e, const Beam& beam) {
+      e.q_M += c.factor * (load.member_axes ? load.q : Vector3(beam.R_WM.transpose() * load.q));
+    });
+  for (const auto& [name, kelvin] : c.temperature) {
+    const std::size_t member = at(m.members, "member", name);
+    elements_of(member, [&, strain = c.factor * m.expansion[member] * kelvin](ElementLoad& e, const Beam&) {
+      e.strain += strain;
+    });
+  }
+  if (!c.gravity.isZero(0))
+    for (std::size_t member = 0; member < f.members.size(); ++member)
+      elements_of(member, [&](ElementLoad& e, const Beam& beam) {
+        e.q_M += c.factor * m.mass_per_length[member] * (beam.R_WM.transpose() * c.gravity);
+      });
+  for (std::size_t member = 0; member < f.members.size(); ++member)
+    if (m.misfit[member] != 0) elements_of(member, [&](ElementLoad& e, const Beam&) { e.strain += m.misfit[member]; });
+  return out;
+}
+
+}  // namespace
 
 CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::string& case_name, const LoadCase& c) {
   CaseLoad out;
   out.forces = out.thermal = VectorX::Zero(m.model.dofs());
   out.values = VectorX::Zero(std::ssize(m.model.constraints));
-  out.elements.resize(m.model.beams.size());
-
-  const auto elements_of = [&](std::size_t member, const auto& change) {
-    for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e)
-      change(nth(out.elements, e), nth(m.model.beams, e));
-  };
-  for (const auto& [name, load] : c.members)
-    elements_of(at(m.members, "member", name), [&load = load](ElementLoad& e, const Beam& beam) {
-      e.q_M += load.member_axes ? load.q : Vector3(beam.R_WM.transpose() * load.q);
-    });
-  for (const auto& [name, kelvin] : c.temperature) {
-    const std::size_t member = at(m.members, "member", name);
-    elements_of(member,
-                [&, strain = m.expansion[member] * kelvin](ElementLoad& e, const Beam&) { e.strain += strain; });
-  }
-  if (!c.gravity.isZero(0))
-    for (std::size_t member = 0; member < f.members.size(); ++member)
-      elements_of(member, [&](ElementLoad& e, const Beam& beam) {
-        e.q_M += m.mass_per_length[member] * (beam.R_WM.transpose() * c.gravity);
-      });
-
+  out.elements = element_loads(f, m, c);
   const auto add = [](VectorX& to, const Beam& beam, const Vector12& local) {
     for (int i = 0; i < 4; ++i)
       to.segment<3>(6 * (i < 2 ? beam.a : beam.b) + 3 * (i % 2)) += beam.R_WM * local.segment<3>(3 * i);
@@ -255,18 +319,19 @@ CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::stri
     if (heat.strain != 0 || !out.elements[e].q_M.isZero(0))
       add(out.forces, beam, equivalent_forces(beam.rigidity, beam.length, out.elements[e]));
   }
-  for (const auto& [name, wrench] : c.nodes) out.forces.segment<6>(6 * as_index(at(m.nodes, "node", name))) += wrench;
+  for (const auto& [name, wrench] : c.nodes)
+    out.forces.segment<6>(6 * as_index(at(m.nodes, "node", name))) += c.factor * wrench;
   refuse_across_plane(f, m, case_name, out.forces);
 
   const NameIndex supports(f.supports);
   for (const auto& [name, values] : c.displacements) {
-    const auto& constraints = m.support_constraint[at(supports, "support at node", name)];
+    const auto& constraints = m.supports[at(supports, "support at node", name)].constraint;
     for (std::size_t i = 0; i < 6; ++i)
       if (values[i]) {
         if (constraints[i] < 0)
           throw InputError(fmt::format("node '{}' is not supported in {}: its displacement cannot be prescribed", name,
                                        node_freedoms[i]));
-        out.values(constraints[i]) = *values[i];
+        out.values(constraints[i]) = c.factor * *values[i];
       }
   }
   return out;

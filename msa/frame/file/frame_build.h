@@ -16,19 +16,30 @@ namespace deflect::frame {
 /// elements as in the description.
 using FrameDivision = std::vector<std::vector<double>>;
 
-/// Node i of the model is node i of the description; inner nodes of members and ends with releases follow. Energy
-/// groups: members by section, springs by their name.
+/// What holds a node: constraints by freedom (−1: none), and springs [first, last) of the model. Of these the `direct`
+/// ones act on the node, each along a freedom; the others are between them, in series.
+struct Holding {
+  std::array<int, 6> constraint = {-1, -1, -1, -1, -1, -1};
+  int first = 0, last = 0;
+  std::vector<std::pair<int, int>> direct;  ///< freedom, index of the spring
+};
+
+/// Node i of the model is node i of the description; inner nodes of members and ends with releases or laws follow.
 struct FrameModel {
   Model model;
   NameIndex nodes, members;
-  std::vector<int> first_element;                      ///< by member, and one past the last: index of its first beam in
-                                                       ///< the model
-  std::vector<double> mass_per_length;                 ///< by member, kg/m; 0 without density
-  std::vector<double> expansion;                       ///< by member, 1/K; 0 where not given
-  std::vector<std::array<int, 6>> support_constraint;  ///< by support and freedom, −1 where free
-  std::vector<std::array<int, 6>> spring;              ///< by spring and freedom, −1 without stiffness
-  std::vector<int> constraint;                         ///< by general constraint
-  std::vector<std::pair<int, int>> arms;               ///< rigid arms, for pictures
+  std::vector<int> first_element;       ///< by member, and one past the last: index of its first beam in
+                                        ///< the model
+  std::vector<double> mass_per_length;  ///< by member, kg/m; 0 without density
+  std::vector<double> expansion;        ///< by member, 1/K; 0 where not given
+  std::vector<double> misfit;           ///< by member, free strain
+  std::vector<Holding> supports, springs;
+  Named<std::pair<int, int>> elastic;     ///< springs [first, last) by their place: springs, then supports
+                                          ///< and ends of members that have laws
+  std::vector<int> constraint;            ///< by general constraint
+  std::vector<std::pair<int, int>> arms;  ///< rigid arms, for pictures
+
+  bool prestressed() const;  ///< whether a member has a misfit
 };
 
 /// Throws InputError for a name that does not resolve (a file's reader has checked them).
@@ -36,13 +47,13 @@ FrameModel build_frame(const FrameDescription&, const FrameDivision& = {});
 
 struct CaseLoad {
   VectorX forces;                     ///< by freedom, line loads and temperature included
-  VectorX thermal;                    ///< the part of it by temperature
+  VectorX thermal;                    ///< the part of it by temperature and misfits
   VectorX values;                     ///< by constraint: displacements of supports
   std::vector<ElementLoad> elements;  ///< by beam
 };
 
-/// Throws InputError with the case where it has a load out of the plane of a plane frame, or displaces an unsupported
-/// freedom.
+/// With the misfits of the members, which are there in every case. Throws InputError with the case where it has a load
+/// out of the plane of a plane frame, or displaces a freedom that no support holds rigidly.
 CaseLoad load_of(const FrameDescription&, const FrameModel&, const std::string& name, const LoadCase&);
 
 }  // namespace deflect::frame

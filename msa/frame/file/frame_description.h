@@ -13,15 +13,16 @@
 
 #include "msa/base/geometry.h"
 #include "msa/base/spatial.h"
+#include "msa/frame/file/freedom_laws.h"
 #include "msa/mechanism/description.h"
 
 namespace deflect::frame {
 
-inline constexpr std::array<const char*, 6> node_freedoms = {"ux", "uy", "uz", "rx", "ry", "rz"};    ///< base axes
-inline constexpr std::array<const char*, 6> member_freedoms = {"tx", "ty", "tz", "rx", "ry", "rz"};  ///< member axes
+using FreedomNames = std::array<const char*, 6>;
+inline constexpr FreedomNames node_freedoms = {"ux", "uy", "uz", "rx", "ry", "rz"};    ///< base axes
+inline constexpr FreedomNames member_freedoms = {"tx", "ty", "tz", "rx", "ry", "rz"};  ///< member axes
 inline constexpr std::array<const char*, 6> wrench_names = {"fx", "fy", "fz", "mx", "my", "mz"};
 
-using Freedoms = std::array<bool, 6>;
 using FreedomValues = std::array<std::optional<double>, 6>;
 
 /// E and G of a frame's material are independent: members need no isotropy.
@@ -31,23 +32,49 @@ struct FrameMaterial {
   std::optional<double> expansion;  ///< 1/K, for temperature
 };
 
-/// bending_factor multiplies EIy and EIz. A released freedom of an end is not connected to the node. A truss member
-/// connects no rotation at either end.
+/// bending_factor multiplies EIy and EIz, factor E and G: all stiffnesses of this member. A released freedom of an end
+/// is not connected to the node; one with laws is connected by them, whether released or not. A truss member connects
+/// no rotation at either end. misfit: how much longer the member is, unstrained, than the distance of its nodes.
 struct FrameMember {
   std::string from, to, section, material;
   BeamTheory beam = BeamTheory::euler_bernoulli;
   Vector3 y_axis = Vector3::Zero();  ///< zero: the rule above
   Freedoms release_from{}, release_to{};
   bool truss = false;
-  double bending_factor = 1;
-  int elements = 1;  ///< number of equal elements in a row
+  double bending_factor = 1, factor = 1;
+  double misfit = 0;  ///< m
+  int elements = 1;   ///< number of equal elements in a row
+  /// In member axes. Near and far side of the laws: at the start the node and the member, at the end the member and the
+  /// node, so that tension pulls at both.
+  FreedomLaws start, end;
+};
+
+/// What holds a node against the ground: rigidly in the freedoms of the list, unless they have laws. The ground is the
+/// near side of the laws, the node the far side: a force that pushes the node down in uz is negative, and so is its
+/// displacement. A pad that only pushes upwards is one_sided with its compliance as `push` (rigid where absent) and a
+/// large one as `pull`.
+struct FrameSupport : Freedoms {
+  FrameSupport() : Freedoms{} {}
+  FrameSupport(const Freedoms& held) : Freedoms(held) {}  // NOLINT: freedoms that are held are a support
+  FreedomLaws laws;
+
+  bool rigid(std::size_t i) const { return (*this)[i] && !laws.has(i); }
+  Freedoms acting() const { return laws.or_in(*this); }  ///< rigid or elastic
 };
 
 /// Between the body of `node` and the ground, or the body of the node `to`. It is located at `node`; where `to` is
-/// elsewhere, a rigid arm connects them. N/m, Nm/rad, base axes.
+/// elsewhere, a rigid arm connects them. N/m, Nm/rad, base axes. `to` is the near side of its laws, `node` the far one.
 struct FrameSpring {
-  std::string node, to;  ///< to: "" for the ground
-  FreedomValues stiffness;
+  std::string node, to;                 ///< to: "" for the ground
+  FreedomValues stiffness;              ///< where a freedom has one linear law in series
+  FreedomLaws laws = {};                ///< of the others
+  std::optional<Matrix6> coupled = {};  ///< 6×6 of [δ; θ], instead of stiffness and laws
+
+  Freedoms acting() const {
+    Freedoms out = laws.or_in({});
+    for (std::size_t i = 0; i < 6; ++i) out[i] = out[i] || stiffness[i] || coupled;
+    return out;
+  }
 };
 
 /// `nodes` follow the body of `master` in these freedoms, lever arms included.
@@ -75,6 +102,7 @@ struct LineLoad {
 };
 
 struct LoadCase {
+  double factor = 1;                   ///< true load over the load of the case: multiplies all that follows
   Named<Vector6> nodes;                ///< wrench [f; m] at a node, base axes
   Named<LineLoad> members;             ///< by member
   Named<double> temperature;           ///< K above the unstrained state, by member
@@ -120,7 +148,7 @@ struct FrameDescription {
   Named<Section> sections;
   Named<Vector3> nodes;  ///< m
   Named<FrameMember> members;
-  Named<Freedoms> supports;  ///< fixed freedoms by node
+  Named<FrameSupport> supports;  ///< by node
   Named<FrameSpring> springs;
   Named<RigidLink> rigid_links;
   Named<FrameConstraint> constraints;

@@ -12,8 +12,6 @@
 namespace deflect::frame {
 namespace {
 
-using FreedomNames = std::array<const char*, 6>;
-
 Quantity required(Dimension d, Range range = positive) { return {d, range, std::nullopt}; }
 
 constexpr Freedoms all_freedoms{true, true, true, true, true, true},
@@ -77,6 +75,24 @@ void describe_theory(FieldVisitor& v, FrameMember& m, const Section* section, co
                         m.material, nu));
 }
 
+/// How a member is connected to its nodes.
+void describe_connection(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
+  describe_freedoms(v, "release_from", m.release_from, member_freedoms, Need::optional, false,
+                    "freedoms that are not passed on at 'from', member axes");
+  describe_freedoms(v, "release_to", m.release_to, member_freedoms, Need::optional, false,
+                    "freedoms that are not passed on at 'to', member axes");
+  std::string truss = m.truss ? "true" : "false";
+  v.word("truss", truss, {"truth value", {"false", "true"}, "false"}, "hinged at both ends: passes on no rotation");
+  m.truss = truss == "true";
+  v.require(!m.truss || (m.release_from == Freedoms{} && m.release_to == Freedoms{}), "truss",
+            "releases the rotations of both ends: leave release_from and release_to away");
+  constexpr Freedoms hinged{false, false, false, true, true, true};
+  describe_end(v, "start", m.start, m.truss ? hinged : m.release_from, names,
+               "how its start yields against the node 'from', member axes");
+  describe_end(v, "end", m.end, m.truss ? hinged : m.release_to, names,
+               "how its end yields against the node 'to', member axes");
+}
+
 void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
   v.text("from", m.from, Need::required, "node where the member begins");
   v.text("to", m.to, Need::required, "node where the member ends");
@@ -90,16 +106,10 @@ void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
   describe_theory(v, m, section < 0 ? nullptr : &nth(names.frame.sections, section).second,
                   material < 0 ? nullptr : &nth(names.frame.materials, material).second);
   v.vector3("y_axis", m.y_axis, Dimension::none, "local y lies in the plane of the member and this vector");
-  describe_freedoms(v, "release_from", m.release_from, member_freedoms, Need::optional, false,
-                    "freedoms that are not passed on at 'from', member axes");
-  describe_freedoms(v, "release_to", m.release_to, member_freedoms, Need::optional, false,
-                    "freedoms that are not passed on at 'to', member axes");
-  std::string truss = m.truss ? "true" : "false";
-  v.word("truss", truss, {"truth value", {"false", "true"}, "false"}, "hinged at both ends: passes on no rotation");
-  m.truss = truss == "true";
-  v.require(!m.truss || (m.release_from == Freedoms{} && m.release_to == Freedoms{}), "truss",
-            "releases the rotations of both ends: leave release_from and release_to away");
+  describe_connection(v, m, names);
   v.quantity("bending_factor", m.bending_factor, {Dimension::ratio, positive, 1}, "multiplies the bending stiffness");
+  v.quantity("factor", m.factor, {Dimension::ratio, positive, 1}, "multiplies all stiffnesses of the member");
+  v.quantity("misfit", m.misfit, {Dimension::length, {}, 0}, "how much too long the member is, without force");
   describe_count(v, "elements", m.elements, "elements of equal length");
   if (a < 0 || b < 0) return;
 
@@ -110,20 +120,9 @@ void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
               fmt::format("'{}' and '{}' are at one place: a member has a length; join nodes with rigid_links or "
                           "springs",
                           m.from, m.to));
+  v.require(!length || std::abs(m.misfit) < along.norm(), "misfit", "must be smaller than the member's length");
   const bool parallel = along.cross(m.y_axis).norm() <= 1e-6 * along.norm() * m.y_axis.norm();
   v.require(m.y_axis.isZero(0) || !length || !parallel, "y_axis", "is parallel to the member: name another direction");
-}
-
-void describe_spring(FieldVisitor& v, FrameSpring& s, const FrameNames& names) {
-  v.text("node", s.node, Need::required, "node where the spring is");
-  v.text("to", s.to, Need::optional, "the other node, the ground where absent");
-  require_known(v, "node", "node", s.node, names.nodes, names.frame.nodes);
-  if (!s.to.empty()) require_known(v, "to", "node", s.to, names.nodes, names.frame.nodes);
-  v.require(s.node != s.to, "to", "must be another node than 'node'");
-  describe_freedom_values(v, s.stiffness, Dimension::stiffness, Dimension::rotational_stiffness, positive,
-                          "stiffness along or about a base axis");
-  v.require(std::any_of(s.stiffness.begin(), s.stiffness.end(), [](const auto& k) { return k.has_value(); }), "",
-            "has no stiffness: write for example 'ux: 500 N/mm'");
 }
 
 void describe_link(FieldVisitor& v, RigidLink& link, const FrameNames& names) {
@@ -178,6 +177,10 @@ void describe_constraint(FieldVisitor& v, FrameConstraint& c, const FrameNames& 
 
 }  // namespace
 
+void describe_held(FieldVisitor& v, const char* key, Freedoms& freedoms) {
+  describe_freedoms(v, key, freedoms, node_freedoms, Need::optional, true, "fixed freedoms, or 'clamped', or 'pinned'");
+}
+
 std::string unknown_name(const char* what, const std::string& name, const std::vector<std::string>& known) {
   const std::string hint = nearest(name, known);
   std::string list = fmt::format("{} are known", known.size());
@@ -192,7 +195,7 @@ void describe_freedom_values(FieldVisitor& v, FreedomValues& values, Dimension t
     v.quantity_if_given(node_freedoms[i], values[i], required(i < 3 ? translation : rotation, range), about);
 }
 
-void describe(FieldVisitor& v, FrameDescription& f) {
+void describe(FieldVisitor& v, FrameDescription& f, bool absent_ends) {
   v.keys({"name", "about", "source", "geometry", "load_steps", "plane", "materials", "sections", "nodes", "members",
           "supports", "springs", "rigid_links", "constraints", "loads", "sensors", "rig", "tolerances"});
   describe_name(v, f.name, "name of the frame");
@@ -202,11 +205,14 @@ void describe(FieldVisitor& v, FrameDescription& f) {
   std::string plane = nth(plane_names, f.plane);
   v.word("plane", plane, {"plane", {"xy", "xz", "yz", "none"}, "none"}, "the frame moves in this plane only");
   f.plane = static_cast<Plane>(std::find(plane_names.begin(), plane_names.end(), plane) - plane_names.begin());
-  FrameNames names{f, {}, {}, {}, {}, {}, 0};
+  FrameNames names{f, {}, {}, {}, {}, {}, 0, absent_ends};
 
   FrameEntries<FrameMaterial> materials(f.materials, [](auto& w, auto&, auto& m) { describe_material(w, m); });
   v.entries("materials", materials, Need::optional, "materials by name");
   names.materials = NameIndex(f.materials);
+  Named<Material> elastic;  // for laws
+  for (const auto& [name, material] : f.materials) elastic.emplace_back(name, material.elastic);
+  v.surroundings.materials = &elastic;
   FrameEntries<Section> sections(f.sections, [](auto& w, auto&, auto& s) { deflect::describe(w, s); });
   v.entries("sections", sections, Need::optional, "cross-sections by name");
   names.sections = NameIndex(f.sections);
@@ -222,16 +228,13 @@ void describe(FieldVisitor& v, FrameDescription& f) {
   FrameEntries<FrameMember> members(f.members, [&](auto& w, auto&, auto& m) { describe_member(w, m, names); });
   v.entries("members", members, Need::optional, "members by name");
   names.members = NameIndex(f.members);
-  const auto support = [&](FieldVisitor& w, const std::string& node, Freedoms& s) {
-    require_known(w, "", "node", node, names.nodes, f.nodes);
-    describe_freedoms(w, "", s, node_freedoms, Need::required, true, "fixed freedoms");
-  };
-  FrameEntries<Freedoms> supports(f.supports, support, true);
-  v.entries("supports", supports, Need::optional, "fixed freedoms by node");
+  FrameEntries<FrameSupport> supports(f.supports, [&](auto& w, auto& node, auto& s) { describe(w, node, s, names); });
+  v.entries("supports", supports, Need::optional, "what holds nodes against the ground, by node");
   names.supports = NameIndex(f.supports);
 
-  FrameEntries<FrameSpring> springs(f.springs, [&](auto& w, auto&, auto& s) { describe_spring(w, s, names); });
+  FrameEntries<FrameSpring> springs(f.springs, [&](auto& w, auto&, auto& s) { describe(w, s, names); });
   v.entries("springs", springs, Need::optional, "springs by name");
+  v.surroundings.materials = nullptr;
   FrameEntries<RigidLink> links(f.rigid_links, [&](auto& w, auto&, auto& l) { describe_link(w, l, names); });
   v.entries("rigid_links", links, Need::optional, "nodes that move with another, by name");
   FrameEntries<FrameConstraint> constraints(f.constraints,

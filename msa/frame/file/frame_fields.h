@@ -11,16 +11,25 @@
 
 namespace deflect::frame {
 
-void describe(FieldVisitor&, FrameDescription&);
+/// `absent_ends`: a writer also visits the laws of members' ends where there are none, as edits of them need.
+void describe(FieldVisitor&, FrameDescription&, bool absent_ends = true);
 
 /// Names that later parts of the file refer to.
 struct FrameNames {
   const FrameDescription& frame;
   NameIndex nodes, members, materials, sections, supports;
   double extent = 0;  ///< diagonal of the nodes' bounding box, m
+  bool absent_ends = true;
 };
 
 void describe(FieldVisitor&, LoadCase&, const FrameNames&);
+void describe(FieldVisitor&, const std::string& node, FrameSupport&, const FrameNames&);
+void describe(FieldVisitor&, FrameSpring&, const FrameNames&);
+/// The freedoms that a support holds: a word or a list.
+void describe_held(FieldVisitor&, const char* key, Freedoms&);
+/// The laws of one end of a member, in the field `key`.
+void describe_end(FieldVisitor&, const char* key, FreedomLaws&, const Freedoms& released, const FrameNames&,
+                  const char* about);
 
 /// Sensors and how loads are recorded.
 void describe_rig(FieldVisitor&, FrameDescription&, const FrameNames&);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "msa/base/outcome.h"
@@ -10,6 +13,7 @@
 #include "msa/fields/file_kind.h"
 #include "msa/fields/tree_edit.h"
 #include "msa/frame/file/frame_fields.h"
+#include "msa/frame/file/short_forms.h"
 #include "msa/frame/file/frame_tolerances.h"
 
 namespace deflect::frame {
@@ -29,7 +33,8 @@ void check_tolerances(const FrameDescription& f, const YamlNode& tree, const std
   }
 }
 
-DependentFrame frame_of(const YamlNode& tree, const std::string& origin) {
+DependentFrame frame_of(YamlNode file, const std::string& origin) {
+  const YamlNode tree = spelled_out(std::move(file));
   if (tree.ours) throw InputError(origin + ": !ours marks single values, not a whole file");
   FrameDescription f;
   FieldReader reader(origin);
@@ -39,24 +44,26 @@ DependentFrame frame_of(const YamlNode& tree, const std::string& origin) {
   return {std::move(f), reader.depends()};
 }
 
-}  // namespace
-
-YamlNode tree_of(const FrameDescription& f) {
+YamlNode tree_of(const FrameDescription& f, bool absent_ends) {
   FrameDescription copy = f;
   FieldWriter writer(f.ours);
-  describe(writer, copy);
+  describe(writer, copy, absent_ends);
   return writer.tree();
 }
 
+}  // namespace
+
+YamlNode tree_of(const FrameDescription& f) { return tree_of(f, true); }
+
 FrameDescription parse_frame(std::string_view yaml, const std::string& origin) {
-  const YamlNode tree = parse_yaml(yaml, origin);
+  YamlNode tree = parse_yaml(yaml, origin);
   require_kind(tree, FileKind::frame, origin);
-  return frame_of(tree, origin).frame;
+  return frame_of(std::move(tree), origin).frame;
 }
 
 FrameDescription read_frame(const std::filesystem::path& path) { return parse_frame(read_text(path), path.string()); }
 
-std::string write_frame(const FrameDescription& f) { return block_yaml(stripped(tree_of(f))); }
+std::string write_frame(const FrameDescription& f) { return block_yaml(shortened(stripped(tree_of(f, false)))); }
 
 FrameDescription edited(const FrameDescription& f, const std::vector<Edit>& edits) {
   std::vector<TreeEdit> all;
@@ -66,9 +73,14 @@ FrameDescription edited(const FrameDescription& f, const std::vector<Edit>& edit
 
 DependentFrame edited_in_turn(DependentFrame before, const std::vector<TreeEdit>& edits) {
   if (edits.empty()) return before;
-  YamlNode tree = tree_of(before.frame);
+  // The laws of all ends of a large frame are many: only edits of members need them.
+  const bool of_members = std::any_of(edits.begin(), edits.end(), [](const TreeEdit& edit) {
+    const std::vector<std::string> at = segments_of(edit.path);
+    return at.size() > 2 && at[0] == "members" && (at[2] == "start" || at[2] == "end" || at[2] == "*");
+  });
+  YamlNode tree = tree_of(before.frame, of_members || !before.depends.empty());
   attach(tree, before.depends);
-  for (const TreeEdit& edit : edits) apply(tree, edit, origin_of(edit));
+  for (const TreeEdit& edit : edits) apply(tree, spelled_out(edit), origin_of(edit));
   return frame_of(stripped(tree), origin_of(edits.back()));
 }
 

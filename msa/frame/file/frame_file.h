@@ -7,20 +7,31 @@
 //   sections: {tube: {shape: tube, outer_diameter: 60 mm, inner_diameter: 52 mm}}
 //   nodes: {A: [0 m, 0 m, 0 m], B: [0 m, 0 m, 3 m], C: [4 m, 0 m, 3 m]}
 //   members:
-//     post: {from: A, to: B, section: tube, material: steel}
+//     post: {from: A, to: B, section: tube, material: steel, factor: 0.95, misfit: 0.2 mm,
+//            start: {ry: {law: linear, stiffness: 200 kNm/rad}, beside: {ry: {law: friction, moment: 5 Nm,
+//                                                                              stiffness: 100 kNm/rad}}}}
 //     beam: {from: B, to: C, section: tube, material: steel, beam: timoshenko, y_axis: [0, 1, 0],
-//            release_to: [ry, rz], bending_factor: 0.9, elements: 8}
-//   supports: {A: clamped, C: [ux, uy, uz, rx]}
-//   springs: {bed: {node: C, to: B, uz: 5 N/mm, ry: 2 Nm/rad}}
+//            release_to: [ry, rz], bending_factor: 0.9, elements: 8, end: {tx: {law: clearance, gap: 0.1 mm}}}
+//   supports:
+//     A: clamped
+//     C: {holds: [ux, uy, rx], uz: [{law: clearance, gap: 0.2 mm}, {law: linear, stiffness: 5 kN/mm}],
+//         beside: {uz: {law: friction, force: 100 N, stiffness: 10 kN/mm}}}
+//   springs:
+//     bed: {node: C, to: B, uz: 5 N/mm, ry: {law: hardening, stiffness: 2 Nm/rad, reference: 0.1 rad},
+//           beside: {uz: {law: power, deflection: 0.1 mm, force: 1 N, exponent: 0.7}}}
+//     block: {node: B, stiffness: {units: N-mm, rows: [[900, 0, 0, 0, 0, 0], [0, 900, 0, 0, 0, 0], [0, 0, 900, 0, 0,
+//     0],
+//             [0, 0, 0, 1e6, 0, 0], [0, 0, 0, 0, 1e6, 2e5], [0, 0, 0, 0, 2e5, 1e6]]}}
 //   rigid_links: {plate: {master: B, nodes: [C], freedoms: [ux, uy, rz]}}
 //   constraints: {same: {terms: [{node: B, freedom: ux}, {node: C, freedom: ry, factor: -1, arm: 2 m}]}}
 //   loads:
 //     case 1:
+//       factor: 1.02
 //       nodes: {B: {fx: 1 kN, my: 20 Nm}}
 //       members: {beam: {qz: -2 N/mm, axes: member}}
 //       temperature: {beam: 30 K}
 //       gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]
-//       displacements: {C: {uz: -1 mm}}
+//       displacements: {C: {ux: -1 mm}}
 //   sensors:
 //     lvdt: {node: B, direction: ux, sigma: 0.01 mm, zero: free, gain: 1 ± 0.5 %}
 //     cell: {member: beam, force: axial, at: 0.5, sigma: 2 N}
@@ -29,9 +40,10 @@
 //   rig: {load_cell: {gain: 1}, trusted: [load]}
 //   tolerances: {modulus: 1 %, load: 0.5 %, node.position: 1 mm, member.bending_factor: 5 %}
 //
-// A material has nu or G; a section any shape of a device file; a support `clamped`, `pinned` (ux uy uz) or a list; a
-// spring without `to` is connected to the ground; a link without `freedoms` has all six. The fields are explained in
-// frame_description.h.
+// A material has nu or G; a section any shape of a device file; a support `clamped`, `pinned` (ux uy uz), a list, or a
+// map with what it `holds` and laws; a spring without `to` is connected to the ground; a link without `freedoms` has
+// all six. Laws are those of device files, one or a list in series; at springs also a stiffness alone. `beside` has
+// laws side by side with what is elastic or free. The fields are explained in frame_description.h.
 #pragma once
 
 #include <filesystem>
@@ -73,8 +85,10 @@ DependentFrame edited_in_turn(DependentFrame, const std::vector<TreeEdit>&);
 /// The whole description as a tree, implied values included.
 YamlNode tree_of(const FrameDescription&);
 
-/// A copy with the edits made in order, checked like a file. Throws InputError with the edit, what does not fit, and
-/// the nearest valid name.
+/// A copy with the edits made in order, checked like a file. Every place has its laws by freedom whether the file names
+/// it or not: `supports.B.uz` (where B is `clamped`, too), `supports.B.beside.ux`, `members.beam.start.ry`, and
+/// `springs.bed.uz.stiffness` where the file has a stiffness alone. Throws InputError with the edit, what does not fit,
+/// and the nearest valid name.
 FrameDescription edited(const FrameDescription&, const std::vector<Edit>&);
 
 }  // namespace deflect::frame

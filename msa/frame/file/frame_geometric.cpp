@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "msa/base/index.h"
 #include "msa/frame/deformed/geometric_solver.h"
+#include "msa/frame/elements/finite_rotation.h"
 #include "msa/frame/file/frame_case.h"
 
 namespace deflect::frame {
@@ -53,22 +55,22 @@ Vector6 on_node(const LinearForm& form, double along, int node) {
   return wrench;
 }
 
+/// What a support or spring does to the node.
+Vector6 on_node(const Holding& holding, const GeometricState& state, int node) {
+  Vector6 wrench = Vector6::Zero();
+  for (const int k : holding.constraint)
+    if (k >= 0) wrench += on_node(nth(state.forms, k), state.constraint_forces(k), node);
+  for (const auto& [freedom, spring] : holding.direct)
+    wrench += on_node(nth(state.spring_forms, spring), -state.spring_forces(spring), node);
+  return wrench;
+}
+
 void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& m, const GeometricState& state) {
-  for (std::size_t i = 0; i < f.supports.size(); ++i) {
-    r.reactions.push_back(Vector6::Zero());
-    for (const int k : m.support_constraint[i])
-      if (k >= 0)
-        r.reactions.back() +=
-            on_node(nth(state.forms, k), state.constraint_forces(k), m.nodes.find(f.supports[i].first));
-  }
+  for (std::size_t i = 0; i < f.supports.size(); ++i)
+    r.reactions.push_back(on_node(m.supports[i], state, m.nodes.find(f.supports[i].first)));
   for (const int k : m.constraint) r.constraints.push_back(state.constraint_forces(k));
-  for (std::size_t i = 0; i < f.springs.size(); ++i) {
-    r.springs.push_back(Vector6::Zero());
-    for (const int s : m.spring[i])
-      if (s >= 0)
-        r.springs.back() +=
-            on_node(nth(state.spring_forms, s), -state.spring_forces(s), m.nodes.find(f.springs[i].second.node));
-  }
+  for (std::size_t i = 0; i < f.springs.size(); ++i)
+    r.springs.push_back(on_node(m.springs[i], state, m.nodes.find(f.springs[i].second.node)));
 }
 
 /// Resultant of loads, constraints and springs, relative; its moment about the first node, in the deformed shape, where
@@ -100,9 +102,49 @@ double equilibrium(const FrameModel& m, const GeometricState& state, const Vecto
   return state.geometry == Geometry::finite ? std::max(of_forces, ratio(moment.norm(), moments)) : of_forces;
 }
 
+VectorX stored_energies(const Model& m, const GeometricState& state) {
+  VectorX out(std::ssize(m.springs));
+  for (std::size_t i = 0; i < m.springs.size(); ++i)
+    out(as_index(i)) = stored_energy(state.law(m, i), state.elongations(as_index(i)));
+  return out;
+}
+
+/// The motion of the nodes from one state to another; rotation vectors are those of the turn between them.
+VectorX from(const GeometricState& before, const GeometricState& after, std::size_t nodes) {
+  VectorX u = after.u - before.u;
+  for (std::size_t i = 0; i < nodes && after.geometry == Geometry::finite; ++i) {
+    const auto at = as_index(6 * i + 3);
+    u.segment<3>(at) = rotation_vector(
+        (rotation_by(after.u.segment<3>(at)) * rotation_by(before.u.segment<3>(at)).conjugate()).normalized());
+  }
+  return u;
+}
+
+GeometricState state_under(GeometricSolver& solver, const CaseLoad& full, const GeometricOptions& options) {
+  GeometricLoad given{full.forces - full.thermal, full.values, {}};  // heat strains the members instead
+  for (const ElementLoad& element : full.elements) given.strains.push_back(element.strain);
+  return solver.solve(given, options);
+}
+
+CaseResult result_of(const FrameDescription& f, const FrameModel& m, const CaseLoad& full,
+                     const GeometricState& state) {
+  CaseResult r;
+  r.path = {state.converged, state.stable, state.steps, state.iterations, state.load_factor, state.message};
+  r.u = state.u;
+  r.slips = state.slips;
+  r.loads = full.elements;
+  for (ElementLoad& element : r.loads) element.q_M *= state.load_factor;
+  find_reactions(r, f, m, state);
+  find_member_forces(r, m, state);
+  find_energies(r, f, m, stored_energies(m.model, state));
+  r.checks.residual = state.residual;
+  r.checks.equilibrium = equilibrium(m, state, state.load_factor * (full.forces - full.thermal));
+  return r;
+}
+
 }  // namespace
 
-void analyse_geometric(const FrameDescription& f, FrameResult& out) {
+void analyse_geometric(const FrameDescription& f, const FrameOptions& frame_options, FrameResult& out) {
   FrameModel& m = out.structure;
   GeometricSolver solver(m.model);
   m.model = solver.model();
@@ -110,24 +152,23 @@ void analyse_geometric(const FrameDescription& f, FrameResult& out) {
   GeometricOptions options;
   options.geometry = f.geometry;
   options.load_steps = f.load_steps;
+  std::optional<GeometricState> assembled;
+  if (m.prestressed()) {
+    assembled = state_under(solver, load_of(f, m, "", {}), options);
+    options.slips = assembled->slips;
+  }
   for (const auto& [name, load] : f.loads) {
     const CaseLoad full = load_of(f, m, name, load);
-    GeometricLoad given{full.forces - full.thermal, full.values, {}};  // heat strains the members instead
-    for (const ElementLoad& element : full.elements) given.strains.push_back(element.strain);
-    const GeometricState state = solver.solve(given, options);
-
-    CaseResult r;
+    const GeometricState state = state_under(solver, full, options);
+    CaseResult r = result_of(f, m, full, state);
     r.name = name;
-    r.path = {state.converged, state.stable, state.steps, state.iterations, state.load_factor, state.message};
-    r.u = state.u;
-    r.loads = full.elements;
-    for (ElementLoad& element : r.loads) element.q_M *= state.load_factor;
+    if (assembled) r.u = from(*assembled, state, m.model.nodes.size());
+    if (assembled && !(assembled->converged && assembled->stable)) {
+      r.path.converged = assembled->converged, r.path.stable = assembled->stable;
+      r.path.message = "the frame as assembled: " + assembled->message;
+    }
     for (std::size_t i = 0; i < f.nodes.size(); ++i) r.displacements.push_back(r.u.segment<6>(as_index(6 * i)));
-    find_reactions(r, f, m, state);
-    find_member_forces(r, m, state);
-    find_energies(r, f, m, state.elongations);
-    r.checks.residual = state.residual;
-    r.checks.equilibrium = equilibrium(m, state, state.load_factor * given.forces);
+    if (frame_options.in_sequence && state.converged) options.slips = state.slips;
     out.cases.push_back(std::move(r));
   }
 }

@@ -59,11 +59,16 @@ void describe_displacement(FieldVisitor& v, const std::string& node, FreedomValu
   require_known(v, "", "node", node, names.nodes, names.frame.nodes);
   describe_freedom_values(v, values, Dimension::length, Dimension::angle, {}, "displacement of the support");
   const int at = names.supports.find(node);
-  const Freedoms held = at < 0 ? Freedoms{} : nth(names.frame.supports, at).second;
+  const FrameSupport held = at < 0 ? FrameSupport() : nth(names.frame.supports, at).second;
   bool any = false;
   for (std::size_t i = 0; i < 6; ++i) {
     any = any || values[i];
-    if (values[i] && !held[i])
+    if (values[i] && held.laws.has(i))
+      v.require(false, node_freedoms[i],
+                fmt::format("node '{}' is held in {} by a law, which yields: a displacement is prescribed only where "
+                            "a support is rigid; put the law into a spring to a node of its own, and hold that",
+                            node, node_freedoms[i]));
+    else if (values[i] && !held[i])
       v.require(false, node_freedoms[i],
                 fmt::format("node '{0}' is not supported in {1}: a displacement is prescribed only where a support "
                             "holds; add {1} to supports.{0}",
@@ -75,6 +80,7 @@ void describe_displacement(FieldVisitor& v, const std::string& node, FreedomValu
 }  // namespace
 
 void describe(FieldVisitor& v, LoadCase& c, const FrameNames& names) {
+  v.quantity("factor", c.factor, {Dimension::ratio, {}, 1}, "true load over that of this case, of all of it");
   const auto node = [&](FieldVisitor& w, const std::string& name, Vector6& wrench) {
     require_known(w, "", "node", name, names.nodes, names.frame.nodes);
     describe_wrench(w, wrench);

@@ -8,7 +8,8 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
-#include "msa/frame/mechanism/component.h"
+#include "msa/frame/laws/component.h"
+#include "msa/frame/structure/coupled_spring.h"
 
 namespace deflect::frame {
 namespace {
@@ -25,37 +26,11 @@ std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
   return out;
 }
 
-/// K = Σ d v vᵀ by LDLᵀ, the largest diagonal entry of what is left first: vᵢ and dᵢ, six at most. Where stiffnesses
-/// differ by many orders, the soft ones keep their digits, which eigenvectors would lose to the rounding of the stiff
-/// ones. Every d is in N/m and every v moves along a length; `unit`: that of a rotation of 1 rad, m.
-std::vector<std::pair<Vector6, double>> squares(const Matrix6& K, double unit) {
-  std::vector<std::pair<Vector6, double>> out;
-  Eigen::Matrix<Extended, 6, 6> left = K.cast<Extended>();
-  const auto weight = [&](Eigen::Index i) { return i < 3 ? Extended(1) : Extended(unit) * Extended(unit); };
-  std::array<bool, 6> done{};
-  for (int step = 0; step < 6; ++step) {
-    Eigen::Index k = -1;
-    for (Eigen::Index i = 0; i < 6; ++i)
-      if (!done[as_size(i)] && (k < 0 || left(i, i) / weight(i) > left(k, k) / weight(k))) k = i;
-    if (!(left(k, k) > 0)) break;
-    const Extended pivot = left(k, k);
-    const Eigen::Matrix<Extended, 6, 1> column = left.col(k) / pivot;
-    const double length = k < 3 ? 1 : unit;
-    out.emplace_back(length * column.cast<double>(), static_cast<double>(pivot) / (length * length));
-    left -= pivot * column * column.transpose();
-    left.col(k).setZero();
-    left.row(k).setZero();
-    done[as_size(k)] = true;
-  }
-  return out;
-}
-
 /// A stiffness of all six freedoms together: a spring d for each square d (vᵀ[δ; θ])² of its energy.
 void connect_elastic(Model& model, int a, int b, const PlacedJoint& j, const std::string& name) {
   const Matrix6& K = *j.stiffness;
-  const double unit = std::sqrt(K.bottomRightCorner<3, 3>().trace() / K.topLeftCorner<3, 3>().trace());
   int number = 0;
-  for (const auto& [v, d] : squares(K, unit)) {
+  for (const auto& [v, d] : squares(K)) {
     LinearForm form;
     for (const auto& [node, sign] : {std::pair{b, 1.0}, std::pair{a, -1.0}})
       for (const LinearForm& half : {translation_of(model, node, j.p_W, j.R_WJ * v.head<3>(), sign),

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "msa/base/index.h"
-#include "msa/frame/mechanism/component.h"
+#include "msa/frame/laws/component.h"
 #include "msa/mechanism/law.h"
 
 namespace deflect::frame {

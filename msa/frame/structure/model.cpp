@@ -15,6 +15,7 @@ void append(LinearForm& form, const LinearForm& more) { form.insert(form.end(), 
 
 LinearForm relative(const Model& m, int a, int b, const Vector3& p, const Vector3& axis, bool rotation) {
   LinearForm form = rotation ? rotation_of(b, axis) : translation_of(m, b, p, axis);
+  if (a < 0) return form;
   append(form, rotation ? rotation_of(a, axis, -1) : translation_of(m, a, p, axis, -1));
   return form;
 }
@@ -74,11 +75,11 @@ void Model::join(int a, int b, const std::string& name) {
 }
 
 void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std::array<ConnectionFreedom, 6>& freedoms,
-                    const std::string& name, const std::string& part) {
-  static constexpr std::array<const char*, 6> names = {"tx", "ty", "tz", "rx", "ry", "rz"};
-  if (std::all_of(freedoms.begin(), freedoms.end(), [](const ConnectionFreedom& f) { return f.rigid; }))
+                    const std::string& name, const std::string& part, const FreedomNames& names) {
+  if (a >= 0 && std::all_of(freedoms.begin(), freedoms.end(), [](const ConnectionFreedom& f) { return f.rigid; }))
     welds.emplace_back(a, b);
   Connection record{a, b, p, {R, R}};
+  std::vector<Connection> beside;
   for (std::size_t half = 0; half < 6; half += 3) {
     // Three rigid freedoms say the same in any axes; base axes give the sparsest equations.
     const bool all_rigid = freedoms[half].rigid && freedoms[half + 1].rigid && freedoms[half + 2].rigid;
@@ -88,10 +89,15 @@ void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std:
       const Vector3 axis = record.axes[half / 3].col(column);
       LinearForm form = relative(*this, a, b, p, axis, half == 3);
       const std::string label = fmt::format("{} {}", name, names[i]);
+      for (const SpringLaw& law : freedoms[i].beside) {
+        beside.push_back({a, b, p, record.axes});
+        beside.back().spring[i] = static_cast<int>(springs.size());
+        springs.push_back({form, law, label + " beside", part});
+      }
       if (freedoms[i].rigid) {
         record.constraint[i] = static_cast<int>(constraints.size());
         constraints.push_back({std::move(form), 0, label});
-      } else if (freedoms[i].laws.empty()) {
+      } else if (a >= 0 && freedoms[i].laws.empty() && freedoms[i].beside.empty()) {
         releases.push_back({std::move(form), label});
       }
       const auto& laws = freedoms[i].laws;
@@ -107,6 +113,7 @@ void Model::connect(int a, int b, const Vector3& p, const Matrix3& R, const std:
     }
   }
   connections.push_back(record);
+  connections.insert(connections.end(), beside.begin(), beside.end());
 }
 
 }  // namespace deflect::frame

@@ -48,11 +48,15 @@ struct Release {
   std::string name;
 };
 
-/// One of the six freedoms between the two sides of a connection: free, rigid, or elastic by laws in series.
+/// One of the six freedoms between the two sides of a connection: free, rigid, or elastic by laws in series; each law
+/// of `beside` acts side by side with that.
 struct ConnectionFreedom {
   bool rigid = true;
-  std::vector<SpringLaw> laws;
+  std::vector<SpringLaw> laws = {}, beside = {};
 };
+
+using FreedomNames = std::array<const char*, 6>;
+inline constexpr FreedomNames connection_freedoms = {"tx", "ty", "tz", "rx", "ry", "rz"};
 
 /// Definition of a connection's constraints and springs at finite displacement: the components tx … rz of the motion of
 /// node b's body relative to node a's (joint_motion.h). Constraints and springs outside connections keep their linear
@@ -93,8 +97,10 @@ struct Model {
   /// A joint at p with axes R (columns x y z) between the body of node a and the body of node b: the relative twist
   /// Rᵀ(d_b(p) − d_a(p)) is constrained where rigid and has springs where it has laws. Intermediate freedoms of laws in
   /// series become scalars, so all nodes must have been added before the first connection with two laws on a freedom.
+  /// a = −1: the ground, whose free freedoms are not listed as releases. `names`: of the freedoms in constraints and
+  /// springs.
   void connect(int a, int b, const Vector3& p, const Matrix3& R, const std::array<ConnectionFreedom, 6>&,
-               const std::string& name, const std::string& part);
+               const std::string& name, const std::string& part, const FreedomNames& names = connection_freedoms);
 };
 
 /// Displacement along `axis` of the point p of the body of `node`, or its rotation about it.

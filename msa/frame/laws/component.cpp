@@ -1,4 +1,4 @@
-#include "msa/frame/mechanism/component.h"
+#include "msa/frame/laws/component.h"
 
 #include <cmath>
 #include <limits>
