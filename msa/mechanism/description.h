@@ -223,7 +223,7 @@ struct InstrumentErrors {
   double gain = 1, gain_sigma = 0;  ///< and its standard deviation
   double sigma = 0;                 ///< of one reading; 0: not given
   bool free_zero = false;           ///< as in Sensor
-  double zero = 0;                  ///< where it is known; not in files
+  double zero = 0;                  ///< where it is known: `offset` in files
 };
 
 /// A named instrument beside the one at T: it reads a displacement of a point of a body, in one direction, or a

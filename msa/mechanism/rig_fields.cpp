@@ -103,6 +103,7 @@ void describe_errors(FieldVisitor& v, InstrumentErrors& e, Dimension d) {
   v.require(read_gain(e), "gain", "must be a number above 0, or one with its standard deviation, as in '1 ± 0.5 %'");
   v.quantity("sigma", e.sigma, optional(0, d, not_negative), "standard deviation of one reading");
   describe_zero(v, e.free_zero);
+  v.quantity("offset", e.zero, optional(0, d, {}), "reading where the true value is zero");
 }
 
 void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<std::string>& trusted) {

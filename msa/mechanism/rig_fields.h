@@ -11,7 +11,7 @@ namespace deflect {
 /// rotation about it.
 void describe_direction(FieldVisitor&, std::string& text, Vector3& axis, bool& rotation);
 
-/// gain, sigma (of this dimension) and zero.
+/// gain, sigma, zero and offset, of this dimension.
 void describe_errors(FieldVisitor&, InstrumentErrors&, Dimension);
 
 }  // namespace deflect

@@ -1,4 +1,4 @@
-// A machine and a frame as measured things: what comparison and diagnosis see of them is the same.
+// A machine as a measured thing; frames are in measured_frame_test.cpp.
 #include "validation/subject/subject.h"
 
 #include <fmt/format.h>
@@ -20,75 +20,6 @@ using namespace diagnosis;
 using namespace measurement;
 using namespace prediction;
 using namespace subject;
-
-// A cantilever of 1 m, E = 210 GPa, a square of 20 mm: I = 20⁴/12 mm⁴.
-constexpr const char* cantilever = R"(
-name: cantilever
-materials: {steel: {E: 210 GPa, nu: 0.3}}
-sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
-nodes: {A: [0 m, 0 m, 0 m], M: [0.5 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
-members:
-  near: {from: A, to: M, section: bar, material: steel}
-  far: {from: M, to: B, section: bar, material: steel}
-supports: {A: clamped}
-loads: {tip: {nodes: {B: {fz: 1 N}}}}
-)";
-constexpr double EI = 210e9 * 0.02 * 0.02 * 0.02 * 0.02 / 12;
-
-Subject beam(const std::string& node) { return Subject(frame::parse_frame(cantilever, "beam.yaml"), node); }
-
-/// Loads along y and z at one place, with what the tip does, `softer` times as soft as drawn.
-Measurements readings(double softer, double noise_mm = 0) {
-  std::string rows;
-  for (int i = 0; i < 12; ++i) {
-    const double fy = 10 * (i % 4 - 1.5), fz = 8 * (i % 3 - 1), off = noise_mm * (i % 5 - 2);
-    const auto mm = [&](double f) { return 1e3 * softer * f / (3 * EI) + off; };
-    rows += fmt::format("here,0,0,0,0,0,0,0,{},{},0,{},{}\n", fy, fz, mm(fy), mm(fz));
-  }
-  return parse_measurements(test::usual_file(rows), "tip.csv");
-}
-
-TEST(FrameSubject, PredictsACantileversTip) {
-  const Measurements data = readings(1);
-  const std::shared_ptr<const Standing> standing = beam("B").stand(data);
-  const std::vector<VectorX> d = standing->predict(data, {});
-  for (std::size_t i = 0; i < d.size(); ++i)
-    for (const int axis : {1, 2})
-      EXPECT_NEAR(d[i](axis), data.readings[i].load(axis) / (3 * EI), 1e-12 * 10 / (3 * EI));
-  EXPECT_NEAR(standing->compliance(0)(2, 2), 1 / (3 * EI), 1e-12 / (3 * EI));
-  EXPECT_EQ(standing->tool(0).p_W, Vector3(1, 0, 0));
-  EXPECT_EQ(standing->size(), 1);
-  EXPECT_TRUE(standing->sites(0).empty());
-}
-
-TEST(FrameSubject, IsWeakerInTheMiddle) {
-  const Measurements data = readings(1);
-  EXPECT_NEAR(beam("M").stand(data)->compliance(0)(2, 2), 0.125 / (3 * EI), 1e-12 / (3 * EI));
-  EXPECT_THROW(beam("C"), InputError);
-}
-
-TEST(FrameSubject, IsEditedLikeAMachine) {
-  const Measurements data = readings(1);
-  const Subject half = beam("B").edited({{"materials.steel.E", "0.5", Edit::Action::multiply}});
-  EXPECT_NEAR(half.stand(data)->compliance(0)(1, 1), 2 / (3 * EI), 1e-12 / (3 * EI));
-  try {
-    beam("B").edited({{"materials.steal.E", "0.5", Edit::Action::multiply}});
-    FAIL() << "a material that is not there was edited";
-  } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("steel"), std::string::npos) << e.what();
-  }
-}
-
-TEST(FrameSubject, IsComparedLikeAMachine) {
-  const Subject drawn = beam("B");
-  const Measurements right = readings(1, 1e-4), soft = readings(1.2, 1e-4);
-  EXPECT_LT(compare::compare(drawn, right).all.rmse, 2e-7);
-  const Comparison c = compare::compare(drawn, soft);
-  EXPECT_EQ(c.device, "cantilever");
-  EXPECT_GT(c.all.rmse, 1e-5);
-  const Diagnosis d = diagnose(drawn, soft, {});
-  EXPECT_EQ(d.verdict, Verdict::unknown_effect);  // no effect is known for frames yet
-}
 
 TEST(MachineSubject, PredictsWhatTheMachineDoes) {
   const Mechanism m = test::device("haptic-6psu-ideal-joints");

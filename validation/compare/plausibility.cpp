@@ -9,8 +9,10 @@
 
 #include "msa/base/number_words.h"
 #include "msa/base/outcome.h"
+#include "validation/compare/channel_screen.h"
 #include "validation/compare/correction_screen.h"
 #include "validation/compare/file_oddities.h"
+#include "validation/recording/channel_mistakes.h"
 #include "validation/recording/recording_mistakes.h"
 
 namespace deflect::compare {
@@ -48,6 +50,8 @@ double cost_of_scale(const Comparison& c, const recording::Correction& correctio
     const measurement::Reading& r = c.study.data->readings[v.reading];
     const bool told = correction.sigma_too && (v.quantity == measurement::Quantity::angle ? r.sigma_th : r.sigma_u).has_value();
     if (!told && v.of_tool_point()) sum -= 2 * std::log(std::abs(correction.displacement.factor[v.channel]));
+    for (const auto& [channel, factor] : correction.scaled_channels)
+      if (v.channel == channel) sum -= 2 * std::log(std::abs(factor));
   }
   return sum;
 }
@@ -89,7 +93,7 @@ struct Tried {
 /// The corrections that take a good part of the misfit away, the best first.
 class Promising {
  public:
-  explicit Promising(const CorrectionScreen& screen) : least_(screen.promising()) {}
+  explicit Promising(double least) : least_(least) {}
   void add(const recording::Correction& correction, double loss) {
     if (loss < least_) all_.push_back({correction, loss});
   }
@@ -104,7 +108,7 @@ class Promising {
 };
 
 std::vector<Tried> promising_readings(const Comparison& c, const CorrectionScreen& screen) {
-  Promising out(screen);
+  Promising out(screen.promising());
   for (const recording::Correction& correction : recording::mistaken_readings(*c.study.data))
     out.add(correction, screen.loss(correction));
   if (const auto point = screen.best_point()) out.add(*point, screen.loss_elsewhere(*point));
@@ -113,11 +117,17 @@ std::vector<Tried> promising_readings(const Comparison& c, const CorrectionScree
 
 /// These want predictions of their own.
 std::vector<Tried> promising_poses(const Comparison& c, const CorrectionScreen& screen) {
-  Promising out(screen);
+  Promising out(screen.promising());
   for (const recording::Correction& correction : recording::mistaken_poses(*c.study.data))
     out.add(correction, screen.loss_elsewhere(correction));
   for (int axis = 0; axis < 3; ++axis)
     if (const auto shift = screen.best_shift(axis)) out.add(*shift, screen.loss_elsewhere(*shift));
+  return std::move(out).sorted();
+}
+
+std::vector<Tried> promising_channels(const ChannelScreen& screen, const std::vector<recording::Correction>& all) {
+  Promising out(screen.promising());
+  for (const recording::Correction& correction : all) out.add(correction, screen.loss(correction));
   return std::move(out).sorted();
 }
 
@@ -222,6 +232,15 @@ std::vector<RecordingMistake> recording_mistakes(const subject::Subject& subject
   // Where nearly all is misfit it may be the readings that are in another unit than their σ: they are asked first.
   const std::vector<RecordingMistake> sigma = sigma_oddities(c);
   if (out.empty() && before.share < gross_misfit) out = sigma;
+  if (out.empty() && subject.frame() && fits_badly(c, before)) {
+    const ChannelScreen screen(subject, c, threads);
+    MistakeSearch search(c, before, screen.equal_within(), again);
+    const measurement::Measurements& data = *c.study.data;
+    search.look_among(promising_channels(screen, recording::mistaken_channels(data)));
+    if (!search.right()) search.look_among(promising_channels(screen, recording::mistaken_loads(data)));
+    if (!search.right()) search.look_among(promising_channels(screen, recording::misplaced_loads(data, *subject.frame())));
+    if (search.found()) out.push_back(*search.found());
+  }
   if (out.empty() && c.study.standing->has_tool_point() && fits_badly(c, before)) {
     const CorrectionScreen screen(subject, c, threads);
     MistakeSearch search(c, before, screen.equal_within(), again);

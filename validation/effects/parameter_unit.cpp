@@ -23,6 +23,7 @@ constexpr std::array suffixes = {
     Suffix{"rad_per_Nmm", "rad/Nmm", "rad/Nmm"},
     Suffix{"rad_per_Nm", "rad/Nm", "rad/Nm"},
     Suffix{"per_K", "1/K", "1/K"},
+    Suffix{"um_per_m", "um/m", "µm/m"},
     Suffix{"mm2", "mm^2", "mm^2"},
     Suffix{"mm4", "mm^4", "mm^4"},
     Suffix{"Nmm", "Nmm", "Nmm"},

@@ -9,6 +9,7 @@
 #include <regex>
 #include <set>
 
+#include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "msa/mechanism/joint_table.h"
 #include "validation/effects/edit_paths.h"
@@ -26,6 +27,17 @@ struct Units {
 constexpr Units along{"mm", "N", "force", 1e-4, 1e5}, about{"rad", "Nmm", "moment", 1e-6, 1e9};
 
 const Units& units(const subject::Place& p) { return p.rotation() ? about : along; }
+
+/// How what a sensor reads is measured, and what is little of it.
+struct ReadUnit {
+  const char *suffix, *unit;
+  double small;
+};
+const ReadUnit& read_unit(const subject::Place& p) {
+  static constexpr ReadUnit units[] = {
+      {"mm", "mm", 0.01}, {"rad", "rad", 1e-4}, {"N", "N", 10}, {"Nmm", "Nmm", 1e4}, {"um_per_m", "um/m", 5}};
+  return nth(units, *p.reads);
+}
 
 EffectParameter parameter(std::string name, std::string unit, double start, double vanishes, std::string words) {
   return {std::move(name), std::move(unit), start, start * 1e-6, start * 1e6, true, vanishes, std::move(words)};
@@ -159,14 +171,45 @@ const PlaceLaw laws[] = {
      [](const subject::Place& p) { return p.kind == subject::PlaceKind::sensor; },
      "reads too much or too little",
      [](const subject::Place&) {
-       return std::vector<EffectParameter>{{"gain", "", 0.98, 0.3, 3, true, 1, "recorded over true displacement"}};
+       return std::vector<EffectParameter>{{"gain", "", 0.98, 0.3, 3, true, 1, "recorded over true value"}};
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
      {"The scale of {} is off: its calibration, its amplifier, the lever or the angle at which it touches.",
       "All readings of {} are off by one factor, those of the other instruments are right.",
-      "Move {} by a gauge block and read the step.", "Calibrate it, or put the gain into the description."},
+      "Give {} a known value and read the step.", "Calibrate it, or put the gain into the description."},
      false,
-     EffectEdit::Action::set},
+     EffectEdit::Action::set,
+     ".gain"},
+    {"zero",
+     [](const subject::Place& p) { return p.reads.has_value(); },
+     "does not count from zero",
+     [](const subject::Place& p) {
+       const ReadUnit& u = read_unit(p);
+       return std::vector<EffectParameter>{{fmt::format("offset_{}", u.suffix), u.unit, u.small, -1e5 * u.small,
+                                            1e5 * u.small, false, 0, "what it reads where the true value is zero"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"The zero of {} was not taken, or has moved since.",
+      "All readings of {} are off by one number, whatever the load.",
+      "Unload and read it.", "Take the zero again, or say 'zero: free' in the description."},
+     false,
+     EffectEdit::Action::set,
+     ".offset"},
+    {"stiction",
+     [](const subject::Place& p) { return p.reads && p.may_stick; },
+     "sticks before it follows",
+     [](const subject::Place& p) {
+       const ReadUnit& u = read_unit(p);
+       return std::vector{parameter(fmt::format("stick_{}", u.suffix), u.unit, u.small, 0,
+                                    "how far the reading lags before it follows")};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"{} lags behind what it reads: a plunger that rubs, a worn spindle, play in its linkage.",
+      "Loops of {} alone, of one width at every load; the other instruments show none.",
+      "Tap it: it jumps.", "Clean or replace it; approach every reading from one side."},
+     false,
+     EffectEdit::Action::set,
+     ".stick"},
     {"clearance",
      may_be_loose,
      "has play",

@@ -27,6 +27,7 @@ measurement::Measurements corrected(const measurement::Measurements& data, const
   }
   if (c.pose)
     for (measurement::PoseGroup& group : out.poses) c.pose(group);
+  if (c.readings) c.readings(out);
   return out;
 }
 

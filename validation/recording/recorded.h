@@ -4,6 +4,8 @@
 #include <array>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "validation/measurement/measurements.h"
 
@@ -26,6 +28,8 @@ struct Correction {
   Rewritten displacement, load;
   Vector3 acts_at = Vector3::Zero();                  ///< m, base axes: forces act at T + acts_at
   std::function<void(measurement::PoseGroup&)> pose;  ///< empty: poses are as recorded
+  std::function<void(measurement::Measurements&)> readings;        ///< of sensors and of loads at nodes; or empty
+  std::vector<std::pair<std::size_t, double>> scaled_channels;     ///< by channel: the factor that `readings` applies
   bool sigma_too = true;                              ///< a unit of displacements is the unit of their σ too
   int fitted = 0;                                     ///< numbers that were fitted to the data
 };

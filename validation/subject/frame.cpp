@@ -23,14 +23,6 @@ double size_of(const FrameDescription& f) {
   return (high - low).norm();
 }
 
-measurement::Quantity quantity_of(const frame::FrameSensor& s) {
-  using Reads = frame::FrameSensor::Reads;
-  using measurement::Quantity;
-  if (s.reads == Reads::strain) return Quantity::strain;
-  if (s.reads == Reads::displacement) return s.rotation ? Quantity::angle : Quantity::length;
-  return s.component < 3 ? Quantity::force : Quantity::moment;
-}
-
 /// A frame does not move: it has one pose, whatever labels the measurements have.
 class FrameStanding final : public Standing {
  public:

@@ -92,6 +92,14 @@ void add_stock(const FrameDescription& f, std::vector<Place>& out) {
 
 }  // namespace
 
+measurement::Quantity quantity_of(const frame::FrameSensor& s) {
+  using Reads = frame::FrameSensor::Reads;
+  using measurement::Quantity;
+  if (s.reads == Reads::strain) return Quantity::strain;
+  if (s.reads == Reads::displacement) return s.rotation ? Quantity::angle : Quantity::length;
+  return s.component < 3 ? Quantity::force : Quantity::moment;
+}
+
 std::vector<Place> places_of(const FrameDescription& f) {
   std::vector<Place> out;
   add_supports(f, out);
@@ -99,8 +107,11 @@ std::vector<Place> places_of(const FrameDescription& f) {
   add_members(f, out);
   add_stock(f, out);
   for (const auto& [name, load] : f.loads) out.push_back({PlaceKind::load, {}, name, "loads." + name});
-  for (const auto& [name, sensor] : f.sensors)
-    out.push_back({PlaceKind::sensor, {}, name, fmt::format("sensors.{}.gain", name)});
+  for (const auto& [name, sensor] : f.sensors) {
+    out.push_back({PlaceKind::sensor, {}, name, "sensors." + name});
+    out.back().may_stick = true;
+    if (!sensor.free_zero) out.back().reads = quantity_of(sensor);
+  }
   std::erase_if(out, [&](const Place& p) {
     return std::find(f.trusted.begin(), f.trusted.end(), nth(place_kind_names, p.kind)) != f.trusted.end();
   });

@@ -13,4 +13,7 @@ namespace deflect::subject {
 /// sections; load cases; sensors. In a plane frame without the freedoms that leave the plane.
 std::vector<Place> places_of(const frame::FrameDescription&);
 
+/// What a sensor reads.
+measurement::Quantity quantity_of(const frame::FrameSensor&);
+
 }  // namespace deflect::subject

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <optional>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -135,7 +136,7 @@ std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Me
   std::vector<std::size_t> order(data.readings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   frame::FrameOptions options;
-  if (has_history(f)) {
+  if (any_law(f, [](const Law& law) { return row_of(law).has_history; })) {
     order = measurement::in_sequence(data, "friction");
     options.in_sequence = true;
   }
@@ -157,17 +158,45 @@ std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Me
 
 }  // namespace
 
+namespace {
+
+/// Sensors that stick follow what they read, in the order taken, only where they lag by more than their band. The first
+/// reading of each pose is true.
+void let_stick(const FrameDescription& f, const measurement::Measurements& data, std::vector<VectorX>& read) {
+  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    const double band = sensors[k]->gain * sensors[k]->stick;
+    if (!(band > 0)) continue;
+    if (order.empty()) order = measurement::in_sequence(data, "a sensor that sticks");
+    std::optional<std::size_t> pose;
+    double shown = 0;
+    for (const std::size_t i : order) {
+      double& value = read[i](as_index(6 + k));
+      if (data.readings[i].pose != pose) shown = value;
+      pose = data.readings[i].pose;
+      shown = std::clamp(shown, value - band, value + band);
+      value = shown;
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<VectorX> predicted_readings(const FrameDescription& frame, const measurement::Measurements& data,
                                         Geometry geometry) {
   FrameDescription f = frame;
   f.geometry = geometry;
   if (geometry != Geometry::finite) f.load_steps = 1;
   const bool sums = geometry == Geometry::linear && has_linear_laws(f);
-  return sums ? by_superposition(f, data) : one_by_one(f, data);
+  std::vector<VectorX> out = sums ? by_superposition(f, data) : one_by_one(f, data);
+  let_stick(f, data, out);
+  return out;
 }
 
 bool has_history(const FrameDescription& f) {
-  return any_law(f, [](const Law& law) { return row_of(law).has_history; });
+  return std::any_of(f.sensors.begin(), f.sensors.end(), [](const auto& s) { return s.second.stick > 0; }) ||
+         any_law(f, [](const Law& law) { return row_of(law).has_history; });
 }
 
 }  // namespace deflect::subject

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "validation/measurement/quantity.h"
+
 namespace deflect::subject {
 
 /// What a place is.
@@ -45,6 +47,8 @@ struct Place {
   bool one_stiffness = false;  ///< its only law is one linear law
   bool slides = false;         ///< the joint is driven along an axis
   bool base_axes = false;      ///< of a frame's node: its freedoms are ux … rz
+  std::optional<measurement::Quantity> reads = {};  ///< of a sensor whose zero is taken
+  bool may_stick = false;                           ///< of a sensor whose description says how far it sticks
 
   bool rotation() const { return !freedoms.empty() && freedoms.front() >= 3; }
   /// Whether every leg has this place, so that an effect may also act in one leg only.

@@ -129,6 +129,7 @@ struct FrameSensor : InstrumentErrors {
   bool rotation = false;             ///< a rotation about the axis
   std::size_t component = 0;         ///< of section_force_names; of a reaction, of wrench_names, base axes, on the frame
   double at = 0.5;                   ///< along the member, as a share of its length
+  double stick = 0;                  ///< the reading follows only where it lags by more than this: SI, of what is read
   double y = 0, z = 0;               ///< of the fibre, m, member axes; strain is N/EA − y Mz/EIz + z My/EIy
 };
 

@@ -36,7 +36,7 @@
 //     lvdt: {node: B, direction: ux, sigma: 0.01 mm, zero: free, gain: 1 ± 0.5 %}
 //     cell: {member: beam, force: axial, at: 0.5, sigma: 2 N}
 //     gauge: {member: post, strain: {at: 0.1, y: 30 mm, z: 0 mm}, sigma: 2 um/m}
-//     pad: {support: C, reaction: fz, gain: 1 ± 3 %}
+//     pad: {support: C, reaction: fz, gain: 1 ± 3 %, offset: 5 N, stick: 1 N}
 //   rig: {load_cell: {gain: 1}, trusted: [load]}
 //   tolerances: {modulus: 1 %, load: 0.5 %, node.position: 1 mm, member.bending_factor: 5 %}
 //

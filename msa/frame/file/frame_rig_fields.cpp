@@ -15,6 +15,12 @@ using Reads = FrameSensor::Reads;
 
 constexpr const char* trusted_kinds[] = {"support", "load", "load cell", "sensor"};
 
+/// What is common to all, and how far the sensor sticks.
+void describe_reading(FieldVisitor& v, FrameSensor& s, Dimension d) {
+  describe_errors(v, s, d);
+  v.quantity("stick", s.stick, {d, not_negative, 0}, "how far the reading lags before it follows");
+}
+
 std::size_t place_in(const std::array<const char*, 6>& names, const std::string& word) {
   return std::min<std::size_t>(5, as_size(std::find(names.begin(), names.end(), word) - names.begin()));
 }
@@ -35,7 +41,7 @@ void describe_node_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& nam
   require_known(v, "node", "node", s.of, names.nodes, names.frame.nodes);
   s.reads = Reads::displacement;
   describe_direction(v, s.direction, s.axis, s.rotation);
-  describe_errors(v, s, s.rotation ? Dimension::angle : Dimension::length);
+  describe_reading(v, s, s.rotation ? Dimension::angle : Dimension::length);
 }
 
 void describe_support_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& names) {
@@ -44,7 +50,7 @@ void describe_support_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& 
   s.reads = Reads::reaction;
   describe_component(v, "reaction", "component of a reaction", s, wrench_names,
                      "component of the reaction on the frame, base axes");
-  describe_errors(v, s, s.component < 3 ? Dimension::force : Dimension::moment);
+  describe_reading(v, s, s.component < 3 ? Dimension::force : Dimension::moment);
 }
 
 void describe_member_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& names) {
@@ -55,7 +61,7 @@ void describe_member_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& n
     describe_component(v, "force", "component of the forces in a section", s, section_force_names,
                        "axial (tension positive), Vy, Vz, T, My or Mz, member axes");
     describe_position(v, s.at);
-    describe_errors(v, s, s.component < 3 ? Dimension::force : Dimension::moment);
+    describe_reading(v, s, s.component < 3 ? Dimension::force : Dimension::moment);
     return;
   }
   const auto fibre = [&] {
@@ -64,7 +70,7 @@ void describe_member_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& n
     v.quantity("z", s.z, {Dimension::length, {}, 0}, "of the fibre, from the centroid, member axes");
   };
   v.object("strain", Need::required, false, fibre, "where the strain is read");
-  describe_errors(v, s, Dimension::strain);
+  describe_reading(v, s, Dimension::strain);
 }
 
 void describe_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& names) {

@@ -1,0 +1,267 @@
+// Frames as measured things: sensors, loads by case and at nodes, tolerances, and what commands find in them.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+
+#include "msa/base/error.h"
+#include "msa/frame/file/frame_file.h"
+#include "msa/frame/file/frame_tolerances.h"
+#include "tests/support/effects.h"
+#include "validation/compare/comparison.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/effects/effect_file.h"
+#include "validation/effects/place_effects.h"
+#include "validation/effects/with_effect.h"
+#include "validation/subject/simulate_frame.h"
+#include "validation/subject/subject.h"
+
+namespace deflect {
+namespace {
+
+using namespace measurement;
+using subject::Subject;
+
+// A cantilever of 1 m along x in the plane xz, E = 210 GPa, a square of 20 mm: A = 400 mm², I = 20⁴/12 mm⁴.
+constexpr const char* cantilever = R"(
+name: cantilever
+plane: xz
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
+nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
+members: {beam: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}}
+supports: {A: clamped}
+loads: {tip: {nodes: {B: {fz: -10 N}}}, pull: {nodes: {B: {fx: 100 N}}}}
+sensors:
+  z: {node: B, direction: uz, sigma: 1 um, gain: 2}
+  turn: {node: B, direction: ry, sigma: 1e-3 mrad}
+  N: {member: beam, force: axial, sigma: 0.01 N}
+  gauge: {member: beam, strain: {at: 0.25, y: 0 mm, z: 10 mm}, sigma: 0.01 um/m}
+  root: {support: A, reaction: my, sigma: 1 Nmm, offset: 5 Nmm}
+tolerances: {modulus: 1 %, node.position: 1 mm, member.bending_factor: 2 %}
+)";
+constexpr double E = 210e9, A = 4e-4, I = 0.02 * 0.02 * 0.02 * 0.02 / 12;
+
+Subject frame_of(const std::string& yaml = cantilever) { return frame::parse_frame(yaml, "frame.yaml"); }
+
+Measurements read(const Subject& s, const std::string& csv) {
+  return s.placed(parse_measurements(csv, "data.csv", s.instruments()));
+}
+
+/// A frame of validation/frames.
+Subject built_in(const std::string& name) {
+  return frame::read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/frames" / (name + ".yaml"));
+}
+
+// Hooke and Euler–Bernoulli by hand: tip −P L³/3EI with the gain 2, its slope, N, strain M z/EI at a quarter, the
+// clamp's moment with its offset.
+TEST(MeasuredFrame, SensorsReadWhatBeamTheorySays) {
+  const Subject s = frame_of();
+  const Measurements data = read(s,
+                                 "load.tip,load.pull,node.B.fz_N,z_mm,turn_rad,N_N,gauge_um_per_m,root_Nmm\n"
+                                 "1,0,0,0,0,0,0,0\n0,2,0,0,0,0,0,0\n,,-10,0,0,0,0,0\n-1,1,5,0,0,0,0,0\n");
+  ASSERT_EQ(data.readings.size(), 4u);
+  EXPECT_EQ(data.poses.size(), 1u);
+  const std::vector<VectorX> d = s.stand(data)->predict(data, {});
+  const double P = 10, gauge = P * 0.75 * 0.01 / (E * I), tolerance = 1e-9;
+  const auto expect = [&](std::size_t row, std::vector<double> wanted) {
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      EXPECT_NEAR(d[row](static_cast<Eigen::Index>(6 + k)), wanted[k], tolerance * (1e-3 + std::abs(wanted[k])))
+          << row << " " << k;
+  };
+  // The load down bends the beam's upper fibre in tension; ry turns z towards x, so the tip's slope is positive.
+  expect(0, {-2 * P / (3 * E * I), P / (2 * E * I), 0, gauge, -P * 1 + 0.005});
+  expect(1, {0, 0, 200, 200 / (E * A), 0.005});
+  expect(2, {-2 * P / (3 * E * I), P / (2 * E * I), 0, gauge, -P * 1 + 0.005});
+  expect(3, {2 * 15 / (3 * E * I), -15 / (2 * E * I), 100, 100 / (E * A) - 1.5 * gauge, 15 + 0.005});
+}
+
+TEST(MeasuredFrame, FileOfReadingsComesBack) {
+  const Subject s = frame_of();
+  const Measurements data = read(s, "load.tip,node.B.fz_lbf,z_in,gauge_um_per_m,sequence\n1,2,0.1,3,1\n0.5,,,4,2\n");
+  EXPECT_NEAR(data.readings[0].at_points[0](2), 2 * 4.4482216152605, 1e-12);
+  EXPECT_NEAR(*data.readings[0].sensors[0], 2.54e-3, 1e-15);
+  EXPECT_NEAR(*data.readings[1].sensors[1], 4e-6, 1e-20);
+  EXPECT_FALSE(data.readings[1].sensors[0]);
+  const Measurements again = read(s, measurements_text(data));
+  EXPECT_EQ(measurements_text(again), measurements_text(data));
+  EXPECT_EQ(loads_of(again), loads_of(data));
+  EXPECT_EQ(load_channels(data)[1].name, "node.B.fz");
+}
+
+TEST(MeasuredFrame, RefusesWhatItCannotRead) {
+  const auto refusal = [](const std::string& csv, const Subject& s) -> std::string {
+    try {
+      read(s, csv);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const Subject s = frame_of();
+  EXPECT_NE(refusal("load.tap,z_mm\n1,2\n", s).find("did you mean 'load.tip'"), std::string::npos);
+  EXPECT_NE(refusal("load.tip,z_N\n1,2\n", s).find("did you mean 'z_mm'"), std::string::npos);
+  EXPECT_NE(refusal("load.tip,ux_mm\n1,2\n", s).find("unknown column 'ux_mm'"), std::string::npos);
+  EXPECT_NE(refusal("load.tip,q1_rad,z_mm\n1,2,3\n", s).find("unknown column 'q1_rad'"), std::string::npos);
+  EXPECT_NE(refusal("node.C.fz_N,z_mm\n1,2\n", s).find("did you mean 'node."), std::string::npos);
+  EXPECT_NE(refusal("load.tip\n1\n", s).find("z_mm"), std::string::npos);
+  EXPECT_NE(refusal("z_mm\n1\n", s).find("load.tip"), std::string::npos);
+  EXPECT_NE(refusal("load.tip,z_mm\nx,2\n", s).find("data.csv:2: column 'load.tip'"), std::string::npos);
+  std::string bare = cantilever;
+  bare.erase(bare.find("sensors:"), bare.find("tolerances:") - bare.find("sensors:"));
+  EXPECT_NE(refusal("load.tip,z_mm\n1,2\n", frame_of(bare)).find("has no sensors"), std::string::npos);
+}
+
+TEST(MeasuredFrame, RefusesSensorsThatCannotBe) {
+  const auto refusal = [](const std::string& from, const std::string& to) -> std::string {
+    std::string yaml = cantilever;
+    yaml.replace(yaml.find(from), from.size(), to);
+    try {
+      frame_of(yaml);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal("{node: B, direction: uz", "{node: b, direction: uz").find("frame.yaml:12: sensors.z.node"), std::string::npos);
+  EXPECT_NE(refusal("direction: uz", "direction: up").find("sensors.z.direction"), std::string::npos);
+  EXPECT_NE(refusal("force: axial", "force: N").find("axial"), std::string::npos);
+  EXPECT_NE(refusal("at: 0.25", "at: 1.5").find("sensors.gauge.strain.at"), std::string::npos);
+  EXPECT_NE(refusal("sigma: 0.01 um/m", "sigma: 0.01 mm").find("um/m"), std::string::npos);
+  EXPECT_NE(refusal("support: A, reaction", "support: B, reaction").find("sensors.root.support"), std::string::npos);
+  EXPECT_NE(refusal("member.bending_factor: 2 %", "member.bend_factor: 2 %").find("did you mean 'member.bending_factor'"),
+            std::string::npos);
+  EXPECT_NE(refusal("modulus: 1 %", "modulus: -1 %").find("modulus"), std::string::npos);
+}
+
+TEST(MeasuredFrame, FileRoundTrip) {
+  const frame::FrameDescription f = frame::parse_frame(cantilever, "a");
+  const std::string text = frame::write_frame(f);
+  EXPECT_EQ(frame::write_frame(frame::parse_frame(text, "b")), text);
+  EXPECT_NE(text.find("gain: \"2\""), std::string::npos) << text;
+  for (const char* name : {"truss-45", "portal-semi-rigid", "lattice-girder", "beam-on-springs"}) {
+    const std::string once = frame::write_frame(*built_in(name).frame());
+    EXPECT_EQ(frame::write_frame(frame::parse_frame(once, name)), once) << name;
+  }
+}
+
+// A longer beam: the tip goes as L³; a bending factor and a modulus in proportion; each in the description alone.
+TEST(MeasuredFrame, IsOffByItsTolerances) {
+  const Subject s = frame_of();
+  const Measurements data = read(s, "load.tip,z_mm\n1,0\n");
+  const auto standing = s.stand(data);
+  const auto off = standing->deviations(data);
+  std::vector<std::string> names;
+  for (const subject::Tolerance& t : off->tolerances()) names.push_back(t.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"modulus", "node A x", "node A z", "node B x", "node B z",
+                                             "beam bending_factor"}));
+  const double tip = standing->predict(data, {})[0](6);
+  const auto with = [&](std::size_t k) { return off->with(k)->predict(data, {})[0](6) / tip; };
+  EXPECT_NEAR(with(0), 1 / 1.01, 1e-9);
+  EXPECT_NEAR(with(3), 1.001 * 1.001 * 1.001, 1e-9);
+  EXPECT_NEAR(with(5), 1 / 1.02, 1e-9);
+}
+
+// Friction at a support keeps its slip from row to row, in the order taken: a loop, by hand. The spring to the ground
+// (k) carries what the slider (limit F, stiffness ks) does not.
+TEST(MeasuredFrame, FrictionAtASupportMakesALoop) {
+  const Subject s = frame_of(R"(
+name: slider
+plane: xz
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
+nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
+members: {bar: {from: A, to: B, section: bar, material: steel}}
+supports: {A: {holds: [uz, ry], beside: {ux: {law: friction, force: 100 N, stiffness: 1e4 N/mm}}}}
+springs: {ground: {node: A, ux: 1000 N/mm}}
+loads: {push: {nodes: {B: {fx: 1 N}}}}
+sensors: {x: {node: A, direction: ux, sigma: 1 um}}
+)");
+  const Measurements data = read(s, "load.push,x_mm,sequence\n300,0,1\n0,0,2\n-300,0,3\n50,0,4\n");
+  EXPECT_TRUE(s.stand(data)->has_history());
+  const std::vector<VectorX> d = s.stand(data)->predict(data, {});
+  // The slider slips at ±100 N throughout: the spring carries what is left, 200, 100, −200 and −50 N.
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(d[i](6), std::array{200.0, 100.0, -200.0, -50.0}[i] / 1e6, 1e-13);
+  const Measurements unordered = read(s, "load.push,x_mm\n300,0\n0,0\n");
+  EXPECT_THROW(s.stand(unordered)->predict(unordered, {}), InputError);
+}
+
+// A sensor that sticks lags behind by its band.
+TEST(MeasuredFrame, SensorSticks) {
+  std::string yaml = cantilever;
+  yaml.replace(yaml.find("sigma: 1 um, gain: 2"), 20, "sigma: 1 um, stick: 0.1 mm");
+  const Subject s = frame_of(yaml);
+  const Measurements data = read(s, "load.tip,z_mm,sequence\n0,0,1\n1,0,2\n0.99,0,3\n0,0,4\n");
+  const std::vector<VectorX> d = s.stand(data)->predict(data, {});
+  const double tip = -10 / (3 * E * I);
+  EXPECT_NEAR(d[0](6), 0, 1e-15);
+  EXPECT_NEAR(d[1](6), tip + 1e-4, 1e-12);
+  EXPECT_NEAR(d[2](6), tip + 1e-4, 1e-12);
+  EXPECT_NEAR(d[3](6), -1e-4, 1e-12);
+}
+
+std::vector<effects::Effect> known_effects(const Subject& s) {
+  std::vector<effects::Effect> all = test::all_effects();
+  for (effects::Effect& e : effects::place_effects(s, all)) all.push_back(std::move(e));
+  return all;
+}
+
+/// Readings of a frame with an effect, and what is found in them.
+diagnosis::Diagnosis diagnosed(const Subject& s, const std::string& effect, const VectorX& values,
+                               const std::string& campaign = "rich") {
+  const std::vector<effects::Effect> all = known_effects(s);
+  const effects::Effect& hidden = effects::find_effect(all, effect);
+  const Subject with = effects::with_effect(s, {{&hidden, {}}, values});
+  prediction::SimulationOptions o;
+  const Measurements data =
+      subject::simulate_frame(*with.frame(), subject::frame_campaign(campaign, *s.frame(), 1), o);
+  static std::vector<std::vector<effects::Effect>> keep;
+  keep.push_back(all);
+  return diagnosis::diagnose(s, data, keep.back(), {{}, 199});
+}
+
+std::vector<std::string> named(const diagnosis::Diagnosis& d) {
+  std::vector<std::string> out;
+  for (const effects::PlacedEffect& e : d.missing) out.push_back(e.effect->name);
+  for (const auto& tie : d.indistinguishable) out.insert(out.end(), tie.begin(), tie.end());
+  return out;
+}
+
+bool names_one_of(const diagnosis::Diagnosis& d, const std::string& effect) {
+  for (const std::string& each : named(d))
+    if (each.starts_with(effect)) return true;
+  return false;
+}
+
+TEST(MeasuredFrame, HealthyOnesAreHealthy) {
+  for (const char* name : {"truss-45", "portal-semi-rigid", "lattice-girder", "beam-on-springs"}) {
+    const Subject s = built_in(name);
+    const Measurements data =
+        subject::simulate_frame(*s.frame(), subject::frame_campaign("rich", *s.frame(), 1), {});
+    const auto effects = known_effects(s);
+    EXPECT_GE(effects.size(), 50u);
+    const diagnosis::Diagnosis d = diagnosis::diagnose(s, data, effects, {{}, 199});
+    EXPECT_EQ(d.verdict, diagnosis::Verdict::nothing_missing) << name;
+  }
+}
+
+TEST(MeasuredFrame, NamesWhatIsHidden) {
+  struct Case {
+    const char *frame, *effect;
+    double value;
+    const char* campaign = "rich";
+  };
+  for (const Case& c : {Case{"truss-45", "factor@C0a", 0.8}, {"truss-45", "gain@F_C0c", 0.95},
+                        {"truss-45", "zero@tip_z", 0.05}, {"truss-45", "linear@support.P0b.ux", 3e4},
+                        {"beam-on-springs", "factor@spring.pad2.uz", 0.6}, {"lattice-girder", "factor@llow1", 0.7},
+                        {"lattice-girder", "linear@support.l4.uz", 5e4}, {"lattice-girder", "factor@wind", 1.1},
+                        {"truss-45", "stiction@tip_z", 0.05, "cycle"}}) {
+    const diagnosis::Diagnosis d = diagnosed(built_in(c.frame), c.effect, VectorX::Constant(1, c.value), c.campaign);
+    EXPECT_TRUE(names_one_of(d, c.effect)) << c.frame << " " << c.effect << ": " << fmt::format("{}", fmt::join(named(d), ", "));
+  }
+}
+
+}  // namespace
+}  // namespace deflect

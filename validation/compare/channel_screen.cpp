@@ -1,0 +1,60 @@
+#include "validation/compare/channel_screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
+
+namespace deflect::compare {
+namespace {
+
+constexpr double share_of_predicted = 0.01, part_taken_away = 0.4, worse_by = 5;
+
+}  // namespace
+
+ChannelScreen::ChannelScreen(const subject::Subject& subject, const Comparison& c, int threads)
+    : subject_(subject), study_(&c.study), threads_(threads), scale_(6 + c.study.data->instruments.sensors.size(), 0) {
+  std::vector<double> predicted(scale_.size(), 0), sigma(scale_.size(), 0), count(scale_.size(), 0);
+  for (std::size_t i = 0; i < study_->values.size(); ++i) {
+    const measurement::MeasuredValue& v = study_->values[i];
+    predicted[v.channel] += std::pow(study_->predicted[v.reading](as_index(v.channel)), 2);
+    sigma[v.channel] += c.sigma[i] * c.sigma[i];
+    count[v.channel] += 1;
+  }
+  for (std::size_t k = 0; k < scale_.size(); ++k)
+    if (count[k] > 0) scale_[k] = std::sqrt((sigma[k] + share_of_predicted * share_of_predicted * predicted[k]) / count[k]);
+  const VectorX deviation = expected_deviations(c);
+  double noise = 0;
+  for (std::size_t i = 0; i < study_->values.size(); ++i)
+    if (const double s = scale_[study_->values[i].channel]; s > 0)
+      noise += std::log1p(std::pow(deviation(as_index(i)) / s, 2));
+  const auto n = static_cast<double>(std::max<std::size_t>(1, study_->values.size()));
+  const double as_recorded = loss(*study_->data, study_->predicted);
+  promising_ = as_recorded - part_taken_away * std::max(0.0, as_recorded - noise / n);
+  equal_within_ = worse_by / n;
+}
+
+double ChannelScreen::loss(const measurement::Measurements& data, const std::vector<VectorX>& predicted) const {
+  double sum = 0, n = 0;
+  for (std::size_t i = 0; i < data.readings.size(); ++i)
+    for (std::size_t k = 0; k < data.instruments.sensors.size(); ++k) {
+      const auto& y = data.readings[i].sensors[k];
+      if (!y || !(scale_[6 + k] > 0)) continue;
+      sum += std::log1p(std::pow((*y - predicted[i](as_index(6 + k))) / scale_[6 + k], 2));
+      n += 1;
+    }
+  return n > 0 ? sum / n : 0;
+}
+
+double ChannelScreen::loss(const recording::Correction& c) const {
+  const measurement::Measurements data = recording::corrected(*study_->data, c);
+  const bool other_loads = data.instruments.load_points != study_->data->instruments.load_points ||
+                           measurement::loads_of(data) != study_->loads;
+  if (!other_loads) return loss(data, study_->predicted);
+  const auto predicted = outcome_of([&] { return subject_.stand(data)->predict(data, {}, {threads_}); });
+  return predicted ? loss(data, *predicted) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace deflect::compare

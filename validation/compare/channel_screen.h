@@ -1,0 +1,32 @@
+// Corrections of recorded channels and loads (channel_mistakes.h), tried on the prediction before a whole comparison.
+#pragma once
+
+#include "validation/compare/comparison.h"
+#include "validation/recording/recorded.h"
+
+namespace deflect::compare {
+
+/// The loss of measured y against predicted p is the mean of ln(1 + ((y − p)/s)²), with s² = σ² + (1 % of the channel's
+/// root mean square prediction)²: numbers far off count little.
+class ChannelScreen {
+ public:
+  /// Both must outlive it.
+  ChannelScreen(const subject::Subject&, const Comparison&, int threads);
+
+  double loss(const recording::Correction&) const;
+  /// A correction is promising with a loss below this: it takes away 40 % of what is beyond noise and tolerances.
+  double promising() const { return promising_; }
+  /// Losses that differ by less are alike.
+  double equal_within() const { return equal_within_; }
+
+ private:
+  double loss(const measurement::Measurements&, const std::vector<VectorX>& predicted) const;
+
+  const subject::Subject& subject_;
+  const ResidualStudy* study_;
+  int threads_;
+  std::vector<double> scale_;  // by channel
+  double promising_ = 0, equal_within_ = 0;
+};
+
+}  // namespace deflect::compare
