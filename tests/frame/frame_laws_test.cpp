@@ -276,6 +276,33 @@ TEST(FrameLaws, AFactorIsOnAllStiffnessesOfAMemberAndOnAllOfACase) {
   expect_same(s.u("B")(2), 3 / (0.5 * k_tip));
 }
 
+// A stiff bar on a rotational spring turns until k θ = P L cos θ; with k = P L to θ = 0.739085. Play adds to the angle.
+// The bar bends by 1e-6 of its length; it is 1e7 times stiffer than the spring, which costs as many digits.
+TEST(FrameLaws, AnElasticSupportTurnsAtFiniteAngles) {
+  const std::string bar = R"(name: bar
+geometry: finite
+load_steps: 5
+materials: {stiff: {E: 2e4 GPa, nu: 0.25}}
+sections: {deep: {shape: given, A: 100 mm^2, Iy: 1e6 mm^4, Iz: 1e6 mm^4, J: 1e6 mm^4}}
+nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
+members: {beam: {from: A, to: B, section: deep, material: stiff}}
+loads: {tip: {nodes: {B: {fz: -100 N}}}}
+)";
+  const Solved s(parse_frame(bar + "supports: {A: {holds: clamped, ry: {law: linear, stiffness: 100 Nm/rad}}}\n", "s"));
+  EXPECT_EQ(failed_check(s.result), "");
+  EXPECT_NEAR(s.u("A")(4), 0.7390851332, 2e-6);
+  EXPECT_NEAR(s.u("B")(2), -std::sin(0.7390851332), 2e-6);
+  EXPECT_NEAR(s.reaction("A")(4), -100 * 0.7390851332, 3e-4);
+  EXPECT_NEAR(s.reaction("A")(2), 100, 1e-4);
+  const Solved loose(parse_frame(bar + "supports: {A: {holds: clamped, ry: [{law: linear, stiffness: 100 Nm/rad}, "
+                                       "{law: clearance, gap: 0.1 rad}]}}\n",
+                                 "loose"));
+  EXPECT_EQ(failed_check(loose.result), "");
+  double angle = 0.7;
+  for (int i = 0; i < 100; ++i) angle -= (angle - 0.1 - std::cos(angle)) / (1 + std::sin(angle));
+  EXPECT_NEAR(loose.u("A")(4), angle, 2e-6);
+}
+
 TEST(FrameLaws, ContactNeedsItsMaterial) {
   const Solved s = solve(cantilever(
       "supports: {A: clamped, B: {uz: {law: hertz_point, material: steel, radius: 5 mm}}}\nloads: {down: {nodes: {B: "

@@ -146,7 +146,8 @@ std::string frame_report(const frame::FrameDescription& f, const frame::FrameRes
     text += fmt::format("checks: residual {:.1e}, equilibrium {:.1e}", c.checks.residual, c.checks.equilibrium);
     text += linear ? fmt::format(", energy {:.1e}\n", c.checks.energy) : "\n";
   }
-  if (linear && result.linear_laws && result.cases.size() > 1) text += fmt::format("\nreciprocity of the cases {:.1e}\n", result.reciprocity);
+  if (linear && result.linear_laws && result.cases.size() > 1)
+    text += fmt::format("\nreciprocity of the cases {:.1e}\n", result.reciprocity);
   return text;
 }
 

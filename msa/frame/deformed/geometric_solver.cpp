@@ -207,9 +207,10 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
   const Linearisation rest = work.linearise(options.geometry);
   double force = std::max(largest(work.loads), largest(rest.forces));
   if (force == 0 && largest(work.values) > 0) force = driving_force(rest, work.values);
-  for (const Spring& spring : linear_->model().springs)
-    if (const auto* friction = std::get_if<FrictionSpring>(&spring.law))
-      force = std::max(force, std::abs(friction->force(0)));  // that earlier loads left in it
+  if (force == 0)  // what earlier loads left in frictions
+    for (const Spring& spring : linear_->model().springs)
+      if (const auto* friction = std::get_if<FrictionSpring>(&spring.law))
+        force = std::max(force, std::abs(friction->force(0)));
   work.force = force;
   work.least_tangents = 1e-8 * stiffness_at(model_, force);
   for (const std::size_t i : work.jumping.springs) work.least_tangents(as_index(i)) = 0;

@@ -8,123 +8,11 @@ C the compliance of the linear rest between the laws. Writes law_frames.txt, whi
 """
 import math
 import random
-from decimal import Decimal, getcontext
 
-getcontext().prec = 34
-D = Decimal
+from parts import D, Law, axes_of, beam_stiffness, cross, solve
+
 NODE = ["ux", "uy", "uz", "rx", "ry", "rz"]
 MEMBER = ["tx", "ty", "tz", "rx", "ry", "rz"]
-
-
-def solve(matrix, columns):
-    """Gauss with partial pivoting; columns: list of right-hand sides."""
-    n = len(matrix)
-    rows = [list(matrix[i]) + [c[i] for c in columns] for i in range(n)]
-    for k in range(n):
-        pivot = max(range(k, n), key=lambda i: abs(rows[i][k]))
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        inverse = 1 / rows[k][k]
-        for i in range(k + 1, n):
-            factor = rows[i][k] * inverse
-            if factor:
-                rows[i] = [a - factor * b if b else a for a, b in zip(rows[i], rows[k])]
-    out = []
-    for c in range(len(columns)):
-        x = [D(0)] * n
-        for i in reversed(range(n)):
-            x[i] = (rows[i][n + c] - sum(rows[i][j] * x[j] for j in range(i + 1, n))) / rows[i][i]
-        out.append(x)
-    return out
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def unit(a):
-    size = math.sqrt(sum(x * x for x in a))
-    return [x / size for x in a]
-
-
-def axes_of(along):
-    """Rows x, y, z: y in the plane of the member and the base z, on its side."""
-    x = unit(along)
-    up = [1, 0, 0] if math.hypot(*along[:2]) < 1e-3 * math.sqrt(sum(v * v for v in along)) else [0, 0, 1]
-    z = unit(cross(x, up))
-    return [x, cross(z, x), z]
-
-
-def beam_stiffness(EA, EIy, EIz, GJ, GAy, GAz, L):
-    k = [[0.0] * 12 for _ in range(12)]
-
-    def put(i, j, v):
-        k[i][j] = k[j][i] = v
-
-    for at, stiffness in ((0, EA / L), (3, GJ / L)):
-        put(at, at, stiffness)
-        put(at + 6, at + 6, stiffness)
-        put(at, at + 6, -stiffness)
-    for v, r, EI, GA, s in ((1, 5, EIz, GAy, 1), (2, 4, EIy, GAz, -1)):
-        phi = 12 * EI / (GA * L * L) if GA else 0.0
-        c = EI / (L ** 3 * (1 + phi))
-        put(v, v, 12 * c)
-        put(v + 6, v + 6, 12 * c)
-        put(v, v + 6, -12 * c)
-        for i, sign in ((r, s), (r + 6, s)):
-            put(v, i, sign * 6 * c * L)
-            put(v + 6, i, -sign * 6 * c * L)
-        put(r, r, (4 + phi) * c * L * L)
-        put(r + 6, r + 6, (4 + phi) * c * L * L)
-        put(r, r + 6, (2 - phi) * c * L * L)
-    return k
-
-
-class Law:
-    """One law: text for the file, and the deflection at a force; limits of the force for a friction."""
-
-    def __init__(self, kind, rotation, scale, dice):
-        # scale: a stiffness, size: a deflection that the frame reaches
-        self.kind = kind
-        self.most = math.inf
-        self.slip = 0.0
-        self.rotation = rotation
-        m, f = ("rad", "moment") if rotation else ("m", "force")
-        N, per = ("Nm", "Nm/rad") if rotation else ("N", "N/m")
-        u = dice.uniform
-        if kind == "linear":
-            k = scale * u(0.5, 2)
-            self.text = f"{{law: linear, stiffness: {k!r} {per}}}"
-            self.k = k
-            self.delta = lambda force: force / k
-        elif kind == "one_sided":
-            pull, push = 10 / scale * u(0.1, 5), u(0, 0.2) / scale if dice.random() < 0.6 else 0.0
-            back = f", push: {push!r} {'rad/Nm' if rotation else 'm/N'}" if push else ""
-            self.text = f"{{law: one_sided, pull: {pull!r} {'rad/Nm' if rotation else 'm/N'}{back}}}"
-            self.delta = lambda force: (pull if force > 0 else push) * force
-        elif kind == "clearance":
-            gap = u(1e-5, 3e-4)
-            self.text = f"{{law: clearance, gap: {gap!r} {m}}}"
-            self.delta = lambda force: math.copysign(gap, force) if force else 0.0
-        elif kind == "power":
-            d, F, n = u(1e-5, 1e-4), u(20, 200), u(0.6, 1)
-            self.text = f"{{law: power, deflection: {d!r} {m}, {f}: {F!r} {N}, exponent: {n!r}}}"
-            self.delta = lambda force: math.copysign(d * abs(force / F) ** n, force)
-        elif kind == "hardening":
-            k, ref = scale * u(0.2, 1), u(1e-4, 1e-3)
-            self.text = f"{{law: hardening, stiffness: {k!r} {per}, reference: {ref!r} {m}}}"
-
-            def delta(force):
-                low, high = 0.0, abs(force) / k
-                for _ in range(200):
-                    x = (low + high) / 2
-                    low, high = (x, high) if k * x * (1 + x * x / ref / ref) < abs(force) else (low, x)
-                return math.copysign((low + high) / 2, force)
-            self.delta = delta
-        else:
-            k, F = scale * u(1, 5), u(1, 60)
-            self.text = f"{{law: friction, {f}: {F!r} {N}, stiffness: {k!r} {per}}}"
-            self.most = F
-            self.delta = lambda force: self.slip + force / k
 
 
 class Frame:
@@ -295,7 +183,6 @@ class Frame:
         Kff = [[K[i][j] for j in free] for i in free]
         B = [[D(form.get(i, 0.0)) for i in free] for form, _ in self.elements]
         none = {"factor": 1, "nodes": {}, "lines": {}, "heat": {}}
-        moved = {6 * n + i: v for c in cases for (n, i), v in c["moves"].items()}
         loads = [self.load(c) for c in [none] + cases]
         values = [{}] + [{6 * n + i: D(c["factor"] * v) for (n, i), v in c["moves"].items()} for c in cases]
         columns = [[F[i] - sum(K[i][j] * x for j, x in v.items()) for i in free] for F, v in zip(loads, values)]
