@@ -257,7 +257,7 @@ TEST(MeasuredFrame, NamesWhatIsHidden) {
                         {"truss-45", "zero@tip_z", 0.05}, {"truss-45", "linear@support.P0b.ux", 3e4},
                         {"beam-on-springs", "factor@spring.pad2.uz", 0.6}, {"lattice-girder", "factor@llow1", 0.7},
                         {"lattice-girder", "linear@support.l4.uz", 5e4}, {"lattice-girder", "factor@wind", 1.1},
-                        {"truss-45", "stiction@tip_z", 0.05, "cycle"}}) {
+                        {"truss-45", "factor@D1bc", 0.02}, {"truss-45", "stiction@tip_z", 0.05, "cycle"}}) {
     const diagnosis::Diagnosis d = diagnosed(built_in(c.frame), c.effect, VectorX::Constant(1, c.value), c.campaign);
     EXPECT_TRUE(names_one_of(d, c.effect)) << c.frame << " " << c.effect << ": " << fmt::format("{}", fmt::join(named(d), ", "));
   }

@@ -51,9 +51,12 @@ EffectParameter spring(const subject::Place& p, const char* words) {
 
 bool in_series(const subject::Place& p) { return !p.freedoms.empty() && p.hold != subject::Hold::free; }
 bool single(const subject::Place& p) { return p.freedoms.size() == 1; }
+bool of_frame(const subject::Place& p) {
+  return p.path.starts_with("supports.") || p.path.starts_with("springs.") || p.path.starts_with("members.");
+}
 /// A frame has many ends of members: there only what is common is looked for.
 bool may_be_loose(const subject::Place& p) {
-  return in_series(p) && single(p) && !(p.kind == subject::PlaceKind::member_end && p.path.starts_with("members."));
+  return in_series(p) && single(p) && !(p.kind == subject::PlaceKind::member_end && of_frame(p));
 }
 
 /// One law where it can act.
@@ -118,7 +121,7 @@ const PlaceLaw laws[] = {
      "is not as stiff as described",
      [](const subject::Place&) {
        return std::vector<EffectParameter>{
-           {"factor", "", 0.9, 0.01, 50, true, 1, "true stiffness over the one in the description"}};
+           {"factor", "", 0.9, 1e-6, 50, true, 1, "true stiffness over the one in the description; near 0: missing"}};
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
      {"{} is softer or stiffer than its section and material say: another section or grade, corrosion, a crack, a loose "
@@ -288,17 +291,19 @@ const PlaceLaw laws[] = {
        const double force = p.rotation() ? 100 : 2, stiffness = p.rotation() ? 1e6 : 1e3;
        const std::string strength = fmt::format("{}_{}", u.moment_word, u.force),
                          stuck = fmt::format("stiffness_{}_per_{}", u.force, u.way);
-       return std::vector<EffectParameter>{
+       std::vector<EffectParameter> out = {
            {strength, u.force, force, force * 1e-4, force * 1e4, true, 0,
             fmt::format("{} that friction holds before it slips, {}", u.moment_word, u.force)},
            {stuck, fmt::format("{}/{}", u.force, u.way), stiffness, stiffness * 1e-4, stiffness * 1e4, true,
-            std::nullopt, fmt::format("stiffness while it sticks, {}/{}", u.force, u.way)},
-           {"start_share", "", 0, -1, 1, false, std::nullopt,
-            "share of the largest load that came and went before the first reading", true}};
+            std::nullopt, fmt::format("stiffness while it sticks, {}/{}", u.force, u.way)}};
+       if (!of_frame(p))  // whose frictions start relaxed
+         out.push_back({"start_share", "", 0, -1, 1, false, std::nullopt,
+                        "share of the largest load that came and went before the first reading", true});
+       return out;
      },
      [](const auto& p, const subject::Place& at) {
-       return fmt::format("{{law: friction, {}: ${}, stiffness: ${}, start: ${}}}", units(at).moment_word, p[0].name,
-                          p[1].name, p[2].name);
+       return fmt::format("{{law: friction, {}: ${}, stiffness: ${}{}}}", units(at).moment_word, p[0].name, p[1].name,
+                          p.size() > 2 ? ", start: $" + p[2].name : "");
      },
      {"{} rubs: seals, bearings and teeth hold a part of the load until they slip.",
       "Loops: loading and unloading differ, and the displacement does not return to zero.",

@@ -2,15 +2,19 @@
 //
 //   law        where                                           what it is
 //   linear     rigid directions, elastic ones of another law   a spring in series
-//   factor     freedoms held by one spring, members,           that stiffness, material or dimension times a factor
-//              materials, dimensions of sections
+//   factor     freedoms held by one spring, members,           that stiffness, material, dimension or load times a factor
+//              materials, dimensions of sections, load cases
 //   gain       named sensors                                   what they read, times a factor
+//   zero       named sensors whose zero is taken               what they read, plus a number
+//   stiction   sensors of frames                               what they read lags by up to a number
 //   clearance  rigid and elastic directions                    free travel to both sides, in series
 //   pull push  rigid and elastic directions                    a spring in series that yields in one sense only
 //   contact    rigid and elastic translations                  in series, as the force to the power 2/3
 //   hardening  drives                                          a spring in series that stiffens
 //   friction   free and elastic freedoms                       sticks before it slips, side by side
 //   restraint  free freedoms                                   a spring side by side
+//
+// At the ends of a frame's members, which are many, no play and nothing one-sided is looked for.
 //
 // Their ids are law@place: "clearance@elbow.rz" of every leg, "factor@leg.elbow.rz" of one leg.
 #pragma once
