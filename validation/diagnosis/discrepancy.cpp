@@ -20,6 +20,47 @@ const std::vector<double>& scales() {
   return all;
 }
 
+/// The freedoms that a number's channel is one of: the six of T, or the sensors of a subject without T.
+VectorX freedoms_of(const compare::ResidualStudy& s, const measurement::MeasuredValue& v) {
+  if (s.standing->has_tool_point()) return v.form;
+  return VectorX::Unit(std::ssize(s.data->instruments.sensors), as_index(v.channel) - 6);
+}
+
+/// The loads that patterns are made of, by reading (columns): forces at T, or the most used loads of a frame, each as a
+/// share of its largest.
+MatrixX leading_loads(const compare::ResidualStudy& s) {
+  if (s.standing->has_tool_point()) return s.loads.topRows(3);
+  constexpr Eigen::Index most = 6;
+  std::vector<Eigen::Index> order(as_size(s.loads.rows()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const VectorX largest = s.loads.cwiseAbs().rowwise().maxCoeff();
+  const auto used = [&](Eigen::Index k) { return (s.loads.row(k).array() != 0).count(); };
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return used(a) > used(b); });
+  MatrixX out(std::min(most, s.loads.rows()), s.loads.cols());
+  for (Eigen::Index k = 0; k < out.rows(); ++k)
+    out.row(k) = s.loads.row(nth(order, k)) / std::max(largest(nth(order, k)), 1e-300);
+  return out;
+}
+
+/// Of a subject that is read by sensors alone: what each channel can read in proportion to each load, to its size, and
+/// whatever its size.
+MatrixX by_influence(const compare::ResidualStudy& s) {
+  const MatrixX loads = leading_loads(s);
+  MatrixX out;
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    const VectorX freedoms = freedoms_of(s, s.values[i]);
+    const Eigen::Index n = freedoms.size();
+    if (i == 0) out = MatrixX::Zero(std::ssize(s.values), 3 * n * loads.rows());
+    for (Eigen::Index k = 0; k < loads.rows(); ++k) {
+      const double f = loads(k, as_index(s.values[i].reading));
+      const double shapes[] = {f, std::abs(f), f > 0 ? 1.0 : f < 0 ? -1.0 : 0.0};
+      for (Eigen::Index b = 0; b < 3; ++b)
+        out.row(as_index(i)).segment(n * (3 * k + b), n) = shapes[b] * freedoms.transpose();
+    }
+  }
+  return out;
+}
+
 MatrixX by_sites(const compare::ResidualStudy& s) {
   std::vector<MatrixX> parts;
   for (const compare::Pattern& p : compare::patterns_of(s))
@@ -46,29 +87,8 @@ MatrixX by_sites(const compare::ResidualStudy& s) {
     }
     if (s.sequence) add([&](std::size_t i, std::size_t k) { return s.heading[i](as_index(k)); });
   }
+  if (!s.standing->has_tool_point()) parts.push_back(by_influence(s));
   return statistics::side_by_side(parts, std::ssize(s.values));
-}
-
-/// The freedoms that a number's channel is one of: the six of T, or the sensors of a subject without T.
-VectorX freedoms_of(const compare::ResidualStudy& s, const measurement::MeasuredValue& v) {
-  if (s.standing->has_tool_point()) return v.form;
-  return VectorX::Unit(std::ssize(s.data->instruments.sensors), as_index(v.channel) - 6);
-}
-
-/// The loads that patterns are made of, by reading (columns): forces at T, or the most used loads of a frame, each as a
-/// share of its largest.
-MatrixX leading_loads(const compare::ResidualStudy& s) {
-  if (s.standing->has_tool_point()) return s.loads.topRows(3);
-  constexpr Eigen::Index most = 6;
-  std::vector<Eigen::Index> order(as_size(s.loads.rows()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  const VectorX largest = s.loads.cwiseAbs().rowwise().maxCoeff();
-  const auto used = [&](Eigen::Index k) { return (s.loads.row(k).array() != 0).count(); };
-  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return used(a) > used(b); });
-  MatrixX out(std::min(most, s.loads.rows()), s.loads.cols());
-  for (Eigen::Index k = 0; k < out.rows(); ++k)
-    out.row(k) = s.loads.row(nth(order, k)) / std::max(largest(nth(order, k)), 1e-300);
-  return out;
 }
 
 /// At each pose and for each freedom c of what is read (column b n + c): as much as 10 N do (in a frame all loads), and

@@ -115,9 +115,12 @@ std::vector<VectorX> starts(const effects::PlacedEffect& e) {
     const bool from_nothing = p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high;
     if (from_nothing && !p.log)
       tries = {*p.vanishes};
-    else if (from_nothing)
+    else if (from_nothing) {
       tries = {*p.vanishes * 1.02, *p.vanishes / 1.02};
-    else if (p.log) {
+      // Far from 1 a factor's effect saturates: a search that jumps there does not come back.
+      for (const double share : {0.3, 0.05, 4.0})
+        if (const double far = share * *p.vanishes; 2 * p.low < far && 2 * far < p.high) tries.push_back(far);
+    } else if (p.log) {
       const int count = all.size() == 1 ? 9 : p.vanishes ? 7 : 3;
       const double low = std::max(std::log(p.low), std::log(p.start) - 9),
                    high = std::min(std::log(p.high), std::log(p.start) + 9);
@@ -328,7 +331,7 @@ bool wants_more_than_there_can_be(const Hypothesis& h, const Fit& f) {
   const effects::EffectParameter& p = own.front();
   const double x = coordinate(p, f.values(f.values.size() - 1));
   for (const double bound : {p.low, p.high})
-    if (p.vanishes != bound && std::abs(x - coordinate(p, bound)) < 1e-3) return true;
+    if (p.vanishes != bound && !(p.log && bound < 1e-5 * p.start) && std::abs(x - coordinate(p, bound)) < 1e-3) return true;
   return false;
 }
 

@@ -58,7 +58,7 @@ std::vector<const effects::EffectParameter*> parameters_of(const Hypothesis&);
 bool runs_to_a_bound(const Hypothesis&, const Fit&);
 
 /// Whether the last effect has one parameter and it is fitted to a bound at which the effect does not vanish: the data
-/// ask for a larger effect than the bounds allow.
+/// ask for a larger effect than the bounds allow. A factor that is next to nothing is as large an effect as there is.
 bool wants_more_than_there_can_be(const Hypothesis&, const Fit&);
 
 /// Whether it has parameters beside its amplitude, which determine its shape (a friction's stiffness, an exponent).

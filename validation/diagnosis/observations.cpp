@@ -68,6 +68,16 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
 
 void Observations::count_shape() { A_.shared.rightCols<1>() = shape_known_to * shape_; }
 
+void Observations::move_tolerances(const subject::Subject& subject) {
+  const compare::ResidualStudy& s = comparison_->study;
+  if (s.standing->has_tool_point()) return;
+  const auto moved = outcome_of([&] {
+    return statistics::tolerance_model(*subject.stand(*s.data, s.standing.get()), *s.data, s.values, {threads_});
+  });
+  if (!moved || moved->A.shared.cols() + 1 != A_.shared.cols() || !moved->A.groups.empty()) return;
+  A_.shared.leftCols(moved->A.shared.cols()) = tolerance_scale_ * moved->A.shared;
+}
+
 void Observations::weigh(const std::vector<bool>& aside) {
   aside_ = aside;
   uncertainty_ = uncertainty_of(*comparison_, A_, aside_);
@@ -135,6 +145,7 @@ Observations Observations::granted(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
   if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) out.shape_ = *shape;
   out.count_shape();
+  out.move_tolerances(subject);
   const std::vector<bool> aside =
       compare::gross_outliers(s, out.A_, comparison_->sigma, out.residual(subject), {}).aside;
   const auto count = as_size(std::count(aside.begin(), aside.end(), true));

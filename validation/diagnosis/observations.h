@@ -47,7 +47,8 @@ class Observations {
   /// its number of standard deviations.
   std::vector<std::pair<std::string, double>> strained(const subject::Subject&) const;
 
-  /// A copy for which this subject counts as right: the contribution of the deformed shape is computed for it, and
+  /// A copy for which this subject counts as right: the contribution of the deformed shape is computed for it, of a
+  /// subject without tool point also what its tolerances do (a missing member changes what its neighbours' do), and
   /// readings that are gross outliers to it are set aside, unless they are more than one in twenty.
   Observations granted(const subject::Subject&) const;
 
@@ -56,6 +57,7 @@ class Observations {
   VectorX from_zero(VectorX residual) const;
   void weigh(const std::vector<bool>& aside);
   void count_shape();
+  void move_tolerances(const subject::Subject&);
 
   subject::Subject subject_;
   // Shared by all copies that granted() makes.
