@@ -157,6 +157,23 @@ void FieldReader::quantity_if_given(const char* key, std::optional<double>& valu
   if (const YamlNode* node = find(key, false, sample, about)) value = number(*node, path, q, sample);
 }
 
+void FieldReader::quantity_or_word(const char* key, double& value, const Quantity& q, std::string& word,
+                                   const std::vector<std::string>& of, const char* about) {
+  word.clear();
+  const YamlNode* node = child(key);
+  if (!node || node->kind != Kind::scalar || std::find(of.begin(), of.end(), node->text) == of.end()) {
+    const bool letters = node && node->kind == Kind::scalar && !node->text.empty() &&
+                         std::isalpha(static_cast<unsigned char>(node->text.front()));
+    if (letters)
+      fail(*node, joined(path_, key),
+           fmt::format("'{}' is neither a number nor a known word{}", node->text, suggestion(node->text, of)));
+    return quantity(key, value, q, about);
+  }
+  find(
+      key, false, [&] { return example(key, q.dimension); }, about);
+  word = node->text;
+}
+
 void FieldReader::integer(const char* key, int& value, int low, int high, const char* about) {
   const std::string sample = fmt::format("{}: {}", key, low);
   const YamlNode* node = find(key, true, sample, about);

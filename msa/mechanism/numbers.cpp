@@ -22,6 +22,10 @@ class NumberWalk : public FieldVisitor {
   void quantity_if_given(const char* key, std::optional<double>& x, const Quantity& q, const char* about) override {
     if (x) quantity(key, *x, q, about);
   }
+  void quantity_or_word(const char* key, double& x, const Quantity& q, std::string& word,
+                        const std::vector<std::string>&, const char* about) override {
+    if (word.empty()) quantity(key, x, q, about);
+  }
   void vector3(const char* key, Vector3& x, Dimension d, const char*) override { all_of(key, x, d); }
   void matrix(const char* key, MatrixX& x, Eigen::Index, Need, const char*) override {
     const auto rows = [&] {

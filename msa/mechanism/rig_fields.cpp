@@ -120,8 +120,9 @@ void describe(FieldVisitor& v, PointSensor& s) {
             "must be one of ux, uy, uz, rx, ry, rz, or a vector such as [0, 0.6, 0.8] in base axes");
   v.text("gain", s.gain_text, Need::optional, "recorded over true displacement, as in '1 ± 0.5 %'");
   v.require(read_gain(s), "gain", "must be a number above 0, or one with its standard deviation, as in '1 ± 0.5 %'");
-  v.quantity("sigma", s.sigma, optional(0, s.rotation ? Dimension::angle : Dimension::length, not_negative),
-             "standard deviation of one reading");
+  Quantity sigma = optional(0, s.rotation ? Dimension::angle : Dimension::length, not_negative);
+  sigma.or_dimension = s.rotation ? Dimension::length : Dimension::angle;
+  v.quantity("sigma", s.sigma, sigma, "standard deviation of one reading, a length or, of a rotation, an angle");
   describe_zero(v, s.free_zero);
 }
 
