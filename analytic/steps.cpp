@@ -246,6 +246,10 @@ class Balance {
     const double length = ask_({}).length;
     for (Eigen::Index i = 0; i < n_; ++i)
       imposed_.c(i) = nth(members_, i).stepped->rotation ? 1e-10 / (length * length) : 1e-10;
+    // Several frictions side by side hold each other alone: digits are kept by the stiffness with which they stick.
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (const auto* friction = std::get_if<FrictionLaw>(&nth(members_, i).law()))
+        imposed_.c(i) = std::max(imposed_.c(i), 1 / friction->stiffness);
     linearise(VectorX::Zero(n_), answer(VectorX::Zero(n_)), 1e3);
     for (Eigen::Index i = 0; i < n_; ++i)
       if (imposed_.S(i, i) * imposed_.c(i) > 1e-12) imposed_.c(i) = 1 / imposed_.S(i, i);

@@ -85,7 +85,7 @@ sensors:
   tip: {body: tool, direction: uz}
 )",
                                       "probe.yaml");
-  const Measurements data = file(m, "pose,q1_rad,fz_N,still_mm,tip_mm", "a,0,20,0,0\na,0,-10,0,0\n");
+  const Measurements data = file(m, "pose,q1_rad,fx_N,fy_N,fz_N,still_mm,tip_mm", "a,0,0,0,20,0,0\na,0,0,0,-10,0,0\n");
   for (const char* theory : {"analytic", "msa"})
     for (const Geometry g : {Geometry::linear, Geometry::finite}) {
       const std::vector<VectorX> d = predicted(m, data, g, theory);
@@ -97,9 +97,9 @@ sensors:
 
 TEST(Instruments, ASensorThatTheDeviceLacksIsToldWithThoseItHas) {
   const Mechanism m = instrumented();
-  const Measurements data = file(m, command + ",left_mm", std::string(pose) + ",0\n");
+  const Measurements data = file(m, command + ",fx_N,fy_N,fz_N,left_mm", std::string(pose) + ",1,0,0,0\n");
   try {
-    Instruments(test::with(m, "sensors", "{other: {direction: uz}}"), data);
+    prediction::Instruments(test::with(m, "sensors", "{other: {direction: uz}}"), data);
     FAIL();
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(), ("data.csv: " + m.name + " has no sensor 'left'; there is other").c_str());

@@ -100,14 +100,14 @@ TEST(SideBySide, FrictionBesideADriveLoadsSlipsAndSticksAsByHand) {
   EXPECT_NEAR(turn(0), (7.0 / 200 - 7.5 / 1000) - 2.5 / 200, 1e-14);
 }
 
-const char* rubbing = R"(name: drive
+const char* pressed = R"(name: drive
 kinematics: {family: chains}
 leg:
   drive: {joint: motor, rz: [{law: linear, stiffness: 400 Nm/rad}, {law: linear, stiffness: 400 Nm/rad}], beside: {rz: {law: friction, moment: 1 Nm, share: 0.4, stiffness: 800 Nm/rad}}}
   lever: {offset: [0 mm, 0 mm, 100 mm]}
 )";
 
-/// Turns a drive about its axis by one moment after the other, by both theories; 1e-12 between them.
+/// Turns a drive about its axis by one moment after the other, by both theories, which agree.
 class Turned {
  public:
   explicit Turned(const std::string& file)
@@ -122,7 +122,8 @@ class Turned {
     const auto f = msa_.solve(Nm * Vector6::Unit(5), msa_at);
     EXPECT_TRUE(a.converged) << a.message;
     EXPECT_TRUE(f.state.converged) << f.state.message;
-    EXPECT_NEAR(a.displacement(5), f.displacement(5), geometry == Geometry::linear ? 1e-13 : 1e-9) << Nm;
+    const double to = geometry == Geometry::linear ? 1e-13 + 1e-11 * std::abs(a.displacement(5)) : 1e-9;
+    EXPECT_NEAR(a.displacement(5), f.displacement(5), to) << Nm;
     slips_ = a.slips;
     msa_slips_ = f.slips;
     return a.displacement(5);
@@ -137,7 +138,7 @@ class Turned {
 // Springs of 200 Nm/rad that carry s beside a friction r, |r| ≤ 1 + 0.4 |s|, s + r = T. Loading: s = (T − 1)/1.4.
 // Unloading from 29 Nm (s = 20, 0.1 rad) it sticks until r = −9, then s = (T + 1)/0.6; at no load s = 1/0.6.
 TEST(SideBySide, FrictionGrowsWithTheLoadBesideIt) {
-  Turned turn(rubbing);
+  Turned turn(pressed);
   EXPECT_NEAR(turn(0.5), 0.5 / 1000, 1e-14);
   EXPECT_NEAR(turn(29), 20.0 / 200, 1e-13);
   EXPECT_NEAR(turn(24), 0.1 - 5.0 / 1000, 1e-13);
@@ -148,14 +149,14 @@ TEST(SideBySide, FrictionGrowsWithTheLoadBesideIt) {
 }
 
 TEST(SideBySide, FrictionGrowsWithTheLoadInTheDeformedShapeToo) {
-  Turned turn(rubbing);
+  Turned turn(pressed);
   EXPECT_NEAR(turn(29, Geometry::finite), 20.0 / 200, 1e-9);
   EXPECT_NEAR(turn(8, Geometry::finite), 9 / 0.6 / 200, 1e-9);
 }
 
 // A play and another friction beside the same springs: hand values at the ends, both theories all along the loop.
 TEST(SideBySide, FrictionThatGrowsStandsBesidePlayAndOtherFriction) {
-  std::string file = rubbing;
+  std::string file = pressed;
   const auto replace = [&](const std::string& what, const std::string& by) {
     file.replace(file.find(what), what.size(), by);
   };
@@ -169,6 +170,19 @@ TEST(SideBySide, FrictionThatGrowsStandsBesidePlayAndOtherFriction) {
   double hardening = 0;
   for (int i = 0; i < 100; ++i) hardening = 12 / 900.0 / (1 + 100 * hardening * hardening);
   EXPECT_NEAR(turn(12 + 2 + 1 + 4.8), 12 / 400.0 + hardening + 0.01, 1e-10);
+}
+
+// Two frictions beside a spring with play have nothing but each other to hold them while the play is open.
+TEST(SideBySide, SeveralFrictionsBesidePlayAreSolvedAllAlongALoop) {
+  Turned turn(R"(name: drive
+kinematics: {family: chains}
+leg:
+  drive:
+    joint: motor
+    rz: [{law: linear, stiffness: 190 Nm/rad}, {law: clearance, gap: 5.7 mrad}]
+    beside: {rz: [{law: friction, moment: 5.2 Nm, stiffness: 200 Nm/rad}, {law: friction, moment: 0 Nm, share: 0.46, stiffness: 7000 Nm/rad}]}
+)");
+  for (int i = 0; i <= 400; ++i) turn(35 * std::sin(2 * pi * i / 160.0));
 }
 
 // In a machine of several legs no leg's load is known beforehand.
