@@ -161,16 +161,13 @@ void FieldReader::quantity_or_word(const char* key, double& value, const Quantit
                                    const std::vector<std::string>& of, const char* about) {
   word.clear();
   const YamlNode* node = child(key);
-  if (!node || node->kind != Kind::scalar || std::find(of.begin(), of.end(), node->text) == of.end()) {
-    const bool letters = node && node->kind == Kind::scalar && !node->text.empty() &&
-                         std::isalpha(static_cast<unsigned char>(node->text.front()));
-    if (letters)
-      fail(*node, joined(path_, key),
-           fmt::format("'{}' is neither a number nor a known word{}", node->text, suggestion(node->text, of)));
+  const bool text = node && node->kind == Kind::scalar && !node->text.empty();
+  if (!text || std::find(of.begin(), of.end(), node->text) == of.end()) {
+    if (text && std::isalpha(static_cast<unsigned char>(node->text.front())))
+      fail(*node, joined(path_, key), "is neither a number nor a known word" + suggestion(node->text, of));
     return quantity(key, value, q, about);
   }
-  find(
-      key, false, [&] { return example(key, q.dimension); }, about);
+  find(key, false, std::string(), about);
   word = node->text;
 }
 
