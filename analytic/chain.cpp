@@ -85,9 +85,37 @@ void add_yielding(Flexibility& f, const Vector6& twist, double compliance) {
   if (compliance > 0) append(f.roots, twist * std::sqrt(compliance));
 }
 
+double share_of(const SteppedLaw& law) {
+  const auto* friction = std::get_if<FrictionLaw>(&law.law);
+  return friction ? friction->share : 0;
+}
+
+/// The freedom of the same joint that a freedom of another branch stands beside.
+ElasticFreedom* beside(Chain& joint, const ElasticFreedom& f) {
+  const auto same = [&](const ElasticFreedom& each) {
+    return each.rotation == f.rotation && each.twist.isApprox(f.twist, 1e-12);
+  };
+  const auto found = std::find_if(joint.freedoms.begin(), joint.freedoms.end(), same);
+  return found == joint.freedoms.end() ? nullptr : &*found;
+}
+
+/// Where a friction's limit grows with what the laws beside it carry, a law that is rigid in both senses stands in
+/// series with these: as a step it tells their force.
+void watch_loads(std::vector<Chain>& branches) {
+  for (const Chain& branch : branches)
+    for (const ElasticFreedom& f : branch.freedoms) {
+      if (std::none_of(f.stepped.begin(), f.stepped.end(), [](const SteppedLaw& l) { return share_of(l) > 0; }))
+        continue;
+      ElasticFreedom* joint = beside(branches.front(), f);
+      if (joint && joint->stepped.empty())
+        joint->stepped.push_back({OneSidedLaw{0, 0}, joint->spring.preload, joint->rotation, joint->part});
+    }
+}
+
 void add_parallel(Chain& chain, const PlacedParallel& parallel, const Vector3& p_W, const AsPrinted& p) {
   std::vector<Chain> branches;
   for (const PlacedLeg& branch : parallel.branches) branches.push_back(chain_of(branch, p_W, chain.length, p));
+  watch_loads(branches);
   chain.groups.push_back(group_of(parallel.part, std::move(branches), chain.length));
   append(chain.J_q, chain.groups.back().J);
 }
@@ -222,8 +250,16 @@ void Chain::number_steps(std::vector<SteppedLaw>& all) {
       law.number = static_cast<int>(all.size());
       all.push_back(law);
     }
-  for (Group& g : groups)
+  for (Group& g : groups) {
     for (Chain& branch : g.branches) branch.number_steps(all);
+    for (const Chain& branch : g.branches)
+      for (const ElasticFreedom& f : branch.freedoms)
+        for (const SteppedLaw& law : f.stepped) {
+          if (share_of(law) == 0) continue;
+          const ElasticFreedom* joint = beside(g.branches.front(), f);
+          if (joint && !joint->stepped.empty()) all[as_size(law.number)].load = joint->stepped.front().number;
+        }
+  }
 }
 
 void Chain::add_step_forces(const Vector6& F, const ChainConditions& c, VectorX& forces) const {

@@ -10,6 +10,7 @@
 #include "analytic/deflection.h"
 #include "msa/base/index.h"
 #include "msa/base/set_valued_laws.h"
+#include "msa/base/settle.h"
 
 namespace deflect::analytic {
 namespace {
@@ -30,6 +31,7 @@ struct Member {
   Phase phase = Phase::start;
   double imposed = 0;  // offset while released
   double force = 0;    // of a law that bends
+  double limit = 0;    // of a friction
 
   const Law& law() const { return stepped->law; }
   bool released() const {
@@ -86,15 +88,15 @@ ScalarLaw bent(const Law& law, double P) {
           [&law, rest](double d) { return 1 / analytic::compliance(law, force_at(law, d + rest)); }};
 }
 
-/// f by δ, both from the preloaded state. A friction's slip counts from there too.
-ScalarLaw scalar_law(const SteppedLaw& stepped, double slip) {
+/// f by δ, both from the preloaded state. A friction's slip counts from there too; `limit`: its own.
+ScalarLaw scalar_law(const SteppedLaw& stepped, double slip, double limit) {
   const double P = stepped.preload;
   if (const auto* l = std::get_if<ClearanceLaw>(&stepped.law)) {
     const double rest = l->gap * sign(P);
     return {-l->gap - rest, l->gap - rest, [P](double) { return -P; }, [](double) { return 0.0; }, -rest, l->gap};
   }
   if (const auto* l = std::get_if<FrictionLaw>(&stepped.law)) {
-    const double k = l->stiffness, F = l->force;
+    const double k = l->stiffness, F = limit;
     return {-infinite,
             infinite,
             [=](double d) { return std::clamp(k * (d - slip) + P, -F, F) - P; },
@@ -144,8 +146,10 @@ class Balance {
       if (const auto* friction = std::get_if<FrictionLaw>(&l.law)) {
         const auto n = as_size(friction->number);
         if (friction->number >= 0 && n < slips.size()) members_.back().slip = slips[n];
+        members_.back().limit = friction->force;
+        if (friction->share > 0 && l.load >= 0) growing_.push_back(std::ssize(members_) - 1);
       }
-      laws_.push_back(scalar_law(l, members_.back().slip));
+      laws_.push_back(scalar_law(l, members_.back().slip, members_.back().limit));
     }
   }
 
@@ -164,7 +168,7 @@ class Balance {
       sizes_ = VectorX::Constant(n_, at.largest);
       for (Eigen::Index i = 0; i < n_; ++i)
         if (nth(members_, i).stepped->rotation) sizes_(i) *= at.length;
-      found = solve({imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_}, laws_, imposed_.T);
+      found = settled({imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_});
       if (found.outcome != SetValuedSolution::Outcome::solved) return failed(found);
       // Where other laws bend, no further than brings the forces nearer, along p = δ + c f, of which every law has one.
       const VectorX target = found.d + imposed_.c.cwiseProduct(found.s);
@@ -199,6 +203,37 @@ class Balance {
   }
 
  private:
+  /// The laws in equilibrium, with limits of frictions that are those of the loads beside them.
+  SetValuedSolution settled(const LinearRelation& relation) {
+    if (growing_.empty()) return solve(relation, laws_, imposed_.T);
+    SetValuedSolution found;
+    VectorX limits(std::ssize(growing_));
+    double rounding = 0;
+    for (Eigen::Index i = 0; i < limits.size(); ++i) {
+      const Member& m = nth(members_, nth(growing_, i));
+      limits(i) = m.limit;
+      rounding = std::max(rounding, 1e-14 * std::abs(m.slip) * std::get<FrictionLaw>(m.law()).stiffness);
+    }
+    const auto of_loads = [&](const VectorX& tried) -> std::optional<VectorX> {
+      VectorX out = tried;
+      for (Eigen::Index i = 0; i < tried.size(); ++i) {
+        Member& m = nth(members_, nth(growing_, i));
+        m.limit = tried(i);
+        nth(laws_, nth(growing_, i)) = scalar_law(*m.stepped, m.slip, m.limit);
+      }
+      found = solve(relation, laws_, imposed_.T);
+      if (found.outcome != SetValuedSolution::Outcome::solved) return std::nullopt;
+      for (Eigen::Index i = 0; i < tried.size(); ++i) {
+        const SteppedLaw& law = *nth(members_, nth(growing_, i)).stepped;
+        const auto& friction = std::get<FrictionLaw>(law.law);
+        out(i) = friction.force + friction.share * std::abs(found.s(law.load));
+      }
+      return out;
+    };
+    if (!settle(limits, of_loads, rounding)) found.outcome = SetValuedSolution::Outcome::undecided;
+    return found;
+  }
+
   SteppedForces answer(const VectorX& o) const {
     std::vector<Step> steps;
     for (Eigen::Index i = 0; i < n_; ++i) steps.push_back({o(i), imposed_.c(i), false});
@@ -211,6 +246,10 @@ class Balance {
     const double length = ask_({}).length;
     for (Eigen::Index i = 0; i < n_; ++i)
       imposed_.c(i) = nth(members_, i).stepped->rotation ? 1e-10 / (length * length) : 1e-10;
+    // Several frictions side by side hold each other alone: digits are kept by the stiffness with which they stick.
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (const auto* friction = std::get_if<FrictionLaw>(&nth(members_, i).law()))
+        imposed_.c(i) = std::max(imposed_.c(i), 1 / friction->stiffness);
     linearise(VectorX::Zero(n_), answer(VectorX::Zero(n_)), 1e3);
     for (Eigen::Index i = 0; i < n_; ++i)
       if (imposed_.S(i, i) * imposed_.c(i) > 1e-12) imposed_.c(i) = 1 / imposed_.S(i, i);
@@ -277,7 +316,7 @@ class Balance {
       if (!friction) continue;
       const auto n = as_size(std::max(friction->number, 0));
       out.slips.resize(std::max(out.slips.size(), n + 1));
-      const double known = (m.phase == Phase::plus ? friction->force : -friction->force) - m.stepped->preload;
+      const double known = (m.phase == Phase::plus ? m.limit : -m.limit) - m.stepped->preload;
       out.slips[n] = m.released() ? m.imposed - known / friction->stiffness : m.slip;
     }
     return out;
@@ -292,10 +331,10 @@ class Balance {
     if (found.outcome == SetValuedSolution::Outcome::no_fit)
       out.reason = "the parts cannot be assembled: their misfits are larger than the play, and nothing yields";
     for (Eigen::Index i = 0; i < found.along.size(); ++i)
-      if (const auto* l = std::get_if<FrictionLaw>(&nth(members_, i).law());
-          l && std::abs(found.along(i)) > 1e-3 * largest(found.along))
-        out.reason = fmt::format("a friction slips at {:.6g} {} and nothing else holds what it lets go", l->force,
-                                 nth(members_, i).stepped->rotation ? "Nm" : "N");
+      if (std::holds_alternative<FrictionLaw>(nth(members_, i).law()) &&
+          std::abs(found.along(i)) > 1e-3 * largest(found.along))
+        out.reason = fmt::format("a friction slips at {:.6g} {} and nothing else holds what it lets go",
+                                 nth(members_, i).limit, nth(members_, i).stepped->rotation ? "Nm" : "N");
     if (own_) imposed_ = Imposed();
     return out;
   }
@@ -306,7 +345,8 @@ class Balance {
   Eigen::Index n_;
   std::vector<Member> members_;
   std::vector<ScalarLaw> laws_;
-  VectorX sizes_;  // of forces, by law
+  std::vector<std::ptrdiff_t> growing_;  // frictions whose limit grows with a load
+  VectorX sizes_;                        // of forces, by law
 };
 
 }  // namespace

@@ -35,6 +35,7 @@ struct SteppedLaw {
   bool rotation = false;
   std::string part;
   int number = -1;
+  int load = -1;  ///< of a friction with a share: the number of a law whose force is the load beside it
 
   /// The phase by the force alone; friction sticks with zero slip.
   Step at_force(double f) const;

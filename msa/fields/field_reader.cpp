@@ -157,6 +157,20 @@ void FieldReader::quantity_if_given(const char* key, std::optional<double>& valu
   if (const YamlNode* node = find(key, false, sample, about)) value = number(*node, path, q, sample);
 }
 
+void FieldReader::quantity_or_word(const char* key, double& value, const Quantity& q, std::string& word,
+                                   const std::vector<std::string>& of, const char* about) {
+  word.clear();
+  const YamlNode* node = child(key);
+  const bool text = node && node->kind == Kind::scalar && !node->text.empty();
+  if (!text || std::find(of.begin(), of.end(), node->text) == of.end()) {
+    if (text && std::isalpha(static_cast<unsigned char>(node->text.front())))
+      fail(*node, joined(path_, key), "is neither a number nor a known word" + suggestion(node->text, of));
+    return quantity(key, value, q, about);
+  }
+  find(key, false, std::string(), about);
+  word = node->text;
+}
+
 void FieldReader::integer(const char* key, int& value, int low, int high, const char* about) {
   const std::string sample = fmt::format("{}: {}", key, low);
   const YamlNode* node = find(key, true, sample, about);

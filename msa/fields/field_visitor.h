@@ -34,6 +34,7 @@ struct Quantity {
   Dimension dimension = Dimension::none;
   Range range;
   std::optional<double> otherwise;  ///< SI value where the field is absent; a field without it is required
+  std::optional<Dimension> or_dimension = std::nullopt;  ///< that it has instead by another field: for schemas
 };
 
 struct Words {
@@ -65,9 +66,10 @@ struct Surroundings {
   std::vector<std::string> points, axes;   ///< the named points and axes
   std::vector<std::string> earlier_parts;  ///< of the chain, before the part described
   int legs = 0;
-  bool rotation = false;    ///< the laws described act on a rotation
-  bool on_actuator = true;  ///< they are in a leg whose actuator has an extension
-  bool beside = false;      ///< the joint is in parallel with a leg
+  bool rotation = false;      ///< the laws described act on a rotation
+  bool on_actuator = true;    ///< they are in a leg whose actuator has an extension
+  bool beside = false;        ///< the joint is in parallel with a leg
+  bool side_by_side = false;  ///< the laws described stand side by side with laws of the same freedom
 };
 
 /// Keys are those of the file; `about` is one phrase for messages and documentation.
@@ -77,6 +79,9 @@ class FieldVisitor {
 
   virtual void quantity(const char* key, double&, const Quantity&, const char* about) = 0;
   virtual void quantity_if_given(const char* key, std::optional<double>&, const Quantity&, const char* about) = 0;
+  /// A number or a word, which is empty where a number stands. `of`: the words.
+  virtual void quantity_or_word(const char* key, double&, const Quantity&, std::string& word,
+                                const std::vector<std::string>& of, const char* about) = 0;
   virtual void integer(const char* key, int&, int low, int high, const char* about) = 0;
   /// Zero where absent. Without a dimension it is a direction, which must not be zero where given.
   virtual void vector3(const char* key, Vector3&, Dimension, const char* about) = 0;

@@ -45,6 +45,12 @@ void FieldWriter::quantity(const char* key, double& value, const Quantity& q, co
   add(key, number(value, q.dimension), q.otherwise == value);
 }
 
+void FieldWriter::quantity_or_word(const char* key, double& value, const Quantity& q, std::string& word,
+                                   const std::vector<std::string>&, const char* about) {
+  if (word.empty()) return quantity(key, value, q, about);
+  add(key, scalar(word), false);
+}
+
 void FieldWriter::quantity_if_given(const char* key, std::optional<double>& value, const Quantity& q, const char*) {
   if (value) return add(key, number(*value, q.dimension), false);
   YamlNode absent;

@@ -22,6 +22,8 @@ class FieldWriter final : public FieldVisitor {
 
   void quantity(const char*, double&, const Quantity&, const char*) override;
   void quantity_if_given(const char*, std::optional<double>&, const Quantity&, const char*) override;
+  void quantity_or_word(const char*, double&, const Quantity&, std::string&, const std::vector<std::string>&,
+                        const char*) override;
   void integer(const char*, int&, int low, int high, const char*) override;
   void vector3(const char*, Vector3&, Dimension, const char*) override;
   void matrix(const char*, MatrixX&, Eigen::Index size, Need, const char*) override;

@@ -19,6 +19,11 @@ void NumberWalk::quantity_if_given(const char* key, std::optional<double>& x, co
   if (x) quantity(key, *x, q, about);
 }
 
+void NumberWalk::quantity_or_word(const char* key, double& x, const Quantity& q, std::string& word,
+                                  const std::vector<std::string>&, const char* about) {
+  if (word.empty()) quantity(key, x, q, about);
+}
+
 void NumberWalk::vector3(const char* key, Vector3& x, Dimension d, const char*) {
   inside(key, [&] {
     for (Eigen::Index i = 0; i < 3; ++i) at_index(as_size(i), [&] { number("", x(i), d); });

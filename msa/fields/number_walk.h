@@ -29,6 +29,8 @@ class NumberWalk : public FieldVisitor {
  public:
   void quantity(const char* key, double&, const Quantity&, const char*) override;
   void quantity_if_given(const char* key, std::optional<double>&, const Quantity&, const char*) override;
+  void quantity_or_word(const char* key, double&, const Quantity&, std::string& word, const std::vector<std::string>&,
+                        const char*) override;
   void vector3(const char* key, Vector3&, Dimension, const char*) override;
   void matrix(const char* key, MatrixX&, Eigen::Index, Need, const char*) override;
   void integer(const char*, int&, int, int, const char*) override {}

@@ -86,6 +86,7 @@ class SchemaVisitor final : public FieldVisitor {
   void quantity(const char* key, double&, const Quantity& q, const char* about) override {
     SchemaField& f = add(key, FieldKind::quantity, !q.otherwise, about);
     f.dimension = q.dimension;
+    f.or_dimension = q.or_dimension;
     f.range = q.range;
     if (q.otherwise) f.otherwise = format_quantity(*q.otherwise, q.dimension);
   }
@@ -93,6 +94,11 @@ class SchemaVisitor final : public FieldVisitor {
     SchemaField& f = add(key, FieldKind::quantity, false, about);
     f.dimension = q.dimension;
     f.range = q.range;
+  }
+  void quantity_or_word(const char* key, double& value, const Quantity& q, std::string&,
+                        const std::vector<std::string>& of, const char* about) override {
+    quantity(key, value, q, about);
+    walk_.fields.back().words = of;
   }
   void integer(const char* key, int&, int low, int, const char* about) override {
     add(key, FieldKind::integer, true, about).range.low = low;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,16 +37,18 @@ struct SchemaField {
   std::string key, about;
   FieldKind kind = FieldKind::quantity;
   Dimension dimension = Dimension::none;
+  std::optional<Dimension> or_dimension;  ///< that a number has instead, by another field
   Range range;
   bool required = false;
-  std::string otherwise;           ///< the default as written in a file; "" where there is none
-  std::string what;                ///< kind of a word: "material", "joint type"
-  std::vector<std::string> words;  ///< those allowed; empty where they are names defined in the file
-  std::size_t size = 0;            ///< rows of a matrix, 0: any
-  std::size_t level = no_level;    ///< level of its own fields, if any: index in Schema::levels
-  bool plain = false;              ///< its entries are one value each, the field "" of the level
-  bool or_word = false;            ///< an object that can also be written as one of the words
-  std::string alone;               ///< its maps can also be written as the value of this key of theirs
+  std::string otherwise;  ///< the default as written in a file; "" where there is none
+  std::string what;       ///< kind of a word: "material", "joint type"
+  std::vector<std::string>
+      words;  ///< those allowed; empty where they are names defined in the file; of a quantity: instead of a number
+  std::size_t size = 0;          ///< rows of a matrix, 0: any
+  std::size_t level = no_level;  ///< level of its own fields, if any: index in Schema::levels
+  bool plain = false;            ///< its entries are one value each, the field "" of the level
+  bool or_word = false;          ///< an object that can also be written as one of the words
+  std::string alone;             ///< its maps can also be written as the value of this key of theirs
 
   static constexpr std::size_t no_level = as_size(-1);
 };

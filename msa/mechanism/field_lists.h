@@ -11,8 +11,8 @@
 
 namespace deflect {
 
-inline Quantity required(Dimension d, Range range = positive) { return {d, range, std::nullopt}; }
-inline Quantity optional(double otherwise, Dimension d, Range range) { return {d, range, otherwise}; }
+inline Quantity required(Dimension d, Range range = positive) { return {d, range, std::nullopt, std::nullopt}; }
+inline Quantity optional(double otherwise, Dimension d, Range range) { return {d, range, otherwise, std::nullopt}; }
 inline Quantity length() { return required(Dimension::length); }
 inline Quantity area() { return required(Dimension::area); }
 

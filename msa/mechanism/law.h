@@ -131,17 +131,31 @@ struct ClearanceLaw {
   bool operator==(const ClearanceLaw&) const = default;
 };
 
-/// Elastic–Coulomb friction (a Jenkins element): f = stiffness · (δ − slip), |f| ≤ force. Beyond that the slip changes
-/// so that |f| = force. The slip is the law's history (conditions.h).
+/// How a friction stands at the first reading of a pose, in words of a device file.
+enum class FrictionStart {
+  given,    ///< by the numbers `start` and `kept`
+  relaxed,  ///< carries nothing: start 0, kept 0
+  kept,     ///< carries what it carried at the pose before: start 0, kept 1
+  unknown,  ///< anything: predicted as relaxed, `start` is uniform from −1 to 1 (subject/machine.cpp)
+};
+inline constexpr const char* friction_start_words[] = {"", "relaxed", "kept", "unknown"};
+
+/// Elastic–Coulomb friction (a Jenkins element): f = stiffness · (δ − slip), |f| ≤ limit. Beyond that the slip changes
+/// so that |f| = limit. The slip is the law's history (conditions.h). limit = force + share · |what the laws that it
+/// stands side by side with carry|: teeth, pins and bearings rub by the force that presses them. Only a friction beside
+/// an elastic freedom of a joint has a share. While it slides, the tangent stiffness leaves out that the limit grows.
 struct FrictionLaw {
   double force = 0, stiffness = 0;
   /// −1 … 1: initial state. Before the first reading of a pose the machine carried this share of the pose's largest
   /// load, and the load was removed again; readings are relative to this unloaded state. 0: no earlier load.
   double start = 0;
-  double kept = 1;  ///< 0 … 1: share of its force that a friction element beside a leg keeps from pose to pose
+  double kept = 1;   ///< 0 … 1: share of its force that a friction element beside a leg keeps from pose to pose
+  double share = 0;  ///< 0 … 0.95
+  FrictionStart word = FrictionStart::given;
   int number = -1;  ///< index among the friction laws of a configuration, see number_slips(); not compared
   bool operator==(const FrictionLaw& other) const {
-    return force == other.force && stiffness == other.stiffness && start == other.start && kept == other.kept;
+    return force == other.force && stiffness == other.stiffness && start == other.start && kept == other.kept &&
+           share == other.share && word == other.word;
   }
 };
 

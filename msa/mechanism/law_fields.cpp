@@ -103,13 +103,32 @@ void fields(FieldVisitor& v, HardeningLaw& l) {
 void fields(FieldVisitor& v, ClearanceLaw& l) {
   v.quantity("gap", l.gap, required(motion(v), not_negative), "free travel to either side of the middle");
 }
+/// `start` is a number or a word, which says what `kept` is.
+void fields_of_start(FieldVisitor& v, FrictionLaw& l) {
+  static const std::vector<std::string> words{std::begin(friction_start_words) + 1, std::end(friction_start_words)};
+  std::string word = nth(friction_start_words, l.word);
+  v.quantity_or_word(
+      "start", l.start, optional(0, Dimension::none, {-1, 1}), word, words,
+      "before the first reading of a pose: relaxed, kept, unknown, or the share of the largest load that "
+      "came and went, -1 to 1; 0: relaxed");
+  l.word = static_cast<FrictionStart>(index_of(friction_start_words, word));
+  if (l.word != FrictionStart::given) {
+    l.start = 0;
+    l.kept = l.word == FrictionStart::kept ? 1 : 0;
+    return;
+  }
+  v.quantity("kept", l.kept, optional(1, Dimension::none, {0, 1}),
+             "share of what is in it that a friction beside a leg keeps from pose to pose, 0 to 1; 0: relaxed at each");
+}
 void fields(FieldVisitor& v, FrictionLaw& l) {
   v.quantity(effort_key(v), l.force, required(effort(v), not_negative), "load at which it slips");
   v.quantity("stiffness", l.stiffness, required(stiffness(v)), "stiffness before it slips");
-  v.quantity("start", l.start, optional(0, Dimension::none, {-1, 1}),
-             "share of the largest load that came and went before the first reading, -1 to 1; 0: relaxed");
-  v.quantity("kept", l.kept, optional(1, Dimension::none, {0, 1}),
-             "share of what is in it that a friction beside a leg keeps from pose to pose, 0 to 1; 0: relaxed at each");
+  v.quantity("share", l.share, optional(0, Dimension::none, {0, 0.95}),
+             "the load at which it slips grows by this share of what the laws beside it carry, 0 to 0.95");
+  v.require(l.share == 0 || v.surroundings.side_by_side, "share",
+            "is of the load in the laws that the friction stands side by side with: move it under 'beside' of a joint "
+            "whose freedom has a law, as in 'beside: {rz: {law: friction, …}}'");
+  fields_of_start(v, l);
 }
 
 /// "'linear', 'belt', … or 'friction'": the laws that a rotation takes.

@@ -103,9 +103,11 @@ void describe_beside(FieldVisitor& v, Joint& joint) {
   const auto laws = [&] {
     for (std::size_t i = 0; i < 6; ++i) {
       v.surroundings.rotation = i >= 3;
+      v.surroundings.side_by_side = !joint.laws[i].empty();
       ListElements<Law> beside(joint.beside[i]);
       v.one_or_list(freedom_names[i], beside, "laws, each side by side with all that is on this freedom");
     }
+    v.surroundings.side_by_side = false;
   };
   v.object("beside", Need::optional, false, laws, "laws side by side with those of a freedom");
   const JointType* type = find_joint_type(joint.type);

@@ -92,6 +92,21 @@ void describe_zero(FieldVisitor& v, bool& free_zero) {
 
 }  // namespace
 
+std::optional<Dimension> other_of(Dimension d) {
+  switch (d) {
+    case Dimension::length:
+      return Dimension::angle;
+    case Dimension::angle:
+      return Dimension::length;
+    case Dimension::force:
+      return Dimension::moment;
+    case Dimension::moment:
+      return Dimension::force;
+    default:
+      return std::nullopt;
+  }
+}
+
 void describe_direction(FieldVisitor& v, std::string& text, Vector3& axis, bool& rotation) {
   v.any("direction", text, "uz", "in base axes: ux, uy, uz, a vector, or rx, ry, rz for a rotation");
   v.require(read_direction(text, axis, rotation), "direction",
@@ -101,9 +116,11 @@ void describe_direction(FieldVisitor& v, std::string& text, Vector3& axis, bool&
 void describe_errors(FieldVisitor& v, InstrumentErrors& e, Dimension d) {
   v.text("gain", e.gain_text, Need::optional, "recorded over true value, as in '1 ± 0.5 %'");
   v.require(read_gain(e), "gain", "must be a number above 0, or one with its standard deviation, as in '1 ± 0.5 %'");
-  v.quantity("sigma", e.sigma, optional(0, d, not_negative), "standard deviation of one reading");
+  Quantity sigma = optional(0, d, not_negative), offset = optional(0, d, {});
+  sigma.or_dimension = offset.or_dimension = other_of(d);
+  v.quantity("sigma", e.sigma, sigma, "standard deviation of one reading, in a unit of what is read");
   describe_zero(v, e.free_zero);
-  v.quantity("offset", e.zero, optional(0, d, {}), "reading where the true value is zero");
+  v.quantity("offset", e.zero, offset, "reading where the true value is zero");
 }
 
 void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<std::string>& trusted) {

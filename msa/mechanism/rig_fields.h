@@ -1,6 +1,7 @@
 // Fields that every named instrument has, of machines and frames.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "msa/mechanism/fields.h"
@@ -13,5 +14,8 @@ void describe_direction(FieldVisitor&, std::string& text, Vector3& axis, bool& r
 
 /// gain, sigma, zero and offset, of this dimension.
 void describe_errors(FieldVisitor&, InstrumentErrors&, Dimension);
+
+/// An angle for a length, a moment for a force, and the other way round: what the same field may have in other sensors.
+std::optional<Dimension> other_of(Dimension);
 
 }  // namespace deflect

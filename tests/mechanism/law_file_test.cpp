@@ -99,6 +99,48 @@ TEST(LawFile, IsEdited) {
   EXPECT_EQ(m.geometry, Geometry::linear);
 }
 
+/// A friction on the last law of ball_laws' place, with more fields.
+FrictionLaw friction_with(const std::string& fields) {
+  const Mechanism m =
+      test::with(full(), "leg.ball_joint.tz", "{law: friction, force: 2 N, stiffness: 1 N/mm" + fields + "}");
+  EXPECT_EQ(parse_mechanism(write_mechanism(m), "again"), m) << fields;
+  return std::get<FrictionLaw>(laws_of(m, "ball_joint")[2].at(0));
+}
+
+TEST(LawFile, FrictionStartsByAWordOrANumber) {
+  const FrictionLaw plain = friction_with(""), relaxed = friction_with(", start: relaxed"),
+                    kept = friction_with(", start: kept"), unknown = friction_with(", start: unknown"),
+                    half = friction_with(", start: -0.5, kept: 0.25");
+  EXPECT_EQ(plain.start, 0);
+  EXPECT_EQ(plain.kept, 1);
+  EXPECT_EQ(relaxed.start, 0);
+  EXPECT_EQ(relaxed.kept, 0);
+  EXPECT_EQ(kept.kept, 1);
+  EXPECT_EQ(unknown.word, FrictionStart::unknown);
+  EXPECT_EQ(unknown.kept, 0);
+  EXPECT_EQ(half.start, -0.5);
+  EXPECT_EQ(half.kept, 0.25);
+  const std::string law = "leg.ball_joint.tz", friction = "{law: friction, force: 2 N, stiffness: 1 N/mm, start: ";
+  EXPECT_NE(refusal(law, friction + "relaxt}").find("did you mean 'relaxed'"), std::string::npos);
+  EXPECT_NE(refusal(law, friction + "2}").find("between -1 and 1"), std::string::npos);
+  EXPECT_NE(refusal(law, friction + "relaxed, kept: 0.5}").find("unknown key"), std::string::npos);
+}
+
+TEST(LawFile, AWordForTheStartCanBeEdited) {
+  Mechanism m = test::with(full(), "leg.ball_joint.tz.5.start", "unknown");
+  EXPECT_EQ(std::get<FrictionLaw>(laws_of(m, "ball_joint")[2][5]).word, FrictionStart::unknown);
+  m = test::with(m, "leg.ball_joint.tz.5.start", "0.5");
+  EXPECT_EQ(std::get<FrictionLaw>(laws_of(m, "ball_joint")[2][5]).start, 0.5);
+}
+
+TEST(LawFile, AShareOfTheLoadIsOfLawsSideBySide) {
+  EXPECT_NE(refusal("leg.ball_joint.tz", "{law: friction, force: 0 N, share: 0.3, stiffness: 1 N/mm}").find("'beside'"),
+            std::string::npos);
+  const Mechanism m = test::with(full(), "leg.ball_joint.beside.tz",
+                                 "{law: friction, force: 0 N, share: 0.3, stiffness: 1 N/mm}", Edit::Action::append);
+  EXPECT_EQ(parse_mechanism(write_mechanism(m), "again"), m);
+}
+
 TEST(LawFile, MistakesAreToldWithTheWayOut) {
   const std::string law = "leg.ball_joint.tz";
   EXPECT_NE(refusal(law, "{law: power, deflection: 1 um, force: 1 N, exponent: 1.5}").find("at most 1"),

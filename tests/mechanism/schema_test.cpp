@@ -77,5 +77,26 @@ TEST(LawSchema, HasACaseForEachLawAndOnlyThoseThatTurnAboutAnAxis) {
   EXPECT_EQ(laws(true), about);
 }
 
+TEST(DeviceSchema, TheDeviationOfASensorIsALengthOrAnAngle) {
+  const Schema s = device_schema("chains");
+  const SchemaField* sigma = field(s, "sensors.NAME", "sigma");
+  ASSERT_TRUE(sigma);
+  EXPECT_EQ(sigma->dimension, Dimension::length);
+  EXPECT_EQ(sigma->or_dimension, Dimension::angle);
+}
+
+TEST(DeviceSchema, TheStartOfAFrictionIsANumberOrAWord) {
+  bool any = false;
+  for (const SchemaLevel& level : law_schema(true).levels)
+    for (const SchemaCase& c : level.cases)
+      for (const SchemaField& f : c.fields)
+        if (f.key == "start") {
+          any = true;
+          EXPECT_EQ(f.kind, FieldKind::quantity);
+          EXPECT_EQ(f.words, (std::vector<std::string>{"relaxed", "kept", "unknown"}));
+        }
+  EXPECT_TRUE(any);
+}
+
 }  // namespace
 }  // namespace deflect

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "msa/base/error.h"
+#include "msa/mechanism/device_file.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "validation/compare/comparison.h"
@@ -69,6 +70,40 @@ TEST(Instruments, RigidBodyMovesUnderSensors) {
   const Vector3 arm = c.pose.R_WT * Vector3(0, 0, 0.08), theta = d.segment<3>(3);
   EXPECT_NEAR(d(8), d(0) + (rotation_from_vector(theta) * arm - arm).x(), 1e-15);
   EXPECT_GT(std::abs(d(8) - d(0) - theta.cross(arm).x()), 1e-12) << "the second order is there";
+}
+
+// Where nothing but the tool joint yields, the platform stands still and the tool moves by its joint alone.
+TEST(Instruments, PlatformOfAMachineThatYieldsInItsToolAloneStandsStill) {
+  const Mechanism m = parse_mechanism(R"(name: probe
+kinematics: {family: chains}
+leg:
+  drive: {joint: motor}
+  lever: {offset: [0 mm, 0 mm, 100 mm]}
+tool: {tz: {law: linear, stiffness: 500 N/mm}}
+sensors:
+  still: {direction: uz}
+  tip: {body: tool, direction: uz}
+)",
+                                      "probe.yaml");
+  const Measurements data = file(m, "pose,q1_rad,fx_N,fy_N,fz_N,still_mm,tip_mm", "a,0,0,0,20,0,0\na,0,0,0,-10,0,0\n");
+  for (const char* theory : {"analytic", "msa"})
+    for (const Geometry g : {Geometry::linear, Geometry::finite}) {
+      const std::vector<VectorX> d = predicted(m, data, g, theory);
+      EXPECT_EQ(d[0](6), 0);
+      EXPECT_NEAR(d[0](7), 20 / 5e5, 1e-12);
+      EXPECT_NEAR(d[1](7), -10 / 5e5, 1e-12);
+    }
+}
+
+TEST(Instruments, ASensorThatTheDeviceLacksIsToldWithThoseItHas) {
+  const Mechanism m = instrumented();
+  const Measurements data = file(m, command + ",fx_N,fy_N,fz_N,left_mm", std::string(pose) + ",1,0,0,0\n");
+  try {
+    prediction::Instruments(test::with(m, "sensors", "{other: {direction: uz}}"), data);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(), ("data.csv: " + m.name + " has no sensor 'left'; there is other").c_str());
+  }
 }
 
 TEST(Instruments, LoadAtPointIsWrenchAtT) {

@@ -100,6 +100,113 @@ TEST(SideBySide, FrictionBesideADriveLoadsSlipsAndSticksAsByHand) {
   EXPECT_NEAR(turn(0), (7.0 / 200 - 7.5 / 1000) - 2.5 / 200, 1e-14);
 }
 
+const char* pressed = R"(name: drive
+kinematics: {family: chains}
+leg:
+  drive: {joint: motor, rz: [{law: linear, stiffness: 400 Nm/rad}, {law: linear, stiffness: 400 Nm/rad}], beside: {rz: {law: friction, moment: 1 Nm, share: 0.4, stiffness: 800 Nm/rad}}}
+  lever: {offset: [0 mm, 0 mm, 100 mm]}
+)";
+
+/// Turns a drive about its axis by one moment after the other, by both theories, which agree.
+class Turned {
+ public:
+  explicit Turned(const std::string& file)
+      : analytic_(configure_joints(parse_mechanism(file, "drive.yaml"), VectorX::Zero(1))),
+        msa_(configure_joints(parse_mechanism(file, "drive.yaml"), VectorX::Zero(1))) {}
+
+  double operator()(double Nm, Geometry geometry = Geometry::linear) {
+    Conditions at(geometry), msa_at(geometry);
+    at.slips = slips_;
+    msa_at.slips = msa_slips_;
+    const auto a = analytic_.displaced(Nm * Vector6::Unit(5), at);
+    const auto f = msa_.solve(Nm * Vector6::Unit(5), msa_at);
+    EXPECT_TRUE(a.converged) << a.message;
+    EXPECT_TRUE(f.state.converged) << f.state.message;
+    const double to = geometry == Geometry::linear ? 1e-13 + 1e-11 * std::abs(a.displacement(5)) : 1e-9;
+    EXPECT_NEAR(a.displacement(5), f.displacement(5), to) << Nm;
+    slips_ = a.slips;
+    msa_slips_ = f.slips;
+    return a.displacement(5);
+  }
+
+ private:
+  analytic::AnalyticModel analytic_;
+  frame::MsaModel msa_;
+  std::vector<double> slips_, msa_slips_;
+};
+
+// Springs of 200 Nm/rad that carry s beside a friction r, |r| ≤ 1 + 0.4 |s|, s + r = T. Loading: s = (T − 1)/1.4.
+// Unloading from 29 Nm (s = 20, 0.1 rad) it sticks until r = −9, then s = (T + 1)/0.6; at no load s = 1/0.6.
+TEST(SideBySide, FrictionGrowsWithTheLoadBesideIt) {
+  Turned turn(pressed);
+  EXPECT_NEAR(turn(0.5), 0.5 / 1000, 1e-14);
+  EXPECT_NEAR(turn(29), 20.0 / 200, 1e-13);
+  EXPECT_NEAR(turn(24), 0.1 - 5.0 / 1000, 1e-13);
+  EXPECT_NEAR(turn(8), 9 / 0.6 / 200, 1e-13);
+  EXPECT_NEAR(turn(0), 1 / 0.6 / 200, 1e-13);
+  EXPECT_NEAR(turn(-29), -20.0 / 200, 1e-13);
+  EXPECT_NEAR(turn(0), -1 / 0.6 / 200, 1e-13);
+}
+
+TEST(SideBySide, FrictionGrowsWithTheLoadInTheDeformedShapeToo) {
+  Turned turn(pressed);
+  EXPECT_NEAR(turn(29, Geometry::finite), 20.0 / 200, 1e-9);
+  EXPECT_NEAR(turn(8, Geometry::finite), 9 / 0.6 / 200, 1e-9);
+}
+
+// A play and another friction beside the same springs: hand values at the ends, both theories all along the loop.
+TEST(SideBySide, FrictionThatGrowsStandsBesidePlayAndOtherFriction) {
+  std::string file = pressed;
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    file.replace(file.find(what), what.size(), by);
+  };
+  replace("{law: linear, stiffness: 400 Nm/rad}]",
+          "{law: hardening, stiffness: 900 Nm/rad, reference: 0.1 rad}, {law: clearance, gap: 0.01 rad}]");
+  replace("{law: friction,", "[{law: friction, moment: 2 Nm, stiffness: 3000 Nm/rad}, {law: friction,");
+  replace("stiffness: 800 Nm/rad}", "stiffness: 800 Nm/rad}]");
+  Turned turn(file);
+  for (int i = 0; i <= 400; ++i) turn(20 * std::sin(2 * pi * i / 160.0));
+  // s = 12, with 2 and 1 + 0.4 · 12 of friction at the top of the loop.
+  double hardening = 0;
+  for (int i = 0; i < 100; ++i) hardening = 12 / 900.0 / (1 + 100 * hardening * hardening);
+  EXPECT_NEAR(turn(12 + 2 + 1 + 4.8), 12 / 400.0 + hardening + 0.01, 1e-10);
+}
+
+// Two frictions beside a spring with play have nothing but each other to hold them while the play is open.
+TEST(SideBySide, SeveralFrictionsBesidePlayAreSolvedAllAlongALoop) {
+  Turned turn(R"(name: drive
+kinematics: {family: chains}
+leg:
+  drive:
+    joint: motor
+    rz: [{law: linear, stiffness: 190 Nm/rad}, {law: clearance, gap: 5.7 mrad}]
+    beside: {rz: [{law: friction, moment: 5.2 Nm, stiffness: 200 Nm/rad}, {law: friction, moment: 0 Nm, share: 0.46, stiffness: 7000 Nm/rad}]}
+)");
+  for (int i = 0; i <= 400; ++i) turn(35 * std::sin(2 * pi * i / 160.0));
+}
+
+// In a machine of several legs no leg's load is known beforehand.
+TEST(SideBySide, FrictionGrowsWithTheLoadsOfSeveralLegs) {
+  const Mechanism m = with(test::device("tripteron"), "leg.slide.beside.tz",
+                           "{law: friction, force: 1 N, share: 0.6, stiffness: 300 N/mm}", append);
+  const Configuration c = configure(m, home_pose(m));
+  const analytic::AnalyticModel model(c), whole(c);
+  frame::MsaModel msa(c);
+  std::mt19937 random(4);
+  std::vector<double> slips;
+  for (int i = 0; i < 12; ++i) {
+    const Vector6 F = test::random_wrench(random);
+    Conditions at;
+    at.slips = slips;
+    const analytic::AnalyticSolution a = model.displaced(F, at), b = whole.solve(F, at);
+    const frame::MsaSolution f = msa.solve(F, at);
+    ASSERT_TRUE(a.converged && b.converged && f.state.converged) << a.message << b.message;
+    EXPECT_LE((a.displacement - b.displacement).norm(), 1e-9 * b.displacement.norm()) << i;
+    EXPECT_LE((f.displacement - b.displacement).norm(), 1e-9 * b.displacement.norm()) << i;
+    slips = b.slips;
+  }
+}
+
 TEST(SideBySide, ARigidFreedomRefusesIt) {
   const Mechanism m = test::device("tripteron");
   try {

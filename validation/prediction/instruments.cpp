@@ -1,6 +1,7 @@
 #include "validation/prediction/instruments.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -15,7 +16,12 @@ const T* named(const Named<T>& all, const std::string& name, const char* what, c
                const measurement::Measurements& data) {
   for (const auto& [known, each] : all)
     if (known == name) return &each;
-  throw InputError(fmt::format("{}: {} has no {} '{}'", data.origin, m.name, what, name));
+  std::vector<std::string> there;
+  for (const auto& [known, each] : all) there.push_back(known);
+  throw InputError(fmt::format("{}: {} has no {} '{}'; {}", data.origin, m.name, what, name,
+                               there.empty() ? fmt::format("the device file names none: say where it is, under {}",
+                                                           std::string(what) == "sensor" ? "sensors" : "loads")
+                                             : fmt::format("there is {}", fmt::join(there, ", "))));
 }
 
 bool on_the_platform(const std::string& body) { return body == "platform"; }
@@ -27,6 +33,18 @@ Configuration with_rigid_tool(Configuration c) {
   rigid.R_WJ = c.tool.R_WJ;
   c.tool = std::move(rigid);
   return c;
+}
+
+/// Whether some part of it yields, base and tool included.
+bool yields(const Configuration& c) {
+  bool any = !c.base.rigid() || !c.tool.rigid();
+  for_each_part(c.legs, [&](const auto& part) {
+    if constexpr (requires { part.section; })
+      any = true;
+    else
+      for (std::size_t i = 0; i < 6; ++i) any = any || part.elastic(i);
+  });
+  return any;
 }
 
 bool has_friction(const PlacedJoint& joint) {
@@ -97,7 +115,7 @@ LoadedMachine::LoadedMachine(const theories::Theory& theory, const theories::The
                     "'body: tool', or leave the friction out",
                     o.device));
   rigid_tool_ = with_rigid_tool(c);
-  locked_ = theory.at(*rigid_tool_, o);
+  if (yields(*rigid_tool_)) locked_ = theory.at(*rigid_tool_, o);
 }
 
 /// In the deformed shape loads at points move with the machine, whose motion they cause: the moments are found anew
@@ -119,13 +137,16 @@ theories::Prediction LoadedMachine::predict(theories::TheoryAt& machine, const m
 }
 
 Motion LoadedMachine::move(const measurement::Reading& r, const Conditions& conditions) {
-  theories::Prediction moved = predict(locked_ ? *locked_ : *machine_, r, conditions);
+  theories::Prediction moved{Vector6::Zero(), true};  // a platform that is held rigidly
+  if (locked_ || !rigid_tool_) moved = predict(locked_ ? *locked_ : *machine_, r, conditions);
   Motion out{moved.displacement, moved.displacement, moved.converged, std::move(moved.slips), std::move(moved.reason)};
-  if (!locked_) return out;
+  if (!rigid_tool_) return out;
   Conditions undeformed = conditions;
   if (instruments_.any_load()) undeformed = Conditions(Geometry::linear);
   const Vector6 F = cell_ * (r.load - r.on_platform);
-  const theories::Prediction whole = machine_->predict(F, undeformed), rigid = locked_->predict(F, undeformed);
+  const theories::Prediction whole = machine_->predict(F, undeformed);
+  const theories::Prediction rigid =
+      locked_ ? locked_->predict(F, undeformed) : theories::Prediction{Vector6::Zero(), true};
   out.tool += whole.displacement - rigid.displacement;
   if (!whole.converged || !rigid.converged) out.converged = false, out.reason = whole.reason + rigid.reason;
   return out;

@@ -59,7 +59,7 @@ class LoadedMachine {
 
   theories::TheoryAt& theory() { return *machine_; }
   /// Whether the same load at T has the same answer, whatever points it acts at.
-  bool by_load_at_T(Geometry g) const { return !locked_ && !(instruments_.any_load() && g == Geometry::finite); }
+  bool by_load_at_T(Geometry g) const { return !rigid_tool_ && !(instruments_.any_load() && g == Geometry::finite); }
   Motion move(const measurement::Reading&, const Conditions&);
 
  private:
@@ -70,6 +70,7 @@ class LoadedMachine {
   Matrix6 cell_;
   std::optional<Configuration> rigid_tool_;
   std::unique_ptr<theories::TheoryAt> machine_, locked_;  // as it is; with a rigid tool joint, where that differs
+                                                          // and something still yields
 };
 
 }  // namespace deflect::prediction

@@ -30,7 +30,8 @@ std::string type_of(const SchemaField& f) {
   };
   switch (f.kind) {
     case FieldKind::quantity:
-      return joined_units(f.dimension);
+      return joined_units(f.dimension) + (f.or_dimension ? ", " + joined_units(*f.or_dimension) : "") +
+             (f.words.empty() ? "" : fmt::format(", {}", fmt::join(f.words, ", ")));
     case FieldKind::integer:
       return "whole number";
     case FieldKind::vector3:
@@ -109,8 +110,10 @@ std::string level_table(const SchemaLevel& level, const Schema& schema) {
 
 // JSON Schema
 
-Json quantity_json(const SchemaField& f) {
-  const std::vector<std::string> units = units_of(f.dimension);
+Json number_json(const SchemaField& f) {
+  std::vector<std::string> units = units_of(f.dimension);
+  if (f.or_dimension)
+    for (std::string& unit : units_of(*f.or_dimension)) units.push_back(std::move(unit));
   const std::string number = "[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?";
   Json plain = {{"type", "number"}};
   if (f.range.low > -std::numeric_limits<double>::infinity())
@@ -127,6 +130,10 @@ Json quantity_json(const SchemaField& f) {
   }
   const Json text = {{"type", "string"}, {"pattern", fmt::format("^{} *({})$", number, alternatives)}};
   return f.dimension == Dimension::ratio ? Json{{"anyOf", {plain, text}}} : text;
+}
+
+Json quantity_json(const SchemaField& f) {
+  return f.words.empty() ? number_json(f) : Json{{"anyOf", {number_json(f), Json{{"enum", f.words}}}}};
 }
 
 Json array_of(const Json& items, std::size_t count) {

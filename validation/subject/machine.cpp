@@ -33,7 +33,28 @@ struct Move {
   };
   OfSensor sensor = {};
   NumberMove number = {};  ///< of the resolved description
+  double start = 0;        ///< of the frictions of a pose whose start nobody knows
 };
+
+bool starts_anyhow(const Law& law) {
+  const auto* friction = std::get_if<FrictionLaw>(&law);
+  return friction && friction->word == FrictionStart::unknown;
+}
+
+/// What frictions hold at the first reading of a pose, where nobody knows: a load that came and went, uniform from −1
+/// to 1 times the largest of the pose.
+std::vector<Move> unknown_starts(const std::vector<Configuration>& drawn, const measurement::Measurements& data) {
+  std::vector<Move> out;
+  for (std::size_t p = 0; p < drawn.size(); ++p) {
+    bool any = false;
+    for_each_law(drawn[p], [&](const Law& law) { any = any || starts_anyhow(law); });
+    if (!any) continue;
+    Move move{{fmt::format("pose {} start of friction", data.poses[p].label), 1 / std::sqrt(3), p}};
+    move.start = move.tolerance.sigma;
+    out.push_back(std::move(move));
+  }
+  return out;
+}
 
 std::vector<Move> shared_moves(const Mechanism& m) {
   const Tolerances t = named_tolerances(m);
@@ -112,6 +133,7 @@ std::vector<Move> moves_of(const Mechanism& m, const std::vector<Configuration>&
   if (m.sensor.free_zero)
     for (Move& zero : free_zeros(data)) moves.push_back(std::move(zero));
   for (Move& move : sensor_moves(m, data)) moves.push_back(std::move(move));
+  for (Move& move : unknown_starts(drawn, data)) moves.push_back(std::move(move));
   const double sigma = m.tolerances.actuator_repeatability;
   if (!(sigma > 0)) return moves;
   for (std::size_t p = 0; p < drawn.size(); ++p)
@@ -207,7 +229,12 @@ class MachineDeviations final : public Deviations {
       return std::make_unique<MachineStanding>(built, std::move(machines));
     }
     std::vector<Configuration> moved;
-    if (const std::optional<std::size_t> pose = move.tolerance.pose) {
+    if (move.start != 0) {
+      moved.push_back(drawn_.machines()[*move.tolerance.pose]);
+      for_each_law(moved.front(), [&](Law& law) {
+        if (starts_anyhow(law)) std::get<FrictionLaw>(law).start = move.start;
+      });
+    } else if (const std::optional<std::size_t> pose = move.tolerance.pose) {
       const Configuration& drawn = drawn_.machines()[*pose];
       VectorX errors = VectorX::Zero(std::ssize(drawn.actuators));
       errors(as_index(move.actuator)) = move.tolerance.sigma;

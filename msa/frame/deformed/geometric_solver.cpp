@@ -203,6 +203,7 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
 
   // The forces that springs will see set where their stiffness begins and how little of it a step takes (solver.cpp).
   linear_->begin_slips(options.slips);
+  linear_->begin_limits(options.limits);
   take_jumps(work);
   const Linearisation rest = work.linearise(options.geometry);
   double force = std::max(largest(work.loads), largest(rest.forces));

@@ -49,6 +49,7 @@ struct GeometricOptions {
   /// Slips of the friction elements before the load, by their numbers; empty: zero. A friction element changes from
   /// this slip to its final one in a single step, however many load steps there are.
   std::vector<double> slips;
+  std::vector<double> limits;  ///< of the same; empty: those where nothing is carried beside them
 };
 
 struct GeometricLoad {
@@ -134,5 +135,8 @@ class GeometricSolver {
   std::vector<std::size_t> active_;  // constraints that are not redundant
   std::vector<std::string> notes_;
 };
+
+/// The same where limits of frictions grow with the loads beside them: they are found with the shape.
+GeometricState solve_settled(GeometricSolver&, const GeometricLoad&, GeometricOptions);
 
 }  // namespace deflect::frame

@@ -49,11 +49,15 @@ struct OneSidedSpring {
 };
 
 /// Elastic–Coulomb friction, by return mapping from the slip before the load. energy() is the potential of the step,
-/// including the work dissipated by sliding; stored() is the elastic part.
+/// including the work dissipated by sliding; stored() is the elastic part. `most` is the limit under the present load;
+/// it grows with what the spring `beside` carries.
 struct FrictionSpring {
   double k = 0, most = 0;  ///< N/m and N, Nm/rad and Nm
   int number = -1;         ///< of the friction law, see number_slips()
   double before = 0;       ///< slip
+  double own = most;       ///< the limit where nothing is carried beside it
+  double share = 0;        ///< of the force in the spring number `beside` of the model
+  int beside = -1;
 
   double force(double d) const { return std::clamp(k * (d - before), -most, most); }
   bool slides(double d) const { return k * std::abs(d - before) > most; }

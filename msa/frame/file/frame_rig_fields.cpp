@@ -18,7 +18,9 @@ constexpr const char* trusted_kinds[] = {"support", "load", "load cell", "sensor
 /// What is common to all, and how far the sensor sticks.
 void describe_reading(FieldVisitor& v, FrameSensor& s, Dimension d) {
   describe_errors(v, s, d);
-  v.quantity("stick", s.stick, {d, not_negative, 0}, "how far the reading lags before it follows");
+  Quantity stick{d, not_negative, 0};
+  stick.or_dimension = other_of(d);
+  v.quantity("stick", s.stick, stick, "how far the reading lags before it follows");
 }
 
 std::size_t place_in(const std::array<const char*, 6>& names, const std::string& word) {

@@ -98,7 +98,11 @@ SpringLaw spring(const OneSidedLaw& law) { return OneSidedSpring{law.pull.value_
 
 SpringLaw spring(const ClearanceLaw& law) { return GapSpring{law.gap}; }
 
-SpringLaw spring(const FrictionLaw& law) { return FrictionSpring{law.stiffness, law.force, law.number}; }
+SpringLaw spring(const FrictionLaw& law) {
+  FrictionSpring spring{law.stiffness, law.force, law.number};
+  spring.share = law.share;
+  return spring;
+}
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -47,8 +48,20 @@ struct Pending {
   const PlacedJoint* joint;  // nullptr: rigid
   std::string name;
   bool ends_leg = false;
-  Vector6 beside = Vector6::Zero();  // rigid: how far b stands beside a, at p
+  Vector6 beside = Vector6::Zero();     // rigid: how far b stands beside a, at p
+  const PlacedJoint* shared = nullptr;  // of laws side by side with a joint: the joint
 };
+
+/// Tells the frictions of a connection with which spring of the joint they stand side by side.
+void stand_beside(Model& model, const Pending& p, std::size_t first, std::size_t springs_of_joint) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < p.joint->laws[i].size(); ++k, ++first)
+      if (auto* friction = std::get_if<FrictionSpring>(&model.springs[first].law);
+          friction && friction->share > 0 && !p.shared->laws[i].empty())
+        friction->beside = static_cast<int>(springs_of_joint);
+    springs_of_joint += p.shared->laws[i].size();
+  }
+}
 
 class Builder {
  public:
@@ -71,6 +84,7 @@ class Builder {
 
   void finish(MechanismModel& out) {
     const auto position = [this](int node) { return nth(model.nodes, node).position; };
+    std::map<const PlacedJoint*, std::size_t> springs_of;
     for (const Pending& p : pending_) {
       if ((position(p.a) - position(p.b)).norm() > 1e-9) out.arms.emplace_back(p.a, p.b);
       const std::size_t constraints = model.constraints.size(), springs = model.springs.size();
@@ -80,6 +94,8 @@ class Builder {
         model.connect(p.a, p.b, p.p, p.joint ? p.joint->R_WJ : Matrix3::Identity(),
                       p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,
                       p.joint ? p.joint->part : "");
+      if (p.joint) springs_of[p.joint] = springs;
+      if (p.shared && springs_of.contains(p.shared)) stand_beside(model, p, springs, springs_of.at(p.shared));
       if (!p.beside.isZero(0))
         for (Eigen::Index i = 0; i < 6; ++i) model.constraints[constraints + as_size(i)].value = p.beside(i);
       if (p.ends_leg) out.attachments.push_back({constraints, model.constraints.size(), springs, model.springs.size()});
@@ -111,7 +127,10 @@ class Builder {
       } else if (const auto* group = std::get_if<PlacedParallel>(&part)) {
         attach(body(fmt::format("{} {} start", leg.name, group->part), group->p_W_start), group->p_W_start);
         const int end = body(fmt::format("{} {} end", leg.name, group->part), group->p_W_end);
+        const std::size_t first = pending_.size();
         for (const PlacedLeg& branch : group->branches) chain(branch, at, end);
+        for (std::size_t i = first; group->one_joint && i < pending_.size(); ++i)
+          if (pending_[i].joint && pending_[i].joint != joint_of(part)) pending_[i].shared = joint_of(part);
         at = end;
       } else {
         const auto& m = std::get<PlacedMember>(part);

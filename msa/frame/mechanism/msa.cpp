@@ -289,7 +289,7 @@ Solution MsaModel::solve_geometric(const VectorX& load, const Conditions& condit
   std::vector<double> strains;
   for (const Beam& beam : geometric_->model().beams) strains.push_back(conditions.warmer * beam.expansion);
   auto state = std::make_shared<const GeometricState>(
-      geometric_->solve({load.head(geometric_->model().dofs()), {}, std::move(strains)}, options));
+      solve_settled(*geometric_, {load.head(geometric_->model().dofs()), {}, std::move(strains)}, options));
   Solution out;
   out.u = VectorX::Zero(built_.model.dofs());  // the coordinates of very stiff parts, which come last, are not used
   out.u.head(state->u.size()) = state->u;

@@ -49,6 +49,14 @@ void Solver::begin_slips(const std::vector<double>& slips) {
     }
 }
 
+void Solver::begin_limits(const std::vector<double>& limits) {
+  for (Spring& s : model_->springs)
+    if (auto* friction = std::get_if<FrictionSpring>(&s.law)) {
+      const auto n = as_size(friction->number);
+      friction->most = friction->number >= 0 && n < limits.size() ? limits[n] : friction->own;
+    }
+}
+
 /// A first state. Each spring is linearised where the force that it got last stands on its law, which meets a steep law
 /// at its load in two steps, however far away that is.
 void Solver::begin_by_forces(Work& w) {

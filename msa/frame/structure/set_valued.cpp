@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "msa/base/index.h"
+#include "msa/base/settle.h"
 #include "msa/frame/elements/jumping_springs.h"
 #include "msa/frame/structure/relative.h"
 #include "msa/frame/structure/solver.h"
@@ -113,6 +114,45 @@ const Solver::Condensed& Solver::condensed() {
   return *condensed_;
 }
 
+/// The laws in equilibrium, with limits of frictions that are those of the loads beside them. u0 without offsets.
+SetValuedSolution Solver::settled(const LinearRelation& relation, std::vector<ScalarLaw>& laws, const MatrixX& watched,
+                                  const ExtendedVector& u0) {
+  const Condensed& c = condensed();
+  std::vector<std::size_t> growing;  // among the laws
+  const auto friction = [&](std::size_t law) {
+    return std::get_if<FrictionSpring>(&model_->springs[c.springs[law]].law);
+  };
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (friction(i) && friction(i)->share > 0 && friction(i)->beside >= 0) growing.push_back(i);
+  if (growing.empty()) return deflect::solve(relation, laws, watched);
+  SetValuedSolution found;
+  const auto of_loads = [&](const VectorX& tried) -> std::optional<VectorX> {
+    for (std::size_t i = 0; i < growing.size(); ++i) {
+      friction(growing[i])->most = tried(as_index(i));
+      laws[growing[i]] = scalar_law(model_->springs[c.springs[growing[i]]].law);
+    }
+    found = deflect::solve(relation, laws, watched);
+    if (found.outcome != SetValuedSolution::Outcome::solved) return std::nullopt;
+    const ExtendedVector u = u0 + c.u * VectorX(c.k.cwiseProduct(found.o)).cast<Extended>();
+    const VectorX pulls = spring_pulls(model_->springs, u, c.springs, found.s);
+    VectorX out = tried;
+    for (std::size_t i = 0; i < growing.size(); ++i) {
+      const FrictionSpring& f = *friction(growing[i]);
+      out(as_index(i)) = f.own + f.share * std::abs(pulls(f.beside));
+    }
+    return out;
+  };
+  VectorX limits(std::ssize(growing));
+  double rounding = 0;
+  for (std::size_t i = 0; i < growing.size(); ++i) {
+    const FrictionSpring& f = *friction(growing[i]);
+    limits(as_index(i)) = f.own;
+    rounding = std::max(rounding, 1e-14 * f.k * std::abs(f.before));
+  }
+  if (!settle(limits, of_loads, rounding)) found.outcome = SetValuedSolution::Outcome::undecided;
+  return found;
+}
+
 /// The offsets with the digits that laws of great stiffness need: Newton on the structure's own displacements in
 /// Extended numbers, ends staying as they are. u0 without offsets; forces and elongations follow in `found`.
 ExtendedVector Solver::refined(const std::vector<ScalarLaw>& laws, SetValuedSolution& found,
@@ -199,7 +239,7 @@ Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, con
     for (std::size_t w = 0; w < watched.size(); ++w)
       by_elongation(as_index(w), i) = c.k(i) * static_cast<double>(c.u(watched[w], i));
   }
-  SetValuedSolution found = deflect::solve(relation, laws, by_elongation);
+  SetValuedSolution found = settled(relation, laws, by_elongation, u);
   Solution s;
   s.iterations = 1;
   s.converged = found.outcome == SetValuedSolution::Outcome::solved;

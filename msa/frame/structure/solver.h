@@ -72,6 +72,9 @@ class Solver {
 
   /// Sets the slips of the friction elements before the next loads, by their numbers; empty: zero.
   void begin_slips(const std::vector<double>&);
+  /// The same for their limits; empty: what each holds where nothing is carried beside it. solve() finds those that
+  /// grow with a load.
+  void begin_limits(const std::vector<double>&);
 
   /// One load by freedom (of the given model, or of model()), constraint values as in the model. Nonlinear springs:
   /// Newton's method with a line search on the potential. Where a spring jumps (stepped_spring.h), or Newton does not
@@ -117,6 +120,8 @@ class Solver {
   struct Condensed;
   const Condensed& condensed();
   Solution solve_condensed(const VectorX& load, const VectorX& values, const std::vector<int>& watched);
+  SetValuedSolution settled(const LinearRelation&, std::vector<ScalarLaw>&, const MatrixX& watched,
+                            const ExtendedVector& u0);
   ExtendedVector refined(const std::vector<ScalarLaw>&, SetValuedSolution&, const LinearRelation&,
                          const ExtendedVector& u0);
   ExtendedVector balanced(const std::vector<ScalarLaw>&, SetValuedSolution&, const LinearRelation&, ExtendedVector u0,
