@@ -177,7 +177,7 @@ TEST(Instruments, ColumnsAreReadAndWritten) {
 TEST(Instruments, ASensorIsNotCalledLikeAColumn) {
   for (const char* name : {"ux", "x", "q1", "sigma_u", "note_1"}) {
     measurement::Instruments known;
-    known.sensors.push_back({name, false, {}});
+    known.sensors.push_back({name, measurement::Quantity::length, {}});
     try {
       parse_measurements(command + ",fx_N,fy_N,fz_N,uz_mm\n" + pose + ",1,2,3,0\n", "data.csv", known);
       ADD_FAILURE() << name;

@@ -183,7 +183,8 @@ sensors: {x: {node: A, direction: ux, sigma: 1 um}}
   EXPECT_TRUE(s.stand(data)->has_history());
   const std::vector<VectorX> d = s.stand(data)->predict(data, {});
   // The slider slips at ±100 N throughout: the spring carries what is left, 200, 100, −200 and −50 N.
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(d[i](6), std::array{200.0, 100.0, -200.0, -50.0}[i] / 1e6, 1e-13);
+  const std::array<double, 4> carried = {200, 100, -200, -50};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(d[i](6), carried[i] / 1e6, 1e-13);
   const Measurements unordered = read(s, "load.push,x_mm\n300,0\n0,0\n");
   EXPECT_THROW(s.stand(unordered)->predict(unordered, {}), InputError);
 }

@@ -518,13 +518,13 @@ def parameters_of(f, effect, value):
         return {"force_N": value[0], "stiffness_N_per_mm": value[1] / 1e3}
     if law == "stiction":
         unit, size = COLUMN[kind_of(f["sensors"][place])]
-        return {f"stick_{unit}": value / size}
+        return {f"stick_{unit}": float(f"{value / size:.9g}")}
     if NAMES[law] == "stiffness":
         return {"stiffness_Nmm_per_rad": value * 1e3} if rotation else {"stiffness_N_per_mm": value / 1e3}
     if NAMES[law] == "gap":
-        return {"gap_rad": value} if rotation else {"gap_mm": value * 1e3}
+        return {"gap_rad": value} if rotation else {"gap_mm": float(f"{value * 1e3:.9g}")}
     if NAMES[law] == "yields":
-        return {"yields_rad_per_Nmm": value / 1e3} if rotation else {"yields_mm_per_N": value * 1e3}
+        return {"yields_rad_per_Nmm": float(f"{value / 1e3:.9g}")} if rotation else {"yields_mm_per_N": float(f"{value * 1e3:.9g}")}
     return {NAMES[law]: value}
 
 

@@ -309,32 +309,6 @@ const PlaceLaw laws[] = {
       "Loops: loading and unloading differ, and the displacement does not return to zero.",
       "Load and unload slowly; tap the machine: it creeps towards the frictionless curve.",
       "Lubricate {}, relieve its preload, or approach every reading from the same side."}},
-    {"load_friction",
-     [](const subject::Place& p) {
-       return p.kind == subject::PlaceKind::drive && single(p) && p.hold == subject::Hold::elastic;
-     },
-     "rubs in proportion to its load",
-     [](const subject::Place& p) {
-       const Units& u = units(p);
-       const double stiffness = p.rotation() ? 1e6 : 1e3;
-       return std::vector<EffectParameter>{
-           {"share", "", 0.2, 1e-3, 0.9, true, 0, "friction by load in the elastic parts that it stands beside"},
-           {fmt::format("stiffness_{}_per_{}", u.force, u.way), fmt::format("{}/{}", u.force, u.way), stiffness,
-            stiffness * 1e-4, stiffness * 1e4, true, std::nullopt,
-            fmt::format("stiffness while it sticks, {}/{}", u.force, u.way)},
-           {"start_share", "", 0, -1, 1, false, std::nullopt,
-            "share of the largest load that came and went before the first reading", true}};
-     },
-     [](const auto& p, const subject::Place& at) {
-       const Units& u = units(at);
-       return fmt::format("{{law: friction, {}: 0 {}, share: ${}, stiffness: ${}, start: ${}}}", u.moment_word, u.force,
-                          p[0].name, p[1].name, p[2].name);
-     },
-     {"What presses teeth, pins and bearings of {} is the load itself: they rub the more the more it carries.",
-      "Loops that are wide where the load is large and narrow at zero: loading is steep, and after the turn the "
-      "displacement stays until a good part of the load is gone.",
-      "Load and unload to two amplitudes: the width of the loop grows with the load.",
-      "Lubricate {}, or let rollers roll where they slide."}},
     {"restraint",
      [](const subject::Place& p) { return single(p) && p.hold == subject::Hold::free; },
      "is not free",
@@ -361,8 +335,7 @@ std::string with_place(const std::string& page, const std::string& place) {
 
 std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p, const std::string& value) {
   std::string head = p.path;
-  const std::string id = law.id;
-  if ((id == "friction" || id == "load_friction") && p.hold == subject::Hold::elastic) head += ".beside";
+  if (law.id == std::string("friction") && p.hold == subject::Hold::elastic) head += ".beside";
   std::vector<EffectEdit> out;
   for (const std::size_t i : p.freedoms)
     out.push_back({law.action, {fmt::format("{}.{}{}", head, subject::freedom_name(p, i), law.field)}, value});
