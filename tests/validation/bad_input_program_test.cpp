@@ -88,10 +88,11 @@ TEST_F(BadInputProgram, TheOtherKindOfFileIsNamedWithItsCommand) {
   write("arm.yaml", arm);
   write("data.csv", "pose,q1_rad,q2_rad,fx_N,ux_mm\n0,0.3,1.2,1,0\n1,0.3,1.3,1,0\n");
   const std::string frame = "frame.yaml:4: this file describes a frame (it has 'nodes'), not a device: 'deflect frame ";
-  expect("compare " + path("frame.yaml") + " " + path("data.csv"), 2, frame);
+  expect("compare " + path("frame.yaml") + " " + path("data.csv"), 2,
+         "data.csv:1: the measured thing is a frame that has");
   expect("solve " + path("frame.yaml"), 2, frame);
   expect("solve logan-5-8", 2, "'logan-5-8' is a frame, not a device: 'deflect frame logan-5-8' solves it");
-  expect("compare logan-5-8 " + path("data.csv"), 2, "'logan-5-8' is a frame, not a device");
+  expect("compare logan-5-8 " + path("data.csv"), 2, "has no sensors");
   expect("frame haptic-6psu", 2, "'haptic-6psu' is a device, not a frame: 'deflect solve haptic-6psu' and the other");
   expect("frame " + path("arm.yaml"), 2, "arm.yaml:3: this file describes a device (it has 'kinematics'), not a frame");
   expect("effects --effects " + path("arm.yaml"), 2, "describes a device (it has 'kinematics'), not an effect");

@@ -220,7 +220,8 @@ TEST(Instruments, CompareAndDiagnoseReadThem) {
                            [](const Reading& r) { return r.displacement[0].has_value(); }));
   const compare::Comparison c = compare::compare(m, healthy);
   EXPECT_NEAR(c.chi2_per_dof, 1, 0.15);
-  ASSERT_EQ(c.by_axis.size(), 3u) << "one group a probe; rotations are apart";
+  ASSERT_EQ(c.by_axis.size(), 4u) << "one group a sensor";
+  EXPECT_EQ(c.by_axis.back().quantity, measurement::Quantity::angle);
   EXPECT_EQ(c.by_axis.front().group, "left");
 
   const Mechanism hidden = effects::with_effect(m, test::effect("guide_root_compliance"), test::values({5e6}));

@@ -231,8 +231,10 @@ TEST_F(ShowProgram, SchemasAreTablesForPeopleAndForEditors) {
             "");
 
   const std::string help = test::deflect("devices --help").out;
-  for (const char* words : {"belt: specific_stiffness N/mm", "pulley_radius mm",
-                            "friction: force N, stiffness N/mm, start (may be absent), kept (may be absent); about"})
+  for (const char* words :
+       {"belt: specific_stiffness N/mm", "pulley_radius mm",
+        "friction: force N, stiffness N/mm, share (may be absent), start (may be absent), kept (may be "
+        "absent); about"})
     EXPECT_NE(help.find(words), help.npos) << words << "\n" << help;
 }
 

@@ -125,8 +125,7 @@ subject::Subject read_subject(const std::string& name) {
 }
 
 measurement::Measurements read_data(const std::string& file, const subject::Subject& subject) {
-  measurement::Measurements data =
-      subject.placed(measurement::read_measurements(file, subject.instruments()));
+  measurement::Measurements data = subject.placed(measurement::read_measurements(file, subject.instruments()));
   const auto count = [&](auto has) { return std::count_if(data.readings.begin(), data.readings.end(), has); };
   for (const auto& s : data.instruments.sensors) tell("sensor {} is read", s.name);
   for (const auto& p : data.instruments.load_points) tell("loads at {} are read", p);

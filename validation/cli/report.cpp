@@ -19,6 +19,7 @@
 #include "validation/measurement/column_names.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/report/compare_results.h"
+#include "validation/report/history_results.h"
 #include "validation/result_files/result_file.h"
 #include "validation/scene/frame_scene.h"
 

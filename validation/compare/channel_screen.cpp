@@ -24,7 +24,8 @@ ChannelScreen::ChannelScreen(const subject::Subject& subject, const Comparison& 
     count[v.channel] += 1;
   }
   for (std::size_t k = 0; k < scale_.size(); ++k)
-    if (count[k] > 0) scale_[k] = std::sqrt((sigma[k] + share_of_predicted * share_of_predicted * predicted[k]) / count[k]);
+    if (count[k] > 0)
+      scale_[k] = std::sqrt((sigma[k] + share_of_predicted * share_of_predicted * predicted[k]) / count[k]);
   const VectorX deviation = expected_deviations(c);
   double noise = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i)

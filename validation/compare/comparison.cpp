@@ -29,9 +29,10 @@ std::optional<std::vector<double>> sigma_of(const std::vector<measurement::Measu
                                             const ComparisonOptions& o) {
   std::vector<double> out;
   for (const measurement::MeasuredValue& v : values) {
-    const std::optional<double> sigma = v.sigma ? v.sigma : v.quantity == measurement::Quantity::length  ? o.sigma_u
-                                        : v.quantity == measurement::Quantity::angle ? o.sigma_th
-                                                                                     : std::nullopt;
+    const std::optional<double> sigma = v.sigma                                       ? v.sigma
+                                        : v.quantity == measurement::Quantity::length ? o.sigma_u
+                                        : v.quantity == measurement::Quantity::angle  ? o.sigma_th
+                                                                                      : std::nullopt;
     if (!sigma) return std::nullopt;
     out.push_back(*sigma);
   }
@@ -54,14 +55,14 @@ std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const Matr
   const VectorX left = r - patterns * fit.amplitude;
   std::array<double, measurement::quantity_rows.size()> squares{}, n{};
   for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const auto kind = static_cast<std::size_t>(s.values[i].quantity);
+    const auto kind = measurement::number_of(s.values[i].quantity);
     squares[kind] += left(as_index(i)) * left(as_index(i));
     n[kind] += 1;
   }
   const auto count = static_cast<double>(s.values.size());
   std::vector<double> out;
   for (const measurement::MeasuredValue& v : s.values) {
-    const auto kind = static_cast<std::size_t>(v.quantity);
+    const auto kind = measurement::number_of(v.quantity);
     out.push_back(std::max(1e-12, std::sqrt(squares[kind] / n[kind] * count / std::max(1.0, count - fit.freedoms))));
   }
   return out;

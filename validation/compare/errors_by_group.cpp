@@ -17,8 +17,7 @@ namespace {
 using Belongs = std::function<bool(const measurement::MeasuredValue&)>;
 
 Errors errors_of(const Comparison& c, const std::string& group, measurement::Quantity quantity,
-                 const std::vector<std::size_t>& values,
-                 const Belongs& belongs) {
+                 const std::vector<std::size_t>& values, const Belongs& belongs) {
   Errors e;
   e.group = group;
   e.quantity = quantity;
@@ -61,7 +60,7 @@ std::string direction_of(const std::vector<measurement::LoadChannel>& channels, 
 
 /// Of each reading: a machine's force, N; of a frame the largest of its loads, each as a share of its own largest.
 VectorX sizes_of_loads(const ResidualStudy& s) {
-  if (s.standing->has_tool_point()) return s.loads.topRows(3).colwise().norm();
+  if (!s.data->instruments.stationary) return s.loads.topRows(3).colwise().norm();
   const VectorX most = s.loads.cwiseAbs().rowwise().maxCoeff().cwiseMax(1e-300);
   VectorX out = VectorX::Zero(s.loads.cols());
   for (Eigen::Index i = 0; i < out.size() && most.size() > 0; ++i)
@@ -89,7 +88,7 @@ std::string direction_of(const measurement::Reading& r, const measurement::Measu
 /// By reading: by how much its load is larger than that of the reading before; of a subject without sites.
 VectorX size_changes(const ResidualStudy& s, const VectorX& size) {
   VectorX out = VectorX::Zero(size.size());
-  if (s.standing->has_tool_point()) return out;
+  if (!s.data->instruments.stationary) return out;
   double before = 0;
   for (const std::size_t i : measurement::in_sequence(*s.data, "loading and unloading")) {
     out(as_index(i)) = size(as_index(i)) - before;
@@ -126,6 +125,29 @@ double rms_of_errors(const std::vector<measurement::MeasuredValue>& values, cons
   return n > 0 ? std::sqrt(squares / n) : 0;
 }
 
+namespace {
+
+/// In thirds of the largest load.
+void add_by_magnitude(Comparison& c, const VectorX& size, const std::vector<std::size_t>& all) {
+  const double most = size.maxCoeff();
+  if (most > 0)
+    for (int third = 0; third < 3; ++third) {
+      const double low = most * third / 3, high = most * (third + 1) / 3;
+      const auto within = [&, third](const measurement::MeasuredValue& v) {
+        const double F = size(as_index(v.reading));
+        return F > low * (1 + 1e-9) && F <= high * (1 + 1e-9) && (third > 0 || F > 0);
+      };
+      const Errors e = errors_of(c,
+                                 c.study.data->instruments.stationary
+                                     ? fmt::format("{:.0f} … {:.0f} % of the largest load", 100 * low, 100 * high)
+                                     : fmt::format("{:.3g} … {:.3g} N", low, high),
+                                 quantity_of_errors(c.study.values), all, within);
+      if (e.readings > 0) c.by_magnitude.push_back(e);
+    }
+}
+
+}  // namespace
+
 void add_errors(Comparison& c) {
   for (auto* list : {&c.by_axis, &c.by_pose, &c.by_direction, &c.by_magnitude, &c.by_heading}) list->clear();
   const measurement::Measurements& data = *c.study.data;
@@ -161,20 +183,7 @@ void add_errors(Comparison& c) {
   for (const std::size_t i : all) direction[c.study.values[i].reading]->push_back(i);
   for (const auto& [name, values] : directions) c.by_direction.push_back(errors_of(c, name, quantity, values, every));
   const VectorX size = sizes_of_loads(c.study);
-  const double most = size.maxCoeff();
-  if (most > 0)
-    for (int third = 0; third < 3; ++third) {
-      const double low = most * third / 3, high = most * (third + 1) / 3;
-      const auto within = [&, third](const measurement::MeasuredValue& v) {
-        const double F = size(as_index(v.reading));
-        return F > low * (1 + 1e-9) && F <= high * (1 + 1e-9) && (third > 0 || F > 0);
-      };
-      const Errors e = group(data.instruments.stationary
-                                 ? fmt::format("{:.0f} … {:.0f} % of the largest load", 100 * low, 100 * high)
-                                 : fmt::format("{:.3g} … {:.3g} N", low, high),
-                             within);
-      if (e.readings > 0) c.by_magnitude.push_back(e);
-    }
+  add_by_magnitude(c, size, all);
   if (!c.study.sequence) return;
   const VectorX risen = size_changes(c.study, size);
   // Whether the largest site force, or without sites the load, had risen or fallen in size.

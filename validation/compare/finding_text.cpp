@@ -110,8 +110,9 @@ std::string by_channel(const Finding& f, const ResidualStudy& s, const char* per
     for (const measurement::SensorChannel& sensor : s.data->instruments.sensors) {
       if (sensor.name != f.columns[i]) continue;
       const measurement::QuantityRow& row = measurement::row_of(sensor.quantity);
-      out += fmt::format("{}{} {}{}", out.empty() ? "" : ", ", sensor.name,
-                         plus_minus(f.amplitude(as_index(i)), f.deviation(as_index(i)), row.fine_per_SI, row.fine), per);
+      out +=
+          fmt::format("{}{} {}{}", out.empty() ? "" : ", ", sensor.name,
+                      plus_minus(f.amplitude(as_index(i)), f.deviation(as_index(i)), row.fine_per_SI, row.fine), per);
     }
   return out;
 }
@@ -126,10 +127,10 @@ std::string of_channels(const Finding& f, const ResidualStudy& s) {
     case PatternId::temperature:
       return "readings follow the temperature: " + by_channel(f, s, "/K");
     case PatternId::load_gain:
-      return fmt::format("all readings are {} than predicted by one factor, {}: the loads as recorded, or, where "
-                         "displacements are read, the modulus of everything",
-                         f.amplitude(0) > 0 ? "larger" : "smaller",
-                         plus_minus_words(1 + f.amplitude(0), f.deviation(0)));
+      return fmt::format(
+          "all readings are {} than predicted by one factor, {}: the loads as recorded, or, where "
+          "displacements are read, the modulus of everything",
+          f.amplitude(0) > 0 ? "larger" : "smaller", plus_minus_words(1 + f.amplitude(0), f.deviation(0)));
     case PatternId::sensor_gain: {
       std::string out;
       for (std::size_t i = 0; i < f.columns.size(); ++i)
@@ -142,17 +143,13 @@ std::string of_channels(const Finding& f, const ResidualStudy& s) {
   }
 }
 
-}  // namespace
-
-std::string sentence_of(const Finding& f, const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& r,
-                        const MatrixX& beside) {
+std::string of_machine(const Finding& f, const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& r,
+                       const MatrixX& beside) {
   const bool rotation = !s.sites.front().empty() && s.sites.front().front().rotation;
   // Its sign is told by the words.
   const auto amplitude = [&](double scale, const char* unit) {
     return plus_minus(std::abs(f.amplitude(0)), f.deviation(0), scale, unit);
   };
-  if (!s.standing->has_tool_point())
-    if (const std::string words = of_channels(f, s); !words.empty()) return words;
   switch (f.id) {
     case PatternId::elastic:
     case PatternId::elastic_by_site:
@@ -198,13 +195,21 @@ std::string sentence_of(const Finding& f, const ResidualStudy& s, const statisti
       return "the misfit is perpendicular to the model's answer and not reciprocal: loads are recorded in axes turned "
              "by " +
              by_column(f, 1e3, "mrad") + ": misaligned";
-    case PatternId::sensor_gain:
-      return of_channels(f, s);
+    case PatternId::sensor_gain:  // of channels alone
+      break;
     case PatternId::sensor_axes:
       return "the misfit is perpendicular to the displacement and not reciprocal: the sensor's axes are turned by " +
              by_column(f, 1e3, "mrad") + ": misaligned";
   }
   throw std::logic_error("a pattern without a sentence");
+}
+
+}  // namespace
+
+std::string sentence_of(const Finding& f, const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& r,
+                        const MatrixX& beside) {
+  const std::string words = s.standing->has_tool_point() ? "" : of_channels(f, s);
+  return words.empty() ? of_machine(f, s, u, r, beside) : words;
 }
 
 }  // namespace deflect::compare

@@ -14,12 +14,16 @@ namespace {
 /// which sense.
 std::vector<std::size_t> groups_of(const ResidualStudy& s) {
   std::vector<std::size_t> out;
-  const bool by_load = !s.standing->has_tool_point() && s.data->poses.size() == 1;
+  const bool by_load = s.data->instruments.stationary && s.data->poses.size() == 1;
   std::map<std::vector<int>, std::size_t> known;
   for (std::size_t i = 0; i < s.data->readings.size(); ++i) {
+    if (!by_load) {
+      out.push_back(s.data->readings[i].pose);
+      continue;
+    }
     std::vector<int> signs;
     for (const double load : s.loads.col(as_index(i))) signs.push_back(load > 0 ? 1 : load < 0 ? -1 : 0);
-    out.push_back(by_load ? known.emplace(signs, known.size()).first->second : s.data->readings[i].pose);
+    out.push_back(known.emplace(signs, known.size()).first->second);
   }
   return out;
 }
@@ -46,9 +50,7 @@ HeldOut::HeldOut(const ResidualStudy& s, const statistics::Uncertainty& u, const
   }
 }
 
-std::size_t HeldOut::fold_of(std::size_t value) const {
-  return group_[study_->values[value].reading] % folds_;
-}
+std::size_t HeldOut::fold_of(std::size_t value) const { return group_[study_->values[value].reading] % folds_; }
 
 double HeldOut::rmse(const VectorX& residual) const {
   const statistics::Whitening& white = *uncertainty_->whitening();

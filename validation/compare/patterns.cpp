@@ -141,9 +141,10 @@ std::vector<MatrixX> stop_forces(const ResidualStudy& s) {
 }
 
 ToolPattern hysteresis(const ResidualStudy& s, bool rotation) {
-  ToolPattern p{PatternId::hysteresis, {"lag"}, rotation ? "rad" : "m", site_column(s, [&](std::size_t i, std::size_t k) {
-              return -s.heading[i](as_index(k));
-            })};
+  ToolPattern p{PatternId::hysteresis,
+                {"lag"},
+                rotation ? "rad" : "m",
+                site_column(s, [&](std::size_t i, std::size_t k) { return -s.heading[i](as_index(k)); })};
   if (s.sites.front().front().s.isZero(0)) return p;
   const std::vector<MatrixX> stopped = stop_forces(s);
   for (const double r : stops) p.columns.push_back("stop at " + std::to_string(static_cast<int>(100 * r)) + " %");
@@ -273,11 +274,11 @@ std::vector<Pattern> channel_patterns(const ResidualStudy& s) {
   };
   out.push_back(by_channel(s, PatternId::offset, "SI", [](const auto&) { return 1; }));
   if (s.sequence)
-    out.push_back(by_channel(s, PatternId::drift, "SI", [rank = ranks(*s.data)](const auto& v) { return rank[v.reading]; }));
+    out.push_back(
+        by_channel(s, PatternId::drift, "SI", [rank = ranks(*s.data)](const auto& v) { return rank[v.reading]; }));
   if (s.data->temperature_recorded)
-    out.push_back(by_channel(s, PatternId::temperature, "SI/K", [&](const auto& v) {
-      return s.data->readings[v.reading].temperature_C - 20;
-    }));
+    out.push_back(by_channel(s, PatternId::temperature, "SI/K",
+                             [&](const auto& v) { return s.data->readings[v.reading].temperature_C - 20; }));
   out.push_back({PatternId::load_gain, {"gain"}, "1", statistics::rows_of(s.values, s.predicted)});
   out.push_back(by_channel(s, PatternId::sensor_gain, "1", predicted));
   return out;

@@ -48,7 +48,8 @@ double cost_of_scale(const Comparison& c, const recording::Correction& correctio
   double sum = 0;
   for (const measurement::MeasuredValue& v : c.study.values) {
     const measurement::Reading& r = c.study.data->readings[v.reading];
-    const bool told = correction.sigma_too && (v.quantity == measurement::Quantity::angle ? r.sigma_th : r.sigma_u).has_value();
+    const bool told =
+        correction.sigma_too && (v.quantity == measurement::Quantity::angle ? r.sigma_th : r.sigma_u).has_value();
     if (!told && v.of_tool_point()) sum -= 2 * std::log(std::abs(correction.displacement.factor[v.channel]));
     for (const auto& [channel, factor] : correction.scaled_channels)
       if (v.channel == channel) sum -= 2 * std::log(std::abs(factor));
@@ -238,7 +239,8 @@ std::vector<RecordingMistake> recording_mistakes(const subject::Subject& subject
     const measurement::Measurements& data = *c.study.data;
     search.look_among(promising_channels(screen, recording::mistaken_channels(data)));
     if (!search.right()) search.look_among(promising_channels(screen, recording::mistaken_loads(data)));
-    if (!search.right()) search.look_among(promising_channels(screen, recording::misplaced_loads(data, *subject.frame())));
+    if (!search.right())
+      search.look_among(promising_channels(screen, recording::misplaced_loads(data, *subject.frame())));
     if (search.found()) out.push_back(*search.found());
   }
   if (out.empty() && c.study.standing->has_tool_point() && fits_badly(c, before)) {

@@ -29,7 +29,8 @@ struct ResidualStudy {
 /// Computes everything except `deformed_shape`. The data must outlive the study.
 ResidualStudy residual_study(const subject::Subject&, const measurement::Measurements&, const parallel::Work& = {});
 
-/// ResidualStudy::deformed_shape, for a subject in linear geometry that is really in another (true_geometry). This takes most of the time of a study.
+/// ResidualStudy::deformed_shape, for a subject in linear geometry that is really in another (true_geometry). This
+/// takes most of the time of a study.
 std::vector<VectorX> deformed_shape_of(const ResidualStudy&, const parallel::Work& = {});
 
 /// Estimates deformed_shape of a reading under another load: it is even in the load and scales with its square. Zero

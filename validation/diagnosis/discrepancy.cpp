@@ -63,8 +63,7 @@ MatrixX by_influence(const compare::ResidualStudy& s) {
 
 MatrixX by_sites(const compare::ResidualStudy& s) {
   std::vector<MatrixX> parts;
-  for (const compare::Pattern& p : compare::patterns_of(s))
-    parts.push_back(p.rows);
+  for (const compare::Pattern& p : compare::patterns_of(s)) parts.push_back(p.rows);
   if (!s.sites.front().empty()) {
     const auto f = [&](std::size_t i, std::size_t k) { return s.force[i](as_index(k)); };
     const auto site = [&](std::size_t i, std::size_t k) -> const subject::Site& {

@@ -331,7 +331,8 @@ bool wants_more_than_there_can_be(const Hypothesis& h, const Fit& f) {
   const effects::EffectParameter& p = own.front();
   const double x = coordinate(p, f.values(f.values.size() - 1));
   for (const double bound : {p.low, p.high})
-    if (p.vanishes != bound && !(p.log && bound < 1e-5 * p.start) && std::abs(x - coordinate(p, bound)) < 1e-3) return true;
+    if (p.vanishes != bound && !(p.log && bound < 1e-5 * p.start) && std::abs(x - coordinate(p, bound)) < 1e-3)
+      return true;
   return false;
 }
 

@@ -72,6 +72,12 @@ struct PlaceLaw {
   const char* field = "";  ///< behind the freedom
 };
 
+std::vector<EffectParameter> yields_in_one_sense(const subject::Place& p) {
+  const Units& u = units(p);
+  return {parameter(fmt::format("yields_{}_per_{}", u.way, u.force), fmt::format("{}/{}", u.way, u.force),
+                    1 / u.stiffness, 0, "deflection by force in the sense in which it yields")};
+}
+
 std::string first_of(const std::vector<EffectParameter>& p) { return "$" + p.front().name; }
 
 const PlaceLaw laws[] = {
@@ -91,9 +97,9 @@ const PlaceLaw laws[] = {
     {"factor",
      [](const subject::Place& p) { return p.one_stiffness && single(p); },
      "is not as stiff as described",
-     [](const subject::Place&) {
-       return std::vector<EffectParameter>{
-           {"factor", "", 0.9, 0.02, 50, true, 1, "true stiffness over the one in the description"}};
+     [](const subject::Place& p) {
+       return std::vector<EffectParameter>{{"factor", "", 0.9, of_frame(p) ? 1e-6 : 0.02, 50, true, 1,
+                                            "true stiffness over the one in the description"}};
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
      {"The stiffness of {} in the description comes from a data sheet or an estimate; the part has another one.",
@@ -124,7 +130,8 @@ const PlaceLaw laws[] = {
            {"factor", "", 0.9, 1e-6, 50, true, 1, "true stiffness over the one in the description; near 0: missing"}};
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
-     {"{} is softer or stiffer than its section and material say: another section or grade, corrosion, a crack, a loose "
+     {"{} is softer or stiffer than its section and material say: another section or grade, corrosion, a crack, a "
+      "loose "
       "connection, cladding that carries. A factor near zero is a member that does nothing.",
       "Readings are off in proportion to the force in {}, and its share of the load goes to its neighbours.",
       "Measure its section; tap it and listen; read the strain on it under a known load.",
@@ -193,8 +200,8 @@ const PlaceLaw laws[] = {
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
      {"The zero of {} was not taken, or has moved since.",
-      "All readings of {} are off by one number, whatever the load.",
-      "Unload and read it.", "Take the zero again, or say 'zero: free' in the description."},
+      "All readings of {} are off by one number, whatever the load.", "Unload and read it.",
+      "Take the zero again, or say 'zero: free' in the description."},
      false,
      EffectEdit::Action::set,
      ".offset"},
@@ -208,8 +215,8 @@ const PlaceLaw laws[] = {
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
      {"{} lags behind what it reads: a plunger that rubs, a worn spindle, play in its linkage.",
-      "Loops of {} alone, of one width at every load; the other instruments show none.",
-      "Tap it: it jumps.", "Clean or replace it; approach every reading from one side."},
+      "Loops of {} alone, of one width at every load; the other instruments show none.", "Tap it: it jumps.",
+      "Clean or replace it; approach every reading from one side."},
      false,
      EffectEdit::Action::set,
      ".stick"},
@@ -228,12 +235,7 @@ const PlaceLaw laws[] = {
     {"pull",
      may_be_loose,
      "yields to positive force alone",
-     [](const subject::Place& p) {
-       const Units& u = units(p);
-       return std::vector{parameter(fmt::format("yields_{}_per_{}", u.way, u.force),
-                                    fmt::format("{}/{}", u.way, u.force), 1 / u.stiffness, 0,
-                                    "deflection by force in the sense in which it yields")};
-     },
+     yields_in_one_sense,
      [](const auto& p, const subject::Place&) { return "{law: one_sided, pull: " + first_of(p) + "}"; },
      {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
       "force pulls it along its positive axis.",
@@ -242,12 +244,7 @@ const PlaceLaw laws[] = {
     {"push",
      may_be_loose,
      "yields to negative force alone",
-     [](const subject::Place& p) {
-       const Units& u = units(p);
-       return std::vector{parameter(fmt::format("yields_{}_per_{}", u.way, u.force),
-                                    fmt::format("{}/{}", u.way, u.force), 1 / u.stiffness, 0,
-                                    "deflection by force in the sense in which it yields")};
-     },
+     yields_in_one_sense,
      [](const auto& p, const subject::Place&) { return "{law: one_sided, push: " + first_of(p) + "}"; },
      {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
       "force pushes it against its positive axis.",

@@ -2,7 +2,8 @@
 //
 //   law        where                                           what it is
 //   linear     rigid directions, elastic ones of another law   a spring in series
-//   factor     freedoms held by one spring, members,           that stiffness, material, dimension or load times a factor
+//   factor     freedoms held by one spring, members,           that stiffness, material, dimension or load times a
+//   factor
 //              materials, dimensions of sections, load cases
 //   gain       named sensors                                   what they read, times a factor
 //   zero       named sensors whose zero is taken               what they read, plus a number

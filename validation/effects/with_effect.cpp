@@ -95,19 +95,13 @@ Dependent one_by_one(const Dependent& m, const Effect& e, const VectorX& values,
 
 /// The kind of place that the effect sits in, where the device says that nothing is missing there.
 std::optional<std::string> trusted_place(const Effect& e, const std::vector<std::string>& trusted) {
-  static const std::pair<const char*, const char*> kinds[] = {{"base", "base"},
-                                                              {"tool", "tool"},
-                                                              {"payload", "load"},
-                                                              {"rig.load_cell", "load cell"},
-                                                              {"rig.sensor", "sensor"},
-                                                              {"sensors.", "sensor"},
-                                                              {"loads.", "load"},
-                                                              {"supports.", "support"}};
+  static const std::pair<const char*, const char*> kinds[] = {
+      {"base", "base"},         {"tool", "tool"},       {"payload", "load"}, {"rig.load_cell", "load cell"},
+      {"rig.sensor", "sensor"}, {"sensors.", "sensor"}, {"loads.", "load"},  {"supports.", "support"}};
   for (const EffectEdit& edit : e.edits)
     for (const std::string& path : edit.paths)
       for (const auto& [head, kind] : kinds)
-        if (path.starts_with(head) && std::find(trusted.begin(), trusted.end(), kind) != trusted.end())
-          return kind;
+        if (path.starts_with(head) && std::find(trusted.begin(), trusted.end(), kind) != trusted.end()) return kind;
   return std::nullopt;
 }
 

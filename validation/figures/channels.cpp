@@ -94,12 +94,12 @@ std::optional<Figure> channels(const compare::Comparison& c, const FigureStyle& 
     s.plot(fmt::format("plot $c{} using 1:2 with points pt 7 ps 0.35 lc rgb '#0072B2'", k));
   }
   s.put("unset multiplot");
-  return s.figure(y + height + s.below(),
-                  fmt::format("Measured − predicted of each channel{}, {}. Grey: ±2 standard deviations of what noise "
-                              "and tolerances give with nothing missing. {} {}",
-                              left_out > 0 ? fmt::format(" ({} more, with smaller residuals, are left out)", left_out)
-                                           : "",
-                              order, report::data_sentence(c), report::noise_sentence(c)));
+  return s.figure(
+      y + height + s.below(),
+      fmt::format("Measured − predicted of each channel{}, {}. Grey: ±2 standard deviations of what noise "
+                  "and tolerances give with nothing missing. {} {}",
+                  left_out > 0 ? fmt::format(" ({} more, with smaller residuals, are left out)", left_out) : "", order,
+                  report::data_sentence(c), report::noise_sentence(c)));
 }
 
 }  // namespace deflect::figures

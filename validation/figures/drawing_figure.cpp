@@ -201,7 +201,7 @@ void write_callouts(DrawnView& v, const std::vector<Callout>& all, std::size_t l
   const double width = v.box()(2), height = v.box()(3), step = 1.05 * s.line();
   std::vector<Callout> columns[2], sorted = all;
   std::sort(sorted.begin(), sorted.end(), [](const Callout& a, const Callout& b) { return a.at.x() < b.at.x(); });
-  const auto room = static_cast<std::size_t>(std::max(1.0, height / step));
+  const auto room = as_size(std::lround(std::floor(std::max(1.0, height / step))));
   for (std::size_t i = 0; i < sorted.size(); ++i) columns[2 * i < sorted.size() ? 0 : 1].push_back(sorted[i]);
   std::string leaders;
   for (const int side : {0, 1}) {
@@ -249,7 +249,7 @@ Figure drawing_figure(const MachineDrawing& d, const FigureStyle& style) {
   if (!d.motions.empty()) notes.push_back("red: " + d.motions.front().words);
   double y = s.heading(fmt::format("{}: as drawn, unloaded", report::clip(d.name, 60)), notes) + 1;
   const double w = s.width(), large = 0.62 * w, small = 0.42 * w;
-  const std::size_t letters_of_column = static_cast<std::size_t>(0.24 * w / s.text_mm(1, 0.94));
+  const std::size_t letters_of_column = as_size(std::lround(std::floor(0.24 * w / s.text_mm(1, 0.94))));
   s.put("set multiplot");
   DrawnView whole(s, d, askew(), {0, y, w, large}, 0.27 * w);
   draw_bodies(whole, d, "0");

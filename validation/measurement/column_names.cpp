@@ -29,9 +29,7 @@ std::string_view unit_of(std::string_view name) { return name.substr(unit_at(nam
 
 }  // namespace
 
-std::string sensor_column(const SensorChannel& sensor) {
-  return sensor.name + "_" + row_of(sensor.quantity).unit;
-}
+std::string sensor_column(const SensorChannel& sensor) { return sensor.name + "_" + row_of(sensor.quantity).unit; }
 
 std::string load_column(const std::string& point, std::size_t component) {
   return point + "." + load_columns.at(component);

@@ -35,8 +35,8 @@ const std::vector<ColumnUnit> degree_units = {
     {"deg"}, {"°"}, {"rad", 1 / deg_rad}, {"mrad", 1e-3 / deg_rad}, {"urad", 1e-6 / deg_rad}, {"µrad", 1e-6 / deg_rad}};
 const std::vector<ColumnUnit> radian_units = {{"rad"},        {"deg", deg_rad}, {"°", deg_rad},
                                               {"mrad", 1e-3}, {"urad", 1e-6},   {"µrad", 1e-6}};
-const std::vector<ColumnUnit> strain_units = {{"um_per_m"}, {"µm/m"}, {"um/m"}, {"ustrain"}, {"µε"}, {"mm_per_m", 1e3},
-                                              {"mm/m", 1e3}, {"1", 1e6}, {"%", 1e4}};
+const std::vector<ColumnUnit> strain_units = {{"um_per_m"},      {"µm/m"},      {"um/m"},   {"ustrain"}, {"µε"},
+                                              {"mm_per_m", 1e3}, {"mm/m", 1e3}, {"1", 1e6}, {"%", 1e4}};
 const std::vector<ColumnUnit> temperature_units = {{"C"}, {"°C"}, {"K", 1, -273.15}, {"F", 5.0 / 9, -32}};
 
 std::string in_lower_case(std::string_view text) {

@@ -7,7 +7,8 @@
 //   q. of a joint        one of the last two rows; angles become rad, lengths mm
 //   temperature          C  K  F
 //   strain               um_per_m  um/m  µm/m  µε  mm/m  1  %
-//   a sensor's name      as u., th., f., m. or strain, by what it reads;  handle.f., handle.m. at a named point: as f. and m.
+//   a sensor's name      as u., th., f., m. or strain, by what it reads;  handle.f., handle.m. at a named point: as f.
+//   and m.
 //
 // The unit follows the stem after "_" or in brackets: "fx_kgf", "Fx [kgf]", "FX (N)". Case does not count where it does
 // not tell units apart.

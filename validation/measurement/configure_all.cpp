@@ -45,8 +45,8 @@ std::vector<Configuration> configure_all(const Mechanism& mechanism, const Measu
 Instruments instruments_of(const Mechanism& mechanism) {
   Instruments out;
   for (const auto& [name, s] : mechanism.sensors)
-    out.sensors.push_back({name, s.rotation ? Quantity::angle : Quantity::length,
-                            s.sigma > 0 ? std::optional(s.sigma) : std::nullopt});
+    out.sensors.push_back(
+        {name, s.rotation ? Quantity::angle : Quantity::length, s.sigma > 0 ? std::optional(s.sigma) : std::nullopt});
   for (const auto& [name, point] : mechanism.loads) out.load_points.push_back(name);
   return out;
 }

@@ -36,9 +36,9 @@ std::size_t joint_number(std::string_view name) {
 
 /// Whether only a machine's file has this column.
 bool of_machines(const std::string& name) {
-  return joint_number(name) > 0 || std::any_of(std::begin(machine_columns), std::end(machine_columns), [&](const SixNames* six) {
-           return std::find(six->begin(), six->end(), name) != six->end();
-         });
+  return joint_number(name) > 0 ||
+         std::any_of(std::begin(machine_columns), std::end(machine_columns),
+                     [&](const SixNames* six) { return std::find(six->begin(), six->end(), name) != six->end(); });
 }
 
 /// The columns by the names of the contract.
@@ -187,6 +187,13 @@ void other_columns(const ContractColumns& known, MeasurementColumns& columns) {
   columns.how_read = known.how_read();
 }
 
+[[noreturn]] void refuse_without_sensors(const CsvTable& table) {
+  table.refuse_header(
+      "the measured thing is a frame that has no sensors, so nothing of this file can be compared: describe them in "
+      "the "
+      "frame file, as in 'sensors: {lvdt: {node: B, direction: uz}}'");
+}
+
 /// A frame is loaded and, unless it is a plan, read.
 void require_stationary(const CsvTable& table, const Instruments& instruments, bool plan,
                         const MeasurementColumns& columns) {
@@ -198,16 +205,13 @@ void require_stationary(const CsvTable& table, const Instruments& instruments, b
   for (const SensorChannel& sensor : instruments.sensors) sensors.push_back(sensor_column(sensor));
   for (const std::string& name : instruments.load_cases) cases.push_back("load." + name);
   for (const std::string& point : instruments.load_points) cases.push_back(load_column(point, 0));
-  if (sensors.empty())
-    table.refuse_header("the frame has no sensors, so nothing of this file can be compared: describe them in the frame "
-                        "file, as in 'sensors: {lvdt: {node: B, direction: uz}}'");
   if (!plan && columns.sensors.empty())
     table.refuse_header(
         fmt::format("no sensor of the frame is read: at least one of the columns {} is wanted", some(sensors)));
   if (columns.load_cases.empty() && columns.load_points.empty())
-    table.refuse_header(fmt::format(
-        "no load: at least one column with a factor on a load case or with a load at a node is wanted ({})",
-        some(cases)));
+    table.refuse_header(
+        fmt::format("no load: at least one column with a factor on a load case or with a load at a node is wanted ({})",
+                    some(cases)));
 }
 
 }  // namespace
@@ -217,10 +221,12 @@ std::string joint_column(std::size_t joint, bool rotates) {
 }
 
 MeasurementColumns measurement_columns(const CsvTable& table, const Instruments& instruments, bool plan) {
+  if (instruments.stationary && instruments.sensors.empty()) refuse_without_sensors(table);
   const ContractColumns known(table, instruments);
   MeasurementColumns columns;
   for (const SensorChannel& sensor : instruments.sensors)
-    if (named_column(sensor_column(sensor)))
+    if (const auto same = named_column(sensor_column(sensor));
+        same && !(instruments.stationary && of_machines(same->name)))
       table.refuse_header(fmt::format(
           "the device calls a sensor '{}', and '{}' is a column of every file: give the sensor another name",
           sensor.name, sensor_column(sensor)));

@@ -120,8 +120,8 @@ struct LoadChannel {
   std::string name;  ///< "fx", "node.B.fz", "load.snow"
   bool moment = false;
 };
-/// What loads_of() gives. A stationary subject: load cases, then the components at nodes that some reading has. Else the
-/// six components at T, in which loads at named points are contained.
+/// What loads_of() gives. A stationary subject: load cases, then the components at nodes that some reading has. Else
+/// the six components at T, in which loads at named points are contained.
 std::vector<LoadChannel> load_channels(const Measurements&);
 /// The loads of all readings (columns), by load channel; N, Nm, 1.
 MatrixX loads_of(const Measurements&);

@@ -27,9 +27,10 @@ inline constexpr std::array quantity_rows = {
     QuantityRow{"moment", "Nmm", 1e3, "Nmm", 1e3, "Nmm", "Nmm", 1e3},
     QuantityRow{"strain", "um_per_m", 1e6, "µm/m", 1e6, "um_per_m", "µm/m", 1e6},
 };
-static_assert(quantity_rows.size() == static_cast<std::size_t>(Quantity::strain) + 1);
+constexpr std::size_t number_of(Quantity q) { return static_cast<std::size_t>(q); }
+static_assert(quantity_rows.size() == number_of(Quantity::strain) + 1);
 
-constexpr const QuantityRow& row_of(Quantity q) { return quantity_rows[static_cast<std::size_t>(q)]; }
+constexpr const QuantityRow& row_of(Quantity q) { return quantity_rows[number_of(q)]; }
 
 /// Of a component of [δ; θ].
 constexpr Quantity displacement_quantity(std::size_t component) {

@@ -44,8 +44,8 @@ std::optional<NoiseEstimate> pure_error_of(const Measurements&, Quantity);
 struct MeasuredValue {
   std::size_t reading = 0;
   std::size_t channel = 0;
-  double value = 0;                ///< SI
-  std::optional<double> sigma;     ///< the file's; else from the replicates; empty where there is neither
+  double value = 0;             ///< SI
+  std::optional<double> sigma;  ///< the file's; else from the replicates; empty where there is neither
   Quantity quantity = Quantity::length;
   Vector6 form = Vector6::Zero();  ///< the first-order reading of a small displacement d of T: form · d
 

@@ -103,8 +103,9 @@ measurement::Measurements simulate(const Mechanism& m, measurement::Measurements
       r.sensors.push_back(read(exact[i](as_index(6 + k)), sensors[k].sigma.value_or(otherwise), sensors[k].quantity));
     }
     for (Eigen::Index k = 0; k < 6 && sensors.empty(); ++k)
-      if (k < 3 || o.sigma_th) nth(r.displacement, k) = read(exact[i](k), k < 3 ? o.sigma_u : *o.sigma_th,
-                                         measurement::displacement_quantity(as_size(k)));
+      if (k < 3 || o.sigma_th)
+        nth(r.displacement, k) =
+            read(exact[i](k), k < 3 ? o.sigma_u : *o.sigma_th, measurement::displacement_quantity(as_size(k)));
     if (o.sigma_u > 0 && !all_told) r.sigma_u = o.sigma_u;
     if (o.sigma_th && *o.sigma_th > 0 && !all_told) r.sigma_th = o.sigma_th;
   }

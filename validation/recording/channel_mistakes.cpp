@@ -137,8 +137,8 @@ std::vector<Correction> mistaken_loads(const Measurements& m) {
     for (const OtherUnit& unit : units_of(Quantity::force))
       out.push_back(scaled_load(names, unit.factor, fmt::format("{}_{}", id, unit.id),
                                 fmt::format("{} {}: give what was applied", what, unit.words)));
-    out.push_back(scaled_load(names, -1, id + "_sign",
-                              fmt::format("{} with the other sign: turn the numbers round", what)));
+    out.push_back(
+        scaled_load(names, -1, id + "_sign", fmt::format("{} with the other sign: turn the numbers round", what)));
   };
   for (const std::string& name : all) add({name}, name, name);
   if (all.size() > 1) add(all, "all loads", "loads");

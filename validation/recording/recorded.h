@@ -26,12 +26,12 @@ struct Correction {
   std::string id;        ///< "force_in_kgf"
   std::string sentence;  ///< what the data look like, with the remedy: "loads in kgf: fx_N … want N, …"
   Rewritten displacement, load;
-  Vector3 acts_at = Vector3::Zero();                  ///< m, base axes: forces act at T + acts_at
-  std::function<void(measurement::PoseGroup&)> pose;  ///< empty: poses are as recorded
-  std::function<void(measurement::Measurements&)> readings;        ///< of sensors and of loads at nodes; or empty
-  std::vector<std::pair<std::size_t, double>> scaled_channels;     ///< by channel: the factor that `readings` applies
-  bool sigma_too = true;                              ///< a unit of displacements is the unit of their σ too
-  int fitted = 0;                                     ///< numbers that were fitted to the data
+  Vector3 acts_at = Vector3::Zero();                            ///< m, base axes: forces act at T + acts_at
+  std::function<void(measurement::PoseGroup&)> pose;            ///< empty: poses are as recorded
+  std::function<void(measurement::Measurements&)> readings;     ///< of sensors and of loads at nodes; or empty
+  std::vector<std::pair<std::size_t, double>> scaled_channels;  ///< by channel: the factor that `readings` applies
+  bool sigma_too = true;                                        ///< a unit of displacements is the unit of their σ too
+  int fitted = 0;                                               ///< numbers that were fitted to the data
 };
 
 /// A number without a partner in its new place (a column that was not recorded) is not measured.

@@ -17,12 +17,6 @@
 namespace deflect::report {
 namespace {
 
-/// " at 9 poses"; nothing of a subject that stands still.
-std::string poses_words(const compare::Comparison& c) {
-  return c.study.standing->has_tool_point() || c.poses > 1 ? fmt::format(" at {} poses", c.poses) : "";
-}
-
-constexpr double significant = 1e-3;
 constexpr std::size_t most_poses = 12, poses_of_many = 10;  // in the report
 
 std::string p_text(double p) { return p < 1e-16 ? "< 1e-16" : fmt::format("{:.2g}", p); }
@@ -34,8 +28,8 @@ std::string findings_text(const compare::Comparison& c) {
   int number = 0;
   for (const compare::Finding& f : c.findings) {
     out += fmt::format("  {}. {}.\n", ++number, f.sentence);
-    out += fmt::format("     {:.2f} {} rms of the readings, {:.0f} % of the misfit beyond noise, p {}{}\n", fine * f.size,
-                       unit, 100 * f.share, p_text(f.p_value),
+    out += fmt::format("     {:.2f} {} rms of the readings, {:.0f} % of the misfit beyond noise, p {}{}\n",
+                       fine * f.size, unit, 100 * f.share, p_text(f.p_value),
                        f.instead.empty() ? "" : fmt::format("; nearly as well: {}", fmt::join(f.instead, ", ")));
   }
   if (!c.findings.empty())
@@ -56,7 +50,8 @@ void add_rows(std::vector<std::vector<std::string>>& rows, const std::vector<com
               measurement::Quantity quantity) {
   for (const compare::Errors& e : groups) {
     const double fine = fine_of(e.quantity);
-    rows.push_back({e.quantity == quantity ? "  " + e.group : fmt::format("  {} ({})", e.group, fine_unit(e.quantity)), std::to_string(e.readings), fmt::format("{:.2f}", fine * e.rmse)});
+    rows.push_back({e.quantity == quantity ? "  " + e.group : fmt::format("  {} ({})", e.group, fine_unit(e.quantity)),
+                    std::to_string(e.readings), fmt::format("{:.2f}", fine * e.rmse)});
     for (std::size_t k = 0; k < 3; ++k)
       rows.back().push_back(e.measured_along[k] ? fmt::format("{:.2f}", fine * e.bias(as_index(k))) : "–");
     rows.back().push_back(fmt::format("{:.2f}", fine * e.worst));
@@ -180,14 +175,6 @@ Json patterns_json(const std::vector<compare::PatternTest>& tests, double coarse
   return out;
 }
 
-/// Of the contrasts, those that noise does not explain.
-std::vector<std::string> failing_tests(const compare::Comparison& c) {
-  std::vector<std::string> out;
-  for (const compare::ContrastTest& t : c.contrasts)
-    if (t.contrasts > 0 && t.p_value < significant) out.push_back(t.id);
-  return out;
-}
-
 /// By how much one standard deviation of a tolerance moves the readings, root mean square over those of the quantity of
 /// errors, SI: those of all poses, the largest first.
 std::vector<std::pair<std::string, double>> sizes_of_tolerances(const compare::Comparison& c) {
@@ -224,20 +211,13 @@ Json tolerances_json(const compare::Comparison& c) {
   return out;
 }
 
-/// The patterns of the findings.
-std::vector<std::string> found_patterns(const compare::Comparison& c) {
-  std::vector<std::string> out;
-  for (const compare::Finding& f : c.findings) out.push_back(f.pattern);
-  return out;
-}
-
 }  // namespace
 
 std::string compare_report(const compare::Comparison& c) {
   const char* unit = error_unit(c).micro;
   const double fine = error_unit(c).fine;
-  std::string out =
-      fmt::format("{} against {}: {} readings{}\n\n{}\n", c.device, c.data, c.readings, poses_words(c), verdict_words(c));
+  std::string out = fmt::format("{} against {}: {} readings{}\n\n{}\n", c.device, c.data, c.readings, poses_words(c),
+                                verdict_words(c));
   const std::string found = findings_text(c);
   if (!found.empty()) out += "\n" + found;
   for (std::size_t i = compare::is_mistaken(c) ? 1 : 0; i < c.mistakes.size(); ++i)  // the headline has been said
@@ -313,8 +293,8 @@ std::string residuals_csv(const compare::Comparison& c) {
     const double unit = row.per_SI;
     const double residual = c.residual(as_index(i));
     out += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.4g}\n", r.line, csv_cell(s.data->poses[r.pose].label),
-                       csv_cell(measurement::channel_name(*s.data, v.channel)), row.unit,
-                       unit * v.value, unit * (v.value - residual), unit * residual, unit * c.sigma[i]);
+                       csv_cell(measurement::channel_name(*s.data, v.channel)), row.unit, unit * v.value,
+                       unit * (v.value - residual), unit * residual, unit * c.sigma[i]);
   }
   return out;
 }
@@ -331,8 +311,7 @@ std::string errors_csv(const compare::Comparison& c) {
   for (const compare::Errors& e : rows) {
     const double fine = fine_of(e.quantity);
     const std::string name =
-        e.quantity == quantity ? e.group
-                               : fmt::format("{} ({})", e.group, measurement::row_of(e.quantity).fine_column);
+        e.quantity == quantity ? e.group : fmt::format("{} ({})", e.group, measurement::row_of(e.quantity).fine_column);
     out += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(name), e.readings, fine * e.rmse,
                        fine * e.bias.x(), fine * e.bias.y(), fine * e.bias.z(), fine * e.worst, e.worst_line);
   }
@@ -346,78 +325,6 @@ std::string tests_csv(const compare::Comparison& c) {
     out += fmt::format("contrast,{},{},{:.6g},{:.6g}\n", t.id, t.contrasts, fine * t.size, t.p_value);
   for (const compare::PatternTest& t : c.patterns)
     out += fmt::format("pattern,{},{},{:.6g},{:.6g}\n", t.pattern, t.alone.freedoms, fine * t.size, t.alone.p_value);
-  return out;
-}
-
-std::string history_report(const compare::History& h) {
-  const std::vector<compare::Comparison>& all = h.versions;
-  const double fine = error_unit(all.front()).fine;
-  std::vector<std::vector<std::string>> rows = {{"device", fmt::format("rms {}", error_unit(all.front()).micro),
-                                                 "placebo", "held-out", "chi2/n", "noise and tolerances", "strained",
-                                                 "tests that fail", "patterns left"}};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const compare::Comparison& c = all[i];
-    const std::optional<double> wrong = h.placebo[i];
-    const std::vector<std::string> tests = failing_tests(c), patterns = found_patterns(c);
-    rows.push_back({c.device, fmt::format("{:.2f}", fine * c.all.rmse), wrong ? fmt::format("{:.2f}", fine * *wrong) : "",
-                    fmt::format("{:.2f}", fine * c.held_out), fmt::format("{:.2f}", c.chi2_per_dof),
-                    fmt::format("{:.2f}", fine * c.noise_and_tolerances), std::to_string(c.strained.size()),
-                    tests.empty() ? "none" : fmt::format("{}", fmt::join(tests, ", ")),
-                    patterns.empty() ? "none" : fmt::format("{}", fmt::join(patterns, ", "))});
-  }
-  std::string out =
-      fmt::format("{}: {} readings{}\n\n", all.front().data, all.front().readings, poses_words(all.front())) +
-      aligned(rows);
-  for (const compare::Comparison& c : all) {
-    std::vector<std::pair<std::string, double>> worst = c.strained;
-    std::stable_sort(worst.begin(), worst.end(),
-                     [](const auto& a, const auto& b) { return std::abs(a.second) > std::abs(b.second); });
-    if (worst.empty()) continue;
-    out += fmt::format("{}: beyond two standard deviations by itself:", c.device);
-    for (std::size_t i = 0; i < std::min<std::size_t>(5, worst.size()); ++i)
-      out += fmt::format("{} {} {:+.1f}", i ? "," : "", worst[i].first, worst[i].second);
-    out += worst.size() > 5 ? fmt::format(" and {} more\n", worst.size() - 5) : "\n";
-  }
-  return out;
-}
-
-std::string history_json(const compare::History& h) {
-  const std::vector<compare::Comparison>& all = h.versions;
-  const double coarse = error_unit(all.front()).coarse;
-  Json j;
-  j["kind"] = "history";
-  j["data"] = all.front().data;
-  j["unit"] = error_unit(all.front()).milli;  // of what ends with _mm
-  j["versions"] = Json::array();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const compare::Comparison& c = all[i];
-    const std::optional<double> wrong = h.placebo[i];
-    j["versions"].push_back({{"device", c.device},
-                             {"rmse_mm", json::json_number(coarse * c.all.rmse, "rmse")},
-                             {"placebo_rmse_mm", wrong ? json::json_number(coarse * *wrong, "placebo") : Json()},
-                             {"held_out_rmse_mm", json::json_number(coarse * c.held_out, "held-out rmse")},
-                             {"chi2_per_dof", json::json_number(c.chi2_per_dof, "chi2")},
-                             {"noise_floor_mm", coarse * c.noise_and_tolerances},
-                             {"failing_tests", failing_tests(c)},
-                             {"patterns", found_patterns(c)},
-                             {"strained_tolerances", strained_json(c.strained)}});
-  }
-  return json::json_text(j);
-}
-
-std::string history_csv(const compare::History& h) {
-  const std::vector<compare::Comparison>& all = h.versions;
-  const double fine = error_unit(all.front()).fine;
-  std::string out =
-      fmt::format("device,rmse_{0},placebo_rmse_{0},held_out_rmse_{0},chi2_per_dof,noise_and_tolerances_{0},strained\n",
-                  error_unit(all.front()).column);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const compare::Comparison& c = all[i];
-    const std::optional<double> wrong = h.placebo[i];
-    out += fmt::format("{},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(c.device), fine * c.all.rmse,
-                       wrong ? fmt::format("{:.6g}", fine * *wrong) : "", fine * c.held_out, c.chi2_per_dof,
-                       fine * c.noise_and_tolerances, c.strained.size());
-  }
   return out;
 }
 

@@ -84,6 +84,10 @@ std::vector<ReadingCells> cells_of(const compare::Comparison& c) {
   return out;
 }
 
+std::string poses_words(const compare::Comparison& c) {
+  return c.study.standing->has_tool_point() || c.poses > 1 ? fmt::format(" at {} poses", c.poses) : "";
+}
+
 std::string subjects(const compare::Comparison& c) {
   return fmt::format("{} against {}", clip(c.device, 40), clip(file_of(c), 40));
 }
@@ -117,7 +121,8 @@ std::string noise_sentence(const compare::Comparison& c) {
 }
 
 std::string axes_sentence(const compare::Comparison& c) {
-  if (!c.study.standing->has_tool_point()) return "Readings against the unloaded frame; residual = measured − predicted.";
+  if (!c.study.standing->has_tool_point())
+    return "Readings against the unloaded frame; residual = measured − predicted.";
   return error_unit(c).rotations
              ? "Rotations of the tool frame against the unloaded machine, about base axes; residual = measured − "
                "predicted."

@@ -34,6 +34,11 @@ struct ReadingCells {
 };
 std::vector<ReadingCells> cells_of(const compare::Comparison&);
 
+/// " at 9 poses"; nothing of a subject that stands still.
+std::string poses_words(const compare::Comparison&);
+/// p-value below which a test counts as failed.
+inline constexpr double significant = 1e-3;
+
 /// "device against file.csv".
 std::string subjects(const compare::Comparison&);
 

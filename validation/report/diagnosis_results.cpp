@@ -33,9 +33,9 @@ std::string candidates_table(const diagnosis::Diagnosis& d) {
                     fmt::format("{:.2f}", c.chi2_per_dof), c.fit.found ? fitted_words(c.hypothesis, c.fit) : "no fit"});
     ++shown;
   }
-  rows.push_back({"  nothing", fmt::format("{:.3g}", d.probability_nothing),
-                  fmt::format("{:.2f}", fine(d) * d.baseline.rmse), fmt::format("{:.2f}", fine(d) * d.baseline.held_out),
-                  fmt::format("{:.2f}", d.baseline.chi2_per_dof), ""});
+  rows.push_back(
+      {"  nothing", fmt::format("{:.3g}", d.probability_nothing), fmt::format("{:.2f}", fine(d) * d.baseline.rmse),
+       fmt::format("{:.2f}", fine(d) * d.baseline.held_out), fmt::format("{:.2f}", d.baseline.chi2_per_dof), ""});
   rows.push_back({"  something unknown", fmt::format("{:.3g}", d.probability_unknown)});
   return aligned(rows);
 }

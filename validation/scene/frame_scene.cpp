@@ -149,8 +149,9 @@ Json sensors_of(const FrameDescription& f, const std::vector<std::string>& guilt
       const Vector3 from = *find(f.nodes, member->from), to = *find(f.nodes, member->to);
       at = between(from, to, s.at);
       axis = (to - from).normalized();
-      words = s.reads == Reads::strain ? fmt::format("{}: strain of {}", name, s.of)
-                                       : fmt::format("{}: {} force in {}", name, frame::section_force_names[s.component], s.of);
+      words = s.reads == Reads::strain
+                  ? fmt::format("{}: strain of {}", name, s.of)
+                  : fmt::format("{}: {} force in {}", name, frame::section_force_names[s.component], s.of);
     } else if (const Vector3* node = find(f.nodes, s.of)) {
       at = *node;
       if (s.reads == Reads::reaction) {
@@ -172,10 +173,14 @@ Json sensors_of(const FrameDescription& f, const std::vector<std::string>& guilt
 std::vector<std::string> changed_parts(const FrameDescription& before, const FrameDescription& after) {
   const YamlNode a = frame::tree_of(before), b = frame::tree_of(after);
   std::vector<std::string> out;
-  for (const auto& [list, word] : {std::pair{"members", "member"}, {"supports", "support"}, {"springs", "spring"},
-                                   {"sensors", "sensor"}, {"loads", "load"}})
+  for (const auto& [list, word] : {std::pair{"members", "member"},
+                                   {"supports", "support"},
+                                   {"springs", "spring"},
+                                   {"sensors", "sensor"},
+                                   {"loads", "load"}})
     for (const std::string& name : changed_entries(a, b, list)) out.push_back(fmt::format("{} {}", word, name));
-  const std::vector<std::string> sections = changed_entries(a, b, "sections"), materials = changed_entries(a, b, "materials");
+  const std::vector<std::string> sections = changed_entries(a, b, "sections"),
+                                 materials = changed_entries(a, b, "materials");
   for (const auto& [name, member] : after.members)
     if ((is_among(member.section, sections) || is_among(member.material, materials)) &&
         !is_among("member " + name, out))

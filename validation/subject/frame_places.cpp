@@ -23,7 +23,7 @@ void set_hold(Place& p, const frame::FreedomLaws& laws, std::size_t freedom, boo
 
 /// Whether a plane frame cannot move in this freedom of a node.
 bool out_of_plane(const FrameDescription& f, std::size_t freedom) {
-  return f.plane != frame::Plane::none && (as_index(freedom % 3) == static_cast<int>(f.plane)) == (freedom < 3);
+  return f.plane != frame::Plane::none && (as_index(freedom % 3) == frame::normal_axis(f.plane)) == (freedom < 3);
 }
 
 void add_supports(const FrameDescription& f, std::vector<Place>& out) {
@@ -53,7 +53,7 @@ void add_springs(const FrameDescription& f, std::vector<Place>& out) {
 bool bends_in_plane(const FrameDescription& f, const frame::FrameMember& m, std::size_t freedom) {
   const Vector3 along = *find(f.nodes, m.to) - *find(f.nodes, m.from);
   const Vector3 axis = frame::member_axes(along, m.y_axis).col(as_index(freedom) - 3);
-  return std::abs(axis(static_cast<int>(f.plane))) > 0.5;
+  return std::abs(axis(frame::normal_axis(f.plane))) > 0.5;
 }
 
 /// A member's ends bend about y and z; in a plane frame, whose members lie in it, about one of them.

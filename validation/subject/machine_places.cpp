@@ -148,12 +148,11 @@ std::vector<Place> places_of(const Mechanism& m) {
   found.of_joint(m.tool, "tool", "tool", false);
   for (std::size_t i = fixtures; i < found.all.size(); ++i)
     found.all[i].kind = i < tool ? PlaceKind::base : PlaceKind::tool;
-  for (const auto& [name, sensor] : m.sensors)
-    {
-      found.all.push_back({PlaceKind::sensor, {}, name, "sensors." + name});
-      if (!sensor.free_zero)
-        found.all.back().reads = sensor.rotation ? measurement::Quantity::angle : measurement::Quantity::length;
-    }
+  for (const auto& [name, sensor] : m.sensors) {
+    found.all.push_back({PlaceKind::sensor, {}, name, "sensors." + name});
+    if (!sensor.free_zero)
+      found.all.back().reads = sensor.rotation ? measurement::Quantity::angle : measurement::Quantity::length;
+  }
   std::erase_if(found.all, [&](const Place& p) {
     return std::find(m.trusted.begin(), m.trusted.end(), nth(place_kind_names, p.kind)) != m.trusted.end();
   });

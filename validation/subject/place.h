@@ -44,9 +44,9 @@ struct Place {
   /// whole.
   std::vector<std::size_t> freedoms = {};
   Hold hold = Hold::rigid;
-  bool one_stiffness = false;  ///< its only law is one linear law
-  bool slides = false;         ///< the joint is driven along an axis
-  bool base_axes = false;      ///< of a frame's node: its freedoms are ux … rz
+  bool one_stiffness = false;                       ///< its only law is one linear law
+  bool slides = false;                              ///< the joint is driven along an axis
+  bool base_axes = false;                           ///< of a frame's node: its freedoms are ux … rz
   std::optional<measurement::Quantity> reads = {};  ///< of a sensor whose zero is taken
   bool may_stick = false;                           ///< of a sensor whose description says how far it sticks
 

@@ -59,8 +59,8 @@ void add_rich(Plan& plan) {
 void add_random(Plan& plan, std::uint64_t seed) {
   measurement::Random random(seed);
   const auto any = [&] {
-    return std::min(plan.cases() - 1,
-                    static_cast<std::size_t>(random.uniform(0, static_cast<double>(plan.cases()))));
+    const double at = random.uniform(0, static_cast<double>(plan.cases()));
+    return std::min(plan.cases() - 1, as_size(std::lround(std::floor(at))));
   };
   for (int i = 0; i < 200; ++i) {
     std::vector<std::pair<std::size_t, double>> loads;
@@ -113,9 +113,10 @@ measurement::Measurements frame_campaign(const std::string& name, const frame::F
 measurement::Measurements simulate_frame(const frame::FrameDescription& f, measurement::Measurements plan,
                                          const prediction::SimulationOptions& o) {
   if (f.sensors.empty())
-    throw InputError(fmt::format(
-        "{}: the frame has no sensors to simulate: describe them, as in 'sensors: {{lvdt: {{node: B, direction: uz}}}}'",
-        f.name));
+    throw InputError(
+        fmt::format("{}: the frame has no sensors to simulate: describe them, as in 'sensors: {{lvdt: {{node: B, "
+                    "direction: uz}}}}'",
+                    f.name));
   measurement::Random random(o.seed);
   frame::FrameDescription built = f;
   for (const NumberMove& move : frame::number_moves(f))

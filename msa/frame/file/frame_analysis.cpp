@@ -109,7 +109,8 @@ void check(CaseResult& r, const FrameModel& m, const Elimination& e, const Vecto
   const VectorX load = padded(work.load.forces, m.model.dofs());
   const VectorX pulls = forces_with(m.model, work.fine, work.pulls);
   const VectorX free = e.reduce(load), held = e.reduce(pulls);
-  r.checks.residual = ratio(largest(free - held), largest(load) + largest(pulls) + cancelling * work.gross.force);
+  r.checks.residual = ratio(largest(free - held),
+                            largest(load) + largest(pulls) + cancelling * (work.gross.force + largest(work.pulls)));
   r.checks.equilibrium = equilibrium(m, work);
 
   const VectorX forces = work.load.forces - work.load.thermal;

@@ -221,7 +221,7 @@ void list_elastic(FrameModel& out, const FrameDescription& f, const Named<std::p
 }
 
 bool out_of_plane(Plane plane, int freedom) {
-  return plane != Plane::none && (freedom % 3 == static_cast<int>(plane)) == (freedom < 3);
+  return plane != Plane::none && (freedom % 3 == normal_axis(plane)) == (freedom < 3);
 }
 
 /// Last, so that what supports and links hold already is not told of them.

@@ -114,6 +114,8 @@ struct LoadCase {
 /// held at every node. The value is the normal's axis.
 enum class Plane { yz = 0, xz = 1, xy = 2, none = 3 };
 inline constexpr std::array<const char*, 4> plane_names = {"yz", "xz", "xy", "none"};
+/// 0 … 2 for x … z; 3: none.
+constexpr int normal_axis(Plane p) { return static_cast<int>(p); }
 
 /// The component of a section's forces that a load cell in a member reads, in member axes: [N, Vy, Vz, T, My, Mz].
 inline constexpr std::array<const char*, 6> section_force_names = {"axial", "Vy", "Vz", "T", "My", "Mz"};
@@ -123,21 +125,22 @@ inline constexpr std::array<const char*, 6> section_force_names = {"axial", "Vy"
 struct FrameSensor : InstrumentErrors {
   enum class Reads { displacement, force, strain, reaction };
   Reads reads = Reads::displacement;
-  std::string of;                    ///< the node, the member or the supported node
-  std::string direction;             ///< of a node, as in the file: "uz", "rx", "[0, 0, 1]"
-  Vector3 axis = Vector3::UnitZ();   ///< that direction: a unit vector in base axes
-  bool rotation = false;             ///< a rotation about the axis
-  std::size_t component = 0;         ///< of section_force_names; of a reaction, of wrench_names, base axes, on the frame
-  double at = 0.5;                   ///< along the member, as a share of its length
-  double stick = 0;                  ///< the reading follows only where it lags by more than this: SI, of what is read
-  double y = 0, z = 0;               ///< of the fibre, m, member axes; strain is N/EA − y Mz/EIz + z My/EIy
+  std::string of;                   ///< the node, the member or the supported node
+  std::string direction;            ///< of a node, as in the file: "uz", "rx", "[0, 0, 1]"
+  Vector3 axis = Vector3::UnitZ();  ///< that direction: a unit vector in base axes
+  bool rotation = false;            ///< a rotation about the axis
+  std::size_t component = 0;        ///< of section_force_names; of a reaction, of wrench_names, base axes, on the frame
+  double at = 0.5;                  ///< along the member, as a share of its length
+  double stick = 0;                 ///< the reading follows only where it lags by more than this: SI, of what is read
+  double y = 0, z = 0;              ///< of the fibre, m, member axes; strain is N/EA − y Mz/EIz + z My/EIy
 };
 
 /// Standard deviations of what varies between frames built to one drawing.
 struct FrameTolerances {
-  double modulus = 0;          ///< relative, of each material
-  double load = 0;             ///< relative, of a recorded load
-  Named<std::string> numbers;  ///< of single numbers, as in the file: "member.bending_factor" "5 %" (frame_tolerances.h)
+  double modulus = 0;  ///< relative, of each material
+  double load = 0;     ///< relative, of a recorded load
+  Named<std::string>
+      numbers;  ///< of single numbers, as in the file: "member.bending_factor" "5 %" (frame_tolerances.h)
 };
 
 struct FrameDescription {
@@ -155,8 +158,8 @@ struct FrameDescription {
   Named<FrameConstraint> constraints;
   Named<LoadCase> loads;
   Named<FrameSensor> sensors;
-  double load_gain = 1;                 ///< true over recorded load, for all loads
-  std::vector<std::string> trusted;     ///< kinds of place at which a diagnosis assumes nothing missing
+  double load_gain = 1;              ///< true over recorded load, for all loads
+  std::vector<std::string> trusted;  ///< kinds of place at which a diagnosis assumes nothing missing
   FrameTolerances tolerances;
   std::set<std::string> ours;  ///< paths of values that carry the tag !ours: assumed, not from the source
 };

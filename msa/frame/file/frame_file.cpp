@@ -13,8 +13,8 @@
 #include "msa/fields/file_kind.h"
 #include "msa/fields/tree_edit.h"
 #include "msa/frame/file/frame_fields.h"
-#include "msa/frame/file/short_forms.h"
 #include "msa/frame/file/frame_tolerances.h"
+#include "msa/frame/file/short_forms.h"
 
 namespace deflect::frame {
 

@@ -69,7 +69,7 @@ bool names_one(const Segments& key, const Segments& at, std::size_t i, std::size
 
 bool means(const FrameDescription& f, const std::string& key, const Number& n) {
   if (key == "node.position")
-    return n.at.front() == "nodes" && (f.plane == Plane::none || n.at.back() != std::to_string(static_cast<int>(f.plane)));
+    return n.at.front() == "nodes" && (f.plane == Plane::none || n.at.back() != std::to_string(normal_axis(f.plane)));
   return names_one(full_key(key), n.at, 0, 0);
 }
 

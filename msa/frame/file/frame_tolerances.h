@@ -1,7 +1,8 @@
 // Tolerances of single numbers of a frame: what was built deviates from what was drawn.
 //
 // A key of `tolerances:` beside `modulus` and `load` is one of
-//   a kind of part and a field   member.bending_factor, section.wall, material.E, spring.uz.stiffness, support.uz.stiffness;
+//   a kind of part and a field   member.bending_factor, section.wall, material.E, spring.uz.stiffness,
+//   support.uz.stiffness;
 //                                node.position is each coordinate of each node, in the plane of a plane frame
 //   a path                       "members.beam.bending_factor", "members.*.bending_factor"; indices may be left out
 // Its value is a standard deviation: relative with "%", else absolute in a unit of the number ("1 mm"). Every number is
@@ -11,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "msa/frame/file/frame_description.h"
 #include "msa/fields/number_walk.h"
+#include "msa/frame/file/frame_description.h"
 
 namespace deflect::frame {
 

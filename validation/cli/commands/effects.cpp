@@ -49,8 +49,7 @@ void run(const EffectsArguments& a) {
     fmt::print("{}", all.front().place ? effects::write_effect(all.front()) : read_text(all.front().origin));
     return;
   }
-  if (!a.json.empty())
-    write_file(a.json, report::effects_json(all, device));
+  if (!a.json.empty()) write_file(a.json, report::effects_json(all, device));
   if (!a.name.empty())
     fmt::print("{}", report::effect_page(all.front()));
   else if (!device)
@@ -68,8 +67,8 @@ Command effects_command() {
           "(LAW@PLACE). With --yaml, print the effect's file to start your own from",
           "deflect effects guide_root_compliance --device haptic-6psu",
           {{"name", "EFFECT", "effect to explain (default: list all)", &a->name},
-           {"--device", "DEVICE", "list the effects that this device or frame can have, and why it cannot have the others",
-            &a->device},
+           {"--device", "DEVICE",
+            "list the effects that this device or frame can have, and why it cannot have the others", &a->device},
            {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
            {"--yaml", "", "print the effect's file", &a->yaml},
            {"--json", "FILE", "write the effects", &a->json}},

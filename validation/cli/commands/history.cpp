@@ -10,7 +10,7 @@
 #include "validation/cli/talk.h"
 #include "validation/compare/history.h"
 #include "validation/figures/history_figure.h"
-#include "validation/report/compare_results.h"
+#include "validation/report/history_results.h"
 
 namespace deflect::cli {
 namespace {
@@ -77,15 +77,16 @@ Command history_command() {
       "Show how the error falls from version to version of a device, on one set of measurements: all poses, held-out "
       "poses, tests that still fail, remaining patterns, strained tolerances",
       "deflect history measurements.csv haptic-6psu-ideal-joints softer.yaml --out history",
-      with_figures({{"data", "DATA", "measurements (CSV)", &a->data, true},
-                    {"devices", "DEVICE", "versions in order: built-in devices or frames, or files of them", &a->devices, true},
-                    {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
-                    {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
-                    {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
-                    {"--json", "FILE", "write the result", &a->json},
-                    report_option(&a->report),
-                    {"--out", "DIR", "write the figure (SVG, PDF, PNG) with its caption, and the table", &a->out}},
-                   &a->figures),
+      with_figures(
+          {{"data", "DATA", "measurements (CSV)", &a->data, true},
+           {"devices", "DEVICE", "versions in order: built-in devices or frames, or files of them", &a->devices, true},
+           {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
+           {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
+           {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report),
+           {"--out", "DIR", "write the figure (SVG, PDF, PNG) with its caption, and the table", &a->out}},
+          &a->figures),
       [a] { run(*a); }};
 }
 

@@ -110,9 +110,7 @@ void run(const MapArguments& a, parallel::Ranks* ranks) {
     const std::size_t poses = o.grid.size();
     const Step step(fmt::format("map: {} poses, {}", poses, theories::titles_of(o.theories)));
     parallel::Progress progress(poses, "poses", progress_stream());
-    const auto told = [&](double share) {
-      progress.update(static_cast<std::size_t>(std::lround(share * static_cast<double>(poses))));
-    };
+    const auto told = [&](double share) { progress.update(as_size(std::lround(share * static_cast<double>(poses)))); };
     map = studies::map_stiffness(m, o, {threads, ranks, told});
   }
   if (ranks && !ranks->first()) return;

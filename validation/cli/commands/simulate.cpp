@@ -194,7 +194,8 @@ Command simulate_command() {
         &a->with},
        {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
        {"--campaign", "paper|cycle|rich|random|FILE",
-        "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280), or for a frame the "
+        "paper (27 readings), cycle (432, loading and unloading), rich (720, the default), random (280), or for a "
+        "frame the "
         "same kinds made of its load cases; or a "
         "measurement file that gives poses, loads, sequence and temperatures",
         &a->campaign},

@@ -1,0 +1,109 @@
+#include "validation/report/history_results.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "validation/json/json_text.h"
+#include "validation/report/compare_words.h"
+#include "validation/report/short_lists.h"
+#include "validation/report/text.h"
+
+namespace deflect::report {
+namespace {
+
+/// Of the contrasts, those that noise does not explain.
+std::vector<std::string> failing_tests(const compare::Comparison& c) {
+  std::vector<std::string> out;
+  for (const compare::ContrastTest& t : c.contrasts)
+    if (t.contrasts > 0 && t.p_value < significant) out.push_back(t.id);
+  return out;
+}
+
+/// The patterns of the findings.
+std::vector<std::string> found_patterns(const compare::Comparison& c) {
+  std::vector<std::string> out;
+  for (const compare::Finding& f : c.findings) out.push_back(f.pattern);
+  return out;
+}
+
+}  // namespace
+
+std::string history_report(const compare::History& h) {
+  const std::vector<compare::Comparison>& all = h.versions;
+  const double fine = error_unit(all.front()).fine;
+  std::vector<std::vector<std::string>> rows = {{"device", fmt::format("rms {}", error_unit(all.front()).micro),
+                                                 "placebo", "held-out", "chi2/n", "noise and tolerances", "strained",
+                                                 "tests that fail", "patterns left"}};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const compare::Comparison& c = all[i];
+    const std::optional<double> wrong = h.placebo[i];
+    const std::vector<std::string> tests = failing_tests(c), patterns = found_patterns(c);
+    rows.push_back({c.device, fmt::format("{:.2f}", fine * c.all.rmse),
+                    wrong ? fmt::format("{:.2f}", fine * *wrong) : "", fmt::format("{:.2f}", fine * c.held_out),
+                    fmt::format("{:.2f}", c.chi2_per_dof), fmt::format("{:.2f}", fine * c.noise_and_tolerances),
+                    std::to_string(c.strained.size()),
+                    tests.empty() ? "none" : fmt::format("{}", fmt::join(tests, ", ")),
+                    patterns.empty() ? "none" : fmt::format("{}", fmt::join(patterns, ", "))});
+  }
+  std::string out =
+      fmt::format("{}: {} readings{}\n\n", all.front().data, all.front().readings, poses_words(all.front())) +
+      aligned(rows);
+  for (const compare::Comparison& c : all) {
+    std::vector<std::pair<std::string, double>> worst = c.strained;
+    std::stable_sort(worst.begin(), worst.end(),
+                     [](const auto& a, const auto& b) { return std::abs(a.second) > std::abs(b.second); });
+    if (worst.empty()) continue;
+    out += fmt::format("{}: beyond two standard deviations by itself:", c.device);
+    for (std::size_t i = 0; i < std::min<std::size_t>(5, worst.size()); ++i)
+      out += fmt::format("{} {} {:+.1f}", i ? "," : "", worst[i].first, worst[i].second);
+    out += worst.size() > 5 ? fmt::format(" and {} more\n", worst.size() - 5) : "\n";
+  }
+  return out;
+}
+
+std::string history_json(const compare::History& h) {
+  const std::vector<compare::Comparison>& all = h.versions;
+  const double coarse = error_unit(all.front()).coarse;
+  Json j;
+  j["kind"] = "history";
+  j["data"] = all.front().data;
+  j["unit"] = error_unit(all.front()).milli;  // of what ends with _mm
+  j["versions"] = Json::array();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const compare::Comparison& c = all[i];
+    const std::optional<double> wrong = h.placebo[i];
+    j["versions"].push_back({{"device", c.device},
+                             {"rmse_mm", json::json_number(coarse * c.all.rmse, "rmse")},
+                             {"placebo_rmse_mm", wrong ? json::json_number(coarse * *wrong, "placebo") : Json()},
+                             {"held_out_rmse_mm", json::json_number(coarse * c.held_out, "held-out rmse")},
+                             {"chi2_per_dof", json::json_number(c.chi2_per_dof, "chi2")},
+                             {"noise_floor_mm", coarse * c.noise_and_tolerances},
+                             {"failing_tests", failing_tests(c)},
+                             {"patterns", found_patterns(c)},
+                             {"strained_tolerances", strained_json(c.strained)}});
+  }
+  return json::json_text(j);
+}
+
+std::string history_csv(const compare::History& h) {
+  const std::vector<compare::Comparison>& all = h.versions;
+  const double fine = error_unit(all.front()).fine;
+  std::string out =
+      fmt::format("device,rmse_{0},placebo_rmse_{0},held_out_rmse_{0},chi2_per_dof,noise_and_tolerances_{0},strained\n",
+                  error_unit(all.front()).column);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const compare::Comparison& c = all[i];
+    const std::optional<double> wrong = h.placebo[i];
+    out += fmt::format("{},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(c.device), fine * c.all.rmse,
+                       wrong ? fmt::format("{:.6g}", fine * *wrong) : "", fine * c.held_out, c.chi2_per_dof,
+                       fine * c.noise_and_tolerances, c.strained.size());
+  }
+  return out;
+}
+
+}  // namespace deflect::report
