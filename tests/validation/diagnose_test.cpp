@@ -86,6 +86,17 @@ TEST(Diagnose, FindsNothingInAHealthyMachine) {
   EXPECT_NEAR(total(d), 1, 1e-12);
 }
 
+/// A device may be described in the shape that its loads give it: what the readings are compared with is that shape.
+TEST(Diagnose, FindsNothingInAHealthyMachineOfFiniteGeometry) {
+  Mechanism m = ideal();
+  m.geometry = Geometry::finite;
+  SimulationOptions o;
+  o.sigma_u = 5e-7;
+  o.tolerances = 0;
+  const Measurements data = simulate(m, campaign("paper", m, 200, 1), o);
+  EXPECT_EQ(diagnose(m, data, test::all_effects(), {{}, 99}).verdict, Verdict::nothing_missing);
+}
+
 TEST(Diagnose, FindsTwoEffectsTogether) {
   Mechanism truth = with("joint_compliance", {1000});
   truth = with_effect(truth, test::effect("leg_defect"), test::values({0.6}), 3);

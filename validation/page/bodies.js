@@ -135,11 +135,11 @@ function levelAcross(points, size) {
 export function groundUnder(feet, isMachine, machineMiddle, size, upwards) {
   const group = new THREE.Group(), meshes = [], points = [];
   const thick = 0.012 * size, at = feet.map((f) => vector(f.at_mm)), level = isMachine ? levelAcross(at, size) : null;
-  const add = (middle, widths, words, opacity) => {
+  const add = (middle, widths, words, opacity, guilty = false) => {
     const map = hatched();
     const wide = [...widths].sort((a, b) => b - a);
     map.repeat.set(Math.max(1, wide[0] / (0.05 * size)), Math.max(1, wide[1] / (0.05 * size)));
-    const mesh = new THREE.Mesh(shapes.block, new THREE.MeshLambertMaterial({map, transparent: opacity < 1, opacity, depthWrite: opacity === 1}));
+    const mesh = new THREE.Mesh(shapes.block, new THREE.MeshLambertMaterial({map, color: guilty ? 0xd62728 : 0xffffff, transparent: opacity < 1, opacity, depthWrite: opacity === 1}));
     mesh.scale.set(...widths);
     mesh.position.copy(middle);
     mesh.userData = {words};
@@ -159,9 +159,9 @@ export function groundUnder(feet, isMachine, machineMiddle, size, upwards) {
     if (foot.whole) {
       const widths = [0.06 * size, 0.06 * size, 0.06 * size], axis = upwards.toArray().map(Math.abs).indexOf(1);
       widths[axis] = thick;
-      return add(at[i].clone().addScaledVector(upwards, -thick / 2), widths, foot.words, 1);
+      return add(at[i].clone().addScaledVector(upwards, -thick / 2), widths, foot.words, 1, foot.guilty);
     }
-    const cone = new THREE.Mesh(shapes.cone, new THREE.MeshLambertMaterial({color: 0x8a929b}));
+    const cone = new THREE.Mesh(shapes.cone, new THREE.MeshLambertMaterial({color: foot.guilty ? 0xd62728 : 0x8a929b}));
     cone.scale.setScalar(0.035 * size);
     cone.quaternion.setFromUnitVectors(up, upwards);
     cone.position.copy(at[i]).addScaledVector(upwards, -0.0175 * size);
