@@ -293,7 +293,7 @@ def make_mistake(path, f, kind, what, random):
     factors = steps(len(f["cases"]), False)
     readings, _ = laboratory(f, factors, random)
     at = [list(f["sensors"]).index(name) for name in what if name in f["sensors"]]
-    units, columns = {}, None
+    units, columns, wrong = {}, None, list(what)
     if kind == "swapped":
         readings[:, at] = readings[:, at[::-1]]
     elif kind == "sign":
@@ -308,12 +308,13 @@ def make_mistake(path, f, kind, what, random):
         for k, name in enumerate(f["cases"]):
             if name == what[0]:
                 columns.append((f"node.{node}.{key}_N", factors[:, k] * value / POUND_FORCE))
+                wrong = [f"node.{node}.{key}"]
             else:
                 columns.append((f"load.{name}", factors[:, k]))
     write_set(path, f, factors, readings, False, units, columns)
-    return {"swapped": "two channels swapped", "sign": "a channel with the wrong sign",
-            "metres": "a channel in m under a name in mm", "zero": "a channel with a constant offset of 0.05 mm",
-            "pounds": "a load column in lbf under a name in N"}[kind]
+    return wrong, {"swapped": "two channels swapped", "sign": "a channel with the wrong sign",
+                   "metres": "a channel in m under a name in mm", "zero": "a channel with a constant offset of 0.05 mm",
+                   "pounds": "a load column in lbf under a name in N"}[kind]
 
 
 def make_all(folder, frames_folder, only=None):
@@ -351,8 +352,8 @@ def make_all(folder, frames_folder, only=None):
                 continue
             name = f"{frame}_{kind}-{'-'.join(what).replace(' ', '-')}.csv"
             random = np.random.default_rng([SEED, zlib.crc32(name.encode())])
-            words = make_mistake(folder / name, f, kind, what, random)
-            truth[name] = {"frame": frame, "effect": f"recording@{'+'.join(what)}", "mistake": words, "parameters": {},
+            wrong, words = make_mistake(folder / name, f, kind, what, random)
+            truth[name] = {"frame": frame, "effect": f"recording@{'+'.join(wrong)}", "mistake": words, "parameters": {},
                            "acceptable": [f"zero@{what[0]}"] if kind == "zero" else []}
     (folder / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
     return truth

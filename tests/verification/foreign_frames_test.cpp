@@ -1,0 +1,98 @@
+// Measurement sets of frames made by foreign_frames.py, which shares nothing with deflect: what is hidden in each is
+// found, or tied with what these sensors cannot tell from it. Some are in tests/verification/foreign_frames;
+// DEFLECT_FOREIGN_FRAMES names a folder with others, as the program writes them.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "msa/frame/file/frame_file.h"
+#include "tests/support/effects.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/effects/place_effects.h"
+#include "validation/json/json_text.h"
+#include "validation/subject/subject.h"
+
+namespace deflect {
+namespace {
+
+std::filesystem::path folder() {
+  const char* named = std::getenv("DEFLECT_FOREIGN_FRAMES");
+  return named ? named : DEFLECT_SOURCE_DIR "/tests/verification/foreign_frames";
+}
+
+Json truths() {
+  std::ifstream file(folder() / "truth.json");
+  return Json::parse(file);
+}
+
+std::vector<std::string> sets() {
+  const Json all = truths();
+  std::vector<std::string> out;
+  for (auto each = all.begin(); each != all.end(); ++each) out.push_back(each.key());
+  return out;
+}
+
+/// What the diagnosis says is missing, and all that it ties with that.
+std::vector<std::string> named(const diagnosis::Diagnosis& d) {
+  std::vector<std::string> out;
+  for (const effects::PlacedEffect& e : d.missing) out.push_back(e.effect->name);
+  for (const auto& tie : d.indistinguishable) out.insert(out.end(), tie.begin(), tie.end());
+  return out;
+}
+
+/// The names in "elsewhere@LOAD/DECLARED/TRUE" and "recording@CHANNEL+CHANNEL".
+std::vector<std::string> parts_of(const std::string& effect) {
+  std::vector<std::string> out = {""};
+  for (const char c : effect.substr(effect.find('@') + 1))
+    if (c == '/' || c == '+')
+      out.emplace_back();
+    else
+      out.back() += c;
+  return out;
+}
+
+class ForeignFrame : public testing::TestWithParam<std::string> {};
+
+TEST_P(ForeignFrame, WhatIsHiddenIsNamedOrTied) {
+  const Json truth = truths().at(GetParam());
+  const subject::Subject s = frame::read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/frames" /
+                                               (truth.at("frame").get<std::string>() + ".yaml"));
+  const auto data = s.placed(measurement::read_measurements(folder() / GetParam(), s.instruments()));
+  std::vector<effects::Effect> all = test::all_effects();
+  for (effects::Effect& e : effects::place_effects(s, all)) all.push_back(std::move(e));
+  const diagnosis::Diagnosis d = diagnosis::diagnose(s, data, all, {{}, 199});
+  const std::vector<std::string> found = named(d);
+  const std::string said = fmt::format("{}: {}{}", diagnosis::verdict_names[static_cast<int>(d.verdict)],
+                                       fmt::join(found, ", "), d.mistakes.empty() ? "" : d.mistakes.front().sentence);
+  if (truth.at("effect").is_null()) {
+    EXPECT_EQ(d.verdict, diagnosis::Verdict::nothing_missing) << said;
+    return;
+  }
+  auto right = truth.at("acceptable").get<std::vector<std::string>>();
+  right.push_back(truth.at("effect").get<std::string>());
+  const bool names_it = std::any_of(right.begin(), right.end(), [&](const std::string& each) {
+    return std::find(found.begin(), found.end(), each) != found.end();
+  });
+  if (!truth.contains("mistake") || names_it) {
+    EXPECT_TRUE(names_it) << said;
+    return;
+  }
+  ASSERT_TRUE(diagnosis::is_mistaken(d)) << said;
+  for (const std::string& part : parts_of(truth.at("effect").get<std::string>()))
+    EXPECT_NE(d.mistakes.front().sentence.find(part), std::string::npos) << said;
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, ForeignFrame, testing::ValuesIn(sets()), [](const auto& set) {
+  std::string name = set.param.substr(0, set.param.rfind('.'));
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace deflect
