@@ -1,6 +1,7 @@
 // Effect files: what is read, and what is refused in which words.
 #include "validation/effects/effect_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -172,6 +173,18 @@ TEST(EffectFile, AWrongPathIsToldWithItsLineWhenItMeetsADevice) {
     EXPECT_NE(told.find("tol: there is no 'tol', did you mean 'tool'?"), std::string::npos) << told;
   }
   EXPECT_TRUE(why_not(e, m)->starts_with("tol: there is no 'tol', did you mean 'tool'?")) << *why_not(e, m);
+}
+
+// The limit of a friction grows with the load in what it stands beside, so there must be something beside it.
+TEST(EffectFile, FrictionByLoadStandsBesideALaw) {
+  const auto with = [](const char* at) {
+    return effect_text("{at: tool.tz, append: {law: linear, stiffness: $stiffness_N_per_mm}}",
+                       fmt::format("{{at: {}, append: {{law: friction, force: 0 N, share: 0.3, stiffness: "
+                                   "$stiffness_N_per_mm}}}}",
+                                   at));
+  };
+  EXPECT_NO_THROW(parse_effect(with("leg.actuator.beside.tz"), "rubs.yaml"));
+  EXPECT_THROW(parse_effect(with("leg.actuator.tz"), "rubs.yaml"), InputError);
 }
 
 }  // namespace

@@ -65,6 +65,7 @@ std::vector<double> shared_priors(const std::vector<Signature>& all, const std::
 
 /// What is sure to be less likely than the best by this logarithm is not fitted.
 constexpr double far_behind = 6;
+constexpr std::size_t few_fits = 8;
 
 /// Physics lets it act to one side only, and the residual asks for the other.
 bool wrong_way(const Signature& s, const VectorX& residual) {
@@ -155,12 +156,19 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   for (std::size_t i = 0; i < out.size(); ++i) (signatures_[i].effect.effect->place ? places : entries).push_back(i);
   double bar = least;
   for (const std::vector<std::size_t>* part : {&entries, &places}) {
+    const auto promises = [&](std::size_t i) {
+      const Signature& s = signatures_[i];
+      return allowed[i] && out[i].gain >= enough(s) && log_odds(i, can_gain(s, out[i].gain), class_priors_[i]) > bar;
+    };
+    // Where few are fitted, one with many starts would keep one thread busy long after the others.
+    const auto fitted_now = as_size(std::count_if(part->begin(), part->end(), promises));
+    const int within = fitted_now <= few_fits ? threads_ : 1;
     parallel::for_each_case(part->size(), 1, threads_, [&](std::size_t k) {
       const std::size_t i = (*part)[k];
       Candidate& c = out[i];
       const Signature& s = signatures_[i];
-      if (allowed[i] && c.gain >= enough(s) && log_odds(i, can_gain(s, c.gain), class_priors_[i]) > bar) {
-        c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual));
+      if (promises(i)) {
+        c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual), within);
         if (known && same(*known, s.effect))
           c.fit = better(std::move(c.fit), fit(observations, c.hypothesis, so_far.values, known->values));
         if (s.effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))

@@ -185,21 +185,26 @@ std::optional<VectorX> off_the_ends(const Problem& problem, const VectorX& from)
 /// The best of the last effect's values, behind those of the effects before; so many at most, the best first.
 /// `why`: what the first that cannot be predicted met with.
 std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX>& tails, const VectorX& from,
-                               std::size_t count, std::string& why) {
-  std::vector<Start> best;
+                               std::size_t count, std::string& why, int threads) {
+  std::vector<Start> all;
   std::vector<VectorX> heads = {from};
   if (const auto moved = off_the_ends(problem, from)) heads.push_back(*moved);
   for (const VectorX& head : heads)
     for (const VectorX& tail : tails) {
       VectorX values(head.size() + tail.size());
       values << head, tail;
-      const VectorX x = problem.coordinates(values);
-      if (const std::optional<VectorX> r = problem.residual(x, why.empty() ? &why : nullptr))
-        best.push_back({x, r->squaredNorm()});
+      all.push_back({problem.coordinates(values)});
     }
-  std::stable_sort(best.begin(), best.end(), [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
-  if (best.size() > count) best.resize(count);
-  return best;
+  std::vector<std::string> reasons(all.size());
+  parallel::for_each_case(all.size(), 1, threads, [&](std::size_t i) {
+    if (const auto r = problem.residual(all[i].x, &reasons[i])) all[i].chi2 = r->squaredNorm();
+  });
+  const auto first = std::find_if(reasons.begin(), reasons.end(), [](const std::string& r) { return !r.empty(); });
+  if (first != reasons.end() && why.empty()) why = *first;
+  std::erase_if(all, [](const Start& s) { return !std::isfinite(s.chi2); });
+  std::stable_sort(all.begin(), all.end(), [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
+  if (all.size() > count) all.resize(count);
+  return all;
 }
 
 /// Beside friction, χ² has valleys besides the deepest one: a slip comes before or after a turn of the load.
@@ -240,21 +245,23 @@ Fit not_found(std::string why) {
   return out;
 }
 
-Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess) {
+Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess,
+        int threads) {
   const auto fitted = outcome_of([&] {
     const Problem problem(o, h);
     std::vector<Start> begun;
     std::string why;
-    if (guess) begun = best_starts(problem, {*guess}, from, 1, why);
+    if (guess) begun = best_starts(problem, {*guess}, from, 1, why, 1);
     if (begun.empty()) {
-      begun = best_starts(problem, starts(h.back()), from, valleys, why);
+      begun = best_starts(problem, starts(h.back()), from, valleys, why, threads);
       if (begun.size() > 1 && !(may_have_valleys(h.back()) && problem.has_history(begun.front().x))) begun.resize(1);
     }
+    std::vector<Fit> ends(begun.size());
+    parallel::for_each_case(begun.size(), 1, threads,
+                            [&](std::size_t i) { ends[i] = search_from(problem, begun[i], o.null_residual().size()); });
     Fit best = not_found(why);
-    for (const Start& start : begun) {
-      Fit found = search_from(problem, start, o.null_residual().size());
-      if (!best.found || found.chi2 < best.chi2) best = std::move(found);
-    }
+    for (Fit& each : ends)
+      if (!best.found || each.chi2 < best.chi2) best = std::move(each);
     return best;
   });
   return fitted ? *fitted : not_found(fitted.why);  // the effects may not go together in this subject

@@ -28,7 +28,8 @@ struct Fit {
 };
 /// `from`: values of the first effects, which were fitted before. The last effect starts from `guess`, else from the
 /// best of a few start points.
-Fit fit(const Observations&, const Hypothesis&, const VectorX& from = {}, const std::optional<VectorX>& guess = {});
+Fit fit(const Observations&, const Hypothesis&, const VectorX& from = {}, const std::optional<VectorX>& guess = {},
+        int threads = 1);
 
 /// The same from given start values of all effects. Without effects: the null hypothesis.
 Fit fit_of_all(const Observations&, const Hypothesis&, const VectorX& values);

@@ -9,7 +9,7 @@
 namespace deflect::diagnosis {
 namespace {
 
-constexpr std::size_t most_effects = 3, most_rounds = 6;
+constexpr std::size_t most_effects = 4, most_rounds = 6;
 constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; of those that tie
 constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
 constexpr double never = -1e6;

@@ -182,6 +182,7 @@ class ValueCheck {
         FieldReader reader(effect_.origin, path);
         reader.surroundings.materials = &materials;
         reader.surroundings.rotation = rotation;
+        reader.surroundings.side_by_side = beside(paths);
         Law law;
         reader.read(node, [&] { describe(reader, law); });
         return true;
@@ -190,6 +191,11 @@ class ValueCheck {
       if (first_error.empty()) first_error = read.why;
     }
     throw InputError(first_error);
+  }
+
+  static bool beside(const std::vector<std::string>& paths) {
+    return std::any_of(paths.begin(), paths.end(),
+                       [](const std::string& path) { return path.find(".beside.") != path.npos; });
   }
 
   /// Whether the laws at these paths act on rotations: no, yes or, where only the device knows, both.

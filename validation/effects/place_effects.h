@@ -13,6 +13,7 @@
 //   contact    rigid and elastic translations                  in series, as the force to the power 2/3
 //   hardening  drives                                          a spring in series that stiffens
 //   friction   free and elastic freedoms                       sticks before it slips, side by side
+//   load_friction  drives that yield                           the same, in proportion to the load in what yields
 //   restraint  free freedoms                                   a spring side by side
 //
 // At the ends of a frame's members, which are many, no play and nothing one-sided is looked for.

@@ -18,8 +18,6 @@ double plain_value(const EffectParameter& p) {
 }
 
 // What differs between machines and frames.
-const Mechanism& description(const DependentMechanism& d) { return d.mechanism; }
-const frame::FrameDescription& description(const frame::DependentFrame& d) { return d.frame; }
 DependentMechanism with_one(const DependentMechanism& m, const PlacedEffect& p, const VectorX& values,
                             std::size_t first) {
   return with_effect(m, *p.effect, values, p.leg, first);

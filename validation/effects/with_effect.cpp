@@ -15,11 +15,13 @@
 #include "validation/effects/effect_value.h"
 
 namespace deflect::effects {
+
+const Mechanism& description(const DependentMechanism& d) { return d.mechanism; }
+const frame::FrameDescription& description(const frame::DependentFrame& d) { return d.frame; }
+
 namespace {
 
 // What differs between machines and frames.
-const Mechanism& description(const DependentMechanism& d) { return d.mechanism; }
-const frame::FrameDescription& description(const frame::DependentFrame& d) { return d.frame; }
 int legs_of(const Mechanism& m) { return leg_count(m); }
 int legs_of(const frame::FrameDescription&) { return 0; }
 std::vector<std::string> paths(const EffectEdit& edit, const Mechanism& m, std::optional<int> leg) {

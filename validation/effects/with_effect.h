@@ -46,6 +46,10 @@ DependentMechanism with_effect(const DependentMechanism&, const Effect&, const V
 frame::DependentFrame with_effect(const frame::DependentFrame&, const Effect&, const VectorX& values,
                                   std::size_t first);
 
+/// The description itself.
+const Mechanism& description(const DependentMechanism&);
+const frame::FrameDescription& description(const frame::DependentFrame&);
+
 /// Why the effect has no place in the subject (or in that leg); nullopt where it has one.
 std::optional<std::string> why_not(const Effect&, const subject::Subject&, std::optional<int> leg = {});
 

@@ -1,0 +1,342 @@
+#include "validation/effects/place_laws.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "msa/base/index.h"
+
+namespace deflect::effects {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// How parameters are measured at a place: along an axis or about one.
+struct Units {
+  const char *way, *force, *moment_word;
+  double small_way, stiffness;  ///< a way that is little (mm, rad), a stiffness that is large (N/mm, Nmm/rad)
+};
+constexpr Units along{"mm", "N", "force", 1e-4, 1e5}, about{"rad", "Nmm", "moment", 1e-6, 1e9};
+
+const Units& units(const subject::Place& p) { return p.rotation() ? about : along; }
+
+/// How what a sensor reads is measured, and what is little of it.
+struct ReadUnit {
+  const char *suffix, *unit;
+  double small;
+};
+const ReadUnit& read_unit(const subject::Place& p) {
+  static constexpr ReadUnit units[] = {
+      {"mm", "mm", 0.01}, {"rad", "rad", 1e-4}, {"N", "N", 10}, {"Nmm", "Nmm", 1e4}, {"um_per_m", "um/m", 5}};
+  return nth(units, *p.reads);
+}
+
+EffectParameter parameter(std::string name, std::string unit, double start, double vanishes, std::string words) {
+  return {std::move(name), std::move(unit), start, start * 1e-6, start * 1e6, true, vanishes, std::move(words)};
+}
+
+EffectParameter spring(const subject::Place& p, const char* words) {
+  const Units& u = units(p);
+  return parameter(fmt::format("stiffness_{}_per_{}", u.force, u.way), fmt::format("{}/{}", u.force, u.way),
+                   u.stiffness, infinity, fmt::format("{}, {}/{}", words, u.force, u.way));
+}
+
+bool in_series(const subject::Place& p) { return !p.freedoms.empty() && p.hold != subject::Hold::free; }
+bool single(const subject::Place& p) { return p.freedoms.size() == 1; }
+bool of_frame(const subject::Place& p) {
+  return p.path.starts_with("supports.") || p.path.starts_with("springs.") || p.path.starts_with("members.");
+}
+/// A frame has many ends of members: there only what is common is looked for.
+bool may_be_loose(const subject::Place& p) {
+  return in_series(p) && single(p) && !(p.kind == subject::PlaceKind::member_end && of_frame(p));
+}
+
+std::vector<EffectParameter> yields_in_one_sense(const subject::Place& p) {
+  const Units& u = units(p);
+  return {parameter(fmt::format("yields_{}_per_{}", u.way, u.force), fmt::format("{}/{}", u.way, u.force),
+                    1 / u.stiffness, 0, "deflection by force in the sense in which it yields")};
+}
+
+std::string first_of(const std::vector<EffectParameter>& p) { return "$" + p.front().name; }
+
+const PlaceLaw all[] = {
+    {"linear",
+     [](const subject::Place& p) { return in_series(p) && !p.one_stiffness; },
+     "yields like a spring",
+     [](const subject::Place& p) { return std::vector{spring(p, "its stiffness")}; },
+     [](const auto& p, const subject::Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
+     {"Force passes through {} on its way to the tool. There it is not as rigid as it is drawn: a bearing, a clamp, a "
+      "screw joint or a thin wall yields in proportion to the force.",
+      "The displacement is too large in proportion to the load, the same in both senses, where {} carries force, and "
+      "not where it carries none.",
+      "Put a dial gauge across {} and load the tool there and back: the reading follows the force on a straight "
+      "line.",
+      "Stiffen {}, preload it, or take its stiffness into the model."},
+     true},
+    {"factor",
+     [](const subject::Place& p) { return p.one_stiffness && single(p); },
+     "is not as stiff as described",
+     [](const subject::Place& p) {
+       return std::vector<EffectParameter>{{"factor", "", 0.9, of_frame(p) ? 1e-6 : 0.02, 50, true, 1,
+                                            "true stiffness over the one in the description"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"The stiffness of {} in the description comes from a data sheet or an estimate; the part has another one.",
+      "The displacement is too large or too small in proportion to the load that {} carries.",
+      "Load {} alone and read its stiffness off the slope.", "Put the measured stiffness into the description."},
+     true,
+     EffectEdit::Action::multiply,
+     ".stiffness"},
+    {"factor",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::member && p.in_legs(); },
+     "does not bend as the description says",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.9, 0.02, 50, true, 1, "true bending stiffness over the one in the description"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"{} bends more or less than its section and material say: a cut, a weld, a wall that is thinner.",
+      "The displacement is too large or too small in proportion to the bending moment in {}.",
+      "Bend {} alone and read its stiffness off the slope.", "Measure the section, or put the factor into the model."},
+     true,
+     EffectEdit::Action::multiply,
+     ".bending_factor"},
+    {"factor",
+     [](const subject::Place& p) { return p.path.starts_with("members.") && p.freedoms.empty(); },
+     "is not as stiff as described",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.9, 1e-6, 50, true, 1, "true stiffness over the one in the description; near 0: missing"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"{} is softer or stiffer than its section and material say: another section or grade, corrosion, a crack, a "
+      "loose "
+      "connection, cladding that carries. A factor near zero is a member that does nothing.",
+      "Readings are off in proportion to the force in {}, and its share of the load goes to its neighbours.",
+      "Measure its section; tap it and listen; read the strain on it under a known load.",
+      "Repair it, or put the factor into the model."},
+     false,
+     EffectEdit::Action::multiply,
+     ".factor"},
+    {"factor",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::load; },
+     "is not as large as described",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{{"factor", "", 0.95, 0.1, 10, true, 1, "true load over the recorded one"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"The load {} is another one than described: a weight that was not weighed, a jack with friction, a wrong unit.",
+      "All readings under {} are off by one factor, those under other loads are right.",
+      "Weigh it, or put a load cell under it.", "Put the measured load in."},
+     false,
+     EffectEdit::Action::multiply,
+     ".factor"},
+    {"factor",
+     [](const subject::Place& p) { return p.path.starts_with("materials."); },
+     "is stiffer or softer than described",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.95, 0.3, 3, true, 1, "true modulus over the one in the description"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"The moduli of {} are not those of the description: another alloy, a wrong table.",
+      "What bends or stretches of it is off by one factor.", "Test a sample.", "Put the measured modulus in."},
+     false,
+     EffectEdit::Action::multiply,
+     ".<moduli>"},
+    {"factor",
+     [](const subject::Place& p) { return p.path.starts_with("sections."); },
+     "is not as described",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{
+           {"factor", "", 0.98, 0.8, 1.25, true, 1, "true length over the one in the description"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"{} was made, worn or written down wrong.", "All members of that section are off by one factor.",
+      "Measure it with a caliper.", "Put the measured length in."},
+     false,
+     EffectEdit::Action::multiply},
+    {"gain",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::sensor; },
+     "reads too much or too little",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{{"gain", "", 0.98, 0.3, 3, true, 1, "recorded over true value"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"The scale of {} is off: its calibration, its amplifier, the lever or the angle at which it touches.",
+      "All readings of {} are off by one factor, those of the other instruments are right.",
+      "Give {} a known value and read the step.", "Calibrate it, or put the gain into the description."},
+     false,
+     EffectEdit::Action::set,
+     ".gain"},
+    {"zero",
+     [](const subject::Place& p) { return p.reads.has_value(); },
+     "does not count from zero",
+     [](const subject::Place& p) {
+       const ReadUnit& u = read_unit(p);
+       return std::vector<EffectParameter>{{fmt::format("offset_{}", u.suffix), u.unit, u.small, -1e5 * u.small,
+                                            1e5 * u.small, false, 0, "what it reads where the true value is zero"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"The zero of {} was not taken, or has moved since.",
+      "All readings of {} are off by one number, whatever the load.", "Unload and read it.",
+      "Take the zero again, or say 'zero: free' in the description."},
+     false,
+     EffectEdit::Action::set,
+     ".offset"},
+    {"stiction",
+     [](const subject::Place& p) { return p.reads && p.may_stick; },
+     "sticks before it follows",
+     [](const subject::Place& p) {
+       const ReadUnit& u = read_unit(p);
+       return std::vector{parameter(fmt::format("stick_{}", u.suffix), u.unit, u.small, 0,
+                                    "how far the reading lags before it follows")};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"{} lags behind what it reads: a plunger that rubs, a worn spindle, play in its linkage.",
+      "Loops of {} alone, of one width at every load; the other instruments show none.", "Tap it: it jumps.",
+      "Clean or replace it; approach every reading from one side."},
+     false,
+     EffectEdit::Action::set,
+     ".stick"},
+    {"clearance",
+     may_be_loose,
+     "has play",
+     [](const subject::Place& p) {
+       const Units& u = units(p);
+       return std::vector{parameter(fmt::format("gap_{}", u.way), u.way, u.small_way, 0,
+                                    fmt::format("free travel to either side of the middle, {}", u.way))};
+     },
+     [](const auto& p, const subject::Place&) { return "{law: clearance, gap: " + first_of(p) + "}"; },
+     {"{} moves freely by a little before it carries force: a worn bearing, a loose fit, backlash of a gear.",
+      "A step where the force in {} changes sign, of the same size at every load; nothing grows with the load.",
+      "Push and pull by a small force: it jumps by the whole play.", "Preload {} or take up the play."}},
+    {"pull",
+     may_be_loose,
+     "yields to positive force alone",
+     yields_in_one_sense,
+     [](const auto& p, const subject::Place&) { return "{law: one_sided, pull: " + first_of(p) + "}"; },
+     {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
+      "force pulls it along its positive axis.",
+      "The displacement is too large for one sense of the load and right for the other.",
+      "Load both senses: two slopes that meet at zero.", "Preload {}."}},
+    {"push",
+     may_be_loose,
+     "yields to negative force alone",
+     yields_in_one_sense,
+     [](const auto& p, const subject::Place&) { return "{law: one_sided, push: " + first_of(p) + "}"; },
+     {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
+      "force pushes it against its positive axis.",
+      "The displacement is too large for one sense of the load and right for the other.",
+      "Load both senses: two slopes that meet at zero.", "Preload {}."}},
+    {"contact",
+     [](const subject::Place& p) { return in_series(p) && single(p) && !p.rotation(); },
+     "yields like a contact",
+     [](const subject::Place&) {
+       return std::vector{parameter("approach_mm", "mm", 1e-5, 0, "approach under 1 N, mm")};
+     },
+     [](const auto& p, const subject::Place&) {
+       return "{law: power, deflection: " + first_of(p) + ", force: 1 N, exponent: 0.66666666666666663}";
+     },
+     {"Round bodies touch at {}: a ball, a roller, a cam. The contact flattens as the force to the power 2/3.",
+      "The displacement is too large, most so at small loads: it grows as the force to the power 2/3.",
+      "Load in steps: the slope falls with the load.", "Preload {}, or more and larger rolling bodies."}},
+    {"hardening",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::drive && single(p); },
+     "yields and becomes stiffer with deflection",
+     [](const subject::Place& p) {
+       const Units& u = units(p);
+       std::vector<EffectParameter> out = {spring(p, "stiffness without load")};
+       out.push_back(
+           {fmt::format("reference_{}", u.way), u.way, 1e2 * u.small_way, 1e-2 * u.small_way, 1e5 * u.small_way, true,
+            std::nullopt,
+            fmt::format("deflection at which the {} is twice that of a linear spring, {}", u.moment_word, u.way)});
+       return out;
+     },
+     [](const auto& p, const subject::Place&) {
+       return fmt::format("{{law: hardening, stiffness: ${}, reference: ${}}}", p[0].name, p[1].name);
+     },
+     {"More and more of {} carries as it deflects: teeth, rollers, a flexspline, a rubber element.",
+      "The displacement is too large at small loads and less so at large ones, odd in the load.",
+      "Load in steps: the slope rises with the load.", "Take the measured curve into the model."}},
+    {"friction",
+     [](const subject::Place& p) { return single(p) && p.hold != subject::Hold::rigid; },
+     "sticks before it slips",
+     [](const subject::Place& p) {
+       const Units& u = units(p);
+       const double force = p.rotation() ? 100 : 2, stiffness = p.rotation() ? 1e6 : 1e3;
+       const std::string strength = fmt::format("{}_{}", u.moment_word, u.force),
+                         stuck = fmt::format("stiffness_{}_per_{}", u.force, u.way);
+       std::vector<EffectParameter> out = {
+           {strength, u.force, force, force * 1e-4, force * 1e4, true, 0,
+            fmt::format("{} that friction holds before it slips, {}", u.moment_word, u.force)},
+           {stuck, fmt::format("{}/{}", u.force, u.way), stiffness, stiffness * 1e-4, stiffness * 1e4, true,
+            std::nullopt, fmt::format("stiffness while it sticks, {}/{}", u.force, u.way)}};
+       if (!of_frame(p))  // whose frictions start relaxed
+         out.push_back({"start_share", "", 0, -1, 1, false, std::nullopt,
+                        "share of the largest load that came and went before the first reading", true});
+       return out;
+     },
+     [](const auto& p, const subject::Place& at) {
+       return fmt::format("{{law: friction, {}: ${}, stiffness: ${}{}}}", units(at).moment_word, p[0].name, p[1].name,
+                          p.size() > 2 ? ", start: $" + p[2].name : "");
+     },
+     {"{} rubs: seals, bearings and teeth hold a part of the load until they slip.",
+      "Loops: loading and unloading differ, and the displacement does not return to zero.",
+      "Load and unload slowly; tap the machine: it creeps towards the frictionless curve.",
+      "Lubricate {}, relieve its preload, or approach every reading from the same side."},
+     false,
+     EffectEdit::Action::append,
+     "",
+     true},
+    {"load_friction",
+     [](const subject::Place& p) {
+       return p.kind == subject::PlaceKind::drive && single(p) && p.hold == subject::Hold::elastic;
+     },
+     "rubs in proportion to its load",
+     [](const subject::Place& p) {
+       const Units& u = units(p);
+       const double stiffness = p.rotation() ? 1e6 : 1e3;
+       return std::vector<EffectParameter>{
+           {"share", "", 0.2, 1e-3, 0.9, true, 0, "friction by load in the elastic parts that it stands beside"},
+           {fmt::format("stiffness_{}_per_{}", u.force, u.way), fmt::format("{}/{}", u.force, u.way), stiffness,
+            stiffness * 1e-4, stiffness * 1e4, true, std::nullopt,
+            fmt::format("stiffness while it sticks, {}/{}", u.force, u.way)},
+           {"start_share", "", 0, -1, 1, false, std::nullopt,
+            "share of the largest load that came and went before the first reading", true}};
+     },
+     [](const auto& p, const subject::Place& at) {
+       const Units& u = units(at);
+       return fmt::format("{{law: friction, {}: 0 {}, share: ${}, stiffness: ${}, start: ${}}}", u.moment_word, u.force,
+                          p[0].name, p[1].name, p[2].name);
+     },
+     {"What presses teeth, pins and bearings of {} is the load itself: they rub the more the more it carries.",
+      "Loops that are wide where the load is large and narrow at zero: loading is steep, and after the turn the "
+      "displacement stays until a good part of the load is gone.",
+      "Load and unload to two amplitudes: the width of the loop grows with the load.",
+      "Lubricate {}, or let rollers roll where they slide."},
+     false,
+     EffectEdit::Action::append,
+     "",
+     true},
+    {"restraint",
+     [](const subject::Place& p) { return single(p) && p.hold == subject::Hold::free; },
+     "is not free",
+     [](const subject::Place& p) {
+       const Units& u = units(p);
+       return std::vector<EffectParameter>{{fmt::format("stiffness_{}_per_{}", u.force, u.way),
+                                            fmt::format("{}/{}", u.force, u.way), u.stiffness * 1e-5,
+                                            u.stiffness * 1e-11, u.stiffness * 10, true, 0,
+                                            fmt::format("stiffness that holds it, {}/{}", u.force, u.way)}};
+     },
+     [](const auto& p, const subject::Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
+     {"{} is drawn free and is held: a hose, a seal, a flexure, a joint that binds.",
+      "The displacement is too small in proportion to the load, where the motion of {} would give way.",
+      "Move {} by hand, unloaded: it springs back.", "Free it, or take the restraint into the model."}},
+};
+
+}  // namespace
+
+std::span<const PlaceLaw> place_laws() { return all; }
+
+}  // namespace deflect::effects

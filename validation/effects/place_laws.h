@@ -1,0 +1,29 @@
+// The laws that effects put at the places of a subject, each with where physics allows it (place_effects.h).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "validation/effects/effect.h"
+#include "validation/subject/place.h"
+
+namespace deflect::effects {
+
+/// One law where it can act.
+struct PlaceLaw {
+  const char* id;
+  bool (*acts)(const subject::Place&);
+  const char* title;  ///< after "the elbow rz "
+  std::vector<EffectParameter> (*parameters)(const subject::Place&);
+  std::string (*value)(const std::vector<EffectParameter>&, const subject::Place&);
+  EffectPages pages;  ///< with {} for the place
+  bool of_one_leg = false;
+  EffectEdit::Action action = EffectEdit::Action::append;
+  const char* field = "";     ///< behind the freedom
+  bool side_by_side = false;  ///< with what yields there
+};
+
+std::span<const PlaceLaw> place_laws();
+
+}  // namespace deflect::effects
