@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "msa/base/error.h"
 #include "msa/frame/file/frame_file.h"
+#include "msa/mechanism/device_file.h"
 #include "tests/support/devices.h"
 #include "tests/support/measurements.h"
 #include "validation/compare/comparison.h"
@@ -83,6 +86,38 @@ TEST(MachineSubject, IsOffByTolerancesOfItsNumbers) {
   const double moved = (off->with(4)->tool(0).p_W - home.p_WT).norm();
   EXPECT_GT(moved, 0.2e-6);
   EXPECT_LT(moved, 3e-6);
+}
+
+// A motor of K = 1e5 Nm/rad beside a rigid friction of F = 1 Nm. A load of ±10 Nm that comes and goes leaves δ = F/K,
+// which readings count from: an unknown start moves all readings beyond the friction by ∓F/K, one standard deviation of
+// it (1/√3 of the largest load, far beyond F) as much as the largest load.
+TEST(MachineSubject, AnUnknownStartOfFrictionIsATolerance) {
+  const auto device = [](const std::string& start) {
+    return Subject(parse_mechanism(R"(
+name: motor
+kinematics: {family: chains}
+leg:
+  drive:
+    joint: motor
+    rz: {law: linear, stiffness: 1e5 Nm/rad}
+    beside: {rz: {law: friction, moment: 1 Nm, stiffness: 1e12 Nm/rad, start: )" +
+                                       start + "}}\n",
+                                   "motor.yaml"));
+  };
+  const std::string csv = "pose,q1_rad,fx_N,fy_N,fz_N,mz_Nmm,thz_rad,sequence\n1,0,0,0,0,1e4,0,1\n1,0,0,0,0,-1e4,0,2\n";
+  const measurement::Measurements data = measurement::parse_measurements(csv, "data.csv");
+  const Subject s = device("unknown");
+  const auto standing = s.stand(data);
+  const auto deviations = standing->deviations(data);
+  ASSERT_EQ(deviations->tolerances().size(), 1u);
+  EXPECT_EQ(deviations->tolerances()[0].name, "pose 1 start of friction");
+  EXPECT_NEAR(deviations->tolerances()[0].sigma, std::sqrt(1.0 / 3), 1e-15);  // of a uniform number from −1 to 1
+  const std::vector<VectorX> drawn = deviations->drawn().predict(data), moved = deviations->with(0)->predict(data);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(drawn[i](5), (i == 0 ? 9 : -9) * 1e-5, 1e-12);
+    EXPECT_NEAR(moved[i](5) - drawn[i](5), -1e-5, 1e-12);
+  }
+  EXPECT_TRUE(device("relaxed").stand(data)->deviations(data)->tolerances().empty());
 }
 
 }  // namespace
