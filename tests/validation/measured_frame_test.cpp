@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -267,6 +268,21 @@ TEST(MeasuredFrame, NamesWhatIsHidden) {
     EXPECT_TRUE(names_one_of(d, c.effect))
         << c.frame << " " << c.effect << ": " << fmt::format("{}", fmt::join(named(d), ", "));
   }
+}
+
+// Two springs in series between the beams of a portal: the sensors read what both do together, the rotation of the
+// node between them is what tells them apart. It is 0 to the left of a soft end and the beam's to the right.
+TEST(MeasuredFrame, ATieComesWithTheReadingThatSplitsIt) {
+  const diagnosis::Diagnosis d =
+      diagnosed(built_in("portal-semi-rigid"), "linear@beam_1.end.ry", VectorX::Constant(1, 4e9));
+  ASSERT_EQ(d.verdict, diagnosis::Verdict::ambiguous);
+  ASSERT_EQ(d.splitting.size(), 1u);
+  const diagnosis::Splitting& split = d.splitting.front();
+  const std::vector<std::string> both = {split.between.front(), split.between.back()};
+  EXPECT_TRUE(std::is_permutation(both.begin(), both.end(),
+                                  std::array{"linear@beam_1.end.ry", "linear@beam_2.start.ry"}.begin()));
+  EXPECT_TRUE(split.reading.starts_with("ry of node M as ")) << split.reading;
+  EXPECT_GT(split.deviations, 5);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/selection.h"
+#include "validation/diagnosis/splitting.h"
 #include "validation/statistics/columns.h"
 
 namespace deflect::diagnosis {
@@ -224,8 +225,11 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   d.fit = found.fit;
   add_left_out(d.left_out, first);
   d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
-  for (const std::vector<std::string>& tie : found.ties)
-    if (!tie.empty()) d.indistinguishable.push_back(tie);
+  for (const Tie& tie : found.ties) {
+    if (tie.names.empty()) continue;
+    d.indistinguishable.push_back(tie.names);
+    if (auto split = splitting_reading(seen, data, tie)) d.splitting.push_back(std::move(*split));
+  }
   d.verdict = verdict_of(d);
   d.final = quality(seen, d.missing, d.fit);
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));

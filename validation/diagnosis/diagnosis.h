@@ -18,6 +18,7 @@
 #include "validation/diagnosis/candidates.h"
 #include "validation/diagnosis/detectable.h"
 #include "validation/diagnosis/localised.h"
+#include "validation/diagnosis/splitting.h"
 #include "validation/parallel/ranks.h"
 
 namespace deflect::diagnosis {
@@ -46,6 +47,7 @@ struct Diagnosis {
   Hypothesis missing;                 ///< in the order in which they were added
   Fit fit;                            ///< of all of them
   std::vector<std::vector<std::string>> indistinguishable;
+  std::vector<Splitting> splitting;  ///< of each of these where one was found: what to read next
   Quality baseline, final;
   measurement::Quantity quantity = measurement::Quantity::length;  ///< of errors (errors_by_group.h)
   double noise_floor = 0;                                          ///< σ of a reading, SI

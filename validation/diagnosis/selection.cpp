@@ -105,7 +105,7 @@ class Search {
            });
   }
 
-  static std::vector<std::string> tie(const std::vector<Candidate>& all) {
+  static Tie tie(const std::vector<Candidate>& all) {
     std::vector<double> log_odds;
     for (const Candidate& c : all) log_odds.push_back(c.fit.found && !is_another(c, all) ? c.log_odds : never);
     const std::vector<double> among = normalised(log_odds);
@@ -113,14 +113,17 @@ class Search {
     for (std::size_t i = 0; i < by.size(); ++i) by[i] = i;
     std::stable_sort(by.begin(), by.end(), [&](std::size_t a, std::size_t b) { return among[a] > among[b]; });
     if (by.empty() || among[by.front()] > sure) return {};
-    std::vector<std::string> group;
+    Tie group;
     double sum = 0;
     for (const std::size_t i : by) {
       const std::string& name = all[i].added().effect->name;
-      if (std::find(group.begin(), group.end(), name) == group.end()) group.push_back(name);
+      if (std::find(group.names.begin(), group.names.end(), name) == group.names.end()) {
+        group.names.push_back(name);
+        if (group.rivals.size() < 2) group.rivals.push_back(all[i]);
+      }
       if ((sum += among[i]) > together) break;
     }
-    return group.size() > 1 ? group : std::vector<std::string>{};
+    return group.names.size() > 1 ? group : Tie{};
   }
 
   Selection s_;

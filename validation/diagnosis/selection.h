@@ -7,13 +7,17 @@
 
 namespace deflect::diagnosis {
 
+/// What does nearly as well as an effect, in its place.
+struct Tie {
+  std::vector<std::string> names;  ///< best first, until they have 95 % of the probability together
+  std::vector<Candidate> rivals;   ///< the best two of different names, as fitted
+};
+
 struct Selection {
-  Observations observations;  ///< with the effects found (Observations::granted)
-  Hypothesis effects;         ///< in the order in which they were added
-  Fit fit;                    ///< of all effects together; without effects, of the null hypothesis
-  /// For each effect, the names of those that do nearly as well in its place, best first, until they have 95 % of the
-  /// probability together. Empty where one of them has more than 90 %.
-  std::vector<std::vector<std::string>> ties;
+  Observations observations;      ///< with the effects found (Observations::granted)
+  Hypothesis effects;             ///< in the order in which they were added
+  Fit fit;                        ///< of all effects together; without effects, of the null hypothesis
+  std::vector<Tie> ties;          ///< by effect; empty where one of them has more than 90 % of the probability
   std::vector<LeftOut> left_out;  ///< could not be fitted beside the others
 };
 

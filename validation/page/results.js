@@ -37,7 +37,7 @@ export function candidates(d) {
   }));
   const ties = d.indistinguishable.length ? el('p', {}, el('span', {class: 'swatch', style: {background: 'var(--orange)'}}), 'These data cannot tell apart: ', d.indistinguishable.map((g) => g.join(', ')).join('; '), '.') : null;
   return figure('candidates', 'Candidates', 'Every effect of the catalogue at every place that it has, fitted with all tolerances free, weighed by the evidence.',
-    picture, ties,
+    picture, ties, ...(d.splitting ?? []).map((s) => el('p', {}, s.sentence)),
     numbers('candidates', () => ({
       columns: ['candidate', 'probability', 'rmse_mm', 'held_out_rmse_mm', 'chi2_per_dof', 'values with 95 % interval'],
       rows: [...d.candidates.map((c) => [siteName(c), c.probability, c.rmse_mm, c.held_out_rmse_mm, c.chi2_per_dof, valueWords(c.parameters)]),

@@ -91,6 +91,20 @@ Json unexplained_json(const diagnosis::Diagnosis& d) {
           {"nearest", d.nearest},         {"nearest_share", d.nearest_share}};
 }
 
+Json splitting_json(const std::vector<diagnosis::Splitting>& all) {
+  Json out = Json::array();
+  for (const diagnosis::Splitting& s : all) {
+    const measurement::QuantityRow& row = measurement::row_of(s.quantity);
+    out.push_back({{"between", s.between},
+                   {"reading", s.reading},
+                   {"difference", json::json_number(row.coarse_per_SI * s.difference, "difference")},
+                   {"unit", row.coarse},
+                   {"standard_deviations", json::json_number(s.deviations, "deviations")},
+                   {"sentence", splitting_words(s)}});
+  }
+  return out;
+}
+
 /// The effects of "missing", fitted together.
 Json found_json(const diagnosis::Diagnosis& d) {
   Json out = Json::array();
@@ -128,6 +142,7 @@ std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& d
   out += how_read_text(d.how_read);
   if (diagnosis::is_mistaken(d)) return out + mistakes_remedy;
   if (!d.missing.empty()) out += "fitted: " + fitted_words(d.missing, d.fit) + "\n\n";
+  for (const diagnosis::Splitting& s : d.splitting) out += splitting_words(s) + "\n\n";
   out += candidates_table(d);
   out += fmt::format("\nchance that some effect looks as good in data with nothing missing: {:.2g} ({} sets drawn)\n",
                      d.chance, d.bootstrap_sets);
@@ -159,6 +174,7 @@ std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   for (const effects::PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
   j["candidates"] = candidates_json(d.candidates, coarse(d));
   j["indistinguishable"] = d.indistinguishable;
+  j["splitting"] = splitting_json(d.splitting);
   j["baseline"] = quality_json(d.baseline, coarse(d));
   j["final"] = quality_json(d.final, coarse(d));
   j["unit"] = measurement::row_of(d.quantity).coarse;  // of what ends with _mm

@@ -186,6 +186,22 @@ std::string fitted_words(const diagnosis::Hypothesis& h, const diagnosis::Fit& f
   return out;
 }
 
+std::string splitting_words(const diagnosis::Splitting& s) {
+  const std::string& a = s.between.front();
+  const std::string& b = s.between.back();
+  const measurement::QuantityRow& row = measurement::row_of(s.quantity);
+  const std::string size = fmt::format("{:.3g} {}", row.fine_per_SI * s.difference, row.fine);
+  if (as_printed(s.deviations, 1) < 2)
+    return fmt::format(
+        "No single reading tried would tell {} from {} by two standard deviations of noise and tolerances; {} "
+        "comes nearest ({}, {:.1f}).",
+        a, b, s.reading, size, s.deviations);
+  return fmt::format(
+      "To tell {} from {}, read {}: the two differ by {} there, {:.1f} standard deviations of noise and "
+      "tolerances.",
+      a, b, s.reading, size, s.deviations);
+}
+
 Json mistakes_json(const std::vector<compare::RecordingMistake>& mistakes) {
   Json out = Json::array();
   for (const compare::RecordingMistake& m : mistakes)

@@ -28,6 +28,9 @@ std::string placed_words(const effects::PlacedEffect&);
 /// "stiffness_Nmm_per_rad = 5.00e6 (4.9e6 … 5.1e6)" of all parameters.
 std::string fitted_words(const diagnosis::Hypothesis&, const diagnosis::Fit&);
 
+/// "To tell A from B, read uz of node M as snow × 1 goes on: …"
+std::string splitting_words(const diagnosis::Splitting&);
+
 /// [{"ids": […], "sentence": "…", "certain": true}].
 Json mistakes_json(const std::vector<compare::RecordingMistake>&);
 

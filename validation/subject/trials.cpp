@@ -1,0 +1,146 @@
+#include "validation/subject/trials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "msa/base/index.h"
+#include "msa/frame/file/frame_description.h"
+
+namespace deflect::subject {
+namespace {
+
+constexpr std::size_t most_poses = 9;
+constexpr const char* load_names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+constexpr const char* freedoms[] = {"ux", "uy", "uz", "rx", "ry", "rz"};
+
+/// The least noise of the displacement sensors: of displacements, of rotations; 0 where none has any.
+std::pair<double, double> least_noise(const frame::FrameDescription& f) {
+  double length = 0, angle = 0;
+  for (const auto& [name, s] : f.sensors) {
+    if (s.reads != frame::FrameSensor::Reads::displacement || !(s.sigma > 0)) continue;
+    double& least = s.rotation ? angle : length;
+    least = least > 0 ? std::min(least, s.sigma) : s.sigma;
+  }
+  return {length, angle};
+}
+
+/// Rows of one load at a time.
+class Trials {
+ public:
+  explicit Trials(measurement::Measurements m) : m_(std::move(m)) { m_.note_columns = {"note"}; }
+
+  template <class Load>
+  void add(std::size_t pose, const Load& load, const std::string& plus, const std::string& minus) {
+    for (const auto& [times, note] : {std::pair{0, plus}, {1, plus}, {0, plus}, {-1, minus}, {0, minus}}) {
+      measurement::Reading r;
+      r.pose = pose;
+      r.notes = {note};
+      r.sequence = static_cast<double>(m_.readings.size() + 1);
+      r.line = m_.readings.size() + 2;
+      load(r, times);
+      m_.poses[pose].readings.push_back(m_.readings.size());
+      m_.readings.push_back(std::move(r));
+    }
+  }
+  measurement::Measurements done() && { return std::move(m_); }
+
+ private:
+  measurement::Measurements m_;
+};
+
+measurement::Measurements of_frame(const Subject& s, const measurement::Measurements& data) {
+  measurement::Measurements m;
+  m.origin = "readings that could be taken";
+  m.instruments = s.instruments();
+  m.instruments.load_points.clear();
+  m.poses.push_back({"all", Vector6::Zero(), {}, {}});
+  const std::vector<std::string> cases = m.instruments.load_cases, known = data.instruments.load_cases;
+  const std::size_t sensors = m.instruments.sensors.size();
+  Trials out(std::move(m));
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    double most = 0;
+    const auto at = std::find(known.begin(), known.end(), cases[k]);
+    for (const measurement::Reading& r : data.readings)
+      if (at != known.end()) most = std::max(most, std::abs(r.factors[as_size(at - known.begin())]));
+    if (most == 0) most = 1;
+    const auto load = [&](measurement::Reading& r, int times) {
+      r.factors.assign(cases.size(), 0);
+      r.factors[k] = times * most;
+      r.sensors.assign(sensors, 0.0);
+    };
+    out.add(0, load, fmt::format("{} × {:g}", cases[k], most), fmt::format("{} × {:g}", cases[k], -most));
+  }
+  return std::move(out).done();
+}
+
+measurement::Measurements of_machine(const Subject& s, const measurement::Measurements& data) {
+  measurement::Measurements m;
+  m.origin = "readings that could be taken";
+  m.joint_rotates = data.joint_rotates;
+  for (std::size_t p = 0; p < std::min(most_poses, data.poses.size()); ++p) {
+    m.poses.push_back(data.poses[p]);
+    m.poses.back().readings.clear();
+  }
+  double force = 0, moment = 0;
+  std::optional<double> sigma_u, sigma_th;
+  for (const measurement::Reading& r : data.readings) {
+    force = std::max(force, r.load.head<3>().cwiseAbs().maxCoeff());
+    moment = std::max(moment, r.load.tail<3>().cwiseAbs().maxCoeff());
+    if (r.sigma_u) sigma_u = std::min(sigma_u.value_or(*r.sigma_u), *r.sigma_u);
+    if (r.sigma_th) sigma_th = std::min(sigma_th.value_or(*r.sigma_th), *r.sigma_th);
+  }
+  const double arm = 0.1 * s.stand(data)->size();
+  if (moment == 0) moment = force * arm;
+  if (force == 0) force = moment / arm;
+  const std::vector<measurement::PoseGroup> poses = m.poses;
+  Trials out(std::move(m));
+  for (std::size_t p = 0; p < poses.size(); ++p)
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double size = i < 3 ? force : moment;
+      const auto load = [&](measurement::Reading& r, int times) {
+        r.load(as_index(i)) = times * size;
+        r.displacement.fill(0.0);
+        r.sigma_u = sigma_u, r.sigma_th = sigma_th;
+      };
+      const auto note = [&](double times) {
+        return fmt::format("{} = {:.4g} {} at pose {}", load_names[i], times * size, i < 3 ? "N" : "Nm",
+                           poses[p].label);
+      };
+      out.add(p, load, note(1), note(-1));
+    }
+  return std::move(out).done();
+}
+
+}  // namespace
+
+Subject instrumented(const Subject& s) {
+  if (!s.frame()) return s;
+  frame::FrameDescription f = *s.frame();
+  auto [length, angle] = least_noise(f);
+  if (!(length > 0)) return s;
+  Vector3 low = f.nodes.front().second, high = low;
+  for (const auto& [name, at] : f.nodes) low = low.cwiseMin(at), high = high.cwiseMax(at);
+  if (!(angle > 0)) angle = length / (0.1 * (high - low).norm());
+  const int normal = frame::normal_axis(f.plane);
+  for (const auto& [node, at] : f.nodes)
+    for (int i = 0; i < 6; ++i) {
+      const bool rotation = i >= 3;
+      if (normal < 3 && rotation != (i % 3 == normal)) continue;  // a plane has two translations and a rotation
+      frame::FrameSensor sensor;
+      sensor.of = node;
+      sensor.direction = freedoms[i];
+      sensor.axis = Vector3::Unit(i % 3);
+      sensor.rotation = rotation;
+      sensor.sigma = rotation ? angle : length;
+      f.sensors.emplace_back(fmt::format("{} of node {}", freedoms[i], node), sensor);
+    }
+  return f;
+}
+
+measurement::Measurements trial_readings(const Subject& s, const measurement::Measurements& data) {
+  return s.frame() ? of_frame(s, data) : s.placed(of_machine(s, data));
+}
+
+}  // namespace deflect::subject

@@ -1,0 +1,20 @@
+// Readings that could be taken of a subject, to ask what they would tell.
+#pragma once
+
+#include "validation/measurement/measurements.h"
+#include "validation/subject/subject.h"
+
+namespace deflect::subject {
+
+/// A frame with a sensor "uz of node M" for each freedom of every node, of the least noise that its sensors of that
+/// quantity have (of rotations, where it has none: that of displacements over a tenth of its size). None where no
+/// sensor reads a displacement. A machine is read at its tool point: it comes back as it is.
+Subject instrumented(const Subject&);
+
+/// Each load alone goes on, comes off, goes on the other way and comes off, in sequence, from an unloaded reading on:
+/// of a frame the load cases, of a machine forces and moments at T along x, y and z at the poses of the data (nine at
+/// most); as large as they are in the data. The note of each row names its load, "snow × 1", "fz = -50 N at pose 3".
+/// All sensors are read, of a machine the displacement of T.
+measurement::Measurements trial_readings(const Subject&, const measurement::Measurements& data);
+
+}  // namespace deflect::subject
