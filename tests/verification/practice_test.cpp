@@ -196,8 +196,8 @@ double lost_motion(const Measurements& data, const std::vector<double>& turn) {
 class Cycloid : public testing::TestWithParam<const char*> {};
 
 // No truth is known but the loops themselves: what is named sits at the drive, friction among it, and gives the lost
-// motion that the loop shows to a tenth. Of the play tests but one; the README of the diagnosis says what the others
-// leave.
+// motion that the loop shows to a tenth. Of the play tests; the README of the diagnosis has the stiffness tests, which
+// take minutes each.
 TEST_P(Cycloid, WhatIsNamedSitsAtTheDriveAndGivesTheLostMotion) {
   const std::filesystem::path folder = DEFLECT_SOURCE_DIR "/validation/measurements/cycloid";
   const Mechanism m = read_mechanism(folder / "actuator.yaml");
@@ -223,8 +223,8 @@ TEST_P(Cycloid, WhatIsNamedSitsAtTheDriveAndGivesTheLostMotion) {
 INSTANTIATE_TEST_SUITE_P(Loops, Cycloid,
                          testing::Values("baseline_play_initial", "baseline_play_after_run_in",
                                          "conic_disk_play_initial", "conic_disk_play_after_run_in",
-                                         "conic_disk_play_preload_increase_2", "conic_disk_play_preload_increase_3",
-                                         "conic_disk_play_preload_increase_4"),
+                                         "conic_disk_play_preload_increase_1", "conic_disk_play_preload_increase_2",
+                                         "conic_disk_play_preload_increase_3", "conic_disk_play_preload_increase_4"),
                          [](const auto& at) { return std::string(at.param); });
 
 }  // namespace
