@@ -12,7 +12,7 @@ namespace deflect::diagnosis {
 /// A load that goes on or comes off, and what would be read of it.
 struct Splitting {
   std::vector<std::string> between;  ///< two effects of a tie, by name
-  std::string reading;               ///< "uz of node M as snow × 1 goes on"
+  std::string reading;               ///< "uz of node M as load.snow × 1 goes on"
   measurement::Quantity quantity = measurement::Quantity::length;
   double difference = 0;  ///< between what the two predict, as fitted to the data; SI
   double deviations = 0;  ///< over the noise of two readings and the declared tolerances together

@@ -28,7 +28,7 @@ std::string placed_words(const effects::PlacedEffect&);
 /// "stiffness_Nmm_per_rad = 5.00e6 (4.9e6 … 5.1e6)" of all parameters.
 std::string fitted_words(const diagnosis::Hypothesis&, const diagnosis::Fit&);
 
-/// "To tell A from B, read uz of node M as snow × 1 goes on: …"
+/// "To tell A from B, read uz of node M as load.snow × 1 goes on: …"
 std::string splitting_words(const diagnosis::Splitting&);
 
 /// [{"ids": […], "sentence": "…", "certain": true}].

@@ -70,7 +70,7 @@ measurement::Measurements of_frame(const Subject& s, const measurement::Measurem
       r.factors[k] = times * most;
       r.sensors.assign(sensors, 0.0);
     };
-    out.add(0, load, fmt::format("{} × {:g}", cases[k], most), fmt::format("{} × {:g}", cases[k], -most));
+    out.add(0, load, fmt::format("load.{} × {:g}", cases[k], most), fmt::format("load.{} × {:g}", cases[k], -most));
   }
   return std::move(out).done();
 }

@@ -13,8 +13,8 @@ Subject instrumented(const Subject&);
 
 /// Each load alone goes on, comes off, goes on the other way and comes off, in sequence, from an unloaded reading on:
 /// of a frame the load cases, of a machine forces and moments at T along x, y and z at the poses of the data (nine at
-/// most); as large as they are in the data. The note of each row names its load, "snow × 1", "fz = -50 N at pose 3".
-/// All sensors are read, of a machine the displacement of T.
+/// most); as large as they are in the data. The note of each row names its load, "load.snow × 1", "fz = -50 N at pose
+/// 3". All sensors are read, of a machine the displacement of T.
 measurement::Measurements trial_readings(const Subject&, const measurement::Measurements& data);
 
 }  // namespace deflect::subject
