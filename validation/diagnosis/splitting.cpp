@@ -43,7 +43,7 @@ Channels channels_of(const Measurements& m, double sigma_u, double size) {
 MatrixX changes(const std::vector<VectorX>& readings) {
   MatrixX out = MatrixX::Zero(std::ssize(readings), readings.front().size());
   for (Eigen::Index i = 1; i < out.rows(); ++i)
-    if (i % 5 != 0) out.row(i) = (nth(readings, i) - nth(readings, i - 1)).transpose();
+    if (i % subject::rows_of_a_load != 0) out.row(i) = (nth(readings, i) - nth(readings, i - 1)).transpose();
   return out;
 }
 
@@ -80,7 +80,8 @@ std::optional<Splitting> splitting_reading(const Observations& o, const Measurem
         if (!(sigma > 0)) continue;
         const double size = std::abs(difference(i, k)), many = size / std::sqrt(2 * sigma * sigma + variance(i, k));
         if (!(many > best.deviations)) continue;
-        const bool on = i % 5 == 1 || i % 5 == 3;
+        const Eigen::Index step = i % subject::rows_of_a_load;
+        const bool on = step == 1 || step == 3;
         best = {{},
                 fmt::format("{} as {} {}", nth(channels.names, k), nth(trial.readings, i).notes.front(),
                             on ? "goes on" : "comes off"),

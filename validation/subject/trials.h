@@ -15,6 +15,7 @@ Subject instrumented(const Subject&);
 /// of a frame the load cases, of a machine forces and moments at T along x, y and z at the poses of the data (nine at
 /// most); as large as they are in the data. The note of each row names its load, "load.snow × 1", "fz = -50 N at pose
 /// 3". All sensors are read, of a machine the displacement of T.
+inline constexpr int rows_of_a_load = 5;
 measurement::Measurements trial_readings(const Subject&, const measurement::Measurements& data);
 
 }  // namespace deflect::subject
