@@ -143,6 +143,7 @@ const Confinement confinements[] = {
      any_number},
     {"CLI11", "CLI/.*", "validation/cli/[^/]+\\.cpp", "one .cpp file of validation/cli", 1},
     {"nlohmann json", "nlohmann/.*", "(validation|tests)/.*", "validation and tests", any_number},
+    {"libmd", "sha2\\.h", "validation/result_files/[^/]+\\.cpp", "one .cpp file of validation/result_files", 1},
     {"GoogleTest", "g(test|mock)/.*", "tests/.*", "tests", any_number},
 };
 

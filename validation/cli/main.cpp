@@ -9,6 +9,7 @@
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
 #include "validation/cli/completion.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
 #include "validation/cli/unknown_words.h"
 #include "validation/parallel/ranks.h"
@@ -18,7 +19,8 @@ namespace deflect::cli {
 Command new_command(), show_command(), solve_command(), validate_command(), frame_command(), map_command(),
     export_command(), devices_command(), check_command(), effects_command(), add_command(), compare_command(),
     simulate_command(), diagnose_command(), history_command(), report_command();
-}
+Command reproduce_command(const std::vector<Command>& others);
+}  // namespace deflect::cli
 
 namespace {
 
@@ -59,6 +61,7 @@ bool parse(CLI::App& app, const std::vector<Command>& commands, int argc, char**
 
 void run(const Command& command, Ranks* ranks) {
   const deflect::cli::Step step(command.name);
+  deflect::cli::set_command(command);
   if (const auto* shared = std::get_if<deflect::cli::SharedRun>(&command.run)) {
     (*shared)(ranks);
   } else if (!ranks || ranks->first()) {
@@ -87,6 +90,7 @@ int main(int argc, char** argv) {
                                    frame_command(),    map_command(),      export_command(),  devices_command(),
                                    check_command(),    effects_command(),  add_command(),     compare_command(),
                                    simulate_command(), diagnose_command(), history_command(), report_command()};
+  commands.push_back(reproduce_command(commands));
   commands.push_back(completion_command(commands));
   std::vector<CLI::App*> parsers;
   bool quiet = false, loud = false;

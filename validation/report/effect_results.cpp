@@ -151,19 +151,39 @@ std::string words(const effects::EffectInstance& i) {
   return values.empty() ? out : fmt::format("{} ({})", out, values);
 }
 
-std::string added_json(const std::string& device, const std::string& new_device,
-                       const std::vector<effects::EffectInstance>& added) {
-  Json out = {{"kind", "addition"}, {"device", device}, {"new_device", new_device}, {"added", Json::array()}};
-  for (const effects::EffectInstance& i : added) {
+namespace {
+
+Json instances_json(const std::vector<effects::EffectInstance>& all) {
+  Json out = Json::array();
+  for (const effects::EffectInstance& i : all) {
     Json parameters = Json::array();
     for (std::size_t k = 0; k < i.effect->parameters.size(); ++k)
       parameters.push_back({{"name", i.effect->parameters[k].name}, {"value", i.values(as_index(k))}});
     Json one = {{"effect", i.effect->name}, {"site", effects::site_of(i)}};
     if (i.leg) one["leg"] = *i.leg;
     one["parameters"] = parameters;
-    out["added"].push_back(std::move(one));
+    out.push_back(std::move(one));
   }
-  return json::json_text(out);
+  return out;
+}
+
+}  // namespace
+
+std::string added_json(const std::string& device, const std::string& new_device,
+                       const std::vector<effects::EffectInstance>& added) {
+  return json::json_text(
+      Json{{"kind", "addition"}, {"device", device}, {"new_device", new_device}, {"added", instances_json(added)}});
+}
+
+std::string simulated_json(const std::string& device, const std::string& data, std::size_t readings, std::size_t poses,
+                           const std::vector<effects::EffectInstance>& hidden, std::uint64_t seed) {
+  return json::json_text(Json{{"kind", "simulation"},
+                              {"device", device},
+                              {"data", data},
+                              {"readings", readings},
+                              {"poses", poses},
+                              {"seed", seed},
+                              {"hidden", instances_json(hidden)}});
 }
 
 }  // namespace deflect::report

@@ -1,6 +1,7 @@
 // Effects as a table, as a page for a person, and as JSON.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -32,5 +33,9 @@ std::string words(const effects::EffectInstance&);
 /// {"device", "new_device", "added": [{"effect", "site", "leg" (where it is one), "parameters": [{"name", "value"}]}]}.
 std::string added_json(const std::string& device, const std::string& new_device,
                        const std::vector<effects::EffectInstance>&);
+
+/// {"device", "data", "readings", "poses", "seed", "hidden": the same list as "added"}.
+std::string simulated_json(const std::string& device, const std::string& data, std::size_t readings, std::size_t poses,
+                           const std::vector<effects::EffectInstance>& hidden, std::uint64_t seed);
 
 }  // namespace deflect::report

@@ -13,6 +13,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/commands/effects.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/found_effects.h"
 #include "validation/effects/effect_file.h"
@@ -150,7 +151,7 @@ void run(const AddArguments& a) {
   const std::string old = m.name(), text = device_text(m, old, added, a.out);
   require_whole(text, a.out, m.frame());
   write_file(a.out, text);
-  if (!a.json.empty()) write_file(a.json, report::added_json(a.device, a.out, added));
+  if (!a.json.empty()) write_result(a.json, report::added_json(a.device, a.out, added));
   fmt::print("{}: {} with {}\n", a.out, old, fmt::join(names_of(added), ", "));
 }
 

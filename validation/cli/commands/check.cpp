@@ -3,6 +3,7 @@
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/report/check_results.h"
@@ -67,7 +68,7 @@ void run(const CheckArguments& a) {
   const matrix::MatrixCheck m = timed("checks of " + a.matrix, [&] { return matrix::check_matrix(options_of(a)); });
   const report::CheckedFiles files{a.matrix, a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints)};
   const std::string report = report::check_report(m, files);
-  if (!a.json.empty()) write_file(a.json, report::check_json(m, files));
+  if (!a.json.empty()) write_result(a.json, report::check_json(m, files));
   if (!a.out.empty()) {
     const std::filesystem::path folder = a.out;
     write_table(folder / "check.txt", report);

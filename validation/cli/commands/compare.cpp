@@ -6,6 +6,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/figures.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/compare/comparison.h"
@@ -42,7 +43,7 @@ void run(const CompareArguments& a) {
     write_table(folder / "errors.csv", report::errors_csv(c));
     write_table(folder / "tests.csv", report::tests_csv(c));
   }
-  if (!a.json.empty()) write_file(a.json, report::compare_json(c));
+  if (!a.json.empty()) write_result(a.json, report::compare_json(c));
   fmt::print("{}", report::compare_report(c));
   if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
   if (!a.report.empty()) write_report(a.report, a.device, {c}, {{"compare", report::compare_json(c)}});

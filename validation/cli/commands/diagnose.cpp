@@ -4,6 +4,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/commands/effects.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/diagnosis.h"
@@ -37,7 +38,7 @@ void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   });
   if (ranks && !ranks->first()) return;
   for (const effects::PlacedEffect& found : d.missing) tell("found: {}", diagnosis::name_of(found));
-  if (!a.json.empty()) write_file(a.json, report::diagnosis_json(d));
+  if (!a.json.empty()) write_result(a.json, report::diagnosis_json(d));
   fmt::print("{}", report::diagnosis_report(d, m.name(), data.origin));
   if (!a.report.empty())
     write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, threads,

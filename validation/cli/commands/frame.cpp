@@ -16,6 +16,7 @@
 #include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/motions.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
@@ -92,7 +93,7 @@ void run(const FrameArguments& a) {
   if (const std::string failure = frame::failed_check(r); !failure.empty())
     throw NumericalError(fmt::format("{}: {}", f.name, failure));
   if (!a.out.empty()) write_results(a.out, f, r);
-  if (!a.json.empty()) write_file(a.json, report::frame_json(f, r));
+  if (!a.json.empty()) write_result(a.json, report::frame_json(f, r));
   fmt::print("{}", report::frame_report(f, r));
   if (!a.out.empty()) fmt::print("Tables and deflected shapes: {}/*.csv, *.msh, *.vtu\n", a.out);
   if (!a.report.empty())

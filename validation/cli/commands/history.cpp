@@ -6,6 +6,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/figures.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/compare/history.h"
@@ -62,7 +63,7 @@ void run(const HistoryArguments& a) {
     draw({figures::history_figure(h, style)}, folder);
     write_table(folder / "history.csv", report::history_csv(h));
   }
-  if (!a.json.empty()) write_file(a.json, report::history_json(h));
+  if (!a.json.empty()) write_result(a.json, report::history_json(h));
   fmt::print("{}{}", report::history_report(h), same_subjects(devices));
   if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(folder).string());
   if (!a.report.empty()) write_report(a.report, a.devices.front(), all, {{"history", report::history_json(h)}});

@@ -11,6 +11,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/figures.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/figures/fig11.h"
@@ -124,7 +125,7 @@ void run(const MapArguments& a, parallel::Ranks* ranks) {
     for (figures::Figure& figure : figures::stiffness_against_length(map, style)) drawn.push_back(std::move(figure));
     figures = draw(drawn, folder);
   }
-  if (!a.json.empty()) write_file(a.json, report::map_json(map));
+  if (!a.json.empty()) write_result(a.json, report::map_json(map));
   fmt::print("{}", report::map_report(map));
   if (!a.out.empty())
     fmt::print("\nTables map.csv, map.vtu and figures {} in {}\n", figures.empty() ? "(none)" : figures,

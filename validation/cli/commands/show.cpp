@@ -10,6 +10,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/figures.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/figures/drawing_results.h"
@@ -49,7 +50,7 @@ void run(const ShowArguments& a) {
   const figures::MachineDrawing d = timed("the machine as drawn", [&] { return drawing(a, frame); });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) draw({figures::drawing_figure(d, style)}, folder);
-  if (!a.json.empty()) write_file(a.json, figures::drawing_json(d));
+  if (!a.json.empty()) write_result(a.json, figures::drawing_json(d));
   fmt::print("{}", figures::drawing_report(d));
   if (!a.out.empty())
     fmt::print("\nFigure drawing.svg, .pdf, .png in {}\n", std::filesystem::absolute(folder).string());

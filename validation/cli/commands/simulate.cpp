@@ -15,11 +15,13 @@
 #include "validation/cli/command.h"
 #include "validation/cli/commands/effects.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
+#include "validation/report/effect_results.h"
 #include "validation/subject/simulate_frame.h"
 
 namespace deflect::cli {
@@ -28,7 +30,7 @@ namespace {
 constexpr double most_noise_mm = 1000, most_tolerances = 1000;
 
 struct SimulateArguments {
-  std::string device, out, campaign = "rich", geometry = "finite", temperature, noise_rad;
+  std::string device, out, json, campaign = "rich", geometry = "finite", temperature, noise_rad;
   std::vector<std::string> with, files;
   double seed = 1, noise_mm = 0.002, tolerances = 1, outliers = 0, force = 50, elements = 4, threads = 0;
 };
@@ -122,9 +124,11 @@ std::string way_out(const Mechanism& m, const measurement::Measurements& plan, c
 }
 
 void tell_done(const SimulateArguments& a, const measurement::Measurements& data, const std::string& name,
-               const std::string& hidden, std::uint64_t seed) {
+               const std::string& hidden, const std::vector<effects::EffectInstance>& added, std::uint64_t seed) {
   say_new_folder(a.out);
   measurement::write_measurements(a.out, data);
+  if (!a.json.empty())
+    write_result(a.json, report::simulated_json(a.device, a.out, data.readings.size(), data.poses.size(), added, seed));
   const std::string poses = data.instruments.stationary ? "" : fmt::format(" at {} poses", data.poses.size());
   fmt::print("{}: {} readings{} of {}{}, seed {}\n", a.out, data.readings.size(), poses, name,
              hidden.empty() ? ", nothing hidden" : " with " + hidden, seed);
@@ -140,14 +144,16 @@ void run_frame(const SimulateArguments& a, subject::Subject s) {
                                        ? read_plan(a.campaign, s)
                                        : subject::frame_campaign(a.campaign, *s.frame(), o.seed);
   std::string hidden;
+  std::vector<effects::EffectInstance> added;
   for (const std::string& text : a.with) {
     const effects::EffectInstance effect = parse_with(text, all);
+    added.push_back(effect);
     s = effects::with_effect(s, effect);
     hidden += fmt::format("{}{}", hidden.empty() ? "" : ", ", effect.effect->name);
   }
   const measurement::Measurements data =
       timed("simulate: MSA at every reading", [&] { return subject::simulate_frame(*s.frame(), plan, o); });
-  tell_done(a, data, s.name(), hidden, o.seed);
+  tell_done(a, data, s.name(), hidden, added, o.seed);
 }
 
 void run(const SimulateArguments& a) {
@@ -158,8 +164,10 @@ void run(const SimulateArguments& a) {
   prediction::SimulationOptions o = options_of(a);
   measurement::Measurements plan = plan_of(a, m, o.seed);
   std::string hidden;
+  std::vector<effects::EffectInstance> added;
   for (const std::string& text : a.with) {
     const effects::EffectInstance effect = parse_with(text, all);
+    added.push_back(effect);
     m = effects::with_effect(m, effect);
     tell("hidden: {} ({})", effect.effect->name, effects::site_of(effect));
     if (effects::is_geometry(*effect.effect)) o.geometry = m.geometry;
@@ -174,7 +182,7 @@ void run(const SimulateArguments& a) {
     if (!made) throw NumericalError(made.why + way_out(m, plan, o, a));
     return std::move(*made);
   });
-  tell_done(a, data, m.name, hidden, o.seed);
+  tell_done(a, data, m.name, hidden, added, o.seed);
 }
 
 }  // namespace
@@ -210,7 +218,8 @@ Command simulate_command() {
        {"--elements", "N", "elements per member (default 4)", &a->elements},
        {"--seed", "N", "seed of all random numbers (default 1)", &a->seed},
        {"--threads", "N", "threads (default 0: all cores); they do not change the file", &a->threads},
-       {"-o,--output", "DATA", "file to write", &a->out, true}},
+       {"-o,--output", "DATA", "file to write", &a->out, true},
+       {"--json", "FILE", "write what was hidden, the seed, and the hash of the file", &a->json}},
       [a] { run(*a); }};
 }
 

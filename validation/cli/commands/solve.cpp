@@ -7,6 +7,7 @@
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/motions.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
@@ -46,7 +47,7 @@ void run(const SolveArguments& a) {
     return studies::solve(m, at, load, division(m, at, a), geometry, theories);
   });
   if (!a.out.empty()) write_structure(a.out, r);
-  if (!a.json.empty()) write_file(a.json, report::solve_json(r));
+  if (!a.json.empty()) write_result(a.json, report::solve_json(r));
   fmt::print("{}\n{}", m.name, report::solve_report(r));
   if (load.isZero(0) && r.reference().stiffness_mm.isZero(1e-9))
     fmt::print("Without load the contacts have no stiffness; give --load to get the stiffness under that load.\n");

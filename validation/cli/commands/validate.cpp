@@ -9,6 +9,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/figures.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/figures/errata_figure.h"
@@ -69,7 +70,7 @@ void run(const ValidateArguments& a) {
     write_table(folder / "validation.csv", report::validation_csv(v));
     if (a.errata) write_table(folder / "errata.csv", report::errata_csv(prices));
   }
-  if (!a.json.empty()) write_file(a.json, report::validation_json(v, prices));
+  if (!a.json.empty()) write_result(a.json, report::validation_json(v, prices));
   fmt::print("{}", report::validation_table(v));
   if (a.errata) fmt::print("\n{}", report::errata_table(prices));
   if (a.mesh_study) print_mesh_study(m, points, a.load_N);

@@ -1,0 +1,137 @@
+#include "validation/cli/made_by.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+
+#include "msa/base/error.h"
+#include "msa/base/files.h"
+#include "validation/cli/completion.h"
+#include "validation/cli/devices.h"
+#include "validation/result_files/sha256.h"
+
+namespace deflect::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Command* running = nullptr;
+
+constexpr std::array<std::string_view, 4> outputs = {"--json", "--out", "-o,--output", "--report"};
+constexpr const char* catalogue = "effects/catalogue";
+
+bool is_output(const Option& o) { return std::find(outputs.begin(), outputs.end(), o.flags) != outputs.end(); }
+
+/// Whether the result is the same with and without it. A flag --force allows to overwrite; with a number it is a load.
+bool changes_nothing(const Option& o) {
+  return o.flags == "--threads" || (o.flags == "--force" && std::holds_alternative<bool*>(o.target));
+}
+
+/// The option's values as text; none where it is not in force.
+std::vector<std::string> values_of(const Option& o) {
+  if (const auto* text = std::get_if<std::string*>(&o.target))
+    return (*text)->empty() ? std::vector<std::string>() : std::vector<std::string>{**text};
+  if (const auto* number = std::get_if<double*>(&o.target))
+    return std::isfinite(**number) ? std::vector<std::string>{fmt::format("{}", **number)} : std::vector<std::string>();
+  if (const auto* list = std::get_if<std::vector<std::string>*>(&o.target)) return **list;
+  return {};
+}
+
+/// "--output" of "-o,--output".
+std::string long_flag(const Option& o) {
+  const std::size_t comma = o.flags.rfind(',');
+  return comma == o.flags.npos ? o.flags : o.flags.substr(comma + 1);
+}
+
+bool is_positional(const Option& o) { return o.flags.front() != '-'; }
+
+bool is_built_in(const std::string& name) {
+  for (const auto& names : {device_names(), frame_names()})
+    if (std::find(names.begin(), names.end(), name) != names.end()) return true;
+  return false;
+}
+
+/// All files of the catalogue, by name, each with its name.
+std::string catalogue_text() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(data_folder() / catalogue))
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::string out;
+  for (const fs::path& file : files) out += file.filename().string() + "\n" + read_text(file);
+  return out;
+}
+
+std::vector<result_files::HashedFile> inputs_of(const Command& command) {
+  std::vector<result_files::HashedFile> out;
+  bool knows_effects = false;
+  for (const Option& o : command.options) {
+    knows_effects = knows_effects || o.flags == "--effects";
+    if (is_output(o) || !(choices_of(o.value).files || o.value == "MACHINE")) continue;
+    for (const std::string& name : values_of(o)) {
+      std::error_code error;
+      if (is_built_in(name) || fs::exists(name, error)) out.push_back({name, hash_of(name)});
+    }
+  }
+  if (knows_effects) out.push_back({catalogue, hash_of(catalogue)});
+  return out;
+}
+
+result_files::Provenance provenance_of(const Command& command) {
+  result_files::Provenance p;
+  p.program = fmt::format("deflect {}", DEFLECT_VERSION);
+  p.command = words_of(command);
+  p.inputs = inputs_of(command);
+  if (const Option* o = required_output(command))
+    for (const std::string& name : values_of(*o)) p.outputs.push_back({name, hash_of(name)});
+  for (const Option& o : command.options)
+    if (o.flags == "--seed") p.seed = static_cast<std::uint64_t>(*std::get<double*>(o.target));
+  result_files::describe_machine(p);
+  return p;
+}
+
+}  // namespace
+
+void set_command(const Command& command) { running = &command; }
+
+void write_result(const std::string& file, const std::string& json) {
+  write_file(file, running ? result_files::with_provenance(json, provenance_of(*running)) : json);
+}
+
+const Option* required_output(const Command& command) {
+  for (const Option& o : command.options)
+    if (o.required && is_output(o)) return &o;
+  return nullptr;
+}
+
+std::vector<std::string> words_of(const Command& command) {
+  std::vector<std::string> out = {command.name}, options;
+  const auto add = [&](const Option& o) {
+    for (const std::string& value : values_of(o)) {
+      if (is_positional(o))
+        out.push_back(value);
+      else
+        options.push_back(fmt::format("{}={}", long_flag(o), value));
+    }
+    if (const auto* flag = std::get_if<bool*>(&o.target); flag && **flag) options.push_back(long_flag(o));
+  };
+  for (const Option& o : command.options)
+    if (!is_output(o) && !changes_nothing(o)) add(o);
+  if (const Option* o = required_output(command)) add(*o);
+  out.insert(out.end(), options.begin(), options.end());
+  return out;
+}
+
+std::string hash_of(const std::string& name) {
+  if (name == catalogue) return result_files::sha256(catalogue_text());
+  const fs::path file = is_built_in(name) ? subject_file(name) : fs::path(name);
+  std::error_code error;
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error)) return "";
+  return result_files::sha256(read_text(file));
+}
+
+}  // namespace deflect::cli

@@ -1,0 +1,29 @@
+// Result files with what they were made from, in one place for all commands.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "validation/cli/command.h"
+#include "validation/result_files/provenance.h"
+
+namespace deflect::cli {
+
+/// For the rest of the run: the command that runs. It must live as long.
+void set_command(const Command&);
+
+/// write_file() of a JSON object, with its provenance (provenance.h).
+void write_result(const std::string& file, const std::string& json);
+
+/// What a result of the command names as its command: its name, positional arguments, and every option in force as
+/// "--name=value", without those that do not change the result. An output that must be given is the last.
+std::vector<std::string> words_of(const Command&);
+
+/// The option by which the command must be told a file to write, as in "-o=": nullptr where it has none.
+const Option* required_output(const Command&);
+
+/// The file of an input by the name that a provenance gives it, and its hash now: empty for what is no regular file.
+/// InputError where there is none.
+std::string hash_of(const std::string& name);
+
+}  // namespace deflect::cli
