@@ -1,0 +1,24 @@
+// What the results of compare, diagnose and history must fulfil whatever was measured.
+#pragma once
+
+#include <vector>
+
+#include "tests/attack/pipeline_run.h"
+#include "validation/json/json_text.h"
+
+namespace deflect::attack {
+
+/// p-values and shares lie between 0 and 1, sizes are not negative, findings are there where something is missing.
+void check_comparison(const Json&, std::vector<Contradiction>&);
+
+/// Probabilities sum to one, the verdict is what missing, ties and the remainder say, what was found has values within
+/// its interval and its bounds, and the misfit falls.
+void check_diagnosis(const Json&, const subject::Subject&, std::vector<Contradiction>&);
+
+/// The device with what was found is as good as the diagnosis said.
+void check_history(const Json& history, const Json& diagnosis, std::vector<Contradiction>&);
+
+/// Of a diagnosis: at most so many measured numbers.
+double numbers_of(const Json& diagnosis);
+
+}  // namespace deflect::attack
