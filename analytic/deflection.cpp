@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "analytic/table.h"
 #include "msa/base/spatial.h"
 
 namespace deflect::analytic {
@@ -48,6 +49,21 @@ std::optional<double> printed_universal_joint(const std::vector<Law>& laws, cons
   }
   if (!contact || !pin) return {};
   return stiffness(*contact, p) + stiffness(*pin, p);
+}
+
+/// Tables, whose curves have corners, and the other laws of a freedom.
+struct Split {
+  std::vector<const TableLaw*> tables;
+  std::vector<Law> others;
+};
+Split split(const std::vector<Law>& laws) {
+  Split out;
+  for (const Law& law : laws)
+    if (const auto* table = std::get_if<TableLaw>(&law))
+      out.tables.push_back(table);
+    else
+      out.others.push_back(law);
+  return out;
 }
 
 /// Integral over [0, f] by the three points of Gauss: exact to rounding where the integrand hardly changes.
@@ -149,6 +165,7 @@ double deflection(const Law& law, double force, const AsPrinted& p) {
   if (const auto* l = std::get_if<HertzLineBulkLaw>(&law)) return bulk_line_deflection(*l, force);
   if (const auto* l = std::get_if<PowerLaw>(&law)) return power_deflection(*l, force);
   if (const auto* l = std::get_if<HardeningLaw>(&law)) return hardening_deflection(*l, force);
+  if (const auto* l = std::get_if<TableLaw>(&law)) return table_deflection(*l, force);
   return force * compliance(law, force, p);
 }
 
@@ -164,6 +181,8 @@ double compliance(const Law& law, double force, const AsPrinted& p) {
           return power_compliance(l, force);
         else if constexpr (std::is_same_v<L, HardeningLaw>)
           return hardening_compliance(l, force);
+        else if constexpr (std::is_same_v<L, TableLaw>)
+          return table_compliance(l, force);
         else if constexpr (std::is_same_v<L, OneSidedLaw> || std::is_same_v<L, ClearanceLaw> ||
                            std::is_same_v<L, FrictionLaw>)
           throw std::logic_error("a law that jumps has no deflection of its own: steps.h");
@@ -171,6 +190,24 @@ double compliance(const Law& law, double force, const AsPrinted& p) {
           return 1 / stiffness(l, p);
       },
       law);
+}
+
+double force_of(const Law& law, double deflection) {
+  const double size = std::abs(deflection);
+  if (size == 0) return 0;
+  if (const auto* l = std::get_if<PowerLaw>(&law))
+    return std::copysign(l->force * std::pow(size / l->deflection, 1 / l->exponent), deflection);
+  if (const auto* l = std::get_if<HardeningLaw>(&law))
+    return l->stiffness * deflection * (1 + deflection * deflection / (l->reference * l->reference));
+  if (std::holds_alternative<HertzPointLaw>(law))
+    return std::copysign(std::pow(size / analytic::deflection(law, 1), 1.5), deflection);
+  double low = 0, high = 1;
+  while (analytic::deflection(law, high) < size) low = high, high *= 4;
+  for (int i = 0; i < 200 && high - low > 1e-16 * high; ++i) {
+    const double middle = low + (high - low) / 2;
+    (analytic::deflection(law, middle) < size ? low : high) = middle;
+  }
+  return std::copysign(low + (high - low) / 2, deflection);
 }
 
 double stored_energy(const Law& law, double force, const AsPrinted& p) {
@@ -183,6 +220,7 @@ double stored_energy(const Law& law, double force, const AsPrinted& p) {
     const double d = hardening_deflection(*l, force), x = d / l->reference;
     return l->stiffness * d * d * (2 + x * x) / 4;
   }
+  if (const auto* l = std::get_if<TableLaw>(&law)) return table_stored_energy(*l, force);
   // δ ∝ fⁿ stores n/(1 + n) of f δ: two fifths of it for n = 2/3, one half for n = 1.
   const auto* power = std::get_if<PowerLaw>(&law);
   const double n = power ? power->exponent : std::holds_alternative<HertzPointLaw>(law) ? 2.0 / 3 : 1;
@@ -207,18 +245,27 @@ double stored_energy(const std::vector<Law>& laws, double force, const AsPrinted
 
 double deflection(const Spring& s, double force, const AsPrinted& p) {
   if (s.preload == 0) return deflection(s.laws, force, p);
-  if (small(force, s.preload)) return integral(force, [&](double f) { return compliance(s.laws, f + s.preload, p); });
+  if (small(force, s.preload)) {
+    const Split laws = split(s.laws);
+    double sum = integral(force, [&](double f) { return compliance(laws.others, f + s.preload, p); });
+    for (const TableLaw* table : laws.tables) sum += table_change(*table, s.preload, force);
+    return sum;
+  }
   return deflection(s.laws, force + s.preload, p) - deflection(s.laws, s.preload, p);
 }
 
 double compliance(const Spring& s, double force, double least, const AsPrinted& p) {
-  return compliance(s.laws, std::max(std::abs(force + s.preload), least), p);
+  return compliance(s.laws, std::copysign(std::max(std::abs(force + s.preload), least), force + s.preload), p);
 }
 
 double stored_energy(const Spring& s, double force, const AsPrinted& p) {
   if (s.preload == 0) return stored_energy(s.laws, force, p);
-  if (small(force, s.preload))
-    return integral(force, [&](double f) { return f * compliance(s.laws, f + s.preload, p); });
+  if (small(force, s.preload)) {
+    const Split laws = split(s.laws);
+    double sum = integral(force, [&](double f) { return f * compliance(laws.others, f + s.preload, p); });
+    for (const TableLaw* table : laws.tables) sum += table_change_energy(*table, s.preload, force);
+    return sum;
+  }
   return stored_energy(s.laws, force + s.preload, p) - stored_energy(s.laws, s.preload, p) -
          s.preload * deflection(s, force, p);
 }

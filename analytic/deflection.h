@@ -54,6 +54,9 @@ double deflection(const Law&, double force, const AsPrinted& = {});
 double compliance(const Law&, double force, const AsPrinted& = {});
 double stored_energy(const Law&, double force, const AsPrinted& = {});
 
+/// The force at which a law that is neither linear nor a table has a deflection.
+double force_of(const Law&, double deflection);
+
 /// Laws of one freedom in series. Where (33) is taken as printed, contact and bending of a universal joint's pin are
 /// combined as if in parallel.
 double deflection(const std::vector<Law>&, double force, const AsPrinted& = {});
@@ -68,7 +71,8 @@ struct Spring {
   double preload = 0;
 };
 double deflection(const Spring&, double force, const AsPrinted& = {});
-/// At a force of magnitude max(|f + P|, `least`) in the laws: `least` > 0 keeps contacts without load finite.
+/// At a force of magnitude max(|f + P|, `least`) and of its sign in the laws: `least` > 0 keeps contacts without load
+/// finite.
 double compliance(const Spring&, double force, double least = 0, const AsPrinted& = {});
 double stored_energy(const Spring&, double force, const AsPrinted& = {});
 

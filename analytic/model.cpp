@@ -10,6 +10,7 @@
 #include "analytic/rotation_vector.h"
 #include "msa/base/error.h"
 #include "msa/base/motion_text.h"
+#include "msa/mechanism/table.h"
 
 namespace deflect::analytic {
 namespace {
@@ -30,8 +31,9 @@ ChainConditions drawn(ChainConditions c) {
 }
 
 /// Laws that jump taken out, where the legs carry `wrenches` and base and tool F: gaps are closed, frictions side by
-/// side with something let go and others stick, a one-sided law yields as on the side on which it is. Within groups,
-/// whose branches' wrenches are not known here, its sides yield alike.
+/// side with something let go and others stick, a table that remembers keeps its curve of loading, a one-sided law
+/// yields as on the side on which it is. Within groups, whose branches' wrenches are not known here, its sides yield
+/// alike.
 Configuration without_steps(Configuration c, const std::vector<Vector6>& wrenches, const Vector6& F) {
   const auto strip = [&](PlacedJoint& joint, bool beside, const Vector6* wrench) {
     for (std::size_t i = 0; i < 6; ++i) {
@@ -41,6 +43,7 @@ Configuration without_steps(Configuration c, const std::vector<Vector6>& wrenche
         if (friction && beside) joint.freedoms[i] = Freedom::free;
         if (friction && !beside) smooth.push_back(LinearLaw{friction->stiffness});
         if (!deflect::jumps(law)) smooth.push_back(law);
+        if (remembers(law)) smooth.push_back(identified({std::get<TableLaw>(law).points}));
         const auto* sides = std::get_if<OneSidedLaw>(&law);
         if (!sides) continue;
         const double pull = sides->pull.value_or(0), push = sides->push.value_or(0);
@@ -205,7 +208,7 @@ AnalyticSolution AnalyticModel::solve_in_part(const Vector6& F, const Conditions
 AnalyticSolution AnalyticModel::solve(const Vector6& F, const Conditions& conditions) const {
   if (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_)
     throw InputError(
-        fmt::format("{} slips are given, the mechanism has {} frictions", conditions.slips.size(), frictions_));
+        fmt::format("{} slips are given, the laws of the mechanism have {}", conditions.slips.size(), frictions_));
   const Geometry geometry = as_printed_.empty() ? conditions.geometry : Geometry::linear;
   if (geometry != Geometry::linear && (!stepped_.empty() || (conditions.warmer != 0 && heat_force_ > 0)))
     return solve_in_part(F, conditions);

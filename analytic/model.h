@@ -30,7 +30,7 @@ struct AnalyticSolution {
   bool converged = false;
   int iterations = 0;
   double misfit = 0;          ///< largest gap between legs' ends and platform, relative to the displacement
-  std::vector<double> slips;  ///< of the friction elements after the load, as in Conditions
+  std::vector<double> slips;  ///< after the load, as in Conditions
   /// Unloaded play, in which the mechanism floats (steps.h): the parts that have it, and the twists by which T may move
   /// (columns). Along each axis T may move by `least` to `most` from the displacement given, which is the middle.
   std::vector<std::string> loose;

@@ -8,9 +8,11 @@
 #include <optional>
 
 #include "analytic/deflection.h"
+#include "analytic/table.h"
 #include "msa/base/index.h"
 #include "msa/base/set_valued_laws.h"
 #include "msa/base/settle.h"
+#include "msa/mechanism/table.h"
 
 namespace deflect::analytic {
 namespace {
@@ -23,6 +25,9 @@ constexpr double no_force = 1e-11;  // of the largest
 double sign(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
 
 double compliance(const OneSidedLaw& l, double f) { return (f < 0 ? l.push : l.pull).value_or(0); }
+
+/// δ of a preloaded law before any load.
+double at_rest(const Law& law, double P) { return P == 0 ? 0 : analytic::deflection(law, P); }
 
 /// A law in a phase.
 struct Member {
@@ -41,9 +46,10 @@ struct Member {
     if (released()) return {imposed, 0, true};
     const double P = stepped->preload;
     if (phase == Phase::bends) {
-      const double d = analytic::deflection(law(), force + P) - analytic::deflection(law(), P);
+      const double d = analytic::deflection(law(), force + P) - at_rest(law(), P);
       const double c = analytic::compliance(law(), force + P);
-      return std::isfinite(c) ? Step{d - c * force, c, false} : Step{d, 0, true};
+      const double stored = remembers(law()) ? analytic::stored_energy(law(), force) : 0;
+      return std::isfinite(c) ? Step{d - c * force, c, false, stored} : Step{d, 0, true};
     }
     if (const auto* l = std::get_if<OneSidedLaw>(&law())) {
       const double c = compliance(*l, phase == Phase::minus ? -1 : 1);
@@ -63,29 +69,11 @@ bool lets_go(const Member& m, double no_load) {
   return std::abs(own) <= no_load && !std::isfinite(analytic::compliance(m.law(), 0));
 }
 
-/// The force at which a law that bends has a deflection.
-double force_at(const Law& law, double deflection) {
-  const double size = std::abs(deflection);
-  if (size == 0) return 0;
-  if (const auto* l = std::get_if<PowerLaw>(&law))
-    return std::copysign(l->force * std::pow(size / l->deflection, 1 / l->exponent), deflection);
-  if (const auto* l = std::get_if<HardeningLaw>(&law))
-    return l->stiffness * deflection * (1 + deflection * deflection / (l->reference * l->reference));
-  if (std::holds_alternative<HertzPointLaw>(law))
-    return std::copysign(std::pow(size / analytic::deflection(law, 1), 1.5), deflection);
-  double low = 0, high = 1;
-  while (analytic::deflection(law, high) < size) low = high, high *= 4;
-  for (int i = 0; i < 200 && high - low > 1e-16 * high; ++i) {
-    const double middle = low + (high - low) / 2;
-    (analytic::deflection(law, middle) < size ? low : high) = middle;
-  }
-  return std::copysign(low + (high - low) / 2, deflection);
-}
-
 ScalarLaw bent(const Law& law, double P) {
-  const double rest = analytic::deflection(law, P);
-  return {-infinite, infinite, [&law, P, rest](double d) { return force_at(law, d + rest) - P; },
-          [&law, rest](double d) { return 1 / analytic::compliance(law, force_at(law, d + rest)); }};
+  const double rest = at_rest(law, P);
+  if (const auto* table = std::get_if<TableLaw>(&law)) return table_by_corners(*table, rest, P);
+  return {-infinite, infinite, [&law, P, rest](double d) { return force_of(law, d + rest) - P; },
+          [&law, rest](double d) { return 1 / analytic::compliance(law, force_of(law, d + rest)); }};
 }
 
 /// f by δ, both from the preloaded state. A friction's slip counts from there too; `limit`: its own.
@@ -104,7 +92,7 @@ ScalarLaw scalar_law(const SteppedLaw& stepped, double slip, double limit) {
             slip - P / k,
             std::max(F / k, 1e-15)};
   }
-  if (!deflect::jumps(stepped.law)) return bent(stepped.law, P);
+  if (!std::holds_alternative<OneSidedLaw>(stepped.law)) return bent(stepped.law, P);
   const OneSidedLaw one = std::get<OneSidedLaw>(stepped.law);
   const double rest = compliance(one, P) * P;
   const auto slope = [one, rest](double d) {
@@ -132,17 +120,25 @@ double at_sum(const ScalarLaw& law, double c, double p) {
   return low + (high - low) / 2;
 }
 
+/// Whether it bends: its force follows from its deflection.
+bool bends(const Law& law) { return !deflect::jumps(law) || remembers(law); }
+
 Phase phase_at_rest(const Law& law) {
-  if (!deflect::jumps(law)) return Phase::bends;
+  if (bends(law)) return Phase::bends;
   return std::holds_alternative<FrictionLaw>(law) ? Phase::sticks : Phase::plus;
 }
 
 class Balance {
  public:
   Balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask, Imposed& imposed)
-      : ask_(ask), imposed_(imposed), n_(std::ssize(laws)) {
-    for (const SteppedLaw& l : laws) {
+      : ask_(ask), imposed_(imposed), n_(std::ssize(laws)), own_laws_(laws) {
+    for (SteppedLaw& l : own_laws_) {
       members_.push_back({&l});
+      if (auto* table = std::get_if<TableLaw>(&l.law); table && table->remembers())
+        for (std::size_t k = 0; k < 2; ++k) {
+          const std::size_t n = as_size(table->number) + k;
+          table->left[k] = table->number >= 0 && n < slips.size() ? slips[n] : 0;
+        }
       if (const auto* friction = std::get_if<FrictionLaw>(&l.law)) {
         const auto n = as_size(friction->number);
         if (friction->number >= 0 && n < slips.size()) members_.back().slip = slips[n];
@@ -156,7 +152,10 @@ class Balance {
   BalancedSteps search() {
     if (imposed_.c.size() == 0) stiff();
     SteppedForces at = answer(VectorX::Zero(n_));
-    const bool relaxed = std::all_of(members_.begin(), members_.end(), [](const Member& m) { return m.slip == 0; });
+    const bool relaxed = std::all_of(members_.begin(), members_.end(), [](const Member& m) {
+      const auto* table = std::get_if<TableLaw>(&m.law());
+      return m.slip == 0 && (!table || table->left == std::array<double, 2>{});
+    });
     if (relaxed && at.forces.isZero(0) && at.largest == 0) return at_rest();
     if (imposed_.S.size() == 0) linearise(VectorX::Zero(n_), at, 1e3);
     VectorX o = VectorX::Zero(n_), p;
@@ -178,8 +177,10 @@ class Balance {
       for (double part = 1;; part /= 2) {
         at = answer(o);
         const double size = std::max({largest(at.forces), largest(found.s), at.largest});
-        lacking = largest(at.forces - s) / size;
-        if (lacking <= 1e-11 || (lacking <= 1e-8 && lacking > 0.5 * before)) return result(found);
+        const double off = largest(at.forces - s);
+        lacking = size > 0 ? off / size : 0;
+        const double rounding = 1e-15 * largest(VectorX(o.cwiseQuotient(imposed_.c)));  // of s = (d − o)/c
+        if (lacking <= 1e-11 || off <= rounding || (lacking <= 1e-8 && lacking > 0.5 * before)) return result(found);
         if ((at.converged && lacking < (1 - 1e-4 * part) * before) || part < 1e-4 || p.size() == 0) break;
         for (Eigen::Index i = 0; i < n_; ++i) {
           const double c = imposed_.c(i), here = p(i) + part / 2 * (target(i) - p(i));
@@ -246,10 +247,14 @@ class Balance {
     const double length = ask_({}).length;
     for (Eigen::Index i = 0; i < n_; ++i)
       imposed_.c(i) = nth(members_, i).stepped->rotation ? 1e-10 / (length * length) : 1e-10;
-    // Several frictions side by side hold each other alone: digits are kept by the stiffness with which they stick.
-    for (Eigen::Index i = 0; i < n_; ++i)
+    // Several frictions side by side hold each other alone: digits are kept by the stiffness with which they stick. In
+    // a table a deflection may be left without any force.
+    for (Eigen::Index i = 0; i < n_; ++i) {
       if (const auto* friction = std::get_if<FrictionLaw>(&nth(members_, i).law()))
         imposed_.c(i) = std::max(imposed_.c(i), 1 / friction->stiffness);
+      if (const auto* table = std::get_if<TableLaw>(&nth(members_, i).law()); table && table->remembers())
+        imposed_.c(i) = std::max(imposed_.c(i), table_compliance(identified({table->points}), 0));
+    }
     linearise(VectorX::Zero(n_), answer(VectorX::Zero(n_)), 1e3);
     for (Eigen::Index i = 0; i < n_; ++i)
       if (imposed_.S(i, i) * imposed_.c(i) > 1e-12) imposed_.c(i) = 1 / imposed_.S(i, i);
@@ -292,7 +297,7 @@ class Balance {
         m.phase = found.end[at] > 0 ? Phase::plus : found.end[at] < 0 ? Phase::minus : Phase::open;
       else if (std::holds_alternative<FrictionLaw>(m.law()))
         m.phase = found.end[at] > 0 ? Phase::plus : found.end[at] < 0 ? Phase::minus : Phase::sticks;
-      else if (!deflect::jumps(m.law()))
+      else if (bends(m.law()))
         m.phase = lets_go(m, no_force * sizes_(i)) ? Phase::open : Phase::bends;
       else
         m.phase = found.s(i) + m.stepped->preload < -no_force * sizes_(i) ? Phase::minus : Phase::plus;
@@ -312,6 +317,12 @@ class Balance {
     out.converged = true;
     for (const Member& m : members_) {
       out.steps.push_back(m.step());
+      if (const auto* table = std::get_if<TableLaw>(&m.law()); table && table->remembers()) {
+        const auto n = as_size(std::max(table->number, 0));
+        out.slips.resize(std::max(out.slips.size(), n + 2));
+        const std::array<double, 2> left = table_left(*table, m.force);
+        std::copy(left.begin(), left.end(), out.slips.begin() + as_index(n));
+      }
       const auto* friction = std::get_if<FrictionLaw>(&m.law());
       if (!friction) continue;
       const auto n = as_size(std::max(friction->number, 0));
@@ -343,6 +354,7 @@ class Balance {
   Imposed& imposed_;
   std::optional<Imposed> own_;  // where S belongs to a load
   Eigen::Index n_;
+  std::vector<SteppedLaw> own_laws_;  // tables with what is left in them
   std::vector<Member> members_;
   std::vector<ScalarLaw> laws_;
   std::vector<std::ptrdiff_t> growing_;  // frictions whose limit grows with a load
@@ -354,7 +366,7 @@ class Balance {
 Step SteppedLaw::at_force(double f) const {
   Member m{this};
   m.force = f;
-  m.phase = !deflect::jumps(law)                       ? Phase::bends
+  m.phase = bends(law)                                 ? Phase::bends
             : std::holds_alternative<FrictionLaw>(law) ? Phase::sticks
             : f + preload < 0                          ? Phase::minus
                                                        : Phase::plus;
@@ -364,6 +376,7 @@ Step SteppedLaw::at_force(double f) const {
 
 double SteppedLaw::stored_energy(double f, const Step& s) const {
   const double own = f + preload, d = s.offset + s.compliance * f;
+  if (remembers(law)) return s.stored;
   if (!deflect::jumps(law))
     return analytic::stored_energy(law, own) - analytic::stored_energy(law, preload) - preload * d;
   if (const auto* l = std::get_if<FrictionLaw>(&law)) return own * own / (2 * l->stiffness);

@@ -7,8 +7,8 @@
 //              open         f = 0, |δ| ≤ gap
 //   friction   sticks       δ = slip + f/k, |f| ≤ F
 //              slides ±     f = ±F, the slip moves that way
-//   one that   bends        δ by its tangent at f, where that is known
-//   bends
+//   one that   bends        δ by its tangent at f, where that is known; a table that remembers bends, too, from what
+//   bends                   earlier loads have left in it
 //
 // A preloaded law carries f + P where the joint transmits f, and δ is relative to its state at P.
 #pragma once
@@ -26,6 +26,7 @@ namespace deflect::analytic {
 struct Step {
   double offset = 0, compliance = 0;
   bool released = false;
+  double stored = 0;  ///< by a table that remembers, J
 };
 
 /// One law that jumps. `number` is its index among the steps of its mechanism.
@@ -61,7 +62,7 @@ struct Imposed {
 
 struct BalancedSteps {
   std::vector<Step> steps;
-  std::vector<double> slips;  ///< of the friction elements, by FrictionLaw::number
+  std::vector<double> slips;  ///< after the load, as in Conditions
   VectorX offsets;            ///< imposed on the laws in addition to the compliances of Imposed; empty where not
                               ///< converged
   bool converged = false;

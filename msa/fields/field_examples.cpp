@@ -1,5 +1,7 @@
 #include "msa/fields/field_examples.h"
 
+#include <fmt/format.h>
+
 namespace deflect {
 
 const char* example_of(Dimension d) {
@@ -46,6 +48,10 @@ const char* example_of(Dimension d) {
       return "2 kg";
   }
   return "";
+}
+
+std::string example_of(std::string_view key, const std::string& value) {
+  return key.empty() ? value : fmt::format("{}: {}", key, value);
 }
 
 }  // namespace deflect

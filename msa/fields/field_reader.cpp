@@ -17,12 +17,6 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
-/// "key: value", and "value" where an entry is the value itself.
-std::string example(std::string_view key, const std::string& value) {
-  return key.empty() ? value : fmt::format("{}: {}", key, value);
-}
-std::string example(std::string_view key, Dimension d) { return example(key, example_of(d)); }
-
 std::string words(const Range& r, Dimension d) {
   const bool low = r.low > -std::numeric_limits<double>::infinity(),
              high = r.high < std::numeric_limits<double>::infinity();
@@ -141,7 +135,7 @@ double FieldReader::number(const YamlNode& node, LaterText path, const Quantity&
 }
 
 void FieldReader::quantity(const char* key, double& value, const Quantity& q, const char* about) {
-  const auto sample = [&] { return example(key, q.dimension); };
+  const auto sample = [&] { return example_of(key, example_of(q.dimension)); };
   const auto path = [&] { return joined(path_, key); };
   if (const YamlNode* node = find(key, !q.otherwise, sample, about))
     value = number(*node, path, q, sample);
@@ -151,7 +145,7 @@ void FieldReader::quantity(const char* key, double& value, const Quantity& q, co
 
 void FieldReader::quantity_if_given(const char* key, std::optional<double>& value, const Quantity& q,
                                     const char* about) {
-  const auto sample = [&] { return example(key, q.dimension); };
+  const auto sample = [&] { return example_of(key, example_of(q.dimension)); };
   const auto path = [&] { return joined(path_, key); };
   value.reset();
   if (const YamlNode* node = find(key, false, sample, about)) value = number(*node, path, q, sample);
@@ -183,7 +177,7 @@ void FieldReader::integer(const char* key, int& value, int low, int high, const 
 
 void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const char* about) {
   const auto sample = [&] {
-    return example(key, d == Dimension::none ? "[0, 0, 1]" : fmt::format("[{0}, {0}, {0}]", example_of(d)));
+    return example_of(key, d == Dimension::none ? "[0, 0, 1]" : fmt::format("[{0}, {0}, {0}]", example_of(d)));
   };
   const auto path = [&] { return joined(path_, key); };
   value.setZero();
@@ -201,34 +195,6 @@ void FieldReader::vector3(const char* key, Vector3& value, Dimension d, const ch
     fail(*node, path(), fmt::format("is no direction: write for example '{}'", sample()));
 }
 
-void FieldReader::matrix(const char* key, MatrixX& value, Eigen::Index size, Need need, const char* about) {
-  std::vector<std::string> zeros(as_size(size), "0");
-  const std::string sample = example(key, fmt::format("[[{}], ...]", fmt::join(zeros, ", ")));
-  value.resize(0, 0);
-  const YamlNode* node = find(key, need == Need::required, sample, about);
-  if (!node) return;
-  const std::string path = joined(path_, key);
-  const auto refuse = [&](const YamlNode& at, const std::string& where) {
-    fail(at, where,
-         fmt::format("{0} rows of {0} numbers are wanted: write for example '{1}'",
-                     size > 0 ? std::to_string(size) : "as many", sample));
-  };
-  const auto rows = std::ssize(node->children);
-  if (node->kind != Kind::list || rows == 0 || (size > 0 && rows != size)) refuse(*node, path);
-  value.resize(rows, rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const YamlNode& row = nth(node->children, i);
-    const std::string row_path = joined(path, std::to_string(i));
-    if (row.kind != Kind::list || std::ssize(row.children) != rows) refuse(row, row_path);
-    for (Eigen::Index j = 0; j < rows; ++j) {
-      const YamlNode& item = nth(row.children, j);
-      const std::string item_path = joined(row_path, std::to_string(j));
-      note(item, item_path);
-      value(i, j) = number(item, item_path, {Dimension::none, {}, std::nullopt}, sample);
-    }
-  }
-}
-
 void FieldReader::text(const char* key, std::string& value, Need need, const char* about) {
   const auto sample = [&] { return fmt::format("{}: \"text\"", key); };
   const auto path = [&] { return joined(path_, key); };
@@ -241,7 +207,7 @@ void FieldReader::text(const char* key, std::string& value, Need need, const cha
 }
 
 void FieldReader::texts(const char* key, std::vector<std::string>& values, Need need, const char* about) {
-  const auto sample = [&] { return example(key, "[name, name]"); };
+  const auto sample = [&] { return example_of(key, "[name, name]"); };
   values.clear();
   const YamlNode* node = find(key, need == Need::required, sample, about);
   if (!node) return;

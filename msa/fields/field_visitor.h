@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -20,6 +21,8 @@ namespace deflect {
 
 struct Material;
 struct Section;
+
+using Pairs = std::vector<std::array<double, 2>>;
 
 /// Allowed range of a number; the bounds are included unless `open`.
 struct Range {
@@ -87,6 +90,8 @@ class FieldVisitor {
   virtual void vector3(const char* key, Vector3&, Dimension, const char* about) = 0;
   /// A square matrix of plain numbers with `size` rows, or any number of rows where `size` is 0. Empty where absent.
   virtual void matrix(const char* key, MatrixX&, Eigen::Index size, Need, const char* about) = 0;
+  /// A list of pairs, [[0 N, 0 mm], [50 N, 0.02 mm]], each number of its dimension. Empty where absent.
+  virtual void pairs(const char* key, Pairs&, const std::array<Dimension, 2>&, Need, const char* about) = 0;
   virtual void text(const char* key, std::string&, Need, const char* about) = 0;
   virtual void texts(const char* key, std::vector<std::string>&, Need, const char* about) = 0;  ///< one text or a list
   virtual void word(const char* key, std::string&, const Words&, const char* about) = 0;

@@ -87,6 +87,20 @@ void FieldWriter::matrix(const char* key, MatrixX& value, Eigen::Index, Need, co
   add(key, std::move(rows), value.size() == 0);
 }
 
+void FieldWriter::pairs(const char* key, Pairs& values, const std::array<Dimension, 2>& dimensions, Need need,
+                        const char*) {
+  YamlNode list;
+  list.kind = Kind::list;
+  for (const std::array<double, 2>& value : values) {
+    YamlNode pair;
+    pair.kind = Kind::list;
+    for (std::size_t k = 0; k < 2; ++k) pair.children.push_back(number(value[k], dimensions[k]));
+    list.children.push_back(std::move(pair));
+  }
+  mark(list, joined(path_, key));
+  add(key, std::move(list), need == Need::optional && values.empty());
+}
+
 void FieldWriter::text(const char* key, std::string& value, Need need, const char*) {
   add(key, scalar(value, true), need == Need::optional && value.empty());
 }

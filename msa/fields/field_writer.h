@@ -27,6 +27,7 @@ class FieldWriter final : public FieldVisitor {
   void integer(const char*, int&, int low, int high, const char*) override;
   void vector3(const char*, Vector3&, Dimension, const char*) override;
   void matrix(const char*, MatrixX&, Eigen::Index size, Need, const char*) override;
+  void pairs(const char*, Pairs&, const std::array<Dimension, 2>&, Need, const char*) override;
   void text(const char*, std::string&, Need, const char*) override;
   void texts(const char*, std::vector<std::string>&, Need, const char*) override;
   void word(const char*, std::string&, const Words&, const char*) override;

@@ -37,6 +37,15 @@ void NumberWalk::matrix(const char* key, MatrixX& x, Eigen::Index, Need, const c
   inside(key, rows);
 }
 
+void NumberWalk::pairs(const char* key, Pairs& values, const std::array<Dimension, 2>& dimensions, Need, const char*) {
+  inside(key, [&] {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      at_index(i, [&] {
+        for (std::size_t k = 0; k < 2; ++k) at_index(k, [&] { number("", values[i][k], dimensions[k]); });
+      });
+  });
+}
+
 void NumberWalk::word_or_object(const char* key, std::string&, const Words&, bool more,
                                 const std::function<void()>& fields, const char*) {
   if (more) inside(key, fields);

@@ -33,6 +33,7 @@ class NumberWalk : public FieldVisitor {
                         const char*) override;
   void vector3(const char* key, Vector3&, Dimension, const char*) override;
   void matrix(const char* key, MatrixX&, Eigen::Index, Need, const char*) override;
+  void pairs(const char* key, Pairs&, const std::array<Dimension, 2>&, Need, const char*) override;
   void integer(const char*, int&, int, int, const char*) override {}
   void text(const char*, std::string&, Need, const char*) override {}
   void texts(const char*, std::vector<std::string>&, Need, const char*) override {}

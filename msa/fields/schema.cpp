@@ -27,8 +27,8 @@ struct Walk {
 };
 
 bool same(const SchemaField& a, const SchemaField& b) {
-  return a.key == b.key && a.kind == b.kind && a.dimension == b.dimension && a.required == b.required &&
-         a.level == b.level && a.words == b.words && a.about == b.about;
+  return a.key == b.key && a.kind == b.kind && a.dimension == b.dimension && a.second == b.second &&
+         a.required == b.required && a.level == b.level && a.words == b.words && a.about == b.about;
 }
 bool same(const std::vector<SchemaField>& a, const std::vector<SchemaField>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -108,6 +108,11 @@ class SchemaVisitor final : public FieldVisitor {
   }
   void matrix(const char* key, MatrixX&, Eigen::Index size, Need need, const char* about) override {
     add(key, FieldKind::matrix, need == Need::required, about).size = as_size(size);
+  }
+  void pairs(const char* key, Pairs&, const std::array<Dimension, 2>& d, Need need, const char* about) override {
+    SchemaField& f = add(key, FieldKind::pairs, need == Need::required, about);
+    f.dimension = d[0];
+    f.second = d[1];
   }
   void text(const char* key, std::string&, Need need, const char* about) override {
     add(key, FieldKind::text, need == Need::required, about);

@@ -22,6 +22,7 @@ enum class FieldKind {
   integer,
   vector3,
   matrix,
+  pairs,
   text,
   texts,
   word,
@@ -38,6 +39,7 @@ struct SchemaField {
   FieldKind kind = FieldKind::quantity;
   Dimension dimension = Dimension::none;
   std::optional<Dimension> or_dimension;  ///< that a number has instead, by another field
+  std::optional<Dimension> second;        ///< of pairs: that of the second number
   Range range;
   bool required = false;
   std::string otherwise;  ///< the default as written in a file; "" where there is none

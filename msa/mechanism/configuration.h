@@ -127,7 +127,8 @@ bool all_linear(const Configuration&);
 bool any_jumps(const Configuration&);
 bool any_history(const Configuration&);
 
-/// Numbers the friction laws in the order of for_each_law; returns their count.
+/// Numbers what laws with a history keep (Conditions::slips) in the order of for_each_law: one number of a friction,
+/// two of a table that remembers. Returns how many there are.
 int number_slips(Configuration&);
 
 /// Number of legs, without joints beside them.

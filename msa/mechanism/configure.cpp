@@ -92,7 +92,7 @@ bool any_jumps(const Configuration& c) {
 
 bool any_history(const Configuration& c) {
   bool any = false;
-  for_each_law(c, [&](const Law& law) { any = any || row_of(law).has_history; });
+  for_each_law(c, [&](const Law& law) { any = any || has_history(law); });
   return any;
 }
 
@@ -100,6 +100,10 @@ int number_slips(Configuration& c) {
   int count = 0;
   for_each_law(c, [&](Law& law) {
     if (auto* friction = std::get_if<FrictionLaw>(&law)) friction->number = count++;
+    if (auto* table = std::get_if<TableLaw>(&law); table && table->remembers()) {
+      table->number = count;
+      count += 2;
+    }
   });
   return count;
 }

@@ -6,9 +6,11 @@
 
 #include <array>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace deflect {
 
@@ -152,15 +154,33 @@ struct FrictionLaw {
   double kept = 1;   ///< 0 … 1: share of its force that a friction element beside a leg keeps from pose to pose
   double share = 0;  ///< 0 … 0.95
   FrictionStart word = FrictionStart::given;
-  int number = -1;  ///< index among the friction laws of a configuration, see number_slips(); not compared
+  int number = -1;  ///< index among the slips of a configuration, see number_slips(); not compared
   bool operator==(const FrictionLaw& other) const {
     return force == other.force && stiffness == other.stiffness && start == other.start && kept == other.kept &&
            share == other.share && word == other.word;
   }
 };
 
-using Law = std::variant<LinearLaw, HertzPointLaw, HertzLineLaw, PinBendingLaw, MotorShaftLaw, CableLaw, CablePairLaw,
-                         BeltLaw, HertzLineBulkLaw, PowerLaw, OneSidedLaw, HardeningLaw, ClearanceLaw, FrictionLaw>;
+/// Points [f, δ] of a measured curve, straight between them.
+using TablePoints = std::vector<std::array<double, 2>>;
+
+struct TableCurves;  // table.h
+
+/// δ(f) as measured. `points` pass through [0, 0] and rise; where none has a negative force the curve is odd. Beyond
+/// the ends it goes on with its last slope. `unloading`: the branch from the last point back to no force; with it the
+/// law remembers (table.h), and the deflections that loads leave in it are two of its history's numbers (conditions.h).
+struct TableLaw {
+  TablePoints points, unloading = {};
+  std::shared_ptr<const TableCurves> curves = nullptr;  ///< by identified(), as configure() does
+  int number = -1;                                      ///< of the first of the two, see number_slips()
+  std::array<double, 2> left{};                         ///< those before the load, under pull and under push
+  bool remembers() const { return !unloading.empty(); }
+  bool operator==(const TableLaw& other) const { return points == other.points && unloading == other.unloading; }
+};
+
+using Law =
+    std::variant<LinearLaw, HertzPointLaw, HertzLineLaw, PinBendingLaw, MotorShaftLaw, CableLaw, CablePairLaw, BeltLaw,
+                 HertzLineBulkLaw, PowerLaw, OneSidedLaw, HardeningLaw, ClearanceLaw, FrictionLaw, TableLaw>;
 
 enum class Curve {
   straight,  ///< one stiffness at every load
@@ -173,7 +193,7 @@ struct LawRow {
   const char* along;  ///< an example on a translation, as a device file has it
   const char* about;  ///< an example on a rotation; null: only allowed on translations
   Curve curve;
-  bool has_history = false;       ///< its force depends on earlier loads (conditions.h)
+  bool has_history = false;       ///< its force always depends on earlier loads (conditions.h)
   bool length_from_pose = false;  ///< without a given length it is as long as the actuator's extension
 };
 
@@ -198,6 +218,8 @@ inline constexpr LawRow law_rows[] = {
      Curve::smooth},
     {"clearance", "gap: 0.02 mm", "gap: 0.1 deg", Curve::jumps},
     {"friction", "force: 1000 N, stiffness: 1e4 N/mm", "moment: 100 Nm, stiffness: 1e4 Nm/rad", Curve::jumps, true},
+    {"table", "points: [[0 N, 0 mm], [15 N, 0.06 mm], [41 N, 0.1 mm], [90 N, 0.15 mm]]",
+     "points: [[0 Nm, 0 mrad], [0.13 Nm, 1.5 mrad], [1.1 Nm, 4 mrad]]", Curve::smooth},
 };
 static_assert(std::size(law_rows) == std::variant_size_v<Law>, "a law without a row, or a row without a law");
 
@@ -214,7 +236,16 @@ inline bool is_linear(const Law& law) {
   const auto* power = std::get_if<PowerLaw>(&law);
   return row_of(law).curve == Curve::straight || (power && power->exponent == 1);
 }
-inline bool jumps(const Law& law) { return row_of(law).curve == Curve::jumps; }
+
+/// Whether it is a table that has a branch for unloading.
+inline bool remembers(const Law& law) {
+  const auto* table = std::get_if<TableLaw>(&law);
+  return table && table->remembers();
+}
+/// Whether its force depends on earlier loads.
+inline bool has_history(const Law& law) { return row_of(law).has_history || remembers(law); }
+/// Whether it is solved by phases: a table that remembers is, because it begins where earlier loads left it.
+inline bool jumps(const Law& law) { return row_of(law).curve == Curve::jumps || remembers(law); }
 
 /// The field for the length that a law may take from the pose, empty where the file gives no length; null for a law
 /// without such a field.

@@ -3,6 +3,7 @@
 
 #include "msa/mechanism/field_lists.h"
 #include "msa/mechanism/law.h"
+#include "msa/mechanism/table.h"
 
 namespace deflect {
 namespace {
@@ -129,6 +130,14 @@ void fields(FieldVisitor& v, FrictionLaw& l) {
             "is of the load in the laws that the friction stands side by side with: move it under 'beside' of a joint "
             "whose freedom has a law, as in 'beside: {rz: {law: friction, …}}'");
   fields_of_start(v, l);
+}
+
+void fields(FieldVisitor& v, TableLaw& l) {
+  const std::array<Dimension, 2> units = {effort(v), motion(v)};
+  v.pairs("points", l.points, units, Need::required, "load and deflection as measured, from no load upwards");
+  v.pairs("unloading", l.unloading, units, Need::optional, "the same from the last point back to no load");
+  const std::optional<TableMistake> mistake = mistake_in(l, units[0], units[1]);
+  v.require(!mistake, mistake ? mistake->key : "points", mistake ? mistake->what : "");
 }
 
 /// "'linear', 'belt', … or 'friction'": the laws that a rotation takes.

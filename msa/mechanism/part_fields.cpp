@@ -92,9 +92,10 @@ void describe_laws(FieldVisitor& v, Joint& joint) {
     v.require(joint.preload[i] == 0 || !joint.laws[i].empty(), "preload",
               fmt::format("acts in the laws of a freedom: {} has none", freedom_names[i]));
   for (std::size_t i = 0; i < 6; ++i) {
-    const auto slips = [](const Law& law) { return row_of(law).has_history; };
-    v.require(joint.preload[i] == 0 || std::none_of(joint.laws[i].begin(), joint.laws[i].end(), slips), "preload",
-              fmt::format("{} has friction, which keeps no force by itself", freedom_names[i]));
+    const auto& laws = joint.laws[i];
+    v.require(joint.preload[i] == 0 || std::none_of(laws.begin(), laws.end(), has_history), "preload",
+              fmt::format("{} has {}, which keeps no force by itself", freedom_names[i],
+                          std::any_of(laws.begin(), laws.end(), remembers) ? "a table with 'unloading'" : "friction"));
   }
 }
 

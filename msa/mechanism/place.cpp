@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/mechanism/table.h"
 
 namespace deflect {
 namespace {
@@ -32,10 +33,30 @@ Law resolved(Law law, const Mechanism& m, double actuator) {
       },
       law);
   if (lacks_length(law)) *length_from_pose(law) = actuator;
+  if (const auto* table = std::get_if<TableLaw>(&law)) law = identified(*table);
   return law;
 }
 
 }  // namespace
+
+const JointType* find_joint_type(std::string_view name) {
+  for (const JointType& t : joint_table)
+    if (name == t.name) return &t;
+  return nullptr;
+}
+
+std::vector<std::string> joint_type_names() {
+  std::vector<std::string> names;
+  for (const JointType& t : joint_table) names.emplace_back(t.name);
+  return names;
+}
+
+std::array<Freedom, 6> freedoms_of(std::string_view letters) {
+  std::array<Freedom, 6> f{};
+  for (std::size_t i = 0; i < 6; ++i)
+    f[i] = letters[i] == 'f' ? Freedom::free : letters[i] == 'a' ? Freedom::actuated : Freedom::rigid;
+  return f;
+}
 
 std::array<Freedom, 6> freedoms_of(const Joint& joint) {
   const JointType* type = find_joint_type(joint.type);

@@ -15,6 +15,7 @@
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/joint_table.h"
 #include "msa/mechanism/numbers.h"
+#include "msa/mechanism/place.h"
 
 namespace deflect {
 namespace {
@@ -133,7 +134,10 @@ double sigma_of(const std::string& value, Dimension d) {
   return relative(value) ? parse_quantity(value, Dimension::ratio) : parse_quantity(value, d);
 }
 
-/// "leg 2 elbow rz stiffness": the path in words.
+/// Whether points of a table stand there, two numbers each.
+bool is_table(const std::string& segment) { return segment == "points" || segment == "unloading"; }
+
+/// "leg 2 elbow rz stiffness", "leg 2 elbow rz points 4 deflection": the path in words.
 std::string words(const Number& n) {
   std::string out;
   const auto add = [&](const std::string& word) { out += (out.empty() ? "" : " ") + word; };
@@ -147,6 +151,10 @@ std::string words(const Number& n) {
       add("leg");
     else if (i == 1 && n.at[0] == "mounts" && is_index(s))
       add(std::to_string(std::stoi(s) + 1));
+    else if (i > 0 && i + 1 < n.at.size() && is_index(s) && is_table(n.at[i - 1]))
+      add(fmt::format("{} {}", std::stoi(s) + 1, n.at[i + 1] == "0" ? "load" : "deflection"));
+    else if (i > 1 && is_table(n.at[i - 2]) && is_index(s))
+      continue;  // said already
     else if (is_index(s) && i + 1 == n.at.size() && s.size() == 1 && s[0] < '3')
       add(std::string(1, "xyz"[s[0] - '0']));
     else if (!is_index(s))

@@ -254,6 +254,27 @@ TEST(FrameLaws, EndsOpenUnderTension) {
   }
 }
 
+// A table that remembers beside a bar of 1e6 N/m: 50 N and 150 N at 150 um, back 30 N and 130 N, none and 40 N, and by
+// push as by pull.
+TEST(FrameLaws, ATableLoadsAndUnloadsByItsBranches) {
+  FrameOptions in_sequence;
+  in_sequence.in_sequence = true;
+  for (const char* geometry : {"linear", "second-order", "finite"}) {
+    const Solved s = solve(cantilever(R"(supports:
+  A: clamped
+  B: {ux: {law: table, points: [[0 N, 0 um], [10 N, 10 um], [30 N, 70 um], [50 N, 150 um]],
+      unloading: [[50 N, 150 um], [30 N, 130 um], [10 N, 90 um], [0 N, 40 um]]}}
+loads: {a: {nodes: {B: {fx: 100 N}}}, b: {nodes: {B: {fx: 200 N}}}, c: {nodes: {B: {fx: 160 N}}}, d: {nodes: {B: {fx: 40 N}}}, e: {nodes: {B: {fx: -200 N}}}, f: {nodes: {B: {fx: -40 N}}}, g: {nodes: {B: {fx: 200 N}}}}
+)") + "geometry: " + geometry + "\n",
+                           in_sequence);
+    const double by_hand[] = {70, 150, 130, 40, -150, -40, 150};
+    for (std::size_t c = 0; c < std::size(by_hand); ++c) {
+      EXPECT_NEAR(s.u("B", c)(0), by_hand[c] * 1e-6, 1e-9 * 150e-6) << geometry << " " << c;
+      EXPECT_NEAR(s.reaction("A", c)(0), -by_hand[c] * 1e-6 * k_along, 1e-9 * 150) << geometry << " " << c;
+    }
+  }
+}
+
 // Two frictions and a linear law side by side at one end: they share its elongation.
 TEST(FrameLaws, LawsBesideShareTheElongation) {
   const Solved s =

@@ -49,7 +49,7 @@ bool yields(const Configuration& c) {
 
 bool has_friction(const PlacedJoint& joint) {
   return std::any_of(joint.laws.begin(), joint.laws.end(), [](const std::vector<Law>& laws) {
-    return std::any_of(laws.begin(), laws.end(), [](const Law& law) { return row_of(law).has_history; });
+    return std::any_of(laws.begin(), laws.end(), deflect::has_history);
   });
 }
 

@@ -93,11 +93,23 @@ class Carried {
   std::vector<double> forces_, slips_;
 };
 
-/// How many frictions there are, and whether all of them stand beside legs.
-std::pair<int, bool> frictions_of(Configuration c) {
-  const int all = number_slips(c);
+/// What needs the order of the readings: "" for nothing.
+const char* remembering(const Configuration& c) {
+  const char* what = "";
+  for_each_law(c, [&](const Law& law) {
+    if (remembers(law) && !*what) what = "a table with 'unloading'";
+    if (row_of(law).has_history) what = "friction";
+  });
+  return what;
+}
+
+/// Whether all that has a history are frictions that stand beside legs.
+bool only_beside_legs(Configuration c) {
+  bool tables = false;
+  for_each_law(c, [&](const Law& law) { tables = tables || remembers(law); });
+  if (tables || number_slips(c) == 0) return false;
   std::erase_if(c.legs, [](const PlacedLeg& leg) { return leg.beside; });
-  return {all, all > 0 && number_slips(c) == 0};
+  return number_slips(c) == 0;
 }
 
 /// The share of the largest load that a machine had carried before the first reading of a pose: what its frictions
@@ -182,8 +194,9 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
                              const parallel::Work& work) {
   std::vector<VectorX> out(data.readings.size());
   const Instruments instruments(m, data);
-  const auto [frictions, beside] = machines.empty() ? std::pair{0, false} : frictions_of(machines.front());
-  if (frictions > 0) measurement::in_sequence(data, "friction");
+  const std::string history = machines.empty() ? "" : remembering(machines.front());
+  const bool beside = !machines.empty() && only_beside_legs(machines.front());
+  if (!history.empty()) measurement::in_sequence(data, history);
   const double before = machines.empty() ? 0 : carried_before(machines.front());
   Carried carried;
   const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation)),
@@ -201,7 +214,7 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
       conditions.slips = carried.slips();
     }
     // Without history the same load at the same temperature has the same answer.
-    const bool remember = frictions == 0 && !machine.theory().affine() && machine.by_load_at_T(conditions.geometry);
+    const bool remember = history.empty() && !machine.theory().affine() && machine.by_load_at_T(conditions.geometry);
     std::map<std::array<double, 7>, Motion> known;
     Motion last;
     const auto answer = [&](const measurement::Reading& reading) -> const Motion& {

@@ -4,8 +4,8 @@
 // displacement d of T at the reading's temperature, relative to the assembled, weightless machine at 20 °C. Readings
 // are taken in order (`sequence`, else the order of the file). Friction elements carry no force before the first
 // reading, unless the friction law gives a start. When the machine moves to another pose, those in parallel with legs
-// keep their force, others start anew. The sensor records R_sensor d + drift · rank / N, with rank 0 … N − 1 in the
-// sequence. Each R is given by a rotation vector.
+// keep their force where nothing else has a history; others, and tables that remember, start anew. The sensor records
+// R_sensor d + drift · rank / N, with rank 0 … N − 1 in the sequence. Each R is given by a rotation vector.
 #pragma once
 
 #include <optional>

@@ -38,6 +38,8 @@ std::string type_of(const SchemaField& f) {
       return f.dimension == Dimension::none ? "[x, y, z] direction" : "[x, y, z] " + joined_units(f.dimension);
     case FieldKind::matrix:
       return f.size ? fmt::format("{0} rows of {0} numbers", f.size) : "rows of numbers, as many";
+    case FieldKind::pairs:
+      return fmt::format("list of [{}; {}]", joined_units(f.dimension), joined_units(*f.second));
     case FieldKind::text:
       return "text";
     case FieldKind::texts:
@@ -142,6 +144,12 @@ Json array_of(const Json& items, std::size_t count) {
   return out;
 }
 
+Json pair_json(const SchemaField& f) {
+  SchemaField second = f;
+  second.dimension = *f.second;
+  return {{"type", "array"}, {"prefixItems", {number_json(f), number_json(second)}}, {"minItems", 2}, {"maxItems", 2}};
+}
+
 Json word_json(const SchemaField& f) {
   // YAML reads some names as numbers or truth values.
   return f.words.empty() ? Json{{"type", {"string", "number", "boolean"}}} : Json{{"enum", f.words}};
@@ -180,6 +188,8 @@ class JsonSchema {
         return array_of(quantity_json(f), 3);
       case FieldKind::matrix:
         return array_of(array_of({{"type", "number"}}, f.size), f.size);
+      case FieldKind::pairs:
+        return array_of(pair_json(f), 0);
       case FieldKind::text:
       case FieldKind::others:
         return {{"type", {"string", "number", "boolean"}}};
@@ -272,7 +282,10 @@ std::string law_lines() {
     for (const SchemaField& f : c.fields) {
       if (f.key == "law") continue;
       const std::vector<std::string> units = units_of(f.dimension);
-      const std::string unit = f.kind != FieldKind::quantity || units.empty() ? "" : " " + units.front();
+      const std::string unit = f.kind == FieldKind::pairs
+                                   ? fmt::format(" [{}, {}]", units.front(), units_of(*f.second).front())
+                               : f.kind != FieldKind::quantity || units.empty() ? ""
+                                                                                : " " + units.front();
       text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", f.key, unit, f.required ? "" : " (may be absent)");
     }
     return text;

@@ -136,8 +136,9 @@ std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Me
   std::vector<std::size_t> order(data.readings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   frame::FrameOptions options;
-  if (any_law(f, [](const Law& law) { return row_of(law).has_history; })) {
-    order = measurement::in_sequence(data, "friction");
+  if (any_law(f, deflect::has_history)) {
+    const bool friction = any_law(f, [](const Law& law) { return row_of(law).has_history; });
+    order = measurement::in_sequence(data, friction ? "friction" : "a table with 'unloading'");
     options.in_sequence = true;
   }
   Named<LoadCase> loads;
@@ -196,7 +197,7 @@ std::vector<VectorX> predicted_readings(const FrameDescription& frame, const mea
 
 bool has_history(const FrameDescription& f) {
   return std::any_of(f.sensors.begin(), f.sensors.end(), [](const auto& s) { return s.second.stick > 0; }) ||
-         any_law(f, [](const Law& law) { return row_of(law).has_history; });
+         any_law(f, deflect::has_history);
 }
 
 }  // namespace deflect::subject

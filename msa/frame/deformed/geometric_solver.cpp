@@ -75,11 +75,7 @@ void GeometricSolver::release_jumps(Work& work, GeometricState& state) const {
     SpringLaw& linear = work.structure.springs[spring].law;
     linear = LinearSpring{work.jumping.k(i)};
     linear.preload = work.jumping.k(i) * d - s;
-    if (const auto* friction = std::get_if<FrictionSpring>(&law); friction && friction->number >= 0) {
-      const auto number = as_size(friction->number);
-      state.slips.resize(std::max(state.slips.size(), number + 1));
-      state.slips[number] = slip_at(*friction, law.at_rest, d, end);
-    }
+    keep_slips(law, d, s, end, state.slips);
   }
 }
 
@@ -208,10 +204,10 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
   const Linearisation rest = work.linearise(options.geometry);
   double force = std::max(largest(work.loads), largest(rest.forces));
   if (force == 0 && largest(work.values) > 0) force = driving_force(rest, work.values);
-  if (force == 0)  // what earlier loads left in frictions
+  if (force == 0)  // what earlier loads left
     for (const Spring& spring : linear_->model().springs)
-      if (const auto* friction = std::get_if<FrictionSpring>(&spring.law))
-        force = std::max(force, std::abs(friction->force(0)));
+      if (std::holds_alternative<FrictionSpring>(spring.law) || std::holds_alternative<TableSpring>(spring.law))
+        force = std::max(force, std::abs(frame::force(spring.law, 0)));
   work.force = force;
   work.least_tangents = 1e-8 * stiffness_at(model_, force);
   for (const std::size_t i : work.jumping.springs) work.least_tangents(as_index(i)) = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "msa/base/index.h"
+
 namespace deflect::frame {
 namespace {
 
@@ -38,8 +40,19 @@ double tangent_at(const SpringLaw& law, double d, double s, int end) {
   return tangent(law, d);
 }
 
-double slip_at(const FrictionSpring& friction, double at_rest, double d, int end) {
-  return end == 0 ? friction.before : friction.slip(at_rest + d);
+void keep_slips(const SpringLaw& law, double d, double s, int end, std::vector<double>& slips) {
+  const auto keep = [&](int number, double x) {
+    if (number < 0) return;
+    slips.resize(std::max(slips.size(), as_size(number) + 1));
+    slips[as_size(number)] = x;
+  };
+  if (const auto* friction = std::get_if<FrictionSpring>(&law))
+    keep(friction->number, end == 0 ? friction->before : friction->slip(law.at_rest + d));
+  const auto* table = std::get_if<TableSpring>(&law);
+  if (!table || !table->memory || table->number < 0) return;
+  const std::array<double, 2> left = table->left_after(s + law.preload);
+  keep(table->number, left[0]);
+  keep(table->number + 1, left[1]);
 }
 
 }  // namespace deflect::frame

@@ -13,7 +13,8 @@ ScalarLaw scalar_law(const SpringLaw&);
 /// Tangent stiffness of the law at force s and elongation d: infinite where it is rigid. `end` as in SetValuedSolution.
 double tangent_at(const SpringLaw&, double d, double s, int end);
 
-/// Slip after a load, from its final elongation and `end`.
-double slip_at(const FrictionSpring&, double at_rest, double d, int end);
+/// What the load leaves in a law that has a number, among those of all laws: the slip of a friction, what is left in a
+/// table. d, s and `end` as above.
+void keep_slips(const SpringLaw&, double d, double s, int end, std::vector<double>& slips);
 
 }  // namespace deflect::frame

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <variant>
 
+#include "msa/base/index.h"
 #include "msa/frame/elements/stepped_spring.h"
+#include "msa/frame/elements/table_spring.h"
 
 namespace deflect::frame {
 
@@ -89,7 +91,7 @@ struct BulkLineSpring {
 /// at_force(f) is the tangent stiffness at the force |f|, elongation(f) the δ at the force f. A preloaded spring
 /// carries the force P at rest: F = law(δ₀ + δ) − P with law(δ₀) = P; its energy is relative to the state at rest.
 struct SpringLaw : std::variant<LinearSpring, PowerSpring, BulkLineSpring, HardeningSpring, GapSpring, OneSidedSpring,
-                                FrictionSpring> {
+                                FrictionSpring, TableSpring> {
   using variant::variant;
   double preload = 0, at_rest = 0;  ///< P, δ₀
   bool rotation = false;            ///< moment and angle in place of force and length
@@ -124,10 +126,20 @@ inline bool is_linear(const SpringLaw& law) {
   const auto* power = std::get_if<PowerSpring>(&law);
   return std::holds_alternative<LinearSpring>(law) || (power && power->n == 1);
 }
-/// Whether the law is one of stepped_spring.h.
+/// Whether the law is one of stepped_spring.h, or a table that remembers.
 inline bool jumps(const SpringLaw& law) {
+  if (const auto* table = std::get_if<TableSpring>(&law)) return table->memory != nullptr;
   return std::holds_alternative<GapSpring>(law) || std::holds_alternative<OneSidedSpring>(law) ||
          std::holds_alternative<FrictionSpring>(law);
+}
+/// Sets what earlier loads have left in a law, by their numbers; missing: nothing.
+inline void begin(SpringLaw& law, const std::vector<double>& slips) {
+  const auto at = [&](int number) {
+    return number >= 0 && as_size(number) < slips.size() ? slips[as_size(number)] : 0;
+  };
+  if (auto* friction = std::get_if<FrictionSpring>(&law)) friction->before = at(friction->number);
+  if (auto* table = std::get_if<TableSpring>(&law); table && table->memory)
+    table->begin({at(table->number), at(table->number >= 0 ? table->number + 1 : -1)});
 }
 /// Sets the known force, in excess of the preload, of a spring that jumps (λ of stepped_spring.h).
 inline void know_force(SpringLaw& law, double f) {

@@ -5,6 +5,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/frame/laws/component.h"
+#include "msa/mechanism/table.h"
 
 namespace deflect::frame {
 
@@ -19,7 +20,14 @@ SpringLaw LawSprings::spring(Law law, bool rotation) {
         }
       },
       law);
-  if (auto* friction = std::get_if<FrictionLaw>(&law)) friction->number = frictions_++;
+  if (auto* friction = std::get_if<FrictionLaw>(&law)) friction->number = slips_++;
+  if (auto* table = std::get_if<TableLaw>(&law)) {
+    *table = identified(std::move(*table));
+    if (table->remembers()) {
+      table->number = slips_;
+      slips_ += 2;
+    }
+  }
   SpringLaw out = spring_of(law);
   out.rotation = rotation;
   return out;

@@ -9,7 +9,7 @@
 
 namespace deflect::frame {
 
-/// Resolves materials, and numbers friction elements in the order of the calls.
+/// Resolves materials and tables, and numbers what laws with a history keep in the order of the calls.
 class LawSprings {
  public:
   explicit LawSprings(const FrameDescription& f) : f_(f), materials_(f.materials) {}  ///< must outlive it
@@ -22,7 +22,7 @@ class LawSprings {
 
   const FrameDescription& f_;
   NameIndex materials_;
-  int frictions_ = 0;
+  int slips_ = 0;
 };
 
 }  // namespace deflect::frame

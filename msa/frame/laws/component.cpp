@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "msa/frame/structure/solver.h"
+#include "msa/mechanism/table.h"
 
 namespace deflect::frame {
 namespace {
@@ -101,6 +102,25 @@ SpringLaw spring(const ClearanceLaw& law) { return GapSpring{law.gap}; }
 SpringLaw spring(const FrictionLaw& law) {
   FrictionSpring spring{law.stiffness, law.force, law.number};
   spring.share = law.share;
+  return spring;
+}
+
+TableSpring::Corners corners_of(const TablePoints& points) {
+  TableSpring::Corners out;
+  for (const auto& [force, motion] : points) out.push_back({motion, force});
+  return out;
+}
+
+SpringLaw spring(const TableLaw& law) {
+  const TableCurves& t = curves_of(law);
+  TableSpring spring;
+  spring.corners = std::make_shared<const TableSpring::Corners>(corners_of(t.elastic));
+  if (!law.remembers()) return spring;
+  const auto& [force, motion] = t.elastic.back();
+  spring.memory = std::make_shared<const TableSpring::Memory>(
+      TableSpring::Memory{motion / force, corners_of(t.loading), corners_of(t.unloading), t.beyond});
+  spring.number = law.number;
+  spring.begin(law.left);
   return spring;
 }
 

@@ -208,7 +208,7 @@ double MsaModel::rounding() const {
 MsaSolution MsaModel::solve(const Vector6& F_T_W, const Conditions& conditions) {
   if (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_)
     throw InputError(
-        fmt::format("{} slips are given, the mechanism has {} frictions", conditions.slips.size(), frictions_));
+        fmt::format("{} slips are given, the laws of the mechanism have {}", conditions.slips.size(), frictions_));
   MsaSolution out;
   out.load = F_T_W;
   out.load.head<3>() += configuration_.weight;

@@ -42,11 +42,7 @@ struct Solver::Work {
 };
 
 void Solver::begin_slips(const std::vector<double>& slips) {
-  for (Spring& s : model_->springs)
-    if (auto* friction = std::get_if<FrictionSpring>(&s.law)) {
-      const auto n = as_size(friction->number);
-      friction->before = friction->number >= 0 && n < slips.size() ? slips[n] : 0;
-    }
+  for (Spring& s : model_->springs) begin(s.law, slips);
 }
 
 void Solver::begin_limits(const std::vector<double>& limits) {

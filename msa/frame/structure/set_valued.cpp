@@ -59,11 +59,7 @@ void add_state(const SetValuedSolution& found, Eigen::Index i, std::size_t at, S
   know_force(spring.law, found.s(i));
   s.spring_tangents(as_index(at)) = tangent_at(spring.law, found.d(i), found.s(i), end);
   if (found.loose.cols() > 0 && found.loose.row(i).cwiseAbs().maxCoeff() > 0) s.loose.push_back(spring.name);
-  if (const auto* friction = std::get_if<FrictionSpring>(&spring.law); friction && friction->number >= 0) {
-    const auto number = as_size(friction->number);
-    s.slips.resize(std::max(s.slips.size(), number + 1));
-    s.slips[number] = slip_at(*friction, spring.law.at_rest, found.d(i), end);
-  }
+  keep_slips(spring.law, found.d(i), found.s(i), end, s.slips);
 }
 
 }  // namespace

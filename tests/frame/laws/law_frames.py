@@ -2,7 +2,7 @@
 """Random frames with laws, and what they do, by a program that shares nothing with deflect: dense stiffness matrices in
 34 digits, members and springs as matrices, and the forces in the laws by coordinate descent on the dual energy
   1/2 f'Cf - d'f + sum of the integrals of delta_i(f_i),
-C the compliance of the linear rest between the laws. Writes law_frames.txt, which law_frames_test.cpp reads:
+C the compliance of the linear rest between the laws. From the 24th on, tables are among the laws. Writes law_frames.txt, which law_frames_test.cpp reads:
 
   tests/frame/laws/law_frames.py > tests/frame/laws/law_frames.txt
 """
@@ -19,6 +19,7 @@ class Frame:
     def __init__(self, seed):
         self.dice = dice = random.Random(seed)
         self.sequence = seed % 2 == 1
+        self.more_kinds = ("table",) * 3 if seed >= 24 else ()
         self.frictions = []   # in deflect's order: ends, supports, springs
         n = dice.randint(4, 6)
         self.nodes = [[dice.uniform(-1, 1) + 1.5 * i, dice.uniform(-1, 1), dice.uniform(-1, 1)] for i in range(n)]
@@ -33,7 +34,8 @@ class Frame:
             self.supports[node] = self.support(node, node in (0, n - 1))
         self.springs = [self.spring(f"s{i}", dice.randrange(n), dice.choice([None, 0, n - 1])) for i in range(2)]
 
-    def laws(self, rotation, kinds=("one_sided", "clearance", "power", "hardening", "friction")):
+    def laws(self, rotation):
+        kinds = ("one_sided", "clearance", "power", "hardening", "friction") + self.more_kinds
         scale = 10 ** self.dice.uniform(4, 5.5) * (0.3 if rotation else 1)
         kind = self.dice.choice(kinds)
         out = [Law(kind, rotation, scale, self.dice)]
@@ -176,6 +178,11 @@ class Frame:
                     F[i] += D(f) * D(v)
         return F
 
+    def has_one_answer(self):
+        """A one-sided law whose ends are both held carries anything in the sense in which it is rigid."""
+        held = {6 * n + i for n, s in self.supports.items() for i in range(6) if s["rigid"][i]}
+        return all(set(form) - held or any(law.delta(-1.0) for law in laws) for form, laws in self.elements)
+
     def solve(self, cases):
         K = self.assemble()
         held = {6 * n + i for n, s in self.supports.items() for i in range(6) if s["rigid"][i]}
@@ -191,10 +198,14 @@ class Frame:
         C = [[float(sum(a * b for a, b in zip(B[i], by_law[j]))) for j in range(len(B))] for i in range(len(B))]
         out = []
         slips = [0.0] * sum(law.kind == "friction" for _, laws in self.elements for law in laws)
+        tables = [(e, law) for e, (_, laws) in enumerate(self.elements) for law in laws if law.kind == "memory"]
+        lefts = [(0.0, 0.0)] * len(tables)
         frictions = [(e, law) for e, (_, laws) in enumerate(self.elements) for law in laws if law.kind == "friction"]
         for c in range(len(columns)):
             for (_, law), slip in zip(frictions, slips):
                 law.slip = slip
+            for (_, law), left in zip(tables, lefts):
+                law.left = left
             d0 = [float(sum(a * x for a, x in zip(B[e], u0[c])) + sum(D(f) * values[c].get(i, D(0)) for i, f in
                                                                      self.elements[e][0].items()))
                   for e in range(len(B))]
@@ -212,6 +223,7 @@ class Frame:
                 after.append(rest - (law.delta(f[e]) - law.slip))
             if self.sequence or c == 0:
                 slips = after
+                lefts = [law.after(f[e]) for e, law in tables]
             reactions = {}
             for n, s in self.supports.items():
                 reactions[n] = []
@@ -342,8 +354,10 @@ class Frame:
 
 
 def main():
-    for seed in range(24):
+    for seed in range(37):
         frame = Frame(seed)
+        if not frame.has_one_answer():
+            continue
         cases = frame.cases()
         print(f"frame {seed} {'sequence' if frame.sequence else 'single'}")
         print(frame.text(cases))

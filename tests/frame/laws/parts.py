@@ -69,6 +69,16 @@ def beam_stiffness(EA, EIy, EIz, GJ, GAy, GAz, L):
     return k
 
 
+def straight(points, x, beyond):
+    """Between points; nothing before the first, and on with `beyond` after the last."""
+    if x <= points[0][0]:
+        return 0.0
+    for (x0, y0), (x1, y1) in zip(points, points[1:]):
+        if x <= x1:
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    return points[-1][1] + beyond * (x - points[-1][0])
+
+
 class Law:
     """One law: text for the file, and the deflection at a force; limits of the force for a friction."""
 
@@ -110,8 +120,49 @@ class Law:
                     low, high = (x, high) if k * x * (1 + x * x / ref / ref) < abs(force) else (low, x)
                 return math.copysign((low + high) / 2, force)
             self.delta = delta
+        elif kind == "table":
+            self.table(u, scale, m, f, N, dice)
         else:
             k, F = scale * u(1, 5), u(1, 60)
             self.text = f"{{law: friction, {f}: {F!r} {N}, stiffness: {k!r} {per}}}"
             self.most = F
             self.delta = lambda force: self.slip + force / k
+
+    def table(self, u, scale, m, f, N, dice):
+        """Points in steps of whole slopes over the compliance of the frame; half of the tables unload by themselves."""
+        loads, up = [0.0], [0.0]
+        for _ in range(dice.randint(2, 4)):
+            loads.append(loads[-1] + u(3, 25))
+            up.append(up[-1] + u(0.3, 4) / scale * (loads[-1] - loads[-2]))
+        points = list(zip(loads, up))
+
+        def text(rows):
+            return "[" + ", ".join(f"[{p!r} {N}, {d!r} {m}]" for p, d in rows) + "]"
+        if dice.random() < 0.5:
+            self.text = f"{{law: table, points: {text(points)}}}"
+            last = (up[-1] - up[-2]) / (loads[-1] - loads[-2])
+            self.delta = lambda force: math.copysign(straight(points, abs(force), last), force)
+            return
+        self.kind = "memory"
+        self.left = (0.0, 0.0)
+        down = [up[-1]]
+        for d in reversed(up[:-1]):
+            down.append(d + (down[-1] - d) * u(0.1, 0.9))
+        down.reverse()
+        self.text = f"{{law: table, points: {text(points)}, unloading: {text(list(zip(loads, down))[::-1])}}}"
+        slopes = [(b - a) / (y - x) for curve in (up, down) for a, b, x, y in zip(curve, curve[1:], loads, loads[1:])]
+        c = min(slopes)
+        A = [(x, d - c * x) for x, d in points]
+        B = [(x, d - c * x) for x, d in zip(loads, down)]
+        F, left = loads[-1], B[0][1]
+        B.insert(0, (-left / max((B[1][1] - B[0][1]) / (B[1][0] - B[0][0]), left / F), 0.0))
+        beyond = (A[-1][1] - A[-2][1]) / (A[-1][0] - A[-2][0])
+
+        def after(force):
+            return tuple(max(straight(A, x, beyond), min(straight(B, x, beyond), p))
+                         for x, p in zip((force, -force), self.left))
+
+        def delta(force):
+            p = after(force)
+            return c * force + p[0] - p[1]
+        self.after, self.delta = after, delta
