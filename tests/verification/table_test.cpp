@@ -266,6 +266,50 @@ TEST(TableThatRemembers, NeverCreatesWorkWhateverTheLoop) {
   }
 }
 
+/// The largest difference of the theories over loads in turn, every fourth one none, relative to the largest
+/// deflection.
+double largest_difference(const Mechanism& m, double N) {
+  const Configuration c = configure(m, home_pose(m));
+  const analytic::AnalyticModel analytic(c);
+  frame::MsaModel msa(c);
+  std::mt19937 dice(1);
+  std::uniform_real_distribution<double> load(-N, N);
+  Conditions at, msa_at;
+  double largest = 0, off = 0;
+  for (int i = 0; i < 40; ++i) {
+    Vector6 F = Vector6::Zero();
+    for (Eigen::Index k = 0; k < 3 && i % 4 != 0; ++k) F(k) = load(dice);
+    const analytic::AnalyticSolution a = analytic.solve(F, at);
+    const frame::MsaSolution f = msa.solve(F, msa_at);
+    EXPECT_TRUE(a.converged) << i << ": " << a.message;
+    EXPECT_TRUE(f.state.converged) << i << ": " << f.state.message;
+    largest = std::max(largest, a.displacement.head<3>().norm());
+    off = std::max({off, (a.displacement - f.displacement).head<3>().norm(),
+                    (analytic.displaced(F, at).displacement - a.displacement).head<3>().norm()});
+    at.slips = a.slips, msa_at.slips = f.slips;
+  }
+  return off / largest;
+}
+
+TEST(TableThatRemembers, HasOneAnswerInBothTheoriesWhateverCameBefore) {
+  using test::with;
+  constexpr auto append = Edit::Action::append;
+  const std::string turning =
+      "{law: table, points: [[0 Nm, 0 mrad], [2 Nm, 1 mrad], [9 Nm, 8 mrad]], "
+      "unloading: [[9 Nm, 8 mrad], [3 Nm, 5 mrad], [0 Nm, 2 mrad]]}";
+  const Mechanism tripteron = test::device("tripteron"), arm = test::device("arm"),
+                  haptic = test::device("haptic-6psu-ideal-joints");
+  EXPECT_LT(largest_difference(with(tripteron, "leg.slide.tz", loop, append), 50), 1e-9);
+  EXPECT_LT(largest_difference(with(tripteron, "leg.elbow.rz", turning, append), 50), 1e-9);
+  EXPECT_LT(largest_difference(with(tripteron, "leg.slide.beside.tz", loop, append), 50), 1e-9);
+  EXPECT_LT(largest_difference(with(arm, "leg.joint_2.rz", turning, append), 20), 1e-9);
+  EXPECT_LT(largest_difference(with(haptic, "leg.actuator.tz", loop), 50), 1e-9);
+  EXPECT_LT(largest_difference(with(with(haptic, "leg.ball_joint.tz", loop), "leg.actuator.tz",
+                                    "[{law: clearance, gap: 0.01 mm}, {law: linear, stiffness: 500 N/mm}]"),
+                               50),
+            1e-9);
+}
+
 TEST(TableThatRemembers, HasOneAnswerInAllTheoriesInEveryGeometry) {
   Mechanism m = test::device("haptic-6psu-ideal-joints");
   m = test::with(m, "leg.actuator.tz", loop);
