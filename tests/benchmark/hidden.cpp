@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "validation/statistics/columns.h"
 
 namespace deflect::benchmark {
 namespace {
@@ -46,7 +47,7 @@ std::optional<VectorX> values_at(const effects::Effect& e, const VectorX& signs,
 
 std::optional<Hidden> hidden_effect(const Plan& plan, const effects::Effect& e, double lambda,
                                     measurement::Random& random) {
-  const std::vector<effects::PlacedEffect> places = places_of(e, *plan.observations->subject().machine());
+  const std::vector<effects::PlacedEffect> places = places_of(e, plan.observations->subject());
   if (places.empty()) return std::nullopt;
   const double lot = random.uniform(0, static_cast<double>(places.size()));
   return hidden_effect(plan, places[static_cast<std::size_t>(lot)], drawn_signs(e, random), lambda);
@@ -135,6 +136,30 @@ VectorX beyond_catalogue(const Plan& plan, const VectorX& change, const effects:
   VectorX along = qr.householderQ().transpose() * change;
   along.head(qr.rank()).setZero();
   return qr.householderQ() * along;
+}
+
+double beyond_others(const Plan& plan, const VectorX& change, const std::vector<std::string>& left_out) {
+  constexpr int most = 4;
+  VectorX left = change;
+  MatrixX taken(change.size(), 0);
+  for (int round = 0; round < most; ++round) {
+    double gain = 0;
+    MatrixX best;
+    for (const Signature& s : plan.signatures) {
+      if (std::find(left_out.begin(), left_out.end(), s.effect.effect->name) != left_out.end()) continue;
+      const auto columns = s.shaped ? s.basis.cols() : 1;
+      for (Eigen::Index i = 0; i < columns; ++i) {
+        MatrixX own = s.shaped ? MatrixX(s.basis.col(i)) : s.basis;
+        own = statistics::orthonormal(own - taken * (taken.transpose() * own), 1e-6);
+        const double g = (own.transpose() * left).squaredNorm();
+        if (g > gain) gain = g, best = own;
+      }
+    }
+    if (best.cols() == 0) break;
+    taken = statistics::side_by_side({taken, best}, change.size());
+    left = change - taken * (taken.transpose() * change);
+  }
+  return left.norm();
 }
 
 }  // namespace deflect::benchmark

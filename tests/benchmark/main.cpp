@@ -9,8 +9,8 @@
 #include "msa/base/files.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/device_file.h"
-#include "tests/benchmark/machines.h"
 #include "tests/benchmark/scores.h"
+#include "tests/benchmark/subject_scores.h"
 #include "validation/effects/effect_file.h"
 #include "validation/parallel/progress.h"
 #include "validation/parallel/shared_cases.h"
@@ -24,7 +24,8 @@ using namespace json;
 using namespace parallel;
 
 constexpr const char* usage = R"(benchmark_diagnosis [options]
-  --devices A,B  other machines: entries and laws at places hidden alike, one row each; 'all' for every built-in one
+  --devices A,B  machines and frames with sensors: entries and laws at places hidden alike, one row each; 'all' for
+                 every built-in one. --sets N is then of each (default 24); --json FILE is written anew after each
   --group NAME   one group of sets: {}
   --sets N       about N sets, every group thinned alike (default: all)
   --seed N       of everything drawn by lot (default 1)
@@ -99,15 +100,17 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-void run_machines(const Arguments& a) {
-  const std::vector<MachineRow> rows = diagnose_machines(a.devices, a.sets > 0 ? a.sets : 24, a.seed, a.threads);
-  if (!a.json.empty()) write_text(a.json, json_text(machines_json(rows)));
-  fmt::print("{}", machines_table(rows));
+void run_subjects(const Arguments& a) {
+  const auto done = [&](const std::vector<SubjectRow>& rows) {
+    if (!a.json.empty()) write_text(a.json, json_text(subjects_json(rows)));
+    fmt::print(stderr, "{}: done\n", rows.back().name);
+  };
+  fmt::print("{}", subjects_report(diagnose_subjects(a.devices, a.sets > 0 ? a.sets : 24, a.seed, a.threads, done)));
 }
 
 void run_all(const Arguments& a, Ranks* ranks) {
   if (!a.devices.empty()) {
-    if (!ranks || ranks->first()) run_machines(a);
+    if (!ranks || ranks->first()) run_subjects(a);
     return;
   }
   const std::string data = std::string(DEFLECT_SOURCE_DIR) + "/validation";

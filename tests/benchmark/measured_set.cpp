@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "msa/base/error.h"
+#include "tests/benchmark/as_measured.h"
 #include "tests/benchmark/laws.h"
 #include "validation/effects/effect_file.h"
 
@@ -21,34 +21,6 @@ using namespace statistics;
 
 constexpr double most_alike = 0.9;  // cosine of the effects of a pair
 
-/// Student's t with three degrees of freedom, scaled to the deviation 1.
-double heavy_tailed(Random& random) {
-  const double z = random.normal();
-  return z / random.normal3().norm();
-}
-
-/// Simulated readings of the machine; another machine is drawn where the MSA finds no equilibrium for the first ones.
-std::optional<Measurements> simulated(const Case& c, const Plan& plan, const Mechanism& machine) {
-  SimulationOptions o = plan.simulation;
-  const bool stressed = c.group == "stress";
-  if (stressed && c.stress == Stress::tolerances) o.tolerances = 2;
-  if (stressed && c.stress == Stress::outliers) o.outliers = 0.02;
-  const bool own_noise = stressed && c.stress == Stress::heavy_tails;
-  if (own_noise) o.sigma_u = 0;
-  for (std::uint64_t tries = 0; tries < 5; ++tries) try {
-      o.seed = c.seed + tries;
-      Measurements data = simulate(machine, plan.readings, o);
-      Random random(o.seed + 7);
-      for (Reading& r : data.readings) {
-        r.sigma_u = sigma_u;
-        for (std::size_t k = 0; k < 3 && own_noise; ++k) *r.displacement[k] += sigma_u * heavy_tailed(random);
-      }
-      return data;
-    } catch (const NumericalError&) {
-    }
-  return std::nullopt;
-}
-
 class Maker {
  public:
   Maker(const Case& c, const Mechanism& device, const std::vector<Effect>& effects, const Plan& plan)
@@ -63,7 +35,8 @@ class Maker {
     if (case_.group == "tie") hide_tied();
     if (case_.group == "pair") hide_pair();
     if (!out_.skipped.empty()) return std::move(out_);
-    if (std::optional<Measurements> data = simulated(case_, plan_, out_.machine))
+    const std::optional<Stress> stress = case_.group == "stress" ? std::optional(case_.stress) : std::nullopt;
+    if (std::optional<Measurements> data = as_measured(plan_, out_.machine, stress, case_.seed))
       out_.data = std::move(*data);
     else
       out_.skipped = "the MSA finds no equilibrium";

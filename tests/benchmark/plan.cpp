@@ -8,6 +8,7 @@
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/campaign.h"
+#include "validation/subject/simulate_frame.h"
 
 namespace deflect::benchmark {
 namespace {
@@ -82,28 +83,35 @@ VectorX numbers_of(const Measurements& data) {
 
 }  // namespace
 
-Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::string& name, std::uint64_t seed,
+Measurements simulated(const subject::Subject& s, const Measurements& plan, const SimulationOptions& o) {
+  if (s.machine()) return simulate(*s.machine(), plan, o, alone);
+  return subject::simulate_frame(*s.frame(), plan, o);
+}
+
+Plan::Plan(const subject::Subject& s, const std::vector<Effect>& effects, const std::string& name, std::uint64_t seed,
            const PlanOptions& o) {
   simulation.seed = seed;
   simulation.sigma_u = o.sigma;
   if (o.temperature) simulation.temperature = 22, simulation.swing = 2;
-  simulation.division = frame::equal_division(configure(m, home_pose(m)), elements);
-  readings = campaign(name, m, force, seed);
-  healthy = simulate(m, readings, simulation, alone);
-  observations = std::make_unique<Observations>(m, healthy, ComparisonOptions(), alone);
+  const Mechanism* m = s.machine();
+  if (m) simulation.division = frame::equal_division(configure(*m, home_pose(*m)), elements);
+  readings = m ? campaign(name, *m, force, seed) : subject::frame_campaign(name, *s.frame(), seed);
+  healthy = simulated(s, readings, simulation);
+  observations = std::make_unique<Observations>(s, healthy, ComparisonOptions(), alone);
   signatures = diagnosis::signatures(*observations, effects, 1);
-  const VectorX rest = observations->residual(m);
+  const VectorX rest = observations->residual(s);
   nominal = numbers_of(healthy) - rest;
+  if (!m) return;
+  elsewhere = new_poses(*m, seed + 1);
+  nominal_elsewhere = predict_elsewhere(*this, *m, theory("analytic"));
   if (!o.changes) return;
-  elsewhere = new_poses(m, seed + 1);
-  nominal_elsewhere = predict_elsewhere(*this, m, theory("analytic"));
-  const VectorX linear = predicted_elsewhere(*this, m, theory("analytic"), Geometry::linear);
-  for (const Signature& s : signatures) {
-    const std::vector<VectorX> values = one_at_a_time(*s.effect.effect);
+  const VectorX linear = predicted_elsewhere(*this, *m, theory("analytic"), Geometry::linear);
+  for (const Signature& each : signatures) {
+    const std::vector<VectorX> values = one_at_a_time(*each.effect.effect);
     const auto columns = static_cast<Eigen::Index>(values.size());
-    Change c{s.effect, MatrixX(rest.size(), columns), MatrixX(linear.size(), columns)};
+    Change c{each.effect, MatrixX(rest.size(), columns), MatrixX(linear.size(), columns)};
     for (Eigen::Index i = 0; i < columns; ++i) {
-      const Mechanism with = with_effect(m, *s.effect.effect, values[static_cast<std::size_t>(i)], s.effect.leg);
+      const Mechanism with = with_effect(*m, *each.effect.effect, values[static_cast<std::size_t>(i)], each.effect.leg);
       c.measured.col(i) = rest - observations->residual(with);
       c.elsewhere.col(i) = predicted_elsewhere(*this, with, theory("analytic"), Geometry::linear) - linear;
     }
@@ -114,8 +122,7 @@ Plan::Plan(const Mechanism& m, const std::vector<Effect>& effects, const std::st
 VectorX Plan::residual(const Measurements& data) const { return numbers_of(data) - nominal; }
 
 VectorX Plan::whitened_change(const EffectInstance& e) const {
-  return observations->null_residual() -
-         observations->whitened_residual(with_effect(*observations->subject().machine(), e));
+  return observations->null_residual() - observations->whitened_residual(with_effect(observations->subject(), e));
 }
 
 VectorX predict_elsewhere(const Plan& plan, const Mechanism& m, const Theory& theory) {

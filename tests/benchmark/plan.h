@@ -1,6 +1,6 @@
 // A plan of measurements with what is known before anything is measured: how every effect would change its numbers.
 //
-// Measured numbers are the translations of all readings, reading by reading (m).
+// Measured numbers are the translations of all readings, reading by reading (m); of a frame what its sensors read (SI).
 #pragma once
 
 #include <cstdint>
@@ -26,14 +26,14 @@ struct Change {
 };
 
 struct PlanOptions {
-  double sigma = sigma_u;    ///< m: of a reading
+  double sigma = sigma_u;    ///< m: of a machine's reading
   bool temperature = false;  ///< is recorded
-  bool changes = true;       ///< `changes` and new poses are wanted: for the other methods
+  bool changes = true;       ///< `changes` is wanted: for the other methods
 };
 
 /// Must stand where it was made: its parts point at each other.
 struct Plan {
-  Plan(const Mechanism&, const std::vector<effects::Effect>&, const std::string& campaign, std::uint64_t seed,
+  Plan(const subject::Subject&, const std::vector<effects::Effect>&, const std::string& campaign, std::uint64_t seed,
        const PlanOptions& = {});
   Plan(const Plan&) = delete;
   Plan& operator=(const Plan&) = delete;
@@ -44,7 +44,7 @@ struct Plan {
   std::unique_ptr<diagnosis::Observations> observations;  ///< of `healthy`
   std::vector<diagnosis::Signature> signatures;
   std::vector<Change> changes;
-  measurement::Measurements elsewhere;  ///< twenty poses that are not in the plan, three loads each
+  measurement::Measurements elsewhere;  ///< of a machine: twenty poses that are not in the plan, three loads each
   VectorX nominal_elsewhere;            ///< m: prediction there with nothing added
   VectorX nominal;                      ///< m: the same of the plan's numbers
 
@@ -53,6 +53,11 @@ struct Plan {
   /// Σ^(−1/2) times what an effect changes in the plan's numbers.
   VectorX whitened_change(const effects::EffectInstance&) const;
 };
+
+/// The plan's readings as taken from a subject; of a machine by the MSA in the deformed shape, of a frame by the MSA in
+/// the geometry that it names.
+measurement::Measurements simulated(const subject::Subject&, const measurement::Measurements& plan,
+                                    const prediction::SimulationOptions&);
 
 /// Translations of a device at the plan's new poses in the deformed shape, m. NumericalError where there is none.
 VectorX predict_elsewhere(const Plan&, const Mechanism&, const theories::Theory&);

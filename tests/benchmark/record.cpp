@@ -8,6 +8,7 @@
 #include "tests/benchmark/baselines.h"
 #include "tests/benchmark/gaussian_process.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/diagnosis/interval.h"
 #include "validation/parallel/pack.h"
 
 namespace deflect::benchmark {

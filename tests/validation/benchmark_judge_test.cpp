@@ -1,7 +1,7 @@
 // The judge of the benchmark: what counts as right, partly right, missed and wrong with confidence.
 #include <gtest/gtest.h>
 
-#include "tests/benchmark/judge.h"
+#include "tests/benchmark/class_judge.h"
 
 namespace deflect::benchmark {
 namespace {
@@ -52,6 +52,38 @@ TEST(BenchmarkJudge, NothingAndUnknown) {
 TEST(BenchmarkJudge, ReportedOnceEach) {
   EXPECT_EQ(reported(ambiguous({"modulus"}, {"modulus", "load_gain"})),
             (std::vector<std::string>{"load_gain", "modulus"}));
+}
+
+// Classes: modulus and guide_diameter do the same to the data, and so do base_tilt and its twin.
+const EffectClass beams = {"modulus", "guide_diameter"}, base = {"base_tilt", "base_twin"};
+
+TEST(ClassJudge, AnyOfTheClassIsRightAndATieWithOneOfIt) {
+  EXPECT_TRUE(exactly(effect({"guide_diameter"}), {beams}));
+  EXPECT_TRUE(exactly(ambiguous({"load_gain"}, {"load_gain", "modulus"}), {beams}));
+  EXPECT_FALSE(exactly(ambiguous({"load_gain"}, {"load_gain", "base_tilt"}), {beams}));
+  EXPECT_FALSE(exactly(effect({"modulus", "load_gain"}), {beams}));
+  EXPECT_FALSE(exactly(unknown, {beams}));
+  EXPECT_TRUE(exactly(nothing, {}));
+  EXPECT_FALSE(exactly(effect({"modulus"}), {}));
+}
+
+TEST(ClassJudge, TwoHiddenOnesWantAnEffectEach) {
+  EXPECT_TRUE(exactly(effect({"base_twin", "modulus"}), {beams, base}));
+  EXPECT_FALSE(exactly(effect({"guide_diameter", "modulus"}), {beams, base})) << "one twice, the other not at all";
+  EXPECT_FALSE(exactly(effect({"modulus"}), {beams, base}));
+  EXPECT_TRUE(all_reported(effect({"base_twin", "modulus"}), {beams, base}));
+  EXPECT_FALSE(all_reported(effect({"modulus"}), {beams, base}));
+}
+
+TEST(ClassJudge, WhatStandsForNothingHiddenIsFalse) {
+  EXPECT_EQ(false_reports(effect({"base_twin", "load_gain"}), {beams, base}), 1U);
+  EXPECT_EQ(false_reports(effect({"base_twin", "load_gain"}), {}), 2U);
+  EXPECT_EQ(false_reports(ambiguous({"load_gain"}, {"load_gain", "modulus"}), {beams}), 0U);
+  EXPECT_TRUE(confident_and_wrong(effect({"load_gain"}), {beams}));
+  EXPECT_FALSE(confident_and_wrong(effect({"load_gain"}, 0.8), {beams}));
+  EXPECT_FALSE(confident_and_wrong(effect({"load_gain", "modulus"}), {beams}));
+  EXPECT_FALSE(confident_and_wrong(ambiguous({"load_gain"}, {"load_gain", "base_tilt"}), {beams}));
+  EXPECT_FALSE(confident_and_wrong(nothing, {beams}));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "msa/mechanism/stand.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "validation/diagnosis/interval.h"
 #include "validation/effects/place_effects.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"

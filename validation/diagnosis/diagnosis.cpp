@@ -9,6 +9,7 @@
 #include "validation/diagnosis/bootstrap.h"
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/diagnosis/interval.h"
 #include "validation/diagnosis/selection.h"
 #include "validation/diagnosis/splitting.h"
 #include "validation/statistics/columns.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr double alarm = 0.02;  // chance above which nothing is called missing
 constexpr double sure = 0.7;    // probability from which something unknown is there
 constexpr std::size_t quality_of = 5;
+constexpr double worth_limits = 0.01;  // probability of a candidate
 constexpr double left_over_evidence = 2, left_over_p = 3e-3;
 // Times the misfit with all effects: without any of them, for them to be most of the matter; then without one of them.
 constexpr double large_part = 4, small_part = 1.25;
@@ -143,6 +145,23 @@ void sort_candidates(Diagnosis& d, const Observations& o) {
   }
 }
 
+/// The limits of the values of those that tie.
+void bound_ties(Diagnosis& d, const Observations& o, int threads) {
+  for (Candidate& c : d.candidates)
+    for (const std::vector<std::string>& group : d.indistinguishable)
+      if (c.probability > worth_limits && c.fit.limits.empty() &&
+          std::find(group.begin(), group.end(), c.added().effect->name) != group.end())
+        c.fit = with_intervals(o, c.hypothesis, std::move(c.fit), threads);
+}
+
+/// The values with their limits, weighed for what was found.
+Fit last_fit(const Observations& o, const Hypothesis& h, const Fit& f, int threads) {
+  if (h.empty()) return f;
+  const Observations last = o.weighed_for(subject_with(o, h, f.values));
+  Fit again = fit_of_all(last, h, f.values);
+  return again.found ? with_intervals(last, h, std::move(again), threads) : with_intervals(o, h, f, threads);
+}
+
 /// What there is to be said where the file is not what it seems.
 Diagnosis only_mistakes(Diagnosis d, const Observations& o) {
   d.verdict = Verdict::unknown_effect;
@@ -222,7 +241,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
     describe_left_over(d, all, found);
   }
   d.missing = found.effects;
-  d.fit = found.fit;
+  d.fit = last_fit(seen, d.missing, found.fit, work.threads);
   add_left_out(d.left_out, first);
   d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
   for (const Tie& tie : found.ties) {
@@ -230,6 +249,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
     d.indistinguishable.push_back(tie.names);
     if (auto split = splitting_reading(seen, data, tie)) d.splitting.push_back(std::move(*split));
   }
+  bound_ties(d, o, work.threads);
   d.verdict = verdict_of(d);
   d.final = quality(seen, d.missing, d.fit);
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));

@@ -5,104 +5,15 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <unsupported/Eigen/NonLinearOptimization>
+#include <numeric>
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "validation/diagnosis/fit_problem.h"
 #include "validation/parallel/cases.h"
 
 namespace deflect::diagnosis {
 namespace {
-
-/// Coordinates of the search: ln p, or p over half the range, so that steps of size 1 are large.
-double coordinate(const effects::EffectParameter& p, double value) {
-  return p.log ? std::log(value) : value / (0.5 * (p.high - p.low));
-}
-double value_at(const effects::EffectParameter& p, double x) {
-  const double value = p.log ? std::exp(x) : x * 0.5 * (p.high - p.low);
-  return std::clamp(value, p.low, p.high);
-}
-
-/// The whitened residual over the coordinates.
-class Problem {
- public:
-  Problem(const Observations& o, const Hypothesis& h)
-      : observations_(o),
-        parameters_(parameters_of(h)),
-        prepared_(o.subject(), h),
-        wall_(VectorX::Constant(o.null_residual().size(), 1e6 * std::max(1.0, o.null_residual().norm()))) {}
-
-  VectorX values(const VectorX& x) const {
-    VectorX out(x.size());
-    for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*nth(parameters_, i), x(i));
-    return out;
-  }
-  VectorX coordinates(const VectorX& values) const {
-    VectorX out(values.size());
-    for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = coordinate(*nth(parameters_, i), values(i));
-    return out;
-  }
-
-  /// Nothing where the subject cannot have these values or cannot be predicted with them.
-  std::optional<VectorX> residual(const VectorX& x, std::string* why = nullptr) const {
-    auto predicted = outcome_of([&] { return observations_.whitened_residual(prepared_(values(x))); });
-    if (predicted && predicted->allFinite()) return std::move(predicted.value);
-    if (why) *why = predicted ? "the prediction is no number" : predicted.why;
-    return std::nullopt;
-  }
-
-  bool has_history(const VectorX& x) const { return observations_.has_history(prepared_(values(x))); }
-
-  /// For a search: what cannot be predicted is far worse than anything that can.
-  VectorX residual_or_wall(const VectorX& x) const { return residual(x).value_or(wall_); }
-
-  const std::vector<const effects::EffectParameter*>& parameters() const { return parameters_; }
-
- private:
-  const Observations& observations_;
-  std::vector<const effects::EffectParameter*> parameters_;
-  effects::PreparedEffects prepared_;
-  VectorX wall_;
-};
-
-/// As MINPACK's port in Eigen wants it.
-struct Functor {
-  using Scalar = double;
-  using InputType = VectorX;
-  using ValueType = VectorX;
-  using JacobianType = MatrixX;
-  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
-
-  const Problem* problem;
-  Eigen::Index rows, columns;
-
-  int inputs() const { return static_cast<int>(columns); }
-  int values() const { return static_cast<int>(rows); }
-  int operator()(const VectorX& x, VectorX& r) const {
-    r = problem->residual_or_wall(x);
-    return 0;
-  }
-  int df(const VectorX& x, MatrixX& J) const {
-    const VectorX here = problem->residual_or_wall(x);
-    J = MatrixX::Zero(rows, columns);
-    for (Eigen::Index i = 0; i < columns; ++i) {
-      // Towards the inside where a bound is near, else away from what cannot be predicted.
-      const effects::EffectParameter& p = *nth(problem->parameters(), i);
-      double step = 1e-5 * std::max(1.0, std::abs(x(i)));
-      if (!(value_at(p, x(i) + step) < p.high)) step = -step;
-      for (const double each : {step, -step}) {
-        VectorX moved = x;
-        moved(i) += each;
-        const std::optional<VectorX> there = problem->residual(moved);
-        if (!there) continue;
-        J.col(i) = (*there - here) / each;
-        break;
-      }
-    }
-    return 0;
-  }
-};
 
 /// Starts of the last effect's parameters: over the bounds where its size is searched on a logarithmic scale, where
 /// signs are open the value at which it vanishes.
@@ -172,7 +83,7 @@ struct Start {
 
 /// Values that were fitted to an end of their range say little there: where others join them a search may not leave it.
 /// The same with their starts in their place; nothing where none stands at an end.
-std::optional<VectorX> off_the_ends(const Problem& problem, const VectorX& from) {
+std::optional<VectorX> off_the_ends(const FitProblem& problem, const VectorX& from) {
   VectorX out = from;
   for (Eigen::Index i = 0; i < from.size(); ++i) {
     const effects::EffectParameter& p = *nth(problem.parameters(), i);
@@ -184,7 +95,7 @@ std::optional<VectorX> off_the_ends(const Problem& problem, const VectorX& from)
 
 /// The best of the last effect's values, behind those of the effects before; so many at most, the best first.
 /// `why`: what the first that cannot be predicted met with.
-std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX>& tails, const VectorX& from,
+std::vector<Start> best_starts(const FitProblem& problem, const std::vector<VectorX>& tails, const VectorX& from,
                                std::size_t count, std::string& why, int threads) {
   std::vector<Start> all;
   std::vector<VectorX> heads = {from};
@@ -211,22 +122,19 @@ std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX
 bool may_have_valleys(const effects::PlacedEffect& e) { return is_shaped(e) && e.effect->parameters.size() > 1; }
 constexpr std::size_t valleys = 5;
 
-Fit search_from(const Problem& problem, const Start& start, Eigen::Index rows) {
+Fit search_from(const FitProblem& problem, const Start& start, Eigen::Index rows) {
   Fit out;
   VectorX best = start.x;
   std::optional<VectorX> residual;
-  Functor functor{&problem, rows, best.size()};
   if (best.size() > 0) {
-    Eigen::LevenbergMarquardt<Functor> search(functor);
-    search.parameters.maxfev = 40;
-    search.parameters.ftol = 1e-5;  // of χ²: far below what one unit of it means
-    search.parameters.xtol = 1e-5;
-    VectorX x = best;
-    search.minimize(x);
+    std::vector<Eigen::Index> all(as_size(best.size()));
+    std::iota(all.begin(), all.end(), 0);
+    const FreeResidual free{&problem, rows, best, all};
+    const VectorX x = minimised(free, best, 40);
     if (x.allFinite() && problem.residual_or_wall(x).squaredNorm() <= start.chi2) best = x;
     const VectorX inside = problem.coordinates(problem.values(best));  // the bounds
     if ((residual = problem.residual(inside))) best = inside;
-    functor.df(best, out.signature);
+    free.df(best, out.signature);
     const MatrixX information = out.signature.transpose() * out.signature;
     out.covariance = information.completeOrthogonalDecomposition().pseudoInverse();
   }
@@ -248,7 +156,7 @@ Fit not_found(std::string why) {
 Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess,
         int threads) {
   const auto fitted = outcome_of([&] {
-    const Problem problem(o, h);
+    const FitProblem problem(o, h);
     std::vector<Start> begun;
     std::string why;
     if (guess) begun = best_starts(problem, {*guess}, from, 1, why, 1);
@@ -268,7 +176,7 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
 }
 
 Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int threads) {
-  const Problem problem(o, h);
+  const FitProblem problem(o, h);
   Eigen::Index first = 0;
   for (const effects::PlacedEffect& e : h) {
     const auto own = std::ssize(e.effect->parameters);
@@ -323,13 +231,6 @@ std::pair<Hypothesis, VectorX> without(Hypothesis h, const VectorX& values, std:
 
 subject::Subject subject_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
   return h.empty() ? o.subject() : effects::PreparedEffects(o.subject(), h)(values);
-}
-
-std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::size_t i) {
-  const effects::EffectParameter& p = *parameters_of(h).at(i);
-  const auto at = as_index(i);
-  const double x = coordinate(p, f.values(at)), half = 1.959964 * std::sqrt(std::max(0.0, f.covariance(at, at)));
-  return {value_at(p, x - half), value_at(p, x + half)};
 }
 
 bool wants_more_than_there_can_be(const Hypothesis& h, const Fit& f) {

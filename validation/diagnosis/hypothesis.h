@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "validation/diagnosis/observations.h"
@@ -16,13 +17,15 @@ using Hypothesis = std::vector<effects::PlacedEffect>;
 std::string name_of(const effects::PlacedEffect&);
 
 /// Bounded least squares of the whitened residual over the parameters (MINPACK's Levenberg–Marquardt, from the best of
-/// a few start points). The coordinate of a parameter on a logarithmic scale is its logarithm.
+/// a few start points). Coordinates: fit_problem.h.
 struct Fit {
   VectorX values;      ///< in the parameters' units, effect after effect
   MatrixX covariance;  ///< of the coordinates
   MatrixX signature;   ///< derivative of the whitened residual with respect to the coordinates
   VectorX residual;    ///< whitened, at the values
   double chi2 = 0;
+  std::vector<std::pair<double, double>>
+      limits;          ///< 95 % interval of each value, where they were computed (interval.h)
   bool found = false;  ///< false: no value was found at which the device can be predicted
   std::string why;     ///< where not found: the error at the first value tried
 };
@@ -46,10 +49,6 @@ std::pair<Hypothesis, VectorX> without(Hypothesis, const VectorX& values, std::s
 
 /// The subject with the effects at these values.
 subject::Subject subject_with(const Observations&, const Hypothesis&, const VectorX& values);
-
-/// 95 % interval of parameter i, symmetric in its coordinate (the logarithm, on a logarithmic scale) and cut at the
-/// bounds.
-std::pair<double, double> interval95(const Hypothesis&, const Fit&, std::size_t i);
 
 /// The parameters of all effects, one after the other.
 std::vector<const effects::EffectParameter*> parameters_of(const Hypothesis&);

@@ -22,8 +22,9 @@ std::vector<bool> set_aside_by(const compare::Comparison& c) {
 
 std::shared_ptr<const statistics::Uncertainty> uncertainty_of(const compare::Comparison& c,
                                                               const statistics::PartedColumns& A,
+                                                              const std::vector<VectorX>& predicted,
                                                               const std::vector<bool>& aside) {
-  return std::make_shared<const statistics::Uncertainty>(A, c.study.values, c.sigma, c.study.predicted,
+  return std::make_shared<const statistics::Uncertainty>(A, c.study.values, c.sigma, predicted,
                                                          c.study.subject->load_tolerance(), aside);
 }
 
@@ -51,7 +52,8 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
       threads_(work.threads),
       A_(comparison_->tolerances.A),
       aside_(set_aside_by(*comparison_)),
-      uncertainty_(uncertainty_of(*comparison_, A_, aside_)) {
+      predicted_(comparison_->study.predicted),
+      uncertainty_(uncertainty_of(*comparison_, A_, predicted_, aside_)) {
   const compare::ResidualStudy& s = comparison_->study;
   measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
   shape_ = VectorX::Zero(measured_.size());
@@ -70,17 +72,20 @@ void Observations::count_shape() { A_.shared.rightCols<1>() = shape_known_to * s
 
 void Observations::move_tolerances(const subject::Subject& subject) {
   const compare::ResidualStudy& s = comparison_->study;
-  if (s.standing->has_tool_point()) return;
-  const auto moved = outcome_of([&] {
+  auto moved = outcome_of([&] {
     return statistics::tolerance_model(*subject.stand(*s.data, s.standing.get()), *s.data, s.values, {threads_});
   });
-  if (!moved || moved->A.shared.cols() + 1 != A_.shared.cols() || !moved->A.groups.empty()) return;
-  A_.shared.leftCols(moved->A.shared.cols()) = tolerance_scale_ * moved->A.shared;
+  const Eigen::Index shared = A_.shared.cols();
+  if (!moved || moved->A.shared.cols() + 1 != shared || moved->A.groups.size() != A_.groups.size()) return;
+  A_ = std::move(moved->A);
+  A_ *= tolerance_scale_;
+  A_.shared.conservativeResize(Eigen::NoChange, shared);
+  count_shape();
 }
 
 void Observations::weigh(const std::vector<bool>& aside) {
   aside_ = aside;
-  uncertainty_ = uncertainty_of(*comparison_, A_, aside_);
+  uncertainty_ = uncertainty_of(*comparison_, A_, predicted_, aside_);
   held_out_.emplace(comparison_->study, *uncertainty_, aside_);
   null_ = whitened_residual(subject_);
 }
@@ -145,11 +150,25 @@ Observations Observations::granted(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
   if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) out.shape_ = *shape;
   out.count_shape();
-  out.move_tolerances(subject);
+  if (!s.standing->has_tool_point()) out.move_tolerances(subject);
   const std::vector<bool> aside =
       compare::gross_outliers(s, out.A_, comparison_->sigma, out.residual(subject), {}).aside;
   const auto count = as_size(std::count(aside.begin(), aside.end(), true));
   out.weigh(20 * count <= aside.size() ? aside : aside_);
+  return out;
+}
+
+Observations Observations::weighed_for(const subject::Subject& subject) const {
+  Observations out = *this;
+  const compare::ResidualStudy& s = comparison_->study;
+  prediction::PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  auto predicted =
+      outcome_of([&] { return subject.stand(*s.data, s.standing.get())->predict(*s.data, linear, parallel::alone); });
+  if (!predicted) return out;
+  out.predicted_ = std::move(*predicted);
+  out.move_tolerances(subject);
+  out.weigh(aside_);
   return out;
 }
 

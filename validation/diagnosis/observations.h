@@ -52,6 +52,11 @@ class Observations {
   /// readings that are gross outliers to it are set aside, unless they are more than one in twenty.
   Observations granted(const subject::Subject&) const;
 
+  /// A copy that weighs by what tolerances and errors of loads do to this subject, of a machine too: a leg that bends
+  /// three times as far also does so where its rod is thinner than drawn. For values and their intervals; the
+  /// probabilities of effects are compared by one weight for all of them.
+  Observations weighed_for(const subject::Subject&) const;
+
  private:
   /// Subtracts the estimated zero of the readings where it is unknown.
   VectorX from_zero(VectorX residual) const;
@@ -67,6 +72,7 @@ class Observations {
   statistics::PartedColumns A_;  // the last shared column is that of the deformed shape
   double tolerance_scale_ = 1;
   std::vector<bool> aside_;
+  std::vector<VectorX> predicted_;  // what errors of loads are proportional to
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;
   VectorX measured_, shape_, null_;

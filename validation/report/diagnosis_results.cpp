@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "msa/base/index.h"
+#include "validation/diagnosis/interval.h"
 #include "validation/json/json_text.h"
 #include "validation/report/effect_results.h"
 #include "validation/report/short_lists.h"

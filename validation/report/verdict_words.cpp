@@ -7,6 +7,7 @@
 
 #include "msa/base/index.h"
 #include "msa/base/number_words.h"
+#include "validation/diagnosis/interval.h"
 #include "validation/report/compare_words.h"
 
 namespace deflect::report {

@@ -1,0 +1,295 @@
+#include "tests/benchmark/subjects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+
+#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/fields/yaml_tree.h"
+#include "msa/frame/file/frame_file.h"
+#include "msa/mechanism/device_file.h"
+#include "tests/benchmark/as_measured.h"
+#include "tests/benchmark/hidden.h"
+#include "tests/benchmark/oracle.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/diagnosis/interval.h"
+#include "validation/effects/effect_file.h"
+#include "validation/effects/place_effects.h"
+#include "validation/parallel/cases.h"
+#include "validation/prediction/campaign.h"
+
+namespace deflect::benchmark {
+namespace {
+
+using namespace diagnosis;
+using namespace effects;
+using namespace measurement;
+using namespace parallel;
+using namespace prediction;
+
+constexpr double separable = 9;  // difference of 2 ln L
+constexpr const char* of_machines[] = {"rich", "random"};
+constexpr const char* of_frames[] = {"rich", "cycle"};
+const std::string data_folder = std::string(DEFLECT_SOURCE_DIR) + "/validation";
+
+struct Order {
+  SetKind kind;
+  double lambda = 0;
+  bool place = false;  ///< a law at a place is hidden, else an entry
+};
+constexpr Order turns[] = {{SetKind::healthy},       {SetKind::one, 4},         {SetKind::one, 8, true},
+                           {SetKind::one, 16},       {SetKind::pair, 8},        {SetKind::unknown, 32, true},
+                           {SetKind::stress},        {SetKind::one, 4, true},   {SetKind::one, 8},
+                           {SetKind::one, 16, true}, {SetKind::pair, 16, true}, {SetKind::left_out, 16, true}};
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(data_folder + folder))
+    if (entry.path().extension() == ".yaml") out.push_back(entry.path().stem().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Frames that nothing reads cannot be diagnosed.
+std::vector<std::string> measured_frames() {
+  std::vector<std::string> out = files_in("/frames");
+  std::erase_if(out, [](const std::string& name) {
+    return frame::read_frame(data_folder + "/frames/" + name + ".yaml").sensors.empty();
+  });
+  return out;
+}
+
+/// A fiftieth of the rms translation of the machine as drawn.
+double sigma_for(const subject::Subject& s) {
+  const Measurements plan = campaign("random", *s.machine(), force, 1);
+  double square = 0;
+  for (const VectorX& d : s.stand(plan)->predict(plan, {}, alone)) square += d.head<3>().squaredNorm() / 3;
+  return std::sqrt(square / static_cast<double>(plan.readings.size())) / 50;
+}
+
+/// A machine or a frame with its effects and plans, which point at each other.
+class Examined {
+ public:
+  Examined(subject::Subject s, std::uint64_t seed, int threads) : subject_(std::move(s)) {
+    effects_ = catalogue(data_folder + "/effects/catalogue");
+    for (effects::Effect& e : place_effects(subject_, effects_)) effects_.push_back(std::move(e));
+    PlanOptions o;
+    if (subject_.machine()) o.sigma = sigma_for(subject_);
+    o.changes = false;
+    for (const char* campaign : subject_.machine() ? of_machines : of_frames)
+      plans_.push_back(std::make_unique<Plan>(subject_, effects_, campaign, seed, o));
+    for (const auto& plan : plans_) oracles_.emplace_back(*plan, 0.25, 0.5, seed, threads);
+  }
+
+  std::size_t candidates() const { return plans_.front()->signatures.size(); }
+
+  SubjectSet diagnosed(std::size_t turn, std::uint64_t seed) const {
+    const Order& order = turns[turn % std::size(turns)];
+    const std::size_t round = turn / std::size(turns), which = (turn + round) % plans_.size();
+    const Plan& plan = *plans_[which];
+    SubjectSet out;
+    out.kind = order.kind;
+    out.lambda = order.lambda;
+    Random random(seed);
+    std::vector<Hidden> hidden;
+    const subject::Subject truth = drawn(plan, order, random, hidden);
+    if (hidden.empty() && order.lambda > 0) out.skipped = "no effect drawn reaches its size within its bounds";
+    if (!out.skipped.empty()) return out;
+    for (const Hidden& h : hidden) {
+      out.hidden.push_back(name_of(h.effect));
+      out.classes.push_back(alike(plan, h));
+    }
+    const std::optional<Stress> stress =
+        order.kind == SetKind::stress ? std::optional(static_cast<Stress>(random.uniform(0, std::size(stress_names))))
+                                      : std::nullopt;
+    const std::optional<Measurements> data = as_measured(plan, truth, stress, seed);
+    if (!data) {
+      out.skipped = "the MSA finds no equilibrium";
+      return out;
+    }
+    const bool open = order.kind == SetKind::left_out || order.kind == SetKind::unknown;
+    std::vector<std::string> gone;
+    if (open)
+      gone = order.kind == SetKind::unknown ? out.classes.front()
+                                            : std::vector{std::string(hidden.front().effect.effect->name)};
+    if (open) out.lambda_res = beyond_others(plan, hidden.front().change, gone);
+    diagnose_with(gone, *data, plan, hidden, truth, out);
+    if (order.kind == SetKind::healthy || order.kind == SetKind::one) ask(oracles_[which], plan, *data, out);
+    return out;
+  }
+
+ private:
+  void diagnose_with(const std::vector<std::string>& gone, const Measurements& data, const Plan& plan,
+                     const std::vector<Hidden>& hidden, const subject::Subject& truth, SubjectSet& out) const {
+    std::vector<effects::Effect> known;
+    for (const effects::Effect& e : effects_)
+      if (!holds(gone, e.name)) known.push_back(e);
+    const auto start = std::chrono::steady_clock::now();
+    const Diagnosis d = diagnose(subject_, data, known, {}, alone);
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    out.answer.verdict = nth(verdict_names, d.verdict);
+    for (const effects::PlacedEffect& e : d.missing) out.answer.missing.push_back(e.effect->name);
+    out.answer.groups = d.indistinguishable;
+    if (!d.candidates.empty()) {
+      out.answer.first = d.candidates.front().added().effect->name;
+      out.answer.probability = d.candidates.front().probability;
+    }
+    count_intervals(d, hidden, out);
+    if (!gone.empty()) count_places(d, hidden.front(), out);
+    if (out.kind == SetKind::one && out.lambda > 7 && subject_.machine()) predict_new_poses(d, plan, truth, out);
+  }
+
+  static void ask(const Oracle& oracle, const Plan& plan, const Measurements& data, SubjectSet& out) {
+    const Oracle::Answer best = oracle.answer(plan.observations->uncertainty().whitened(plan.residual(data)));
+    out.oracle_asked = true;
+    out.oracle_right = out.classes.empty() ? best.first.empty() : holds(out.classes.front(), best.first);
+    out.oracle_reported = best.reported;
+  }
+
+  /// The places told, and those of the hidden effect's part or of an effect of its class.
+  static void count_places(const Diagnosis& d, const Hidden& hidden, SubjectSet& out) {
+    std::vector<const effects::Effect*> told;
+    for (const effects::PlacedEffect& e : d.missing) told.push_back(e.effect);
+    if (d.unexplained)
+      for (const Localised& l : d.localised) told.push_back(l.effect.effect);
+    for (const effects::Effect* each : told) {
+      ++out.told;
+      out.told_rightly += (each->place && each->place->path == hidden.effect.effect->place->path) ||
+                          holds(out.classes.front(), each->name);
+    }
+  }
+
+  static void count_intervals(const Diagnosis& d, const std::vector<Hidden>& hidden, SubjectSet& out) {
+    std::size_t at = 0;
+    for (const effects::PlacedEffect& found : d.missing) {
+      for (const Hidden& h : hidden)
+        if (h.effect.effect->name == found.effect->name && h.effect.leg == found.leg)
+          for (std::size_t i = 0; i < found.effect->parameters.size(); ++i) {
+            const EffectParameter& p = found.effect->parameters[i];
+            if (p.optional) continue;
+            const auto [low, high] = interval95(d.missing, d.fit, at + i);
+            const double value = h.effect.values(as_index(i));
+            ++out.intervals;
+            out.covering += low <= value && value <= high;
+            if (i > 0 || hidden.size() > 1) continue;
+            const auto scale = [&](double x) { return p.log ? std::log(x) : x; };
+            const double sd = (scale(high) - scale(low)) / (2 * 1.959964);
+            if (sd > 0) out.bias = (scale(d.fit.values(as_index(at))) - scale(value)) / sd;
+          }
+      at += found.effect->parameters.size();
+    }
+  }
+
+  void predict_new_poses(const Diagnosis& d, const Plan& plan, const subject::Subject& truth, SubjectSet& out) const {
+    try {
+      const VectorX exact = predict_elsewhere(plan, *truth.machine(), theories::theory("msa"));
+      VectorX told = plan.nominal_elsewhere;
+      if (!d.missing.empty())
+        told = predict_elsewhere(plan, PreparedEffects(subject_, d.missing).machine(d.fit.values),
+                                 theories::theory("analytic"));
+      out.new_poses = (told - exact).norm() / std::sqrt(static_cast<double>(exact.size())) / plan.simulation.sigma_u;
+    } catch (const NumericalError&) {  // no equilibrium at one of the new poses
+    }
+  }
+
+  /// The subject with what is hidden; `hidden` stays empty where nothing is, or nothing reaches its size. A pair has a
+  /// law at a place at least, and where no entry is large enough one takes its place.
+  subject::Subject drawn(const Plan& plan, const Order& order, Random& random, std::vector<Hidden>& hidden) const {
+    constexpr int most = 20;
+    for (int tries = 0; order.lambda > 0 && tries < most; ++tries) {
+      std::vector<bool> places = {order.place || tries >= most / 2};
+      if (order.kind == SetKind::pair) places.push_back(true);
+      hidden.clear();
+      for (const bool place : places)
+        if (auto h = drawn_one(plan, place, order.lambda, random)) hidden.push_back(std::move(*h));
+      if (hidden.size() < places.size() || (hidden.size() > 1 && too_near(plan, hidden))) continue;
+      try {
+        subject::Subject truth = subject_;
+        for (const Hidden& h : hidden) truth = with_effect(truth, h.effect);
+        return truth;
+      } catch (const InputError&) {  // the two do not go together
+      }
+    }
+    hidden.clear();
+    return subject_;
+  }
+
+  static bool too_near(const Plan& plan, const std::vector<Hidden>& two) {
+    constexpr double most_alike = 0.9;  // cosine
+    return cosine(two[0], two[1]) >= most_alike || meet(alike(plan, two[0]), alike(plan, two[1]));
+  }
+
+  std::optional<Hidden> drawn_one(const Plan& plan, bool place, double lambda, Random& random) const {
+    std::vector<const effects::Effect*> choice;
+    for (const Signature& s : plan.signatures)
+      if (s.effect.effect->place.has_value() == place && (choice.empty() || choice.back() != s.effect.effect))
+        choice.push_back(s.effect.effect);
+    if (choice.empty()) return std::nullopt;
+    const auto lot = static_cast<std::size_t>(random.uniform(0, static_cast<double>(choice.size())));
+    return hidden_effect(plan, *choice[lot], lambda, random);
+  }
+
+  static EffectClass alike(const Plan& plan, const Hidden& h) {
+    EffectClass out = {h.effect.effect->name};
+    for (const Signature& s : plan.signatures) {
+      const VectorX along = s.basis.transpose() * h.change;
+      const double c = (s.shaped ? along.cwiseAbs().maxCoeff() : along.norm()) / h.lambda();
+      if (h.lambda() * h.lambda() * std::max(0.0, 1 - c * c) < separable && !holds(out, s.effect.effect->name))
+        out.push_back(s.effect.effect->name);
+    }
+    return out;
+  }
+
+  subject::Subject subject_;
+  std::vector<effects::Effect> effects_;
+  std::vector<std::unique_ptr<Plan>> plans_;
+  std::vector<Oracle> oracles_;
+};
+
+subject::Subject built_in(const std::string& name, bool frame) {
+  if (frame) {
+    frame::FrameDescription f = frame::read_frame(data_folder + "/frames/" + name + ".yaml");
+    f.geometry = Geometry::finite;
+    return f;
+  }
+  return read_mechanism(data_folder + "/devices/" + name + ".yaml");
+}
+
+}  // namespace
+
+std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked, std::size_t sets, std::uint64_t seed,
+                                          int threads,
+                                          const std::function<void(const std::vector<SubjectRow>&)>& done) {
+  const std::vector<std::string> frames = measured_frames();
+  std::vector<std::string> known = files_in("/devices"), names = asked;
+  known.insert(known.end(), frames.begin(), frames.end());
+  if (names == std::vector<std::string>{"all"}) names = known;
+  for (const std::string& name : names)
+    if (!holds(known, name))
+      throw InputError(
+          fmt::format("--devices: there is no device or frame with sensors '{}'{}", name, suggestion(name, known)));
+  std::vector<SubjectRow> out;
+  for (const std::string& name : names) {
+    const bool frame = holds(frames, name);
+    const Examined examined(built_in(name, frame), seed, threads);
+    SubjectRow row{name, frame, examined.candidates(), std::vector<SubjectSet>(sets)};
+    parallel::for_each_case(sets, 1, threads, [&](std::size_t k) {
+      try {
+        const std::size_t first = out.size() % 2 * std::size(turns) / 2;  // few sets of each are all kinds of set
+        row.sets[k] = examined.diagnosed(first + k, seed + 1000 * k + 100000 * out.size());
+      } catch (const std::runtime_error& e) {
+        row.sets[k].skipped = e.what();
+      }
+    });
+    out.push_back(std::move(row));
+    if (done) done(out);
+  }
+  return out;
+}
+
+}  // namespace deflect::benchmark

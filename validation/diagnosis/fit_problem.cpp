@@ -1,0 +1,92 @@
+#include "validation/diagnosis/fit_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/NonLinearOptimization>
+
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
+
+namespace deflect::diagnosis {
+
+double coordinate(const effects::EffectParameter& p, double value) {
+  return p.log ? std::log(value) : value / (0.5 * (p.high - p.low));
+}
+
+double value_at(const effects::EffectParameter& p, double x) {
+  const double value = p.log ? std::exp(x) : x * 0.5 * (p.high - p.low);
+  return std::clamp(value, p.low, p.high);
+}
+
+FitProblem::FitProblem(const Observations& o, const Hypothesis& h)
+    : observations_(o),
+      parameters_(parameters_of(h)),
+      prepared_(o.subject(), h),
+      wall_(VectorX::Constant(o.null_residual().size(), 1e6 * std::max(1.0, o.null_residual().norm()))) {}
+
+VectorX FitProblem::values(const VectorX& x) const {
+  VectorX out(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*nth(parameters_, i), x(i));
+  return out;
+}
+
+VectorX FitProblem::coordinates(const VectorX& values) const {
+  VectorX out(values.size());
+  for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = coordinate(*nth(parameters_, i), values(i));
+  return out;
+}
+
+std::optional<VectorX> FitProblem::residual(const VectorX& x, std::string* why) const {
+  auto predicted = outcome_of([&] { return observations_.whitened_residual(prepared_(values(x))); });
+  if (predicted && predicted->allFinite()) return std::move(predicted.value);
+  if (why) *why = predicted ? "the prediction is no number" : predicted.why;
+  return std::nullopt;
+}
+
+bool FitProblem::has_history(const VectorX& x) const { return observations_.has_history(prepared_(values(x))); }
+
+VectorX FitProblem::residual_or_wall(const VectorX& x) const { return residual(x).value_or(wall_); }
+
+VectorX FreeResidual::all(const VectorX& x) const {
+  VectorX out = held;
+  out(free) = x;
+  return out;
+}
+
+int FreeResidual::operator()(const VectorX& x, VectorX& r) const {
+  r = problem->residual_or_wall(all(x));
+  return 0;
+}
+
+int FreeResidual::df(const VectorX& x, MatrixX& J) const {
+  const VectorX from = all(x), here = problem->residual_or_wall(from);
+  J = MatrixX::Zero(rows, std::ssize(free));
+  for (Eigen::Index i = 0; i < J.cols(); ++i) {
+    // Towards the inside where a bound is near, else away from what cannot be predicted.
+    const Eigen::Index k = nth(free, i);
+    const effects::EffectParameter& p = *nth(problem->parameters(), k);
+    double step = 1e-5 * std::max(1.0, std::abs(from(k)));
+    if (!(value_at(p, from(k) + step) < p.high)) step = -step;
+    for (const double each : {step, -step}) {
+      VectorX moved = from;
+      moved(k) += each;
+      const std::optional<VectorX> there = problem->residual(moved);
+      if (!there) continue;
+      J.col(i) = (*there - here) / each;
+      break;
+    }
+  }
+  return 0;
+}
+
+VectorX minimised(const FreeResidual& f, VectorX x, int evaluations) {
+  FreeResidual free = f;
+  Eigen::LevenbergMarquardt<FreeResidual> search(free);
+  search.parameters.maxfev = evaluations;
+  search.parameters.ftol = 1e-5;  // of χ²: far below what one unit of it means
+  search.parameters.xtol = 1e-5;
+  search.minimize(x);
+  return x;
+}
+
+}  // namespace deflect::diagnosis

@@ -1,0 +1,67 @@
+// The least-squares problem of a fit: the whitened residual over the coordinates of a hypothesis's parameters.
+//
+// The coordinate of a parameter on a logarithmic scale is its logarithm, of another its value over half its range, so
+// that steps of size 1 are large.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validation/diagnosis/hypothesis.h"
+
+namespace deflect::diagnosis {
+
+double coordinate(const effects::EffectParameter&, double value);
+/// The value there, within the parameter's bounds.
+double value_at(const effects::EffectParameter&, double x);
+
+class FitProblem {
+ public:
+  /// Both must outlive it.
+  FitProblem(const Observations&, const Hypothesis&);
+
+  VectorX values(const VectorX& x) const;
+  VectorX coordinates(const VectorX& values) const;
+
+  /// Nothing where the subject cannot have these values or cannot be predicted with them; `why` then says it.
+  std::optional<VectorX> residual(const VectorX& x, std::string* why = nullptr) const;
+
+  bool has_history(const VectorX& x) const;
+
+  /// For a search: what cannot be predicted is far worse than anything that can.
+  VectorX residual_or_wall(const VectorX& x) const;
+
+  const std::vector<const effects::EffectParameter*>& parameters() const { return parameters_; }
+
+ private:
+  const Observations& observations_;
+  std::vector<const effects::EffectParameter*> parameters_;
+  effects::PreparedEffects prepared_;
+  VectorX wall_;
+};
+
+/// The residual over some of the coordinates, the others held, as MINPACK's port in Eigen wants it.
+struct FreeResidual {
+  using Scalar = double;
+  using InputType = VectorX;
+  using ValueType = VectorX;
+  using JacobianType = MatrixX;
+  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+
+  const FitProblem* problem;
+  Eigen::Index rows;
+  VectorX held;                    ///< all coordinates
+  std::vector<Eigen::Index> free;  ///< those that move
+
+  VectorX all(const VectorX& x) const;
+  int inputs() const { return static_cast<int>(free.size()); }
+  int values() const { return static_cast<int>(rows); }
+  int operator()(const VectorX& x, VectorX& r) const;
+  int df(const VectorX& x, MatrixX& J) const;
+};
+
+/// Levenberg–Marquardt with so many evaluations at most.
+VectorX minimised(const FreeResidual&, VectorX x, int evaluations);
+
+}  // namespace deflect::diagnosis
