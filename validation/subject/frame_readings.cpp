@@ -9,6 +9,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/frame/file/frame_analysis.h"
 #include "msa/frame/file/frame_fields.h"
 #include "msa/frame/file/frame_sensors.h"
@@ -89,6 +90,14 @@ frame::FrameResult analysed(FrameDescription f, Named<LoadCase> loads, const fra
   return frame::analyse(f, o);
 }
 
+/// Six zeros, then what the sensors record of true readings.
+VectorX recorded(const std::vector<const frame::FrameSensor*>& sensors, const VectorX& true_readings) {
+  VectorX out = VectorX::Zero(6 + true_readings.size());
+  for (Eigen::Index k = 0; k < true_readings.size(); ++k)
+    out(6 + k) = nth(sensors, k)->gain * true_readings(k) + nth(sensors, k)->zero;
+  return out;
+}
+
 std::vector<VectorX> by_superposition(const FrameDescription& f, const measurement::Measurements& data) {
   const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
   const MatrixX loads = f.load_gain * measurement::loads_of(data);
@@ -103,11 +112,7 @@ std::vector<VectorX> by_superposition(const FrameDescription& f, const measureme
   }
   const MatrixX read = S * loads;
   std::vector<VectorX> out;
-  for (const auto& column : read.colwise()) {
-    out.emplace_back(VectorX::Zero(6 + column.size()));
-    for (Eigen::Index k = 0; k < column.size(); ++k)
-      out.back()(6 + k) = nth(sensors, k)->gain * column(k) + nth(sensors, k)->zero;
-  }
+  for (const auto& column : read.colwise()) out.push_back(recorded(sensors, column));
   return out;
 }
 
@@ -127,8 +132,9 @@ bool any_law(const FrameDescription& f, const std::function<bool(const Law&)>& i
                      [&](const auto& m) { return in(m.second.start) || in(m.second.end); });
 }
 
-bool has_linear_laws(const FrameDescription& f) {
-  return !any_law(f, [](const Law& law) { return !is_linear(law); });
+/// What a law of friction remembers.
+bool has_friction(const FrameDescription& f) {
+  return any_law(f, [](const Law& law) { return row_of(law).has_history; });
 }
 
 std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Measurements& data) {
@@ -136,7 +142,7 @@ std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Me
   std::vector<std::size_t> order(data.readings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   frame::FrameOptions options;
-  if (any_law(f, [](const Law& law) { return row_of(law).has_history; })) {
+  if (has_friction(f)) {
     order = measurement::in_sequence(data, "friction");
     options.in_sequence = true;
   }
@@ -156,9 +162,28 @@ std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Me
   return out;
 }
 
-}  // namespace
-
-namespace {
+/// By what is known of a frame near it; nullopt where it is too far away.
+std::optional<std::vector<VectorX>> by_known_frame(const FrameDescription& f, const measurement::Measurements& data,
+                                                   const frame::KnownFrame& known) {
+  const Named<LoadCase> loads = unit_loads(f, data);
+  if (!std::equal(loads.begin(), loads.end(), known.loads().begin(), known.loads().end(),
+                  [](const auto& load, const std::string& name) { return load.first == name; }))
+    return std::nullopt;
+  std::vector<std::size_t> order(data.readings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const bool in_sequence = has_friction(f);
+  if (in_sequence) order = measurement::in_sequence(data, "friction");
+  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
+  const MatrixX recorded_loads = measurement::loads_of(data);
+  MatrixX factors(recorded_loads.rows(), recorded_loads.cols());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    factors.col(as_index(i)) = f.load_gain * recorded_loads.col(as_index(order[i]));
+  const std::optional<MatrixX> read = known.readings(f, loads, sensors, factors, in_sequence);
+  if (!read) return std::nullopt;
+  std::vector<VectorX> out(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) out[order[i]] = recorded(sensors, read->col(as_index(i)));
+  return out;
+}
 
 /// Sensors that stick follow what they read, in the order taken, only where they lag by more than their band. The first
 /// reading of each pose is true.
@@ -184,19 +209,45 @@ void let_stick(const FrameDescription& f, const measurement::Measurements& data,
 }  // namespace
 
 std::vector<VectorX> predicted_readings(const FrameDescription& frame, const measurement::Measurements& data,
-                                        Geometry geometry) {
-  FrameDescription f = frame;
-  f.geometry = geometry;
-  if (geometry != Geometry::finite) f.load_steps = 1;
-  const bool sums = geometry == Geometry::linear && has_linear_laws(f);
-  std::vector<VectorX> out = sums ? by_superposition(f, data) : one_by_one(f, data);
-  let_stick(f, data, out);
-  return out;
+                                        Geometry geometry, const FrameNearby* near) {
+  std::optional<std::vector<VectorX>> out;
+  const frame::KnownFrame* known = near && geometry == Geometry::linear ? near->known() : nullptr;
+  if (known) out = by_known_frame(frame, data, *known);
+  if (!out) {
+    FrameDescription f = frame;
+    f.geometry = geometry;
+    if (geometry != Geometry::finite) f.load_steps = 1;
+    const bool sums = geometry == Geometry::linear && has_linear_laws(f);
+    out = sums ? by_superposition(f, data) : one_by_one(f, data);
+  }
+  let_stick(frame, data, *out);
+  return std::move(*out);
+}
+
+FrameNearby::FrameNearby(const FrameDescription& f, const measurement::Measurements& data)
+    : frame_(f), loads_(unit_loads(f, data)) {}
+
+const frame::KnownFrame* FrameNearby::known() const {
+  std::call_once(once_, [&] {
+    auto known = outcome_of([&] { return std::make_unique<const frame::KnownFrame>(frame_, loads_); });
+    if (known) known_ = std::move(*known);
+  });
+  return known_.get();
+}
+
+bool has_linear_laws(const FrameDescription& f) {
+  return !any_law(f, [](const Law& law) { return !is_linear(law); });
+}
+
+double size_of(const FrameDescription& f) {
+  Vector3 low = f.nodes.front().second, high = low;
+  for (const auto& [name, at] : f.nodes) low = low.cwiseMin(at), high = high.cwiseMax(at);
+  return (high - low).norm();
 }
 
 bool has_history(const FrameDescription& f) {
   return std::any_of(f.sensors.begin(), f.sensors.end(), [](const auto& s) { return s.second.stick > 0; }) ||
-         any_law(f, [](const Law& law) { return row_of(law).has_history; });
+         has_friction(f);
 }
 
 }  // namespace deflect::subject

@@ -70,10 +70,12 @@ struct Pending {
   Matrix3 R;
   std::array<ConnectionFreedom, 6> freedoms;
   std::string name, place;  // place: empty without laws
+  std::size_t member, end;
 };
 
 /// Which end of which member.
 struct End {
+  std::size_t member;
   const Freedoms& released;
   const FreedomLaws& laws;
   bool start;
@@ -89,7 +91,7 @@ int end_node(Model& m, int node, const End& end, const Matrix3& R_WM, const std:
   const int own = m.add_node(name, nth(m.nodes, node).position);
   const bool turned = !end.start && !end.laws.empty();  // the member is the near side of its laws
   pending.push_back({turned ? own : node, turned ? node : own, R_WM, springs.freedoms(rigid, end.laws), name,
-                     end.laws.empty() ? "" : end.place});
+                     end.laws.empty() ? "" : end.place, end.member, as_size(end.start ? 0 : 1)});
   return own;
 }
 
@@ -100,8 +102,9 @@ void add_member(FrameModel& out, const std::string& name, const FrameMember& mem
   const Vector3 start = nth(m.nodes, a).position, end = nth(m.nodes, b).position;
   const Matrix3 R_WM = member_axes(end - start, member.y_axis);
   constexpr Freedoms hinged{false, false, false, true, true, true};
-  const End at_start{member.truss ? hinged : member.release_from, member.start, true, name + " start"},
-      at_end{member.truss ? hinged : member.release_to, member.end, false, name + " end"};
+  const std::size_t number = out.misfit.size();
+  const End at_start{number, member.truss ? hinged : member.release_from, member.start, true, name + " start"},
+      at_end{number, member.truss ? hinged : member.release_to, member.end, false, name + " end"};
   int previous = end_node(m, a, at_start, R_WM, fmt::format("{} at {}", name, member.from), springs, pending);
   const int last = end_node(m, b, at_end, R_WM, fmt::format("{} at {}", name, member.to), springs, pending);
   for (std::size_t i = 1; i + 1 < fractions.size(); ++i) {
@@ -135,8 +138,10 @@ void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision
   }
   out.first_element.push_back(static_cast<int>(out.model.beams.size()));
   Model& m = out.model;
+  out.ends.assign(f.members.size(), {-1, -1});
   for (const Pending& p : pending) {
     const int first = spring_count(m);
+    out.ends[p.member][p.end] = static_cast<int>(m.connections.size());
     m.connect(p.a, p.b, nth(m.nodes, p.b).position, p.R, p.freedoms, p.name, p.place.empty() ? p.name : p.place);
     if (!p.place.empty()) elastic_ends.emplace_back(p.place, std::pair{first, spring_count(m)});
   }
@@ -145,6 +150,7 @@ void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision
 /// What the connection that was made last does to the node of its far side.
 Holding last_holding(const Model& m, std::size_t first_connection, int first_spring) {
   Holding out;
+  out.connection = static_cast<int>(first_connection);
   out.first = first_spring;
   out.last = spring_count(m);
   out.constraint = m.connections[first_connection].constraint;

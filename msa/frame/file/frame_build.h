@@ -20,6 +20,7 @@ using FrameDivision = std::vector<std::vector<double>>;
 /// ones act on the node, each along a freedom; the others are between them, in series.
 struct Holding {
   std::array<int, 6> constraint = {-1, -1, -1, -1, -1, -1};
+  int connection = 0;  ///< the first of the model's, with what is in series
   int first = 0, last = 0;
   std::vector<std::pair<int, int>> direct;  ///< freedom, index of the spring
 };
@@ -34,6 +35,7 @@ struct FrameModel {
   std::vector<double> expansion;        ///< by member, 1/K; 0 where not given
   std::vector<double> misfit;           ///< by member, free strain
   std::vector<Holding> supports, springs;
+  std::vector<std::array<int, 2>> ends;   ///< by member the connections of its start and end; −1: welded to the node
   Named<std::pair<int, int>> elastic;     ///< springs [first, last) by their place: springs, then supports
                                           ///< and ends of members that have laws
   std::vector<int> constraint;            ///< by general constraint
