@@ -76,7 +76,8 @@ MatrixX analysed(FrameDescription f, const Named<FrameSensor>& sensors, const Ma
   return out;
 }
 
-/// The largest difference, of each kind of reading relative to its largest in the frame; −1: not near enough.
+/// The largest difference, relative to the largest displacement or force of the frame, rotations and moments by a
+/// metre; −1: not near enough.
 double off(const KnownFrame& known, const FrameDescription& f, bool in_sequence = false) {
   const Named<FrameSensor> sensors = everything(f);
   std::vector<const FrameSensor*> all;
@@ -94,10 +95,8 @@ double off(const KnownFrame& known, const FrameDescription& f, bool in_sequence 
     most(kind(k)) = std::max(most(kind(k)), wanted.row(as_index(k)).cwiseAbs().maxCoeff());
     worst(kind(k)) = std::max(worst(kind(k)), (wanted - *read).row(as_index(k)).cwiseAbs().maxCoeff());
   }
-  double out = 0;
-  for (int i = 0; i < 4; ++i)
-    if (most(i) > 0) out = std::max(out, worst(i) / most(i));
-  return out;
+  const double moves = std::max(most(0), most(1)), forces = std::max(most(2), most(3));
+  return std::max({worst(0) / moves, worst(1) / moves, worst(2) / forces, worst(3) / forces});
 }
 
 FrameDescription built_in(const std::string& name) {

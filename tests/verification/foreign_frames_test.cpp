@@ -88,7 +88,8 @@ TEST_P(ForeignFrame, WhatIsHiddenIsNamedOrTied) {
   });
   if (!truth.contains("mistake") || names_it) {
     EXPECT_TRUE(names_it) << said;
-    for (const std::string& each : found) EXPECT_FALSE(is_the_other(truth.at("effect").get<std::string>(), each)) << said;
+    for (const std::string& each : found)
+      EXPECT_FALSE(is_the_other(truth.at("effect").get<std::string>(), each)) << said;
     return;
   }
   ASSERT_TRUE(diagnosis::is_mistaken(d)) << said;

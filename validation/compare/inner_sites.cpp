@@ -9,10 +9,10 @@
 namespace deflect::compare {
 namespace {
 
-constexpr std::size_t drawn = 6;  // curves
-constexpr int knots = 10;
+constexpr std::size_t most_curves = 6;  // curves
+constexpr int curve_knots = 10;
 
-double sign(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
+double sense(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
 
 /// The change of each measured number when site k is as much longer as `elongation` says at the reading's force.
 template <class Shape>
@@ -47,7 +47,7 @@ InnerFits fits_of_inner_sites(const ResidualStudy& s, const statistics::Uncertai
     const auto shape = [&](const auto& e) { return rows_of(s, k, forces, e); };
     MatrixX shapes(residual.size(), 3);
     shapes << shape([](double f) { return f; }), shape([](double f) { return std::abs(f); }),
-        most * shape([&](double f) { return std::abs(f) > 1e-9 * most ? sign(f) : 0; });
+        most * shape([&](double f) { return std::abs(f) > 1e-9 * most ? sense(f) : 0; });
     const MatrixX whitened = fits.whitened(shapes);
     if (!(most > 0) || !(whitened.norm() > 0)) continue;
     const statistics::Regression all = fits.on_whitened(whitened), line = fits.on_whitened(whitened.leftCols(1));
@@ -62,13 +62,13 @@ InnerFits fits_of_inner_sites(const ResidualStudy& s, const statistics::Uncertai
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return out.all[a].gain > out.all[b].gain; });
-  for (std::size_t i = 0; i < std::min(drawn, order.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(most_curves, order.size()); ++i) {
     const InnerSiteFit& fit = out.all[order[i]];
     const std::size_t k = number[order[i]];
     const auto shape = [&](const auto& e) { return rows_of(s, k, forces, e); };
     const std::string known = fit.determinate ? "by statics" : "as shared";
     out.curves.push_back(
-        curve_of(fits, shape, forces.row(as_index(k)).transpose(), fit.site + ", " + known, fit.rotation, knots));
+        curve_of(fits, shape, forces.row(as_index(k)).transpose(), fit.site + ", " + known, fit.rotation, curve_knots));
   }
   std::vector<InnerSiteFit> sorted;
   for (const std::size_t i : order) sorted.push_back(std::move(out.all[i]));

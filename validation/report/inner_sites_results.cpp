@@ -33,15 +33,16 @@ std::string determinacy(const subject::InnerSites& sites) {
 std::string inner_sites_text(const compare::Comparison& c) {
   if (c.study.inner.all.empty()) return "";
   std::string out = determinacy(c.study.inner) + "\n";
-  std::vector<std::vector<std::string>> rows = {{"what one place alone would have to yield", "force up to", "known by",
-                                                 "yields at it", "of the misfit", "p"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"what one place alone would have to yield", "force up to", "known by", "yields at it", "of the misfit", "p"}};
   for (std::size_t i = 0; i < std::min(most_sites, c.inner.size()); ++i) {
     const compare::InnerSiteFit& s = c.inner[i];
     rows.push_back({"  " + s.site, fmt::format("{:.4g} {}", s.most, s.rotation ? "Nm" : "N"),
                     known_by(s.determinate, s.redundancy),
                     fmt::format("{:.4g} ± {:.2g} {}", um * s.most * s.per_force, um * s.most * s.deviation,
                                 s.rotation ? "µrad" : "µm"),
-                    fmt::format("{:.0f} %", 100 * s.share), s.p_value < 1e-16 ? "< 1e-16" : fmt::format("{:.2g}", s.p_value)});
+                    fmt::format("{:.0f} %", 100 * s.share),
+                    s.p_value < 1e-16 ? "< 1e-16" : fmt::format("{:.2g}", s.p_value)});
   }
   return out + (c.inner.empty() ? "" : aligned(rows));
 }

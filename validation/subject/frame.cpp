@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "msa/base/error.h"
@@ -114,6 +115,12 @@ std::unique_ptr<const Deviations> FrameStanding::deviations(const measurement::M
   return std::make_unique<FrameDeviations>(std::make_shared<const FrameDescription>(std::move(linear)), data);
 }
 
+/// Of one reading, where the description gives it: scatter, and rounding to a step, which is as good as even over it.
+std::optional<double> noise_of(const frame::FrameSensor& s) {
+  const double sigma = std::hypot(s.sigma, s.resolution / std::sqrt(12));
+  return s.sigma > 0 ? std::optional(sigma) : std::nullopt;
+}
+
 class FrameSubject final : public Subject::Kind {
  public:
   explicit FrameSubject(FrameDescription f) : frame_(std::make_shared<const FrameDescription>(std::move(f))) {}
@@ -133,8 +140,7 @@ class FrameSubject final : public Subject::Kind {
   measurement::Instruments instruments() const override {
     measurement::Instruments out;
     out.stationary = true;
-    for (const auto& [name, s] : frame_->sensors)
-      out.sensors.push_back({name, quantity_of(s), s.sigma > 0 ? std::optional(s.sigma) : std::nullopt});
+    for (const auto& [name, s] : frame_->sensors) out.sensors.push_back({name, quantity_of(s), noise_of(s)});
     for (const auto& [name, load] : frame_->loads) out.load_cases.push_back(name);
     for (const auto& [name, at] : frame_->nodes) out.load_points.push_back("node." + name);
     return out;

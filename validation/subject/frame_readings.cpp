@@ -42,11 +42,13 @@ std::vector<const frame::FrameSensor*> sensors_of(const FrameDescription& f, con
 
 void add(LoadCase& sum, const LoadCase& each, double share) {
   const double times = share * each.factor;
-  for (const auto& [node, wrench] : each.nodes) sum.nodes.emplace_back(node, times * wrench);
+  const Matrix3 turn = rotation_from_vector(each.turned);
+  for (const auto& [node, wrench] : each.nodes) sum.nodes.emplace_back(node, times * frame::turned(each, wrench));
   for (const auto& [member, load] : each.members)
-    sum.members.emplace_back(member, frame::LineLoad{times * load.q, load.member_axes});
+    sum.members.emplace_back(
+        member, frame::LineLoad{times * (load.member_axes ? load.q : Vector3(turn * load.q)), load.member_axes});
   for (const auto& [member, kelvin] : each.temperature) sum.temperature.emplace_back(member, times * kelvin);
-  sum.gravity += times * each.gravity;
+  sum.gravity += times * (turn * each.gravity);
   for (const auto& [node, values] : each.displacements) {
     auto found = std::find_if(sum.displacements.begin(), sum.displacements.end(),
                               [&name = node](const auto& other) { return other.first == name; });
@@ -68,7 +70,8 @@ LoadCase load_of(const FrameDescription& f, const measurement::Measurements& dat
   return out;
 }
 
-/// One case for each channel of load, in the order of load_channels().
+/// One case for each channel of load, in the order of load_channels(), and one for what is always there: misfits, heat,
+/// settlements.
 Named<LoadCase> unit_loads(const FrameDescription& f, const measurement::Measurements& data) {
   Named<LoadCase> out;
   for (const std::string& name : data.instruments.load_cases)
@@ -82,6 +85,7 @@ Named<LoadCase> unit_loads(const FrameDescription& f, const measurement::Measure
     unit.nodes.emplace_back(node_of(c.name.substr(0, dot)), Vector6::Unit(component));
     out.emplace_back(c.name, std::move(unit));
   }
+  out.emplace_back("always", LoadCase());
   return out;
 }
 
@@ -90,29 +94,69 @@ frame::FrameResult analysed(FrameDescription f, Named<LoadCase> loads, const fra
   return frame::analyse(f, o);
 }
 
-/// Six zeros, then what the sensors record of true readings.
-VectorX recorded(const std::vector<const frame::FrameSensor*>& sensors, const VectorX& true_readings) {
-  VectorX out = VectorX::Zero(6 + true_readings.size());
-  for (Eigen::Index k = 0; k < true_readings.size(); ++k)
-    out(6 + k) = nth(sensors, k)->gain * true_readings(k) + nth(sensors, k)->zero;
+/// Sensors with a column, behind them those that only show in the readings of others, and what is recorded of them.
+struct Channels {
+  std::vector<const frame::FrameSensor*> sensors;
+  MatrixX mix;
+  VectorX zero;
+
+  Channels(const FrameDescription& f, const measurement::Measurements& data) : sensors(sensors_of(f, data)) {
+    const std::size_t shown = sensors.size();
+    for (std::size_t k = 0; k < shown; ++k)
+      for (const auto& [other, share] : sensors[k]->crosstalk) place_of(named(f.sensors, "sensor", other, f.name));
+    mix = MatrixX::Zero(as_index(shown), std::ssize(sensors));
+    zero = VectorX::Zero(as_index(shown));
+    for (std::size_t k = 0; k < shown; ++k) {
+      mix(as_index(k), as_index(k)) = sensors[k]->gain;
+      zero(as_index(k)) = sensors[k]->zero;
+      for (const auto& [other, share] : sensors[k]->crosstalk)
+        mix(as_index(k), place_of(named(f.sensors, "sensor", other, f.name))) += sensors[k]->gain * share;
+    }
+  }
+
+  /// Six zeros, then the readings.
+  VectorX recorded(const VectorX& true_readings) const {
+    VectorX out = VectorX::Zero(6 + mix.rows());
+    out.tail(mix.rows()) = mix * true_readings + zero;
+    return out;
+  }
+
+ private:
+  Eigen::Index place_of(const frame::FrameSensor& s) {
+    const auto at = std::find(sensors.begin(), sensors.end(), &s);
+    if (at != sensors.end()) return at - sensors.begin();
+    sensors.push_back(&s);
+    return std::ssize(sensors) - 1;
+  }
+};
+
+/// By reading (columns) the true factors on unit_loads(): without a load there is what is always there.
+MatrixX true_factors(const FrameDescription& f, const measurement::Measurements& data) {
+  const MatrixX recorded = measurement::loads_of(data);
+  MatrixX out(recorded.rows() + 1, recorded.cols());
+  out.topRows(recorded.rows()) = f.load_gain * recorded;
+  out.bottomRows<1>() = VectorX::Ones(recorded.cols()).transpose() - out.topRows(recorded.rows()).colwise().sum();
+  return out;
+}
+
+/// By sensor (rows) and load case.
+MatrixX true_readings(const std::vector<const frame::FrameSensor*>& sensors, const FrameDescription& f,
+                      const frame::FrameResult& result) {
+  MatrixX out(std::ssize(sensors), std::ssize(result.cases));
+  for (std::size_t c = 0; c < result.cases.size(); ++c)
+    for (std::size_t k = 0; k < sensors.size(); ++k)
+      out(as_index(k), as_index(c)) = frame::true_reading(*sensors[k], f, result.structure, result.cases[c]);
   return out;
 }
 
 std::vector<VectorX> by_superposition(const FrameDescription& f, const measurement::Measurements& data) {
-  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
-  const MatrixX loads = f.load_gain * measurement::loads_of(data);
-  MatrixX S = MatrixX::Zero(std::ssize(sensors), loads.rows());  // true readings of unit loads
-  if (loads.rows() > 0) {
-    const frame::FrameResult result = analysed(f, unit_loads(f, data), {});
-    if (const std::string failed = frame::failed_check(result); !failed.empty())
-      throw NumericalError(fmt::format("{}: {}", f.name, failed));
-    for (std::size_t c = 0; c < result.cases.size(); ++c)
-      for (std::size_t k = 0; k < sensors.size(); ++k)
-        S(as_index(k), as_index(c)) = frame::true_reading(*sensors[k], f, result.structure, result.cases[c]);
-  }
-  const MatrixX read = S * loads;
+  const Channels channels(f, data);
+  const frame::FrameResult result = analysed(f, unit_loads(f, data), {});
+  if (const std::string failed = frame::failed_check(result); !failed.empty())
+    throw NumericalError(fmt::format("{}: {}", f.name, failed));
+  const MatrixX read = true_readings(channels.sensors, f, result) * true_factors(f, data);
   std::vector<VectorX> out;
-  for (const auto& column : read.colwise()) out.push_back(recorded(sensors, column));
+  for (const auto& column : read.colwise()) out.push_back(channels.recorded(column));
   return out;
 }
 
@@ -138,7 +182,7 @@ bool has_friction(const FrameDescription& f) {
 }
 
 std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Measurements& data) {
-  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
+  const Channels channels(f, data);
   std::vector<std::size_t> order(data.readings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   frame::FrameOptions options;
@@ -152,13 +196,9 @@ std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Me
   const frame::FrameResult result = analysed(f, std::move(loads), options);
   if (const std::string failed = frame::failed_check(result); !failed.empty())
     throw NumericalError(fmt::format("{}: {}: {}", data.origin, f.name, failed));
+  const MatrixX read = true_readings(channels.sensors, f, result);
   std::vector<VectorX> out(data.readings.size());
-  for (std::size_t c = 0; c < order.size(); ++c) {
-    VectorX& read = out[order[c]];
-    read = VectorX::Zero(6 + std::ssize(sensors));
-    for (std::size_t k = 0; k < sensors.size(); ++k)
-      read(6 + as_index(k)) = frame::recorded_by(*sensors[k], f, result.structure, result.cases[c]);
-  }
+  for (std::size_t c = 0; c < order.size(); ++c) out[order[c]] = channels.recorded(read.col(as_index(c)));
   return out;
 }
 
@@ -173,15 +213,14 @@ std::optional<std::vector<VectorX>> by_known_frame(const FrameDescription& f, co
   std::iota(order.begin(), order.end(), std::size_t{0});
   const bool in_sequence = has_friction(f);
   if (in_sequence) order = measurement::in_sequence(data, "friction");
-  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
-  const MatrixX recorded_loads = measurement::loads_of(data);
-  MatrixX factors(recorded_loads.rows(), recorded_loads.cols());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    factors.col(as_index(i)) = f.load_gain * recorded_loads.col(as_index(order[i]));
-  const std::optional<MatrixX> read = known.readings(f, loads, sensors, factors, in_sequence);
+  const Channels channels(f, data);
+  const MatrixX all = true_factors(f, data);
+  MatrixX factors(all.rows(), all.cols());
+  for (std::size_t i = 0; i < order.size(); ++i) factors.col(as_index(i)) = all.col(as_index(order[i]));
+  const std::optional<MatrixX> read = known.readings(f, loads, channels.sensors, factors, in_sequence);
   if (!read) return std::nullopt;
   std::vector<VectorX> out(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) out[order[i]] = recorded(sensors, read->col(as_index(i)));
+  for (std::size_t i = 0; i < order.size(); ++i) out[order[i]] = channels.recorded(read->col(as_index(i)));
   return out;
 }
 

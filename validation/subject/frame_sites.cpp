@@ -58,7 +58,9 @@ InnerSites inner_sites_of(const FrameDescription& f, const measurement::Measurem
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto k = as_index(i);
     InnerSite site{name_of(places[i].place), places[i].place, places[i].place.rotation(), {}, {}};
-    site.per_load = f.load_gain * known->carried.row(k).transpose();
+    const Eigen::Index loads = known->carried.cols() - 1;  // the last one is always there
+    site.per_load =
+        f.load_gain * (known->carried.row(k).head(loads).array() - known->carried(k, loads)).matrix().transpose();
     site.moves = known->moves.col(k);
     for (std::size_t s = 0; s < sensors.size(); ++s) site.moves(as_index(s)) *= sensors[s]->gain;
     // N/m; of a rotation over the square of the frame's size.

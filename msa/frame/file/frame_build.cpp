@@ -281,7 +281,9 @@ bool FrameModel::prestressed() const {
 namespace {
 
 /// Loads and strains of the elements.
-std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameModel& m, const LoadCase& c) {
+std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameModel& m, const LoadCase& c,
+                                       bool assembled) {
+  const Matrix3 turn = rotation_from_vector(c.turned);
   std::vector<ElementLoad> out(m.model.beams.size());
   const auto elements_of = [&](std::size_t member, const auto& change) {
     for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e)
@@ -289,7 +291,7 @@ std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameMod
   };
   for (const auto& [name, load] : c.members)
     elements_of(at(m.members, "member", name), [&, &load = load](ElementLoad& e, const Beam& beam) {
-      e.q_M += c.factor * (load.member_axes ? load.q : Vector3(beam.R_WM.transpose() * load.q));
+      e.q_M += c.factor * (load.member_axes ? load.q : Vector3(beam.R_WM.transpose() * (turn * load.q)));
     });
   for (const auto& [name, kelvin] : c.temperature) {
     const std::size_t member = at(m.members, "member", name);
@@ -300,20 +302,32 @@ std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameMod
   if (!c.gravity.isZero(0))
     for (std::size_t member = 0; member < f.members.size(); ++member)
       elements_of(member, [&](ElementLoad& e, const Beam& beam) {
-        e.q_M += c.factor * m.mass_per_length[member] * (beam.R_WM.transpose() * c.gravity);
+        e.q_M += c.factor * m.mass_per_length[member] * (beam.R_WM.transpose() * (turn * c.gravity));
       });
   for (std::size_t member = 0; member < f.members.size(); ++member)
     if (m.misfit[member] != 0) elements_of(member, [&](ElementLoad& e, const Beam&) { e.strain += m.misfit[member]; });
+  for (std::size_t member = 0; member < f.members.size() && !assembled; ++member)
+    if (const double strain = m.expansion[member] * f.members[member].second.heated; strain != 0)
+      elements_of(member, [&](ElementLoad& e, const Beam&) { e.strain += strain; });
   return out;
 }
 
 }  // namespace
 
-CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::string& case_name, const LoadCase& c) {
+Vector6 turned(const LoadCase& c, const Vector6& wrench) {
+  if (c.turned.isZero(0)) return wrench;
+  const Matrix3 turn = rotation_from_vector(c.turned);
+  Vector6 out;
+  out << turn * wrench.head<3>(), turn * wrench.tail<3>();
+  return out;
+}
+
+CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::string& case_name, const LoadCase& c,
+                 bool assembled) {
   CaseLoad out;
   out.forces = out.thermal = VectorX::Zero(m.model.dofs());
   out.values = VectorX::Zero(std::ssize(m.model.constraints));
-  out.elements = element_loads(f, m, c);
+  out.elements = element_loads(f, m, c, assembled);
   const auto add = [](VectorX& to, const Beam& beam, const Vector12& local) {
     for (int i = 0; i < 4; ++i)
       to.segment<3>(6 * (i < 2 ? beam.a : beam.b) + 3 * (i % 2)) += beam.R_WM * local.segment<3>(3 * i);
@@ -326,7 +340,7 @@ CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::stri
       add(out.forces, beam, equivalent_forces(beam.rigidity, beam.length, out.elements[e]));
   }
   for (const auto& [name, wrench] : c.nodes)
-    out.forces.segment<6>(6 * as_index(at(m.nodes, "node", name))) += c.factor * wrench;
+    out.forces.segment<6>(6 * as_index(at(m.nodes, "node", name))) += c.factor * turned(c, wrench);
   refuse_across_plane(f, m, case_name, out.forces);
 
   const NameIndex supports(f.supports);
@@ -340,6 +354,10 @@ CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::stri
         out.values(constraints[i]) = c.factor * *values[i];
       }
   }
+  for (std::size_t k = 0; k < f.supports.size() && !assembled; ++k)
+    for (std::size_t i = 0; i < 6; ++i)
+      if (const double way = f.supports[k].second.settled(as_index(i)); way != 0)
+        out.values(m.supports[k].constraint[i]) += way;
   return out;
 }
 

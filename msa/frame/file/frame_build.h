@@ -54,8 +54,13 @@ struct CaseLoad {
   std::vector<ElementLoad> elements;  ///< by beam
 };
 
-/// With the misfits of the members, which are there in every case. Throws InputError with the case where it has a load
+/// A wrench of a load case as it really acts.
+Vector6 turned(const LoadCase&, const Vector6& wrench);
+
+/// With the misfits and temperatures of members and the settlements of supports, which are there in every case;
+/// `assembled`: with the misfits alone, as the frame was assembled. Throws InputError with the case where it has a load
 /// out of the plane of a plane frame, or displaces a freedom that no support holds rigidly.
-CaseLoad load_of(const FrameDescription&, const FrameModel&, const std::string& name, const LoadCase&);
+CaseLoad load_of(const FrameDescription&, const FrameModel&, const std::string& name, const LoadCase&,
+                 bool assembled = false);
 
 }  // namespace deflect::frame

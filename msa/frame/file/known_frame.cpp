@@ -299,7 +299,10 @@ std::optional<State> KnownFrame::Impl::under_input(const Near& n, const TakenLaw
   const Input in = input_of(n, t);
   std::optional<VectorX> state = from_nothing(n, in.forces, in.values);
   if (!state) return std::nullopt;
-  return seen(n, std::move(*state), in.forces, std::vector<ElementLoad>(n.m.model.beams.size()), in);
+  State out = seen(n, std::move(*state), in.forces, std::vector<ElementLoad>(n.m.model.beams.size()), in);
+  // The force beside what holds a node is the support's, too.
+  if (t.at == TakenLaws::At::support && !t.in_series) out.seen.reactions[t.part](as_index(t.freedom)) += 1;
+  return out;
 }
 
 KnownFrame::KnownFrame(const FrameDescription& f, Named<LoadCase> loads) {
