@@ -158,6 +158,8 @@ SETS = {
         ("modulus", 1.04, None, []),
         ("factor@twist", 1.06, None, []),
         ("gain@turn_C", 1.05, None, []),
+        ("stiction@top_x", None, (1e-7, 1e-3), []),
+        ("elsewhere@twist/C/B", 1, None, []),
     ],
     "lattice-girder": [
         ("restraint@support.r4.ux", None, (1e2, 1e9), []),
@@ -179,6 +181,9 @@ SETS = {
         ("friction@support.N0.uz", None, (1, 1e6), ["friction@spring.pad0.uz"]),
         ("modulus", 1.04, None, []),
         ("factor@at 3", 1.06, None, []),
+        ("restraint@support.N0.ry", None, (1e2, 1e9), []),
+        ("stiction@z0", None, (1e-7, 1e-3), []),
+        ("elsewhere@at 3/N3/N4", 1, None, []),
     ],
 }
 # Mistakes of recording: frame, kind, what of. They are made in a healthy frame.

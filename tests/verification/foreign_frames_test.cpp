@@ -56,6 +56,14 @@ std::vector<std::string> parts_of(const std::string& effect) {
   return out;
 }
 
+/// What looks alike and is to be told apart: a sensor that sticks from a support or spring that rubs, play from a free
+/// direction that is restrained.
+bool is_the_other(const std::string& hidden, const std::string& named) {
+  for (const auto& [a, b] : {std::pair{"stiction@", "friction@"}, {"clearance@", "restraint@"}})
+    if ((hidden.starts_with(a) && named.starts_with(b)) || (hidden.starts_with(b) && named.starts_with(a))) return true;
+  return false;
+}
+
 class ForeignFrame : public testing::TestWithParam<std::string> {};
 
 TEST_P(ForeignFrame, WhatIsHiddenIsNamedOrTied) {
@@ -80,6 +88,8 @@ TEST_P(ForeignFrame, WhatIsHiddenIsNamedOrTied) {
   });
   if (!truth.contains("mistake") || names_it) {
     EXPECT_TRUE(names_it) << said;
+    for (const std::string& each : found)
+      EXPECT_FALSE(is_the_other(truth.at("effect").get<std::string>(), each)) << said;
     return;
   }
   ASSERT_TRUE(diagnosis::is_mistaken(d)) << said;

@@ -174,6 +174,27 @@ class Comparing {
         found_.chi2_left / std::max(1.0, freedoms - static_cast<double>(found_.columns.cols()));
   }
 
+  void add_curves() {
+    ResidualStudy& s = c.study;
+    const statistics::Uncertainty& u = *uncertainty_;
+    if (s.standing->has_tool_point()) {
+      c.curves = elongation_curves(s, u, left_);
+      return;
+    }
+    s.inner = s.standing->inner_sites(*s.data);
+    InnerFits fits = fits_of_inner_sites(s, u, left_);
+    c.inner = std::move(fits.all);
+    c.curves = std::move(fits.curves);
+    VectorX of_reading = VectorX::Zero(std::ssize(s.data->readings));
+    for (std::size_t i = 0; i < s.values.size(); ++i)
+      if (!aside_[s.values[i].reading])
+        of_reading(as_index(s.values[i].reading)) += std::pow(left_(as_index(i)) / c.sigma[i], 2);
+    Eigen::Index most = 0;
+    of_reading.maxCoeff(&most);
+    c.telling = as_size(most);
+    c.residual_forces = residual_forces(s, c.sigma, c.tolerances.A.shared, left_, c.telling);
+  }
+
   /// Tests, curves, held-out poses.
   void test() {
     const ResidualStudy& s = c.study;
@@ -187,7 +208,7 @@ class Comparing {
     columns_.clear();
     VectorX eta;
     const std::function<void()> tests[] = {
-        [&] { c.contrasts = contrast_tests(s, u, left_, aside_); }, [&] { c.curves = elongation_curves(s, u, left_); },
+        [&] { c.contrasts = contrast_tests(s, u, left_, aside_); }, [&] { add_curves(); },
         [&] { c.held_out = HeldOut(s, u, aside_).rmse(c.residual); }, [&] { eta = u.nuisances(left_); },
         [&] {
           if (shape_.size() > 0) c.deformed_shape_fit = statistics::regress(u, c.residual, shape_, found_.columns);

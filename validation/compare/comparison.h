@@ -10,6 +10,7 @@
 #include "validation/compare/elongation.h"
 #include "validation/compare/errors_by_group.h"
 #include "validation/compare/findings.h"
+#include "validation/compare/inner_sites.h"
 #include "validation/compare/plausibility.h"
 #include "validation/prediction/prediction.h"
 #include "validation/statistics/uncertainty.h"
@@ -47,7 +48,10 @@ struct Comparison {
   /// Tolerances that deviate by more than two standard deviations, each with its number of standard deviations.
   std::vector<std::pair<std::string, double>> strained;
   std::vector<RecordingMistake> mistakes;  ///< recording mistakes (plausibility.h), the headline first
-  std::vector<ElongationCurve> curves;     ///< of the sites
+  std::vector<ElongationCurve> curves;     ///< of the sites, all together; of a frame's, each alone
+  std::vector<InnerSiteFit> inner;         ///< of a frame, the most telling first
+  std::size_t telling = 0;                 ///< the reading whose residual is the least likely by chance
+  VectorX residual_forces;                 ///< of a frame by study.inner, at that reading
   statistics::ToleranceModel tolerances;
   ResidualStudy study;        ///< residuals, forces, sites: for figures
   VectorX residual;           ///< of study.values

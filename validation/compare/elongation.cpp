@@ -20,6 +20,14 @@ double hat(double x, int k, int knots) {
   return std::max(0.0, 1 - std::abs(x - knot(k, knots)) * (side - 1));
 }
 
+/// Point by point, without knots that have no data.
+void put_point(ElongationCurve& curve, double weight, double force, double elongation, double variance) {
+  if (weight < 0.5) return;
+  curve.force.push_back(force);
+  curve.elongation.push_back(elongation);
+  curve.deviation.push_back(std::sqrt(std::max(0.0, variance)));
+}
+
 }  // namespace
 
 std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const statistics::Uncertainty& u,
@@ -55,14 +63,32 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const sta
     ElongationCurve curve{site.name, site.rotation, {}, {}, {}};
     for (int j = 0; j < knots; ++j) {
       const Eigen::Index column = as_index(k) * knots + j;
-      if (weight(column) < 0.5) continue;
-      curve.force.push_back(most(as_index(k)) * knot(j, knots));
-      curve.elongation.push_back(fit.amplitude(column));
-      curve.deviation.push_back(std::sqrt(std::max(0.0, fit.covariance(column, column))));
+      put_point(curve, weight(column), most(as_index(k)) * knot(j, knots), fit.amplitude(column),
+                fit.covariance(column, column));
     }
     out.push_back(std::move(curve));
   }
   return out;
+}
+
+ElongationCurve curve_of(const statistics::Regressions& fits,
+                         const std::function<VectorX(const std::function<double(double)>&)>& rows, const VectorX& force,
+                         const std::string& name, bool rotation, int knots) {
+  const double most = force.cwiseAbs().maxCoeff();
+  ElongationCurve curve{name, rotation, {}, {}, {}};
+  VectorX weight = VectorX::Zero(knots);
+  MatrixX shapes;
+  for (int j = 0; j < knots; ++j) {
+    const auto at = [&](double f) { return hat(f / most, j, knots); };
+    const VectorX column = rows(at);
+    if (j == 0) shapes.resize(column.size(), knots);
+    shapes.col(j) = column;
+    weight(j) = force.unaryExpr(at).sum();
+  }
+  const statistics::Regression fit = fits.on(shapes);
+  for (int j = 0; j < knots; ++j)
+    put_point(curve, weight(j), most * knot(j, knots), fit.amplitude(j), fit.covariance(j, j));
+  return curve;
 }
 
 }  // namespace deflect::compare

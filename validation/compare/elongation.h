@@ -2,6 +2,7 @@
 // linear between knots on each side of f = 0, where it may jump.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,11 @@ struct ElongationCurve {
 /// the curves are determined where the readings load the sites independently. Empty without sites.
 std::vector<ElongationCurve> elongation_curves(const ResidualStudy&, const statistics::Uncertainty&,
                                                const VectorX& residual, int knots = 10);
+
+/// The curve of one site alone. `rows`: the change of the measured numbers by an elongation that is a function of the
+/// site's force; `force`: by reading.
+ElongationCurve curve_of(const statistics::Regressions&,
+                         const std::function<VectorX(const std::function<double(double)>&)>& rows, const VectorX& force,
+                         const std::string& name, bool rotation, int knots);
 
 }  // namespace deflect::compare

@@ -20,6 +20,7 @@ struct ResidualStudy {
   std::vector<VectorX> predicted;                     ///< of all channels (Standing::predict)
   std::vector<VectorX> deformed_shape;                ///< finite − linear geometry; empty: in `predicted`, or unknown
   std::vector<std::vector<subject::Site>> sites;      ///< by pose
+  subject::InnerSites inner;                          ///< of a subject without tool point
   std::vector<Matrix6> compliance;                    ///< by pose: Standing::compliance()
   std::vector<VectorX> force;                         ///< of each site, N or Nm
   std::vector<VectorX> heading;  ///< of each site: sign of the last change of its force; 0 before the first

@@ -22,10 +22,22 @@ std::string with_place(const std::string& page, const std::string& place) {
   return out;
 }
 
-std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p, const std::string& value) {
+std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p,
+                                 const std::vector<EffectParameter>& parameters) {
+  const std::string value = law.value(parameters, p);
   std::string head = p.path;
   if (law.side_by_side && p.hold == subject::Hold::elastic) head += ".beside";
   std::vector<EffectEdit> out;
+  if (law.field == std::string(".settled")) {  // in front of the freedom
+    for (const std::size_t i : p.freedoms)
+      out.push_back({law.action, {fmt::format("{}.settled.{}", head, subject::freedom_name(p, i))}, value});
+    return out;
+  }
+  if (law.field == std::string(".turned")) {
+    for (std::size_t k = 0; k < p.turns.size(); ++k)
+      out.push_back({law.action, {fmt::format("{}.turned.{}", head, p.turns[k])}, "$" + parameters[k].name});
+    return out;
+  }
   for (const std::size_t i : p.freedoms)
     out.push_back({law.action, {fmt::format("{}.{}{}", head, subject::freedom_name(p, i), law.field)}, value});
   if (p.freedoms.empty()) out.push_back({law.action, {head + law.field}, value});
@@ -43,7 +55,7 @@ Effect effect_of(const PlaceLaw& law, const subject::Place& p, bool several_legs
                         law.title);
   e.scope = one_leg ? Scope::one_leg : several_legs && p.in_legs() ? Scope::all_legs : Scope::machine;
   e.parameters = law.parameters(p);
-  e.edits = edits_of(law, p, law.value(e.parameters, p));
+  e.edits = edits_of(law, p, e.parameters);
   for (auto page : {&EffectPages::machine, &EffectPages::data, &EffectPages::bench, &EffectPages::cure})
     e.pages.*page = with_place(law.pages.*page, words);
   e.origin = "places";

@@ -8,6 +8,11 @@
 //   gain       named sensors                                   what they read, times a factor
 //   zero       named sensors whose zero is taken               what they read, plus a number
 //   stiction   sensors of frames                               what they read lags by up to a number
+//   crosstalk  two sensors of a frame, of one quantity          what one reads, plus a share of the other
+//   turned     load cases                                      turned by small angles
+//   heat       members whose material expands                  warmer by a number
+//   misfit     members of frames with laws that are not linear, or in the deformed shape: too long by a number
+//   settled    rigid directions of supports                    moved by a number
 //   clearance  rigid and elastic directions                    free travel to both sides, in series
 //   pull push  rigid and elastic directions                    a spring in series that yields in one sense only
 //   contact    rigid and elastic translations                  in series, as the force to the power 2/3

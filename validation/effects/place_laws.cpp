@@ -20,17 +20,6 @@ constexpr Units along{"mm", "N", "force", 1e-4, 1e5}, about{"rad", "Nmm", "momen
 
 const Units& units(const subject::Place& p) { return p.rotation() ? about : along; }
 
-/// How what a sensor reads is measured, and what is little of it.
-struct ReadUnit {
-  const char *suffix, *unit;
-  double small;
-};
-const ReadUnit& read_unit(const subject::Place& p) {
-  static constexpr ReadUnit units[] = {
-      {"mm", "mm", 0.01}, {"rad", "rad", 1e-4}, {"N", "N", 10}, {"Nmm", "Nmm", 1e4}, {"um_per_m", "um/m", 5}};
-  return nth(units, *p.reads);
-}
-
 EffectParameter parameter(std::string name, std::string unit, double start, double vanishes, std::string words) {
   return {std::move(name), std::move(unit), start, start * 1e-6, start * 1e6, true, vanishes, std::move(words)};
 }
@@ -119,19 +108,6 @@ const PlaceLaw all[] = {
      EffectEdit::Action::multiply,
      ".factor"},
     {"factor",
-     [](const subject::Place& p) { return p.kind == subject::PlaceKind::load; },
-     "is not as large as described",
-     [](const subject::Place&) {
-       return std::vector<EffectParameter>{{"factor", "", 0.95, 0.1, 10, true, 1, "true load over the recorded one"}};
-     },
-     [](const auto& p, const subject::Place&) { return first_of(p); },
-     {"The load {} is another one than described: a weight that was not weighed, a jack with friction, a wrong unit.",
-      "All readings under {} are off by one factor, those under other loads are right.",
-      "Weigh it, or put a load cell under it.", "Put the measured load in."},
-     false,
-     EffectEdit::Action::multiply,
-     ".factor"},
-    {"factor",
      [](const subject::Place& p) { return p.path.starts_with("materials."); },
      "is stiffer or softer than described",
      [](const subject::Place&) {
@@ -156,49 +132,54 @@ const PlaceLaw all[] = {
       "Measure it with a caliper.", "Put the measured length in."},
      false,
      EffectEdit::Action::multiply},
-    {"gain",
-     [](const subject::Place& p) { return p.kind == subject::PlaceKind::sensor; },
-     "reads too much or too little",
+    {"heat",
+     [](const subject::Place& p) { return p.expands; },
+     "is warmer than at the zero",
      [](const subject::Place&) {
-       return std::vector<EffectParameter>{{"gain", "", 0.98, 0.3, 3, true, 1, "recorded over true value"}};
+       return std::vector<EffectParameter>{{"heated_K", "K", 5, -300, 300, false, 0, "how much warmer it is, K"}};
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
-     {"The scale of {} is off: its calibration, its amplifier, the lever or the angle at which it touches.",
-      "All readings of {} are off by one factor, those of the other instruments are right.",
-      "Give {} a known value and read the step.", "Calibrate it, or put the gain into the description."},
+     {"{} has another temperature than when the readings were set to zero: the sun on one side, a motor, a draught. It "
+      "is longer by expansion times its length.",
+      "All readings are off by one number each, whatever the load, in the pattern of a longer {}.",
+      "A thermometer on it and on its neighbours.", "Wait, shade it, or take the zero again."},
      false,
-     EffectEdit::Action::set,
-     ".gain"},
-    {"zero",
-     [](const subject::Place& p) { return p.reads.has_value(); },
-     "does not count from zero",
+     EffectEdit::Action::add,
+     ".heated"},
+    {"misfit",
+     [](const subject::Place& p) { return p.misfit_shows; },
+     "is too long or too short",
+     [](const subject::Place&) {
+       return std::vector<EffectParameter>{{"misfit_mm", "mm", 0.1, -50, 50, false, 0, "how much too long it is, mm"}};
+     },
+     [](const auto& p, const subject::Place&) { return first_of(p); },
+     {"{} was made or tightened to another length than its nodes are apart: it is strained before any load, and "
+      "strains "
+      "others.",
+      "What depends on the force that is there already: play that is taken up earlier on one side, bending that grows "
+      "with the axial force.",
+      "Loosen its joint: it springs.", "Adjust its length, or put the misfit into the description."},
+     false,
+     EffectEdit::Action::add,
+     ".misfit"},
+    {"settled",
      [](const subject::Place& p) {
-       const ReadUnit& u = read_unit(p);
-       return std::vector<EffectParameter>{{fmt::format("offset_{}", u.suffix), u.unit, u.small, -1e5 * u.small,
-                                            1e5 * u.small, false, 0, "what it reads where the true value is zero"}};
+       return p.kind == subject::PlaceKind::support && p.hold == subject::Hold::rigid && single(p);
      },
-     [](const auto& p, const subject::Place&) { return first_of(p); },
-     {"The zero of {} was not taken, or has moved since.",
-      "All readings of {} are off by one number, whatever the load.", "Unload and read it.",
-      "Take the zero again, or say 'zero: free' in the description."},
-     false,
-     EffectEdit::Action::set,
-     ".offset"},
-    {"stiction",
-     [](const subject::Place& p) { return p.reads && p.may_stick; },
-     "sticks before it follows",
+     "has moved",
      [](const subject::Place& p) {
-       const ReadUnit& u = read_unit(p);
-       return std::vector{parameter(fmt::format("stick_{}", u.suffix), u.unit, u.small, 0,
-                                    "how far the reading lags before it follows")};
+       const Units& u = units(p);
+       const double way = 1e3 * u.small_way;
+       return std::vector<EffectParameter>{{fmt::format("way_{}", u.way), u.way, way, -1e4 * way, 1e4 * way, false, 0,
+                                            fmt::format("how far it has moved since the zero, {}", u.way)}};
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
-     {"{} lags behind what it reads: a plunger that rubs, a worn spindle, play in its linkage.",
-      "Loops of {} alone, of one width at every load; the other instruments show none.", "Tap it: it jumps.",
-      "Clean or replace it; approach every reading from one side."},
+     {"{} has moved since the readings were set to zero: soil that gives, a shim that was put in, a jack.",
+      "All readings are off by one number each, whatever the load, as a movement of {} makes them.",
+      "Level it against a point that does not move.", "Jack it back, or take the zero again."},
      false,
-     EffectEdit::Action::set,
-     ".stick"},
+     EffectEdit::Action::add,
+     ".settled"},
     {"clearance",
      may_be_loose,
      "has play",
@@ -337,6 +318,13 @@ const PlaceLaw all[] = {
 
 }  // namespace
 
-std::span<const PlaceLaw> place_laws() { return all; }
+std::span<const PlaceLaw> place_laws() {
+  static const std::vector<PlaceLaw> laws = [] {
+    std::vector<PlaceLaw> out(std::begin(all), std::end(all));
+    out.insert(out.end(), rig_laws().begin(), rig_laws().end());
+    return out;
+  }();
+  return laws;
+}
 
 }  // namespace deflect::effects

@@ -24,6 +24,8 @@ struct PlaceLaw {
   bool side_by_side = false;  ///< with what yields there
 };
 
+/// All of them; rig_laws() are those of sensors and load cases.
 std::span<const PlaceLaw> place_laws();
+std::span<const PlaceLaw> rig_laws();
 
 }  // namespace deflect::effects

@@ -198,11 +198,14 @@ class ElongationPanels {
         !there_[1]   ? "elongation (µm, positive where pulled longer) over the force (N, positive where it pulls)"
         : !there_[0] ? "turn (µrad) over the moment (Nm), both positive about the joint's axis"
                      : "elongation (µm) over the force (N), or turn (µrad) over the moment (Nm)";
-    return fmt::format(
-        "What the sites ({} to {}) yield beyond the model, read off the residuals without a law: {}. "
-        "Band: one standard deviation. {} {} {}",
-        c_.curves.front().site, c_.curves.back().site, what, report::axes_sentence(c_), report::data_sentence(c_),
-        report::noise_sentence(c_));
+    const std::string sites =
+        c_.study.standing->has_tool_point()
+            ? fmt::format("What the sites ({} to {}) yield beyond the model", c_.curves.front().site,
+                          c_.curves.back().site)
+            : "What a member or support would have to yield beyond the model if all that is missing were there, of "
+              "those that explain most; its force follows from statics alone or is as the model shares it out. Curves";
+    return fmt::format("{}, read off the residuals without a law: {}. Band: one standard deviation. {} {} {}", sites,
+                       what, report::axes_sentence(c_), report::data_sentence(c_), report::noise_sentence(c_));
   }
 
   const compare::Comparison& c_;
@@ -223,7 +226,7 @@ std::optional<Figure> elongation(const compare::Comparison& c, const FigureStyle
 /// To add a figure: declare it here, give it a row, define it in a file of its own.
 using Draw = std::optional<Figure> (*)(const compare::Comparison&, const FigureStyle&);
 constexpr Draw compared[] = {residuals, residual_map, groups, secant, elongation, loops};
-constexpr std::array<Draw, 2> of_channels = {channels, groups};
+constexpr std::array<Draw, 3> of_channels = {channels, groups, elongation};
 
 }  // namespace
 

@@ -94,6 +94,39 @@ function frameSensors(scene3d, size, materials) {
   return (scene3d.sensors || []).map((s) => loadArrow(vector(s.at_mm), {vector: s.axis, kind: 'line', words: s.name}, 0.07 * size, materials[s.guilty ? 'guilty' : 'blue'], true, 0.028 * size));
 }
 
+/**
+ * By member what the sensors say of its axial force: N more (or less) of its size than predicted at one reading; null
+ * where nothing is known of that or nothing differs.
+ */
+function residualForces(measurements) {
+  const inside = measurements && measurements.result.inside;
+  if (!inside) return null;
+  const more = new Map(inside.residual_forces.filter((f) => f.unit === 'N').map((f) => [f.name, {more: Math.abs(f.predicted + f.more_than_predicted) - Math.abs(f.predicted), predicted: f.predicted}]));
+  const most = Math.max(0, ...[...more.values()].map((f) => Math.abs(f.more)));
+  const size = Math.max(0, ...[...more.values()].map((f) => Math.abs(f.predicted)));
+  return most > 1e-6 * size ? {more, most, line: inside.reading_line} : null;
+}
+
+/** Members that are not guilty get materials of their own, to be coloured by force. */
+function giveForces(rods, bodies, forces) {
+  for (const rod of rods) {
+    const body = bodies[rod.userData.body], force = forces && body.kind === 'member' && forces.more.get(body.part);
+    if (!force) continue;
+    rod.userData.force = force.more;
+    rod.userData.words += `, predicted ${num(force.predicted)} N, ${num(Math.abs(force.more))} N ${force.more < 0 ? 'less' : 'more'} by the sensors`;
+    if (!body.guilty) rod.material = rod.material.clone();
+  }
+}
+
+function paintForces(rods, bodies, forces, on, t) {
+  for (const rod of rods) {
+    const {force, body} = rod.userData;
+    if (force === undefined || bodies[body].guilty) continue;
+    rod.material.color.set(t.metal);
+    if (on) rod.material.color.lerp(new THREE.Color(force > 0 ? t.orange : t.blue), Math.sqrt(Math.abs(force) / forces.most));
+  }
+}
+
 /** Measured − predicted at the tool: an arrow for each reading, on one scale. */
 function residualArrows(scene3d, version, size) {
   const lengths = (version ? version.readings : []).map((r) => Math.hypot(...r.residual.slice(0, 3).map((x) => x || 0))).sort((a, b) => a - b);
@@ -139,7 +172,7 @@ function explain(shot, looking, meshes, shapeNow) {
   shot.canvas.addEventListener('pointerleave', (event) => tooltip(event, ''));
 }
 
-function controlsOf(scene3d, state, scaleWords, scaleOf, hasResiduals, update) {
+function controlsOf(scene3d, state, scaleWords, scaleOf, hasResiduals, hasForces, update) {
   const {poses} = scene3d, poseWords = el('span', {}, poses[state.pose].label);
   const slider = (name, words, attributes, change) => el('label', {}, name, ' ', words, el('input', {type: 'range', ...attributes, oninput: (event) => change(Number(event.target.value))}));
   return el('div', {class: 'controls'},
@@ -157,7 +190,8 @@ function controlsOf(scene3d, state, scaleWords, scaleOf, hasResiduals, update) {
       state.shape = Number(event.target.value);
       update();
     }}, poses[0].shapes.map((shape, i) => el('option', {value: i}, shapeWords(shape))))) : null,
-    hasResiduals ? el('label', {}, el('input', {type: 'checkbox', checked: true, onchange: (event) => { state.arrows = event.target.checked; update(); }}), ' residual arrows') : null);
+    hasResiduals ? el('label', {}, el('input', {type: 'checkbox', checked: true, onchange: (event) => { state.arrows = event.target.checked; update(); }}), ' residual arrows') : null,
+    hasForces ? el('label', {}, el('input', {type: 'checkbox', id: 'residual-forces', checked: true, onchange: (event) => { state.forces = event.target.checked; update(); }}), ' members by residual force') : null);
 }
 
 function shorten(names) {
@@ -166,7 +200,7 @@ function shorten(names) {
   return names.length > 4 ? names.slice(0, 4).join(', ') + ` and ${names.length - 4} more` : names.join(', ');
 }
 
-function legendOf(scene3d, state, guilt, residuals) {
+function legendOf(scene3d, state, guilt, residuals, forces) {
   const shape = scene3d.poses[state.pose].shapes[state.shape];
   return [
     scene3d.guilty.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--guilty)'}}), guilt + ': ' + shorten(scene3d.guilty)) : null,
@@ -174,6 +208,8 @@ function legendOf(scene3d, state, guilt, residuals) {
     (scene3d.sensors || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--blue)'}}), 'sensors') : null,
     shape && shape.arrows.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--text)'}}), scene3d.kind === 'frame' ? 'loads' : 'load on the tool') : null,
     scene3d.ground.length ? el('div', {}, el('span', {class: 'swatch hatched'}), scene3d.kind === 'frame' ? 'supports' : 'ground') : null,
+    forces && state.forces ? el('div', {}, `Members, by the sensors, at line ${forces.line}: ${num(forces.most, 2)} N less than predicted `,
+      el('span', {class: 'forces'}), ` ${num(forces.most, 2)} N more`) : null,
     residuals && state.arrows ? el('div', {}, `Arrows: measured − predicted × ${num(residuals.times, 3)}, by axis of the load: `,
       ...['x', 'y', 'z'].map((name, i) => el('span', {}, el('span', {class: 'swatch', style: {background: `var(--${['blue', 'orange', 'green'][i]})`}}), name + ' '))) : null,
   ].filter(Boolean);
@@ -199,8 +235,10 @@ export function machine(scene3d, measurements, guilt) {
   const {cells, poses, tool} = scene3d;
   const {box, size, scaleOf, arrow, points, thick} = measured(scene3d);
   const worst = version ? [...version.poses].sort((a, b) => b.rmse - a.rmse)[0].label : null;
-  const state = {pose: Math.max(0, poses.findIndex((p) => p.label === worst)), shape: 0, scale: poses[0].shapes.length ? scaleOf(0) : 1, arrows: true};
+  const state = {pose: Math.max(0, poses.findIndex((p) => p.label === worst)), shape: 0, scale: poses[0].shapes.length ? scaleOf(0) : 1, arrows: true, forces: true};
   const {root, materials, rods, knots, tip, ghost} = built(scene3d, size);
+  const forces = residualForces(measurements);
+  giveForces(rods, scene3d.bodies, forces);
   const atTool = version && version.readings.some((r) => r.residual.slice(0, 3).some((x) => x !== null));
   const residuals = atTool ? residualArrows(scene3d, version, size) : null;
   const ground = groundUnder(scene3d.ground, scene3d.kind === 'machine', box.getCenter(new THREE.Vector3()), size, standpoint(box).up);
@@ -211,6 +249,7 @@ export function machine(scene3d, measurements, guilt) {
   const shot = stage(holder, 'The ' + scene3d.kind + ' under load, in 3D', (renderer, width, height) => {
     const t = theme();
     for (const [name, material] of Object.entries(materials)) material.color.set(t[name]);
+    if (forces) paintForces(rods, scene3d.bodies, forces, state.forces, t);
     ghost.material.color.set(t.quiet);
     looking.fit(width, height);
     renderer.render(root, looking.camera);
@@ -236,11 +275,11 @@ export function machine(scene3d, measurements, guilt) {
     scaleWords.textContent = shape ? '× ' + num(state.scale, 3) : '';
     factor.textContent = shape ? `deflection × ${num(state.scale, 3)}` : '';
     readout.textContent = describe(scene3d, state);
-    legend.replaceChildren(...legendOf(scene3d, state, guilt, residuals));
+    legend.replaceChildren(...legendOf(scene3d, state, guilt, residuals, forces));
     shot.ask();
   };
   onTheme(update);
   explain(shot, looking, [...rods, ...knots, ...(tip ? [tip] : []), ...ground.meshes], () => poses[state.pose].shapes[state.shape]);
   update();
-  return el('div', {}, holder, legend, controlsOf(scene3d, state, scaleWords, scaleOf, Boolean(residuals), update), readout);
+  return el('div', {}, holder, legend, controlsOf(scene3d, state, scaleWords, scaleOf, Boolean(residuals), Boolean(forces), update), readout);
 }

@@ -46,7 +46,7 @@ function guilt() {
 }
 
 function machineFigure() {
-  if (data.scene.kind === 'frame' && data.versions.length) return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom. Arrows with names: sensors.', attempt('The frame', () => machine(data.scene, null, guilt())));
+  if (data.scene.kind === 'frame' && data.versions.length) return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom. Arrows with names: sensors.', attempt('The frame', () => machine(data.scene, data.versions[0], guilt())));
   if (data.scene.kind === 'frame') return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom.', attempt('The frame', () => machine(data.scene, null, '')));
   const version = data.versions[0];
   const moves = () => ({

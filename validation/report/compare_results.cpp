@@ -10,6 +10,7 @@
 #include "msa/base/index.h"
 #include "validation/json/json_text.h"
 #include "validation/report/compare_words.h"
+#include "validation/report/inner_sites_results.h"
 #include "validation/report/short_lists.h"
 #include "validation/report/text.h"
 #include "validation/report/verdict_words.h"
@@ -240,6 +241,7 @@ std::string compare_report(const compare::Comparison& c) {
   if (!c.strained.empty())
     out +=
         fmt::format("tolerances alone would have to be off, in standard deviations: {}\n", strained_words(c.strained));
+  if (const std::string inside = inner_sites_text(c); !inside.empty()) out += "\n" + inside;
   return out + "\n" + tests_table(c) + "\n" + errors_table(c);
 }
 
@@ -279,6 +281,7 @@ std::string compare_json(const compare::Comparison& c) {
   j["looks_like"] = Json::array();
   for (const compare::RecordingMistake& mistake : c.mistakes) j["looks_like"].push_back(mistake.sentence);
   j["mistakes"] = mistakes_json(c.mistakes);
+  if (Json inside = inner_sites_json(c); !inside.is_null()) j["inside"] = std::move(inside);
   j["set_aside_lines"] = c.set_aside;
   return json::json_text(j);
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "msa/base/error.h"
@@ -9,6 +10,7 @@
 #include "msa/frame/file/frame_tolerances.h"
 #include "validation/subject/frame_places.h"
 #include "validation/subject/frame_readings.h"
+#include "validation/subject/frame_sites.h"
 #include "validation/subject/subject.h"
 
 namespace deflect::subject {
@@ -16,17 +18,17 @@ namespace {
 
 using frame::FrameDescription;
 
-/// The largest distance of two corners of the box around its nodes.
-double size_of(const FrameDescription& f) {
-  Vector3 low = f.nodes.front().second, high = low;
-  for (const auto& [name, at] : f.nodes) low = low.cwiseMin(at), high = high.cwiseMax(at);
-  return (high - low).norm();
-}
-
 /// A frame does not move: it has one pose, whatever labels the measurements have.
 class FrameStanding final : public Standing {
  public:
-  FrameStanding(std::shared_ptr<const FrameDescription> f, std::size_t poses) : frame_(std::move(f)), poses_(poses) {}
+  /// `near`: of a frame that may differ little.
+  FrameStanding(std::shared_ptr<const FrameDescription> f, const measurement::Measurements& data,
+                std::shared_ptr<const FrameNearby> near = nullptr)
+      : frame_(std::move(f)), poses_(data.poses.size()), near_(std::move(near)), known_(near_) {
+    if (!known_) known_ = std::make_shared<const FrameNearby>(*frame_, data);
+  }
+
+  const std::shared_ptr<const FrameNearby>& known() const { return known_; }
 
   std::size_t poses() const override { return poses_; }
   double size() const override { return size_of(*frame_); }
@@ -35,7 +37,11 @@ class FrameStanding final : public Standing {
   /// By the MSA, which alone knows frames.
   std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
                                const parallel::Work&) const override {
-    return predicted_readings(*frame_, data, o.geometry.value_or(frame_->geometry));
+    return predicted_readings(*frame_, data, o.geometry.value_or(frame_->geometry), near_.get());
+  }
+
+  InnerSites inner_sites(const measurement::Measurements& data) const override {
+    return inner_sites_of(*frame_, data, *known_);
   }
 
   std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const override;
@@ -43,6 +49,7 @@ class FrameStanding final : public Standing {
  private:
   std::shared_ptr<const FrameDescription> frame_;
   std::size_t poses_;
+  std::shared_ptr<const FrameNearby> near_, known_;  // for itself; for others
 };
 
 /// One tolerance, moved by a standard deviation.
@@ -77,9 +84,8 @@ std::vector<FrameMove> frame_moves(const FrameDescription& f, const measurement:
 
 class FrameDeviations final : public Deviations {
  public:
-  FrameDeviations(std::shared_ptr<const FrameDescription> linear, std::size_t poses,
-                  const measurement::Measurements& data)
-      : frame_(linear), poses_(poses), drawn_(std::move(linear), poses), moves_(frame_moves(*frame_, data)) {
+  FrameDeviations(std::shared_ptr<const FrameDescription> linear, const measurement::Measurements& data)
+      : frame_(linear), data_(data), drawn_(std::move(linear), data), moves_(frame_moves(*frame_, data)) {
     for (const FrameMove& move : moves_) tolerances_.push_back(move.tolerance);
   }
 
@@ -90,12 +96,13 @@ class FrameDeviations final : public Deviations {
     FrameDescription built = move.number.shifts.empty() ? *frame_ : frame::moved(*frame_, move.number);
     for (auto& [name, sensor] : built.sensors)
       if (name == move.sensor) sensor.gain += move.gain, sensor.zero += move.zero;
-    return std::make_unique<FrameStanding>(std::make_shared<const FrameDescription>(std::move(built)), poses_);
+    return std::make_unique<FrameStanding>(std::make_shared<const FrameDescription>(std::move(built)), data_,
+                                           drawn_.known());
   }
 
  private:
   std::shared_ptr<const FrameDescription> frame_;
-  std::size_t poses_;
+  const measurement::Measurements& data_;
   FrameStanding drawn_;
   std::vector<FrameMove> moves_;
   std::vector<Tolerance> tolerances_;
@@ -105,7 +112,13 @@ std::unique_ptr<const Deviations> FrameStanding::deviations(const measurement::M
   FrameDescription linear = *frame_;
   linear.geometry = Geometry::linear;
   linear.load_steps = 1;
-  return std::make_unique<FrameDeviations>(std::make_shared<const FrameDescription>(std::move(linear)), poses_, data);
+  return std::make_unique<FrameDeviations>(std::make_shared<const FrameDescription>(std::move(linear)), data);
+}
+
+/// Of one reading, where the description gives it: scatter, and rounding to a step, which is as good as even over it.
+std::optional<double> noise_of(const frame::FrameSensor& s) {
+  const double sigma = std::hypot(s.sigma, s.resolution / std::sqrt(12));
+  return s.sigma > 0 ? std::optional(sigma) : std::nullopt;
 }
 
 class FrameSubject final : public Subject::Kind {
@@ -127,15 +140,15 @@ class FrameSubject final : public Subject::Kind {
   measurement::Instruments instruments() const override {
     measurement::Instruments out;
     out.stationary = true;
-    for (const auto& [name, s] : frame_->sensors)
-      out.sensors.push_back({name, quantity_of(s), s.sigma > 0 ? std::optional(s.sigma) : std::nullopt});
+    for (const auto& [name, s] : frame_->sensors) out.sensors.push_back({name, quantity_of(s), noise_of(s)});
     for (const auto& [name, load] : frame_->loads) out.load_cases.push_back(name);
     for (const auto& [name, at] : frame_->nodes) out.load_points.push_back("node." + name);
     return out;
   }
 
-  std::shared_ptr<const Standing> stand(const measurement::Measurements& data, const Standing*) const override {
-    return std::make_shared<FrameStanding>(frame_, data.poses.size());
+  std::shared_ptr<const Standing> stand(const measurement::Measurements& data, const Standing* known) const override {
+    const auto* near = dynamic_cast<const FrameStanding*>(known);
+    return std::make_shared<FrameStanding>(frame_, data, near ? near->known() : nullptr);
   }
   std::shared_ptr<const Kind> named(const std::string& name) const override {
     FrameDescription f = *frame_;

@@ -8,6 +8,7 @@
 #include "msa/base/index.h"
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/member_axes.h"
+#include "validation/subject/frame_readings.h"
 
 namespace deflect::subject {
 namespace {
@@ -58,8 +59,12 @@ bool bends_in_plane(const FrameDescription& f, const frame::FrameMember& m, std:
 
 /// A member's ends bend about y and z; in a plane frame, whose members lie in it, about one of them.
 void add_members(const FrameDescription& f, std::vector<Place>& out) {
+  const bool bends = f.geometry != Geometry::linear || !has_linear_laws(f);
   for (const auto& [name, member] : f.members) {
     out.push_back({PlaceKind::member, {}, name, "members." + name});
+    const frame::FrameMaterial* material = find(f.materials, member.material);
+    out.back().expands = material && material->expansion;
+    out.back().misfit_shows = bends;
     if (member.truss) continue;
     for (const char* end : {"start", "end"}) {
       const frame::Freedoms& released = end[0] == 's' ? member.release_from : member.release_to;
@@ -106,11 +111,24 @@ std::vector<Place> places_of(const FrameDescription& f) {
   add_springs(f, out);
   add_members(f, out);
   add_stock(f, out);
-  for (const auto& [name, load] : f.loads) out.push_back({PlaceKind::load, {}, name, "loads." + name});
+  for (const auto& [name, load] : f.loads) {
+    out.push_back({PlaceKind::load, {}, name, "loads." + name});
+    const auto in_base = [](const auto& line) { return !line.second.member_axes; };
+    if (!load.nodes.empty() || !load.gravity.isZero(0) ||
+        std::any_of(load.members.begin(), load.members.end(), in_base))
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (f.plane == frame::Plane::none || as_index(axis) == frame::normal_axis(f.plane))
+          out.back().turns.push_back(axis);
+  }
   for (const auto& [name, sensor] : f.sensors) {
     out.push_back({PlaceKind::sensor, {}, name, "sensors." + name});
     out.back().may_stick = true;
     if (!sensor.free_zero) out.back().reads = quantity_of(sensor);
+    for (const auto& [other, source] : f.sensors)
+      if (other != name && quantity_of(source) == quantity_of(sensor) && !find(sensor.crosstalk, other)) {
+        out.push_back({PlaceKind::sensor, {}, name + "." + other, "sensors." + name + ".crosstalk"});
+        out.back().other = other;
+      }
   }
   std::erase_if(out, [&](const Place& p) {
     return std::find(f.trusted.begin(), f.trusted.end(), nth(place_kind_names, p.kind)) != f.trusted.end();

@@ -10,7 +10,8 @@ namespace deflect::subject {
 
 /// All places of a frame, in the order of its file: each freedom of each support, those that it leaves free too; each
 /// freedom of each spring; members, and the rotations of their ends; materials, where there are several; dimensions of
-/// sections; load cases; sensors. In a plane frame without the freedoms that leave the plane.
+/// sections; load cases; sensors, and each with each other of its quantity. In a plane frame without the freedoms that
+/// leave the plane.
 std::vector<Place> places_of(const frame::FrameDescription&);
 
 /// What a sensor reads.

@@ -9,6 +9,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/frame/file/frame_analysis.h"
 #include "msa/frame/file/frame_fields.h"
 #include "msa/frame/file/frame_sensors.h"
@@ -41,11 +42,13 @@ std::vector<const frame::FrameSensor*> sensors_of(const FrameDescription& f, con
 
 void add(LoadCase& sum, const LoadCase& each, double share) {
   const double times = share * each.factor;
-  for (const auto& [node, wrench] : each.nodes) sum.nodes.emplace_back(node, times * wrench);
+  const Matrix3 turn = rotation_from_vector(each.turned);
+  for (const auto& [node, wrench] : each.nodes) sum.nodes.emplace_back(node, times * frame::turned(each, wrench));
   for (const auto& [member, load] : each.members)
-    sum.members.emplace_back(member, frame::LineLoad{times * load.q, load.member_axes});
+    sum.members.emplace_back(
+        member, frame::LineLoad{times * (load.member_axes ? load.q : Vector3(turn * load.q)), load.member_axes});
   for (const auto& [member, kelvin] : each.temperature) sum.temperature.emplace_back(member, times * kelvin);
-  sum.gravity += times * each.gravity;
+  sum.gravity += times * (turn * each.gravity);
   for (const auto& [node, values] : each.displacements) {
     auto found = std::find_if(sum.displacements.begin(), sum.displacements.end(),
                               [&name = node](const auto& other) { return other.first == name; });
@@ -67,7 +70,8 @@ LoadCase load_of(const FrameDescription& f, const measurement::Measurements& dat
   return out;
 }
 
-/// One case for each channel of load, in the order of load_channels().
+/// One case for each channel of load, in the order of load_channels(), and one for what is always there: misfits, heat,
+/// settlements.
 Named<LoadCase> unit_loads(const FrameDescription& f, const measurement::Measurements& data) {
   Named<LoadCase> out;
   for (const std::string& name : data.instruments.load_cases)
@@ -81,6 +85,7 @@ Named<LoadCase> unit_loads(const FrameDescription& f, const measurement::Measure
     unit.nodes.emplace_back(node_of(c.name.substr(0, dot)), Vector6::Unit(component));
     out.emplace_back(c.name, std::move(unit));
   }
+  out.emplace_back("always", LoadCase());
   return out;
 }
 
@@ -89,25 +94,69 @@ frame::FrameResult analysed(FrameDescription f, Named<LoadCase> loads, const fra
   return frame::analyse(f, o);
 }
 
+/// Sensors with a column, behind them those that only show in the readings of others, and what is recorded of them.
+struct Channels {
+  std::vector<const frame::FrameSensor*> sensors;
+  MatrixX mix;
+  VectorX zero;
+
+  Channels(const FrameDescription& f, const measurement::Measurements& data) : sensors(sensors_of(f, data)) {
+    const std::size_t shown = sensors.size();
+    for (std::size_t k = 0; k < shown; ++k)
+      for (const auto& [other, share] : sensors[k]->crosstalk) place_of(named(f.sensors, "sensor", other, f.name));
+    mix = MatrixX::Zero(as_index(shown), std::ssize(sensors));
+    zero = VectorX::Zero(as_index(shown));
+    for (std::size_t k = 0; k < shown; ++k) {
+      mix(as_index(k), as_index(k)) = sensors[k]->gain;
+      zero(as_index(k)) = sensors[k]->zero;
+      for (const auto& [other, share] : sensors[k]->crosstalk)
+        mix(as_index(k), place_of(named(f.sensors, "sensor", other, f.name))) += sensors[k]->gain * share;
+    }
+  }
+
+  /// Six zeros, then the readings.
+  VectorX recorded(const VectorX& true_readings) const {
+    VectorX out = VectorX::Zero(6 + mix.rows());
+    out.tail(mix.rows()) = mix * true_readings + zero;
+    return out;
+  }
+
+ private:
+  Eigen::Index place_of(const frame::FrameSensor& s) {
+    const auto at = std::find(sensors.begin(), sensors.end(), &s);
+    if (at != sensors.end()) return at - sensors.begin();
+    sensors.push_back(&s);
+    return std::ssize(sensors) - 1;
+  }
+};
+
+/// By reading (columns) the true factors on unit_loads(): without a load there is what is always there.
+MatrixX true_factors(const FrameDescription& f, const measurement::Measurements& data) {
+  const MatrixX recorded = measurement::loads_of(data);
+  MatrixX out(recorded.rows() + 1, recorded.cols());
+  out.topRows(recorded.rows()) = f.load_gain * recorded;
+  out.bottomRows<1>() = VectorX::Ones(recorded.cols()).transpose() - out.topRows(recorded.rows()).colwise().sum();
+  return out;
+}
+
+/// By sensor (rows) and load case.
+MatrixX true_readings(const std::vector<const frame::FrameSensor*>& sensors, const FrameDescription& f,
+                      const frame::FrameResult& result) {
+  MatrixX out(std::ssize(sensors), std::ssize(result.cases));
+  for (std::size_t c = 0; c < result.cases.size(); ++c)
+    for (std::size_t k = 0; k < sensors.size(); ++k)
+      out(as_index(k), as_index(c)) = frame::true_reading(*sensors[k], f, result.structure, result.cases[c]);
+  return out;
+}
+
 std::vector<VectorX> by_superposition(const FrameDescription& f, const measurement::Measurements& data) {
-  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
-  const MatrixX loads = f.load_gain * measurement::loads_of(data);
-  MatrixX S = MatrixX::Zero(std::ssize(sensors), loads.rows());  // true readings of unit loads
-  if (loads.rows() > 0) {
-    const frame::FrameResult result = analysed(f, unit_loads(f, data), {});
-    if (const std::string failed = frame::failed_check(result); !failed.empty())
-      throw NumericalError(fmt::format("{}: {}", f.name, failed));
-    for (std::size_t c = 0; c < result.cases.size(); ++c)
-      for (std::size_t k = 0; k < sensors.size(); ++k)
-        S(as_index(k), as_index(c)) = frame::true_reading(*sensors[k], f, result.structure, result.cases[c]);
-  }
-  const MatrixX read = S * loads;
+  const Channels channels(f, data);
+  const frame::FrameResult result = analysed(f, unit_loads(f, data), {});
+  if (const std::string failed = frame::failed_check(result); !failed.empty())
+    throw NumericalError(fmt::format("{}: {}", f.name, failed));
+  const MatrixX read = true_readings(channels.sensors, f, result) * true_factors(f, data);
   std::vector<VectorX> out;
-  for (const auto& column : read.colwise()) {
-    out.emplace_back(VectorX::Zero(6 + column.size()));
-    for (Eigen::Index k = 0; k < column.size(); ++k)
-      out.back()(6 + k) = nth(sensors, k)->gain * column(k) + nth(sensors, k)->zero;
-  }
+  for (const auto& column : read.colwise()) out.push_back(channels.recorded(column));
   return out;
 }
 
@@ -127,18 +176,19 @@ bool any_law(const FrameDescription& f, const std::function<bool(const Law&)>& i
                      [&](const auto& m) { return in(m.second.start) || in(m.second.end); });
 }
 
-bool has_linear_laws(const FrameDescription& f) {
-  return !any_law(f, [](const Law& law) { return !is_linear(law); });
+/// What of the frame remembers earlier loads, so that the order of the readings matters; null: nothing.
+const char* law_with_history(const FrameDescription& f) {
+  if (any_law(f, [](const Law& law) { return row_of(law).has_history; })) return "friction";
+  return any_law(f, deflect::has_history) ? "a table with 'unloading'" : nullptr;
 }
 
 std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Measurements& data) {
-  const std::vector<const frame::FrameSensor*> sensors = sensors_of(f, data);
+  const Channels channels(f, data);
   std::vector<std::size_t> order(data.readings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   frame::FrameOptions options;
-  if (any_law(f, deflect::has_history)) {
-    const bool friction = any_law(f, [](const Law& law) { return row_of(law).has_history; });
-    order = measurement::in_sequence(data, friction ? "friction" : "a table with 'unloading'");
+  if (const char* what = law_with_history(f)) {
+    order = measurement::in_sequence(data, what);
     options.in_sequence = true;
   }
   Named<LoadCase> loads;
@@ -147,19 +197,33 @@ std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Me
   const frame::FrameResult result = analysed(f, std::move(loads), options);
   if (const std::string failed = frame::failed_check(result); !failed.empty())
     throw NumericalError(fmt::format("{}: {}: {}", data.origin, f.name, failed));
+  const MatrixX read = true_readings(channels.sensors, f, result);
   std::vector<VectorX> out(data.readings.size());
-  for (std::size_t c = 0; c < order.size(); ++c) {
-    VectorX& read = out[order[c]];
-    read = VectorX::Zero(6 + std::ssize(sensors));
-    for (std::size_t k = 0; k < sensors.size(); ++k)
-      read(6 + as_index(k)) = frame::recorded_by(*sensors[k], f, result.structure, result.cases[c]);
-  }
+  for (std::size_t c = 0; c < order.size(); ++c) out[order[c]] = channels.recorded(read.col(as_index(c)));
   return out;
 }
 
-}  // namespace
-
-namespace {
+/// By what is known of a frame near it; nullopt where it is too far away.
+std::optional<std::vector<VectorX>> by_known_frame(const FrameDescription& f, const measurement::Measurements& data,
+                                                   const frame::KnownFrame& known) {
+  const Named<LoadCase> loads = unit_loads(f, data);
+  if (!std::equal(loads.begin(), loads.end(), known.loads().begin(), known.loads().end(),
+                  [](const auto& load, const std::string& name) { return load.first == name; }))
+    return std::nullopt;
+  std::vector<std::size_t> order(data.readings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const char* const remembers = law_with_history(f);
+  if (remembers) order = measurement::in_sequence(data, remembers);
+  const Channels channels(f, data);
+  const MatrixX all = true_factors(f, data);
+  MatrixX factors(all.rows(), all.cols());
+  for (std::size_t i = 0; i < order.size(); ++i) factors.col(as_index(i)) = all.col(as_index(order[i]));
+  const std::optional<MatrixX> read = known.readings(f, loads, channels.sensors, factors, remembers != nullptr);
+  if (!read) return std::nullopt;
+  std::vector<VectorX> out(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) out[order[i]] = channels.recorded(read->col(as_index(i)));
+  return out;
+}
 
 /// Sensors that stick follow what they read, in the order taken, only where they lag by more than their band. The first
 /// reading of each pose is true.
@@ -185,19 +249,45 @@ void let_stick(const FrameDescription& f, const measurement::Measurements& data,
 }  // namespace
 
 std::vector<VectorX> predicted_readings(const FrameDescription& frame, const measurement::Measurements& data,
-                                        Geometry geometry) {
-  FrameDescription f = frame;
-  f.geometry = geometry;
-  if (geometry != Geometry::finite) f.load_steps = 1;
-  const bool sums = geometry == Geometry::linear && has_linear_laws(f);
-  std::vector<VectorX> out = sums ? by_superposition(f, data) : one_by_one(f, data);
-  let_stick(f, data, out);
-  return out;
+                                        Geometry geometry, const FrameNearby* near) {
+  std::optional<std::vector<VectorX>> out;
+  const frame::KnownFrame* known = near && geometry == Geometry::linear ? near->known() : nullptr;
+  if (known) out = by_known_frame(frame, data, *known);
+  if (!out) {
+    FrameDescription f = frame;
+    f.geometry = geometry;
+    if (geometry != Geometry::finite) f.load_steps = 1;
+    const bool sums = geometry == Geometry::linear && has_linear_laws(f);
+    out = sums ? by_superposition(f, data) : one_by_one(f, data);
+  }
+  let_stick(frame, data, *out);
+  return std::move(*out);
+}
+
+FrameNearby::FrameNearby(const FrameDescription& f, const measurement::Measurements& data)
+    : frame_(f), loads_(unit_loads(f, data)) {}
+
+const frame::KnownFrame* FrameNearby::known() const {
+  std::call_once(once_, [&] {
+    auto known = outcome_of([&] { return std::make_unique<const frame::KnownFrame>(frame_, loads_); });
+    if (known) known_ = std::move(*known);
+  });
+  return known_.get();
+}
+
+bool has_linear_laws(const FrameDescription& f) {
+  return !any_law(f, [](const Law& law) { return !is_linear(law); });
+}
+
+double size_of(const FrameDescription& f) {
+  Vector3 low = f.nodes.front().second, high = low;
+  for (const auto& [name, at] : f.nodes) low = low.cwiseMin(at), high = high.cwiseMax(at);
+  return (high - low).norm();
 }
 
 bool has_history(const FrameDescription& f) {
   return std::any_of(f.sensors.begin(), f.sensors.end(), [](const auto& s) { return s.second.stick > 0; }) ||
-         any_law(f, deflect::has_history);
+         law_with_history(f);
 }
 
 }  // namespace deflect::subject

@@ -1,9 +1,12 @@
 // What the sensors of a frame read under the loads of measurements, by matrix structural analysis.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "msa/frame/file/frame_description.h"
+#include "msa/frame/file/known_frame.h"
 #include "validation/measurement/measurements.h"
 
 namespace deflect::subject {
@@ -13,7 +16,28 @@ namespace deflect::subject {
 /// equilibrium, and friction keeps its state from reading to reading in the order of `sequence`. True loads are
 /// load_gain times the recorded ones. Throws NumericalError "file:line: …" where a reading has no equilibrium or a
 /// check of the analysis fails, InputError where the frame lacks a sensor, a node or a load case of the measurements.
-std::vector<VectorX> predicted_readings(const frame::FrameDescription&, const measurement::Measurements&, Geometry);
+/// `near`: of a frame that may differ little; the result is the same, and sooner there in linear geometry.
+std::vector<VectorX> predicted_readings(const frame::FrameDescription&, const measurement::Measurements&, Geometry,
+                                        const class FrameNearby* near = nullptr);
+
+/// What is known of a frame under the loads of measurements (known_frame.h), computed when it is first asked for.
+class FrameNearby {
+ public:
+  FrameNearby(const frame::FrameDescription&, const measurement::Measurements&);
+  /// Null where nothing can be known: the frame does not stand without its laws that are not linear.
+  const frame::KnownFrame* known() const;
+
+ private:
+  frame::FrameDescription frame_;
+  Named<frame::LoadCase> loads_;
+  mutable std::once_flag once_;
+  mutable std::unique_ptr<const frame::KnownFrame> known_;
+};
+
+bool has_linear_laws(const frame::FrameDescription&);
+
+/// The largest distance of two corners of the box around its nodes.
+double size_of(const frame::FrameDescription&);
 
 /// Whether a reading depends on the loads before it.
 bool has_history(const frame::FrameDescription&);

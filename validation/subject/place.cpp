@@ -26,6 +26,7 @@ std::string id_of(const Place& p) {
 
 std::string name_of(const Place& p) {
   const std::string motion = motion_of(p);
+  if (!p.other.empty()) return fmt::format("sensor {}", p.part.substr(0, p.part.size() - p.other.size() - 1));
   const std::string where = p.kind == PlaceKind::sensor ? "sensor " : p.leg ? fmt::format("leg {} ", *p.leg) : "";
   std::string part = p.part;  // "support.B" of a frame
   if (p.base_axes) std::replace(part.begin(), part.end(), '.', ' ');

@@ -48,6 +48,10 @@ struct Place {
   bool slides = false;                              ///< the joint is driven along an axis
   bool base_axes = false;                           ///< of a frame's node: its freedoms are ux … rz
   std::optional<measurement::Quantity> reads = {};  ///< of a sensor whose zero is taken
+  std::string other = {};                           ///< of a sensor: another, of which it may read a share
+  std::vector<std::size_t> turns = {};              ///< of a load: axes about which it may be turned
+  bool expands = false;                             ///< of a member whose material expands with heat
+  bool misfit_shows = false;                        ///< of a member: readings depend on its misfit
   bool may_stick = false;                           ///< of a sensor whose description says how far it sticks
 
   bool rotation() const { return !freedoms.empty() && freedoms.front() >= 3; }

@@ -141,6 +141,10 @@ measurement::Measurements simulate_frame(const frame::FrameDescription& f, measu
     sigma.push_back(sensors[k].sigma.value_or(otherwise));
     zero.push_back(f.sensors[k].second.free_zero ? 1e3 * usual * random.normal() : 0);
   }
+  // Rounding to a step of the instrument adds its own part of σ.
+  const auto scatter = [&](std::size_t k) {
+    return f.sensors[k].second.resolution > 0 ? f.sensors[k].second.sigma : sigma[k];
+  };
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
     for (std::size_t k = 0; k < sensors.size(); ++k) {
       if (sensors[k].sigma || sigma[k] == 0) continue;
@@ -149,10 +153,14 @@ measurement::Measurements simulate_frame(const frame::FrameDescription& f, measu
     }
     const bool gross = o.outliers > 0 && random.uniform(0, 1) < o.outliers;
     for (std::size_t k = 0; k < sensors.size(); ++k) {
-      double value = exact[i](as_index(6 + k)) + zero[k] + sigma[k] * random.normal();
+      double value = exact[i](as_index(6 + k)) + zero[k] + scatter(k) * random.normal();
       if (gross) value += (random.uniform(0, 1) < 0.5 ? -1 : 1) * random.uniform(10, 30) * sigma[k];
-      plan.readings[i].sensors.push_back(
-          sigma[k] > 0 ? rounded(value, sigma[k], measurement::row_of(sensors[k].quantity).per_SI) : value);
+      const double step = f.sensors[k].second.resolution, per_SI = measurement::row_of(sensors[k].quantity).per_SI;
+      if (step > 0)
+        value = step * std::round(value / step);
+      else if (sigma[k] > 0)
+        value = rounded(value, sigma[k], per_SI);
+      plan.readings[i].sensors.push_back(value);
     }
   }
   return plan;

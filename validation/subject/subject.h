@@ -36,6 +36,28 @@ struct Site {
   double along = 1;
 };
 
+/// A place inside a frame through which force passes, N or Nm, and what it does when it deforms by m or rad there: the
+/// model's distribution of forces. Where the place is `determinate` statics alone says what passes, whatever the
+/// stiffnesses are, and a deformation there strains nothing.
+struct InnerSite {
+  std::string name;  ///< "C1b", "support P0a ux"
+  Place place;       ///< a member, of which this is the axial force; a held freedom of a support
+  bool rotation = false;
+  VectorX per_load;  ///< by load channel
+  VectorX moves;     ///< by sensor: what is recorded, by unit deformation
+  bool determinate = false;
+  /// Of a member the diagonal of R = 1 − A (AᵀKA)⁻¹AᵀK (A: elongations of members by displacements, K their
+  /// stiffnesses): the share of a misfit's elongation that strains the member itself. 0: determinate; 1: nothing around
+  /// it gives way. Over a truss these add up to its degree of static indeterminacy (M. von Scheven, E. Ramm,
+  /// M. Bischoff, Quantification of the redundancy distribution in truss and beam structures, Int. J. Solids and
+  /// Structures 213 (2021) 41–49). Of a rigid support, which has no stiffness to compare with, 0 or 1.
+  double redundancy = 0;
+};
+struct InnerSites {
+  std::vector<InnerSite> all;
+  MatrixX response;  ///< by site: what passes more when another is deformed by a unit
+};
+
 /// A number of the subject that varies from one built copy to another: the same in every pose, or of one pose only.
 struct Tolerance {
   std::string name;  ///< "modulus", "leg 3 base joint x", "pose 4 leg 1 slider"
@@ -81,6 +103,8 @@ class Standing {
   virtual Matrix6 compliance(std::size_t) const { return Matrix6::Zero(); }
   /// Empty where no force inside follows from statics.
   virtual std::vector<Site> sites(std::size_t) const { return {}; }
+  /// Those of a subject without tool point; none where forces are not proportional to the loads.
+  virtual InnerSites inner_sites(const measurement::Measurements&) const { return {}; }
 
   /// Whether a reading depends on the loads before it: friction. Then the order of the readings matters.
   virtual bool has_history() const { return false; }

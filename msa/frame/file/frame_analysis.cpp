@@ -195,7 +195,7 @@ void analyse_linear(const FrameDescription& f, const FrameOptions& options, Fram
   FrameModel& m = out.structure;
   const bool assembly = m.prestressed();
   std::vector<CaseLoad> loads;
-  if (assembly) loads.push_back(load_of(f, m, "", {}));
+  if (assembly) loads.push_back(load_of(f, m, "", {}, true));
   for (const auto& [name, load] : f.loads) loads.push_back(load_of(f, m, name, load));
   Elimination elimination;
   const std::vector<LinearState> states = solve_states(loads, assembly, options, out, elimination);

@@ -70,10 +70,12 @@ struct Pending {
   Matrix3 R;
   std::array<ConnectionFreedom, 6> freedoms;
   std::string name, place;  // place: empty without laws
+  std::size_t member, end;
 };
 
 /// Which end of which member.
 struct End {
+  std::size_t member;
   const Freedoms& released;
   const FreedomLaws& laws;
   bool start;
@@ -89,7 +91,7 @@ int end_node(Model& m, int node, const End& end, const Matrix3& R_WM, const std:
   const int own = m.add_node(name, nth(m.nodes, node).position);
   const bool turned = !end.start && !end.laws.empty();  // the member is the near side of its laws
   pending.push_back({turned ? own : node, turned ? node : own, R_WM, springs.freedoms(rigid, end.laws), name,
-                     end.laws.empty() ? "" : end.place});
+                     end.laws.empty() ? "" : end.place, end.member, as_size(end.start ? 0 : 1)});
   return own;
 }
 
@@ -100,8 +102,9 @@ void add_member(FrameModel& out, const std::string& name, const FrameMember& mem
   const Vector3 start = nth(m.nodes, a).position, end = nth(m.nodes, b).position;
   const Matrix3 R_WM = member_axes(end - start, member.y_axis);
   constexpr Freedoms hinged{false, false, false, true, true, true};
-  const End at_start{member.truss ? hinged : member.release_from, member.start, true, name + " start"},
-      at_end{member.truss ? hinged : member.release_to, member.end, false, name + " end"};
+  const std::size_t number = out.misfit.size();
+  const End at_start{number, member.truss ? hinged : member.release_from, member.start, true, name + " start"},
+      at_end{number, member.truss ? hinged : member.release_to, member.end, false, name + " end"};
   int previous = end_node(m, a, at_start, R_WM, fmt::format("{} at {}", name, member.from), springs, pending);
   const int last = end_node(m, b, at_end, R_WM, fmt::format("{} at {}", name, member.to), springs, pending);
   for (std::size_t i = 1; i + 1 < fractions.size(); ++i) {
@@ -135,8 +138,10 @@ void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision
   }
   out.first_element.push_back(static_cast<int>(out.model.beams.size()));
   Model& m = out.model;
+  out.ends.assign(f.members.size(), {-1, -1});
   for (const Pending& p : pending) {
     const int first = spring_count(m);
+    out.ends[p.member][p.end] = static_cast<int>(m.connections.size());
     m.connect(p.a, p.b, nth(m.nodes, p.b).position, p.R, p.freedoms, p.name, p.place.empty() ? p.name : p.place);
     if (!p.place.empty()) elastic_ends.emplace_back(p.place, std::pair{first, spring_count(m)});
   }
@@ -145,6 +150,7 @@ void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision
 /// What the connection that was made last does to the node of its far side.
 Holding last_holding(const Model& m, std::size_t first_connection, int first_spring) {
   Holding out;
+  out.connection = static_cast<int>(first_connection);
   out.first = first_spring;
   out.last = spring_count(m);
   out.constraint = m.connections[first_connection].constraint;
@@ -275,7 +281,9 @@ bool FrameModel::prestressed() const {
 namespace {
 
 /// Loads and strains of the elements.
-std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameModel& m, const LoadCase& c) {
+std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameModel& m, const LoadCase& c,
+                                       bool assembled) {
+  const Matrix3 turn = rotation_from_vector(c.turned);
   std::vector<ElementLoad> out(m.model.beams.size());
   const auto elements_of = [&](std::size_t member, const auto& change) {
     for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e)
@@ -283,7 +291,7 @@ std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameMod
   };
   for (const auto& [name, load] : c.members)
     elements_of(at(m.members, "member", name), [&, &load = load](ElementLoad& e, const Beam& beam) {
-      e.q_M += c.factor * (load.member_axes ? load.q : Vector3(beam.R_WM.transpose() * load.q));
+      e.q_M += c.factor * (load.member_axes ? load.q : Vector3(beam.R_WM.transpose() * (turn * load.q)));
     });
   for (const auto& [name, kelvin] : c.temperature) {
     const std::size_t member = at(m.members, "member", name);
@@ -294,20 +302,32 @@ std::vector<ElementLoad> element_loads(const FrameDescription& f, const FrameMod
   if (!c.gravity.isZero(0))
     for (std::size_t member = 0; member < f.members.size(); ++member)
       elements_of(member, [&](ElementLoad& e, const Beam& beam) {
-        e.q_M += c.factor * m.mass_per_length[member] * (beam.R_WM.transpose() * c.gravity);
+        e.q_M += c.factor * m.mass_per_length[member] * (beam.R_WM.transpose() * (turn * c.gravity));
       });
   for (std::size_t member = 0; member < f.members.size(); ++member)
     if (m.misfit[member] != 0) elements_of(member, [&](ElementLoad& e, const Beam&) { e.strain += m.misfit[member]; });
+  for (std::size_t member = 0; member < f.members.size() && !assembled; ++member)
+    if (const double strain = m.expansion[member] * f.members[member].second.heated; strain != 0)
+      elements_of(member, [&](ElementLoad& e, const Beam&) { e.strain += strain; });
   return out;
 }
 
 }  // namespace
 
-CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::string& case_name, const LoadCase& c) {
+Vector6 turned(const LoadCase& c, const Vector6& wrench) {
+  if (c.turned.isZero(0)) return wrench;
+  const Matrix3 turn = rotation_from_vector(c.turned);
+  Vector6 out;
+  out << turn * wrench.head<3>(), turn * wrench.tail<3>();
+  return out;
+}
+
+CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::string& case_name, const LoadCase& c,
+                 bool assembled) {
   CaseLoad out;
   out.forces = out.thermal = VectorX::Zero(m.model.dofs());
   out.values = VectorX::Zero(std::ssize(m.model.constraints));
-  out.elements = element_loads(f, m, c);
+  out.elements = element_loads(f, m, c, assembled);
   const auto add = [](VectorX& to, const Beam& beam, const Vector12& local) {
     for (int i = 0; i < 4; ++i)
       to.segment<3>(6 * (i < 2 ? beam.a : beam.b) + 3 * (i % 2)) += beam.R_WM * local.segment<3>(3 * i);
@@ -320,7 +340,7 @@ CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::stri
       add(out.forces, beam, equivalent_forces(beam.rigidity, beam.length, out.elements[e]));
   }
   for (const auto& [name, wrench] : c.nodes)
-    out.forces.segment<6>(6 * as_index(at(m.nodes, "node", name))) += c.factor * wrench;
+    out.forces.segment<6>(6 * as_index(at(m.nodes, "node", name))) += c.factor * turned(c, wrench);
   refuse_across_plane(f, m, case_name, out.forces);
 
   const NameIndex supports(f.supports);
@@ -334,6 +354,10 @@ CaseLoad load_of(const FrameDescription& f, const FrameModel& m, const std::stri
         out.values(constraints[i]) = c.factor * *values[i];
       }
   }
+  for (std::size_t k = 0; k < f.supports.size() && !assembled; ++k)
+    for (std::size_t i = 0; i < 6; ++i)
+      if (const double way = f.supports[k].second.settled(as_index(i)); way != 0)
+        out.values(m.supports[k].constraint[i]) += way;
   return out;
 }
 

@@ -20,6 +20,7 @@ using FrameDivision = std::vector<std::vector<double>>;
 /// ones act on the node, each along a freedom; the others are between them, in series.
 struct Holding {
   std::array<int, 6> constraint = {-1, -1, -1, -1, -1, -1};
+  int connection = 0;  ///< the first of the model's, with what is in series
   int first = 0, last = 0;
   std::vector<std::pair<int, int>> direct;  ///< freedom, index of the spring
 };
@@ -34,6 +35,7 @@ struct FrameModel {
   std::vector<double> expansion;        ///< by member, 1/K; 0 where not given
   std::vector<double> misfit;           ///< by member, free strain
   std::vector<Holding> supports, springs;
+  std::vector<std::array<int, 2>> ends;   ///< by member the connections of its start and end; −1: welded to the node
   Named<std::pair<int, int>> elastic;     ///< springs [first, last) by their place: springs, then supports
                                           ///< and ends of members that have laws
   std::vector<int> constraint;            ///< by general constraint
@@ -52,8 +54,13 @@ struct CaseLoad {
   std::vector<ElementLoad> elements;  ///< by beam
 };
 
-/// With the misfits of the members, which are there in every case. Throws InputError with the case where it has a load
+/// A wrench of a load case as it really acts.
+Vector6 turned(const LoadCase&, const Vector6& wrench);
+
+/// With the misfits and temperatures of members and the settlements of supports, which are there in every case;
+/// `assembled`: with the misfits alone, as the frame was assembled. Throws InputError with the case where it has a load
 /// out of the plane of a plane frame, or displaces a freedom that no support holds rigidly.
-CaseLoad load_of(const FrameDescription&, const FrameModel&, const std::string& name, const LoadCase&);
+CaseLoad load_of(const FrameDescription&, const FrameModel&, const std::string& name, const LoadCase&,
+                 bool assembled = false);
 
 }  // namespace deflect::frame

@@ -43,6 +43,7 @@ struct FrameMember {
   bool truss = false;
   double bending_factor = 1, factor = 1;
   double misfit = 0;  ///< m
+  double heated = 0;  ///< K above the temperature of the assembly, in every load case
   int elements = 1;   ///< number of equal elements in a row
   /// In member axes. Near and far side of the laws: at the start the node and the member, at the end the member and the
   /// node, so that tension pulls at both.
@@ -57,6 +58,7 @@ struct FrameSupport : Freedoms {
   FrameSupport() : Freedoms{} {}
   FrameSupport(const Freedoms& held) : Freedoms(held) {}  // NOLINT: freedoms that are held are a support
   FreedomLaws laws;
+  Vector6 settled = Vector6::Zero();  ///< m, rad: how far it has moved since the assembly, where it holds rigidly
 
   bool rigid(std::size_t i) const { return (*this)[i] && !laws.has(i); }
   Freedoms acting() const { return laws.or_in(*this); }  ///< rigid or elastic
@@ -103,6 +105,7 @@ struct LineLoad {
 
 struct LoadCase {
   double factor = 1;                   ///< true load over the load of the case: multiplies all that follows
+  Vector3 turned = Vector3::Zero();    ///< rotation vector from the loads below to the true ones, those in base axes
   Named<Vector6> nodes;                ///< wrench [f; m] at a node, base axes
   Named<LineLoad> members;             ///< by member
   Named<double> temperature;           ///< K above the unstrained state, by member
@@ -132,7 +135,9 @@ struct FrameSensor : InstrumentErrors {
   std::size_t component = 0;        ///< of section_force_names; of a reaction, of wrench_names, base axes, on the frame
   double at = 0.5;                  ///< along the member, as a share of its length
   double stick = 0;                 ///< the reading follows only where it lags by more than this: SI, of what is read
-  double y = 0, z = 0;              ///< of the fibre, m, member axes; strain is N/EA − y Mz/EIz + z My/EIy
+  double resolution = 0;            ///< the step in which it reads: SI, of what is read; 0: none
+  Named<double> crosstalk = {};  ///< by other sensors of the same quantity: the share of their true reading in its own
+  double y = 0, z = 0;           ///< of the fibre, m, member axes; strain is N/EA − y Mz/EIz + z My/EIy
 };
 
 /// Standard deviations of what varies between frames built to one drawing.

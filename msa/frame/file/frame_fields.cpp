@@ -110,6 +110,12 @@ void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
   v.quantity("bending_factor", m.bending_factor, {Dimension::ratio, positive, 1}, "multiplies the bending stiffness");
   v.quantity("factor", m.factor, {Dimension::ratio, positive, 1}, "multiplies all stiffnesses of the member");
   v.quantity("misfit", m.misfit, {Dimension::length, {}, 0}, "how much too long the member is, without force");
+  v.quantity("heated", m.heated, {Dimension::temperature, {}, 0}, "how much warmer it is than at the assembly");
+  const FrameMaterial* of = material < 0 ? nullptr : &nth(names.frame.materials, material).second;
+  v.require(m.heated == 0 || !of || of->expansion, "heated",
+            fmt::format("material '{0}' has no thermal expansion: write for example 'expansion: 12e-6 1/K' in "
+                        "materials.{0}",
+                        m.material));
   describe_count(v, "elements", m.elements, "elements of equal length");
   if (a < 0 || b < 0) return;
 

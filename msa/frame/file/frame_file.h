@@ -7,13 +7,13 @@
 //   sections: {tube: {shape: tube, outer_diameter: 60 mm, inner_diameter: 52 mm}}
 //   nodes: {A: [0 m, 0 m, 0 m], B: [0 m, 0 m, 3 m], C: [4 m, 0 m, 3 m]}
 //   members:
-//     post: {from: A, to: B, section: tube, material: steel, factor: 0.95, misfit: 0.2 mm,
+//     post: {from: A, to: B, section: tube, material: steel, factor: 0.95, misfit: 0.2 mm, heated: 5 K,
 //            start: {ry: {law: linear, stiffness: 200 kNm/rad}, beside: {ry: {law: friction, moment: 5 Nm,
 //                                                                              stiffness: 100 kNm/rad}}}}
 //     beam: {from: B, to: C, section: tube, material: steel, beam: timoshenko, y_axis: [0, 1, 0],
 //            release_to: [ry, rz], bending_factor: 0.9, elements: 8, end: {tx: {law: clearance, gap: 0.1 mm}}}
 //   supports:
-//     A: clamped
+//     A: {holds: clamped, settled: {uz: -0.5 mm}}
 //     C: {holds: [ux, uy, rx], uz: [{law: clearance, gap: 0.2 mm}, {law: linear, stiffness: 5 kN/mm}],
 //         beside: {uz: {law: friction, force: 100 N, stiffness: 10 kN/mm}}}
 //   springs:
@@ -27,6 +27,7 @@
 //   loads:
 //     case 1:
 //       factor: 1.02
+//       turned: [0 deg, 1 deg, 0 deg]
 //       nodes: {B: {fx: 1 kN, my: 20 Nm}}
 //       members: {beam: {qz: -2 N/mm, axes: member}}
 //       temperature: {beam: 30 K}
@@ -36,7 +37,7 @@
 //     lvdt: {node: B, direction: ux, sigma: 0.01 mm, zero: free, gain: 1 ± 0.5 %}
 //     cell: {member: beam, force: axial, at: 0.5, sigma: 2 N}
 //     gauge: {member: post, strain: {at: 0.1, y: 30 mm, z: 0 mm}, sigma: 2 um/m}
-//     pad: {support: C, reaction: fz, gain: 1 ± 3 %, offset: 5 N, stick: 1 N}
+//     pad: {support: C, reaction: fz, gain: 1 ± 3 %, offset: 5 N, stick: 1 N, resolution: 1 N, crosstalk: {cell: 2 %}}
 //   rig: {load_cell: {gain: 1}, trusted: [load]}
 //   tolerances: {modulus: 1 %, load: 0.5 %, node.position: 1 mm, member.bending_factor: 5 %}
 //

@@ -154,7 +154,7 @@ void analyse_geometric(const FrameDescription& f, const FrameOptions& frame_opti
   options.load_steps = f.load_steps;
   std::optional<GeometricState> assembled;
   if (m.prestressed()) {
-    assembled = state_under(solver, load_of(f, m, "", {}), options);
+    assembled = state_under(solver, load_of(f, m, "", {}, true), options);
     options.slips = assembled->slips;
   }
   for (const auto& [name, load] : f.loads) {

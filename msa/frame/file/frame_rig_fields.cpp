@@ -21,6 +21,14 @@ void describe_reading(FieldVisitor& v, FrameSensor& s, Dimension d) {
   Quantity stick{d, not_negative, 0};
   stick.or_dimension = other_of(d);
   v.quantity("stick", s.stick, stick, "how far the reading lags before it follows");
+  v.quantity("resolution", s.resolution, stick, "the step in which it reads");
+  FrameEntries<double> shares(
+      s.crosstalk,
+      [](auto& w, auto&, auto& share) {
+        w.quantity("", share, {Dimension::ratio, {}, std::nullopt}, "share of that sensor's reading");
+      },
+      true);
+  v.entries("crosstalk", shares, Need::optional, "what it reads of other sensors of the same quantity, by their names");
 }
 
 std::size_t place_in(const std::array<const char*, 6>& names, const std::string& word) {
@@ -75,6 +83,16 @@ void describe_member_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& n
   describe_reading(v, s, Dimension::strain);
 }
 
+/// Whether both read numbers of one unit.
+bool reads_alike(const FrameSensor& a, const FrameSensor& b) {
+  const auto kind = [](const FrameSensor& s) {
+    if (s.reads == Reads::strain) return 0;
+    if (s.reads == Reads::displacement) return s.rotation ? 1 : 2;
+    return s.component < 3 ? 3 : 4;
+  };
+  return kind(a) == kind(b);
+}
+
 void describe_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& names) {
   const std::size_t now = s.reads == Reads::displacement ? 0 : s.reads == Reads::reaction ? 2 : 1;
   switch (v.alternative({"node", "member", "support"}, now)) {
@@ -92,6 +110,12 @@ void describe_sensor(FieldVisitor& v, FrameSensor& s, const FrameNames& names) {
 void describe_rig(FieldVisitor& v, FrameDescription& f, const FrameNames& names) {
   FrameEntries<FrameSensor> sensors(f.sensors, [&](auto& w, auto&, auto& s) { describe_sensor(w, s, names); });
   v.entries("sensors", sensors, Need::optional, "what is read, by name");
+  for (const auto& [name, sensor] : f.sensors)
+    for (const auto& [other, share] : sensor.crosstalk) {
+      const FrameSensor* source = find(f.sensors, other);
+      v.require(source && other != name && reads_alike(*source, sensor), "sensors",
+                fmt::format("{}: crosstalk is with another sensor of the same quantity, not with '{}'", name, other));
+    }
   const auto cell = [&] {
     v.quantity("gain", f.load_gain, {Dimension::ratio, positive, 1}, "true load over recorded load");
   };

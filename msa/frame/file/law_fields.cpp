@@ -60,6 +60,16 @@ void describe(FieldVisitor& v, const std::string& node, FrameSupport& s, const F
   require_known(v, "", "node", node, names.nodes, names.frame.nodes);
   describe_held(v, "holds", s);
   describe_laws(v, s.laws, s, node_freedoms);
+  const auto settled = [&] {
+    for (std::size_t i = 0; i < 6; ++i) {
+      double& way = s.settled(as_index(i));
+      v.quantity(node_freedoms[i], way, {i < 3 ? Dimension::length : Dimension::angle, {}, 0},
+                 "how far the support has moved since the assembly");
+      v.require(way == 0 || s.rigid(i), node_freedoms[i],
+                "settles only where the support holds rigidly: a law or a free direction takes no settlement");
+    }
+  };
+  v.object("settled", Need::optional, false, settled, "movement of the support since the assembly");
   v.require(s.acting() != Freedoms{}, "", "holds nothing: write for example 'clamped', or 'holds: [ux, uz]', or a law");
 }
 

@@ -81,6 +81,7 @@ void describe_displacement(FieldVisitor& v, const std::string& node, FreedomValu
 
 void describe(FieldVisitor& v, LoadCase& c, const FrameNames& names) {
   v.quantity("factor", c.factor, {Dimension::ratio, {}, 1}, "true load over that of this case, of all of it");
+  v.vector3("turned", c.turned, Dimension::angle, "rotation vector from the loads in base axes to the true ones");
   const auto node = [&](FieldVisitor& w, const std::string& name, Vector6& wrench) {
     require_known(w, "", "node", name, names.nodes, names.frame.nodes);
     describe_wrench(w, wrench);
