@@ -24,6 +24,11 @@ double value_at(const effects::EffectParameter& p, double x) {
   return std::clamp(value, p.low, p.high);
 }
 
+double prior_deviations(const effects::EffectParameter& p, double x) {
+  const double mean = p.prior->mean, scale = p.log ? p.prior->deviation / mean : p.prior->deviation;
+  return p.log ? (x - std::log(mean)) / scale : (value_at(p, x) - mean) / scale;
+}
+
 /// The whitened residual over the coordinates.
 class Problem {
  public:
@@ -31,7 +36,8 @@ class Problem {
       : observations_(o),
         parameters_(parameters_of(h)),
         prepared_(o.subject(), h),
-        wall_(VectorX::Constant(o.null_residual().size(), 1e6 * std::max(1.0, o.null_residual().norm()))) {}
+        wall_(VectorX::Constant(o.null_residual().size() + priors_of(parameters_),
+                                1e6 * std::max(1.0, o.null_residual().norm()))) {}
 
   VectorX values(const VectorX& x) const {
     VectorX out(x.size());
@@ -44,10 +50,13 @@ class Problem {
     return out;
   }
 
+  /// Measured numbers, and one more for each prior.
+  Eigen::Index rows() const { return wall_.size(); }
+
   /// Nothing where the subject cannot have these values or cannot be predicted with them.
   std::optional<VectorX> residual(const VectorX& x, std::string* why = nullptr) const {
     auto predicted = outcome_of([&] { return observations_.whitened_residual(prepared_(values(x))); });
-    if (predicted && predicted->allFinite()) return std::move(predicted.value);
+    if (predicted && predicted->allFinite()) return with_priors(std::move(*predicted), x);
     if (why) *why = predicted ? "the prediction is no number" : predicted.why;
     return std::nullopt;
   }
@@ -60,6 +69,19 @@ class Problem {
   const std::vector<const effects::EffectParameter*>& parameters() const { return parameters_; }
 
  private:
+  static Eigen::Index priors_of(const std::vector<const effects::EffectParameter*>& all) {
+    return std::count_if(all.begin(), all.end(), [](const auto* p) { return p->prior.has_value(); });
+  }
+
+  /// Behind the whitened numbers, of each prior the distance from its mean in standard deviations.
+  VectorX with_priors(VectorX r, const VectorX& x) const {
+    Eigen::Index row = r.size();
+    r.conservativeResize(rows());
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (const effects::EffectParameter& p = *nth(parameters_, i); p.prior) r(row++) = prior_deviations(p, x(i));
+    return r;
+  }
+
   const Observations& observations_;
   std::vector<const effects::EffectParameter*> parameters_;
   effects::PreparedEffects prepared_;
@@ -211,11 +233,11 @@ std::vector<Start> best_starts(const Problem& problem, const std::vector<VectorX
 bool may_have_valleys(const effects::PlacedEffect& e) { return is_shaped(e) && e.effect->parameters.size() > 1; }
 constexpr std::size_t valleys = 5;
 
-Fit search_from(const Problem& problem, const Start& start, Eigen::Index rows) {
+Fit search_from(const Problem& problem, const Start& start) {
   Fit out;
   VectorX best = start.x;
   std::optional<VectorX> residual;
-  Functor functor{&problem, rows, best.size()};
+  Functor functor{&problem, problem.rows(), best.size()};
   if (best.size() > 0) {
     Eigen::LevenbergMarquardt<Functor> search(functor);
     search.parameters.maxfev = 40;
@@ -257,8 +279,7 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
       if (begun.size() > 1 && !(may_have_valleys(h.back()) && problem.has_history(begun.front().x))) begun.resize(1);
     }
     std::vector<Fit> ends(begun.size());
-    parallel::for_each_case(begun.size(), 1, threads,
-                            [&](std::size_t i) { ends[i] = search_from(problem, begun[i], o.null_residual().size()); });
+    parallel::for_each_case(begun.size(), 1, threads, [&](std::size_t i) { ends[i] = search_from(problem, begun[i]); });
     Fit best = not_found(why);
     for (Fit& each : ends)
       if (!best.found || each.chi2 < best.chi2) best = std::move(each);
@@ -285,7 +306,7 @@ Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int th
       begun.resize(std::min(begun.size(), valleys));
       std::vector<Fit> fits(begun.size());
       parallel::for_each_case(begun.size(), 1, threads, [&](std::size_t i) {
-        if (std::isfinite(begun[i].chi2)) fits[i] = search_from(problem, begun[i], found.residual.size());
+        if (std::isfinite(begun[i].chi2)) fits[i] = search_from(problem, begun[i]);
       });
       for (Fit& each : fits)
         if (each.found && each.chi2 < found.chi2) found = std::move(each);

@@ -21,7 +21,7 @@ struct Fit {
   VectorX values;      ///< in the parameters' units, effect after effect
   MatrixX covariance;  ///< of the coordinates
   MatrixX signature;   ///< derivative of the whitened residual with respect to the coordinates
-  VectorX residual;    ///< whitened, at the values
+  VectorX residual;    ///< whitened, at the values; behind the measured numbers a row for each prior
   double chi2 = 0;
   bool found = false;  ///< false: no value was found at which the device can be predicted
   std::string why;     ///< where not found: the error at the first value tried
