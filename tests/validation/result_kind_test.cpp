@@ -27,6 +27,9 @@ TEST(ResultKind, IsSaidByEveryResultAndRead) {
       {"comparison", "compare " + device + " " + data},
       {"diagnosis", "diagnose " + device + " " + data},
       {"history", "history " + data + " " + device},
+      {"fit", "fit " + device + " " + data + " --free materials.*.E --force -o " + (folder / "new.yaml").string()},
+      {"prediction", "predict " + device + " --at 0,0,198.9 --load 50,0,0"},
+      {"validity", "compare " + device + " " + data + " --validation"},
   };
   for (const auto& [kind, command] : commands) {
     const test::Run run = test::deflect(command + " --json " + file);

@@ -8,11 +8,8 @@
 #include "validation/compare/comparison.h"
 
 namespace deflect::compare {
-namespace {
 
-/// Of each reading: its pose; where a subject without tool point has one pose alone, which of its loads act, and in
-/// which sense.
-std::vector<std::size_t> groups_of(const ResidualStudy& s) {
+std::vector<std::size_t> held_out_groups(const ResidualStudy& s) {
   std::vector<std::size_t> out;
   const bool by_load = s.data->instruments.stationary && s.data->poses.size() == 1;
   std::map<std::vector<int>, std::size_t> known;
@@ -28,10 +25,8 @@ std::vector<std::size_t> groups_of(const ResidualStudy& s) {
   return out;
 }
 
-}  // namespace
-
 HeldOut::HeldOut(const ResidualStudy& s, const statistics::Uncertainty& u, const std::vector<bool>& set_aside)
-    : study_(&s), uncertainty_(&u), set_aside_(set_aside), group_(groups_of(s)) {
+    : study_(&s), uncertainty_(&u), set_aside_(set_aside), group_(held_out_groups(s)) {
   folds_ = std::min<std::size_t>(10, 1 + *std::max_element(group_.begin(), group_.end()));
   const MatrixX& B = u.whitening()->shared();
   if (folds_ < 2 || B.cols() == 0) return;

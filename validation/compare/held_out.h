@@ -9,6 +9,10 @@
 
 namespace deflect::compare {
 
+/// Of each reading, the group that is held out with it: its pose; where a subject without tool point has one pose
+/// alone, the readings in which the same loads act in the same sense.
+std::vector<std::size_t> held_out_groups(const ResidualStudy&);
+
 /// Residuals at each pose with the tolerances estimated from the other poses, in ten folds at most: η = (1 + BᵀB)⁻¹Bᵀz
 /// over the readings of the other folds, with B and z whitened within poses (whitening.h). η contains the errors that
 /// all poses share; a pose's own errors cannot be estimated from the others. Readings set aside are used neither for

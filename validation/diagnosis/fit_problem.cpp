@@ -18,11 +18,25 @@ double value_at(const effects::EffectParameter& p, double x) {
   return std::clamp(value, p.low, p.high);
 }
 
+namespace {
+
+Eigen::Index priors_of(const std::vector<const effects::EffectParameter*>& all) {
+  return std::count_if(all.begin(), all.end(), [](const auto* p) { return p->prior.has_value(); });
+}
+
+double prior_deviations(const effects::EffectParameter& p, double x) {
+  const double mean = p.prior->mean, deviation = p.prior->deviation;
+  return p.log ? (x - std::log(mean)) * mean / deviation : (value_at(p, x) - mean) / deviation;
+}
+
+}  // namespace
+
 FitProblem::FitProblem(const Observations& o, const Hypothesis& h)
     : observations_(o),
       parameters_(parameters_of(h)),
       prepared_(o.subject(), h),
-      wall_(VectorX::Constant(o.null_residual().size(), 1e6 * std::max(1.0, o.null_residual().norm()))) {}
+      wall_(VectorX::Constant(o.null_residual().size() + priors_of(parameters_),
+                              1e6 * std::max(1.0, o.null_residual().norm()))) {}
 
 VectorX FitProblem::values(const VectorX& x) const {
   VectorX out(x.size());
@@ -38,7 +52,14 @@ VectorX FitProblem::coordinates(const VectorX& values) const {
 
 std::optional<VectorX> FitProblem::residual(const VectorX& x, std::string* why) const {
   auto predicted = outcome_of([&] { return observations_.whitened_residual(prepared_(values(x))); });
-  if (predicted && predicted->allFinite()) return std::move(predicted.value);
+  if (predicted && predicted->allFinite()) {
+    VectorX r = std::move(*predicted);
+    Eigen::Index row = r.size();
+    r.conservativeResize(rows());
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (const effects::EffectParameter& p = *nth(parameters_, i); p.prior) r(row++) = prior_deviations(p, x(i));
+    return r;
+  }
   if (why) *why = predicted ? "the prediction is no number" : predicted.why;
   return std::nullopt;
 }
@@ -60,7 +81,7 @@ int FreeResidual::operator()(const VectorX& x, VectorX& r) const {
 
 int FreeResidual::df(const VectorX& x, MatrixX& J) const {
   const VectorX from = all(x), here = problem->residual_or_wall(from);
-  J = MatrixX::Zero(rows, std::ssize(free));
+  J = MatrixX::Zero(problem->rows(), std::ssize(free));
   for (Eigen::Index i = 0; i < J.cols(); ++i) {
     // Towards the inside where a bound is near, else away from what cannot be predicted.
     const Eigen::Index k = nth(free, i);

@@ -1,7 +1,8 @@
 // The least-squares problem of a fit: the whitened residual over the coordinates of a hypothesis's parameters.
 //
 // The coordinate of a parameter on a logarithmic scale is its logarithm, of another its value over half its range, so
-// that steps of size 1 are large.
+// that steps of size 1 are large. A parameter with a prior adds a row behind the measured numbers: its distance from the
+// prior's mean in standard deviations, of the logarithm (deviation over mean) on a logarithmic scale.
 #pragma once
 
 #include <optional>
@@ -23,6 +24,9 @@ class FitProblem {
 
   VectorX values(const VectorX& x) const;
   VectorX coordinates(const VectorX& values) const;
+
+  /// Measured numbers, and one more for each prior.
+  Eigen::Index rows() const { return wall_.size(); }
 
   /// Nothing where the subject cannot have these values or cannot be predicted with them; `why` then says it.
   std::optional<VectorX> residual(const VectorX& x, std::string* why = nullptr) const;
@@ -50,13 +54,12 @@ struct FreeResidual {
   enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
 
   const FitProblem* problem;
-  Eigen::Index rows;
   VectorX held;                    ///< all coordinates
   std::vector<Eigen::Index> free;  ///< those that move
 
   VectorX all(const VectorX& x) const;
   int inputs() const { return static_cast<int>(free.size()); }
-  int values() const { return static_cast<int>(rows); }
+  int values() const { return static_cast<int>(problem->rows()); }
   int operator()(const VectorX& x, VectorX& r) const;
   int df(const VectorX& x, MatrixX& J) const;
 };

@@ -122,14 +122,14 @@ std::vector<Start> best_starts(const FitProblem& problem, const std::vector<Vect
 bool may_have_valleys(const effects::PlacedEffect& e) { return is_shaped(e) && e.effect->parameters.size() > 1; }
 constexpr std::size_t valleys = 5;
 
-Fit search_from(const FitProblem& problem, const Start& start, Eigen::Index rows) {
+Fit search_from(const FitProblem& problem, const Start& start) {
   Fit out;
   VectorX best = start.x;
   std::optional<VectorX> residual;
   if (best.size() > 0) {
     std::vector<Eigen::Index> all(as_size(best.size()));
     std::iota(all.begin(), all.end(), 0);
-    const FreeResidual free{&problem, rows, best, all};
+    const FreeResidual free{&problem, best, all};
     const VectorX x = minimised(free, best, 40);
     if (x.allFinite() && problem.residual_or_wall(x).squaredNorm() <= start.chi2) best = x;
     const VectorX inside = problem.coordinates(problem.values(best));  // the bounds
@@ -165,8 +165,7 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
       if (begun.size() > 1 && !(may_have_valleys(h.back()) && problem.has_history(begun.front().x))) begun.resize(1);
     }
     std::vector<Fit> ends(begun.size());
-    parallel::for_each_case(begun.size(), 1, threads,
-                            [&](std::size_t i) { ends[i] = search_from(problem, begun[i], o.null_residual().size()); });
+    parallel::for_each_case(begun.size(), 1, threads, [&](std::size_t i) { ends[i] = search_from(problem, begun[i]); });
     Fit best = not_found(why);
     for (Fit& each : ends)
       if (!best.found || each.chi2 < best.chi2) best = std::move(each);
@@ -193,7 +192,7 @@ Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int th
       begun.resize(std::min(begun.size(), valleys));
       std::vector<Fit> fits(begun.size());
       parallel::for_each_case(begun.size(), 1, threads, [&](std::size_t i) {
-        if (std::isfinite(begun[i].chi2)) fits[i] = search_from(problem, begun[i], found.residual.size());
+        if (std::isfinite(begun[i].chi2)) fits[i] = search_from(problem, begun[i]);
       });
       for (Fit& each : fits)
         if (each.found && each.chi2 < found.chi2) found = std::move(each);

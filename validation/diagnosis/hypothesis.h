@@ -22,7 +22,7 @@ struct Fit {
   VectorX values;      ///< in the parameters' units, effect after effect
   MatrixX covariance;  ///< of the coordinates
   MatrixX signature;   ///< derivative of the whitened residual with respect to the coordinates
-  VectorX residual;    ///< whitened, at the values
+  VectorX residual;    ///< whitened, at the values; behind the measured numbers a row for each prior
   double chi2 = 0;
   std::vector<std::pair<double, double>>
       limits;          ///< 95 % interval of each value, where they were computed (interval.h)

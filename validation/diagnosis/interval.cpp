@@ -75,7 +75,7 @@ class Profile {
     double chi2 = residual.squaredNorm();
     if (!others_.empty() && (along_.transpose() * residual).squaredNorm() > settled) {
       VectorX moved = all;
-      moved(others_) = minimised({&problem_, residual.size(), all, others_}, VectorX(all(others_)), inner_steps);
+      moved(others_) = minimised({&problem_, all, others_}, VectorX(all(others_)), inner_steps);
       if (moved.allFinite()) {
         moved = problem_.coordinates(problem_.values(moved));
         if (const double less = problem_.residual_or_wall(moved).squaredNorm(); less < chi2) chi2 = less, all = moved;

@@ -11,8 +11,6 @@
 namespace deflect::diagnosis {
 namespace {
 
-constexpr double shape_known_to = 0.2;
-
 std::vector<bool> set_aside_by(const compare::Comparison& c) {
   std::vector<bool> aside(c.readings, false);
   const std::set<std::size_t> lines(c.set_aside.begin(), c.set_aside.end());
@@ -169,6 +167,13 @@ Observations Observations::weighed_for(const subject::Subject& subject) const {
   out.predicted_ = std::move(*predicted);
   out.move_tolerances(subject);
   out.weigh(aside_);
+  return out;
+}
+
+Observations Observations::exact_in(const std::vector<std::size_t>& tolerances) const {
+  Observations out = *this;
+  for (const std::size_t i : tolerances) out.A_.shared.col(as_index(i)).setZero();
+  out.weigh(out.aside_);
   return out;
 }
 

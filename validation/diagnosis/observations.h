@@ -10,9 +10,12 @@
 
 namespace deflect::diagnosis {
 
+/// Standard deviation of what equilibrium in the deformed shape contributes, as a share of it.
+inline constexpr double shape_known_to = 0.2;
+
 /// Holds a comparison with its uncertainty and computes residuals for any edited subject. Where the data show
 /// tolerances larger than declared, these are scaled up (Uncertainty::scale_of_tolerances). The contribution of
-/// equilibrium in the deformed shape is known to a fifth of its size; this uncertainty is one more nuisance parameter.
+/// equilibrium in the deformed shape is known to shape_known_to; this uncertainty is one more nuisance parameter.
 class Observations {
  public:
   Observations(const subject::Subject&, const measurement::Measurements&, const compare::ComparisonOptions&,
@@ -23,7 +26,8 @@ class Observations {
   const statistics::Uncertainty& uncertainty() const { return *uncertainty_; }
   std::size_t numbers() const { return uncertainty_->count(); }
   double tolerance_scale() const { return tolerance_scale_; }
-  std::size_t set_aside() const;  ///< readings
+  std::size_t set_aside() const;                             ///< readings
+  const std::vector<bool>& aside() const { return aside_; }  ///< by reading
 
   /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus the fixed
   /// contribution of the deformed shape (see granted()).
@@ -51,6 +55,8 @@ class Observations {
   /// subject without tool point also what its tolerances do (a missing member changes what its neighbours' do), and
   /// readings that are gross outliers to it are set aside, unless they are more than one in twenty.
   Observations granted(const subject::Subject&) const;
+  /// A copy in which these tolerances, by their index among those of the comparison, are exact.
+  Observations exact_in(const std::vector<std::size_t>& tolerances) const;
 
   /// A copy that weighs by what tolerances and errors of loads do to this subject, of a machine too: a leg that bends
   /// three times as far also does so where its rod is thinner than drawn. For values and their intervals; the

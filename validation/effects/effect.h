@@ -12,6 +12,12 @@
 
 namespace deflect::effects {
 
+/// What is known of a parameter before the data: a normal distribution, on a logarithmic scale of ln p with the
+/// standard deviation deviation/mean.
+struct ParameterPrior {
+  double mean = 0, deviation = 0;  ///< in the parameter's unit
+};
+
 /// Numbers are in the unit that the name ends with: "stiffness_N_per_mm". A name without one is a plain number.
 struct EffectParameter {
   std::string name, unit;          ///< as written after a value, "N/mm"; empty for a plain number
@@ -20,6 +26,7 @@ struct EffectParameter {
   bool log = false;                ///< searched on a logarithmic scale; low > 0
   std::optional<double> vanishes;  ///< the value (may be infinite) at which the edits that use it do nothing
   std::string about;
+  std::optional<ParameterPrior> prior = {};
   bool optional = false;  ///< need not be given: the default is `start`; for an unknown initial state
 };
 

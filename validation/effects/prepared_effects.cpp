@@ -96,6 +96,13 @@ Description PreparedEffects::at(const Versions<Description>& versions, const Vec
   return out;
 }
 
+std::vector<std::size_t> PreparedEffects::moved_by(std::size_t parameter) const {
+  std::vector<std::size_t> out;
+  for (const Slot& slot : slots_)
+    if (affine_ && slot.parameter == parameter) out.push_back(slot.at);
+  return out;
+}
+
 subject::Subject PreparedEffects::operator()(const VectorX& values) const {
   return std::visit([&](const auto& versions) { return subject::Subject(at(versions, values)); }, versions_);
 }

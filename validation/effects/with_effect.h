@@ -70,6 +70,10 @@ class PreparedEffects {
   /// The machine with the effects, where the subject is one. InputError where its description cannot hold the values.
   Mechanism machine(const VectorX& values) const;
 
+  /// Which numbers of the description, its legs resolved, a parameter moves, by their index; none where two parameters
+  /// move the same number.
+  std::vector<std::size_t> moved_by(std::size_t parameter) const;
+
   Eigen::Index parameter_count() const { return std::ssize(parameters_); }
 
  private:

@@ -8,8 +8,8 @@
 namespace deflect::result_files {
 
 struct ReadResult {
-  std::string
-      kind;  ///< "diagnosis", "comparison", "history", "validation", "map", "drawing", "check", "frame", "solve"
+  std::string kind;  ///< "diagnosis", "comparison", "history", "validation", "map", "drawing", "check", "frame",
+                     ///< "solve", "validity", "fit", "prediction"
   Json json;
 };
 

@@ -7,13 +7,11 @@
 #include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "msa/fields/yaml_tree.h"
-#include "msa/frame/file/frame_file.h"
-#include "msa/mechanism/configuration.h"
-#include "msa/mechanism/device_file.h"
 #include "validation/cli/command.h"
 #include "validation/cli/commands/effects.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/made_by.h"
+#include "validation/cli/new_description.h"
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/found_effects.h"
 #include "validation/effects/effect_file.h"
@@ -95,26 +93,6 @@ std::vector<std::string> names_of(const std::vector<effects::EffectInstance>& ad
   return out;
 }
 
-/// The name of the new device is its file's; what was added stands in its one line and above all.
-std::string device_text(const subject::Subject& s, const std::string& device,
-                        const std::vector<effects::EffectInstance>& added, const std::string& out) {
-  const std::vector<std::string> names = names_of(added);
-  const std::string before = s.about();
-  const std::string about = fmt::format("{}{}with {}", before, before.empty() ? "" : "; ", fmt::join(names, ", "));
-  return fmt::format("# {} with\n#   {}\n{}", device, fmt::join(names, "\n#   "),
-                     s.file_text(std::filesystem::path(out).stem().string(), about));
-}
-
-/// What was written can be read, and stands.
-void require_whole(const std::string& text, const std::string& out, bool is_frame) {
-  if (is_frame) {
-    frame::parse_frame(text, out);
-    return;
-  }
-  const Mechanism written = parse_mechanism(text, out);
-  configure(written, home_pose(written));
-}
-
 /// One after the other into the device; a diagnosis that they do not fit is named.
 std::vector<effects::EffectInstance> add_effects(subject::Subject& m, const AddArguments& a,
                                                  const std::vector<effects::Effect>& all) {
@@ -131,26 +109,20 @@ std::vector<effects::EffectInstance> add_effects(subject::Subject& m, const AddA
   return added;
 }
 
-/// What is read is not written over without a word.
-void require_other_file(const AddArguments& a) {
-  std::vector<std::string> inputs = a.files;
-  inputs.push_back(subject_file(a.device).string());
-  if (!a.from.empty()) inputs.push_back(a.from);
-  for (const std::string& input : inputs) {
-    std::error_code error;
-    if (!a.force && std::filesystem::equivalent(input, a.out, error) && !error)
-      throw InputError(fmt::format("-o {}: this is an input file: name another, or overwrite it with --force", a.out));
-  }
+std::vector<std::string> inputs_of(const AddArguments& a) {
+  std::vector<std::string> out = a.files;
+  out.push_back(subject_file(a.device).string());
+  if (!a.from.empty()) out.push_back(a.from);
+  return out;
 }
 
 void run(const AddArguments& a) {
-  require_other_file(a);
+  require_other_file(a.out, inputs_of(a), a.force);
   subject::Subject m = read_subject(a.device);
   const std::vector<effects::Effect> all = known_effects(a.files, m);
   const std::vector<effects::EffectInstance> added = add_effects(m, a, all);
-  const std::string old = m.name(), text = device_text(m, old, added, a.out);
-  require_whole(text, a.out, m.frame());
-  write_file(a.out, text);
+  const std::string old = m.name();
+  write_description(m, old, "with", names_of(added), a.out);
   if (!a.json.empty()) write_result(a.json, report::added_json(a.device, a.out, added));
   fmt::print("{}: {} with {}\n", a.out, old, fmt::join(names_of(added), ", "));
 }

@@ -1,0 +1,253 @@
+// Validation in the words of the standards: its measures against hand calculations, its verdicts on a cantilever whose
+// truth is known.
+#include "validation/validity/validation.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
+#include "msa/frame/file/frame_file.h"
+#include "tests/support/devices.h"
+#include "validation/measurement/random.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
+#include "validation/report/validity/validity_results.h"
+#include "validation/validity/hull.h"
+
+namespace deflect {
+namespace {
+
+using namespace validity;
+using measurement::Measurements;
+using subject::Subject;
+
+// ∫|F_n(u) − u|: of one value ½ two triangles of 1/8; of one at an end the whole half square; of n values in the middle
+// of n equal intervals 2n triangles of 1/(8 n²).
+TEST(AreaMetric, IsTheAreaBetweenBothDistributionFunctions) {
+  EXPECT_NEAR(area_from_uniform({0.5}), 0.25, 1e-15);
+  EXPECT_NEAR(area_from_uniform({0}), 0.5, 1e-15);
+  EXPECT_NEAR(area_from_uniform({1, 1, 1}), 0.5, 1e-15);
+  for (const int n : {1, 2, 7, 100}) {
+    std::vector<double> u;
+    for (int i = 0; i < n; ++i) u.push_back((i + 0.5) / n);
+    EXPECT_NEAR(area_from_uniform(u), 1 / (4.0 * n), 1e-14) << n;
+  }
+  // Of one value 0: twice ∫ Φ from −∞ to 0, φ(0). Far to one side: the distance.
+  EXPECT_NEAR(area_from_normal({0}), 2 / std::sqrt(2 * std::numbers::pi), 1e-12);
+  EXPECT_NEAR(area_from_normal({50, 50}), 50, 1e-9);
+  EXPECT_NEAR(area_from_normal({-50}), 50, 1e-9);
+}
+
+// The mean of 2000 samples of n = 400 has a standard error of about a half of it over √2000; the formula is that of
+// large n, short by O(1/n).
+TEST(AreaMetric, OfUniformValuesIsWhatIsExpected) {
+  measurement::Random random(3);
+  constexpr int samples = 2000, n = 400;
+  double sum = 0;
+  for (int i = 0; i < samples; ++i) {
+    std::vector<double> u;
+    for (int k = 0; k < n; ++k) u.push_back(random.uniform(0, 1));
+    sum += area_from_uniform(u);
+  }
+  EXPECT_NEAR(sum / samples / expected_area(n), 1, 4 * 0.5 / std::sqrt(samples) + 2.0 / n);
+}
+
+TEST(Bias, FactorAndScatterAreThoseOfTheLogarithms) {
+  std::vector<Pair> exact;
+  for (double D = 1; D < 20; ++D) exact.push_back({1.1 * D, D, 1e-6});
+  ASSERT_TRUE(bias_of(exact));
+  EXPECT_NEAR(bias_of(exact)->factor, 1.1, 1e-9);
+  EXPECT_TRUE(bias_of(exact)->scatter_from_experiment);
+  // ln S/D ~ N(ln 1.1 − σ_M²/2 + σ_E²/2, σ_M² + σ_E²) with σ_M = 0.05, σ_E = 0.02: known to 1/√2n of itself.
+  measurement::Random random(5);
+  std::vector<Pair> pairs;
+  constexpr int n = 4000;
+  for (int i = 0; i < n; ++i) {
+    const double truth = random.uniform(1, 10), D = truth * (1 + 0.02 * random.normal());
+    pairs.push_back({1.1 * truth * (1 + 0.05 * random.normal()), D, 0.02 * D});
+  }
+  const Bias b = *bias_of(pairs);
+  EXPECT_NEAR(b.factor, 1.1, 4 * 1.1 * 0.054 / std::sqrt(n));
+  EXPECT_NEAR(b.scatter, 0.05, 4 * 0.054 / std::sqrt(2 * n) + 1e-3);
+  EXPECT_NEAR(b.experiment, 0.02, 1e-12);
+  EXPECT_EQ(b.pairs, pairs.size());
+  EXPECT_FALSE(bias_of({{1, 1, 0}, {1, 1, 0}}));
+  EXPECT_FALSE(bias_of({{1, -1, 0}, {1, -1, 0}, {1, -2, 0}, {1, 1, 1}}));
+}
+
+// p is nearest to q if and only if no column lies beyond the plane through p across q − p.
+TEST(Hull, NearestPointFulfilsItsCondition) {
+  MatrixX square(2, 4);
+  square << 0, 1, 0, 1, 0, 0, 1, 1;
+  EXPECT_NEAR((nearest_in_hull(square, Vector3(0.2, 0.7, 0).head<2>()) - Vector3(0.2, 0.7, 0).head<2>()).norm(), 0,
+              1e-8);
+  EXPECT_NEAR((nearest_in_hull(square, Vector3(3, 0.5, 0).head<2>()) - Vector3(1, 0.5, 0).head<2>()).norm(), 0, 1e-7);
+  EXPECT_NEAR((nearest_in_hull(square, Vector3(-1, 4, 0).head<2>()) - Vector3(0, 1, 0).head<2>()).norm(), 0, 1e-7);
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    const int rows = 1 + trial % 4, columns = 1 + trial % 23;
+    MatrixX X(rows, columns);
+    VectorX q(rows);
+    for (double& x : X.reshaped()) x = test::uniform(random, -1, 1);
+    for (double& x : q) x = test::uniform(random, -2, 2);
+    const VectorX p = nearest_in_hull(X, q), away = q - p;
+    EXPECT_LE(((X.colwise() - p).transpose() * away).maxCoeff(), 1e-6) << trial;
+  }
+}
+
+// As in the tests of fits: a cantilever of 1 m, tip load.
+constexpr const char* cantilever = R"(
+name: cantilever
+plane: xz
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
+nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
+members: {beam: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}}
+supports: {A: clamped}
+loads: {tip: {nodes: {B: {fz: -10 N}}}}
+sensors: {z: {node: B, direction: uz, sigma: 10 um}}
+tolerances: {modulus: 1 %, load: 0.5 %}
+)";
+constexpr double tip = 10 / (3 * 210e9 * (0.02 * 0.02 * 0.02 * 0.02 / 12)), sigma = 10e-6;
+
+Subject beam() { return frame::parse_frame(cantilever, "frame.yaml"); }
+
+/// Readings of the tip; `read(factor, session)` in m.
+Measurements read(const std::function<double(double, int)>& tip_of, std::uint64_t seed = 0,
+                  const std::string& name = "data.csv") {
+  measurement::Random random(seed);
+  std::string csv = "load.tip,z_mm,note_session\n";
+  for (int session = 1; session <= 3; ++session)
+    for (const double f : {1.0, -1.0, 0.5, -0.5, 0.75, -0.75, 0.25, -0.25})
+      csv += fmt::format("{},{:.9f},day {}\n", f, 1e3 * (tip_of(f, session) + (seed ? sigma * random.normal() : 0)),
+                         session);
+  return beam().placed(measurement::parse_measurements(csv, name, beam().instruments()));
+}
+double right(double factor, int) { return -factor * tip; }
+
+ValidationOptions as_recorded() {
+  ValidationOptions o;
+  o.comparison.as_recorded = true;
+  return o;
+}
+
+// u_input: 1 % of E makes 1 %/1.01 of the deflection; the load cell 0.5 %; noise is the sensor's.
+TEST(Validity, UncertaintiesAreThoseOfHand) {
+  const Measurements data = read([](double f, int) { return -f * tip + 3e-6; });
+  const ValidationStudy s = validate(beam(), data, as_recorded());
+  ASSERT_EQ(s.errors.size(), 24u);
+  const ComparisonError& e = s.errors.front();
+  EXPECT_NEAR(e.E(), -3e-6, 1e-11);
+  EXPECT_NEAR(e.input, 0.01 * tip / 1.01, 1e-6 * tip);
+  EXPECT_NEAR(e.load, 0.005 * tip, 1e-9 * tip);
+  EXPECT_EQ(e.noise, sigma);
+  EXPECT_EQ(e.num, 0);  // one theory
+  EXPECT_NEAR(e.u_val(), std::sqrt(e.input * e.input + e.load * e.load + sigma * sigma), 1e-15);
+  ASSERT_EQ(s.channels.size(), 1u);
+  EXPECT_NEAR(s.channels[0].mean_E, -3e-6, 1e-11);
+  EXPECT_EQ(s.channels[0].within, 1);
+  EXPECT_TRUE(agrees(s.agreement));
+  EXPECT_EQ(s.agreement.numbers, 24u);
+}
+
+/// A stiffness 20 % off is beyond 1 % of tolerance: each reading errs by 1/1.2 − 1 of itself, and so does the bias.
+TEST(Validity, AWrongStiffnessIsBeyondTheUncertaintyAndItsBiasIsTold) {
+  const Measurements data = read([](double f, int) { return -f * tip * 1.2; }, 4);
+  const ValidationStudy s = validate(beam(), data, as_recorded());
+  EXPECT_FALSE(agrees(s.agreement));
+  ASSERT_TRUE(s.channels[0].bias);
+  EXPECT_NEAR(s.channels[0].bias->factor, 1 / 1.2, 0.01);
+  ASSERT_EQ(s.discrepancies.size(), 1u);
+  // E² − u_val² against S²: 0.2² less the tolerance's 0.01² and noise.
+  EXPECT_NEAR(s.discrepancies[0].share, 0.2, 0.01);
+  EXPECT_GT(s.area, 5 * s.expected_area);
+  EXPECT_NE(report::validity_words(s).find("beyond the validation uncertainty"), std::string::npos);
+}
+
+// A gross error in one session alone: the verdict hangs on it, and on no other group.
+TEST(Validity, TellsOnWhichGroupTheVerdictHangs) {
+  const Measurements data =
+      read([](double f, int session) { return -f * tip + (session == 2 ? 35e-6 * (f > 0 ? 1 : -1) : 0); }, 9);
+  const ValidationStudy s = validate(beam(), data, as_recorded());
+  ASSERT_FALSE(agrees(s.agreement));
+  for (const WithoutGroup& w : s.without)
+    EXPECT_EQ(w.changes, w.kind == "session" && w.name == "day 2") << w.kind << w.name;
+}
+
+TEST(Validity, CalibrationDataAreKeptApart) {
+  const Measurements data = read(right, 1), same = read(right, 1, "again.csv"), other = read(right, 2, "other.csv");
+  ValidationOptions o = as_recorded();
+  o.calibration = &same;
+  const auto refused = outcome_of<InputError>([&] { return validate(beam(), data, o); });
+  EXPECT_NE(refused.why.find("again.csv:2: the same reading stands in data.csv:2"), std::string::npos) << refused.why;
+  o.calibration = &other;
+  const ValidationStudy s = validate(beam(), data, o);
+  ASSERT_TRUE(s.calibration);
+  EXPECT_EQ(s.calibration->readings, 24u);
+  EXPECT_NEAR(s.calibration->rms_E, sigma, 0.6 * sigma);
+}
+
+TEST(Validity, SaysHowFarAUseIsFromWhatWasValidated) {
+  const Measurements data = read(right, 1);
+  const Measurements use = beam().placed(
+      measurement::parse_measurements("load.tip,z_mm\n0.9,0\n3,0\n-1,0\n", "use.csv", beam().instruments()));
+  ValidationOptions o = as_recorded();
+  o.use = &use;
+  const ValidationStudy s = validate(beam(), data, o);
+  ASSERT_TRUE(s.use);
+  ASSERT_EQ(s.use->points.size(), 3u);
+  EXPECT_TRUE(s.use->points[0].inside());
+  EXPECT_TRUE(s.use->points[2].inside());
+  EXPECT_NEAR(s.use->points[1].load_distance, 2, 1e-6);
+  ASSERT_EQ(s.domain.size(), 1u);
+  EXPECT_EQ(s.domain[0].name, "load.tip");
+  EXPECT_TRUE(s.domain[0].outside());
+  EXPECT_NEAR(s.use->predicted.numbers[1].value, -3 * tip, 1e-9);
+}
+
+// A support that yields more under large loads: its stiffness is not the same at every load size. p is uniform where it
+// is the same, so that it is below 1e-3 once in a thousand seeds.
+TEST(Validity, TellsWhetherAParameterIsTheSameEverywhere) {
+  ValidationOptions o = as_recorded();
+  o.parameters = fit::free_parameters(beam(), {"materials.steel.E"}, {});
+  const auto p_of = [&](const ValidationStudy& s, const std::string& kind) {
+    for (const Sameness& each : s.same)
+      if (each.kind == kind) return each.p_value;
+    return -1.0;
+  };
+  const Measurements alike = read(right, 11),
+                     bent = read([](double f, int) { return -f * tip * (1 + 0.2 * f * f); }, 12),
+                     drifted = read([](double f, int session) { return -f * tip * (1 + 0.1 * session); }, 13);
+  const ValidationStudy same = validate(beam(), alike, o);
+  EXPECT_GT(p_of(same, "load size"), 1e-3);
+  EXPECT_GT(p_of(same, "session"), 1e-3);
+  EXPECT_LT(p_of(validate(beam(), bent, o), "load size"), 1e-6);
+  EXPECT_LT(p_of(validate(beam(), drifted, o), "session"), 1e-6);
+}
+
+// Healthy machines within all their tolerances are rejected as often as the test says. Of 40 at 5 %: eight or more
+// happen once in a thousand times.
+TEST(Validity, AHealthyMachineAgrees) {
+  const Mechanism m = test::device("arm");
+  int rejected = 0;
+  constexpr int n = 12;
+  for (std::uint64_t seed = 1; seed <= n; ++seed) {
+    prediction::SimulationOptions o;
+    o.seed = seed;
+    const Measurements data = prediction::simulate(m, prediction::campaign("paper", m, 50, seed), o);
+    const ValidationStudy s = validate(m, data, as_recorded(), parallel::alone);
+    rejected += !agrees(s.agreement);
+    EXPECT_EQ(s.theories, 2u);
+    for (const ChannelValidity& c : s.channels) EXPECT_LT(c.num, 1e-3 * c.val) << c.name;
+  }
+  EXPECT_LE(rejected, 4);  // of 12 at 5 %: five or more once in 5000 times
+}
+
+}  // namespace
+}  // namespace deflect

@@ -1,0 +1,13 @@
+// A validation study as a figure.
+#pragma once
+
+#include "validation/figures/gnuplot.h"
+#include "validation/validity/validation.h"
+
+namespace deflect::figures {
+
+/// "validation": for every quantity the mean error E and its range of two validation uncertainties, over u_val; and
+/// both distribution functions of u-pooling, that of the measurements and the diagonal.
+Figure validity_figure(const validity::ValidationStudy&, const FigureStyle& = {});
+
+}  // namespace deflect::figures

@@ -1,0 +1,163 @@
+#include "validation/fit/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "validation/statistics/tail.h"
+
+namespace deflect::fit {
+namespace {
+
+/// A search ends after forty predictions; it goes on from there while it still falls.
+diagnosis::Fit searched(const diagnosis::Observations& o, const diagnosis::Hypothesis& h, VectorX values) {
+  constexpr int most_searches = 8;
+  diagnosis::Fit out = diagnosis::fit_of_all(o, h, values);
+  for (int i = 1; out.found && i < most_searches; ++i) {
+    const double before = out.chi2;
+    diagnosis::Fit again = diagnosis::fit_of_all(o, h, out.values);
+    if (again.found && again.chi2 < out.chi2) out = std::move(again);
+    if (!(before - out.chi2 > 1e-3)) break;
+  }
+  if (!out.found) throw NumericalError("no values can be fitted: " + out.why);
+  return out;
+}
+
+/// One round of the fit: what is observed, the tolerances that the parameters replace, values in SI.
+struct Round {
+  diagnosis::Observations observations;
+  VectorX values;
+};
+
+Round fitted_round(const subject::Subject& s, const measurement::Measurements& data,
+                   const std::vector<FreeParameter>& all, const compare::ComparisonOptions& options,
+                   const parallel::Work& work) {
+  const diagnosis::Observations observed(s, data, options, work);
+  Round out{observed.exact_in(replaced_tolerances(s, all, observed.comparison().tolerances.nuisances)), {}};
+  VectorX start(std::ssize(all));
+  for (std::size_t i = 0; i < all.size(); ++i) start(as_index(i)) = all[i].value;
+  const Freed freed(all);
+  out.values = freed.values(searched(out.observations, freed.hypothesis(), freed.effect_values(start)).values);
+  return out;
+}
+
+void require_no_mistake(const compare::Comparison& c, const std::string& origin) {
+  if (!compare::is_mistaken(c)) return;
+  throw InputError(fmt::format("{}: {}. Correct the file, or fit it as it is with --as-recorded", origin,
+                               c.mistakes.front().sentence));
+}
+
+/// Root mean square over the numbers of the quantity of errors that are not set aside.
+double rms_of(const diagnosis::Observations& o, const VectorX& numbers) {
+  return compare::rms_of_kept(o.comparison().study.values, numbers, o.aside());
+}
+
+std::vector<std::pair<measurement::Quantity, double>> sigmas_of(const compare::Comparison& c) {
+  std::map<measurement::Quantity, std::pair<double, double>> sums;
+  for (std::size_t i = 0; i < c.sigma.size(); ++i) {
+    auto& [squares, n] = sums[c.study.values[i].quantity];
+    squares += c.sigma[i] * c.sigma[i];
+    n += 1;
+  }
+  std::vector<std::pair<measurement::Quantity, double>> out;
+  for (const auto& [quantity, sum] : sums) out.emplace_back(quantity, std::sqrt(sum.first / sum.second));
+  return out;
+}
+
+void add_parameters(FitResult& out, const subject::Subject& s, const std::vector<FreeParameter>& all,
+                    const VectorX& values) {
+  const VectorX first = first_numbers(s, all);
+  const auto k = std::ssize(all);
+  out.correlation = MatrixX::Identity(k, k);
+  for (Eigen::Index i = 0; i < k; ++i) {
+    FittedParameter p{nth(all, i)};
+    p.first = first(i);
+    p.fitted = values(i);
+    p.deviation = std::sqrt(out.posterior.covariance(i, i));
+    const double x = p.coordinate(p.fitted);
+    p.low = p.value_at(x - normal95 * p.deviation), p.high = p.value_at(x + normal95 * p.deviation);
+    if (p.prior)
+      p.pull =
+          (x - p.coordinate(p.prior->mean)) / (p.positive ? p.prior->deviation / p.prior->mean : p.prior->deviation);
+    else if (const auto sigma = declared_deviation(s, p))
+      p.beyond_tolerance = (x - p.coordinate(p.value)) / *sigma;
+    out.parameters.push_back(std::move(p));
+    for (Eigen::Index j = 0; j < k; ++j)
+      out.correlation(i, j) =
+          out.posterior.covariance(i, j) / std::sqrt(out.posterior.covariance(i, i) * out.posterior.covariance(j, j));
+  }
+}
+
+void add_quality(FitResult& out, const Round& before, const Round& after, const subject::Subject& s,
+                 const Learnt& learnt) {
+  const diagnosis::Observations &first = before.observations, &last = after.observations;
+  const auto n = static_cast<double>(last.numbers());
+  const auto freedoms = std::max(1.0, n - static_cast<double>(out.parameters.size()));
+  out.chi2_before = first.null_residual().squaredNorm();
+  out.chi2_after = last.whitened_residual(s).squaredNorm();
+  out.before = {first.rmse(first.subject()), first.held_out_rmse(first.subject()),
+                out.chi2_before / static_cast<double>(first.numbers())};
+  out.after = {last.rmse(s), 0, out.chi2_after / freedoms};
+  out.p_value = statistics::chi_squared_tail(freedoms, out.chi2_after);
+  const HeldOutNumbers held = learnt.held_out();
+  out.after.held_out = rms_of(last, held.residual);
+  out.discrepancies = discrepancies(last, held);
+  if (out.p_value >= significant_misfit)
+    for (Discrepancy& each : out.discrepancies) each.share = 0;
+}
+
+}  // namespace
+
+VectorX fitted_values(const FitResult& r) {
+  VectorX out(std::ssize(r.parameters));
+  for (std::size_t i = 0; i < r.parameters.size(); ++i) out(as_index(i)) = r.parameters[i].fitted;
+  return out;
+}
+
+FitResult fit(const subject::Subject& s, const measurement::Measurements& data, const std::vector<FreeParameter>& all,
+              const compare::ComparisonOptions& options, const parallel::Work& work) {
+  const Round first = fitted_round(s, data, all, options, work.part(0, 0.5));
+  const compare::Comparison& c = first.observations.comparison();
+  require_no_mistake(c, data.origin);
+  compare::ComparisonOptions as_recorded = options;
+  as_recorded.as_recorded = true;
+  const std::vector<FreeParameter> moved = in_version(all, first.values);
+  const subject::Subject fitted = with_values(s, all, first.values);
+  const Round last = fitted_round(fitted, data, moved, as_recorded, work.part(0.5, 1));
+  const Learnt learnt(last.observations, moved, last.values);
+
+  FitResult out;
+  out.device = s.name();
+  out.data = data.origin;
+  out.how_read = data.how_read;
+  out.readings = data.readings.size();
+  out.poses = data.poses.size();
+  out.numbers = last.observations.numbers();
+  out.set_aside = last.observations.set_aside();
+  out.posterior = learnt.posterior();
+  const std::vector<subject::Tolerance>& tolerances = last.observations.comparison().tolerances.nuisances;
+  add_parameters(out, s, all, last.values);
+  const VectorX shift = out.posterior.mean.head(std::ssize(all));
+  for (Eigen::Index i = 0; i < shift.size(); ++i)
+    out.converged = out.converged && std::abs(shift(i)) < 0.1 * nth(out.parameters, i).deviation;
+  out.undetermined = undetermined(learnt.whitened_derivative(), moved, last.values);
+  const subject::Subject final = with_values(fitted, moved, last.values);
+  add_quality(out, first, last, final, learnt);
+  const compare::Comparison& after = last.observations.comparison();
+  out.quantity = compare::quantity_of_errors(after.study.values);
+  out.noise_and_tolerances = after.noise_and_tolerances;
+  out.tolerance_scale = last.observations.tolerance_scale();
+  for (const compare::Finding& f : after.findings) out.findings.push_back(f.sentence);
+  out.strained = last.observations.strained(final);
+  for (const subject::Tolerance& t : tolerances)
+    if (!t.pose) out.tolerances.push_back(t.name);
+  out.tolerances.emplace_back("deformed shape");
+  out.sigma = sigmas_of(after);
+  return out;
+}
+
+}  // namespace deflect::fit
