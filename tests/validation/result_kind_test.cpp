@@ -27,6 +27,7 @@ TEST(ResultKind, IsSaidByEveryResultAndRead) {
       {"comparison", "compare " + device + " " + data},
       {"diagnosis", "diagnose " + device + " " + data},
       {"history", "history " + data + " " + device},
+      {"foresight", "plan " + device + " --before paper"},
   };
   for (const auto& [kind, command] : commands) {
     const test::Run run = test::deflect(command + " --json " + file);

@@ -18,7 +18,8 @@ namespace deflect::cli {
 Command new_command(), show_command(), solve_command(), validate_command(), frame_command(), map_command(),
     export_command(), devices_command(), check_command(), effects_command(), add_command(), compare_command(),
     simulate_command(), diagnose_command(), history_command(), report_command();
-}
+Command plan_command();
+}  // namespace deflect::cli
 
 namespace {
 
@@ -87,6 +88,7 @@ int main(int argc, char** argv) {
                                    frame_command(),    map_command(),      export_command(),  devices_command(),
                                    check_command(),    effects_command(),  add_command(),     compare_command(),
                                    simulate_command(), diagnose_command(), history_command(), report_command()};
+  commands.push_back(plan_command());
   commands.push_back(completion_command(commands));
   std::vector<CLI::App*> parsers;
   bool quiet = false, loud = false;

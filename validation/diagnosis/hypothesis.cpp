@@ -24,6 +24,18 @@ double value_at(const effects::EffectParameter& p, double x) {
   return std::clamp(value, p.low, p.high);
 }
 
+VectorX all_values(const std::vector<const effects::EffectParameter*>& parameters, const VectorX& x) {
+  VectorX out(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*nth(parameters, i), x(i));
+  return out;
+}
+
+VectorX all_coordinates(const std::vector<const effects::EffectParameter*>& parameters, const VectorX& values) {
+  VectorX out(values.size());
+  for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = coordinate(*nth(parameters, i), values(i));
+  return out;
+}
+
 /// The whitened residual over the coordinates.
 class Problem {
  public:
@@ -33,16 +45,8 @@ class Problem {
         prepared_(o.subject(), h),
         wall_(VectorX::Constant(o.null_residual().size(), 1e6 * std::max(1.0, o.null_residual().norm()))) {}
 
-  VectorX values(const VectorX& x) const {
-    VectorX out(x.size());
-    for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*nth(parameters_, i), x(i));
-    return out;
-  }
-  VectorX coordinates(const VectorX& values) const {
-    VectorX out(values.size());
-    for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = coordinate(*nth(parameters_, i), values(i));
-    return out;
-  }
+  VectorX values(const VectorX& x) const { return all_values(parameters_, x); }
+  VectorX coordinates(const VectorX& values) const { return all_coordinates(parameters_, values); }
 
   /// Nothing where the subject cannot have these values or cannot be predicted with them.
   std::optional<VectorX> residual(const VectorX& x, std::string* why = nullptr) const {
@@ -324,6 +328,9 @@ std::pair<Hypothesis, VectorX> without(Hypothesis h, const VectorX& values, std:
 subject::Subject subject_with(const Observations& o, const Hypothesis& h, const VectorX& values) {
   return h.empty() ? o.subject() : effects::PreparedEffects(o.subject(), h)(values);
 }
+
+VectorX coordinates_of(const Hypothesis& h, const VectorX& values) { return all_coordinates(parameters_of(h), values); }
+VectorX values_at(const Hypothesis& h, const VectorX& x) { return all_values(parameters_of(h), x); }
 
 std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::size_t i) {
   const effects::EffectParameter& p = *parameters_of(h).at(i);

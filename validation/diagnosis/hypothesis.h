@@ -47,6 +47,11 @@ std::pair<Hypothesis, VectorX> without(Hypothesis, const VectorX& values, std::s
 /// The subject with the effects at these values.
 subject::Subject subject_with(const Observations&, const Hypothesis&, const VectorX& values);
 
+/// The coordinates of all parameters: the logarithm on a logarithmic scale, else the value over half its range; and the
+/// values at coordinates, cut at the bounds.
+VectorX coordinates_of(const Hypothesis&, const VectorX& values);
+VectorX values_at(const Hypothesis&, const VectorX& coordinates);
+
 /// 95 % interval of parameter i, symmetric in its coordinate (the logarithm, on a logarithmic scale) and cut at the
 /// bounds.
 std::pair<double, double> interval95(const Hypothesis&, const Fit&, std::size_t i);
