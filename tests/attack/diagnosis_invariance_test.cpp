@@ -16,6 +16,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/diagnosis/interval.h"
 #include "validation/effects/place_effects.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/simulate.h"

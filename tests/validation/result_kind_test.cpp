@@ -30,6 +30,7 @@ TEST(ResultKind, IsSaidByEveryResultAndRead) {
       {"fit", "fit " + device + " " + data + " --free materials.*.E --force -o " + (folder / "new.yaml").string()},
       {"prediction", "predict " + device + " --at 0,0,198.9 --load 50,0,0"},
       {"validity", "compare " + device + " " + data + " --validation"},
+      {"foresight", "plan " + device + " --before paper"},
   };
   for (const auto& [kind, command] : commands) {
     const test::Run run = test::deflect(command + " --json " + file);

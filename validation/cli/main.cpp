@@ -19,7 +19,7 @@ namespace deflect::cli {
 Command new_command(), show_command(), solve_command(), validate_command(), frame_command(), map_command(),
     export_command(), devices_command(), check_command(), effects_command(), add_command(), compare_command(),
     simulate_command(), diagnose_command(), history_command(), report_command();
-Command fit_command(), predict_command();
+Command fit_command(), predict_command(), plan_command();
 Command reproduce_command(const std::vector<Command>& others);
 }  // namespace deflect::cli
 
@@ -93,6 +93,7 @@ int main(int argc, char** argv) {
                                    simulate_command(), diagnose_command(), history_command(), report_command()};
   commands.push_back(fit_command());
   commands.push_back(predict_command());
+  commands.push_back(plan_command());
   commands.push_back(reproduce_command(commands));
   commands.push_back(completion_command(commands));
   std::vector<CLI::App*> parsers;

@@ -5,12 +5,12 @@
 
 namespace deflect::diagnosis {
 
-std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
+std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all, bool laws_at_places) {
   std::vector<Detectable> out;
   const MatrixX between = cosines(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Signature& s = all[i];
-    if (s.effect.effect->place) continue;
+    if (s.effect.effect->place && !laws_at_places) continue;
     Detectable d{s.effect, s.at_start.norm(), {}, "", 0};
     const VectorX start = effects::start_values(*s.effect.effect);
     for (Eigen::Index k = 0; k < start.size(); ++k) {
@@ -22,7 +22,7 @@ std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all) {
       if (p.low <= value && value <= p.high) d.smallest.push_back(value);
     }
     for (std::size_t k = 0; k < all.size(); ++k)
-      if (all[k].effect.effect != s.effect.effect && !all[k].effect.effect->place)
+      if (all[k].effect.effect != s.effect.effect && (laws_at_places || !all[k].effect.effect->place))
         if (const double c = between(as_index(i), as_index(k)); c > d.cosine)
           d.cosine = c, d.mistaken_for = name_of(all[k].effect);
     if (d.cosine < 0.9) d.mistaken_for.clear();

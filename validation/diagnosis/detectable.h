@@ -14,6 +14,7 @@ struct Detectable {
   double cosine = 0;
 };
 
-std::vector<Detectable> detectable_sizes(const std::vector<Signature>&);
+/// Of the entries of the catalogue; with `laws_at_places` of these too.
+std::vector<Detectable> detectable_sizes(const std::vector<Signature>&, bool laws_at_places = false);
 
 }  // namespace deflect::diagnosis

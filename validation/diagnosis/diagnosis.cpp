@@ -178,6 +178,7 @@ Diagnosis only_mistakes(Diagnosis d, const Observations& o) {
 Diagnosis before_any_effect(const Observations& o, const measurement::Measurements& data) {
   Diagnosis d;
   d.device = o.subject().name();
+  d.data = data.origin;
   d.how_read = data.how_read;
   d.mistakes = o.comparison().mistakes;
   d.readings = o.comparison().readings;
@@ -247,6 +248,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   for (const Tie& tie : found.ties) {
     if (tie.names.empty()) continue;
     d.indistinguishable.push_back(tie.names);
+    d.ties.push_back(tie);
     if (auto split = splitting_reading(seen, data, tie)) d.splitting.push_back(std::move(*split));
   }
   bound_ties(d, o, work.threads);

@@ -33,6 +33,7 @@ struct Quality {
 
 struct Diagnosis {
   std::string device;                 ///< its name
+  std::string data;                   ///< where the measurements come from
   std::vector<std::string> how_read;  ///< what was converted, skipped or averaged in reading the measurements
   Verdict verdict = Verdict::nothing_missing;
   /// Recording mistakes (plausibility.h). Where the first is certain, nothing else was tested: the verdict is
@@ -47,6 +48,7 @@ struct Diagnosis {
   Hypothesis missing;                 ///< in the order in which they were added
   Fit fit;                            ///< of all of them
   std::vector<std::vector<std::string>> indistinguishable;
+  std::vector<Tie> ties;             ///< the same with what was fitted
   std::vector<Splitting> splitting;  ///< of each of these where one was found: what to read next
   Quality baseline, final;
   measurement::Quantity quantity = measurement::Quantity::length;  ///< of errors (errors_by_group.h)

@@ -20,6 +20,18 @@ double value_at(const effects::EffectParameter& p, double x) {
 
 namespace {
 
+VectorX all_values(const std::vector<const effects::EffectParameter*>& parameters, const VectorX& x) {
+  VectorX out(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*nth(parameters, i), x(i));
+  return out;
+}
+
+VectorX all_coordinates(const std::vector<const effects::EffectParameter*>& parameters, const VectorX& values) {
+  VectorX out(values.size());
+  for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = coordinate(*nth(parameters, i), values(i));
+  return out;
+}
+
 Eigen::Index priors_of(const std::vector<const effects::EffectParameter*>& all) {
   return std::count_if(all.begin(), all.end(), [](const auto* p) { return p->prior.has_value(); });
 }
@@ -38,17 +50,11 @@ FitProblem::FitProblem(const Observations& o, const Hypothesis& h)
       wall_(VectorX::Constant(o.null_residual().size() + priors_of(parameters_),
                               1e6 * std::max(1.0, o.null_residual().norm()))) {}
 
-VectorX FitProblem::values(const VectorX& x) const {
-  VectorX out(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*nth(parameters_, i), x(i));
-  return out;
-}
+VectorX FitProblem::values(const VectorX& x) const { return all_values(parameters_, x); }
+VectorX FitProblem::coordinates(const VectorX& values) const { return all_coordinates(parameters_, values); }
 
-VectorX FitProblem::coordinates(const VectorX& values) const {
-  VectorX out(values.size());
-  for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = coordinate(*nth(parameters_, i), values(i));
-  return out;
-}
+VectorX coordinates_of(const Hypothesis& h, const VectorX& values) { return all_coordinates(parameters_of(h), values); }
+VectorX values_at(const Hypothesis& h, const VectorX& x) { return all_values(parameters_of(h), x); }
 
 std::optional<VectorX> FitProblem::residual(const VectorX& x, std::string* why) const {
   auto predicted = outcome_of([&] { return observations_.whitened_residual(prepared_(values(x))); });

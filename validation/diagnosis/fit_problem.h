@@ -17,6 +17,10 @@ double coordinate(const effects::EffectParameter&, double value);
 /// The value there, within the parameter's bounds.
 double value_at(const effects::EffectParameter&, double x);
 
+/// Of all parameters.
+VectorX coordinates_of(const Hypothesis&, const VectorX& values);
+VectorX values_at(const Hypothesis&, const VectorX& coordinates);
+
 class FitProblem {
  public:
   /// Both must outlive it.

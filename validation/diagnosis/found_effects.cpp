@@ -31,6 +31,8 @@ class Reader {
     }
     if (root_.contains("found")) take_found(out.missing);
     for (FoundEffect& f : out.missing) complete(f, out.candidates);
+    if (root_.contains("ties")) out.ties = ties();
+    if (root_.contains("data") && root_["data"].is_string()) out.data = root_["data"];
     return out;
   }
 
@@ -52,6 +54,28 @@ class Reader {
         fail(where, fmt::format("is '{}', where 'missing' has '{}'", f.effect, missing[i].effect));
       missing[i] = std::move(f);
     }
+  }
+
+  std::vector<FoundTie> ties() const {
+    std::vector<FoundTie> out;
+    const Json& all = list(root_, "ties", "");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      FoundTie& tie = out.emplace_back();
+      const std::string where = fmt::format("ties[{}]", i);
+      const Json& rivals = list(all[i], "rivals", where);
+      for (std::size_t k = 0; k < rivals.size(); ++k) {
+        const std::string rival = fmt::format("{}.rivals[{}]", where, k);
+        FoundTie::Rival& r = tie.rivals.emplace_back();
+        if (!rivals[k].is_object() || !rivals[k].contains("probability") || !rivals[k]["probability"].is_number())
+          fail(rival, "has no 'probability'");
+        r.probability = rivals[k]["probability"];
+        const Json& effects = list(rivals[k], "effects", rival);
+        for (std::size_t e = 0; e < effects.size(); ++e)
+          r.effects.push_back(hypothesis(effects[e], fmt::format("{}.effects[{}]", rival, e)));
+        if (r.effects.empty()) fail(rival, "has no effects");
+      }
+    }
+    return out;
   }
 
   static FoundEffect named(const Json& name) { return {name.get<std::string>(), {}, {}}; }

@@ -17,10 +17,21 @@ struct FoundEffect {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
+/// Effects of which the data support one as much as the other.
+struct FoundTie {
+  struct Rival {
+    double probability = 0;            ///< among all that could take its place
+    std::vector<FoundEffect> effects;  ///< fitted together: what was found beside it, then the rival itself
+  };
+  std::vector<Rival> rivals;  ///< best first
+};
+
 struct FoundEffects {
   std::vector<FoundEffect>
       missing;  ///< in the order in which they were added; values from "found", else from the best candidate
   std::vector<FoundEffect> candidates;  ///< every hypothesis, best first
+  std::vector<FoundTie> ties;           ///< empty in results of versions before
+  std::string data;                     ///< the measurements that were diagnosed; empty likewise
 };
 
 /// Throws InputError with the file and the JSON member that does not match the format.

@@ -119,7 +119,8 @@ class Search {
       const std::string& name = all[i].added().effect->name;
       if (std::find(group.names.begin(), group.names.end(), name) == group.names.end()) {
         group.names.push_back(name);
-        if (group.rivals.size() < 2) group.rivals.push_back(all[i]);
+        group.rivals.push_back(all[i]);
+        group.rivals.back().probability = among[i];
       }
       if ((sum += among[i]) > together) break;
     }

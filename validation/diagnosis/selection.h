@@ -10,7 +10,7 @@ namespace deflect::diagnosis {
 /// What does nearly as well as an effect, in its place.
 struct Tie {
   std::vector<std::string> names;  ///< best first, until they have 95 % of the probability together
-  std::vector<Candidate> rivals;   ///< the best two of different names, as fitted
+  std::vector<Candidate> rivals;   ///< the best of each name, as fitted, with its probability among all
 };
 
 struct Selection {

@@ -64,8 +64,8 @@ std::optional<Splitting> splitting_reading(const Observations& o, const Measurem
   if (tie.rivals.size() < 2) return std::nullopt;
   const auto found = outcome_of([&]() -> std::optional<Splitting> {
     std::vector<Subject> both;
-    for (const Candidate& c : tie.rivals)
-      both.push_back(subject::instrumented(subject_with(o, c.hypothesis, c.fit.values)));
+    for (std::size_t i = 0; i < 2; ++i)
+      both.push_back(subject::instrumented(subject_with(o, tie.rivals[i].hypothesis, tie.rivals[i].fit.values)));
     const Measurements trial = subject::trial_readings(both.front(), data);
     if (trial.readings.empty()) return std::nullopt;
     const auto standing = both[0].stand(trial);
@@ -89,7 +89,7 @@ std::optional<Splitting> splitting_reading(const Observations& o, const Measurem
                 size,
                 many};
       }
-    for (const Candidate& c : tie.rivals) best.between.push_back(c.added().effect->name);
+    for (std::size_t i = 0; i < 2; ++i) best.between.push_back(tie.rivals[i].added().effect->name);
     if (best.reading.empty()) return std::nullopt;
     return best;
   });

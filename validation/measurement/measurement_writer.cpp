@@ -65,7 +65,7 @@ void add_loads(std::vector<Column>& columns, const Measurements& m) {
 }
 
 /// Those that say something: the reader's defaults stand for the others.
-std::vector<Column> columns_of(const Measurements& m) {
+std::vector<Column> columns_of(const Measurements& m, const std::array<bool, 6>& to_fill_in) {
   const auto any = [&](const auto& has) { return std::any_of(m.readings.begin(), m.readings.end(), has); };
   std::vector<Column> columns;
   if (!m.instruments.stationary || m.poses.size() > 1)
@@ -90,7 +90,8 @@ std::vector<Column> columns_of(const Measurements& m) {
     columns.push_back({"temperature_C", [](const Reading& r) { return number_text(r.temperature_C); }});
   const auto& sensors = m.instruments.sensors;
   for (std::size_t i = 0; i < 6; ++i)
-    if ((i < 3 && sensors.empty()) || any([i](const Reading& r) { return r.displacement[i].has_value(); }))
+    if ((i < 3 && sensors.empty()) || to_fill_in[i] ||
+        any([i](const Reading& r) { return r.displacement[i].has_value(); }))
       columns.push_back(
           {displacement_columns[i], [i](const Reading& r) { return number_text(r.displacement[i], i < 3 ? 1e3 : 1); }});
   for (std::size_t k = 0; k < sensors.size(); ++k)
@@ -109,8 +110,8 @@ std::vector<Column> columns_of(const Measurements& m) {
 
 }  // namespace
 
-std::string measurements_text(const Measurements& m) {
-  const std::vector<Column> columns = columns_of(m);
+std::string measurements_text(const Measurements& m, const std::array<bool, 6>& to_fill_in) {
+  const std::vector<Column> columns = columns_of(m, to_fill_in);
   std::string text;
   for (const Column& column : columns) text += (text.empty() ? "" : ",") + column.name;
   text += '\n';
@@ -122,8 +123,9 @@ std::string measurements_text(const Measurements& m) {
   return text;
 }
 
-void write_measurements(const std::filesystem::path& path, const Measurements& m) {
-  write_text(path, measurements_text(m));
+void write_measurements(const std::filesystem::path& path, const Measurements& m,
+                        const std::array<bool, 6>& to_fill_in) {
+  write_text(path, measurements_text(m, to_fill_in));
 }
 
 }  // namespace deflect::measurement

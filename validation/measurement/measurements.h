@@ -111,9 +111,10 @@ Measurements read_plan(const std::filesystem::path&, const Instruments& known = 
 
 /// The file that reads back as the same measurements, lines aside: every number is the shortest that does, which for
 /// a value in m or Nm that is no multiple of any double in mm or Nmm may be one unit in the last place off. Columns
-/// that would say nothing are left out. Written whole or not at all.
-void write_measurements(const std::filesystem::path&, const Measurements&);
-std::string measurements_text(const Measurements&);
+/// that would say nothing are left out, but for those of displacements that are `to_fill_in`. Written whole or not at
+/// all.
+void write_measurements(const std::filesystem::path&, const Measurements&, const std::array<bool, 6>& to_fill_in = {});
+std::string measurements_text(const Measurements&, const std::array<bool, 6>& to_fill_in = {});
 
 /// One number of a load: a component at T, at a named point, or a factor on a load case.
 struct LoadChannel {

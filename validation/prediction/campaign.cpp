@@ -40,22 +40,7 @@ class Plan {
   }
 
   void add_tilted(int count) {
-    const bool tilts = actuators_of(mechanism_).size() >= 6;
-    const studies::Region region = studies::region_of(mechanism_);
-    for (int i = 0; i < count; ++i) {
-      const auto label = std::to_string(plan_.poses.size());
-      for (int tries = 0;; ++tries) {
-        Vector6 at = studies::draw_pose(region, random_);
-        const Vector3 tilt = random_.uniform3(-most_tilt_deg, most_tilt_deg);
-        if (tilts) at.tail<3>() += tilt;
-        at = as_written(at);
-        const auto configured = outcome_of<ModelError>([&] { return configure(mechanism_, pose_from(at)); });
-        if (!configured && tries < most_tries) continue;
-        if (!configured) throw ModelError(configured.why, configured.cause);
-        pose(label, at);
-        break;
-      }
-    }
+    for (const Vector6& at : tilted_poses(mechanism_, count, random_)) pose(std::to_string(plan_.poses.size()), at);
   }
 
   void read(std::size_t pose, const Vector6& load) {
@@ -121,6 +106,24 @@ measurement::Measurements random(Plan plan, double F) {
 }
 
 }  // namespace
+
+std::vector<Vector6> tilted_poses(const Mechanism& m, int count, measurement::Random& random) {
+  const bool tilts = actuators_of(m).size() >= 6;
+  const studies::Region region = studies::region_of(m);
+  std::vector<Vector6> out;
+  for (int tries = 0; std::ssize(out) < count; ++tries) {
+    Vector6 at = studies::draw_pose(region, random);
+    const Vector3 tilt = random.uniform3(-most_tilt_deg, most_tilt_deg);
+    if (tilts) at.tail<3>() += tilt;
+    at = as_written(at);
+    const auto configured = outcome_of<ModelError>([&] { return configure(m, pose_from(at)); });
+    if (!configured && tries < most_tries) continue;
+    if (!configured) throw ModelError(configured.why, configured.cause);
+    out.push_back(at);
+    tries = -1;
+  }
+  return out;
+}
 
 measurement::Measurements campaign(const std::string& name, const Mechanism& m, double force, std::uint64_t seed) {
   constexpr measurement::Measurements (*plans[])(Plan, double) = {paper, cycle, rich, random};

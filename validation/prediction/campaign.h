@@ -16,6 +16,10 @@
 #include "msa/mechanism/description.h"
 #include "validation/measurement/measurements.h"
 
+namespace deflect::measurement {
+class Random;
+}
+
 namespace deflect::prediction {
 
 inline constexpr const char* campaign_names[] = {"paper", "cycle", "rich", "random"};
@@ -23,5 +27,8 @@ inline constexpr const char* campaign_names[] = {"paper", "cycle", "rich", "rand
 /// The plan of that name for the device's workspace (workspace.h): poses, loads and sequence. Random poses that the
 /// device cannot reach are drawn again; a workspace point that it cannot reach throws ModelError. `force`: F in N.
 measurement::Measurements campaign(const std::string& name, const Mechanism&, double force, std::uint64_t seed);
+
+/// Poses drawn by lot within the device's workspace, x y z roll pitch yaw in mm and deg, with those tilts.
+std::vector<Vector6> tilted_poses(const Mechanism&, int count, measurement::Random&);
 
 }  // namespace deflect::prediction

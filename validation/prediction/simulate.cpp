@@ -57,11 +57,12 @@ double rounded(double value, double sigma, double per_SI) {
 
 measurement::Measurements simulate(const Mechanism& m, measurement::Measurements plan, const SimulationOptions& o,
                                    const parallel::Work& work) {
-  measurement::Random random(o.seed);
-  const AsBuilt built = draw(m, o.tolerances, random);
-  Mechanism geometry = o.tolerances > 0 ? with_geometry(draw_numbers(m, o.tolerances, random), built) : m;
+  measurement::Random random(o.seed), of_machine(o.machine.value_or(o.seed));
+  measurement::Random& building = o.machine ? of_machine : random;
+  const AsBuilt built = draw(m, o.tolerances, building);
+  Mechanism geometry = o.tolerances > 0 ? with_geometry(draw_numbers(m, o.tolerances, building), built) : m;
   for (auto& [name, sensor] : geometry.sensors)
-    if (sensor.gain_sigma > 0) sensor.gain += o.tolerances * sensor.gain_sigma * random.normal();
+    if (sensor.gain_sigma > 0) sensor.gain += o.tolerances * sensor.gain_sigma * building.normal();
   std::vector<Configuration> machines = measurement::configure_all(m, plan);
   for (Configuration& machine : machines) {
     const VectorX errors = draw_errors(machine.actuators, o.tolerances * m.tolerances.actuator_repeatability, random);
@@ -69,6 +70,7 @@ measurement::Measurements simulate(const Mechanism& m, measurement::Measurements
   }
 
   plan.instruments.sensors = measurement::instruments_of(m).sensors;
+  for (measurement::Reading& r : plan.readings) r.sensors.clear();  // a plan has empty cells
   const std::vector<measurement::SensorChannel>& sensors = plan.instruments.sensors;
   const auto n = static_cast<double>(plan.readings.size());
   if (o.swing != 0 || o.temperature != 20) {

@@ -14,6 +14,8 @@ namespace deflect::prediction {
 
 struct SimulationOptions {
   std::uint64_t seed = 1;
+  std::optional<std::uint64_t> machine;  ///< seed of what is built, apart from that of the readings: campaigns with
+                                         ///< the same one are of one machine
   double sigma_u = 2e-6;                 ///< m: of a reading; 0: exact readings without σ in the file
   std::optional<double> sigma_th;        ///< rad; absent: rotations are not measured
   double tolerances = 1;                 ///< factor on those of the device; 0: built as drawn

@@ -106,15 +106,27 @@ Json splitting_json(const std::vector<diagnosis::Splitting>& all) {
   return out;
 }
 
-/// The effects of "missing", fitted together.
-Json found_json(const diagnosis::Diagnosis& d) {
+/// Effects that were fitted together.
+Json fitted_json(const diagnosis::Hypothesis& h, const diagnosis::Fit& f) {
   Json out = Json::array();
   std::size_t from = 0;
-  for (const effects::PlacedEffect& e : d.missing) {
+  for (const effects::PlacedEffect& e : h) {
     Json one = placed_json(e);
-    one["parameters"] = parameters_json(d.missing, d.fit, from, e.effect->parameters.size());
+    one["parameters"] = parameters_json(h, f, from, e.effect->parameters.size());
     out.push_back(std::move(one));
     from += e.effect->parameters.size();
+  }
+  return out;
+}
+
+/// Of each tie what was fitted, for the plan of what to measure next.
+Json ties_json(const std::vector<diagnosis::Tie>& ties) {
+  Json out = Json::array();
+  for (const diagnosis::Tie& tie : ties) {
+    Json rivals = Json::array();
+    for (const diagnosis::Candidate& c : tie.rivals)
+      rivals.push_back({{"probability", c.probability}, {"effects", fitted_json(c.hypothesis, c.fit)}});
+    out.push_back({{"rivals", std::move(rivals)}});
   }
   return out;
 }
@@ -167,6 +179,7 @@ std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   j["kind"] = "diagnosis";
   j["verdict"] = nth(diagnosis::verdict_names, d.verdict);
   j["device"] = d.device;
+  j["data"] = d.data;
   j["notes"] = d.how_read;
   j["sentence"] = verdict_words(d);
   j["headline"] = headline_words(d);
@@ -175,13 +188,14 @@ std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   for (const effects::PlacedEffect& e : d.missing) j["missing"].push_back(e.effect->name);
   j["candidates"] = candidates_json(d.candidates, coarse(d));
   j["indistinguishable"] = d.indistinguishable;
+  j["ties"] = ties_json(d.ties);
   j["splitting"] = splitting_json(d.splitting);
   j["baseline"] = quality_json(d.baseline, coarse(d));
   j["final"] = quality_json(d.final, coarse(d));
   j["unit"] = measurement::row_of(d.quantity).coarse;  // of what ends with _mm
   j["noise_floor_mm"] = json::json_number(coarse(d) * d.noise_floor, "noise floor");
   j["unexplained"] = unexplained_json(d);
-  j["found"] = found_json(d);
+  j["found"] = fitted_json(d.missing, d.fit);
   j["probability_nothing"] = d.probability_nothing;
   j["probability_unknown"] = d.probability_unknown;
   j["chance_of_any"] = d.chance;

@@ -19,7 +19,8 @@ std::string and_more(std::size_t all) {
   return all > most_shown ? fmt::format(", … and {} more: --json has all", all - most_shown) : "";
 }
 
-/// "stiffness_N_per_mm 29100".
+}  // namespace
+
 std::string sizes_of(const diagnosis::Detectable& e) {
   if (e.smallest.empty()) return "none within bounds";
   std::string out;
@@ -27,8 +28,6 @@ std::string sizes_of(const diagnosis::Detectable& e) {
     out += fmt::format("{}{} {}", i ? ", " : "", e.effect.effect->parameters[i].name, digits_of(e.smallest[i], 3));
   return out;
 }
-
-}  // namespace
 
 std::string strained_words(std::vector<std::pair<std::string, double>> strained) {
   std::stable_sort(strained.begin(), strained.end(),

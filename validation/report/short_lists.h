@@ -20,6 +20,9 @@ Json strained_json(const std::vector<std::pair<std::string, double>>&);
 /// "not looked at: joint_preload, motor_compliance (why: --json)", a line; empty where nothing was left out.
 std::string left_out_words(const std::vector<diagnosis::LeftOut>&);
 
+/// "stiffness_N_per_mm 29100", the smallest size that shows, or "none within bounds".
+std::string sizes_of(const diagnosis::Detectable&);
+
 /// A table of the effects that this plan shows least of, by the size that their search starts with: one line an effect,
 /// of the leg where it is hardest to see.
 std::string detectable_table(const std::vector<diagnosis::Detectable>&);

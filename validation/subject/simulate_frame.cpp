@@ -117,14 +117,16 @@ measurement::Measurements simulate_frame(const frame::FrameDescription& f, measu
         fmt::format("{}: the frame has no sensors to simulate: describe them, as in 'sensors: {{lvdt: {{node: B, "
                     "direction: uz}}}}'",
                     f.name));
-  measurement::Random random(o.seed);
+  measurement::Random random(o.seed), of_frame(o.machine.value_or(o.seed));
+  measurement::Random& building = o.machine ? of_frame : random;
   frame::FrameDescription built = f;
   for (const NumberMove& move : frame::number_moves(f))
-    built = frame::moved(built, move, o.tolerances * random.normal());
+    built = frame::moved(built, move, o.tolerances * building.normal());
   for (auto& [name, sensor] : built.sensors)
-    if (sensor.gain_sigma > 0) sensor.gain += o.tolerances * sensor.gain_sigma * random.normal();
+    if (sensor.gain_sigma > 0) sensor.gain += o.tolerances * sensor.gain_sigma * building.normal();
 
   plan.instruments.sensors = Subject(f).instruments().sensors;
+  for (measurement::Reading& r : plan.readings) r.sensors.clear();  // a plan has empty cells
   std::vector<measurement::SensorChannel>& sensors = plan.instruments.sensors;
   measurement::Measurements loaded = plan;
   for (measurement::Reading& r : loaded.readings)

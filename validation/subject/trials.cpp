@@ -56,15 +56,12 @@ measurement::Measurements of_frame(const Subject& s, const measurement::Measurem
   m.instruments = s.instruments();
   m.instruments.load_points.clear();
   m.poses.push_back({"all", Vector6::Zero(), {}, {}});
-  const std::vector<std::string> cases = m.instruments.load_cases, known = data.instruments.load_cases;
+  const std::vector<std::string> cases = m.instruments.load_cases;
+  const std::vector<double> largest = largest_factors(s, data);
   const std::size_t sensors = m.instruments.sensors.size();
   Trials out(std::move(m));
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    double most = 0;
-    const auto at = std::find(known.begin(), known.end(), cases[k]);
-    for (const measurement::Reading& r : data.readings)
-      if (at != known.end()) most = std::max(most, std::abs(r.factors[as_size(at - known.begin())]));
-    if (most == 0) most = 1;
+    const double most = largest[k];
     const auto load = [&](measurement::Reading& r, int times) {
       r.factors.assign(cases.size(), 0);
       r.factors[k] = times * most;
@@ -83,22 +80,17 @@ measurement::Measurements of_machine(const Subject& s, const measurement::Measur
     m.poses.push_back(data.poses[p]);
     m.poses.back().readings.clear();
   }
-  double force = 0, moment = 0;
+  const LargestLoads largest = largest_loads(s, data);
   std::optional<double> sigma_u, sigma_th;
   for (const measurement::Reading& r : data.readings) {
-    force = std::max(force, r.load.head<3>().cwiseAbs().maxCoeff());
-    moment = std::max(moment, r.load.tail<3>().cwiseAbs().maxCoeff());
     if (r.sigma_u) sigma_u = std::min(sigma_u.value_or(*r.sigma_u), *r.sigma_u);
     if (r.sigma_th) sigma_th = std::min(sigma_th.value_or(*r.sigma_th), *r.sigma_th);
   }
-  const double arm = 0.1 * s.stand(data)->size();
-  if (moment == 0) moment = force * arm;
-  if (force == 0) force = moment / arm;
   const std::vector<measurement::PoseGroup> poses = m.poses;
   Trials out(std::move(m));
   for (std::size_t p = 0; p < poses.size(); ++p)
     for (std::size_t i = 0; i < 6; ++i) {
-      const double size = i < 3 ? force : moment;
+      const double size = i < 3 ? largest.force : largest.moment;
       const auto load = [&](measurement::Reading& r, int times) {
         r.load(as_index(i)) = times * size;
         r.displacement.fill(0.0);
@@ -114,6 +106,31 @@ measurement::Measurements of_machine(const Subject& s, const measurement::Measur
 }
 
 }  // namespace
+
+LargestLoads largest_loads(const Subject& s, const measurement::Measurements& data) {
+  LargestLoads out;
+  for (const measurement::Reading& r : data.readings) {
+    out.force = std::max(out.force, r.load.head<3>().cwiseAbs().maxCoeff());
+    out.moment = std::max(out.moment, r.load.tail<3>().cwiseAbs().maxCoeff());
+  }
+  const double arm = 0.1 * s.stand(data)->size();
+  if (out.moment == 0) out.moment = out.force * arm;
+  if (out.force == 0) out.force = out.moment / arm;
+  return out;
+}
+
+std::vector<double> largest_factors(const Subject& s, const measurement::Measurements& data) {
+  const std::vector<std::string>& known = data.instruments.load_cases;
+  std::vector<double> out;
+  for (const std::string& name : s.instruments().load_cases) {
+    double most = 0;
+    const auto at = std::find(known.begin(), known.end(), name);
+    for (const measurement::Reading& r : data.readings)
+      if (at != known.end()) most = std::max(most, std::abs(r.factors[as_size(at - known.begin())]));
+    out.push_back(most > 0 ? most : 1);
+  }
+  return out;
+}
 
 Subject instrumented(const Subject& s) {
   if (!s.frame()) return s;

@@ -11,6 +11,16 @@ namespace deflect::subject {
 /// sensor reads a displacement. A machine is read at its tool point: it comes back as it is.
 Subject instrumented(const Subject&);
 
+/// What a machine was loaded by: the largest component of a force, N, and of a moment, Nm, at T. Where the readings
+/// have only one of the two, the other has an arm of a tenth of the machine's size.
+struct LargestLoads {
+  double force = 0, moment = 0;
+};
+LargestLoads largest_loads(const Subject&, const measurement::Measurements&);
+
+/// Of a frame: the largest factor on each of its load cases in the data; 1 where they do not have it.
+std::vector<double> largest_factors(const Subject&, const measurement::Measurements&);
+
 /// Each load alone goes on, comes off, goes on the other way and comes off, in sequence, from an unloaded reading on:
 /// of a frame the load cases, of a machine forces and moments at T along x, y and z at the poses of the data (nine at
 /// most); as large as they are in the data. The note of each row names its load, "load.snow × 1", "fz = -50 N at pose

@@ -8,14 +8,15 @@
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/measurement/joined.h"
 #include "validation/report/diagnosis_results.h"
 
 namespace deflect::cli {
 namespace {
 
 struct DiagnoseArguments {
-  std::string device, data, json, report;
-  std::vector<std::string> files;
+  std::string device, json, report;
+  std::vector<std::string> data, files;
   std::string sigma_mm, sigma_rad;
   bool as_recorded = false;
   double bootstrap = 1999, threads = 0;
@@ -24,7 +25,9 @@ struct DiagnoseArguments {
 void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   require_pages(a.report);
   const subject::Subject m = read_subject(a.device);
-  const measurement::Measurements data = read_data(a.data, m);
+  std::vector<measurement::Measurements> sessions;
+  for (const std::string& file : a.data) sessions.push_back(read_data(file, m));
+  const measurement::Measurements data = m.placed(measurement::joined(sessions));
   tell_size(data, 1200);
   const std::vector<effects::Effect> effects = known_effects(a.files, m);
   diagnosis::DiagnosisOptions o;
@@ -60,7 +63,7 @@ Command diagnose_command() {
       "sets of --bootstrap and the first one writes; the result is the same",
       "deflect diagnose haptic-6psu-ideal-joints measurements.csv --json diagnosis.json",
       {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
-       {"data", "DATA", "measurements (CSV)", &a->data, true},
+       {"data", "DATA", "measurements (CSV); several files are sessions of one campaign", &a->data, true},
        {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
        {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
        {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},

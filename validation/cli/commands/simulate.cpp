@@ -30,7 +30,7 @@ namespace {
 constexpr double most_noise_mm = 1000, most_tolerances = 1000;
 
 struct SimulateArguments {
-  std::string device, out, json, campaign = "rich", geometry = "finite", temperature, noise_rad;
+  std::string device, out, json, campaign = "rich", geometry = "finite", temperature, noise_rad, machine;
   std::vector<std::string> with, files;
   double seed = 1, noise_mm = 0.002, tolerances = 1, outliers = 0, force = 50, elements = 4, threads = 0;
 };
@@ -78,6 +78,9 @@ prediction::SimulationOptions options_of(const SimulateArguments& a) {
   if (!(a.seed >= 0 && a.seed < 9e15) || a.seed != std::floor(a.seed))
     throw InputError(fmt::format("--seed {}: give a whole number of at least zero", a.seed));
   o.seed = static_cast<std::uint64_t>(a.seed);
+  if (!a.machine.empty())
+    o.machine = static_cast<std::uint64_t>(
+        whole("--machine", parse_list("--machine", a.machine, {1}, "a whole number")[0], 0, 1e9));
   if (!(a.noise_mm >= 0 && a.noise_mm <= most_noise_mm))
     throw InputError(fmt::format("--noise {}: give a value from 0 to {} mm", a.noise_mm, most_noise_mm));
   o.sigma_u = a.noise_mm / 1e3;
@@ -217,6 +220,10 @@ Command simulate_command() {
        {"--geometry", "linear|second-order|finite", "shape in which forces balance (default finite)", &a->geometry},
        {"--elements", "N", "elements per member (default 4)", &a->elements},
        {"--seed", "N", "seed of all random numbers (default 1)", &a->seed},
+       {"--machine", "N",
+        "seed of the machine that is built within the tolerances (default: --seed); campaigns with the same N and "
+        "another --seed are of one machine",
+        &a->machine},
        {"--threads", "N", "threads (default 0: all cores); they do not change the file", &a->threads},
        {"-o,--output", "DATA", "file to write", &a->out, true},
        {"--json", "FILE", "write what was hidden, the seed, and the hash of the file", &a->json}},

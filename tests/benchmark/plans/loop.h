@@ -1,0 +1,37 @@
+// The loop from a tie to its end: two effects that the paper's plan cannot tell apart, readings that are planned, the
+// same machine read there, both fitted to everything.
+//
+// A truth is one of the pair, by turns, as large as λ = 8 on the paper's plan, in a machine drawn within all tolerances
+// and read by the MSA in the deformed shape. Beside the plan stand the readings of the campaign "random" that would do
+// as well.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "validation/effects/effect.h"
+
+namespace deflect::benchmark {
+
+struct Tied {
+  std::string subject, first, second;  ///< built-in device or frame; effects
+};
+
+struct LoopResult {
+  std::string truth, skipped;
+  double before = 0;               ///< χ² of the wrong one − χ² of the true one on the paper's plan
+  std::size_t planned = 0;         ///< readings
+  std::size_t at_random = 0;       ///< of the campaign "random" for the same expected probability
+  bool at_random_is_more = false;  ///< than that
+  double predicted = 0;            ///< λ² that the planned readings add
+  double found = 0;                ///< χ² of the wrong one − χ² of the true one, by how much it has grown
+  bool right = false;              ///< the true one fits better in the end
+  double seconds = 0;              ///< of planning
+};
+
+std::vector<LoopResult> run_loops(const Tied&, std::size_t truths, std::uint64_t seed, int threads);
+
+/// One row for each pair: medians, right ones, slope of found over predicted through the origin.
+std::string loop_table(const std::vector<std::pair<Tied, std::vector<LoopResult>>>&);
+
+}  // namespace deflect::benchmark

@@ -1,0 +1,106 @@
+#include "tests/benchmark/plans/precision.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "msa/base/index.h"
+#include "msa/mechanism/device_file.h"
+#include "validation/measurement/random.h"
+#include "validation/plan/campaign_aims.h"
+#include "validation/plan/foresight.h"
+#include "validation/prediction/campaign.h"
+
+namespace deflect::benchmark {
+namespace {
+
+using measurement::Measurements;
+
+/// O1 … O5 or ln |information|, priors counted in.
+class IndexAim final : public plan::Aim {
+ public:
+  IndexAim(const plan::Prospect& p, int index)
+      : prospect_(&p), index_(index), design_(p.design(none(), none(), VectorX(0))) {
+    value_ = of(design_);
+  }
+  double value() const override { return value_; }
+  double with(std::size_t block) const override {
+    if (index_ == 0) return value_ + design_.log_determinant(rows(block));
+    plan::Design next = design_;
+    next.take(rows(block));
+    return of(next);
+  }
+  void take(std::size_t block) override {
+    value_ = with(block);
+    design_.take(rows(block));
+  }
+  std::unique_ptr<Aim> copy() const override { return std::make_unique<IndexAim>(*this); }
+
+ private:
+  MatrixX none() const { return MatrixX(prospect_->numbers(), 0); }
+  plan::WhiteRows rows(std::size_t block) const { return prospect_->rows(block, none(), none()); }
+  double of(const plan::Design& d) const {
+    if (index_ == 0) return 0;
+    const MatrixX P = d.covariance();
+    const MatrixX information = Eigen::LLT<MatrixX>(P).solve(MatrixX::Identity(P.rows(), P.cols()));
+    return plan::observability(information, 1).O[as_size(index_ - 1)];
+  }
+
+  const plan::Prospect* prospect_;
+  int index_;  // 0: D
+  plan::Design design_;
+  double value_ = 0;
+};
+
+plan::Possible as_taken(const Measurements& data) {
+  plan::Possible out;
+  out.all = data;
+  out.taken = data.readings.size();
+  return out;
+}
+
+}  // namespace
+
+std::string precision_table(const std::string& device, double force, int threads) {
+  const subject::Subject s =
+      read_mechanism(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/" + device + ".yaml");
+  const Measurements paper = prediction::campaign("paper", *s.machine(), force, 1);
+  plan::ForesightOptions o;
+  const parallel::Work work{threads};
+  Measurements use = prediction::campaign("random", *s.machine(), force, 77);
+  const Measurements data = plan::filled_in(s, paper, o, true);
+  plan::Possible possible = plan::without_data(plan::possible_readings(s, data, o.limits, false, 1));
+  possible.all.readings = plan::filled_in(s, possible.all, o, true).readings;
+  const std::vector<plan::Block> blocks = possible.blocks;
+  const plan::Prospect prospect(s, std::move(possible), {o.sigma_u, {}}, work);
+  const MatrixX V = plan::sensitivity_in_use(s, use, prospect.names(), o, work);
+  const MatrixX none(0, 0);
+  const auto row = [&](const std::string& name, const Measurements& readings) {
+    const plan::Prospect taken(s, as_taken(plan::filled_in(s, readings, o, true)), {o.sigma_u, {}}, work);
+    const MatrixX nothing(taken.numbers(), 0);
+    const MatrixX P = taken.design(nothing, nothing, VectorX(0)).covariance();
+    const MatrixX one = MatrixX::Identity(P.rows(), P.cols());
+    const plan::Observability index = plan::observability(Eigen::LLT<MatrixX>(P).solve(one), 1);
+    std::string out = fmt::format("| {} | {} | {} | {:.3f} |", name, readings.readings.size(), readings.poses.size(),
+                                  1e6 * plan::test_pose_error(P, V));
+    for (const double each : index.O) out += fmt::format(" {:.3g} |", each);
+    return out + fmt::format(" {:.1f} |\n", index.D_gain);
+  };
+  std::string out = fmt::format(
+      "{}, {} tolerances; before any reading {:.3f} µm rms in use\n\n| campaign | readings | poses | µm rms in use, "
+      "fitted | O1 | O2 | O3 | O4 | O5 | ½ ln det |\n|---|---|---|---|---|---|---|---|---|---|\n",
+      device, prospect.names().size(), 1e6 * plan::test_pose_error(MatrixX::Identity(V.cols(), V.cols()), V));
+  out += row("the paper's nine points", paper);
+  const auto chosen = [&](const std::string& name, const plan::Aim& aim) {
+    const plan::Choice choice = plan::choose(aim, blocks, {paper.readings.size(), paper.poses.size()}, work);
+    out += row(name, plan::as_plan(prospect.possible(), choice.blocks));
+    fmt::print(stderr, "{}", out.substr(out.rfind('\n', out.size() - 2) + 1));
+  };
+  chosen("test-pose criterion (--aim precision)", plan::PrecisionAim(prospect, V));
+  const char* names[] = {"D-optimal", "O1", "O2", "O3", "O4", "O5"};
+  for (int index = 0; index < 6; ++index) chosen(names[index], IndexAim(prospect, index));
+  return out;
+}
+
+}  // namespace deflect::benchmark

@@ -1,0 +1,92 @@
+// deflect plan as a user runs it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace deflect {
+namespace {
+
+const std::string device = "haptic-6psu-ideal-joints";
+
+/// A tie that the paper's plan leaves: data and diagnosis in a folder.
+class PlanProgram : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = std::make_unique<test::Folder>();
+    const test::Run made =
+        test::deflect("simulate " + device +
+                      " --with actuator_compliance,stiffness_N_per_mm=3000 --campaign paper --seed 3 --machine 3 -o " +
+                      path("paper.csv"));
+    ASSERT_EQ(made.code, 0) << made.out;
+    const test::Run diagnosed = test::deflect("diagnose " + device + " " + path("paper.csv") +
+                                              " --bootstrap 99 --json " + path("diagnosis.json"));
+    ASSERT_EQ(diagnosed.code, 0) << diagnosed.out;
+  }
+  static void TearDownTestSuite() { folder.reset(); }
+  static std::string path(const std::string& name) { return (*folder / name).string(); }
+  static inline std::unique_ptr<test::Folder> folder;
+};
+
+TEST_F(PlanProgram, TheLoopFromATieToItsEnd) {
+  const auto first = nlohmann::json::parse(test::contents(path("diagnosis.json")));
+  ASSERT_EQ(first.at("verdict"), "ambiguous");
+  ASSERT_FALSE(first.at("ties").empty());
+  const test::Run planned = test::deflect("plan " + device + " " + path("diagnosis.json") + " -o " + path("next.csv") +
+                                          " --json " + path("plan.json") + " --out " + path("figures"));
+  ASSERT_EQ(planned.code, 0) << planned.out;
+  const auto plan = nlohmann::json::parse(test::contents(path("plan.json")));
+  EXPECT_EQ(plan.at("kind"), "plan");
+  EXPECT_TRUE(std::filesystem::exists(path("figures/plan.csv")));
+  const test::Run filled =
+      test::deflect("simulate " + device + " --with actuator_compliance,stiffness_N_per_mm=3000 --campaign " +
+                    path("next.csv") + " --seed 4 --machine 3 -o " + path("filled.csv"));
+  ASSERT_EQ(filled.code, 0) << filled.out;
+  const test::Run again = test::deflect("diagnose " + device + " " + path("paper.csv") + " " + path("filled.csv") +
+                                        " --bootstrap 99 --json " + path("again.json"));
+  ASSERT_EQ(again.code, 0) << again.out;
+  const auto second = nlohmann::json::parse(test::contents(path("again.json")));
+  ASSERT_FALSE(second.at("missing").empty());
+  EXPECT_EQ(second.at("missing").front(), "actuator_compliance");
+}
+
+TEST_F(PlanProgram, AnEmptyPlanIsRefusedUntilItIsFilledIn) {
+  const test::Run planned =
+      test::deflect("plan " + device + " " + path("diagnosis.json") + " --readings 4 -o " + path("empty.csv"));
+  ASSERT_EQ(planned.code, 0) << planned.out;
+  const test::Run compared = test::deflect("compare " + device + " " + path("empty.csv"));
+  EXPECT_EQ(compared.code, 2) << compared.out;
+}
+
+TEST_F(PlanProgram, BeforeAnyMeasurement) {
+  const test::Run run = test::deflect("plan " + device + " --before paper --aim precision -o " + path("better.csv") +
+                                      " --json " + path("foresight.json") + " --out " + path("before"));
+  ASSERT_EQ(run.code, 0) << run.out;
+  const auto j = nlohmann::json::parse(test::contents(path("foresight.json")));
+  EXPECT_EQ(j.at("kind"), "foresight");
+  EXPECT_EQ(j.at("given").at("readings"), 27);
+  EXPECT_EQ(j.at("better").at("readings"), 27);
+  EXPECT_LT(j.at("better").at("error_after_um"), j.at("given").at("error_after_um"));
+  const std::size_t effects = j.at("given").at("detectable").size();
+  ASSERT_EQ(j.at("given").at("cosines").size(), effects);
+  EXPECT_NEAR(j.at("given").at("cosines")[2][2], 1, 1e-9);
+  EXPECT_TRUE(std::filesystem::exists(path("before/foresight.svg")));
+  // The better campaign is itself a campaign.
+  const test::Run used =
+      test::deflect("simulate " + device + " --campaign " + path("better.csv") + " -o " + path("x.csv"));
+  EXPECT_EQ(used.code, 0) << used.out;
+}
+
+TEST_F(PlanProgram, WhatIsWrongIsSaid) {
+  EXPECT_EQ(test::deflect("plan " + device).code, 2);
+  EXPECT_EQ(test::deflect("plan " + device + " " + path("diagnosis.json") + " --before paper").code, 2);
+  EXPECT_EQ(test::deflect("plan " + device + " " + path("diagnosis.json") + " --group 9").code, 2);
+  EXPECT_EQ(test::deflect("plan " + device + " " + path("diagnosis.json") + " --max-force 0 --forces-only").code, 2);
+  EXPECT_EQ(test::deflect("plan " + device + " --before papre").code, 2);
+  EXPECT_EQ(test::deflect("plan " + device + " --before paper --aim speed").code, 2);
+}
+
+}  // namespace
+}  // namespace deflect

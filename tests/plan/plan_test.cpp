@@ -1,0 +1,199 @@
+#include "validation/plan/next_readings.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+#include "validation/measurement/joined.h"
+#include "validation/plan/foresight.h"
+#include "validation/prediction/campaign.h"
+#include "validation/statistics/columns.h"
+
+namespace deflect::plan {
+namespace {
+
+using measurement::Measurements;
+using test::effect;
+using test::values;
+
+const Mechanism& machine() {
+  static const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  return m;
+}
+
+/// The paper's plan as the machine is predicted to read it.
+const Measurements& paper() {
+  static const Measurements data =
+      filled_in(machine(), prediction::campaign("paper", machine(), 50, 1), ForesightOptions(), true);
+  return data;
+}
+
+Rival rival(const std::string& name, const VectorX& at) { return {{{&effect(name), {}}}, at, 0.5}; }
+
+Plan plan_of(std::vector<Rival> rivals, PlanOptions o = {}, int threads = 1) {
+  o.draws = 3;
+  return next_readings(machine(), paper(), std::move(rivals), o, {threads});
+}
+
+/// λ² between two rivals by the residual of a regression in which all readings, their noise and all tolerances stand
+/// in one covariance.
+double by_regression(const Measurements& all, const Rival& truth, const Rival& fitted) {
+  const subject::Subject s = machine();
+  const auto standing = s.stand(all);
+  const std::vector<measurement::MeasuredValue> read = measurement::measured_values(all);
+  prediction::PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  const auto predicted = [&](const Rival& r, const VectorX& at) {
+    return statistics::rows_of(read, subject_with(s, r, at).stand(all)->predict(all, linear, parallel::alone));
+  };
+  const statistics::ToleranceModel model = statistics::tolerance_model(*standing, all, read);
+  std::vector<double> sigma;
+  for (const measurement::MeasuredValue& v : read) sigma.push_back(*v.sigma);
+  const statistics::Uncertainty u(model.A, read, sigma, standing->predict(all, linear), s.load_tolerance());
+  const VectorX here = predicted(fitted, fitted.values);
+  const VectorX x = diagnosis::coordinates_of(fitted.hypothesis, fitted.values);
+  MatrixX G(here.size(), x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    VectorX moved = x;
+    moved(i) += 1e-4;
+    G.col(i) = (predicted(fitted, diagnosis::values_at(fitted.hypothesis, moved)) - here) / 1e-4;
+  }
+  const VectorX difference = predicted(truth, truth.values) - here;
+  return u.inner(difference, difference)(0, 0) - statistics::regress(u, difference, G).gain;
+}
+
+TEST(Plan, SeparationIsThatOfARegressionOnEverythingThatWasRead) {
+  PlanOptions o;
+  o.draws = 1;
+  const Rival actuator = rival("actuator_compliance", values({2000})),
+              platform = rival("platform_flexibility", values({1500}));
+  const Measurements rich =
+      filled_in(machine(), prediction::campaign("random", machine(), 50, 3), ForesightOptions(), true);
+  const Measurements all = measurement::joined({paper(), rich});
+  const auto added = [&](const Rival& truth, const Rival& fitted) {
+    return by_regression(all, truth, fitted) - by_regression(paper(), truth, fitted);
+  };
+  const double mean = (added(actuator, platform) + added(platform, actuator)) / 2;
+  const Step step = expected_of(machine(), paper(), rich, {actuator, platform}, o);
+  ASSERT_EQ(step.pairs.size(), 1u);
+  // The prior of a stiffness, e³ wide, stands in the plan and not in the regression.
+  EXPECT_NEAR(step.pairs.front().separation, mean, 0.01 * mean);
+}
+
+TEST(Plan, ModulusAndLoadGainAreToldApartByNoReading) {
+  const Plan p = plan_of({rival("modulus", values({0.9})), rival("load_gain", values({1.1}))});
+  ASSERT_EQ(p.inseparable.size(), 1u);
+  EXPECT_TRUE(p.readings.readings.empty());
+  EXPECT_LT(p.inseparable.front().pair.separation, 1);
+  std::string all;
+  for (const std::string& sentence : p.inseparable.front().instead) all += sentence;
+  EXPECT_NE(all.find("independent calibration of the load cell"), all.npos) << all;
+}
+
+TEST(Plan, ActuatorAndPlatformTakeMoments) {
+  const std::vector<Rival> rivals = {rival("actuator_compliance", values({4000})),
+                                     rival("platform_flexibility", values({2500}))};
+  const Plan p = plan_of(rivals);
+  ASSERT_FALSE(p.readings.readings.empty());
+  EXPECT_GE(p.probability, 0.9);
+  std::size_t moments = 0;
+  for (const measurement::Reading& r : p.readings.readings)
+    if (!r.load.tail<3>().isZero(0)) ++moments;
+  EXPECT_GT(2 * moments, p.readings.readings.size());
+  PlanOptions forces;
+  forces.limits.forces_only = true;
+  const Plan without = plan_of(rivals, forces);
+  for (const measurement::Reading& r : without.readings.readings) EXPECT_TRUE(r.load.tail<3>().isZero(0));
+  EXPECT_GE(without.readings.readings.size(), p.readings.readings.size());
+}
+
+/// Both remember the loads: the readings are steps of sequences, each from a new approach.
+TEST(Plan, WhereLoadsAreRememberedReadingsAreStepsOfSequences) {
+  PlanOptions o;
+  o.readings = 6;
+  const Plan p =
+      plan_of({rival("joint_friction", values({2, 1000, 1})), rival("joint_friction", values({4, 200, 1}))}, o);
+  ASSERT_FALSE(p.readings.readings.empty());
+  for (const measurement::PoseGroup& pose : p.readings.poses)
+    EXPECT_NE(p.readings.readings[pose.readings.front()].notes.front().find("goes on"), std::string::npos);
+  EXPECT_GT(p.as_planned.front().separation, 0);
+}
+
+TEST(Plan, EveryReadingKeepsToTheLimits) {
+  PlanOptions o;
+  o.limits.force = 20;
+  o.limits.moment = 0.3;
+  o.limits.where = Where::as_measured;
+  o.readings = 8;
+  o.most_poses = 2;
+  o.probability = 1;
+  const Plan p =
+      plan_of({rival("actuator_compliance", values({4000})), rival("platform_flexibility", values({2500}))}, o);
+  EXPECT_EQ(p.readings.readings.size(), 8u);
+  EXPECT_LE(p.readings.poses.size(), 2u);
+  for (const measurement::Reading& r : p.readings.readings) {
+    EXPECT_LE(r.load.head<3>().cwiseAbs().maxCoeff(), 20);
+    EXPECT_LE(r.load.tail<3>().cwiseAbs().maxCoeff(), 0.3);
+    const Vector6& at = p.readings.poses[r.pose].pose_mm_deg;
+    EXPECT_TRUE(std::any_of(paper().poses.begin(), paper().poses.end(),
+                            [&](const measurement::PoseGroup& g) { return g.pose_mm_deg == at; }));
+  }
+}
+
+TEST(Plan, GrowsWithEveryReadingAndNotWithThreads) {
+  PlanOptions o;
+  o.readings = 6;
+  o.probability = 1;
+  const std::vector<Rival> rivals = {rival("actuator_compliance", values({4000})),
+                                     rival("platform_flexibility", values({2500}))};
+  const Plan one = plan_of(rivals, o, 1), two = plan_of(rivals, o, 2);
+  ASSERT_EQ(one.steps.size(), 7u);
+  for (std::size_t i = 1; i < one.steps.size(); ++i)
+    EXPECT_GE(one.steps[i].pairs.front().separation, one.steps[i - 1].pairs.front().separation);
+  EXPECT_EQ(measurement::measurements_text(one.readings, one.read),
+            measurement::measurements_text(two.readings, two.read));
+  EXPECT_EQ(one.probability, two.probability);
+}
+
+TEST(Plan, IsAFileWithEmptyCellsThatReadsBack) {
+  const Plan p = plan_of({rival("actuator_compliance", values({4000})), rival("platform_flexibility", values({2500}))});
+  const std::string text = measurement::measurements_text(p.readings, {true, true, true, true, false, false});
+  EXPECT_NE(text.find("ux_mm,uy_mm,uz_mm,thx_rad,"), text.npos);
+  const Measurements back = measurement::parse_measurements(text, "plan.csv");
+  ASSERT_EQ(back.readings.size(), p.readings.readings.size());
+  for (std::size_t i = 0; i < back.readings.size(); ++i) {
+    EXPECT_TRUE(back.readings[i].load.isApprox(p.readings.readings[i].load, 1e-12));
+    for (const auto& cell : back.readings[i].displacement) EXPECT_FALSE(cell);
+  }
+}
+
+TEST(Joined, KeepsApproachesAndOrderApart) {
+  Measurements first = paper(), second = paper();
+  for (std::size_t i = 0; i < 27; ++i) {
+    first.readings[i].sequence = static_cast<double>(i);
+    second.readings[i].sequence = 100 - static_cast<double>(i);
+  }
+  const Measurements all = measurement::joined({first, second});
+  ASSERT_EQ(all.readings.size(), 54u);
+  ASSERT_EQ(all.poses.size(), 18u);
+  std::set<std::string> labels;
+  for (const measurement::PoseGroup& pose : all.poses) labels.insert(pose.label);
+  EXPECT_EQ(labels.size(), 18u);
+  EXPECT_TRUE(labels.count("3 (2)"));
+  const std::vector<std::size_t> order = measurement::in_sequence(all, "a test");
+  for (std::size_t i = 0; i < 27; ++i) {
+    EXPECT_EQ(order[i], i);
+    EXPECT_EQ(order[27 + i], 53 - i);
+  }
+  for (std::size_t i = 0; i < 54; ++i) {
+    const auto& own = all.poses[all.readings[i].pose].readings;
+    EXPECT_NE(std::find(own.begin(), own.end(), i), own.end());
+    EXPECT_EQ(all.readings[i].displacement, paper().readings[i % 27].displacement);
+  }
+  second.readings[3].sequence.reset();
+  second.readings.front().sequence.reset();
+  EXPECT_FALSE(measurement::joined({first, second}).readings.front().sequence);
+}
+
+}  // namespace
+}  // namespace deflect::plan

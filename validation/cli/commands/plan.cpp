@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "msa/base/error.h"
+#include "validation/cli/command.h"
+#include "validation/cli/commands/effects.h"
+#include "validation/cli/devices.h"
+#include "validation/cli/made_by.h"
+#include "validation/cli/figures.h"
+#include "validation/cli/talk.h"
+#include "validation/diagnosis/found_effects.h"
+#include "validation/figures/plan_figures.h"
+#include "validation/plan/foresight.h"
+#include "validation/plan/next_readings.h"
+#include "validation/prediction/campaign.h"
+#include "validation/report/foresight_results.h"
+#include "validation/report/plan_results.h"
+#include "validation/subject/simulate_frame.h"
+
+namespace deflect::cli {
+namespace {
+
+constexpr double most_readings = 1e5;
+
+struct PlanArguments {
+  std::string device, diagnosis, data, before, output, json, out, poses = "workspace", aim = "effects", use;
+  std::string force, moment, sigma_mm, sigma_rad;
+  std::vector<std::string> files;
+  bool forces_only = false;
+  double group = 1, readings = 30, probability = 0.95, most_poses = 0, seed = 1, threads = 0;
+  FigureArguments figures;
+};
+
+std::optional<double> largest(const char* option, const std::string& text, const char* unit, double per_SI) {
+  if (text.empty()) return std::nullopt;
+  const double value = parse_list(option, text, {1}, unit)[0];
+  if (!(value >= 0 && value < 1e12))
+    throw InputError(fmt::format("{} {}: give {} of zero or more", option, text, unit));
+  return value / per_SI;
+}
+
+plan::Limits limits_of(const PlanArguments& a, const subject::Subject& s) {
+  plan::Limits out;
+  out.force = largest("--max-force", a.force, "N", 1);
+  out.moment = largest("--max-moment", a.moment, "Nmm", 1e3);
+  out.forces_only = a.forces_only;
+  if (a.poses == "measured")
+    out.where = plan::Where::as_measured;
+  else if (a.poses != "workspace")
+    out.poses = read_plan(a.poses, s);
+  return out;
+}
+
+/// The measurements that were diagnosed: as given, else as the diagnosis names them, there or next to it.
+measurement::Measurements diagnosed_data(const PlanArguments& a, const diagnosis::FoundEffects& found,
+                                         const subject::Subject& s) {
+  if (!a.data.empty()) return read_data(a.data, s);
+  if (found.data.empty())
+    throw InputError(fmt::format("{}: names no measurements: give them too, as in deflect plan {} {} DATA", a.diagnosis,
+                                 a.device, a.diagnosis));
+  const std::filesystem::path as_named = found.data,
+                              beside = std::filesystem::path(a.diagnosis).parent_path() / as_named.filename();
+  if (std::filesystem::exists(as_named)) return read_data(as_named, s);
+  if (std::filesystem::exists(beside)) return read_data(beside, s);
+  throw InputError(
+      fmt::format("{}: the measurements it names, '{}', are not there: give them too, as in deflect plan "
+                  "{} {} DATA",
+                  a.diagnosis, found.data, a.device, a.diagnosis));
+}
+
+const diagnosis::FoundTie& tie_of(const PlanArguments& a, const diagnosis::FoundEffects& found) {
+  if (found.ties.empty())
+    throw InputError(
+        fmt::format("{}: no effects are tied in this diagnosis, or it is of a version that did not write "
+                    "what it fitted: diagnose again; what a campaign will tell before it is measured "
+                    "says --before CAMPAIGN",
+                    a.diagnosis));
+  const int group = whole("--group", a.group, 1, static_cast<double>(found.ties.size()));
+  return found.ties[static_cast<std::size_t>(group - 1)];
+}
+
+std::uint64_t seed_of(const PlanArguments& a) { return static_cast<std::uint64_t>(whole("--seed", a.seed, 0, 1e9)); }
+std::size_t most_poses_of(const PlanArguments& a) {
+  return static_cast<std::size_t>(whole("--max-poses", a.most_poses, 0, most_readings));
+}
+
+/// The file, or a campaign of a built-in name under the largest force allowed (50 N where none is given).
+measurement::Measurements campaign_before(const PlanArguments& a, const subject::Subject& s,
+                                          const plan::Limits& limits) {
+  for (const char* name : prediction::campaign_names) {
+    if (a.before != name) continue;
+    measurement::Measurements out =
+        s.frame() ? subject::frame_campaign(name, *s.frame(), seed_of(a))
+                  : prediction::campaign(name, *s.machine(), limits.force.value_or(50), seed_of(a));
+    out.origin = fmt::format("the campaign {}", name);
+    return out;
+  }
+  return read_plan(a.before, s);
+}
+
+/// Before any reading: what a campaign will tell.
+void run_before(const PlanArguments& a, const figures::FigureStyle& style) {
+  if (!a.diagnosis.empty())
+    throw InputError(fmt::format("--before {}: plans a campaign before it is measured: leave out {}, or --before",
+                                 a.before, a.diagnosis));
+  const subject::Subject s = read_subject(a.device);
+  std::vector<effects::Effect> effects = known_effects(a.files, s);
+  if (s.machine()) std::erase_if(effects, [](const effects::Effect& e) { return e.place.has_value(); });
+  plan::ForesightOptions o;
+  o.limits = limits_of(a, s);
+  o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3).value_or(o.sigma_u);
+  o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
+  if (!a.use.empty()) o.use = read_plan(a.use, s);
+  if (a.aim != "effects" && a.aim != "precision")
+    throw InputError(fmt::format("--aim {}: give effects or precision", a.aim));
+  o.toward = a.aim == "effects" ? plan::Toward::effects : plan::Toward::precision;
+  o.most_poses = most_poses_of(a);
+  o.seed = seed_of(a);
+  const measurement::Measurements campaign = campaign_before(a, s, o.limits);
+  const int threads = parse_threads(a.threads);
+  const plan::Foresight f =
+      timed_with_progress("plan: what the campaign tells, and a better one", [&](const auto& told) {
+        return plan::foresight(s, campaign, effects, o, {threads, nullptr, told});
+      });
+  if (!a.json.empty()) write_result(a.json, report::foresight_json(f));
+  if (!a.output.empty()) {
+    say_new_folder(a.output);
+    measurement::write_measurements(a.output, f.better.readings, f.read);
+  }
+  if (!a.out.empty()) {
+    draw({figures::foresight_figure(f, style)}, a.out);
+    write_table(std::filesystem::path(a.out) / "foresight.csv", report::foresight_csv(f));
+  }
+  fmt::print("{}", report::foresight_report(f));
+  if (!a.output.empty()) fmt::print("\n{}: the better campaign, to be filled in\n", a.output);
+  if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(a.out).string());
+}
+
+void run(const PlanArguments& a) {
+  const figures::FigureStyle style = figure_style(a.figures, a.out);
+  if (!a.before.empty()) return run_before(a, style);
+  if (a.diagnosis.empty())
+    throw InputError("give the result of deflect diagnose --json, or --before CAMPAIGN to plan before measuring");
+  const subject::Subject s = read_subject(a.device);
+  const std::vector<effects::Effect> effects = known_effects(a.files, s);
+  const diagnosis::FoundEffects found = diagnosis::read_found_effects(a.diagnosis);
+  const diagnosis::FoundTie& tie = tie_of(a, found);
+  const measurement::Measurements data = diagnosed_data(a, found, s);
+  plan::PlanOptions o;
+  o.limits = limits_of(a, s);
+  o.noise = {parse_sigma("--sigma", a.sigma_mm, "mm", 1e3), parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1)};
+  o.readings = static_cast<std::size_t>(whole("--readings", a.readings, 1, most_readings));
+  o.most_poses = most_poses_of(a);
+  o.seed = seed_of(a);
+  if (!(a.probability > 0 && a.probability <= 1))
+    throw InputError(fmt::format("--probability {}: give a value above 0, up to 1", a.probability));
+  o.probability = a.probability;
+  const int threads = parse_threads(a.threads);
+  const plan::Plan p = timed_with_progress("plan: choose readings", [&](const auto& told) {
+    return plan::next_readings(s, data, plan::rivals_of(tie, effects), o, {threads, nullptr, told});
+  });
+  const bool any = !p.readings.readings.empty();
+  if (!a.json.empty()) write_result(a.json, report::plan_json(p));
+  if (!a.output.empty() && any) {
+    say_new_folder(a.output);
+    measurement::write_measurements(a.output, p.readings, p.read);
+  }
+  if (!a.out.empty()) {
+    draw({figures::plan_figure(p, style)}, a.out);
+    write_table(std::filesystem::path(a.out) / "plan.csv", report::plan_csv(p));
+  }
+  fmt::print("{}", report::plan_report(p));
+  if (!a.output.empty() && any)
+    fmt::print("\n{0}: fill in the empty cells, then: deflect diagnose {1} {2} {0}\n", a.output, a.device, p.data);
+  if (!a.output.empty() && !any) fmt::print("nothing to fill in: {} is not written\n", a.output);
+  if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(a.out).string());
+}
+
+}  // namespace
+
+Command plan_command() {
+  auto a = std::make_shared<PlanArguments>();
+  return {
+      "plan",
+      "Plan which readings to take. Of effects that a diagnosis could not tell apart the command chooses the readings "
+      "(pose or load case, load, sense, size, loading or unloading) that separate them most, each fitted again to what "
+      "the other would read, with all tolerances free under their priors. It says how probable the right one will be "
+      "after them, writes the file that the laboratory fills in, and names pairs that no reading separates. With "
+      "--before it says what a campaign will be able to tell before it is measured, and writes a better one of the "
+      "same length",
+      "deflect plan haptic-6psu-ideal-joints diagnosis.json -o next.csv",
+      with_figures(
+          {{"device", "SUBJECT", "built-in device or frame, or a file of one", &a->device, true},
+           {"diagnosis", "DIAGNOSIS", "result of deflect diagnose --json", &a->diagnosis},
+           {"data", "DATA", "the measurements it is of, where they are not where it says", &a->data},
+           {"--before", "CAMPAIGN",
+            "instead of DIAGNOSIS: a measurement file, whose readings may be empty, or paper, cycle, rich, random",
+            &a->before},
+           {"--aim", "effects|precision",
+            "with --before: what the better campaign is for: to see effects and tell them apart (default), or to "
+            "predict the tool point once tolerances are fitted",
+            &a->aim},
+           {"--use", "FILE",
+            "with --before: poses and loads where the machine will be used (default: twelve poses of its workspace)",
+            &a->use},
+           {"--group", "N", "which tie of the diagnosis (default 1)", &a->group},
+           {"--readings", "N", "most readings (default 30)", &a->readings},
+           {"--probability", "P", "expected of the right effect, at which the plan ends (default 0.95)",
+            &a->probability},
+           {"--max-force", "N", "largest force along an axis (default: that of the data)", &a->force},
+           {"--max-moment", "NMM", "largest moment about an axis (default: that of the data)", &a->moment},
+           {"--forces-only", "", "the rig cannot apply moments", &a->forces_only},
+           {"--poses", "workspace|measured|FILE",
+            "where: poses of the data and others in the workspace (default), those of the data, or those of a "
+            "measurement file",
+            &a->poses},
+           {"--max-poses", "N", "largest number of poses (default 0: any; with --before: as many as the campaign has)",
+            &a->most_poses},
+           {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
+           {"--sigma", "MM",
+            "standard deviation of a translation in mm, if the file has none (with --before: default 0.002)",
+            &a->sigma_mm},
+           {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
+           {"--seed", "N", "seed of the poses and parameters drawn by lot (default 1)", &a->seed},
+           {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
+           {"-o,--output", "PLAN", "file to be filled in", &a->output},
+           {"--json", "FILE", "write the result", &a->json},
+           {"--out", "DIR", "write the figure (SVG, PDF, PNG) with its caption, and its table", &a->out}},
+          &a->figures),
+      [a] { run(*a); }};
+}
+
+}  // namespace deflect::cli

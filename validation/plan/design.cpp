@@ -1,0 +1,75 @@
+#include "validation/plan/design.h"
+
+#include <Eigen/Cholesky>
+
+namespace deflect::plan {
+
+Design::Design(MatrixX P, MatrixX alpha, MatrixX Q)
+    : shared_(P.rows()), P_(std::move(P)), alpha_(std::move(alpha)), Q_(std::move(Q)) {}
+
+Eigen::Index Design::position_of(std::size_t pose) const {
+  for (const auto& [known, at] : poses_)
+    if (known == pose) return at;
+  return -1;
+}
+
+Design::Innovation Design::innovation(const WhiteRows& r, bool all) const {
+  const Eigen::Index at = position_of(r.pose), own = r.own.cols();
+  Innovation out;
+  const auto of_shared = P_.leftCols(shared_);
+  if (all) {
+    out.PX = of_shared * r.shared.transpose();
+    if (at >= 0) out.PX += P_.middleCols(at, own) * r.own.transpose();
+  } else {
+    out.PX = P_.topLeftCorner(shared_, shared_) * r.shared.transpose();
+    if (at >= 0) out.PX += P_.block(0, at, shared_, own) * r.own.transpose();
+  }
+  out.S = r.shared * out.PX.topRows(shared_);
+  out.e = r.targets - r.shared * alpha_.topRows(shared_);
+  if (at >= 0) {
+    const MatrixX cross = P_.block(at, 0, own, shared_) * r.shared.transpose();
+    out.S += r.own * (cross + P_.block(at, at, own, own) * r.own.transpose());
+    out.e -= r.own * alpha_.middleRows(at, own);
+  } else {
+    out.S += r.own * r.own.transpose();
+  }
+  out.S.diagonal().array() += 1;
+  return out;
+}
+
+MatrixX Design::with(const WhiteRows& r) const {
+  const Innovation i = innovation(r, false);
+  const MatrixX white = Eigen::LLT<MatrixX>(i.S).matrixL().solve(i.e);
+  return Q_ + white.transpose() * white;
+}
+
+double Design::log_determinant(const WhiteRows& r) const {
+  const Eigen::LLT<MatrixX> factor(innovation(r, false).S);
+  return 2 * factor.matrixLLT().diagonal().array().log().sum();
+}
+
+double Design::trace_decrease(const WhiteRows& r, const MatrixX& V) const {
+  const Innovation i = innovation(r, false);
+  return Eigen::LLT<MatrixX>(i.S).matrixL().solve((V * i.PX).transpose()).squaredNorm();
+}
+
+void Design::take(const WhiteRows& r) {
+  if (r.own.cols() > 0 && position_of(r.pose) < 0) {
+    const Eigen::Index before = P_.rows(), own = r.own.cols();
+    poses_.emplace_back(r.pose, before);
+    P_.conservativeResize(before + own, before + own);
+    P_.bottomRows(own).setZero();
+    P_.rightCols(own).setZero();
+    P_.bottomRightCorner(own, own).setIdentity();
+    alpha_.conservativeResize(before + own, Eigen::NoChange);
+    alpha_.bottomRows(own).setZero();
+  }
+  const Innovation i = innovation(r, true);
+  const Eigen::LLT<MatrixX> factor(i.S);
+  const MatrixX e = factor.matrixL().solve(i.e), gain = factor.matrixL().solve(i.PX.transpose());
+  Q_ += e.transpose() * e;
+  alpha_ += gain.transpose() * e;
+  P_ -= gain.transpose() * gain;
+}
+
+}  // namespace deflect::plan

@@ -1,0 +1,293 @@
+#include "validation/plan/possible.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
+#include "msa/mechanism/stand.h"
+#include "validation/measurement/joined.h"
+#include "validation/measurement/random.h"
+#include "validation/prediction/campaign.h"
+#include "validation/subject/trials.h"
+
+namespace deflect::plan {
+namespace {
+
+using measurement::Measurements;
+using measurement::PoseGroup;
+using measurement::Reading;
+
+constexpr std::size_t most_measured = 9, most_in_sequences = 8;
+constexpr int drawn = 12, drawn_in_sequences = 3;
+constexpr double sizes[] = {1, 0.5, 0.2};
+/// What follows a load that has gone on: shares of it.
+const std::vector<std::vector<double>> sequences_of_loads = {{1}, {1, 0.5}, {1, 0}, {1, -1}};
+
+/// A load in full, and its words.
+struct Load {
+  Vector6 at_T = Vector6::Zero();
+  std::vector<double> factors = {};
+  std::string words = {};
+  bool in_full = false;  ///< only
+};
+
+const char* sign_of(double x) { return x < 0 ? "-" : "+"; }
+
+/// Four digits, so that a laboratory can set it.
+double settable(double x) {
+  if (x == 0) return 0;
+  const double scale = std::pow(10, 3 - std::floor(std::log10(std::abs(x))));
+  return std::round(x * scale) / scale;
+}
+
+std::vector<Load> loads_of_machine(const subject::LargestLoads& most, bool forces_only, bool diagonals) {
+  std::vector<Load> out;
+  const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+  for (Eigen::Index i = 0; i < (forces_only ? 3 : 6); ++i)
+    for (const double sense : {1.0, -1.0}) {
+      const double size = sense * (i < 3 ? most.force : most.moment);
+      if (size != 0)
+        out.push_back({settable(size) * Vector6::Unit(i), {}, fmt::format("{}{}", sign_of(sense), nth(names, i))});
+    }
+  for (const double x : {1.0, -1.0})
+    for (const double y : {1.0, -1.0})
+      for (const double z : {1.0, -1.0}) {
+        if (!diagonals || most.force == 0) continue;
+        Load load;
+        load.at_T.head<3>() = settable(most.force / std::sqrt(3)) * Vector3(x, y, z);
+        load.words = fmt::format("{}fx {}fy {}fz", sign_of(x), sign_of(y), sign_of(z));
+        load.in_full = true;
+        out.push_back(load);
+      }
+  return out;
+}
+
+std::vector<Load> loads_of_frame(const subject::Subject& s, const Measurements& data, bool pairs) {
+  const std::vector<double> most = subject::largest_factors(s, data);
+  const std::vector<std::string> names = s.instruments().load_cases;
+  std::vector<Load> out;
+  for (std::size_t k = 0; k < most.size(); ++k)
+    for (const double sense : {1.0, -1.0}) {
+      Load load;
+      load.factors.assign(most.size(), 0);
+      load.factors[k] = sense * most[k];
+      load.words = fmt::format("{}load.{}", sign_of(sense), names[k]);
+      out.push_back(load);
+      for (std::size_t other = 0; other < k && pairs; ++other)
+        for (const double also : {1.0, -1.0}) {
+          Load both = load;
+          both.factors[other] = also * most[other];
+          both.words += fmt::format(" {}load.{}", sign_of(also), names[other]);
+          both.in_full = true;
+          out.push_back(both);
+        }
+    }
+  return out;
+}
+
+/// Poses that differ from each other, of a file.
+std::vector<PoseGroup> distinct(const std::vector<PoseGroup>& all, std::size_t most) {
+  std::vector<PoseGroup> out;
+  for (const PoseGroup& p : all) {
+    const bool known = std::any_of(out.begin(), out.end(), [&](const PoseGroup& q) {
+      return q.pose_mm_deg == p.pose_mm_deg && q.joints.size() == p.joints.size() && q.joints == p.joints;
+    });
+    if (known) continue;
+    out.push_back(p);
+    out.back().readings.clear();
+  }
+  if (out.size() <= most) return out;
+  std::vector<PoseGroup> some;  // spread over the file
+  for (std::size_t i = 0; i < most; ++i) some.push_back(out[i * (out.size() - 1) / (most - 1)]);
+  return some;
+}
+
+std::vector<PoseGroup> poses_of(const subject::Subject& s, const Measurements& data, const Limits& limits,
+                                bool sequences, std::uint64_t seed) {
+  if (limits.poses) return distinct(limits.poses->poses, limits.poses->poses.size());
+  std::vector<PoseGroup> out = distinct(data.poses, sequences ? most_in_sequences - drawn_in_sequences : most_measured);
+  if (!s.machine() || data.by_joints() || limits.where == Where::as_measured) return out;
+  measurement::Random random(seed);
+  const auto more = outcome_of(
+      [&] { return prediction::tilted_poses(*s.machine(), sequences ? drawn_in_sequences : drawn, random); });
+  if (!more) return out;  // a device without a workspace
+  for (const Vector6& at : *more) out.push_back({"", at, {}, {}});
+  return out;
+}
+
+/// A reading with everything that the data read.
+Reading blank(const Measurements& data) {
+  Reading out;
+  double sigma_u = 0, sigma_th = 0, with_u = 0, with_th = 0;
+  out.sensors.resize(data.instruments.sensors.size());
+  for (const Reading& r : data.readings) {
+    for (std::size_t i = 0; i < 6; ++i)
+      if (r.displacement[i]) out.displacement[i] = 0;
+    for (std::size_t k = 0; k < r.sensors.size(); ++k)
+      if (r.sensors[k]) out.sensors[k] = 0;
+    if (r.sigma_u) sigma_u += *r.sigma_u * *r.sigma_u, with_u += 1;
+    if (r.sigma_th) sigma_th += *r.sigma_th * *r.sigma_th, with_th += 1;
+  }
+  if (with_u > 0) out.sigma_u = std::sqrt(sigma_u / with_u);
+  if (with_th > 0) out.sigma_th = std::sqrt(sigma_th / with_th);
+  return out;
+}
+
+/// Rows one after the other.
+class Rows {
+ public:
+  Rows(const Measurements& data, bool sequences) : blank_(blank(data)), sequences_(sequences) {
+    m_.origin = "readings that could be taken";
+    m_.joint_rotates = data.joint_rotates;
+    m_.instruments = data.instruments;
+    m_.note_columns = {"note"};
+  }
+
+  void load_cases(const std::vector<std::string>& names) { m_.instruments.load_cases = names; }
+
+  void add(const PoseGroup& pose, const std::vector<Load>& loads) {
+    if (!sequences_) {
+      approach(pose);
+      for (const Load& load : loads)
+        for (const double size : sizes) {
+          if (size < 1 && load.in_full) continue;
+          blocks_.push_back({m_.readings.size(), 1, m_.poses.size() - 1});
+          reading(load, size, "");
+        }
+      return;
+    }
+    for (const Load& load : loads)
+      for (const std::vector<double>& shares : sequences_of_loads) {
+        approach(pose);
+        blocks_.push_back({m_.readings.size(), shares.size(), m_.poses.size() - 1});
+        for (std::size_t i = 0; i < shares.size(); ++i)
+          reading(load, shares[i],
+                  i == 0          ? "goes on"
+                  : shares[i] > 0 ? "comes off to this"
+                  : shares[i] < 0 ? "comes off and turns"
+                                  : "is off");
+      }
+  }
+
+  Measurements take() { return std::move(m_); }
+  std::vector<Block> blocks() { return std::move(blocks_); }
+
+ private:
+  void approach(PoseGroup pose) {
+    pose.label = fmt::format("plan {}", m_.poses.size() + 1);
+    m_.poses.push_back(std::move(pose));
+  }
+
+  void reading(const Load& load, double share, const std::string& how) {
+    Reading r = blank_;
+    r.pose = m_.poses.size() - 1;
+    r.load = share * load.at_T + Vector6::Zero();  // no −0
+    if (!m_.instruments.load_points.empty()) {
+      r.at_tool = r.load;
+      r.at_points.assign(m_.instruments.load_points.size(), Vector6::Zero());
+    }
+    for (const double factor : load.factors) r.factors.push_back(share * factor + 0.0);
+    if (load.factors.empty()) r.factors.assign(m_.instruments.load_cases.size(), 0);
+    r.sequence = static_cast<double>(m_.readings.size() + 1);
+    r.line = m_.readings.size() + 2;
+    r.notes = {how.empty() ? load.words : fmt::format("{}: {}", load.words, how)};
+    m_.poses.back().readings.push_back(m_.readings.size());
+    m_.readings.push_back(std::move(r));
+  }
+
+  Measurements m_;
+  Reading blank_;
+  bool sequences_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace
+
+Measurements Possible::data() const {
+  Measurements out = all;
+  out.readings.resize(taken);
+  while (!out.poses.empty() && out.poses.back().readings.front() >= taken) out.poses.pop_back();
+  return out;
+}
+
+Possible possible_readings(const subject::Subject& s, const Measurements& data, const Limits& limits, bool sequences,
+                           std::uint64_t seed) {
+  std::vector<Load> loads;
+  Rows rows(data, sequences);
+  if (s.frame()) {
+    loads = loads_of_frame(s, data, !sequences);
+    rows.load_cases(s.instruments().load_cases);
+  } else {
+    subject::LargestLoads most = subject::largest_loads(s, data);
+    if (limits.force) most.force = *limits.force;
+    if (limits.moment) most.moment = *limits.moment;
+    loads = loads_of_machine(most, limits.forces_only, !sequences);
+  }
+  if (loads.empty())
+    throw InputError(fmt::format("{}: no load is allowed: give --max-force or --max-moment above zero", s.name()));
+  for (const PoseGroup& pose : poses_of(s, data, limits, sequences, seed)) rows.add(pose, loads);
+  Possible out;
+  out.taken = data.readings.size();
+  out.sequences = sequences;
+  const std::size_t poses = data.poses.size();
+  out.all = s.placed(measurement::joined({data, rows.take()}));
+  out.blocks = rows.blocks();
+  for (Block& b : out.blocks) b.first += out.taken, b.pose += poses;
+  return out;
+}
+
+Possible without_data(Possible p) {
+  const std::size_t poses = p.blocks.empty() ? 0 : p.all.readings[p.taken].pose;
+  p.all.readings.erase(p.all.readings.begin(), p.all.readings.begin() + as_index(p.taken));
+  p.all.poses.erase(p.all.poses.begin(), p.all.poses.begin() + as_index(poses));
+  for (PoseGroup& pose : p.all.poses)
+    for (std::size_t& i : pose.readings) i -= p.taken;
+  for (Reading& r : p.all.readings) r.pose -= poses;
+  for (Block& b : p.blocks) b.first -= p.taken, b.pose -= poses;
+  p.taken = 0;
+  return p;
+}
+
+Measurements as_plan(const Possible& p, const std::vector<std::size_t>& chosen) {
+  std::vector<std::size_t> order = chosen;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return p.blocks[a].pose < p.blocks[b].pose; });
+  Measurements out;
+  out.origin = "plan";
+  out.joint_rotates = p.all.joint_rotates;
+  out.instruments = p.all.instruments;
+  out.note_columns = {"note"};
+  const auto note =
+      std::find(p.all.note_columns.begin(), p.all.note_columns.end(), "note") - p.all.note_columns.begin();
+  std::optional<std::size_t> pose;
+  for (const std::size_t b : order) {
+    const Block& block = p.blocks[b];
+    if (pose != block.pose || p.sequences) {
+      PoseGroup group = p.all.poses[block.pose];
+      group.label = fmt::format("plan {}", out.poses.size() + 1);
+      group.readings.clear();
+      out.poses.push_back(std::move(group));
+    }
+    pose = block.pose;
+    for (std::size_t i = block.first; i < block.first + block.count; ++i) {
+      Reading r = p.all.readings[i];
+      r.pose = out.poses.size() - 1;
+      r.displacement.fill(std::nullopt);
+      std::fill(r.sensors.begin(), r.sensors.end(), std::nullopt);
+      r.notes = {nth(p.all.readings[i].notes, note)};
+      r.sequence = static_cast<double>(out.readings.size() + 1);
+      r.line = out.readings.size() + 2;
+      out.poses.back().readings.push_back(out.readings.size());
+      out.readings.push_back(std::move(r));
+    }
+  }
+  return out;
+}
+
+}  // namespace deflect::plan

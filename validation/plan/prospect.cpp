@@ -1,0 +1,140 @@
+#include "validation/plan/prospect.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <map>
+
+#include "msa/base/error.h"
+#include "msa/base/index.h"
+#include "validation/parallel/cases.h"
+#include "validation/statistics/columns.h"
+
+namespace deflect::plan {
+namespace {
+
+using measurement::MeasuredValue;
+using measurement::Measurements;
+
+/// σ of every number: its own, that of its channel in the data, or what is known of its quantity.
+std::vector<double> sigma_of(const std::vector<MeasuredValue>& values, Eigen::Index known, const Measurements& m,
+                             const Noise& noise) {
+  std::map<std::size_t, std::pair<double, double>> squares;  // of the data: sum, number
+  for (Eigen::Index i = 0; i < known; ++i)
+    if (const MeasuredValue& v = nth(values, i); v.sigma) {
+      auto& [sum, n] = squares[v.channel];
+      sum += *v.sigma * *v.sigma, n += 1;
+    }
+  std::vector<double> out;
+  for (const MeasuredValue& v : values) {
+    std::optional<double> sigma = v.sigma;
+    const auto of_channel = squares.find(v.channel);
+    if (!sigma && of_channel != squares.end()) sigma = std::sqrt(of_channel->second.first / of_channel->second.second);
+    if (!sigma && v.quantity == measurement::Quantity::length) sigma = noise.u;
+    if (!sigma && v.quantity == measurement::Quantity::angle) sigma = noise.th;
+    if (!sigma)
+      throw InputError(
+          fmt::format("{}: nobody knows the noise of {}: give --sigma (--sigma-rotation), a column "
+                      "sigma_u_mm (sigma_th_rad), or sigma of the sensor in the description",
+                      m.origin, measurement::channel_name(m, v.channel)));
+    out.push_back(*sigma);
+  }
+  return out;
+}
+
+/// (1 + O Oᵀ)^(−1/2) = 1 − O less Oᵀ (whitening.h).
+MatrixX less_of(const MatrixX& O) {
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(O.transpose() * O);
+  const Eigen::ArrayXd root = (1 + axes.eigenvalues().array().max(0)).sqrt();
+  return axes.eigenvectors() * (root * (1 + root)).inverse().matrix().asDiagonal() * axes.eigenvectors().transpose();
+}
+
+}  // namespace
+
+Prospect::Prospect(const subject::Subject& s, Possible p, const Noise& noise, const parallel::Work& work)
+    : possible_(std::move(p)), standing_(s.stand(possible_.all)) {
+  const Measurements& all = possible_.all;
+  values_ = measurement::measured_values(all, standing_->sensor_forms(all));
+  first_.assign(all.readings.size() + 1, std::ssize(values_));
+  for (auto i = std::ssize(values_); i-- > 0;) first_[nth(values_, i).reading] = i;
+  for (std::size_t r = all.readings.size(); r-- > 0;) first_[r] = std::min(first_[r], first_[r + 1]);
+  known_ = first_[possible_.taken];
+  statistics::ToleranceModel model = statistics::tolerance_model(*standing_, all, values_, work);
+  for (const subject::Tolerance& t : model.nuisances)
+    if (!t.pose) names_.push_back(t.name);
+  prediction::PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  uncertainty_.emplace(model.A, values_, sigma_of(values_, known_, all, noise),
+                       standing_->predict(all, linear, work.quiet()), s.load_tolerance());
+  tolerances_ = white(model.A.shared);
+  if (possible_.sequences) {
+    const auto alone = [&](Measurements m) {
+      std::shared_ptr<const subject::Standing> standing = s.stand(m);
+      return Alone{std::move(m), std::move(standing)};
+    };
+    data_ = alone(possible_.data());
+    for (const Block& b : possible_.blocks) alone_.push_back(alone(measurement::one_pose(all, b.pose)));
+  }
+  own_.resize(all.poses.size());
+  for (statistics::GroupColumns& g : uncertainty_->whitening()->groups_by_noise())
+    own_[all.readings[nth(values_, g.rows.front()).reading].pose] = std::move(g);
+}
+
+VectorX Prospect::predicted(const subject::Subject& s) const {
+  const Measurements& all = possible_.all;
+  prediction::PredictionOptions o;
+  o.geometry = Geometry::linear;
+  const std::shared_ptr<const subject::Standing> standing = s.stand(all, standing_.get());
+  if (!possible_.sequences || !standing->has_history())
+    return statistics::rows_of(values_, standing->predict(all, o, parallel::alone));
+  std::vector<VectorX> out;
+  const auto add = [&](const Alone& each) {
+    const std::vector<VectorX> read =
+        s.stand(each.readings, each.standing.get())->predict(each.readings, o, parallel::alone);
+    out.insert(out.end(), read.begin(), read.end());
+  };
+  add(*data_);  // the blocks follow it in the order of their readings
+  for (const Alone& block : alone_) add(block);
+  return statistics::rows_of(values_, out);
+}
+
+Design Prospect::design(const MatrixX& targets, const MatrixX& beside, const VectorX& prior, bool all) const {
+  const Eigen::Index k = tolerances_.cols() + beside.cols(), n = all ? numbers() : known_;
+  MatrixX X(n, k + targets.cols());
+  X << tolerances_.topRows(n), beside.topRows(n), targets.topRows(n);
+  for (const statistics::GroupColumns& g : own_) {  // errors of each pose are eliminated
+    if (g.rows.empty() || g.rows.back() >= n || g.columns.cols() == 0) continue;
+    const MatrixX part = X(g.rows, Eigen::all);
+    X(g.rows, Eigen::all) = part - g.columns * (less_of(g.columns) * (g.columns.transpose() * part));
+  }
+  const MatrixX M = X.transpose() * X;
+  MatrixX information = M.topLeftCorner(k, k);
+  information.diagonal().head(tolerances_.cols()).array() += 1;
+  information.diagonal().tail(beside.cols()) += prior.cwiseInverse();
+  const Eigen::LLT<MatrixX> factor(information);
+  const MatrixX alpha = factor.solve(M.topRightCorner(k, targets.cols()));
+  MatrixX Q =
+      M.bottomRightCorner(targets.cols(), targets.cols()) - M.topRightCorner(k, targets.cols()).transpose() * alpha;
+  return {factor.solve(MatrixX::Identity(k, k)), alpha, std::move(Q)};
+}
+
+WhiteRows Prospect::rows(std::size_t block, const MatrixX& targets, const MatrixX& beside) const {
+  const Block& b = possible_.blocks[block];
+  const Eigen::Index first = first_[b.first], n = first_[b.first + b.count] - first;
+  WhiteRows out;
+  out.pose = b.pose;
+  out.targets = targets.middleRows(first, n);
+  out.shared.resize(n, tolerances_.cols() + beside.cols());
+  out.shared << tolerances_.middleRows(first, n), beside.middleRows(first, n);
+  out.own = MatrixX::Zero(n, 0);
+  if (own_[b.pose].columns.cols() > 0) {
+    const statistics::GroupColumns& g = own_[b.pose];
+    const Eigen::Index at = std::lower_bound(g.rows.begin(), g.rows.end(), first) - g.rows.begin();
+    out.own = g.columns.middleRows(at, n);
+  }
+  return out;
+}
+
+}  // namespace deflect::plan

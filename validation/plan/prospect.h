@@ -1,0 +1,64 @@
+// The readings that were taken and those that could be, as rows over nuisances: what a plan is computed from.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "validation/plan/design.h"
+#include "validation/plan/possible.h"
+#include "validation/statistics/uncertainty.h"
+
+namespace deflect::plan {
+
+/// σ of what neither the description, the file nor its replicates tell; SI.
+struct Noise {
+  std::optional<double> u, th;
+};
+
+/// All measured numbers, their noise, and the subject's tolerances; the numbers of the readings taken come first.
+class Prospect {
+ public:
+  /// Throws InputError where σ of a number is not known. The subject, whose tolerances these are, is copied.
+  Prospect(const subject::Subject&, Possible, const Noise&, const parallel::Work&);
+
+  const Possible& possible() const { return possible_; }
+  const measurement::Measurements& readings() const { return possible_.all; }
+  Eigen::Index numbers() const { return std::ssize(values_); }
+  /// Of the readings taken.
+  Eigen::Index known() const { return known_; }
+
+  /// What a subject is predicted to read, in linear geometry, by measured number. In a plan of sequences every block is
+  /// predicted from a machine at rest.
+  VectorX predicted(const subject::Subject&) const;
+
+  /// X divided by the noise of readings, which includes the error of their loads.
+  MatrixX white(const MatrixX& X) const { return uncertainty_->whitening()->by_noise(X); }
+  /// The tolerances that all poses share, likewise, per standard deviation; their names.
+  const MatrixX& tolerances() const { return tolerances_; }
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// A design that has the readings taken, or every reading there is: targets and nuisances beside the tolerances
+  /// (columns, whitened), `prior`: variances of these.
+  Design design(const MatrixX& targets, const MatrixX& beside, const VectorX& prior, bool all = false) const;
+  /// The rows of a block for such a design.
+  WhiteRows rows(std::size_t block, const MatrixX& targets, const MatrixX& beside) const;
+
+ private:
+  Possible possible_;
+  std::shared_ptr<const subject::Standing> standing_;
+  std::vector<measurement::MeasuredValue> values_;
+  Eigen::Index known_ = 0;
+  std::optional<statistics::Uncertainty> uncertainty_;
+  MatrixX tolerances_;
+  std::vector<std::string> names_;
+  std::vector<statistics::GroupColumns> own_;  // of each pose, whitened by noise
+  std::vector<Eigen::Index> first_;            // number of each reading, and the end
+  struct Alone {
+    measurement::Measurements readings;
+    std::shared_ptr<const subject::Standing> standing;
+  };
+  std::optional<Alone> data_;  // in a plan of sequences
+  std::vector<Alone> alone_;   // its blocks
+};
+
+}  // namespace deflect::plan

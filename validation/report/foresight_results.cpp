@@ -1,0 +1,127 @@
+#include "validation/report/foresight_results.h"
+
+#include <fmt/format.h>
+
+#include "msa/base/index.h"
+#include "validation/json/json_text.h"
+#include "validation/report/short_lists.h"
+#include "validation/report/text.h"
+
+namespace deflect::report {
+namespace {
+
+constexpr double alike = 0.995;  // cosine, above which no data of this campaign tell two effects apart
+
+/// Effects at places that show within the bounds of their parameters, and pairs of different effects that look alike.
+std::size_t that_show(const plan::Insight& i) {
+  std::size_t out = 0;
+  for (const diagnosis::Detectable& d : i.detectable) out += d.lambda_at_start > 0 && !d.smallest.empty() ? 1 : 0;
+  return out;
+}
+
+std::size_t pairs_alike(const plan::Insight& i) {
+  std::size_t out = 0;
+  for (Eigen::Index a = 0; a < i.cosines.rows(); ++a)
+    for (Eigen::Index b = a + 1; b < i.cosines.rows(); ++b)
+      if (nth(i.detectable, a).effect.effect != nth(i.detectable, b).effect.effect && i.cosines(a, b) > alike) ++out;
+  return out;
+}
+
+std::string indices_table(const plan::Foresight& f) {
+  struct Row {
+    std::string name;
+    double given, better;
+    const char* form;
+  };
+  const plan::Observability &a = f.given.observability, &b = f.better.observability;
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  std::vector<Row> all = {
+      {"readings", count(f.given.readings.readings.size()), count(f.better.readings.readings.size()), "{:.0f}"},
+      {"poses", count(f.given.readings.poses.size()), count(f.better.readings.poses.size()), "{:.0f}"},
+      {"effects that show within their bounds", count(that_show(f.given)), count(that_show(f.better)), "{:.0f}"},
+      {"pairs of effects alike (cosine > 0.995)", count(pairs_alike(f.given)), count(pairs_alike(f.better)), "{:.0f}"},
+      {"error in use before fitting, µm rms", um * f.given.error_before, um * f.better.error_before, "{:.3g}"},
+      {"error in use after fitting, µm rms (test poses)", um * f.given.error_after, um * f.better.error_after,
+       "{:.3g}"}};
+  const char* sources[] = {"Borm, Menq 1991", "Driels, Pathre 1990", "Nahvi, Hollerbach, Hayward 1994",
+                           "Nahvi, Hollerbach 1996", "Sun, Hollerbach 2008"};
+  for (std::size_t i = 0; i < 5; ++i)
+    all.push_back({fmt::format("O{} ({})", i + 1, sources[i]), a.O[i], b.O[i], "{:.3g}"});
+  all.push_back({"D-gain, nats (Lindley 1956)", a.D_gain, b.D_gain, "{:.1f}"});
+  std::vector<std::vector<std::string>> rows = {
+      {"", "this campaign", fmt::format("better, for {}", nth(plan::toward_names, f.toward))}};
+  for (const Row& r : all)
+    rows.push_back(
+        {"  " + r.name, fmt::format(fmt::runtime(r.form), r.given), fmt::format(fmt::runtime(r.form), r.better)});
+  return aligned(rows);
+}
+
+Json insight_json(const plan::Insight& i) {
+  Json j;
+  j["readings"] = i.readings.readings.size();
+  j["poses"] = i.readings.poses.size();
+  j["parameters"] = i.parameters;
+  j["numbers"] = i.numbers;
+  j["effects_that_show"] = that_show(i);
+  j["pairs_alike"] = pairs_alike(i);
+  j["error_before_um"] = json::json_number(um * i.error_before, "error");
+  j["error_after_um"] = json::json_number(um * i.error_after, "error");
+  for (std::size_t k = 0; k < 5; ++k)
+    j[fmt::format("O{}", k + 1)] = json::json_number(i.observability.O[k], "observability index");
+  j["D_gain"] = json::json_number(i.observability.D_gain, "D-gain");
+  j["detectable"] = Json::array();
+  for (std::size_t k = 0; k < i.detectable.size(); ++k) {
+    const diagnosis::Detectable& d = i.detectable[k];
+    Json names = Json::array();
+    for (const effects::EffectParameter& p : d.effect.effect->parameters) names.push_back(p.name);
+    j["detectable"].push_back({{"effect", i.names[k]},
+                               {"parameters", names},
+                               {"smallest", d.smallest},
+                               {"lambda_at_start", json::json_number(d.lambda_at_start, "lambda")},
+                               {"mistaken_for", d.mistaken_for},
+                               {"cosine", json::json_number(d.cosine, "cosine")}});
+  }
+  j["cosines"] = Json::array();
+  for (Eigen::Index a = 0; a < i.cosines.rows(); ++a) {
+    Json row = Json::array();
+    for (Eigen::Index b = 0; b < i.cosines.cols(); ++b) row.push_back(json::json_number(i.cosines(a, b), "cosine"));
+    j["cosines"].push_back(std::move(row));
+  }
+  j["left_out"] = Json::array();
+  for (const diagnosis::LeftOut& e : i.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});
+  return j;
+}
+
+}  // namespace
+
+std::string foresight_report(const plan::Foresight& f) {
+  return fmt::format("{}: what {} will be able to tell ({} tolerances are what a calibration would fit)\n\n", f.subject,
+                     f.campaign, f.given.parameters) +
+         indices_table(f) + "\n" + detectable_table(f.given.detectable) + left_out_words(f.given.left_out);
+}
+
+std::string foresight_json(const plan::Foresight& f) {
+  Json j;
+  j["kind"] = "foresight";
+  j["subject"] = f.subject;
+  j["campaign"] = f.campaign;
+  j["toward"] = nth(plan::toward_names, f.toward);
+  j["given"] = insight_json(f.given);
+  j["better"] = insight_json(f.better);
+  return json::json_text(j);
+}
+
+std::string foresight_csv(const plan::Foresight& f) {
+  std::string out = "effect,smallest";
+  for (const std::string& name : f.given.names) out += "," + csv_cell(name);
+  out += "\n";
+  for (std::size_t a = 0; a < f.given.names.size(); ++a) {
+    out += csv_cell(f.given.names[a]) + "," + csv_cell(sizes_of(f.given.detectable[a]));
+    for (Eigen::Index b = 0; b < f.given.cosines.cols(); ++b)
+      out += fmt::format(",{:.4f}", f.given.cosines(as_index(a), b));
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace deflect::report

@@ -1,0 +1,177 @@
+#include "validation/report/plan_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "msa/base/index.h"
+#include "validation/json/json_text.h"
+#include "validation/report/text.h"
+#include "validation/report/verdict_words.h"
+
+namespace deflect::report {
+namespace {
+
+std::string rival_words(const plan::Rival& r) { return placed_words(r.own()); }
+
+std::string pair_words(const plan::Plan& p, const plan::Pair& pair) {
+  return fmt::format("{} and {}", rival_words(p.rivals[pair.a]), rival_words(p.rivals[pair.b]));
+}
+
+/// "load.snow = 1", "fx = 50 N": what is not zero.
+std::string load_words(const measurement::Measurements& m, const measurement::Reading& r) {
+  std::string out;
+  const auto add = [&](const std::string& name, double value, const char* unit) {
+    if (value != 0) out += fmt::format("{}{} = {:.4g}{}", out.empty() ? "" : ", ", name, value, unit);
+  };
+  for (std::size_t k = 0; k < r.factors.size(); ++k) add("load." + m.instruments.load_cases[k], r.factors[k], "");
+  const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+  for (Eigen::Index i = 0; i < 6; ++i) add(nth(names, i), (i < 3 ? 1 : mm) * r.load(i), i < 3 ? " N" : " Nmm");
+  return out.empty() ? "no load" : out;
+}
+
+std::string pose_words(const measurement::Measurements& m, const measurement::PoseGroup& pose) {
+  if (m.instruments.stationary) return "";
+  std::string out;
+  if (m.by_joints())
+    for (Eigen::Index i = 0; i < pose.joints.size(); ++i)
+      out += fmt::format("{}{:.4g}", i ? ", " : "", (nth(m.joint_rotates, i) ? 1 : mm) * pose.joints(i));
+  else
+    for (Eigen::Index i = 0; i < 6; ++i) out += fmt::format("{}{:.4g}", i ? ", " : "", pose.pose_mm_deg(i));
+  return out;
+}
+
+std::string readings_table(const measurement::Measurements& m) {
+  std::vector<std::vector<std::string>> rows = {
+      {"reading", "pose", m.by_joints() ? "joints" : "x y z mm, angles deg", "load", "how"}};
+  constexpr std::size_t shown = 24;
+  for (std::size_t i = 0; i < std::min(shown, m.readings.size()); ++i) {
+    const measurement::Reading& r = m.readings[i];
+    rows.push_back({fmt::format("  {}", i + 1), m.poses[r.pose].label, pose_words(m, m.poses[r.pose]), load_words(m, r),
+                    r.notes.front()});
+  }
+  std::string out = aligned(rows);
+  if (m.readings.size() > shown) out += fmt::format("  … and {} more (in the file)\n", m.readings.size() - shown);
+  return out;
+}
+
+std::string steps_table(const plan::Plan& p) {
+  std::vector<std::vector<std::string>> rows = {{"readings", "probability", "least separation λ²", "of"}};
+  const std::size_t every = std::max<std::size_t>(1, p.steps.size() / 12);
+  for (std::size_t i = 0; i < p.steps.size(); ++i) {
+    if (i % every != 0 && i + 1 != p.steps.size()) continue;
+    const plan::Step& s = p.steps[i];
+    const auto least = std::min_element(s.pairs.begin(), s.pairs.end(), [](const plan::Pair& a, const plan::Pair& b) {
+      return a.separation < b.separation;
+    });
+    rows.push_back({fmt::format("  {}", s.readings), fmt::format("{:.3f}", s.probability),
+                    fmt::format("{:.1f}", least->separation), pair_words(p, *least)});
+  }
+  return aligned(rows);
+}
+
+std::string inseparable_words(const plan::Plan& p) {
+  std::string out;
+  for (const plan::Inseparable& i : p.inseparable) {
+    out += fmt::format(
+        "No reading within these limits tells {} apart: all {} possible ones together would give "
+        "λ² = {:.2g}. What would:\n",
+        pair_words(p, i.pair), p.possible, i.pair.separation);
+    for (const std::string& sentence : i.instead) {
+      for (const std::string& line : wrap(sentence, line_length - 2)) out += "  " + line + "\n";
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+Json pairs_json(const plan::Plan& p, const std::vector<plan::Pair>& pairs) {
+  Json out = Json::array();
+  for (const plan::Pair& each : pairs)
+    out.push_back({{"between", {rival_words(p.rivals[each.a]), rival_words(p.rivals[each.b])}},
+                   {"lambda_squared", json::json_number(each.separation, "separation")},
+                   {"least_lambda_squared", json::json_number(each.least, "separation")},
+                   {"log_bayes_factor", json::json_number(each.separation / 2, "log Bayes factor")}});
+  return out;
+}
+
+Json readings_json(const measurement::Measurements& m) {
+  Json out = Json::array();
+  for (const measurement::Reading& r : m.readings)
+    out.push_back({{"pose", m.poses[r.pose].label},
+                   {"at", pose_words(m, m.poses[r.pose])},
+                   {"load", load_words(m, r)},
+                   {"how", r.notes.front()}});
+  return out;
+}
+
+}  // namespace
+
+std::string plan_report(const plan::Plan& p) {
+  std::string names;
+  for (const plan::Rival& r : p.rivals) names += (names.empty() ? "" : ", ") + rival_words(r);
+  std::string out = fmt::format("{} after {} ({} readings): {} are tied\n\n", p.subject, p.data, p.taken, names);
+  out += inseparable_words(p);
+  if (p.readings.readings.empty()) return out;
+  out += fmt::format("{} readings at {} tell them apart with an expected probability of {:.3f} (before: {:.3f})",
+                     p.readings.readings.size(),
+                     p.readings.poses.size() == 1 ? "one pose" : fmt::format("{} poses", p.readings.poses.size()),
+                     p.probability, p.steps.front().probability);
+  if (p.at_random > 0)
+    out += fmt::format("; drawn by lot from the same poses and loads, {}{} readings would do as well",
+                       p.at_random_is_more ? "more than " : "", p.at_random);
+  out += ".\n\n" + readings_table(p.readings) + "\n" + steps_table(p);
+  out += fmt::format("\nas planned, in this order:");
+  for (const plan::Pair& pair : p.as_planned)
+    out += fmt::format(" {}: λ² = {:.1f} ({:.1f} or more), ln Bayes factor {:.1f};", pair_words(p, pair),
+                       pair.separation, pair.least, pair.separation / 2);
+  out.back() = '\n';
+  return out;
+}
+
+std::string plan_json(const plan::Plan& p) {
+  Json j;
+  j["kind"] = "plan";
+  j["subject"] = p.subject;
+  j["data"] = p.data;
+  j["taken"] = p.taken;
+  j["possible"] = p.possible;
+  j["rivals"] = Json::array();
+  for (const plan::Rival& r : p.rivals) {
+    Json parameters = Json::array();
+    const auto all = diagnosis::parameters_of(r.hypothesis);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      parameters.push_back({{"name", all[i]->name}, {"value", r.values(as_index(i))}});
+    j["rivals"].push_back({{"effect", rival_words(r)}, {"probability", r.probability}, {"parameters", parameters}});
+  }
+  j["readings"] = readings_json(p.readings);
+  j["probability"] = p.probability;
+  j["separations"] = pairs_json(p, p.as_planned);
+  j["at_random"] = p.at_random;
+  j["at_random_is_more"] = p.at_random_is_more;
+  j["steps"] = Json::array();
+  for (const plan::Step& s : p.steps)
+    j["steps"].push_back(
+        {{"readings", s.readings}, {"probability", s.probability}, {"separations", pairs_json(p, s.pairs)}});
+  j["inseparable"] = Json::array();
+  for (const plan::Inseparable& i : p.inseparable)
+    j["inseparable"].push_back({{"between", {rival_words(p.rivals[i.pair.a]), rival_words(p.rivals[i.pair.b])}},
+                                {"lambda_squared", json::json_number(i.pair.separation, "separation")},
+                                {"instead", i.instead}});
+  return json::json_text(j);
+}
+
+std::string plan_csv(const plan::Plan& p) {
+  std::string out = "readings,probability";
+  for (const plan::Pair& pair : p.steps.front().pairs) out += "," + csv_cell("lambda_squared " + pair_words(p, pair));
+  out += "\n";
+  for (const plan::Step& s : p.steps) {
+    out += fmt::format("{},{:.6g}", s.readings, s.probability);
+    for (const plan::Pair& pair : s.pairs) out += fmt::format(",{:.6g}", pair.separation);
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace deflect::report

@@ -1,0 +1,17 @@
+// Plans of measurements as a report for a person, JSON and a table.
+#pragma once
+
+#include <string>
+
+#include "validation/plan/next_readings.h"
+
+namespace deflect::report {
+
+/// The readings that tell the effects of a tie apart, what they promise, and what no reading can tell.
+std::string plan_report(const plan::Plan&);
+/// {"kind": "plan", "rivals": […], "readings": […], "steps": […], "inseparable": […], …}.
+std::string plan_json(const plan::Plan&);
+/// Number of readings, expected probability, expected separations.
+std::string plan_csv(const plan::Plan&);
+
+}  // namespace deflect::report
