@@ -60,6 +60,7 @@ const Effect& at_place(const Subject& s, const std::string& name) {
 
 /// A hypothesis fitted to readings of a subject that has it with these values, as a diagnosis fits what it names.
 struct Fitted {
+  std::shared_ptr<const Measurements> data;  // to which the observations point
   Observations seen;
   Hypothesis h;
   Fit fit;
@@ -74,17 +75,17 @@ Fitted fitted(const Subject& s, const PlacedEffect& e, const VectorX& values, st
   const Subject truth = with_effect(s, {e, values});
   prediction::SimulationOptions o;
   o.seed = seed;
-  const Measurements data =
+  const auto data = std::make_shared<const Measurements>(
       s.machine() ? simulate(*truth.machine(), prediction::campaign(campaign, *s.machine(), 50, 1), o)
-                  : subject::simulate_frame(*truth.frame(), subject::frame_campaign(campaign, *s.frame(), 1), o);
-  const Observations first(s, data, {});
+                  : subject::simulate_frame(*truth.frame(), subject::frame_campaign(campaign, *s.frame(), 1), o));
+  const Observations first(s, *data, {});
   const Hypothesis h = {e};
   const Fit begun = fit(first, h);
   Observations seen = first.granted(subject_with(first, h, begun.values));
   seen = seen.weighed_for(subject_with(seen, h, begun.values));
   Fit again = fit_of_all(seen, h, begun.values);
   again = with_intervals(seen, h, std::move(again), 1);
-  return {std::move(seen), h, std::move(again)};
+  return {data, std::move(seen), h, std::move(again)};
 }
 
 Fit parabolic(Fit f) {
