@@ -48,7 +48,7 @@ std::vector<EffectParameter> yields_in_one_sense(const subject::Place& p) {
 
 std::string first_of(const std::vector<EffectParameter>& p) { return "$" + p.front().name; }
 
-const PlaceLaw all[] = {
+const PlaceLaw of_places[] = {
     {"linear",
      [](const subject::Place& p) { return in_series(p) && !p.one_stiffness; },
      "yields like a spring",
@@ -320,7 +320,7 @@ const PlaceLaw all[] = {
 
 std::span<const PlaceLaw> place_laws() {
   static const std::vector<PlaceLaw> laws = [] {
-    std::vector<PlaceLaw> out(std::begin(all), std::end(all));
+    std::vector<PlaceLaw> out(std::begin(of_places), std::end(of_places));
     out.insert(out.end(), rig_laws().begin(), rig_laws().end());
     return out;
   }();
