@@ -26,8 +26,8 @@ struct EffectParameter {
   bool log = false;                ///< searched on a logarithmic scale; low > 0
   std::optional<double> vanishes;  ///< the value (may be infinite) at which the edits that use it do nothing
   std::string about;
-  std::optional<ParameterPrior> prior = {};
   bool optional = false;  ///< need not be given: the default is `start`; for an unknown initial state
+  std::optional<ParameterPrior> prior = {};  ///< what is known of it before
 };
 
 /// One change of the description. `paths` are alternatives for devices that differ in structure: the first that the
