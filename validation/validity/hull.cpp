@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "msa/base/index.h"
+
 namespace deflect::validity {
 namespace {
 
@@ -26,10 +28,9 @@ VectorX non_negative(const MatrixX& A, const VectorX& b) {
       const VectorX wanted = A(Eigen::all, free).colPivHouseholderQr().solve(b);
       double step = 1;
       for (std::size_t k = 0; k < free.size(); ++k)
-        if (const double to = wanted(static_cast<Eigen::Index>(k)); to <= 0 && w(free[k]) > to)
+        if (const double to = wanted(as_index(k)); to <= 0 && w(free[k]) > to)
           step = std::min(step, w(free[k]) / (w(free[k]) - to));
-      for (std::size_t k = 0; k < free.size(); ++k)
-        w(free[k]) += step * (wanted(static_cast<Eigen::Index>(k)) - w(free[k]));
+      for (std::size_t k = 0; k < free.size(); ++k) w(free[k]) += step * (wanted(as_index(k)) - w(free[k]));
       if (step == 1) break;
       std::erase_if(free, [&](Eigen::Index i) {
         if (w(i) > 1e-14) return false;
