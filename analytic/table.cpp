@@ -28,9 +28,11 @@ std::size_t piece(const TablePoints& c, double f) {
   return as_size(above - c.begin()) - 1;
 }
 
+/// Counted from the end of the piece that is nearer to no force, so that digits are kept there and an odd curve is odd.
 double elastic(const TableCurves& t, double f) {
   const std::size_t i = piece(t.elastic, f);
-  return t.elastic[i][1] + slope(t.elastic, i) * (f - t.elastic[i][0]);
+  const auto& from = t.elastic[std::abs(t.elastic[i + 1][0]) < std::abs(t.elastic[i][0]) ? i + 1 : i];
+  return from[1] + slope(t.elastic, i) * (f - from[0]);
 }
 
 /// A bound of a play: A or B.
