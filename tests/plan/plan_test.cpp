@@ -4,6 +4,7 @@
 
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "validation/diagnosis/fit_problem.h"
 #include "validation/measurement/joined.h"
 #include "validation/plan/foresight.h"
 #include "validation/prediction/campaign.h"

@@ -12,9 +12,9 @@
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "tests/support/theories.h"
-#include "validation/figures/child_process.h"
 #include "validation/figures/fig10.h"
 #include "validation/figures/gnuplot.h"
+#include "validation/parallel/child_process.h"
 
 namespace deflect {
 namespace {
@@ -247,7 +247,7 @@ TEST_F(FigureTest, WidthFontAndSizeAreThoseAskedFor) {
 TEST_F(FigureTest, TextOfThePdfHasItsSize) {
   const auto paths =
       render({"word", "set key off\nset xlabel 'Sizes'\nplot x", 80, 60, "", "", {0, "DejaVu Sans", 10}}, folder_);
-  const ChildOutcome boxes = run_child({"pdftotext", "-bbox", paths[1].string(), "-"}, "");
+  const parallel::ChildOutcome boxes = parallel::run_child({"pdftotext", "-bbox", paths[1].string(), "-"}, "");
   if (!boxes.succeeded()) GTEST_SKIP() << "pdftotext (poppler-utils) is not installed";
   const std::string& text = boxes.output;
   const std::size_t word = text.rfind("<word", text.find(">Sizes<"));

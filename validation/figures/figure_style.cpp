@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "msa/base/error.h"
-#include "validation/figures/child_process.h"
+#include "validation/parallel/child_process.h"
 
 namespace deflect::figures {
 namespace {
@@ -54,7 +54,7 @@ void check_font(const std::string& family) {
     throw InputError(fmt::format("figures: '{}' is no name of a font's family; `fc-list : family` lists them", family));
   std::string pattern;
   for (const char c : family) pattern += c == '-' ? std::string("\\-") : std::string(1, c);
-  const ChildOutcome found = run_child({"fc-match", "--format", "%{family}", pattern}, "");
+  const parallel::ChildOutcome found = parallel::run_child({"fc-match", "--format", "%{family}", pattern}, "");
   if (!found.succeeded())
     throw InputError(
         fmt::format("figures: whether the font '{}' is installed cannot be seen without fc-match: install it with "

@@ -10,8 +10,8 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
-#include "validation/figures/child_process.h"
 #include "validation/parallel/cases.h"
+#include "validation/parallel/child_process.h"
 
 namespace deflect::figures {
 namespace {
@@ -87,7 +87,7 @@ std::string finished_svg(std::string svg, const Figure& figure) {
 std::string draw(const std::string& suffix, const Figure& figure) {
   const std::string head = fmt::format("set encoding utf8\nset terminal {}\n{}", terminal(suffix, figure), common_look);
   // -d: a user's own gnuplotrc does not change the figure.
-  ChildOutcome outcome = run_child({"gnuplot", "-d"}, head + figure.body + "\n");
+  parallel::ChildOutcome outcome = parallel::run_child({"gnuplot", "-d"}, head + figure.body + "\n");
   if (outcome.start_error != 0)
     throw InputError(fmt::format("figures need gnuplot, which cannot be started ({}): {}",
                                  std::strerror(outcome.start_error), remedy));

@@ -61,83 +61,111 @@ subject::Subject subject_with(const subject::Subject& s, const Rival& r, const V
   return effects::PreparedEffects(s, r.hypothesis)(values);
 }
 
-Rivalry::Rivalry(const Prospect& prospect, const subject::Subject& s, std::vector<Rival> rivals, int draws,
-                 std::uint64_t seed, const parallel::Work& work)
-    : prospect_(prospect), rivals_(std::move(rivals)) {
-  const std::size_t n = rivals_.size();
-  std::vector<VectorX> fitted(n);
-  beside_.resize(n), prior_.resize(n);
-  std::vector<std::string> why(n);
-  std::vector<MatrixX> root(n);  // of the covariance of its coordinates, given the readings taken
-  parallel::for_each_case(n, 1, work.threads, [&](std::size_t r) {
-    const Rival& rival = rivals_[r];
-    const effects::PreparedEffects prepared(s, rival.hypothesis);
-    const VectorX x = diagnosis::coordinates_of(rival.hypothesis, rival.values);
-    const auto parameters = diagnosis::parameters_of(rival.hypothesis);
-    prior_[r].resize(x.size());
-    const auto looked_at = outcome_of([&] {
-      fitted[r] = prospect_.predicted(prepared(rival.values));
-      MatrixX J = MatrixX::Zero(fitted[r].size(), x.size());
-      for (Eigen::Index i = 0; i < x.size(); ++i) {
-        const double deviation = nth(parameters, i)->log ? wide : half_range;
-        prior_[r](i) = deviation * deviation;
-        for (const double by : {step, -step}) {
-          VectorX moved = x;
-          moved(i) += by;
-          const VectorX values = diagnosis::values_at(rival.hypothesis, moved);
-          if (values(i) == rival.values(i)) continue;  // at a bound
-          J.col(i) = (prospect_.predicted(prepared(values)) - fitted[r]) / by;
-          break;
-        }
-      }
-      beside_[r] = prospect_.white(J);
-      return true;
-    });
-    if (!looked_at) {
-      why[r] = looked_at.why;
-      return;
+namespace {
+
+/// What the plan asks of a rival at its fit.
+struct AtFit {
+  VectorX predicted, prior;  // prior variances of its coordinates
+  MatrixX beside;            // derivatives of the prediction with respect to them, whitened
+  MatrixX root;              // of the covariance of its coordinates, given the readings taken
+};
+
+AtFit at_fit(const Prospect& prospect, const subject::Subject& s, const Rival& rival) {
+  AtFit out;
+  const effects::PreparedEffects prepared(s, rival.hypothesis);
+  const VectorX x = diagnosis::coordinates_of(rival.hypothesis, rival.values);
+  const auto parameters = diagnosis::parameters_of(rival.hypothesis);
+  out.prior.resize(x.size());
+  out.predicted = prospect.predicted(prepared(rival.values));
+  MatrixX J = MatrixX::Zero(out.predicted.size(), x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double deviation = nth(parameters, i)->log ? wide : half_range;
+    out.prior(i) = deviation * deviation;
+    for (const double by : {step, -step}) {
+      VectorX moved = x;
+      moved(i) += by;
+      const VectorX values = diagnosis::values_at(rival.hypothesis, moved);
+      if (values(i) == rival.values(i)) continue;  // at a bound
+      J.col(i) = (prospect.predicted(prepared(values)) - out.predicted) / by;
+      break;
     }
-    const MatrixX P = prospect_.design(MatrixX(fitted[r].size(), 0), beside_[r], prior_[r]).covariance();
-    const Eigen::SelfAdjointEigenSolver<MatrixX> axes(P.bottomRightCorner(x.size(), x.size()));
-    root[r] = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  }
+  out.beside = prospect.white(J);
+  const MatrixX P = prospect.design(MatrixX(out.predicted.size(), 0), out.beside, out.prior).covariance();
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(P.bottomRightCorner(x.size(), x.size()));
+  out.root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  return out;
+}
+
+std::vector<AtFit> all_at_fit(const Prospect& prospect, const subject::Subject& s, const std::vector<Rival>& rivals,
+                              int threads) {
+  std::vector<AtFit> out(rivals.size());
+  std::vector<std::string> why(rivals.size());
+  parallel::for_each_case(rivals.size(), 1, threads, [&](std::size_t r) {
+    auto found = outcome_of([&] { return at_fit(prospect, s, rivals[r]); });
+    if (found)
+      out[r] = std::move(*found.value);
+    else
+      why[r] = found.why;
   });
-  for (std::size_t r = 0; r < n; ++r)
+  for (std::size_t r = 0; r < rivals.size(); ++r)
     if (!why[r].empty())
       throw InputError(
           fmt::format("{} cannot be predicted under these loads: {}; lower them with --max-force and "
                       "--max-moment, or choose poses with --poses",
-                      diagnosis::name_of(rivals_[r].own()), why[r]));
-  if (work.progress) work.progress(0.3);
+                      diagnosis::name_of(rivals[r].own()), why[r]));
+  return out;
+}
 
-  const auto many = as_size(std::max(1, draws));
-  std::vector<std::optional<VectorX>> drawn(n * many);
+/// By rival, its predictions with `draws` values of its parameters, the fit itself first; nothing where one fails.
+std::vector<std::vector<std::optional<VectorX>>> drawn_predictions(const Prospect& prospect, const subject::Subject& s,
+                                                                   const std::vector<Rival>& rivals,
+                                                                   const std::vector<AtFit>& fits, std::size_t draws,
+                                                                   std::uint64_t seed, int threads) {
   std::vector<VectorX> lots;
   measurement::Random random(seed);
-  for (std::size_t i = 0; i < n * many; ++i) {
-    VectorX& lot = lots.emplace_back(rivals_[i / many].values.size());
-    for (double& x : lot) x = i % many == 0 ? 0 : std::clamp(random.normal(), -2.0, 2.0);
+  for (std::size_t i = 0; i < rivals.size() * draws; ++i) {
+    VectorX& lot = lots.emplace_back(rivals[i / draws].values.size());
+    for (double& x : lot) x = i % draws == 0 ? 0 : std::clamp(random.normal(), -2.0, 2.0);
   }
-  parallel::for_each_case(drawn.size(), 1, work.threads, [&](std::size_t i) {
-    const std::size_t r = i / many;
-    if (i % many == 0) {
-      drawn[i] = fitted[r];
+  std::vector<std::vector<std::optional<VectorX>>> out(rivals.size(), std::vector<std::optional<VectorX>>(draws));
+  parallel::for_each_case(lots.size(), 1, threads, [&](std::size_t i) {
+    const std::size_t r = i / draws;
+    std::optional<VectorX>& one = out[r][i % draws];
+    if (i % draws == 0) {
+      one = fits[r].predicted;
       return;
     }
-    const diagnosis::Hypothesis& h = rivals_[r].hypothesis;
-    const VectorX x = diagnosis::coordinates_of(h, rivals_[r].values) + root[r] * lots[i];
+    const diagnosis::Hypothesis& h = rivals[r].hypothesis;
+    const VectorX x = diagnosis::coordinates_of(h, rivals[r].values) + fits[r].root * lots[i];
     const VectorX values = diagnosis::values_at(h, x);
-    auto predicted = outcome_of([&] { return prospect_.predicted(subject_with(s, rivals_[r], values)); });
-    if (predicted && predicted->allFinite()) drawn[i] = std::move(*predicted.value);
+    auto predicted = outcome_of([&] { return prospect.predicted(subject_with(s, rivals[r], values)); });
+    if (predicted && predicted->allFinite()) one = std::move(*predicted.value);
   });
-  for (std::size_t b = 0; b < n; ++b) {
-    MatrixX targets(prospect_.numbers(), 0);
+  return out;
+}
+
+}  // namespace
+
+Rivalry::Rivalry(const Prospect& prospect, const subject::Subject& s, std::vector<Rival> rivals, int draws,
+                 std::uint64_t seed, const parallel::Work& work)
+    : prospect_(prospect), rivals_(std::move(rivals)) {
+  const std::vector<AtFit> fits = all_at_fit(prospect_, s, rivals_, work.threads);
+  if (work.progress) work.progress(0.3);
+  const auto drawn = drawn_predictions(prospect_, s, rivals_, fits, as_size(std::max(1, draws)), seed, work.threads);
+  for (std::size_t b = 0; b < rivals_.size(); ++b) {
+    beside_.push_back(fits[b].beside);
+    prior_.push_back(fits[b].prior);
+    std::vector<VectorX> columns;
     std::vector<Target> origin;
-    for (std::size_t i = 0; i < drawn.size(); ++i) {
-      if (i / many == b || !drawn[i]) continue;
-      targets.conservativeResize(Eigen::NoChange, targets.cols() + 1);
-      targets.rightCols<1>() = *drawn[i] - fitted[b];
-      origin.push_back({i / many, i % many});
-    }
+    for (std::size_t a = 0; a < rivals_.size(); ++a)
+      for (std::size_t k = 0; k < drawn[a].size(); ++k)
+        if (a != b && drawn[a][k]) {
+          columns.push_back(*drawn[a][k] - fits[b].predicted);
+          origin.push_back({a, k});
+        }
+    MatrixX targets(prospect_.numbers(), std::ssize(columns));
+    for (Eigen::Index i = 0; i < targets.cols(); ++i) targets.col(i) = nth(columns, i);
     targets_.push_back(prospect_.white(targets));
     origin_.push_back(std::move(origin));
   }

@@ -26,4 +26,11 @@ std::string validation_csv(const studies::Validation&);
 /// difference.
 std::string validation_table(const studies::Validation&);
 
+/// The price of each erratum of the paper, deflection as printed / corrected, as aligned text for a person: name,
+/// equations, range of the ratio for loads along x, y, z, what fails.
+std::string errata_table(const std::vector<studies::ErratumPrice>&);
+
+/// The same as a table: columns erratum, equations, ratio_x_min … ratio_z_max, failed_check, refused.
+std::string errata_csv(const std::vector<studies::ErratumPrice>&);
+
 }  // namespace deflect::report

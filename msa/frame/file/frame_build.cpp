@@ -56,7 +56,8 @@ class Rigidities {
   std::map<std::pair<std::size_t, std::size_t>, SectionProperties> known_;
 };
 
-int spring_count(const Model& m) { return static_cast<int>(m.springs.size()); }
+/// How many there are, which is the number of the next one.
+int count(const auto& list) { return static_cast<int>(list.size()); }
 
 std::array<ConnectionFreedom, 6> rigid_where(const Freedoms& rigid) {
   std::array<ConnectionFreedom, 6> out;
@@ -129,21 +130,21 @@ void add_members(FrameModel& out, const FrameDescription& f, const FrameDivision
   std::vector<Pending> pending;
   for (std::size_t i = 0; i < f.members.size(); ++i) {
     const auto& [name, member] = f.members[i];
-    out.first_element.push_back(static_cast<int>(out.model.beams.size()));
+    out.first_element.push_back(count(out.model.beams));
     add_member(out, name, member, rigidity(member), division.empty() ? equal_parts(member.elements) : division[i],
                springs, pending);
     const FrameMaterial& material = rigidity.material(member);
     out.mass_per_length.push_back(material.density.value_or(0) * rigidity.section(member).A);
     out.expansion.push_back(material.expansion.value_or(0));
   }
-  out.first_element.push_back(static_cast<int>(out.model.beams.size()));
+  out.first_element.push_back(count(out.model.beams));
   Model& m = out.model;
   out.ends.assign(f.members.size(), {-1, -1});
   for (const Pending& p : pending) {
-    const int first = spring_count(m);
-    out.ends[p.member][p.end] = static_cast<int>(m.connections.size());
+    const int first = count(m.springs);
+    out.ends[p.member][p.end] = count(m.connections);
     m.connect(p.a, p.b, nth(m.nodes, p.b).position, p.R, p.freedoms, p.name, p.place.empty() ? p.name : p.place);
-    if (!p.place.empty()) elastic_ends.emplace_back(p.place, std::pair{first, spring_count(m)});
+    if (!p.place.empty()) elastic_ends.emplace_back(p.place, std::pair{first, count(m.springs)});
   }
 }
 
@@ -152,7 +153,7 @@ Holding last_holding(const Model& m, std::size_t first_connection, int first_spr
   Holding out;
   out.connection = static_cast<int>(first_connection);
   out.first = first_spring;
-  out.last = spring_count(m);
+  out.last = count(m.springs);
   out.constraint = m.connections[first_connection].constraint;
   for (std::size_t c = first_connection; c < m.connections.size(); ++c)
     for (int i = 0; i < 6; ++i)
@@ -164,7 +165,7 @@ void add_supports(FrameModel& out, const FrameDescription& f, LawSprings& spring
   Model& m = out.model;
   for (const auto& [name, support] : f.supports) {
     const auto node = node_number(out.nodes, name);
-    const int first = spring_count(m);
+    const int first = count(m.springs);
     const std::size_t connection = m.connections.size();
     const std::string title = fmt::format("support {}", name);
     m.connect(-1, node, nth(m.nodes, node).position, Matrix3::Identity(), springs.freedoms(support, support.laws),
@@ -190,7 +191,7 @@ void add_constraints(FrameModel& out, const FrameDescription& f) {
     c.name = name;
     for (const ConstraintTerm& t : constraint.terms)
       c.form.push_back({6 * node_number(out.nodes, t.node) + t.freedom, t.factor * t.arm.value_or(1)});
-    out.constraint.push_back(static_cast<int>(out.model.constraints.size()));
+    out.constraint.push_back(count(out.model.constraints));
     out.model.constraints.push_back(std::move(c));
   }
 }
@@ -201,7 +202,7 @@ void add_springs(FrameModel& out, const FrameDescription& f, LawSprings& springs
     const auto node = node_number(out.nodes, spring.node);
     const int other = spring.to.empty() ? -1 : node_number(out.nodes, spring.to);
     const Vector3 p = nth(m.nodes, node).position;
-    const int first = spring_count(m);
+    const int first = count(m.springs);
     const std::size_t connection = m.connections.size();
     if (spring.coupled) {
       connect_coupled(m, other, node, p, *spring.coupled, name, name);

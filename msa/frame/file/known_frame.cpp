@@ -5,6 +5,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <utility>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -260,12 +261,12 @@ State KnownFrame::Impl::seen(const Near& n, VectorX u, const VectorX& forces, st
     add(unbalanced, beam, turned(beam.R_WM, f));
     const ElementLoad& load = out.seen.loads[b];
     if (load.strain != 0 || !load.q_M.isZero(0)) f -= equivalent_forces(beam.rigidity, beam.length, load);
-    if (in.beam == static_cast<int>(b)) f -= local_stiffness(beam.rigidity, beam.length) * in.free;
+    if (std::cmp_equal(in.beam, b)) f -= local_stiffness(beam.rigidity, beam.length) * in.free;
     out.seen.end_forces.push_back(f);
   }
   out.pulls.resize(std::ssize(own.springs));
   for (std::size_t s = 0; s < own.springs.size(); ++s) {
-    const double free = in.spring == static_cast<int>(s) ? 1 : 0, k = stiffness_of(own.springs[s]);
+    const double free = std::cmp_equal(in.spring, s) ? 1 : 0, k = stiffness_of(own.springs[s]);
     const double elongation = evaluate(own.springs[s].elongation, out.seen.u);
     add(unbalanced, own.springs[s].elongation, k * elongation);
     out.pulls(as_index(s)) = k * (elongation - free);

@@ -3,19 +3,20 @@
 #include <filesystem>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "validation/cli/command.h"
 #include "validation/cli/commands/effects.h"
 #include "validation/cli/devices.h"
-#include "validation/cli/made_by.h"
 #include "validation/cli/figures.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/found_effects.h"
 #include "validation/figures/plan_figures.h"
 #include "validation/plan/foresight.h"
 #include "validation/plan/next_readings.h"
 #include "validation/prediction/campaign.h"
-#include "validation/report/foresight_results.h"
-#include "validation/report/plan_results.h"
+#include "validation/report/plan/foresight_results.h"
+#include "validation/report/plan/plan_results.h"
 #include "validation/subject/simulate_frame.h"
 
 namespace deflect::cli {
@@ -77,12 +78,12 @@ const diagnosis::FoundTie& tie_of(const PlanArguments& a, const diagnosis::Found
                     "says --before CAMPAIGN",
                     a.diagnosis));
   const int group = whole("--group", a.group, 1, static_cast<double>(found.ties.size()));
-  return found.ties[static_cast<std::size_t>(group - 1)];
+  return found.ties[as_size(group - 1)];
 }
 
 std::uint64_t seed_of(const PlanArguments& a) { return static_cast<std::uint64_t>(whole("--seed", a.seed, 0, 1e9)); }
 std::size_t most_poses_of(const PlanArguments& a) {
-  return static_cast<std::size_t>(whole("--max-poses", a.most_poses, 0, most_readings));
+  return as_size(whole("--max-poses", a.most_poses, 0, most_readings));
 }
 
 /// The file, or a campaign of a built-in name under the largest force allowed (50 N where none is given).
@@ -150,7 +151,7 @@ void run(const PlanArguments& a) {
   plan::PlanOptions o;
   o.limits = limits_of(a, s);
   o.noise = {parse_sigma("--sigma", a.sigma_mm, "mm", 1e3), parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1)};
-  o.readings = static_cast<std::size_t>(whole("--readings", a.readings, 1, most_readings));
+  o.readings = as_size(whole("--readings", a.readings, 1, most_readings));
   o.most_poses = most_poses_of(a);
   o.seed = seed_of(a);
   if (!(a.probability > 0 && a.probability <= 1))

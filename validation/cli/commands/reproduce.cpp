@@ -11,7 +11,7 @@
 #include "validation/cli/command.h"
 #include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
-#include "validation/figures/child_process.h"
+#include "validation/parallel/child_process.h"
 #include "validation/result_files/provenance.h"
 
 namespace deflect::cli {
@@ -100,7 +100,7 @@ std::string run_again(const Provenance& p, const std::string& result, const fs::
   const fs::path written = scratch / "result.json";
   words.push_back("--quiet");
   words.push_back("--json=" + written.string());
-  const figures::ChildOutcome outcome = figures::run_child(words, "");
+  const parallel::ChildOutcome outcome = parallel::run_child(words, "");
   if (!outcome.succeeded())
     throw NumericalError(fmt::format("{}: 'deflect {}' now ends with exit code {}: {}", result,
                                      fmt::join(p.command, " "), WEXITSTATUS(outcome.status),

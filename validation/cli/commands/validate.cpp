@@ -14,7 +14,6 @@
 #include "validation/cli/talk.h"
 #include "validation/figures/errata_figure.h"
 #include "validation/figures/fig10.h"
-#include "validation/report/errata_table.h"
 #include "validation/report/validation_results.h"
 #include "validation/studies/errata_prices.h"
 #include "validation/studies/points_file.h"

@@ -1,4 +1,4 @@
-#include "validation/figures/child_process.h"
+#include "validation/parallel/child_process.h"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -15,7 +15,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 
-namespace deflect::figures {
+namespace deflect::parallel {
 namespace {
 
 /// A file in memory. The child reads and writes such files instead of pipes: nobody ever waits for a reader.
@@ -87,4 +87,4 @@ ChildOutcome run_child(std::vector<std::string> words, const std::string& input)
   return outcome;
 }
 
-}  // namespace deflect::figures
+}  // namespace deflect::parallel

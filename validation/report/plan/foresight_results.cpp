@@ -1,4 +1,4 @@
-#include "validation/report/foresight_results.h"
+#include "validation/report/plan/foresight_results.h"
 
 #include <fmt/format.h>
 

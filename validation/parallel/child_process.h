@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace deflect::figures {
+namespace deflect::parallel {
 
 struct ChildOutcome {
   int start_error = 0;  ///< errno where the program could not be started, else 0
@@ -18,4 +18,4 @@ struct ChildOutcome {
 /// for what it writes.
 ChildOutcome run_child(std::vector<std::string> words, const std::string& input);
 
-}  // namespace deflect::figures
+}  // namespace deflect::parallel

@@ -1,4 +1,4 @@
-#include "validation/report/plan_results.h"
+#include "validation/report/plan/plan_results.h"
 
 #include <fmt/format.h>
 
