@@ -1,11 +1,13 @@
 #include "msa/fields/yaml_tree.h"
-#include "msa/base/index.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
+#include <span>
+
+#include "msa/base/index.h"
 
 namespace deflect {
 
@@ -60,9 +62,12 @@ std::string joined(const std::string& path, std::string_view key) {
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  constexpr std::size_t most = 60;
   const std::string hint = nearest(word, known);
-  return fmt::format("{} (known: {})", hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint),
-                     known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")));
+  std::string all =
+      known.empty() ? "none" : fmt::format("{}", fmt::join(std::span(known).first(std::min(most, known.size())), ", "));
+  if (known.size() > most) all += fmt::format(", … and {} more", known.size() - most);
+  return fmt::format("{} (known: {})", hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), all);
 }
 
 }  // namespace deflect

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/fields/yaml_tree.h"
 #include "tests/support/devices.h"
 #include "tests/support/same_mechanism.h"
 
@@ -278,6 +279,15 @@ TEST(Edit, RefusalsForOneLeg) {
   expect_refusal({"leg.universal_joint.tz", "{law: linear, stiffness: 1 N/mm}"}, {"leg[4].universal_joint.tz.1"}, m);
   EXPECT_THROW(leg_parts(m, 0), InputError);
   EXPECT_THROW(leg_parts(m, 7), InputError);
+}
+
+TEST(Suggestion, NamesSixtyWordsAtMost) {
+  std::vector<std::string> known;
+  for (int i = 1; i <= 100; ++i) known.push_back("node_" + std::to_string(i));
+  const std::string text = suggestion("node_7x", known);
+  EXPECT_NE(text.find("did you mean 'node_7'?"), text.npos) << text;
+  EXPECT_NE(text.find("node_60, … and 40 more)"), text.npos) << text;
+  EXPECT_EQ(text.find("node_61"), text.npos) << text;
 }
 
 }  // namespace
