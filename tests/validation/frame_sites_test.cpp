@@ -74,7 +74,12 @@ TEST(FrameSites, ForcesAndRedundanciesByHand) {
   EXPECT_NEAR(site(sites, "thin").moves(0), -1.0 / 3, 1e-12);
   EXPECT_NEAR(site(sites, "tail").moves(1), 2, 1e-12);
   EXPECT_NEAR(site(sites, "tail").moves(0), 0, 1e-12);
-  EXPECT_NEAR(sites.response(0, 1) / (2.0 / 3 * k), 1, 1e-9);  // series of both, seen along the other's axis
+  // A rod that is longer presses itself and the other: both pass the force of the series of the two.
+  const auto index_of = [&](const std::string& name) { return &site(sites, name) - sites.all.data(); };
+  const double series = -2.0 / 3 * k;
+  EXPECT_NEAR(sites.response(index_of("thick"), index_of("thick")) / series, 1, 1e-9);
+  EXPECT_NEAR(sites.response(index_of("thick"), index_of("thin")) / series, 1, 1e-9);
+  EXPECT_NEAR(sites.response(index_of("thin"), index_of("thick")) / series, 1, 1e-9);
 }
 
 // Σ r = degree of static indeterminacy: members + reactions − 3 equations for each node, all ball joints.
