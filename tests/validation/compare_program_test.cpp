@@ -276,12 +276,14 @@ TEST_F(CompareProgram, AFileIsTheSameHoweverItWasSaved) {
     crlf += c == '\n' ? "\r\n" : std::string(1, c);
     semicolons += c == ',' ? ';' : c == '.' ? ',' : c;
   }
-  compared(plain);
-  const std::string result = contents(folder / "result.json");
-  for (const std::string& text : {crlf, semicolons, "\xEF\xBB\xBF" + plain, "\xEF\xBB\xBF" + semicolons}) {
-    compared(text);
-    EXPECT_EQ(contents(folder / "result.json"), result) << text.substr(0, 200);
-  }
+  const auto result_of = [&](const std::string& text) {
+    json result = compared(text);
+    result.erase("provenance");  // the hash of the file
+    return result;
+  };
+  const json result = result_of(plain);
+  for (const std::string& text : {crlf, semicolons, "\xEF\xBB\xBF" + plain, "\xEF\xBB\xBF" + semicolons})
+    EXPECT_EQ(result_of(text), result) << text.substr(0, 200);
 }
 
 TEST_F(CompareProgram, ANumberThatIsNoneWasNotMeasuredAndIsSaid) {

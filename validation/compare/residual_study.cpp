@@ -1,7 +1,10 @@
 #include "validation/compare/residual_study.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/parallel/cases.h"
@@ -44,6 +47,8 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
   s.standing = subject.stand(data);
   s.loads = measurement::loads_of(data);
   s.values = measurement::measured_values(data, s.standing->sensor_forms(data));
+  if (s.values.empty())
+    throw InputError(fmt::format("{}: no reading holds a number: fill in what was measured", data.origin));
   s.sequence = std::all_of(data.readings.begin(), data.readings.end(),
                            [](const measurement::Reading& r) { return r.sequence.has_value(); });
   s.predicted = s.standing->predict(data, {}, work);

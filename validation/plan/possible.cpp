@@ -226,7 +226,10 @@ Possible possible_readings(const subject::Subject& s, const Measurements& data, 
   } else {
     subject::LargestLoads most = subject::largest_loads(s, data);
     if (limits.force) most.force = *limits.force;
-    if (limits.moment) most.moment = *limits.moment;
+    if (limits.moment)
+      most.moment = *limits.moment;
+    else if (most.moment == 0)
+      most.moment = prediction::lever * most.force;
     loads = loads_of_machine(most, limits.forces_only, !sequences);
   }
   if (loads.empty())

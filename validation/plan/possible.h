@@ -19,7 +19,8 @@ enum class Where { workspace, as_measured };
 
 /// What the rig allows. Largest loads: of one component, absent: as in the data.
 struct Limits {
-  std::optional<double> force, moment;  ///< N, Nm
+  /// N, Nm; absent: the largest of the data, of moments, where the data have none, the force · prediction::lever.
+  std::optional<double> force, moment;
   bool forces_only = false;
   Where where = Where::workspace;                  ///< or only the poses of the data
   std::optional<measurement::Measurements> poses;  ///< or those of another file

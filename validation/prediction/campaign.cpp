@@ -15,7 +15,7 @@
 namespace deflect::prediction {
 namespace {
 
-constexpr double most_tilt_deg = 7.5, lever = 0.02;  // m
+constexpr double most_tilt_deg = 7.5;
 constexpr int most_tries = 1000;
 
 /// Six decimals, in mm and deg.

@@ -22,6 +22,9 @@ class Random;
 
 namespace deflect::prediction {
 
+/// Moments of plans over their forces, m.
+inline constexpr double lever = 0.02;
+
 inline constexpr const char* campaign_names[] = {"paper", "cycle", "rich", "random"};
 
 /// The plan of that name for the device's workspace (workspace.h): poses, loads and sequence. Random poses that the

@@ -210,7 +210,9 @@ Command plan_command() {
            {"--probability", "P", "expected of the right effect, at which the plan ends (default 0.95)",
             &a->probability},
            {"--max-force", "N", "largest force along an axis (default: that of the data)", &a->force},
-           {"--max-moment", "NMM", "largest moment about an axis (default: that of the data)", &a->moment},
+           {"--max-moment", "NMM",
+            "largest moment about an axis (default: that of the data; where they have none, the force times 20 mm)",
+            &a->moment},
            {"--forces-only", "", "the rig cannot apply moments", &a->forces_only},
            {"--poses", "workspace|measured|FILE",
             "where: poses of the data and others in the workspace (default), those of the data, or those of a "
