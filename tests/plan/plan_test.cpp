@@ -94,14 +94,16 @@ TEST(Plan, ModulusAndLoadGainAreToldApartByNoReading) {
 TEST(Plan, ActuatorAndPlatformTakeMoments) {
   const std::vector<Rival> rivals = {rival("actuator_compliance", values({4000})),
                                      rival("platform_flexibility", values({2500}))};
-  const Plan p = plan_of(rivals);
+  PlanOptions o;
+  o.limits.moment = 5;  // on a lever of 100 mm: a reading then tells about five times what one of 50 N does
+  const Plan p = plan_of(rivals, o);
   ASSERT_FALSE(p.readings.readings.empty());
   EXPECT_GE(p.probability, 0.9);
   std::size_t moments = 0;
   for (const measurement::Reading& r : p.readings.readings)
     if (!r.load.tail<3>().isZero(0)) ++moments;
   EXPECT_GT(2 * moments, p.readings.readings.size());
-  PlanOptions forces;
+  PlanOptions forces = o;
   forces.limits.forces_only = true;
   const Plan without = plan_of(rivals, forces);
   for (const measurement::Reading& r : without.readings.readings) EXPECT_TRUE(r.load.tail<3>().isZero(0));
@@ -120,21 +122,22 @@ TEST(Plan, WhereLoadsAreRememberedReadingsAreStepsOfSequences) {
   EXPECT_GT(p.as_planned.front().separation, 0);
 }
 
+// At the poses of the paper, which are not tilted, the normal of the platform is the axis of the guideways: there a
+// platform that yields is told from actuators that do by no reading.
 TEST(Plan, EveryReadingKeepsToTheLimits) {
   PlanOptions o;
   o.limits.force = 20;
-  o.limits.moment = 0.3;
+  o.limits.moment = 4;
   o.limits.where = Where::as_measured;
   o.readings = 8;
   o.most_poses = 2;
   o.probability = 1;
-  const Plan p =
-      plan_of({rival("actuator_compliance", values({4000})), rival("platform_flexibility", values({2500}))}, o);
+  const Plan p = plan_of({rival("actuator_compliance", values({4000})), rival("joint_compliance", values({4000}))}, o);
   EXPECT_EQ(p.readings.readings.size(), 8u);
   EXPECT_LE(p.readings.poses.size(), 2u);
   for (const measurement::Reading& r : p.readings.readings) {
     EXPECT_LE(r.load.head<3>().cwiseAbs().maxCoeff(), 20);
-    EXPECT_LE(r.load.tail<3>().cwiseAbs().maxCoeff(), 0.3);
+    EXPECT_LE(r.load.tail<3>().cwiseAbs().maxCoeff(), 4);
     const Vector6& at = p.readings.poses[r.pose].pose_mm_deg;
     EXPECT_TRUE(std::any_of(paper().poses.begin(), paper().poses.end(),
                             [&](const measurement::PoseGroup& g) { return g.pose_mm_deg == at; }));
