@@ -7,6 +7,7 @@
 #include "msa/base/number_words.h"
 #include "validation/json/json_text.h"
 #include "validation/report/text.h"
+#include "validation/report/theory_words.h"
 
 namespace deflect::report {
 namespace {
@@ -75,8 +76,7 @@ std::string predict_json(const fit::PredictedPlan& p) {
   j["kind"] = "prediction";
   j["device"] = p.device;
   j["plan"] = p.plan.origin;
-  j["theories"] = Json::array();
-  for (const theories::Theory* t : p.theories) j["theories"].push_back({{"name", t->name}, {"title", t->title}});
+  j["theories"] = json_theories(p.theories);
   j["fitted"] = p.fitted;
   j["noise_known"] = p.noise_known;
   j["numbers"] = Json::array();
