@@ -1,8 +1,8 @@
 // The least-squares problem of a fit: the whitened residual over the coordinates of a hypothesis's parameters.
 //
 // The coordinate of a parameter on a logarithmic scale is its logarithm, of another its value over half its range, so
-// that steps of size 1 are large. A parameter with a prior adds a row behind the measured numbers: its distance from the
-// prior's mean in standard deviations, of the logarithm (deviation over mean) on a logarithmic scale.
+// that steps of size 1 are large. A parameter with a prior adds a row behind the measured numbers: its distance from
+// the prior's mean in standard deviations, of the logarithm (deviation over mean) on a logarithmic scale.
 #pragma once
 
 #include <optional>
