@@ -25,22 +25,25 @@ std::string with_place(const std::string& page, const std::string& place) {
 std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p,
                                  const std::vector<EffectParameter>& parameters) {
   const std::string value = law.value(parameters, p);
-  std::string head = p.path;
-  if (law.side_by_side && p.hold == subject::Hold::elastic) head += ".beside";
   std::vector<EffectEdit> out;
-  if (law.field == std::string(".settled")) {  // in front of the freedom
-    for (const std::size_t i : p.freedoms)
-      out.push_back({law.action, {fmt::format("{}.settled.{}", head, subject::freedom_name(p, i))}, value});
-    return out;
-  }
+  const auto add = [&](const std::string& path, const std::vector<std::size_t>& freedoms) {
+    const std::string head = law.side_by_side && p.hold == subject::Hold::elastic ? path + ".beside" : path;
+    for (const std::size_t i : freedoms) {
+      const std::string freedom = subject::freedom_name(p, i);
+      out.push_back({law.action,
+                     {law.field == std::string(".settled") ? fmt::format("{}.settled.{}", head, freedom)
+                                                           : fmt::format("{}.{}{}", head, freedom, law.field)},
+                     value});
+    }
+    if (freedoms.empty()) out.push_back({law.action, {head + law.field}, value});
+  };
   if (law.field == std::string(".turned")) {
     for (std::size_t k = 0; k < p.turns.size(); ++k)
-      out.push_back({law.action, {fmt::format("{}.turned.{}", head, p.turns[k])}, "$" + parameters[k].name});
+      out.push_back({law.action, {fmt::format("{}.turned.{}", p.path, p.turns[k])}, "$" + parameters[k].name});
     return out;
   }
-  for (const std::size_t i : p.freedoms)
-    out.push_back({law.action, {fmt::format("{}.{}{}", head, subject::freedom_name(p, i), law.field)}, value});
-  if (p.freedoms.empty()) out.push_back({law.action, {head + law.field}, value});
+  add(p.path, p.freedoms);
+  for (const subject::OtherPart& other : p.others) add(other.path, other.freedoms);
   return out;
 }
 
@@ -92,7 +95,8 @@ std::vector<Effect> place_effects(const subject::Subject& subject, const std::ve
   for (const subject::Place& place : subject.places())
     for (const PlaceLaw& law : place_laws()) {
       if (!law.acts(place)) continue;
-      add(effect_of(law, place, several, false));
+      const bool said = place.whole_section && law.action == EffectEdit::Action::multiply;
+      if (!said) add(effect_of(law, place, several, false));
       if (several && law.of_one_leg && place.in_legs()) add(effect_of(law, place, several, true));
     }
   return out;

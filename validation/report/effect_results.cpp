@@ -93,6 +93,7 @@ Json place_json(const subject::Place& p, std::optional<int> leg) {
   Json out = {{"kind", nth(subject::place_kind_names, p.kind)}, {"part", p.part}, {"path", p.path}};
   if (const std::string motion = subject::motion_of(p); !motion.empty()) out["motion"] = motion;
   if (leg) out["leg"] = *leg;
+  for (const subject::OtherPart& other : p.others) out["also"].push_back(other.path);
   return out;
 }
 

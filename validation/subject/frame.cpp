@@ -8,6 +8,7 @@
 #include "msa/base/index.h"
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/frame_tolerances.h"
+#include "validation/subject/frame_groups.h"
 #include "validation/subject/frame_places.h"
 #include "validation/subject/frame_readings.h"
 #include "validation/subject/frame_sites.h"
@@ -134,7 +135,12 @@ class FrameSubject final : public Subject::Kind {
   }
   Geometry geometry() const override { return frame_->geometry; }
   double load_tolerance() const override { return frame_->tolerances.load; }
-  std::vector<Place> places() const override { return places_of(*frame_); }
+  std::vector<Place> places() const override {
+    std::vector<Place> all = places_of(*frame_);
+    const std::vector<Place> groups = groups_of(*frame_, all);
+    all.insert(all.end(), groups.begin(), groups.end());
+    return all;
+  }
   const FrameDescription* frame() const override { return frame_.get(); }
 
   measurement::Instruments instruments() const override {

@@ -65,11 +65,13 @@ void add_members(const FrameDescription& f, std::vector<Place>& out) {
     const frame::FrameMaterial* material = find(f.materials, member.material);
     out.back().expands = material && material->expansion;
     out.back().misfit_shows = bends;
+    out.back().make = member.section;
     if (member.truss) continue;
     for (const char* end : {"start", "end"}) {
       const frame::Freedoms& released = end[0] == 's' ? member.release_from : member.release_to;
       const frame::FreedomLaws& laws = end[0] == 's' ? member.start : member.end;
       Place p{PlaceKind::member_end, {}, fmt::format("{}.{}", name, end), fmt::format("members.{}.{}", name, end)};
+      p.make = member.section;
       const auto add = [&](std::vector<std::size_t> freedoms) {
         set_hold(p, laws, freedoms.front(), !released[freedoms.front()]);
         p.freedoms = std::move(freedoms);

@@ -13,6 +13,7 @@
 #include "validation/measurement/configure_all.h"
 #include "validation/prediction/as_built.h"
 #include "validation/prediction/instruments.h"
+#include "validation/subject/machine_groups.h"
 #include "validation/subject/machine_places.h"
 #include "validation/subject/machine_sites.h"
 #include "validation/subject/machine_transmissions.h"
@@ -281,7 +282,12 @@ class MachineSubject final : public Subject::Kind {
   }
   double load_tolerance() const override { return mechanism_->tolerances.load; }
   int legs() const override { return leg_count(*mechanism_); }
-  std::vector<Place> places() const override { return places_of(*mechanism_); }
+  std::vector<Place> places() const override {
+    std::vector<Place> all = places_of(*mechanism_);
+    const std::vector<Place> groups = groups_of(all);
+    all.insert(all.end(), groups.begin(), groups.end());
+    return all;
+  }
   const Mechanism* machine() const override { return mechanism_.get(); }
 
   std::shared_ptr<const Standing> stand(const measurement::Measurements& data, const Standing* known) const override {

@@ -41,10 +41,12 @@ class Places {
       if (const auto* joint = std::get_if<Joint>(&part)) {
         of_joint(*joint, here, id, after && std::holds_alternative<Member>(*after));
       } else if (std::holds_alternative<Member>(part)) {
+        const std::size_t first = all.size();
         all.push_back({PlaceKind::member, {}, id, here});
         if (!before || !std::holds_alternative<Joint>(*before)) end(PlaceKind::clamp, here + ".start", id + ".start");
         if (!after || !std::holds_alternative<Joint>(*after)) end(PlaceKind::member_end, here + ".end", id + ".end");
         if (in_line(parts, i)) all.push_back({PlaceKind::line, {}, id + ".start", here + ".start", {0}});
+        for (std::size_t k = first; k < all.size(); ++k) all[k].make = std::get<Member>(part).section;
       } else if (const auto* group = std::get_if<Parallel>(&part)) {
         branches(*group, here, id);
       }
@@ -69,6 +71,8 @@ class Places {
       p.hold = elastic ? Hold::elastic : freedoms[i] == Freedom::free ? Hold::free : Hold::rigid;
       p.one_stiffness = joint.laws[i].size() == 1 && std::holds_alternative<LinearLaw>(joint.laws[i].front());
       p.slides = slides;
+      p.make = joint.type;
+      if (!joint.at.empty()) p.axes = joint.axes;
       if (freedoms[i] == Freedom::actuated)
         p.kind = PlaceKind::drive;
       else if (freedoms[i] == Freedom::rigid && holds_member)
@@ -150,7 +154,7 @@ std::vector<Place> places_of(const Mechanism& m) {
     found.all[i].kind = i < tool ? PlaceKind::base : PlaceKind::tool;
   for (const auto& [name, sensor] : m.sensors) {
     found.all.push_back({PlaceKind::sensor, {}, name, "sensors." + name});
-    if (!sensor.free_zero)
+    if (!sensor.free_zero) 
       found.all.back().reads = sensor.rotation ? measurement::Quantity::angle : measurement::Quantity::length;
   }
   std::erase_if(found.all, [&](const Place& p) {

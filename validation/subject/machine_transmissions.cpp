@@ -141,10 +141,14 @@ class MachineTransmissions final : public Transmissions {
     std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
     for (std::size_t p = 0; p < data.poses.size(); ++p) {
       std::vector<Vector6> all;
-      const auto [first, last] = by_pose_[p].equal_range(place.part);
-      for (auto at = first; at != last; ++at)
-        for (const std::size_t i : place.freedoms)
-          if (at->second.there[i] && (!leg || at->second.leg == *leg)) all.push_back(at->second.g[i]);
+      const auto add = [&](const std::string& part, const std::vector<std::size_t>& freedoms) {
+        const auto [first, last] = by_pose_[p].equal_range(part);
+        for (auto at = first; at != last; ++at)
+          for (const std::size_t i : freedoms)
+            if (at->second.there[i] && (!leg || at->second.leg == *leg)) all.push_back(at->second.g[i]);
+      };
+      add(place.part, place.freedoms);
+      for (const OtherPart& other : place.others) add(other.part, other.freedoms);
       if (all.empty()) return std::nullopt;
       for (const std::size_t i : data.poses[p].readings) {
         const measurement::Reading& r = data.readings[i];

@@ -15,21 +15,23 @@ std::string freedom_name(const Place& p, std::size_t freedom) {
 
 std::string motion_of(const Place& p) {
   if (p.freedoms.empty()) return "";
+  for (const OtherPart& other : p.others)
+    if (other.freedoms != p.freedoms) return "";
   if (p.freedoms.size() > 1) return p.rotation() ? "tilt" : "across";
   return freedom_name(p, p.freedoms.front());
 }
 
 std::string id_of(const Place& p) {
-  const std::string motion = motion_of(p);
-  return motion.empty() ? p.part : p.part + "." + motion;
+  const std::string motion = motion_of(p), &part = p.others.empty() ? p.part : p.group;
+  return motion.empty() ? part : part + "." + motion;
 }
 
 std::string name_of(const Place& p) {
   const std::string motion = motion_of(p);
   if (!p.other.empty()) return fmt::format("sensor {}", p.part.substr(0, p.part.size() - p.other.size() - 1));
   const std::string where = p.kind == PlaceKind::sensor ? "sensor " : p.leg ? fmt::format("leg {} ", *p.leg) : "";
-  std::string part = p.part;  // "support.B" of a frame
-  if (p.base_axes) std::replace(part.begin(), part.end(), '.', ' ');
+  std::string part = p.others.empty() ? p.part : "group of " + p.group_words;
+  if (p.base_axes && p.others.empty()) std::replace(part.begin(), part.end(), '.', ' ');  // "support.B" of a frame
   return fmt::format("{}{}{}{}", where, part, motion.empty() ? "" : " ", motion);
 }
 

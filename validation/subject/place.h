@@ -1,6 +1,7 @@
 // A place of a subject: where an effect can act. It follows from what a part is, not from the part's name.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -32,6 +33,12 @@ inline constexpr std::array place_kind_names = {"drive", "joint",     "clamp", "
                                                 "line",  "platform",  "base",  "tool",   "support",
                                                 "load",  "load cell", "sensor"};
 
+/// A part of a group beside its first, as Place has it.
+struct OtherPart {
+  std::string part, path;
+  std::vector<std::size_t> freedoms;
+};
+
 /// How a freedom is held in the description.
 enum class Hold { rigid, elastic, free };
 
@@ -53,19 +60,32 @@ struct Place {
   bool expands = false;                             ///< of a member whose material expands with heat
   bool misfit_shows = false;                        ///< of a member: readings depend on its misfit
   bool may_stick = false;                           ///< of a sensor whose description says how far it sticks
+  std::string make = {};                            ///< type of a joint, section of a member or of one with this end
+  std::string axes = {};                            ///< of a joint at a named point: their name
+  /// Of a group (place_groups.h): its name in ids and in words, and the parts beside the one at `path`. Empty: one
+  /// part.
+  std::string group = {}, group_words = {};
+  std::vector<OtherPart> others = {};
+  /// Of a group of members: all that have their section, or all members, so that the section's dimensions or the
+  /// modulus say the same of their stiffness.
+  bool whole_section = false;
 
   bool rotation() const { return !freedoms.empty() && freedoms.front() >= 3; }
   /// Whether every leg has this place, so that an effect may also act in one leg only.
-  bool in_legs() const { return path.starts_with("leg."); }
+  bool in_legs() const {
+    return path.starts_with("leg.") &&
+           std::all_of(others.begin(), others.end(), [](const OtherPart& o) { return o.path.starts_with("leg."); });
+  }
 };
 
 /// "tx", "rz"; at a frame's node "ux".
 std::string freedom_name(const Place&, std::size_t freedom);
-/// "rz"; "across" for tx and ty together, "tilt" for rx and ry; "" for a part as a whole.
+/// "rz"; "across" for tx and ty together, "tilt" for rx and ry; "" for a part as a whole, and for a group whose parts
+/// have other freedoms each.
 std::string motion_of(const Place&);
-/// "elbow.rz": how the place is written in the ids of effects.
+/// "elbow.rz", "revolute_joints.tilt", "supports.uz": how the place is written in the ids of effects.
 std::string id_of(const Place&);
-/// "elbow rz", "leg 3 elbow rz", "sensor probe".
+/// "elbow rz", "leg 3 elbow rz", "sensor probe", "group of revolute joints tilt".
 std::string name_of(const Place&);
 
 }  // namespace deflect::subject
