@@ -146,7 +146,7 @@ bool conclude(Deformed& d, std::optional<LastStep> last) {
   } else {
     d.rotation_vector = l.J.bottomRows<3>() * l.x + turn;
   }
-  const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), geometry));
+  const Matrix6 axes = rotate_twist(d.whole.motion_before(legs_step(d.whole), geometry).R());
   d.leg_wrenches.clear();
   for (const VirtualChain& leg : legs_of(d.whole).branches) d.leg_wrenches.push_back(axes * leg.F);
   const Vector3 moment = d.whole.F.tail<3>();
@@ -326,7 +326,7 @@ Matrix6 compliance(const Deformed& d) {
 Matrix6 leg_stiffness(const Deformed& d, std::size_t leg) {
   VirtualChain whole = d.whole;
   whole.linearise(d.conditions);
-  const Matrix6 axes = rotate_twist(d.whole.axes_before(legs_step(d.whole), d.conditions.geometry));
+  const Matrix6 axes = rotate_twist(d.whole.motion_before(legs_step(d.whole), d.conditions.geometry).R());
   return axes * legs_of(whole).branches[leg].restraint().K * axes.transpose();
 }
 

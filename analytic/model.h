@@ -15,6 +15,7 @@
 #include "analytic/chain.h"
 #include "analytic/lines.h"
 #include "msa/mechanism/conditions.h"
+#include "msa/mechanism/inside.h"
 
 namespace deflect::analytic {
 
@@ -85,6 +86,14 @@ class AnalyticModel {
   /// without load leave free.
   Matrix6 compliance(const AnalyticSolution&) const;
 
+  /// By place, in the solution's state relative to the assembled one: [δ; θ] of a body, δ at T, or in its first
+  /// component the force of a drive (inside.h). By virtual work: the wrench F on the leg at T loads a freedom that
+  /// moves T by the twist t with tᵀF; a body moves by what the parts before it yield under F and by the motions of
+  /// passive joints, which follow from the motion of the platform; one that moves neither the platform nor itself by
+  /// more than others stays (the least motions are taken). Where laws jump in the deformed shape, of linear geometry.
+  /// Throws NumericalError in second order.
+  std::vector<Vector6> inside(const std::vector<Inside>&, const AnalyticSolution&) const;
+
   /// Strain energy by part in the solution's state, J, largest first; of preloaded springs see Spring.
   std::vector<std::pair<std::string, double>> energies(const AnalyticSolution&) const;
 
@@ -95,6 +104,7 @@ class AnalyticModel {
   AnalyticSolution deformed_equilibrium(const Vector6& F, Geometry) const;
   AnalyticSolution solve_in_part(const Vector6& F, const Conditions&) const;
   Flexibility flexibility(const AnalyticSolution&) const;
+  Vector6 inside_linear(const Inside&, const AnalyticSolution&) const;
 
   Configuration configuration_;
   AsPrinted as_printed_;

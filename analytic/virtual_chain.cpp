@@ -321,11 +321,11 @@ Linearised VirtualChain::linearise(const ShapeConditions& c) {
   return out;
 }
 
-Matrix3 VirtualChain::axes_before(std::size_t step, Geometry geometry) const {
+RigidMotion VirtualChain::motion_before(std::size_t step, Geometry geometry) const {
   RigidMotion motion;
   if (geometry == Geometry::finite)
     for (std::size_t i = 0; i < step; ++i) motion = motion * motion_of(steps[i]);
-  return motion.R();
+  return motion;
 }
 
 void VirtualChain::add_energies(const ShapeConditions& c, std::map<std::string, double>& sums) const {

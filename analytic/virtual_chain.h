@@ -157,8 +157,8 @@ struct VirtualChain {
   const Restraint& restraint() const { return restraint_; }  ///< of the last restrain()
   /// Adds the strain energy of each part in an equilibrium, J.
   void add_energies(const ShapeConditions&, std::map<std::string, double>&) const;
-  /// Axes of the start, rotated by the steps before `step`.
-  Matrix3 axes_before(std::size_t step, Geometry) const;
+  /// How the steps before `step` move what stands behind them; in second order nothing moves.
+  RigidMotion motion_before(std::size_t step, Geometry) const;
 
  private:
   Linearised held_;

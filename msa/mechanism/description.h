@@ -226,14 +226,16 @@ struct InstrumentErrors {
   double zero = 0;                  ///< where it is known: `offset` in files
 };
 
-/// A named instrument beside the one at T: it reads a displacement of a point of a body, in one direction, or a
-/// rotation of the body about one axis.
+/// A named instrument beside the one at T. It reads a displacement of a point of a body, in one direction, or a
+/// rotation of the body about one axis; or the force of a drive (inside.h).
 struct PointSensor : InstrumentErrors {
-  std::string body = "platform";    ///< "platform", or "tool": beyond the tool joint
-  Vector3 point = Vector3::Zero();  ///< m, from T, in platform axes; moves with the body
+  std::string body = "platform";    ///< "platform", "tool": beyond the tool joint, or a part in a leg: "leg.2.link"
+  Vector3 point = Vector3::Zero();  ///< m, from T, in platform axes; of a part in a leg from where the part ends, in
+                                    ///< the part's axes; moves with the body
+  std::string drive = {};           ///< whose force it reads: "leg.2.actuator"; empty: it reads a displacement
   std::string direction;            ///< as in the file: "uz", "rx", "[0, 0, 1]"
   Vector3 axis = Vector3::UnitZ();  ///< that direction: a unit vector in base axes
-  bool rotation = false;            ///< it reads a rotation about the axis
+  bool rotation = false;            ///< it reads a rotation about the axis, or the moment of a drive
 };
 
 /// A named point at which loads act, beside T.

@@ -12,6 +12,7 @@
 #include "msa/fields/file_kind.h"
 #include "msa/mechanism/chain_kinematics.h"
 #include "msa/mechanism/fields.h"
+#include "msa/mechanism/inside.h"
 #include "msa/mechanism/mechanism_tree.h"
 #include "msa/mechanism/tolerances.h"
 
@@ -51,6 +52,23 @@ void check_tolerances(const Mechanism& m, const YamlNode& tree, const std::strin
   }
 }
 
+/// Sensors in legs name parts, which only the whole description knows.
+void complete_sensors(Mechanism& m, const YamlNode& tree, const std::string& origin) {
+  for (auto& [name, sensor] : m.sensors) {
+    const YamlNode* at = tree.child("sensors") ? tree.child("sensors")->child(name) : nullptr;
+    const int line = at ? at->line : 0;
+    told_at<InputError>(
+        [&] {
+          return fmt::format("{}{}: sensors.{}.{}: ", origin, line > 0 ? fmt::format(":{}", line) : "", name,
+                             sensor.drive.empty() ? "body" : "drive");
+        },
+        [&] {
+          complete_sensor(m, sensor);
+          return true;
+        });
+  }
+}
+
 }  // namespace
 
 DependentMechanism mechanism_of(const YamlNode& tree, const std::string& origin) {
@@ -61,6 +79,7 @@ DependentMechanism mechanism_of(const YamlNode& tree, const std::string& origin)
   m.ours = reader.ours();
   varied_legs(m, tree.child("variations"), origin);  // throws where a variation does not fit
   check_controller(m, tree, origin);
+  complete_sensors(m, tree, origin);
   return {std::move(m), reader.depends()};
 }
 

@@ -146,10 +146,27 @@ void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<s
 }
 
 void describe(FieldVisitor& v, PointSensor& s) {
-  v.word("body", s.body, {"body", bodies, bodies.front()}, "what the sensor reads: platform, or tool beyond its joint");
-  v.vector3("point", s.point, Dimension::length, "the point, from the tool point, in platform axes");
-  describe_direction(v, s.direction, s.axis, s.rotation);
-  describe_errors(v, s, s.rotation ? Dimension::angle : Dimension::length);
+  v.text("drive", s.drive, Need::optional, "drive whose force the sensor reads, as in 'leg.2.actuator'");
+  std::string force = s.drive.empty() ? "false" : "true";
+  v.word("force", force, {"force", {"false", "true"}, "false"}, "with a drive: that its force or moment is read");
+  v.require((force == "true") == !s.drive.empty(), "force",
+            s.drive.empty() ? "is that of a drive: name it, as in 'drive: leg.2.actuator'"
+                            : "must be true: it is what a sensor reads of a drive");
+  if (s.drive.empty()) {
+    std::string body = s.body == bodies.front() ? "" : s.body;
+    v.text("body", body, Need::optional,
+           "what the sensor reads: platform (where absent), tool beyond its joint, or a part in a leg: 'leg.2.link'");
+    s.body = body.empty() ? bodies.front() : body;
+    v.require(s.body.starts_with("leg.") || std::find(bodies.begin(), bodies.end(), s.body) != bodies.end(), "body",
+              fmt::format("must be platform, tool, or a part in a leg, as in 'leg.2.link': there is no '{}'{}", s.body,
+                          suggestion(s.body, bodies)));
+    v.vector3("point", s.point, Dimension::length,
+              "the point, from the tool point, in platform axes; in a leg from the part's end, in its axes");
+    describe_direction(v, s.direction, s.axis, s.rotation);
+    describe_errors(v, s, s.rotation ? Dimension::angle : Dimension::length);
+  } else {
+    describe_errors(v, s, s.rotation ? Dimension::moment : Dimension::force);
+  }
 }
 
 void describe(FieldVisitor& v, LoadPoint& p) {

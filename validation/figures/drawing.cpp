@@ -17,6 +17,7 @@
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/place.h"
 #include "msa/mechanism/stand.h"
+#include "validation/measurement/configure_all.h"
 
 namespace deflect::figures {
 namespace {
@@ -139,9 +140,10 @@ MachineDrawing standing(const Mechanism& m, const Configuration& c) {
   for (const auto& [a, b] : built.arms) d.lines.push_back({a, b, -1});
   d.frames = {{"base", "", Vector3::Zero(), Matrix3::Identity()}, {"tool", "", c.pose.p_WT, c.pose.R_WT}};
   const auto at = [&](const Vector3& point) { return Vector3(c.pose.p_WT + c.pose.R_WT * point); };
-  for (const auto& [name, s] : m.sensors)
-    d.instruments.push_back(
-        {name, fmt::format("{} on the {}", s.rotation ? "rotation sensor" : "sensor", s.body), at(s.point), s.axis});
+  for (const auto& [name, s] : m.sensors) {
+    const measurement::SensorPlace place = measurement::sensor_place(m, s, c);
+    d.instruments.push_back({name, place.what, place.p_W, place.axis});
+  }
   for (const auto& [name, p] : m.loads) d.instruments.push_back({name, "load on the " + p.body, at(p.point), {}});
   set_motions(d, built.model, d.points.size());
   return d;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "msa/mechanism/inside.h"
 #include "msa/mechanism/stand.h"
 #include "validation/measurement/measurement_columns.h"
 
@@ -42,11 +44,26 @@ std::vector<Configuration> configure_all(const Mechanism& mechanism, const Measu
   return configurations;
 }
 
+Quantity quantity_of(const PointSensor& s) {
+  if (!s.drive.empty()) return s.rotation ? Quantity::moment : Quantity::force;
+  return s.rotation ? Quantity::angle : Quantity::length;
+}
+
+SensorPlace sensor_place(const Mechanism& mechanism, const PointSensor& s, const Configuration& c) {
+  const std::optional<NamedPart> part = inside_part(mechanism, s);
+  const std::string body = part ? s.body : "the " + s.body;
+  const std::string what = !s.drive.empty() ? fmt::format("{} of {}", s.rotation ? "moment" : "force", s.drive)
+                                            : fmt::format("{} on {}", s.rotation ? "rotation sensor" : "sensor", body);
+  if (!part) return {c.pose.p_WT + c.pose.R_WT * s.point, s.axis, what};
+  const PartEnd end = end_of(placed(*part, c), c);
+  if (part->freedom) return {end.p_W, end.R_W.col(as_index(*part->freedom % 3)), what};
+  return {end.p_W + end.R_W * s.point, s.axis, what};
+}
+
 Instruments instruments_of(const Mechanism& mechanism) {
   Instruments out;
   for (const auto& [name, s] : mechanism.sensors)
-    out.sensors.push_back(
-        {name, s.rotation ? Quantity::angle : Quantity::length, s.sigma > 0 ? std::optional(s.sigma) : std::nullopt});
+    out.sensors.push_back({name, quantity_of(s), s.sigma > 0 ? std::optional(s.sigma) : std::nullopt});
   for (const auto& [name, point] : mechanism.loads) out.load_points.push_back(name);
   return out;
 }

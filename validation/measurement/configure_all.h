@@ -16,6 +16,17 @@ namespace deflect::measurement {
 std::vector<Configuration> configure_all(const Mechanism&, const Measurements&,
                                          std::span<const Configuration> known = {});
 
+/// What a sensor reads.
+Quantity quantity_of(const PointSensor&);
+
+/// Where a sensor is, what it reads along which axis (base axes), and in words: "sensor on the platform", "force of
+/// leg.2.actuator".
+struct SensorPlace {
+  Vector3 p_W = Vector3::Zero(), axis = Vector3::Zero();
+  std::string what;
+};
+SensorPlace sensor_place(const Mechanism&, const PointSensor&, const Configuration&);
+
 /// The named sensors and points of load of a device.
 Instruments instruments_of(const Mechanism&);
 

@@ -58,8 +58,16 @@ bool has_friction(const PlacedJoint& joint) {
 Instruments::Instruments(const Mechanism& m, const measurement::Measurements& data) {
   for (const measurement::SensorChannel& s : data.instruments.sensors)
     sensors_.push_back(named(m.sensors, s.name, "sensor", m, data));
+  for (const PointSensor* s : sensors_) parts_.push_back(inside_part(m, *s));
   for (const std::string& name : data.instruments.load_points)
     points_.push_back(named(m.loads, name, "point of load", m, data));
+}
+
+std::vector<Inside> Instruments::inside(const Configuration& c) const {
+  std::vector<Inside> out;
+  for (const std::optional<NamedPart>& part : parts_)
+    if (part) out.push_back(placed(*part, c));
+  return out;
 }
 
 bool Instruments::on_platform() const {
@@ -70,6 +78,7 @@ bool Instruments::on_platform() const {
 Vector6 Instruments::form(const Configuration& c, std::size_t k) const {
   const PointSensor& s = *sensors_.at(k);
   Vector6 out = Vector6::Zero();
+  if (parts_[k]) return out;
   if (s.rotation) {
     out.tail<3>() = s.axis;
   } else {
@@ -81,15 +90,24 @@ Vector6 Instruments::form(const Configuration& c, std::size_t k) const {
 
 VectorX Instruments::readings(const Configuration& c, const Motion& motion, Geometry geometry) const {
   VectorX out(std::ssize(sensors_));
+  std::size_t next = 0;
   for (std::size_t k = 0; k < sensors_.size(); ++k) {
     const PointSensor& s = *sensors_[k];
-    const Vector6& d = on_the_platform(s.body) ? motion.platform : motion.tool;
-    double reading = form(c, k).dot(d);
-    if (geometry == Geometry::finite && !s.rotation) {
-      const Vector3 arm = c.pose.R_WT * s.point, theta = d.tail<3>();
-      reading += s.gain * s.axis.dot(rotation_from_vector(theta) * arm - arm - theta.cross(arm));
+    if (!s.drive.empty()) {
+      out(as_index(k)) = s.gain * motion.inside.at(next++)(0) + s.zero;
+      continue;
     }
-    out(as_index(k)) = reading + s.zero;
+    const Vector6& d = parts_[k] ? motion.inside.at(next++) : on_the_platform(s.body) ? motion.platform : motion.tool;
+    const Vector3 theta = d.tail<3>();
+    Vector3 arm = c.pose.R_WT * s.point;
+    if (parts_[k]) {
+      const PartEnd end = end_of(placed(*parts_[k], c), c);
+      arm = end.p_W + end.R_W * s.point - c.pose.p_WT;
+    }
+    double reading = s.rotation ? s.axis.dot(theta) : s.axis.dot(d.head<3>() + theta.cross(arm));
+    if (geometry == Geometry::finite && !s.rotation)
+      reading += s.axis.dot(rotation_from_vector(theta) * arm - arm - theta.cross(arm));
+    out(as_index(k)) = s.gain * reading + s.zero;
   }
   return out;
 }
@@ -107,7 +125,10 @@ Vector6 Instruments::turned(const Configuration& c, const measurement::Reading& 
 
 LoadedMachine::LoadedMachine(const theories::Theory& theory, const theories::TheoryOptions& o, const Configuration& c,
                              const Instruments& instruments, const Matrix6& cell)
-    : at_(c), instruments_(instruments), cell_(cell), machine_(theory.at(c, o)) {
+    : at_(c), instruments_(instruments), cell_(cell) {
+  theories::TheoryOptions asked = o;
+  asked.inside = instruments.inside(c);
+  machine_ = theory.at(c, asked);
   if (c.tool.rigid() || !instruments.on_platform()) return;
   if (has_friction(c.tool))
     throw InputError(
@@ -115,7 +136,7 @@ LoadedMachine::LoadedMachine(const theories::Theory& theory, const theories::The
                     "'body: tool', or leave the friction out",
                     o.device));
   rigid_tool_ = with_rigid_tool(c);
-  if (yields(*rigid_tool_)) locked_ = theory.at(*rigid_tool_, o);
+  if (yields(*rigid_tool_)) locked_ = theory.at(*rigid_tool_, asked);
 }
 
 /// In the deformed shape loads at points move with the machine, whose motion they cause: the moments are found anew
@@ -139,12 +160,14 @@ theories::Prediction LoadedMachine::predict(theories::TheoryAt& machine, const m
 Motion LoadedMachine::move(const measurement::Reading& r, const Conditions& conditions) {
   theories::Prediction moved{Vector6::Zero(), true};  // a platform that is held rigidly
   if (locked_ || !rigid_tool_) moved = predict(locked_ ? *locked_ : *machine_, r, conditions);
-  Motion out{moved.displacement, moved.displacement, moved.converged, std::move(moved.slips), std::move(moved.reason)};
+  Motion out{moved.displacement,     moved.displacement,      moved.converged,
+             std::move(moved.slips), std::move(moved.reason), std::move(moved.inside)};
   if (!rigid_tool_) return out;
   Conditions undeformed = conditions;
   if (instruments_.any_load()) undeformed = Conditions(Geometry::linear);
   const Vector6 F = cell_ * (r.load - r.on_platform);
   const theories::Prediction whole = machine_->predict(F, undeformed);
+  if (!locked_ && !whole.inside.empty()) out.inside = machine_->predict(cell_ * r.load, undeformed).inside;
   const theories::Prediction rigid =
       locked_ ? locked_->predict(F, undeformed) : theories::Prediction{Vector6::Zero(), true};
   out.tool += whole.displacement - rigid.displacement;

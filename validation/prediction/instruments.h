@@ -7,6 +7,9 @@
 // Where the tool joint yields, T moves by more than the platform. The platform's motion is then that of the machine
 // with a rigid tool joint under all loads; the tool's own deflection is that under the load at T alone, where there are
 // loads on the platform on the undeformed machine.
+//
+// A sensor inside a leg reads gain · f + zero of the force of a drive, or n · (δ + (R(θ) − 1) r) of a point of a body
+// there, as the theory finds them; nothing of it follows from the motion of T.
 #pragma once
 
 #include <memory>
@@ -14,6 +17,7 @@
 #include <vector>
 
 #include "msa/mechanism/configuration.h"
+#include "msa/mechanism/inside.h"
 #include "validation/measurement/measurements.h"
 #include "validation/theories/theory.h"
 
@@ -24,7 +28,8 @@ struct Motion {
   Vector6 tool = Vector6::Zero(), platform = Vector6::Zero();
   bool converged = true;
   std::vector<double> slips = {};
-  std::string reason = {};  ///< why it did not converge, where known
+  std::string reason = {};           ///< why it did not converge, where known
+  std::vector<Vector6> inside = {};  ///< by Instruments::inside()
 };
 
 /// The sensors and points of load that a file has columns for, in its order.
@@ -37,7 +42,10 @@ class Instruments {
   /// Whether a sensor or a load is on the platform, rather than beyond the tool joint.
   bool on_platform() const;
 
-  /// First-order reading of a displacement of T by sensor k, gain included.
+  /// What its sensors read inside legs, in their order (inside.h).
+  std::vector<Inside> inside(const Configuration&) const;
+
+  /// First-order reading of a displacement of T by sensor k, gain included. 0 of a sensor inside a leg.
   Vector6 form(const Configuration&, std::size_t k) const;
   /// What the sensors read, in the deformed shape or to the first order.
   VectorX readings(const Configuration&, const Motion&, Geometry) const;
@@ -46,6 +54,7 @@ class Instruments {
 
  private:
   std::vector<const PointSensor*> sensors_;
+  std::vector<std::optional<NamedPart>> parts_;  // that they read, inside legs
   std::vector<const LoadPoint*> points_;
 };
 

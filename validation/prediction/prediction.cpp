@@ -131,13 +131,25 @@ Vector6 largest_load(const measurement::PoseGroup& pose, const measurement::Meas
   return cell * largest;
 }
 
-/// A load that came and went: the slips that it leaves, and the displacement that these alone leave.
-Vector6 after(const Vector6& F, theories::TheoryAt& machine, Conditions& conditions) {
-  const Vector6 relaxed = machine.predict(Vector6::Zero(), conditions).displacement;  // weight's
+/// A load that came and went: the slips that it leaves, and what these alone leave of displacements and of what is read
+/// inside.
+Motion after(const Vector6& F, theories::TheoryAt& machine, Conditions& conditions) {
+  const theories::Prediction relaxed = machine.predict(Vector6::Zero(), conditions);  // weight's
   conditions.slips = machine.predict(F, conditions).slips;
-  const theories::Prediction rest = machine.predict(Vector6::Zero(), conditions);
+  theories::Prediction rest = machine.predict(Vector6::Zero(), conditions);
   conditions.slips = rest.slips;
-  return rest.displacement - relaxed;
+  Motion out;
+  out.tool = out.platform = rest.displacement - relaxed.displacement;
+  for (std::size_t k = 0; k < rest.inside.size() && k < relaxed.inside.size(); ++k)
+    out.inside.emplace_back(rest.inside[k] - relaxed.inside[k]);
+  return out;
+}
+
+Motion without(const Motion& r, const Motion& unloaded) {
+  Motion out{r.tool - unloaded.tool, r.platform - unloaded.platform};
+  out.inside = r.inside;
+  for (std::size_t k = 0; k < unloaded.inside.size(); ++k) out.inside[k] -= unloaded.inside[k];
+  return out;
 }
 
 /// Tells the theory where it will be asked many times.
@@ -206,7 +218,7 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
     LoadedMachine machine(*o.theory, options, machines[p], instruments, cell);
     Conditions conditions(o.geometry.value_or(m.geometry));
     if (conditions.geometry == Geometry::linear) expect(machine.theory(), data.poses[p], data);
-    Vector6 unloaded = Vector6::Zero();
+    Motion unloaded;
     if (before != 0 && !beside)
       unloaded = after(before * largest_load(data.poses[p], data, cell), machine.theory(), conditions);
     if (beside) {
@@ -233,7 +245,7 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
       require_equilibrium(r, *o.theory, data, reading);
       if (beside) carried.leave_with(r.platform, r.slips);
       conditions.slips = r.slips;
-      const Motion seen{r.tool - unloaded, r.platform - unloaded};
+      const Motion seen = without(r, unloaded);
       out[i].resize(6 + std::ssize(data.instruments.sensors));
       out[i] << m.sensor.zero + sensor * seen.tool, instruments.readings(machines[p], seen, conditions.geometry);
     }

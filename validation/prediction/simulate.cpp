@@ -100,9 +100,11 @@ measurement::Measurements simulate(const Mechanism& m, measurement::Measurements
       return sigma > 0 ? rounded(value, sigma, measurement::row_of(quantity).per_SI) : value;
     };
     for (std::size_t k = 0; k < sensors.size(); ++k) {
-      const bool rotation = sensors[k].quantity == measurement::Quantity::angle;
-      const double otherwise = rotation ? o.sigma_th.value_or(0) : o.sigma_u;
-      r.sensors.push_back(read(exact[i](as_index(6 + k)), sensors[k].sigma.value_or(otherwise), sensors[k].quantity));
+      const measurement::Quantity reads = sensors[k].quantity;
+      const double otherwise = reads == measurement::Quantity::length  ? o.sigma_u
+                               : reads == measurement::Quantity::angle ? o.sigma_th.value_or(0)
+                                                                       : 0;
+      r.sensors.push_back(read(exact[i](as_index(6 + k)), sensors[k].sigma.value_or(otherwise), reads));
     }
     for (Eigen::Index k = 0; k < 6 && sensors.empty(); ++k)
       if (k < 3 || o.sigma_th)

@@ -6,6 +6,7 @@
 
 #include "msa/base/index.h"
 #include "validation/figures/drawing.h"
+#include "validation/measurement/configure_all.h"
 #include "validation/report/text.h"
 #include "validation/scene/scene_numbers.h"
 #include "validation/theories/msa_theory.h"
@@ -171,14 +172,16 @@ class Drawing {
 /// Named sensors and points of load: where they are beside T, and along which axis a sensor reads.
 Json instruments_json(const Mechanism& m, const Configuration& c) {
   Json out = Json::array();
-  const auto add = [&](const std::string& name, const char* kind, const Vector3& point) -> Json& {
-    out.push_back({{"name", name}, {"kind", kind}, {"arm_mm", scene_position(c.pose.R_WT * point)}});
+  const auto add = [&](const std::string& name, const char* kind, const Vector3& arm) -> Json& {
+    out.push_back({{"name", name}, {"kind", kind}, {"arm_mm", scene_position(arm)}});
     return out.back();
   };
-  for (const auto& [name, sensor] : m.sensors)
-    add(name, sensor.rotation ? "rotation sensor" : "sensor", sensor.point)["axis"] = {sensor.axis.x(), sensor.axis.y(),
-                                                                                       sensor.axis.z()};
-  for (const auto& [name, load] : m.loads) add(name, "point of load", load.point);
+  for (const auto& [name, sensor] : m.sensors) {
+    const measurement::SensorPlace place = measurement::sensor_place(m, sensor, c);
+    const char* kind = !sensor.drive.empty() ? "force of a drive" : sensor.rotation ? "rotation sensor" : "sensor";
+    add(name, kind, place.p_W - c.pose.p_WT)["axis"] = {place.axis.x(), place.axis.y(), place.axis.z()};
+  }
+  for (const auto& [name, load] : m.loads) add(name, "point of load", c.pose.R_WT * load.point);
   return out;
 }
 

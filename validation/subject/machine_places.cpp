@@ -10,6 +10,7 @@
 #include "msa/mechanism/law.h"
 #include "msa/mechanism/mechanism_tree.h"
 #include "msa/mechanism/place.h"
+#include "validation/measurement/configure_all.h"
 
 namespace deflect::subject {
 namespace {
@@ -154,8 +155,7 @@ std::vector<Place> places_of(const Mechanism& m) {
     found.all[i].kind = i < tool ? PlaceKind::base : PlaceKind::tool;
   for (const auto& [name, sensor] : m.sensors) {
     found.all.push_back({PlaceKind::sensor, {}, name, "sensors." + name});
-    if (!sensor.free_zero) 
-      found.all.back().reads = sensor.rotation ? measurement::Quantity::angle : measurement::Quantity::length;
+    if (!sensor.free_zero) found.all.back().reads = measurement::quantity_of(sensor);
   }
   std::erase_if(found.all, [&](const Place& p) {
     return std::find(m.trusted.begin(), m.trusted.end(), nth(place_kind_names, p.kind)) != m.trusted.end();

@@ -145,25 +145,58 @@ double AnalyticAt::energy_at_rest() {
 }
 
 void AnalyticAt::expect_many(bool warmer_or_colder) {
-  if (sweep() ? !sweep()->linear() : !model().linear() || model().jumps()) return;
+  const bool by_sweep = options_.inside.empty() && sweep();
+  if (by_sweep ? !sweep()->linear() : !model().linear() || model().jumps()) return;
   Affine affine;
   const auto at = [&](const Vector6& F, double warmer) {
     Conditions conditions;
     conditions.warmer = warmer;
-    const Prediction p = predict(F, conditions);
+    Prediction p = predict(F, conditions);
     affine.converged = affine.converged && p.converged;
-    return p.displacement;
+    return p;
   };
-  affine.rest = at(Vector6::Zero(), 0);
-  for (Eigen::Index i = 0; i < 6; ++i) affine.C.col(i) = at(Vector6::Unit(i), 0) - affine.rest;
-  if (warmer_or_colder) affine.per_kelvin = at(Vector6::Zero(), 1) - affine.rest;
-  affine_ = affine;
+  const Prediction rest = at(Vector6::Zero(), 0);
+  const std::size_t inside = rest.inside.size();
+  affine.rest = rest.displacement;
+  affine.inside_rest = rest.inside;
+  affine.inside_C.resize(inside);
+  affine.inside_per_kelvin.assign(inside, Vector6::Zero());
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const Prediction unit = at(Vector6::Unit(i), 0);
+    affine.C.col(i) = unit.displacement - affine.rest;
+    for (std::size_t k = 0; k < inside; ++k) affine.inside_C[k].col(i) = unit.inside[k] - rest.inside[k];
+  }
+  if (warmer_or_colder) {
+    const Prediction warm = at(Vector6::Zero(), 1);
+    affine.per_kelvin = warm.displacement - affine.rest;
+    for (std::size_t k = 0; k < inside; ++k) affine.inside_per_kelvin[k] = warm.inside[k] - rest.inside[k];
+  }
+  affine_ = std::move(affine);
+}
+
+std::vector<Vector6> AnalyticAt::inside_affine(const Vector6& F, double warmer) const {
+  std::vector<Vector6> out;
+  for (std::size_t k = 0; k < affine_->inside_rest.size(); ++k)
+    out.emplace_back(affine_->inside_rest[k] + affine_->inside_C[k] * F + warmer * affine_->inside_per_kelvin[k]);
+  return out;
 }
 
 Prediction AnalyticAt::predict(const Vector6& F, const Conditions& conditions) {
   if (conditions.geometry == Geometry::linear) {
-    if (affine_) return {affine_->rest + affine_->C * F + conditions.warmer * affine_->per_kelvin, affine_->converged};
-    if (analytic::PoseSweep* s = sweep(); s && s->solve(F, conditions.warmer)) return {s->displacement(), true};
+    if (affine_)
+      return {affine_->rest + affine_->C * F + conditions.warmer * affine_->per_kelvin,
+              affine_->converged,
+              {},
+              "",
+              inside_affine(F, conditions.warmer)};
+    if (options_.inside.empty())
+      if (analytic::PoseSweep* s = sweep(); s && s->solve(F, conditions.warmer)) return {s->displacement(), true};
+  }
+  if (!options_.inside.empty()) {
+    const analytic::AnalyticSolution s = model().solve(F, conditions);
+    Prediction out{s.displacement, s.converged, s.slips, s.message};
+    if (s.converged) out.inside = model().inside(options_.inside, s);
+    return out;
   }
   const analytic::AnalyticSolution s = model().displaced(F, conditions);
   return {s.displacement, s.converged, s.slips, s.message};

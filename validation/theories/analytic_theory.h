@@ -30,9 +30,12 @@ class AnalyticAt final : public TheoryAt {
     Vector6 rest, per_kelvin = Vector6::Zero();
     Matrix6 C;
     bool converged = true;
+    std::vector<Vector6> inside_rest, inside_per_kelvin;  ///< by TheoryOptions::inside
+    std::vector<Matrix6> inside_C;
   };
 
   analytic::PoseSweep* sweep();
+  std::vector<Vector6> inside_affine(const Vector6& F_T_W, double warmer) const;
   double energy_at_rest();
   double energy_by_turning(const Vector6& F_T_W, double energy, const Conditions&) const;
   Asked asked() const;

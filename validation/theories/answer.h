@@ -42,6 +42,8 @@ struct Prediction {
   bool converged;
   std::vector<double> slips = {};
   std::string reason = {};  ///< why it did not converge, where known
+  /// By TheoryOptions::inside: [δ; θ] of a body, or in its first component the force of a drive (inside.h).
+  std::vector<Vector6> inside = {};
 };
 
 /// Relative bound of an answer's checks, unless rounding makes a wider one necessary.

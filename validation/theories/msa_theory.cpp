@@ -167,7 +167,9 @@ Answer MsaAt::linear_answer(const Conditions& conditions) {
 
 Prediction MsaAt::predict(const Vector6& F, const Conditions& conditions) {
   frame::MsaSolution s = model().solve(F, conditions);
-  return {s.displacement, s.state.converged, s.slips, s.state.message};
+  Prediction out{s.displacement, s.state.converged, s.slips, s.state.message};
+  if (s.state.converged && !options_.inside.empty()) out.inside = model().inside(options_.inside, s);
+  return out;
 }
 
 Assembled MsaAt::assembled() { return {model().assembled().u.segment<6>(6 * mechanism().tool)}; }

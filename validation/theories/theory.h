@@ -10,6 +10,7 @@
 
 #include "meshes/line_mesh.h"
 #include "msa/frame/mechanism/build.h"
+#include "msa/mechanism/inside.h"
 #include "validation/theories/answer.h"
 
 namespace deflect::theories {
@@ -21,6 +22,7 @@ struct TheoryOptions {
   /// Set where answers at many poses are needed, without energies by part: a theory may then condense the device once
   /// for all poses.
   bool condense = false;
+  std::vector<Inside> inside = {};  ///< what predictions shall tell of the insides of legs
 };
 
 /// The mechanism assembled with its misfits, without load and weight.

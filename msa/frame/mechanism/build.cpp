@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -74,10 +75,11 @@ class Builder {
   }
 
   /// A leg of the mechanism, from the body of node `from` to the platform at p_WT, the body of node `to`.
-  void mounted_leg(const PlacedLeg& leg, int from, int to, const Vector3& p_WT) {
+  void mounted_leg(const PlacedLeg& leg, std::size_t number, int from, int to, const Vector3& p_WT) {
     const bool beside = !leg.misfit.isZero(0);
     const int end = beside ? body(leg.name + " end", p_WT) : to;
-    chain(leg, from, end);
+    leg_ = number;
+    chain(leg, from, end, {});
     if (beside) pending_.push_back({end, to, p_WT, nullptr, leg.name + " seat", false, leg.misfit});
     pending_.back().ends_leg = true;
   }
@@ -85,20 +87,34 @@ class Builder {
   void finish(MechanismModel& out) {
     const auto position = [this](int node) { return nth(model.nodes, node).position; };
     std::map<const PlacedJoint*, std::size_t> springs_of;
+    std::vector<MechanismModel::Cut> passed;
     for (const Pending& p : pending_) {
       if ((position(p.a) - position(p.b)).norm() > 1e-9) out.arms.emplace_back(p.a, p.b);
-      const std::size_t constraints = model.constraints.size(), springs = model.springs.size();
+      const std::size_t constraints = model.constraints.size(), springs = model.springs.size(),
+                        connections = model.connections.size();
       if (p.joint && p.joint->stiffness)
         connect_elastic(model, p.a, p.b, *p.joint, p.name);
       else
         model.connect(p.a, p.b, p.p, p.joint ? p.joint->R_WJ : Matrix3::Identity(),
                       p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,
                       p.joint ? p.joint->part : "");
+      passed.push_back({model.connections.size() > connections ? static_cast<int>(connections) : -1, constraints,
+                        model.constraints.size(), springs, model.springs.size()});
       if (p.joint) springs_of[p.joint] = springs;
       if (p.shared && springs_of.contains(p.shared)) stand_beside(model, p, springs, springs_of.at(p.shared));
       if (!p.beside.isZero(0))
         for (Eigen::Index i = 0; i < 6; ++i) model.constraints[constraints + as_size(i)].value = p.beside(i);
       if (p.ends_leg) out.attachments.push_back({constraints, model.constraints.size(), springs, model.springs.size()});
+    }
+    for (const auto& [key, open] : open_) {
+      MechanismModel::Cut cut;
+      if (open.pending) {
+        cut = passed[*open.pending];
+        cut.far = pending_[*open.pending].b;
+      }
+      cut.own = open.own;
+      cut.side = open.side, cut.behind = open.behind;
+      out.cuts[key] = cut;
     }
     out.members = std::move(members_);
     out.model = std::move(model);
@@ -107,11 +123,23 @@ class Builder {
   Model model;
 
  private:
-  /// A chain from the body of node `from` to the body of node `to`.
-  void chain(const PlacedLeg& leg, int from, int to) {
+  using Path = std::vector<std::size_t>;
+  /// What Cut says, before connections are made.
+  struct Open {
+    std::optional<std::size_t> pending = {};
+    int side = 0, behind = 0;
+    bool own = false;
+  };
+
+  /// A chain from the body of node `from` to the body of node `to`. `path`: of the branch, in the leg.
+  void chain(const PlacedLeg& leg, int from, int to, const Path& path) {
     int at = from;
-    const PlacedJoint* waiting = nullptr;  // a joint whose far side is the next member's node
+    const PlacedJoint* waiting = nullptr;       // a joint whose far side is the next member's node
+    std::vector<std::pair<Path, bool>> joints;  // since the last connection; whether they stand on its far side
     const auto attach = [&](int node, const Vector3& p) {
+      for (const auto& [part, far] : joints)
+        open_[{leg_, part}] = {pending_.size(), far ? node : at, node, open_[{leg_, part}].own};
+      joints.clear();
       if (waiting)
         joint(at, node, *waiting, leg.name + " " + waiting->part);
       else
@@ -119,23 +147,38 @@ class Builder {
       waiting = nullptr;
       at = node;
     };
-    for (const PlacedPart& part : leg.parts) {
+    for (std::size_t k = 0; k < leg.parts.size(); ++k) {
+      const PlacedPart& part = leg.parts[k];
+      Path here = path;
+      here.push_back(k);
       if (const auto* j = std::get_if<PlacedJoint>(&part)) {
-        if (j->rigid()) continue;
+        if (j->rigid()) {
+          joints.emplace_back(here, waiting != nullptr);
+          continue;
+        }
         if (waiting) attach(body(fmt::format("{} {} / {}", leg.name, waiting->part, j->part), j->p_W), j->p_W);
         waiting = j;
+        joints.emplace_back(here, false);
+        open_[{leg_, here}].own = true;
       } else if (const auto* group = std::get_if<PlacedParallel>(&part)) {
         attach(body(fmt::format("{} {} start", leg.name, group->part), group->p_W_start), group->p_W_start);
         const int end = body(fmt::format("{} {} end", leg.name, group->part), group->p_W_end);
         const std::size_t first = pending_.size();
-        for (const PlacedLeg& branch : group->branches) chain(branch, at, end);
+        for (std::size_t b = 0; b < group->branches.size(); ++b) {
+          Path inner = here;
+          inner.push_back(b);
+          chain(group->branches[b], at, end, inner);
+        }
+        open_[{leg_, here}] = {{}, at, end};
         for (std::size_t i = first; group->one_joint && i < pending_.size(); ++i)
           if (pending_[i].joint && pending_[i].joint != joint_of(part)) pending_[i].shared = joint_of(part);
         at = end;
       } else {
         const auto& m = std::get<PlacedMember>(part);
         attach(body(fmt::format("{} {} start", leg.name, m.part), m.p_W_start), m.p_W_start);
+        const int start = at;
         at = member(leg, m, at);
+        open_[{leg_, here}] = {{}, start, at};
       }
     }
     attach(to, nth(model.nodes, to).position);
@@ -161,6 +204,8 @@ class Builder {
 
   const MemberDivision& division_;
   std::vector<Pending> pending_;
+  std::size_t leg_ = 0;
+  std::map<std::pair<std::size_t, Path>, Open> open_;
   std::vector<std::pair<std::size_t, std::size_t>> members_;
 };
 
@@ -209,7 +254,7 @@ MechanismModel build(const Configuration& c, const MemberDivision& division) {
   out.tool = c.tool.rigid() ? out.platform : b.body("tool", c.tool.p_W);
   if (out.base != out.ground) b.joint(out.ground, out.base, c.base, "base");
   if (out.tool != out.platform) b.joint(out.platform, out.tool, c.tool, "tool");
-  for (const PlacedLeg& leg : c.legs) b.mounted_leg(leg, out.base, out.platform, c.pose.p_WT);
+  for (std::size_t i = 0; i < c.legs.size(); ++i) b.mounted_leg(c.legs[i], i, out.base, out.platform, c.pose.p_WT);
   b.model.fix(out.ground, "ground");
   b.model.watched = out.tool;
   b.finish(out);
@@ -221,7 +266,7 @@ MechanismModel build_leg(const Configuration& c, std::size_t leg, const MemberDi
   MechanismModel out;
   out.ground = out.base = b.body("ground", c.base.p_W);
   out.platform = out.tool = b.body("platform", c.pose.p_WT);
-  b.mounted_leg(c.legs[leg], out.ground, out.platform, c.pose.p_WT);
+  b.mounted_leg(c.legs[leg], leg, out.ground, out.platform, c.pose.p_WT);
   b.model.fix(out.ground, "ground");
   b.model.watched = out.tool;
   b.finish(out);

@@ -37,6 +37,17 @@ struct MechanismModel {
     std::size_t first_constraint = 0, last_constraint = 0, first_spring = 0, last_spring = 0;
   };
   std::vector<Attachment> attachments;
+  /// Where something inside a leg can be read: a connection through which the leg's wrench passes, and the body behind
+  /// a part.
+  struct Cut {
+    int connection = -1;  ///< of the model's; −1: the joint has a stiffness of all freedoms together, or is no joint
+    std::size_t first_constraint = 0, last_constraint = 0, first_spring = 0, last_spring = 0;
+    int side = 0;      ///< node of the body that the part stands on
+    int far = 0;       ///< node of the body that the constraints and springs act on
+    int behind = 0;    ///< node of the body behind the part
+    bool own = false;  ///< the connection is that of the joint, which is not rigid
+  };
+  std::map<std::pair<std::size_t, std::vector<std::size_t>>, Cut> cuts;  ///< by leg and Inside::parts
   /// By member, in the order of for_each_part, its beams: a range [first, last) of the model's.
   std::vector<std::pair<std::size_t, std::size_t>> members;
 };

@@ -218,6 +218,7 @@ MsaSolution MsaModel::solve(const Vector6& F_T_W, const Conditions& conditions) 
   const bool strained = !rest.u.isZero(0), warm = conditions.warmer != 0;
   ExtendedVector u0 = rest.fine;
   std::vector<std::pair<std::string, double>> energies0;
+  if (strained) out.rest = std::make_shared<const Solution>(rest);
   if (conditions.geometry == Geometry::linear || (out.load.isZero(0) && !strained && !warm)) {
     if (strained && (warm || !linear())) energies0 = rest_energies_;
     out.state = solve_linear(load, conditions);
@@ -230,6 +231,7 @@ MsaSolution MsaModel::solve(const Vector6& F_T_W, const Conditions& conditions) 
       const Solution at_rest = solve_geometric(VectorX::Zero(load.size()), conditions.geometry);
       u0 = at_rest.fine;
       energies0 = frame::energies(geometric_->model(), *at_rest.geometric);
+      out.rest = std::make_shared<const Solution>(at_rest);
     }
     out.state = solve_geometric(load, conditions);
     out.energies = frame::energies(geometric_->model(), *out.state.geometric);

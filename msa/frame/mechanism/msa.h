@@ -11,6 +11,7 @@
 #include "msa/frame/mechanism/build.h"
 #include "msa/frame/structure/solver.h"
 #include "msa/mechanism/conditions.h"
+#include "msa/mechanism/inside.h"
 
 namespace deflect::frame {
 
@@ -24,7 +25,8 @@ struct MsaSolution {
   /// Strain energy by part, J, largest first. The sum is ½ loadᵀd where everything is linear and at the temperature of
   /// assembly.
   std::vector<std::pair<std::string, double>> energies;
-  std::vector<double> slips;  ///< of the frictions after the load, as in Conditions
+  std::vector<double> slips;                  ///< of the frictions after the load, as in Conditions
+  std::shared_ptr<const Solution> rest = {};  ///< the assembled state, where it is strained
 };
 
 /// A mechanism at one pose, factorised once for all its load cases.
@@ -51,6 +53,10 @@ class MsaModel {
   /// The mechanism as assembled, without load and weight: strained where legs have misfits.
   const Solution& assembled();
 
+  /// By place, [δ; θ] of a body behind a part, or in its first component the force of a drive (inside.h): the force of
+  /// the joint's own constraint or spring; of a rigid drive what passes the next connection of the leg.
+  std::vector<Vector6> inside(const std::vector<Inside>&, const MsaSolution&);
+
   /// Tangent stiffness at T of the structure in a state, not symmetrised, and of each leg alone at the platform's T:
   /// reactions to unit displacements. A direction in which nothing holds T has zero stiffness. Where parts are rigid, T
   /// may move only in `motions` (fewer than six orthonormal columns, rotations times the configuration's size). K is
@@ -76,6 +82,10 @@ class MsaModel {
   Solution solve_linear(const VectorX& load, const Conditions&);
   Solution solve_geometric(const VectorX& load, const Conditions&);
   std::vector<double> strains(double warmer) const;
+  struct Forces;
+  Forces forces_in(const Solution&, const Vector6& load_T_W);
+  double drive_force(const Inside&, const Forces&, const Solution&) const;
+  Vector6 motion(const Inside&, const Solution&) const;
 
   int frictions_ = 0;
   Configuration configuration_;
