@@ -15,6 +15,7 @@
 #include "tests/attack/random_frame.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/effects/place_effects.h"
@@ -290,7 +291,7 @@ TEST_F(MachineInOtherWords, RepeatedRowsTellMoreOfTheSame) {
 class FrameInOtherWords : public ::testing::Test {
  protected:
   static frame::FrameDescription truss() {
-    return frame::read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/frames/truss-45.yaml");
+    return frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames/truss-45.yaml");
   }
 
   static Measurements data(std::uint64_t seed) {

@@ -12,6 +12,7 @@
 #include "msa/mechanism/stand.h"
 #include "tests/attack/device_oracle.h"
 #include "tests/support/apart.h"
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 #include "tests/support/stiffnesses.h"
 
@@ -22,12 +23,12 @@ using nlohmann::json;
 using test::Folder;
 
 test::Run timely(const std::string& arguments, int seconds = 20) {
-  return test::command("timeout " + std::to_string(seconds) + " '" + DEFLECT_PROGRAM + "' " + arguments);
+  return test::command("timeout " + std::to_string(seconds) + " '" + test::program() + "' " + arguments);
 }
 
 /// A built-in device with every match of a pattern in its file replaced; there is at least one.
 std::string with(const std::string& device, const std::string& pattern, const std::string& text) {
-  const std::string file = test::contents(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/" + device + ".yaml");
+  const std::string file = test::contents(test::source_dir() + "/validation/devices/" + device + ".yaml");
   EXPECT_TRUE(std::regex_search(file, std::regex(pattern))) << device << " has no " << pattern;
   return std::regex_replace(file, std::regex(pattern), text);
 }

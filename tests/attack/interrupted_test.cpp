@@ -9,6 +9,7 @@
 #include "msa/mechanism/device_file.h"
 #include "tests/attack/count.h"
 #include "tests/attack/random_frame.h"
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 #include "validation/json/json_text.h"
 #include "validation/measurement/measurements.h"
@@ -46,7 +47,9 @@ std::string broken(const std::filesystem::path& file) {
 
 class Interrupted : public ::testing::TestWithParam<Work> {
  protected:
-  void SetUp() override { ASSERT_EQ(run("'" DEFLECT_PROGRAM "' simulate 3-rrr --campaign paper -o data.csv").code, 0); }
+  void SetUp() override {
+    ASSERT_EQ(run("'" + test::program() + "' simulate 3-rrr --campaign paper -o data.csv").code, 0);
+  }
 
   test::Run run(const std::string& line) {
     return test::command(fmt::format("cd '{}' && ( {} )", (folder / ".").string(), line));
@@ -62,7 +65,7 @@ class Interrupted : public ::testing::TestWithParam<Work> {
 
 TEST_P(Interrupted, LeavesWholeFilesOrNone) {
   const Work work = GetParam();
-  const std::string line = fmt::format("'{}' {}", DEFLECT_PROGRAM, work.arguments);
+  const std::string line = fmt::format("'{}' {}", test::program(), work.arguments);
   const std::filesystem::path file = folder / work.file;
   const auto start = std::chrono::steady_clock::now();
   run(line);
@@ -88,7 +91,7 @@ TEST_P(Interrupted, LeavesWholeFilesOrNone) {
 // A limit of half a kilobyte on every file stands for a disk that is full.
 TEST_P(Interrupted, AFullDiskIsToldAndLeavesNothing) {
   const Work work = GetParam();
-  const std::string line = fmt::format("trap '' XFSZ; ulimit -f 1; '{}' {}", DEFLECT_PROGRAM, work.arguments);
+  const std::string line = fmt::format("trap '' XFSZ; ulimit -f 1; '{}' {}", test::program(), work.arguments);
   const std::filesystem::path file = folder / work.file;
   for (const bool old : {false, true}) {
     if (old) std::ofstream(file) << "what was there before";

@@ -11,6 +11,7 @@
 #include "msa/mechanism/device_file.h"
 #include "tests/attack/device_oracle.h"
 #include "tests/support/apart.h"
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 #include "validation/studies/solve.h"
 
@@ -21,12 +22,12 @@ using nlohmann::json;
 using test::Folder;
 
 std::string case_path(const std::string& name) {
-  return std::string("'") + DEFLECT_SOURCE_DIR + "/tests/attack/cases/" + name + "'";
+  return std::string("'") + test::source_dir() + "/tests/attack/cases/" + name + "'";
 }
 
 /// The program with a limit on its time, so that a run that hangs is a failure and no stop of all tests.
 test::Run timely(const std::string& arguments, int seconds = 60) {
-  return test::command("timeout " + std::to_string(seconds) + " '" + DEFLECT_PROGRAM + "' " + arguments);
+  return test::command("timeout " + std::to_string(seconds) + " '" + test::program() + "' " + arguments);
 }
 
 struct Answered {
@@ -60,7 +61,7 @@ void expect_agreement(const Answered& a, double tolerance = 1e-9) {
 
 /// As expect_agreement, and right: as the force method has it. Linear laws only; mm, deg, N, Nmm.
 void expect_right(const std::string& file, const Vector6& pose, const Vector6& load) {
-  const Mechanism m = read_mechanism(std::string(DEFLECT_SOURCE_DIR) + "/tests/attack/cases/" + file);
+  const Mechanism m = read_mechanism(test::source_dir() + "/tests/attack/cases/" + file);
   const attack::DeviceTruth truth = attack::solve_by_forces(stand(m, pose).configuration);
   ASSERT_TRUE(truth.held && truth.clear);
   const Vector6 right = twist_in_mm(truth.flexibility * wrench_from_mm(load));

@@ -7,6 +7,7 @@
 #include "tests/attack/echelon.h"
 #include "tests/attack/standing_oracle.h"
 #include "tests/support/mechanisms.h"
+#include "tests/support/paths.h"
 
 namespace deflect::attack {
 namespace {
@@ -77,7 +78,7 @@ TEST(StandingOracle, KnowsWhatMovesWhatIsIdleAndWhatIsDriven) {
 TEST(StandingOracle, SeesTheFramesThatWereOnceAnswered) {
   for (const char* name : {"swinging-member", "turning-frame"}) {
     const StandingVerdict v =
-        can_stand(frame::read_frame(std::string(DEFLECT_SOURCE_DIR) + "/tests/attack/cases/" + name + ".yaml"));
+        can_stand(frame::read_frame(test::source_dir() + "/tests/attack/cases/" + name + ".yaml"));
     EXPECT_EQ(v.standing, Standing::moves) << name;
     EXPECT_EQ(v.motions, 1) << name;
   }

@@ -14,6 +14,7 @@
 #include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/attack/pipeline_checks.h"
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 #include "validation/result_files/result_file.h"
 
@@ -29,7 +30,7 @@ constexpr int out_of_time = 124, out_of_processor = 128 + 24;  // exit codes: of
 /// One step of the program. An end that no user should see is a contradiction.
 test::Run step(const std::string& name, const std::string& arguments, const fs::path& folder, PipelineJudgement& j) {
   test::Run run = test::command(fmt::format("cd '{}' && ulimit -t {} && timeout {} '{}' {} {}", folder.string(),
-                                            most_seconds, most_waiting, DEFLECT_PROGRAM, name, arguments));
+                                            most_seconds, most_waiting, test::program(), name, arguments));
   const auto tell = [&](const char* what) { j.wrong.push_back({name + " " + what, run.out}); };
   if (run.code == out_of_time || run.code == out_of_processor)
     tell("does not end");

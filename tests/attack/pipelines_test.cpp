@@ -10,6 +10,7 @@
 #include "msa/base/files.h"
 #include "tests/attack/count.h"
 #include "tests/attack/pipeline_run.h"
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 
 namespace deflect::attack {
@@ -100,7 +101,7 @@ class KeptPipelines : public ::testing::TestWithParam<std::string> {};
 
 std::vector<std::string> kept_pipelines() {
   std::vector<std::string> out;
-  const std::filesystem::path folder = std::filesystem::path(DEFLECT_SOURCE_DIR) / "tests/attack/pipelines";
+  const std::filesystem::path folder = std::filesystem::path(test::source_dir()) / "tests/attack/pipelines";
   if (!std::filesystem::exists(folder)) return out;  // none has been kept
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".yaml") out.push_back(entry.path().stem().string());
@@ -109,7 +110,7 @@ std::vector<std::string> kept_pipelines() {
 }
 
 TEST_P(KeptPipelines, NeverContradictThemselves) {
-  const std::filesystem::path from = std::filesystem::path(DEFLECT_SOURCE_DIR) / "tests/attack/pipelines";
+  const std::filesystem::path from = std::filesystem::path(test::source_dir()) / "tests/attack/pipelines";
   const test::Folder folder;
   write_text(folder / "subject.yaml", read_text(from / (GetParam() + ".yaml")));
   write_text(folder / "data.csv", read_text(from / (GetParam() + ".csv")));

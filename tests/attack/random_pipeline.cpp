@@ -17,6 +17,7 @@
 #include "tests/attack/random_device.h"
 #include "tests/attack/random_frame.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "validation/effects/place_effects.h"
 #include "validation/subject/simulate_frame.h"
 
@@ -30,7 +31,7 @@ constexpr const char* machines[] = {"haptic-6psu-ideal-joints", "tripteron", "sc
 constexpr const char* frames[] = {"truss-45", "portal-semi-rigid", "beam-on-springs", "lattice-girder"};
 
 std::filesystem::path data(const char* folder, const std::string& name) {
-  return std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation" / folder / (name + ".yaml");
+  return std::filesystem::path(test::source_dir()) / "validation" / folder / (name + ".yaml");
 }
 
 /// Root mean square of the numbers `from` … `from + count` of the predicted readings.

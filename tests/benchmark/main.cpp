@@ -11,6 +11,7 @@
 #include "msa/mechanism/device_file.h"
 #include "tests/benchmark/scores.h"
 #include "tests/benchmark/subject_scores.h"
+#include "tests/support/paths.h"
 #include "validation/effects/effect_file.h"
 #include "validation/parallel/progress.h"
 #include "validation/parallel/shared_cases.h"
@@ -113,7 +114,7 @@ void run_all(const Arguments& a, Ranks* ranks) {
     if (!ranks || ranks->first()) run_subjects(a);
     return;
   }
-  const std::string data = std::string(DEFLECT_SOURCE_DIR) + "/validation";
+  const std::string data = test::source_dir() + "/validation";
   const Mechanism device = read_mechanism(data + "/devices/haptic-6psu-ideal-joints.yaml");
   const std::vector<Effect> effects = catalogue(data + "/effects/catalogue");
   const std::vector<Case> orders = cases(a.seed, a.group, a.sets);

@@ -16,6 +16,7 @@
 #include "tests/benchmark/as_measured.h"
 #include "tests/benchmark/hidden.h"
 #include "tests/benchmark/oracle.h"
+#include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/effects/effect_file.h"
@@ -35,7 +36,7 @@ using namespace prediction;
 constexpr double separable = 9;  // difference of 2 ln L
 constexpr const char* of_machines[] = {"rich", "random"};
 constexpr const char* of_frames[] = {"rich", "cycle"};
-const std::string data_folder = std::string(DEFLECT_SOURCE_DIR) + "/validation";
+const std::string data_folder = test::source_dir() + "/validation";
 
 struct Order {
   SetKind kind;

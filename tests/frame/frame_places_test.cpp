@@ -6,6 +6,7 @@
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "tests/support/frames.h"
+#include "tests/support/paths.h"
 
 namespace deflect::frame {
 namespace {
@@ -232,7 +233,7 @@ TEST(FramePlaces, AnEditThatDoesNotFitIsTold) {
 
 /// The example in frame_file.h has every key.
 TEST(FramePlaces, TheExampleOfTheHeaderIsAFrame) {
-  std::istringstream lines(read_text(std::filesystem::path(DEFLECT_SOURCE_DIR) / "msa/frame/file/frame_file.h"));
+  std::istringstream lines(read_text(std::filesystem::path(test::source_dir()) / "msa/frame/file/frame_file.h"));
   std::string text, line;
   while (std::getline(lines, line) && line != "#pragma once")
     if (line.starts_with("//   ")) text += line.substr(5) + "\n";

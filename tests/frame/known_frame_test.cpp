@@ -12,6 +12,7 @@
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/frame_sensors.h"
 #include "msa/frame/file/frame_tolerances.h"
+#include "tests/support/paths.h"
 
 namespace deflect::frame {
 namespace {
@@ -100,7 +101,7 @@ double off(const KnownFrame& known, const FrameDescription& f, bool in_sequence 
 }
 
 FrameDescription built_in(const std::string& name) {
-  return read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/frames" / (name + ".yaml"));
+  return read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" / (name + ".yaml"));
 }
 
 FrameDescription with(const FrameDescription& f, const std::vector<std::pair<std::string, std::string>>& appended) {

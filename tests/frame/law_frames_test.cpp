@@ -8,6 +8,7 @@
 
 #include "msa/base/files.h"
 #include "tests/support/frames.h"
+#include "tests/support/paths.h"
 
 namespace deflect::frame {
 namespace {
@@ -24,7 +25,7 @@ struct Stored {
 };
 
 std::vector<Stored> stored_frames() {
-  std::istringstream lines(read_text(std::filesystem::path(DEFLECT_SOURCE_DIR) / "tests/frame/laws/law_frames.txt"));
+  std::istringstream lines(read_text(std::filesystem::path(test::source_dir()) / "tests/frame/laws/law_frames.txt"));
   std::vector<Stored> out;
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);

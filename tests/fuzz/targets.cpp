@@ -8,6 +8,7 @@
 #include "msa/base/files.h"
 #include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/device_file.h"
+#include "tests/support/paths.h"
 #include "validation/diagnosis/found_effects.h"
 #include "validation/effects/effect_file.h"
 #include "validation/matrix/matrix_file.h"
@@ -92,7 +93,7 @@ void result(const std::string& text) {
   });
 }
 
-std::string source(const char* file) { return read_text(fs::path(DEFLECT_SOURCE_DIR) / "validation" / file); }
+std::string source(const char* file) { return read_text(fs::path(test::source_dir()) / "validation" / file); }
 
 std::vector<Edit> edits_of(const std::string& text) {
   std::vector<Edit> out;
@@ -137,7 +138,7 @@ const std::vector<Target>& targets() {
 }
 
 std::vector<fs::path> seed_files(const Target& target) {
-  const fs::path root = DEFLECT_SOURCE_DIR;
+  const fs::path root = test::source_dir();
   std::vector<fs::path> folders = target.seeds, out;
   folders.push_back("tests/fuzz/found/" + target.name);
   for (const fs::path& folder : folders) {

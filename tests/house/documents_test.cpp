@@ -7,13 +7,14 @@
 
 #include "msa/base/files.h"
 #include "tests/house/links.h"
+#include "tests/support/paths.h"
 
 namespace deflect::house {
 namespace {
 
 namespace fs = std::filesystem;
 using Messages = std::vector<std::string>;
-const fs::path root = DEFLECT_SOURCE_DIR;
+const fs::path root = test::source_dir();
 
 bool in_made_up_tree(const std::string& path) {
   return path == "README.md" || path == "a/README.md" || path == "a/b" || path == "a/b/picture.png";

@@ -10,12 +10,13 @@
 #include "msa/base/files.h"
 #include "tests/house/counts.h"
 #include "tests/house/rules.h"
+#include "tests/support/paths.h"
 
 namespace deflect::house {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path root = DEFLECT_SOURCE_DIR;
+const fs::path root = test::source_dir();
 
 std::string lines(const std::vector<std::string>& messages) {
   std::string text;

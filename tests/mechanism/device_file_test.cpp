@@ -11,6 +11,7 @@
 #include "msa/base/files.h"
 #include "msa/mechanism/law.h"
 #include "tests/support/devices.h"
+#include "tests/support/paths.h"
 #include "tests/support/same_mechanism.h"
 
 namespace deflect {
@@ -153,7 +154,7 @@ std::string said(std::string line) {
 
 TEST(DeviceFile, BuiltInDevicesAreWrittenAsTheyStandBesidesCommentsAndPercents) {
   for (const char* name : {"haptic-6psu", "haptic-6psu-ideal-joints"}) {
-    const std::string file = read_text(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/" + name + ".yaml");
+    const std::string file = read_text(test::source_dir() + "/validation/devices/" + name + ".yaml");
     std::istringstream in(file), out(write_mechanism(test::device(name)));
     for (std::string a, b; std::getline(in, a);) {
       if (said(a).empty()) continue;
@@ -233,7 +234,7 @@ TEST(DeviceFile, AnyTextComesBack) {
 }
 
 TEST(DeviceFile, DefaultsAreNotWrittenUnlessMarked) {
-  std::string text = read_text(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/haptic-6psu.yaml");
+  std::string text = read_text(test::source_dir() + "/validation/devices/haptic-6psu.yaml");
   const Mechanism plain = parse_mechanism(text, "plain");
   Mechanism spelt = parse_mechanism(
       text + "base: {joint: fixed}\nrig: {load_cell: {gain: 1}, sensor: {}}\nvariations: []\n", "spelt");
@@ -244,7 +245,7 @@ TEST(DeviceFile, DefaultsAreNotWrittenUnlessMarked) {
 }
 
 TEST(DeviceFile, LineEndingsAndByteOrderMarkDoNotMatter) {
-  const std::string text = read_text(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/haptic-6psu.yaml");
+  const std::string text = read_text(test::source_dir() + "/validation/devices/haptic-6psu.yaml");
   std::string dos = "\xef\xbb\xbf";
   for (const char c : text) dos += c == '\n' ? "\r\n" : std::string(1, c);
   EXPECT_EQ(parse_mechanism(dos, "dos"), parse_mechanism(text, "unix"));

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "msa/base/files.h"
+#include "tests/support/paths.h"
 
 namespace deflect {
 namespace {
@@ -109,7 +110,7 @@ TEST(PlainYaml, LeavesEverythingElseToTheLibrary) {
 TEST(PlainYaml, GivesTheLibrarysTreeOfEveryFileOfTheProgram) {
   int files = 0;
   for (const auto& entry :
-       std::filesystem::recursive_directory_iterator(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation"))
+       std::filesystem::recursive_directory_iterator(std::filesystem::path(test::source_dir()) / "validation"))
     if (entry.path().extension() == ".yaml") {
       taken(read_text(entry.path()));
       ++files;

@@ -13,17 +13,18 @@
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/six_psu.h"
+#include "tests/support/paths.h"
 
 namespace deflect::test {
 
 inline Mechanism device(const std::string& name) {
-  return read_mechanism(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/" + name + ".yaml");
+  return read_mechanism(test::source_dir() + "/validation/devices/" + name + ".yaml");
 }
 
 /// All that are built in, in order.
 inline std::vector<std::string> device_names() {
   std::vector<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices"))
+  for (const auto& file : std::filesystem::directory_iterator(test::source_dir() + "/validation/devices"))
     names.push_back(file.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;

@@ -1,6 +1,7 @@
 // The catalogue for tests.
 #pragma once
 
+#include "tests/support/paths.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
 
@@ -8,7 +9,7 @@ namespace deflect::test {
 
 inline const std::vector<effects::Effect>& all_effects() {
   static const std::vector<effects::Effect> all =
-      effects::catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
+      effects::catalogue(test::source_dir() + "/validation/effects/catalogue");
   return all;
 }
 

@@ -7,13 +7,14 @@
 
 #include "msa/frame/file/frame_analysis.h"
 #include "msa/frame/file/frame_file.h"
+#include "tests/support/paths.h"
 
 namespace deflect::test {
 
 inline constexpr double inch = 0.0254, lbf = 4.4482216152605, kip = 1e3 * lbf;
 
 inline frame::FrameDescription case_file(const std::string& name) {
-  return frame::read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/cases" / (name + ".yaml"));
+  return frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/cases" / (name + ".yaml"));
 }
 
 /// A frame with its result, to be asked by name; the first case where none is named.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 
 namespace deflect::test {
@@ -42,7 +43,7 @@ inline std::optional<nlohmann::json> used_page(const std::filesystem::path& page
                                                bool webgl = true) {
   std::string html = contents(page);
   html.insert(html.find("<title>"),
-              "<script>" + contents(DEFLECT_SOURCE_DIR "/tests/support/page_check.js") + "</script>");
+              "<script>" + contents(test::source_dir() + "/tests/support/page_check.js") + "</script>");
   std::ofstream(folder / "checked.html", std::ios::binary) << html;
   const std::string command =
       browser() + " --headless --no-sandbox" +

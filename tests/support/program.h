@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/support/paths.h"
+
 namespace deflect::test {
 
 struct Run {
@@ -28,7 +30,7 @@ inline Run command(const std::string& line) {
 }
 
 inline Run deflect(const std::string& arguments) {
-  return command(std::string("'") + DEFLECT_PROGRAM + "' " + arguments);
+  return command(std::string("'") + test::program() + "' " + arguments);
 }
 
 inline std::string contents(const std::filesystem::path& path) {

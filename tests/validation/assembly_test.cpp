@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/devices.h"
+#include "tests/support/paths.h"
 #include "tests/support/theories.h"
 #include "validation/studies/solve.h"
 #include "validation/theories/agreement.h"
@@ -12,7 +13,7 @@ namespace {
 using namespace studies;
 using namespace theories;
 
-Mechanism tripteron() { return read_mechanism(DEFLECT_SOURCE_DIR "/validation/devices/tripteron.yaml"); }
+Mechanism tripteron() { return read_mechanism(test::source_dir() + "/validation/devices/tripteron.yaml"); }
 
 SolveResult at_home(const Mechanism& m, const Vector6& load) {
   return solve(m, stand(m, mm_deg_from(home_pose(m))), load, {});

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 
 namespace deflect {
@@ -26,7 +27,7 @@ Words offered(const std::string& line) {
   std::filesystem::create_directory(folder / "empty");
   {
     std::ofstream script(folder / "offer.sh");
-    script << "source <('" << DEFLECT_PROGRAM << "' completion bash) || exit 1\n"
+    script << "source <('" << test::program() << "' completion bash) || exit 1\n"
            << "COMP_WORDS=(" << line << ") COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n"
            << "_deflect; printf '%s\\n' \"${COMPREPLY[@]}\"\n";
   }

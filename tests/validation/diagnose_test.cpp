@@ -12,6 +12,7 @@
 #include "msa/mechanism/stand.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/effects/place_effects.h"
 #include "validation/prediction/campaign.h"
@@ -235,7 +236,7 @@ TEST(Diagnose, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(Diagnose, DoesNotDependOnTheUnitsOfTheDevice) {
-  std::string text = read_text(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/haptic-6psu-ideal-joints.yaml");
+  std::string text = read_text(test::source_dir() + "/validation/devices/haptic-6psu-ideal-joints.yaml");
   for (const auto& [from, to] :
        {std::pair{"118 mm", "11.8 cm"}, {"125.5 mm", "0.1255 m"}, {"210 GPa", "2.1e11 Pa"}, {"0.03 mm", "30 um"}}) {
     ASSERT_NE(text.find(from), text.npos) << from;

@@ -14,6 +14,7 @@
 #include "msa/base/outcome.h"
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/devices.h"
+#include "tests/support/paths.h"
 #include "validation/fit/predicted.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
@@ -290,7 +291,7 @@ void expect_coverage(const std::string& what, double sum, std::uint64_t n) {
 // The truss within all its tolerances, one chord weaker by a known share: fitted under the first two load cases and
 // their sum, predicted under the others.
 TEST(Coverage, PredictionsOfAFrameHoldAsOftenAsTheySay) {
-  const Subject s = frame::read_frame(std::string(DEFLECT_SOURCE_DIR) + "/validation/frames/truss-45.yaml");
+  const Subject s = frame::read_frame(test::source_dir() + "/validation/frames/truss-45.yaml");
   const Subject truth = s.edited({{"members.C1b.factor", "0.85", Edit::Action::multiply}});
   const std::uint64_t n = draws(60);
   double sum = 0;

@@ -6,6 +6,7 @@
 #include "msa/base/index.h"
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "validation/compare/comparison.h"
 #include "validation/effects/place_effects.h"
 #include "validation/effects/with_effect.h"
@@ -20,7 +21,7 @@ using subject::InnerSites;
 using subject::Subject;
 
 Subject built_in(const std::string& name) {
-  return frame::read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/frames" / (name + ".yaml"));
+  return frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" / (name + ".yaml"));
 }
 
 measurement::Measurements readings_of(const Subject& drawn, const Subject& true_one) {

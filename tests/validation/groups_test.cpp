@@ -11,6 +11,7 @@
 #include "msa/mechanism/device_file.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/edit_paths.h"
 #include "validation/effects/place_effects.h"
@@ -27,7 +28,7 @@ using subject::Place;
 using subject::Subject;
 
 Subject frame_named(const std::string& name) {
-  return frame::read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/frames" / (name + ".yaml"));
+  return frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" / (name + ".yaml"));
 }
 
 Place group_in(const Subject& s, const std::string& id) {

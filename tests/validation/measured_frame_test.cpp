@@ -11,6 +11,7 @@
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/frame_tolerances.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "validation/compare/comparison.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/effect_file.h"
@@ -53,7 +54,7 @@ Measurements read(const Subject& s, const std::string& csv) {
 
 /// A frame of validation/frames.
 Subject built_in(const std::string& name) {
-  return frame::read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/frames" / (name + ".yaml"));
+  return frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" / (name + ".yaml"));
 }
 
 // Hooke and Euler–Bernoulli by hand: tip −P L³/3EI with the gain 2, its slope, N, strain M z/EI at a quarter, the

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 
 namespace deflect {
@@ -21,7 +22,7 @@ class MpiProgram : public ::testing::Test {
   static test::Run on(int ranks, const std::string& arguments) {
     return test::command(
         "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --quiet --oversubscribe -n " +
-        std::to_string(ranks) + " '" + DEFLECT_PROGRAM + "' " + arguments);
+        std::to_string(ranks) + " '" + test::program() + "' " + arguments);
   }
 
   test::Folder folder;
@@ -93,14 +94,14 @@ TEST_F(MpiProgram, EachRunsForItselfWhereItIsAskedTo) {
 
 TEST_F(MpiProgram, ProcessesThatCannotFindEachOtherAreRefused) {
   const test::Run run = test::command(std::string("OMPI_ALLOW_RUN_AS_ROOT=1 PMI_SIZE=4 PMI_RANK=0 '") +
-                                      DEFLECT_PROGRAM + "' map haptic-6psu --n 3");
+                                      test::program() + "' map haptic-6psu --n 3");
   EXPECT_EQ(run.code, 2);
   EXPECT_NE(run.out.find("started as one of 4"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("mpirun of that MPI"), std::string::npos) << run.out;
 }
 
 TEST_F(MpiProgram, AProgramWithoutTheModuleIsRefusedWithTheRemedy) {
-  std::filesystem::copy_file(DEFLECT_PROGRAM, folder / "deflect");
+  std::filesystem::copy_file(test::program(), folder / "deflect");
   const test::Run run = test::command("PMI_SIZE=2 PMI_RANK=0 DEFLECT_PLUGIN_DIR= " + path("deflect") + " devices");
   EXPECT_EQ(run.code, 2);
   for (const char* words : {"started as one of 2", "libopenmpi-dev", "without mpirun", "deflect_mpi.so: no such file"})

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 #include "validation/page/page.h"
 
@@ -24,7 +25,7 @@ class NewProgram : public ::testing::TestWithParam<const char*> {
     const std::size_t page = line.find(" --report");
     if (page != line.npos && !pages_are_built()) line = line.substr(0, page);
     if (line.starts_with("diagnose")) line += " --bootstrap 99";
-    return test::command("cd '" + (folder / "").string() + "' && '" DEFLECT_PROGRAM "' " + line);
+    return test::command("cd '" + (folder / "").string() + "' && '" + test::program() + "' " + line);
   }
 
   test::Folder folder;

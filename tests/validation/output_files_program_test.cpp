@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 
 namespace deflect {
@@ -30,7 +31,7 @@ TEST_F(OutputFiles, ResultsCanGoToStandardOutput) {
   ASSERT_EQ(test::deflect(solve + "--json " + path("x.json")).code, 0);
   EXPECT_EQ(quiet.out, contents(folder / "x.json"));
   // Into a file, behind what was printed before and before what is printed after.
-  ASSERT_EQ(test::command("'" DEFLECT_PROGRAM "' simulate haptic-6psu --campaign paper --seed 1 -o /dev/stdout > " +
+  ASSERT_EQ(test::command("'" + test::program() + "' simulate haptic-6psu --campaign paper --seed 1 -o /dev/stdout > " +
                           path("x.csv"))
                 .code,
             0);
@@ -46,9 +47,8 @@ TEST_F(OutputFiles, DevicesAndFifosAreWrittenTo) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
   for (const char* kind : {"vtk -o pipe.vtu", "msh -o pipe.msh"}) {
     const std::string file = std::string(kind).substr(7);
-    const test::Run run =
-        test::command("cd " + path("") + " && mkfifo " + file + " && { cat " + file +
-                      " > seen & '" DEFLECT_PROGRAM "' export haptic-6psu --to " + kind + " && wait; }");
+    const test::Run run = test::command("cd " + path("") + " && mkfifo " + file + " && { cat " + file + " > seen & '" +
+                                        test::program() + "' export haptic-6psu --to " + kind + " && wait; }");
     EXPECT_EQ(run.code, 0) << run.out;
     EXPECT_TRUE(fs::is_fifo(folder / file));
     EXPECT_GT(contents(folder / "seen").size(), 1000u);

@@ -10,6 +10,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/frames.h"
+#include "tests/support/paths.h"
 #include "tests/support/theories.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/measurement/measurements.h"
@@ -24,7 +25,7 @@ using namespace studies;
 
 /// The blocks of code of a language in the README of a room, from a heading on.
 std::vector<std::string> blocks(const std::string& room, const std::string& heading, const std::string& language) {
-  const std::string text = read_text(DEFLECT_SOURCE_DIR "/" + room + "/README.md"), fence = "```" + language + "\n";
+  const std::string text = read_text(test::source_dir() + "/" + room + "/README.md"), fence = "```" + language + "\n";
   std::vector<std::string> found;
   for (std::size_t at = text.find("\n" + heading + "\n"); (at = text.find(fence, at)) != text.npos;) {
     at += fence.size();

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 
 namespace deflect {
@@ -13,7 +14,7 @@ using Json = nlohmann::ordered_json;
 class ReproduceProgram : public ::testing::Test {
  protected:
   test::Run in_folder(const std::string& arguments) {
-    return test::command("cd '" + (folder / ".").string() + "' && '" + DEFLECT_PROGRAM + "' " + arguments);
+    return test::command("cd '" + (folder / ".").string() + "' && '" + test::program() + "' " + arguments);
   }
   void make(const std::string& arguments) {
     const test::Run run = in_folder(arguments);
@@ -91,7 +92,7 @@ TEST_F(ReproduceProgram, ADifferenceIsNamedByItsPath) {
 
 TEST_F(ReproduceProgram, InputsThatChangedOrAreMissingAreRefused) {
   make("devices 3-rrr > mine.yaml");
-  make("solve mine.yaml --load 5,0,0 --joints 0,0,0 --json solve.json || '" DEFLECT_PROGRAM
+  make("solve mine.yaml --load 5,0,0 --joints 0,0,0 --json solve.json || '" + test::program() +
        "' show mine.yaml --json solve.json");
   std::ofstream(folder / "mine.yaml", std::ios::app) << "# another line\n";
   expect_refused("solve.json", 2, "mine.yaml has changed");

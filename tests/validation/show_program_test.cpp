@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "tests/support/page.h"
+#include "tests/support/paths.h"
 #include "validation/page/page.h"
 
 namespace deflect {
@@ -111,7 +112,7 @@ TEST_F(ShowProgram, WhatCannotStandIsDrawnWithItsMotions) {
 }
 
 TEST_F(ShowProgram, LoopsThatDoNotCloseShowEachLegAlone) {
-  std::string text = contents(DEFLECT_SOURCE_DIR "/validation/devices/3-rrr.yaml");
+  std::string text = contents(test::source_dir() + "/validation/devices/3-rrr.yaml");
   const std::size_t at = text.find("180 mm");
   write("open.yaml", text.replace(at, 6, "30 mm"));  // cranks that cannot reach
   const json d = shown(path("open.yaml"));

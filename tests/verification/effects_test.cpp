@@ -7,6 +7,7 @@
 #include "msa/mechanism/stand.h"
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
+#include "tests/support/paths.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
 #include "validation/measurement/configure_all.h"
@@ -21,9 +22,7 @@ using namespace measurement;
 using namespace prediction;
 using namespace theories;
 
-std::vector<Effect> all_effects() {
-  return catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
-}
+std::vector<Effect> all_effects() { return catalogue(test::source_dir() + "/validation/effects/catalogue"); }
 
 /// Fifty poses, each with a load that rises, falls and turns round, and a temperature of its own.
 Measurements plan(const Mechanism& m, std::mt19937& random) {

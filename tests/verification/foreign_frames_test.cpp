@@ -12,6 +12,7 @@
 
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/place_effects.h"
 #include "validation/json/json_text.h"
@@ -22,7 +23,7 @@ namespace {
 
 std::filesystem::path folder() {
   const char* named = std::getenv("DEFLECT_FOREIGN_FRAMES");
-  return named ? named : DEFLECT_SOURCE_DIR "/tests/verification/foreign_frames";
+  return named ? named : test::source_dir() + "/tests/verification/foreign_frames";
 }
 
 Json truths() {
@@ -68,7 +69,7 @@ class ForeignFrame : public testing::TestWithParam<std::string> {};
 
 TEST_P(ForeignFrame, WhatIsHiddenIsNamedOrTied) {
   const Json truth = truths().at(GetParam());
-  const subject::Subject s = frame::read_frame(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/frames" /
+  const subject::Subject s = frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" /
                                                (truth.at("frame").get<std::string>() + ".yaml"));
   const auto data = s.placed(measurement::read_measurements(folder() / GetParam(), s.instruments()));
   std::vector<effects::Effect> all = test::all_effects();

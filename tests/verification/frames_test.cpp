@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/support/frames.h"
+#include "tests/support/paths.h"
 
 namespace deflect {
 namespace {
@@ -21,7 +22,7 @@ void expect_checks_hold(const Solved& s) { EXPECT_EQ(frame::failed_check(s.resul
 TEST(Frames, EveryFileOfAPublishedCaseNamesItsSourceAndHoldsItsChecks) {
   std::size_t files = 0;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/cases")) {
+       std::filesystem::directory_iterator(std::filesystem::path(test::source_dir()) / "validation/cases")) {
     const Solved s(case_file(entry.path().stem().string()));
     EXPECT_NE(s.frame.source, "") << entry.path();
     EXPECT_EQ(s.frame.name, entry.path().stem().string());

@@ -7,6 +7,7 @@
 #include "msa/frame/mechanism/msa.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/support/mechanisms.h"
+#include "tests/support/paths.h"
 #include "validation/studies/solve.h"
 #include "validation/theories/agreement.h"
 #include "validation/theories/analytic_theory.h"
@@ -35,7 +36,7 @@ Vector6 wrench(double fx, double fy, double fz, double mx, double my, double mz)
 // Three slides along the axes, each with 0.01 mm of play, and legs that hold no translation but along their slide: at
 // this pose T moves with the slides, so that it floats by the gap along each axis that no force pushes.
 TEST(FloatingPlay, IsTheGapOfTheDrivesThatCarryNothing) {
-  const Mechanism m = read_mechanism(std::string(DEFLECT_SOURCE_DIR) + "/tests/attack/cases/tripteron-backlash.yaml");
+  const Mechanism m = read_mechanism(test::source_dir() + "/tests/attack/cases/tripteron-backlash.yaml");
   const Configuration c = stand(m, wrench(500, 500, 500, 0, 0, 0)).configuration;
   struct Case {
     Vector6 F;

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "tests/support/devices.h"
+#include "tests/support/paths.h"
 #include "tests/support/practice.h"
 #include "validation/compare/comparison.h"
 #include "validation/diagnosis/diagnosis.h"
@@ -50,7 +51,7 @@ class Practice : public testing::TestWithParam<Hidden> {
 };
 
 Mechanism with_effects(const Hidden& h, const std::vector<double>& values) {
-  static const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
+  static const std::vector<Effect> all = catalogue(test::source_dir() + "/validation/effects/catalogue");
   Mechanism m = test::with(test::device("haptic-6psu-ideal-joints"), "geometry", "finite");
   std::size_t next = 0;
   for (const std::string& name : h.effects) {
@@ -129,7 +130,7 @@ TEST_P(PracticeDiagnosed, TheKeyIsFound) {
   const auto& [set, missing] = GetParam();
   const auto file = test::practice_set(set);
   if (!file) GTEST_SKIP() << "only with DEFLECT_PRACTICE";
-  const std::vector<Effect> all = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
+  const std::vector<Effect> all = catalogue(test::source_dir() + "/validation/effects/catalogue");
   const Diagnosis d = diagnose(test::device("haptic-6psu-ideal-joints"), read_measurements(*file), all);
   if (missing == std::vector<std::string>{"unknown"}) {
     EXPECT_EQ(d.verdict, Verdict::unknown_effect);
@@ -163,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
 // The FANUC's six joint springs, by least squares over its 43 measured rows (validation/measurements): what the
 // readings ask for beyond the published springs, joint by joint.
 TEST(Fanuc, SixJointSpringsFitTheMeasurements) {
-  const std::filesystem::path file = DEFLECT_SOURCE_DIR "/validation/measurements/fanuc-r2000ic.csv";
+  const std::filesystem::path file = test::source_dir() + "/validation/measurements/fanuc-r2000ic.csv";
   const Mechanism m = test::device("fanuc-r2000ic");
   const Measurements data = read_measurements(file);
   const Comparison c = compare::compare(m, data);
@@ -199,10 +200,10 @@ class Cycloid : public testing::TestWithParam<const char*> {};
 // motion that the loop shows to a tenth. Of the play tests; the README of the diagnosis has the stiffness tests, which
 // take minutes each.
 TEST_P(Cycloid, WhatIsNamedSitsAtTheDriveAndGivesTheLostMotion) {
-  const std::filesystem::path folder = DEFLECT_SOURCE_DIR "/validation/measurements/cycloid";
+  const std::filesystem::path folder = test::source_dir() + "/validation/measurements/cycloid";
   const Mechanism m = read_mechanism(folder / "actuator.yaml");
   const Measurements data = read_measurements(folder / (std::string(GetParam()) + ".csv"));
-  std::vector<Effect> effects = catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
+  std::vector<Effect> effects = catalogue(test::source_dir() + "/validation/effects/catalogue");
   for (Effect& e : place_effects(m, effects)) effects.push_back(std::move(e));
   const Diagnosis d = diagnose(m, data, effects);
   bool rubs = false;

@@ -12,6 +12,7 @@
 #include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
+#include "tests/support/paths.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/place_effects.h"
 #include "validation/measurement/joined.h"
@@ -29,7 +30,7 @@ constexpr double lambda = 8, force = 50, sigma = 2e-6;
 constexpr std::size_t most_random = 1120;  // readings: four campaigns
 
 subject::Subject subject_of(const std::string& name) {
-  const std::string folder = std::string(DEFLECT_SOURCE_DIR) + "/validation/";
+  const std::string folder = test::source_dir() + "/validation/";
   const std::string device = folder + "devices/" + name + ".yaml";
   if (std::filesystem::exists(device)) return read_mechanism(device);
   return frame::read_frame(folder + "frames/" + name + ".yaml");
@@ -79,7 +80,7 @@ class Loop {
  public:
   Loop(const Tied& t, std::uint64_t seed, int threads)
       : subject_(subject_of(t.subject)), seed_(seed), threads_(threads) {
-    effects_ = effects::catalogue(std::string(DEFLECT_SOURCE_DIR) + "/validation/effects/catalogue");
+    effects_ = effects::catalogue(test::source_dir() + "/validation/effects/catalogue");
     for (effects::Effect& e : effects::place_effects(subject_, effects_)) effects_.push_back(std::move(e));
     for (const std::string& name : {t.first, t.second}) pair_.push_back({&effects::find_effect(effects_, name), {}});
   }

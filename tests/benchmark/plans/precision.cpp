@@ -7,6 +7,7 @@
 
 #include "msa/base/index.h"
 #include "msa/mechanism/device_file.h"
+#include "tests/support/paths.h"
 #include "validation/measurement/random.h"
 #include "validation/plan/campaign_aims.h"
 #include "validation/plan/foresight.h"
@@ -63,8 +64,7 @@ plan::Possible as_taken(const Measurements& data) {
 }  // namespace
 
 std::string precision_table(const std::string& device, double force, int threads) {
-  const subject::Subject s =
-      read_mechanism(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/" + device + ".yaml");
+  const subject::Subject s = read_mechanism(test::source_dir() + "/validation/devices/" + device + ".yaml");
   const Measurements paper = prediction::campaign("paper", *s.machine(), force, 1);
   plan::ForesightOptions o;
   const parallel::Work work{threads};
