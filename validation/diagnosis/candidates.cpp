@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -65,7 +66,16 @@ std::vector<double> shared_priors(const std::vector<Signature>& all, const std::
 
 /// What is sure to be less likely than the best by this logarithm is not fitted.
 constexpr double far_behind = 6;
-constexpr std::size_t few_fits = 8;
+/// Fits that are begun together. The next ones are compared with the best of these; the number does not depend on the
+/// threads, so that the answer does not.
+constexpr std::size_t at_once = 8;
+
+/// A candidate to be fitted, and the most that ln of its class's odds can become by it.
+struct Promise {
+  std::size_t signature;
+  double most;
+};
+constexpr double certain = 1e9;
 
 /// Physics lets it act to one side only, and the residual asks for the other.
 bool wrong_way(const Signature& s, const VectorX& residual) {
@@ -150,39 +160,47 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   const auto enough = [best](const Signature& s) {
     return std::max(near_nothing, (s.shaped ? 0.1 : 0.5) * best - hopeless);
   };
-  std::atomic<std::size_t> done = 0;
+  const auto fit_one = [&](std::size_t i, int within) {
+    Candidate& c = out[i];
+    const Signature& s = signatures_[i];
+    c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual), within);
+    if (known && same(*known, s.effect))
+      c.fit = better(std::move(c.fit), fit(observations, c.hypothesis, so_far.values, known->values));
+    if (s.effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))
+      c.fit = not_found(fmt::format("its {} runs to the end of what it can be, {:g}",
+                                    s.effect.effect->parameters.front().name, c.fit.values.tail<1>()(0)));
+    c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
+    c.log_odds = log_odds(i, c.gain, priors_[i]);
+  };
   // Entries first: of the many laws at places only those are fitted that can come near them.
-  std::vector<std::size_t> entries, places;
-  for (std::size_t i = 0; i < out.size(); ++i) (signatures_[i].effect.effect->place ? places : entries).push_back(i);
-  double bar = least;
-  for (const std::vector<std::size_t>* part : {&entries, &places}) {
-    const auto promises = [&](std::size_t i) {
-      const Signature& s = signatures_[i];
-      return allowed[i] && out[i].gain >= enough(s) && log_odds(i, can_gain(s, out[i].gain), class_priors_[i]) > bar;
-    };
-    // Where few are fitted, one with many starts would keep one thread busy long after the others.
-    const auto fitted_now = as_size(std::count_if(part->begin(), part->end(), promises));
-    const int within = fitted_now <= few_fits ? threads_ : 1;
-    parallel::for_each_case(part->size(), 1, threads_, [&](std::size_t k) {
-      const std::size_t i = (*part)[k];
-      Candidate& c = out[i];
-      const Signature& s = signatures_[i];
-      if (promises(i)) {
-        c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual), within);
-        if (known && same(*known, s.effect))
-          c.fit = better(std::move(c.fit), fit(observations, c.hypothesis, so_far.values, known->values));
-        if (s.effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))
-          c.fit = not_found(fmt::format("its {} runs to the end of what it can be, {:g}",
-                                        s.effect.effect->parameters.front().name, c.fit.values.tail<1>()(0)));
-        c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
-      }
-      c.log_odds = allowed[i] ? log_odds(i, c.gain, priors_[i]) : out_of_question;
-      c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations.numbers());
-      if (progress_) progress_(++done, out.size());
-    });
-    for (const std::size_t i : *part)
-      if (out[i].fit.found) bar = std::max(bar, out[i].log_odds - far_behind);
+  std::array<std::vector<Promise>, 2> parts;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Signature& s = signatures_[i];
+    out[i].log_odds = allowed[i] ? log_odds(i, out[i].gain, priors_[i]) : out_of_question;
+    if (!allowed[i] || out[i].gain < enough(s)) continue;
+    const bool asked_again = known && same(*known, s.effect);
+    parts[s.effect.effect->place ? 1 : 0].push_back(
+        {i, asked_again ? certain : log_odds(i, can_gain(s, out[i].gain), class_priors_[i])});
   }
+  const std::size_t all = parts[0].size() + parts[1].size();
+  std::atomic<std::size_t> done = 0;
+  double bar = least;
+  for (std::vector<Promise>& part : parts) {
+    std::stable_sort(part.begin(), part.end(), [](const Promise& a, const Promise& b) { return a.most > b.most; });
+    for (std::size_t from = 0; from < part.size() && part[from].most > bar; from += at_once) {
+      const std::size_t count = std::min(at_once, part.size() - from);
+      // Where few are fitted, one with many starts would keep one thread busy long after the others.
+      const int within = count < at_once ? threads_ : 1;
+      parallel::for_each_case(count, 1, threads_, [&](std::size_t k) {
+        if (part[from + k].most > bar) fit_one(part[from + k].signature, within);
+        if (progress_) progress_(++done, all);
+      });
+      for (std::size_t k = from; k < from + count; ++k)
+        if (out[part[k].signature].fit.found) bar = std::max(bar, out[part[k].signature].log_odds - far_behind);
+    }
+  }
+  for (Candidate& c : out) c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations.numbers());
+  if (progress_) progress_(1, 1);
   add_up_classes(out);
   return out;
 }
