@@ -37,7 +37,7 @@ endif()
 # Below deflect/ the headers keep their paths, because that is how they include each other.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/msa/*.h
      ${PROJECT_SOURCE_DIR}/analytic/*.h ${PROJECT_SOURCE_DIR}/meshes/*.h ${PROJECT_SOURCE_DIR}/validation/*.h)
-list(FILTER headers EXCLUDE REGEX "^validation/cli/")
+list(FILTER headers EXCLUDE REGEX "^validation/(cli|python)/")
 foreach(header ${headers})
   cmake_path(GET header PARENT_PATH folder)
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/deflect/${folder}

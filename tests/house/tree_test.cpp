@@ -78,6 +78,7 @@ TEST(Tree, ErrorsAreCaughtWhereThereIsAReason) {
       "msa/base/files.cpp",                 // the border of the file system: what the system said
       "meshes/gmsh_module.cpp",             // the border of Gmsh, which throws texts: nothing leaves a module
       "validation/parallel/mpi_ranks.cpp",  // the border of MPI: nothing leaves a module
+      "validation/python/errors.cpp",       // the border of Python: exceptions by kind
       "validation/cli/motions.cpp",         // what cannot stand is drawn before it is refused
       "validation/cli/main.cpp"};           // the border of CLI11: its errors are usage
   std::vector<Source> sources = read_sources(root, {".h", ".cpp"});

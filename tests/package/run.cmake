@@ -1,6 +1,7 @@
 # The package as its users meet it: installed, moved elsewhere, found by a small project, and run without the source
 # tree. Called by the test `package` with SOURCE, BUILD, SCRATCH, CONFIG, GENERATOR, COMPILER, FLAGS, and the folders
 # below the prefix BINDIR, DATADIR, LIBDIR, MANDIR. MODULES are those of the program; MANUAL whether it has manual pages.
+# PYTHON, where the package for Python was built: the interpreter, and PYTHON_DIR below the prefix.
 set(prefix ${SCRATCH}/moved)
 file(REMOVE_RECURSE ${SCRATCH})
 file(MAKE_DIRECTORY ${SCRATCH})
@@ -78,6 +79,19 @@ function(check_documents prefix)
 endfunction()
 check_documents(${prefix})
 
+# The package for Python solves a machine that it knows by its name.
+function(check_python prefix)
+  if(NOT PYTHON)
+    return()
+  endif()
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PYTHON_DIR} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} -c
+      "import deflect\nprint(deflect.__file__, deflect.load('haptic-6psu').solve([0, 0, 200], [50, 0, 0]).report)")
+  if(NOT output MATCHES "^${prefix}/${PYTHON_DIR}" OR NOT output MATCHES "displacement")
+    message(FATAL_ERROR "The installed package for Python does not solve:\n${output}")
+  endif()
+endfunction()
+check_python(${prefix})
+
 # As a Debian package: only the program and what belongs to it, with all that it links with as dependencies.
 find_program(SHLIBDEPS dpkg-shlibdeps)
 find_program(FILE_TYPE file)
@@ -103,6 +117,7 @@ endforeach()
 run(dpkg-deb --extract ${deb} ${SCRATCH}/root)
 run(${SCRATCH}/root/usr/bin/deflect validate haptic-6psu)
 check_documents(${SCRATCH}/root/usr)
+check_python(${SCRATCH}/root/usr)
 foreach(module ${MODULES})
   if(NOT EXISTS ${SCRATCH}/root/usr/${LIBDIR}/deflect/${module}.so)
     message(FATAL_ERROR "The package has no module ${module}")

@@ -15,6 +15,7 @@
 #include "msa/base/spatial.h"
 #include "validation/measurement/csv.h"
 #include "validation/measurement/measurement_columns.h"
+#include "validation/measurement/parse_plan.h"
 
 namespace deflect::measurement {
 namespace {
@@ -249,12 +250,16 @@ Measurements read_measurements(const std::filesystem::path& path, const Instrume
   return parse_measurements(read_text(path), path.string(), known);
 }
 
-Measurements read_plan(const std::filesystem::path& path, const Instruments& known) {
-  const CsvTable table = parse_csv(read_text(path), path.string());
-  Measurements m = Reader(table, path.string(), known, true).read();
+Measurements parse_plan(std::string text, const std::string& origin, const Instruments& known) {
+  const CsvTable table = parse_csv(std::move(text), origin);
+  Measurements m = Reader(table, origin, known, true).read();
   m.instruments.sensors.clear();
   for (Reading& r : m.readings) r.displacement = {}, r.sensors.clear();
   return m;
+}
+
+Measurements read_plan(const std::filesystem::path& path, const Instruments& known) {
+  return parse_plan(read_text(path), path.string(), known);
 }
 
 void scale_load(Reading& r, double factor) {

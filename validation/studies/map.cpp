@@ -14,6 +14,7 @@
 #include "msa/mechanism/configuration.h"
 #include "validation/parallel/pack.h"
 #include "validation/parallel/shared_cases.h"
+#include "validation/studies/sweep.h"
 #include "validation/theories/agreement.h"
 
 namespace deflect::studies {
@@ -97,19 +98,6 @@ std::vector<Vector6> loads_of(const MapOptions& o) {
   return {o.force_N * Vector6::Unit(0), o.force_N * Vector6::Unit(1), o.force_N * Vector6::Unit(2)};
 }
 
-/// The device from pose to pose, by each theory.
-struct Sweep {
-  Posing posing;
-  std::vector<std::unique_ptr<theories::TheoryAt>> theories;
-
-  void stand_in(const Configuration& c, const Mechanism& m, const MapOptions& o) {
-    for (const auto& theory : theories) theory->move_to(c);
-    if (theories.empty())
-      for (const theories::Theory* theory : o.theories)
-        theories.push_back(theory->at(c, {.device = m.name, .condense = true}));
-  }
-};
-
 void tell_slides(MapPose& out, const Configuration& c) {
   double slides = 0;
   for (const Actuator& actuator : c.actuators) {
@@ -132,18 +120,17 @@ MapPose map_pose(Sweep& sweep, const Mechanism& m, const MapOptions& o, const st
     out.reason = out.out_of_reach;  // the same everywhere, its numbers too
     return out;
   }
-  const auto stands = outcome_of<ModelError>([&] { return &sweep.posing.at(pose_from(out.pose_mm_deg)); });
+  const auto stands = outcome_of<ModelError>([&] { return &sweep.at(out.pose_mm_deg); });
   if (!stands) {
     out.out_of_reach = stands.why;
     out.reason = stands.cause.reason.empty() ? stands.why : stands.cause.reason;
     return out;
   }
   const Configuration* c = *stands;
-  sweep.stand_in(*c, m, o);
   tell_slides(out, *c);
   std::vector<std::vector<theories::Answer>> by_load(loads.size());
   for (std::size_t t = 0; t < o.theories.size(); ++t) {
-    for (std::size_t i = 0; i < loads.size(); ++i) by_load[i].push_back(sweep.theories[t]->answer(loads[i]));
+    for (std::size_t i = 0; i < loads.size(); ++i) by_load[i].push_back(sweep.answer(t, loads[i]));
     out.values.push_back(values_of(by_load, t, o));
     check_finite(out.values.back(), m, out.pose_mm_deg, *o.theories[t]);
   }
@@ -247,7 +234,7 @@ StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options, const 
   parallel::SharedCases chunks;
   chunks.count = (poses + chunk - 1) / chunk;
   chunks.work = [&](std::size_t k) {
-    Sweep sweep{Posing(m), {}};
+    Sweep sweep(m, options.theories);
     for (std::size_t i = k * chunk; MapPose & pose : of_chunk(k)) pose = map_pose(sweep, m, options, loads, i++);
   };
   chunks.result = [&](std::size_t k) {

@@ -5,14 +5,13 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
-#include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "msa/base/units.h"
-#include "msa/fields/yaml_tree.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
+#include "validation/fit/plan_of_one.h"
 #include "validation/fit/predicted.h"
 #include "validation/report/validity/predict_results.h"
 
@@ -24,57 +23,32 @@ struct PredictArguments {
   double threads = 0;
 };
 
-/// One reading at one pose.
-measurement::Measurements plan_of_one(measurement::Reading r, measurement::PoseGroup pose) {
-  measurement::Measurements out;
-  out.origin = "--at";
-  r.line = 1;
-  pose.label = "at";
-  pose.readings = {0};
-  out.readings = {std::move(r)};
-  out.poses = {std::move(pose)};
-  return out;
-}
-
-measurement::Measurements plan_of_machine(const Mechanism& m, const PredictArguments& a) {
-  const Stand at = parse_stand(m, a.at, a.joints, false);
-  measurement::Reading r;
-  r.load = wrench_from_mm(parse_load(a.load));
-  measurement::PoseGroup pose;
-  pose.pose_mm_deg = at.pose_mm_deg;
-  if (a.joints.empty()) return plan_of_one(r, pose);
-  const std::vector<Actuator>& driven = at.configuration.actuators;
-  pose.joints.resize(std::ssize(driven));
-  for (std::size_t i = 0; i < driven.size(); ++i) pose.joints(as_index(i)) = driven[i].value;
-  measurement::Measurements out = plan_of_one(r, pose);
-  for (const Actuator& each : driven) out.joint_rotates.push_back(each.rotation);
-  return out;
-}
-
 /// "snow=1,wind=-0.5": factors on load cases.
+std::vector<std::pair<std::string, double>> parse_factors(const std::string& text, const std::string& example) {
+  std::vector<std::pair<std::string, double>> out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    const std::string word = text.substr(from, comma - from);
+    from = comma + 1;
+    const std::size_t equals = word.find('=');
+    if (equals == word.npos) throw InputError(fmt::format("write factors on load cases, as in {}=1", example));
+    out.emplace_back(word.substr(0, equals), parse_number(word.substr(equals + 1)));
+  }
+  return out;
+}
+
 measurement::Measurements plan_of_frame(const subject::Subject& s, const PredictArguments& a) {
   if (!a.joints.empty() || !a.load.empty())
     throw InputError("--joints and --load are of a machine: of a frame give factors on its load cases, --at snow=1");
   const std::vector<std::string> cases = s.instruments().load_cases;
-  measurement::Reading r;
-  r.factors.assign(cases.size(), 0);
-  for (std::size_t from = 0; from <= a.at.size();) {
-    const std::size_t comma = std::min(a.at.find(',', from), a.at.size());
-    const std::string word = a.at.substr(from, comma - from);
-    from = comma + 1;
-    const std::size_t equals = word.find('=');
-    const std::string name = word.substr(0, equals);
-    const auto found = std::find(cases.begin(), cases.end(), name);
-    if (equals == word.npos || found == cases.end())
-      throw InputError(fmt::format("--at '{}': write factors on load cases, as in {}=1{}", a.at,
-                                   cases.empty() ? "snow" : cases.front(), suggestion(name, cases)));
-    r.factors[as_size(found - cases.begin())] = told_at<InputError>(
-        [&] { return fmt::format("--at '{}': ", a.at); }, [&] { return parse_number(word.substr(equals + 1)); });
-  }
-  measurement::Measurements out = plan_of_one(r, {});
-  out.instruments.load_cases = cases;
-  out.instruments.stationary = true;
-  return out;
+  return told_at<InputError>(
+      [&] { return fmt::format("--at '{}': ", a.at); },
+      [&] { return fit::plan_of_one(s, parse_factors(a.at, cases.empty() ? "snow" : cases.front())); });
+}
+
+measurement::Measurements plan_of_machine(const Mechanism& m, const PredictArguments& a) {
+  const Stand at = parse_stand(m, a.at, a.joints, false);
+  return fit::plan_of_one(at, wrench_from_mm(parse_load(a.load)), !a.joints.empty());
 }
 
 measurement::Measurements plan_of(const subject::Subject& s, const PredictArguments& a) {

@@ -1,0 +1,297 @@
+"""Machines and frames as values."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import warnings
+from typing import Any, Iterable
+
+import numpy as np
+
+from . import _core, _sources
+from .errors import InputError
+from .results import FrameSolution, progress_of
+from .solution import Solution
+from .units import displacement_from_mm, loads_in_mm, poses_in_mm, require_units, stiffness_from_mm
+
+
+@dataclasses.dataclass(frozen=True)
+class Place:
+    """Where an effect can act: see `deflect effects --device`."""
+
+    id: str
+    name: str
+    kind: str
+    part: str
+    path: str
+    hold: str
+    freedoms: tuple[str, ...] = ()
+    motion: str = ""
+    leg: int | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Sensor:
+    """A named sensor: the unit of its column, and the standard deviation of a reading, in that unit, where known."""
+
+    name: str
+    unit: str
+    sigma: float | None = None
+
+
+class Remark(UserWarning):
+    """Something in a description that a person should look at again."""
+
+
+class Subject:
+    """A machine (Model) or a frame (Frame): immutable; changes give another one. Can be pickled, copied and shared by
+    threads."""
+
+    def __init__(self, core: _core.Subject, text: str = ""):
+        self._core, self._text = core, text
+
+    @property
+    def name(self) -> str:
+        return self._core.name
+
+    @property
+    def about(self) -> str:
+        return self._core.about
+
+    @property
+    def yaml(self) -> str:
+        """A file of it: load(m.yaml) is the same to the last bit of every number."""
+        return self._core.yaml(self.name, self.about)
+
+    @property
+    def source(self) -> str:
+        """The text that it was read from, with its comments and units; of a changed one ``yaml``."""
+        return self._text or self.yaml
+
+    def places(self) -> list[Place]:
+        """The places where effects can act, from what the parts are."""
+        return [Place(**{**p, "freedoms": tuple(p["freedoms"])}) for p in json.loads(self._core.places_json())]
+
+    def sensors(self) -> list[Sensor]:
+        """Its named sensors; a machine without any is read at its tool point."""
+        return [Sensor(*each) for each in self._core.sensors()]
+
+    def effects(self, effects: Any = ()) -> list[dict[str, Any]]:
+        """What it can lack: the catalogue, own ``effects`` and the laws at its places, as `deflect effects --json`."""
+        content = json.loads(_core.effects_json(_sources.effect_sources(effects), self._core))
+        return content["effects"] if isinstance(content, dict) else content
+
+    def named(self, name: str):
+        """The same under another name."""
+        return type(self)(self._core.named(name), "")
+
+    def edited(self, path: str | dict[str, Any], value: Any = None, action: str = "set"):
+        """With a field of the description changed; checked like a file. Several by a dict of path -> value.
+
+        ``path``    "materials.steel.E", "leg.ball_joint.tz", "leg[4].guideway.bending_factor", "materials.*.E"
+        ``value``   as in a file: "200 GPa", or a number, list or dict: {"law": "linear", "stiffness": "500 N/mm"}
+        ``action``  "set", "append" (laws in series), "multiply" or "add"
+
+        Raises InputError with path, value and the nearest valid name.
+        """
+        pairs = path.items() if isinstance(path, dict) else [(path, value)]
+        return type(self)(self._core.edited([(p, _sources.as_yaml(v), action) for p, v in pairs]))
+
+    def with_effect(self, effect: Any, /, *, leg: int | None = None, effects: Any = (), **parameters: float):
+        """With an effect of the catalogue, of its places ("clearance@elbow.rz") or of ``effects`` (files, texts or
+        dicts of effect files); or one such dict itself. Parameters in the units that their names end with:
+
+        >>> m.with_effect("guide_root_compliance", stiffness_Nmm_per_rad=5e6)
+
+        Raises InputError for an effect, parameter or leg that it does not have.
+        """
+        if isinstance(effect, dict):
+            effects, effect = [effect], effect["effect"]
+        asked = _core.AskedEffect(effect, leg, [(k, float(v)) for k, v in parameters.items()])
+        return type(self)(self._core.with_effect(_sources.effect_sources(effects), asked))
+
+    def __eq__(self, other: Any) -> bool:
+        return isinstance(other, Subject) and self.yaml == other.yaml
+
+    def __hash__(self) -> int:
+        return hash(self.yaml)
+
+    def __reduce__(self):
+        return _restored, (type(self), self.yaml, self._text)
+
+    def __copy__(self):
+        return self
+
+    def __deepcopy__(self, memo):
+        return self
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.about}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}>"
+
+
+class Model(Subject):
+    """A machine, measured at its tool point T. Poses are x y z roll pitch yaw of T in the base frame; loads fx fy fz mx
+    my mz act on T about T, displacements ux uy uz thx thy thz are those of T, both in base axes. Units mm, deg, N, Nmm
+    and rad for displacements; with units="SI" m, rad, N, Nm."""
+
+    @property
+    def home(self) -> np.ndarray:
+        """(6,) mm, deg: the pose from which the kinematics start."""
+        return self._core.home()
+
+    @property
+    def legs(self) -> int:
+        return self._core.legs
+
+    def solve(self, pose: Iterable[float] | None = None, load: Iterable[float] | None = None, *,
+              joints: Iterable[float] | None = None, geometry: str = "linear", theories: Iterable[str] | None = None,
+              elements: int = 0, units: str = "mm") -> Solution:
+        """One pose under one load by every theory, with the checks of `deflect solve`.
+
+        ``pose``      (6,) or (3,); home without it
+        ``load``      (6,) or (3,); zero without it
+        ``joints``    (n,) coordinates instead of the pose: slides in mm (SI: m), turns in rad
+        ``geometry``  shape in which forces balance: "linear", "second-order" or "finite"
+        ``theories``  names; all without it
+        ``elements``  of the MSA for each member; 0: one, or in a deformed shape eight
+
+        Raises InputError, MechanismError (out of reach, cannot stand), NumericalError (a failed check).
+        """
+        si = require_units(units)
+        load = (0.0,) * 6 if load is None else load
+        if si:
+            load = loads_in_mm(_six(load, "load"))
+            pose = None if pose is None else poses_in_mm(_six(pose, "pose"))
+            if joints is not None:
+                raise InputError("joints are in mm and rad: units='SI' goes with pose")
+        at = _core.Asked(() if pose is None else pose, () if joints is None else joints)
+        names = _names(theories)
+        return Solution(_core.solve(self._core, at, load, geometry, names, elements), units)
+
+    def stiffness(self, poses: Any, loads: Any = None, *, theory: str | Iterable[str] | None = None,
+                  out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None):
+        """The 6×6 at many poses, tangent under the loads; in linear geometry.
+
+        ``poses``   (n, 6) or (n, 3); or one, (6,) or (3,). C-contiguous float64 of (n, 6) is not copied
+        ``loads``   (6,) or (3,) for all poses, or (n, 6); zero without it. Without load contacts have no stiffness
+        ``theory``  a name; or None: all theories solve and must agree, and the one that `solve` shows is returned; or
+                    names or "all": a dict of name -> array
+        ``out_of_reach``  "raise" (MechanismError), or "nan"
+        ``threads``       0: all cores. The result has the same bits for any number of them
+
+        Returns (n, 6, 6), or (6, 6) for one pose.
+        """
+        return self._many(poses, loads, theory, (False, True), out_of_reach, threads, units, progress)
+
+    def displacement(self, poses: Any, loads: Any = None, *, theory: str | Iterable[str] | None = None,
+                     out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None):
+        """The displacement of T at many poses under their loads: (n, 6), or (6,) for one pose. Arguments as for
+        stiffness()."""
+        return self._many(poses, loads, theory, (True, False), out_of_reach, threads, units, progress)
+
+    def solve_many(self, poses: Any, loads: Any = None, *, theory: str | Iterable[str] | None = None,
+                   out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None):
+        """(displacement (n, 6), stiffness (n, 6, 6)) at many poses; a dict of such pairs where a dict is asked for.
+        Arguments as for stiffness()."""
+        return self._many(poses, loads, theory, (True, True), out_of_reach, threads, units, progress)
+
+    def _many(self, poses, loads, theory, wanted, out_of_reach, threads, units, progress):
+        si = require_units(units)
+        if out_of_reach not in ("raise", "nan"):
+            raise InputError(f"out_of_reach '{out_of_reach}': write 'raise' or 'nan'")
+        rows = _six(poses, "poses")
+        single = rows.ndim == 1
+        forces = np.zeros(6) if loads is None else _six(loads, "loads")
+        if si:
+            rows, forces = poses_in_mm(rows), loads_in_mm(forces)
+        if single:
+            rows = rows[np.newaxis, :]
+        one = theory if isinstance(theory, str) and theory != "all" else None
+        names = [one] if one else _names(None if theory in (None, "all") else theory)
+        found = _core.solve_many(self._core, rows, forces, names, wanted, out_of_reach == "nan", threads,
+                                 progress_of(progress, self.name))
+        by_theory = {}
+        for name, (d, K) in zip(_in_order(names), found):
+            if si:
+                d = None if d is None else displacement_from_mm(d)
+                K = None if K is None else stiffness_from_mm(K)
+            parts = [x[0] if single else x for x in (d, K) if x is not None]
+            by_theory[name] = parts[0] if len(parts) == 1 else tuple(parts)
+        if one:
+            return by_theory[one]
+        return by_theory[_core.reference_theory] if theory is None else by_theory
+
+
+class Frame(Subject):
+    """A frame of nodes and members under load cases, read by its sensors."""
+
+    @property
+    def load_cases(self) -> list[str]:
+        return self._core.load_cases
+
+    def solve(self, *, solver: str = "auto", progress: Any = None) -> FrameSolution:
+        """Every load case: displacements, reactions, member forces, shares, checks, as `deflect frame`.
+
+        ``solver``  "auto", "direct" or "iterative"
+
+        Raises InputError, MechanismError with ``motions`` where it cannot stand, NumericalError.
+        """
+        return FrameSolution(*_core.solve_frame(self._core, solver, progress_of(progress, self.name)))
+
+
+def _names(theories: Iterable[str] | str | None) -> list[str]:
+    if theories is None:
+        return list(_core.theories)
+    names = [theories] if isinstance(theories, str) else list(theories)
+    if not names:
+        raise InputError(f"theories: name at least one of {', '.join(_core.theories)}")
+    return names
+
+
+def _in_order(names: list[str]) -> list[str]:
+    """In the order of the table, as results are."""
+    return [name for name in _core.theories if name in names]
+
+
+def _six(values: Any, what: str) -> np.ndarray:
+    """(…, 6) of float64, the last three zero where three are given."""
+    rows = np.asarray(values, dtype=np.float64)
+    if rows.ndim in (1, 2) and rows.shape[-1] == 3:
+        rows = np.concatenate([rows, np.zeros_like(rows)], axis=-1)
+    if rows.ndim not in (1, 2) or rows.shape[-1] != 6:
+        raise InputError(f"{what}: shape {rows.shape}; (n, 6), (n, 3), (6,) or (3,) is wanted")
+    return rows
+
+
+def _restored(kind: type, yaml: str, text: str) -> Subject:
+    return kind(_core.parse(yaml, "pickle", kind is Frame), text)
+
+
+def _subject(text: str, origin: str, want_frame: bool) -> Any:
+    core = _core.parse(text, origin, want_frame)
+    for question in core.questions():
+        warnings.warn(f"{origin}: {question}", Remark, stacklevel=3)
+    return (Frame if core.is_frame else Model)(core, text)
+
+
+def load(source: Any) -> Any:
+    """A machine (Model) or a frame (Frame): by a built-in name, a path, the text of a file, or a dict of its fields.
+
+    >>> deflect.load("haptic-6psu").solve([25, 25, 198.9], [50, 0, 0]).displacement
+
+    Raises InputError with file, line, what is wrong and the nearest valid name.
+    """
+    return _subject(*_sources.description(source, ("machine", "frame")), False)
+
+
+def frame(source: Any) -> Frame:
+    """A frame likewise; InputError for a machine."""
+    return _subject(*_sources.description(source, ("frame",)), True)
+
+
+def subject_of(source: Any) -> Any:
+    return source if isinstance(source, Subject) else load(source)
