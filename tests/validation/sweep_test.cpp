@@ -8,12 +8,13 @@
 #include "msa/base/error.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/stand.h"
+#include "tests/support/paths.h"
 #include "validation/studies/solve.h"
 
 namespace deflect::studies {
 namespace {
 
-Mechanism haptic() { return read_mechanism(std::string(DEFLECT_SOURCE_DIR) + "/validation/devices/haptic-6psu.yaml"); }
+Mechanism haptic() { return read_mechanism(test::source_dir() + "/validation/devices/haptic-6psu.yaml"); }
 
 struct Arrays {
   std::vector<double> poses, loads, displacements[2], stiffnesses[2];
