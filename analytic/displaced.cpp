@@ -9,7 +9,11 @@ namespace deflect::analytic {
 AnalyticModel::Between AnalyticModel::between(const Imposed& imposed) const {
   ChainConditions under;
   for (Eigen::Index i = 0; i < imposed.c.size(); ++i) under.steps.push_back({0, imposed.c(i), false});
-  Between out{MatrixX(imposed.c.size(), 6), Matrix6(), std::vector<Matrix6>(legs_.branches.size())};
+  Between out{MatrixX(imposed.c.size(), 6),
+              Matrix6(),
+              std::vector<Matrix6>(legs_.branches.size()),
+              imposed,
+              {stepped_, imposed}};
   for (Eigen::Index k = 0; k < 6; ++k) {
     const Vector6 F = Vector6::Unit(k);
     const AnalyticSolution s = equilibrium_under(F, under);
@@ -31,26 +35,33 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
   if (!straight || !imposed_ || imposed_->S.size() == 0 ||
       (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_))
     return solve(F, conditions);
-  if (!between_) between_ = std::make_shared<const Between>(between(*imposed_));
-  const Between& b = *between_;
+  if (!between_) between_ = std::make_shared<Between>(between(*imposed_));
+  Between& b = *between_;
   const double length = legs_.length;
   const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
   const Vector6 load = F + weight_;
   SteppedForces at{b.forces * load, b.displacement * load, size(load), length, true};
   for (const Matrix6& W : b.wrenches) at.largest = std::max(at.largest, size(W * load));
   const SteppedForces held = at;
-  const Imposed known = *imposed_;
-  const BalancedSteps found = balance(
-      stepped_, conditions.slips,
-      [&](const std::vector<Step>& steps) {
-        VectorX offsets(std::ssize(steps));
-        for (std::size_t i = 0; i < steps.size(); ++i) offsets(as_index(i)) = steps[i].offset;
-        at.forces = held.forces - known.S * offsets;
-        at.displacement = held.displacement + known.T * offsets;
-        return at;
-      },
-      *imposed_);
-  *imposed_ = known;
+  const Imposed& known = b.known;
+  // Of loads in a sequence the next one finds most laws as the last one left them.
+  std::optional<BalancedSteps> same;
+  if (frictions_ > 0) same = b.same.after(held.forces, conditions.slips);
+  const BalancedSteps found = same ? *std::move(same) : [&] {
+    BalancedSteps searched = balance(
+        stepped_, conditions.slips,
+        [&](const std::vector<Step>& steps) {
+          VectorX offsets(std::ssize(steps));
+          for (std::size_t i = 0; i < steps.size(); ++i) offsets(as_index(i)) = steps[i].offset;
+          at.forces = held.forces - known.S * offsets;
+          at.displacement = held.displacement + known.T * offsets;
+          return at;
+        },
+        *imposed_);
+    *imposed_ = known;
+    if (frictions_ > 0) b.same.remember(held.forces, conditions.slips, searched);
+    return searched;
+  }();
   AnalyticSolution s;
   s.converged = found.converged;
   s.message = found.reason;

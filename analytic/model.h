@@ -14,6 +14,7 @@
 
 #include "analytic/chain.h"
 #include "analytic/lines.h"
+#include "analytic/same_phases.h"
 #include "msa/mechanism/conditions.h"
 #include "msa/mechanism/inside.h"
 
@@ -121,11 +122,13 @@ class AnalyticModel {
     MatrixX forces;  ///< of the laws, by load
     Matrix6 displacement;
     std::vector<Matrix6> wrenches;  ///< of the legs
+    Imposed known;                  ///< of which it is
+    SamePhases same;                ///< as the last load left the laws
   };
   Between between(const Imposed&) const;
 
   // Made on first use: a model may be used by one thread at a time.
-  mutable std::shared_ptr<const Between> between_;
+  mutable std::shared_ptr<Between> between_;
   mutable std::shared_ptr<Imposed> imposed_;
   mutable std::shared_ptr<const Deformed> rest_;
 };

@@ -250,6 +250,35 @@ TEST(Displaced, IsWhatSolveSays) {
   }
 }
 
+// From load to load along loops and in jumps: every law in every phase, with a preload and without. What is tried
+// first, the phases of the load before, gives what a search from nothing gives.
+TEST(Displaced, FromOneLoadToTheNextIsWhatSolveSays) {
+  const std::string drive = R"(name: drive
+kinematics: {family: chains}
+leg:
+  drive:
+    joint: motor
+    rz: [{law: linear, stiffness: 240 Nm/rad}, {law: clearance, gap: 4 mrad},
+         {law: one_sided, pull: 0.3 mrad/Nm, push: 0.9 mrad/Nm}, {law: hardening, stiffness: 900 Nm/rad, reference: 50 mrad}]
+    beside: {rz: [{law: friction, moment: 2 Nm, stiffness: 3000 Nm/rad},
+                  {law: friction, moment: 0.2 Nm, share: 0.4, stiffness: 900 Nm/rad}]}
+)";
+  for (const char* preload : {"", "    preload: {rz: 1.5 Nm}\n"}) {
+    const Configuration c = configure_joints(parse_mechanism(drive + preload, "drive.yaml"), VectorX::Zero(1));
+    const analytic::AnalyticModel model(c), whole(c);
+    Conditions quick, slow;
+    for (int i = 0; i <= 460; ++i) {
+      const double Nm = i <= 400 ? 30 * (1 - i / 500.0) * std::sin(2 * pi * i / 130.0) : 30 * std::sin(2.4 * i * i);
+      const analytic::AnalyticSolution a = model.displaced(Nm * Vector6::Unit(5), quick),
+                                       b = whole.solve(Nm * Vector6::Unit(5), slow);
+      ASSERT_TRUE(a.converged && b.converged) << a.message << b.message;
+      ASSERT_NEAR(a.displacement(5), b.displacement(5), 1e-13 + 1e-10 * std::abs(b.displacement(5))) << i << preload;
+      quick.slips = a.slips;
+      slow.slips = b.slips;
+    }
+  }
+}
+
 // An end that yields is a joint between the member and what holds it.
 TEST(MemberEnds, AreJointsInTheMembersAxes) {
   const std::string head = R"(name: beam
