@@ -271,6 +271,51 @@ TEST(MeasuredFrame, NamesWhatIsHidden) {
   }
 }
 
+// B moves along x by 0.02 mm under these loads, C down by 30 mm. With 2 % of the one in the other, x reads 30 times
+// what it should: a thousandth of that is nothing, which is not what it should read either.
+TEST(MeasuredFrame, CrosstalkOfAChannelThatReadsMuchMoreIsNotAUnit) {
+  const Subject s = frame::parse_frame(R"(
+name: arm
+about: an arm, pushed down and along
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {bar: {shape: round, diameter: 20 mm}}
+nodes: {A: [0 m, 0 m, 0 m], B: [0.5 m, 0 m, 0 m], C: [1 m, 0 m, 0 m]}
+members: {inner: {from: A, to: B, section: bar, material: steel}, outer: {from: B, to: C, section: bar, material: steel}}
+supports: {A: clamped}
+loads: {down: {nodes: {C: {fz: -50 N}}}, along: {nodes: {C: {fx: 2 kN}}}}
+sensors:
+  x: {node: B, direction: ux, sigma: 0.01 mm}
+  y: {node: C, direction: uy, sigma: 0.01 mm}
+  z: {node: C, direction: uz, sigma: 0.01 mm}
+tolerances: {modulus: 1 %, load: 0.3 %}
+)",
+                                       "arm");
+  for (const char* effect : {"crosstalk@x.z", "crosstalk@y.z"}) {
+    const diagnosis::Diagnosis d = diagnosed(s, effect, VectorX::Constant(1, 0.02));
+    EXPECT_TRUE(d.mistakes.empty()) << effect << ": " << d.mistakes.front().sentence;
+    EXPECT_TRUE(names_one_of(d, effect)) << effect << ": " << fmt::format("{}", fmt::join(named(d), ", "));
+  }
+}
+
+// What reads enough is still seen to be in another unit, from a zero of its own as well.
+TEST(MeasuredFrame, ChannelsInOtherUnitsAreSeen) {
+  for (const auto& [name, sensor] : {std::pair{"truss-45", "tip_z"}, {"truss-45", "tip_x"}}) {
+    for (const bool free : {false, true}) {
+      frame::FrameDescription f = *built_in(name).frame();
+      for (auto& [each, of] : f.sensors)
+        if (each == sensor) of.free_zero = free;
+      const Subject s = f;
+      Measurements data = subject::simulate_frame(f, subject::frame_campaign("rich", f, 1), {});
+      for (std::size_t k = 0; k < data.instruments.sensors.size(); ++k)
+        if (data.instruments.sensors[k].name == sensor)
+          for (measurement::Reading& r : data.readings) *r.sensors[k] *= 1e3;
+      const compare::Comparison c = compare::compare(s, data);
+      ASSERT_FALSE(c.mistakes.empty()) << sensor << free;
+      EXPECT_EQ(c.mistakes.front().ids.front(), fmt::format("{}_in_um", sensor));
+    }
+  }
+}
+
 // Two springs in series between the beams of a portal: the sensors read what both do together, the rotation of the
 // node between them is what tells them apart. It is 0 to the left of a soft end and the beam's to the right.
 TEST(MeasuredFrame, ATieComesWithTheReadingThatSplitsIt) {

@@ -6,11 +6,18 @@
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "msa/frame/file/frame_description.h"
 
 namespace deflect::compare {
 namespace {
 
 constexpr double share_of_predicted = 0.01, part_taken_away = 0.4, worse_by = 5;
+constexpr double beyond_chance = 30, largest_factor = 2;
+
+bool has_free_zero(const subject::Subject& subject, const std::string& sensor) {
+  const frame::FrameSensor* found = subject.frame() ? find(subject.frame()->sensors, sensor) : nullptr;
+  return found && found->free_zero;
+}
 
 }  // namespace
 
@@ -26,11 +33,11 @@ ChannelScreen::ChannelScreen(const subject::Subject& subject, const Comparison& 
   for (std::size_t k = 0; k < scale_.size(); ++k)
     if (count[k] > 0)
       scale_[k] = std::sqrt((sigma[k] + share_of_predicted * share_of_predicted * predicted[k]) / count[k]);
-  const VectorX deviation = expected_deviations(c);
+  deviation_ = expected_deviations(c);
   double noise = 0;
   for (std::size_t i = 0; i < study_->values.size(); ++i)
     if (const double s = scale_[study_->values[i].channel]; s > 0)
-      noise += std::log1p(std::pow(deviation(as_index(i)) / s, 2));
+      noise += std::log1p(std::pow(deviation_(as_index(i)) / s, 2));
   const auto n = static_cast<double>(std::max<std::size_t>(1, study_->values.size()));
   const double as_recorded = loss(*study_->data, study_->predicted);
   promising_ = as_recorded - part_taken_away * std::max(0.0, as_recorded - noise / n);
@@ -47,6 +54,26 @@ double ChannelScreen::loss(const measurement::Measurements& data, const std::vec
       n += 1;
     }
   return n > 0 ? sum / n : 0;
+}
+
+bool ChannelScreen::follows(const recording::Correction& c) const {
+  return std::all_of(c.scaled_channels.begin(), c.scaled_channels.end(),
+                     [&](const auto& scaled) { return follows(scaled.first, scaled.second); });
+}
+
+bool ChannelScreen::follows(std::size_t channel, double factor) const {
+  double zz = 0, zp = 0, z1 = 0, p1 = 0, weight = 0;
+  for (std::size_t i = 0; i < study_->values.size(); ++i) {
+    const measurement::MeasuredValue& v = study_->values[i];
+    const double e = deviation_(as_index(i));
+    if (v.channel != channel || !(e > 0)) continue;
+    const double z = factor * *study_->data->readings[v.reading].sensors[channel - 6] / e;
+    const double p = study_->predicted[v.reading](as_index(channel)) / e;
+    zz += z * z, zp += z * p, z1 += z / e, p1 += p / e, weight += 1 / (e * e);
+  }
+  if (has_free_zero(subject_, study_->data->instruments.sensors[channel - 6].name) && weight > 0)
+    zz -= z1 * z1 / weight, zp -= z1 * p1 / weight;
+  return 2 * zp - zz > beyond_chance && zp < largest_factor * zz && zz < largest_factor * zp;
 }
 
 double ChannelScreen::loss(const recording::Correction& c) const {

@@ -14,18 +14,27 @@ class ChannelScreen {
   ChannelScreen(const subject::Subject&, const Comparison&, int threads);
 
   double loss(const recording::Correction&) const;
+  /// Whether each channel that the correction scales follows its prediction then: with corrected z, predicted p and
+  /// expected deviations e,
+  ///   Σ (p² − (z − p)²)/e² > 30, and Σ z p/e² / Σ z²/e², the factor that would fit best, from 1/2 to 2;
+  /// z and p from their means where the zero is free.
+  /// Else the prediction is nothing, nearly, and any correction that makes nothing of the readings would fit: readings
+  /// of a hundredth of another channel are not in µm.
+  bool follows(const recording::Correction&) const;
   /// A correction is promising with a loss below this: it takes away 40 % of what is beyond noise and tolerances.
   double promising() const { return promising_; }
   /// Losses that differ by less are alike.
   double equal_within() const { return equal_within_; }
 
  private:
+  bool follows(std::size_t channel, double factor) const;
   double loss(const measurement::Measurements&, const std::vector<VectorX>& predicted) const;
 
   const subject::Subject& subject_;
   const ResidualStudy* study_;
   int threads_;
   std::vector<double> scale_;  // by channel
+  VectorX deviation_;          // expected, by measured number
   double promising_ = 0, equal_within_ = 0;
 };
 

@@ -128,7 +128,8 @@ std::vector<Tried> promising_poses(const Comparison& c, const CorrectionScreen& 
 
 std::vector<Tried> promising_channels(const ChannelScreen& screen, const std::vector<recording::Correction>& all) {
   Promising out(screen.promising());
-  for (const recording::Correction& correction : all) out.add(correction, screen.loss(correction));
+  for (const recording::Correction& correction : all)
+    if (screen.follows(correction)) out.add(correction, screen.loss(correction));
   return std::move(out).sorted();
 }
 

@@ -12,7 +12,8 @@
 //     before any physics;
 //   - where the correction leaves only noise and less than 1/20 of the misfit.
 // A fitted correction (a shift of the poses or of the point of the load) is reported only where it leaves only noise
-// or, nearly as good, less than 1/20 of the misfit.
+// or, nearly as good, less than 1/20 of the misfit. A sensor is in another unit only where its readings, so corrected,
+// follow the prediction beyond chance (ChannelScreen::follows): else it may as well read something of another sensor.
 #pragma once
 
 #include <functional>
