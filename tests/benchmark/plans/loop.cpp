@@ -26,8 +26,10 @@ namespace {
 
 using measurement::Measurements;
 
-constexpr double lambda = 8, force = 50, sigma = 2e-6;
-constexpr std::size_t most_random = 1120;  // readings: four campaigns
+constexpr double force = 50, sigma = 2e-6;
+constexpr double decided = 0.95;          // probability of either rival
+constexpr std::size_t most_planned = 80;  // readings
+constexpr int most_campaigns = 4;         // "random" of 280 readings each on a machine
 
 subject::Subject subject_of(const std::string& name) {
   const std::string folder = test::source_dir() + "/validation/";
@@ -64,8 +66,8 @@ VectorX values_at(const effects::Effect& e, double times) {
   return out;
 }
 
-/// As large as λ on those readings.
-VectorX sized(const diagnosis::Observations& o, const effects::PlacedEffect& e) {
+/// Values at which it is as large as λ on those readings.
+VectorX sized(const diagnosis::Observations& o, const effects::PlacedEffect& e, double lambda) {
   double x = 0;
   for (int tries = 0; tries < 30; ++tries) {
     const subject::Subject with = effects::with_effect(o.subject(), {e, values_at(*e.effect, std::exp(x))});
@@ -79,7 +81,7 @@ VectorX sized(const diagnosis::Observations& o, const effects::PlacedEffect& e) 
 class Loop {
  public:
   Loop(const Tied& t, std::uint64_t seed, int threads)
-      : subject_(subject_of(t.subject)), seed_(seed), threads_(threads) {
+      : subject_(subject_of(t.subject)), tied_(t), seed_(seed), threads_(threads) {
     effects_ = effects::catalogue(test::source_dir() + "/validation/effects/catalogue");
     for (effects::Effect& e : effects::place_effects(subject_, effects_)) effects_.push_back(std::move(e));
     for (const std::string& name : {t.first, t.second}) pair_.push_back({&effects::find_effect(effects_, name), {}});
@@ -93,17 +95,21 @@ class Loop {
     const Measurements paper = campaign_of(subject_, "paper", machine);
     compare::ComparisonOptions recorded;
     recorded.as_recorded = true;
-    const diagnosis::Observations healthy(subject_, sequenced(read(subject_, paper, machine, machine + 1)), recorded,
-                                          parallel::alone);
-    const subject::Subject built = effects::with_effect(subject_, {truth, sized(healthy, truth)});
+    const Measurements as_drawn = sequenced(read(subject_, paper, machine, machine + 1));
+    const diagnosis::Observations healthy(subject_, as_drawn, recorded, parallel::alone);
+    const subject::Subject built = effects::with_effect(subject_, {truth, sized(healthy, truth, tied_.lambda)});
     const Measurements before = sequenced(read(built, paper, machine, machine + 2));
     std::vector<plan::Rival> rivals = fitted(before, out.before, index % 2);
     if (rivals.size() < 2) {
       out.skipped = "one of the two cannot be fitted";
       return out;
     }
+    out.tied = std::max(rivals[0].probability, rivals[1].probability) < decided;
+    if (!out.tied) return out;
     plan::PlanOptions o;
     o.seed = machine;
+    if (tied_.moment > 0) o.limits.moment = tied_.moment;
+    o.readings = most_planned;
     const auto begun = std::chrono::steady_clock::now();
     const plan::Plan plan = plan::next_readings(subject_, before, rivals, o, {threads_});
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -112,7 +118,7 @@ class Loop {
       return out;
     }
     out.planned = plan.readings.readings.size();
-    const Measurements after = read(built, subject_.placed(plan.readings), machine, machine + 3);
+    const Measurements after = read_after(paper, plan.readings, built, machine);
     const Measurements all = subject_.placed(measurement::joined({before, after}));
     plan::PlanOptions as_fitted = o;
     as_fitted.draws = 1;
@@ -120,7 +126,7 @@ class Loop {
     fitted(all, out.found, index % 2);
     out.right = out.found > 0;
     out.found -= out.before;
-    std::tie(out.at_random, out.at_random_is_more) = at_random(built, before, rivals, o, plan.probability, machine);
+    std::tie(out.at_random, out.at_random_is_more) = at_random(before, rivals, o, plan.probability, machine);
     return out;
   }
 
@@ -145,43 +151,54 @@ class Loop {
     return out;
   }
 
-  /// The fewest readings of the campaign "random" after those before that promise as much; whether even all do not.
-  std::pair<std::size_t, bool> at_random(const subject::Subject& built, const Measurements& before,
-                                         const std::vector<plan::Rival>& rivals, const plan::PlanOptions& o,
-                                         double probability, std::uint64_t machine) const {
-    std::vector<Measurements> campaigns;
-    std::size_t all = 0;
-    for (std::uint64_t k = 0; all < most_random; ++k) {
-      campaigns.push_back(
-          sequenced(read(built, campaign_of(subject_, "random", machine + k), machine, machine + 10 + k)));
-      all += campaigns.back().readings.size();
+  /// The fewest readings of the campaign "random", in its order, after those before that promise as much; whether even
+  /// all do not.
+  std::pair<std::size_t, bool> at_random(const Measurements& before, const std::vector<plan::Rival>& rivals,
+                                         const plan::PlanOptions& o, double probability, std::uint64_t machine) const {
+    std::size_t readings = 0;
+    for (const int campaigns : {1, most_campaigns}) {
+      std::vector<Measurements> all = {before};
+      for (int k = 0; k < campaigns; ++k)
+        all.push_back(
+            sequenced(as_if_read(campaign_of(subject_, "random", machine + static_cast<std::uint64_t>(k)), before)));
+      plan::Possible possible;
+      possible.all = subject_.placed(measurement::joined(all));
+      possible.taken = before.readings.size();
+      for (std::size_t i = possible.taken; i < possible.all.readings.size(); ++i)
+        possible.blocks.push_back({i, 1, possible.all.readings[i].pose});
+      readings = possible.blocks.size();
+      const plan::Prospect prospect(subject_, std::move(possible), o.noise, {threads_});
+      const plan::Rivalry rivalry(prospect, subject_, rivals, o.draws, o.seed, {threads_});
+      plan::RivalryAim aim(rivalry, {}, probability);
+      for (std::size_t used = 0; used < readings;) {
+        aim.take(used);
+        if (++used; aim.reached()) return {used, false};
+      }
     }
-    const Measurements many = measurement::joined(campaigns);
-    const auto enough = [&](std::size_t n) {
-      const auto expected =
-          outcome_of([&] { return plan::expected_of(subject_, before, first_of(many, n), rivals, o, {threads_}); });
-      return expected && expected->probability >= probability;
-    };
-    std::size_t low = 0, high = 8;
-    while (high < most_random && !enough(high)) low = high, high *= 2;
-    if (high >= most_random) {
-      high = most_random;
-      if (!enough(high)) return {high, true};
-    }
-    while (high > low + 1 && static_cast<double>(high) > 1.15 * static_cast<double>(low)) {
-      const std::size_t middle = (low + high) / 2;
-      (enough(middle) ? high : low) = middle;
-    }
-    return {high, false};
+    return {readings, true};
   }
 
-  static Measurements first_of(Measurements m, std::size_t n) {
-    m.readings.resize(std::min(n, m.readings.size()));
-    std::erase_if(m.poses, [&](measurement::PoseGroup& p) {
-      std::erase_if(p.readings, [&](std::size_t i) { return i >= m.readings.size(); });
-      return p.readings.empty();
-    });
+  /// With a number in each cell that the data have, which a plan does not look at.
+  static Measurements as_if_read(Measurements m, const Measurements& data) {
+    const measurement::Reading& like = data.readings.front();
+    m.instruments.sensors = data.instruments.sensors;
+    for (measurement::Reading& r : m.readings) {
+      r.displacement = like.displacement;
+      r.sensors = like.sensors;
+      r.sigma_u = like.sigma_u;
+      r.sigma_th = like.sigma_th;
+    }
     return m;
+  }
+
+  /// Planned readings of the machine that went through the campaign before them: friction still holds what it held.
+  Measurements read_after(const Measurements& before, const Measurements& plan, const subject::Subject& built,
+                          std::uint64_t machine) const {
+    plan::Possible both;
+    both.taken = before.readings.size();
+    both.all = read(built, subject_.placed(measurement::joined({sequenced(before), plan})), machine, machine + 3);
+    both.blocks = {{both.taken, plan.readings.size(), before.poses.size()}};
+    return plan::without_data(std::move(both)).all;
   }
 
   static Measurements sequenced(Measurements m) {
@@ -190,6 +207,7 @@ class Loop {
   }
 
   subject::Subject subject_;
+  Tied tied_;
   std::vector<effects::Effect> effects_;
   std::vector<effects::PlacedEffect> pair_;
   std::uint64_t seed_;
@@ -200,7 +218,7 @@ template <class Of>
 double median(const std::vector<LoopResult>& all, const Of& of) {
   std::vector<double> values;
   for (const LoopResult& r : all)
-    if (r.skipped.empty()) values.push_back(static_cast<double>(of(r)));
+    if (r.skipped.empty() && r.tied) values.push_back(static_cast<double>(of(r)));
   if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -220,10 +238,12 @@ std::vector<LoopResult> run_loops(const Tied& t, std::size_t truths, std::uint64
       result.value = failed;
     }
     const LoopResult& r = *result;
-    fmt::print(stderr,
-               "{} {}: truth {} before {:.1f} planned {} random {}{} predicted {:.1f} found {:.1f} ({:.1f} s) {}\n",
-               t.subject, i, r.truth, r.before, r.planned, r.at_random_is_more ? ">" : "", r.at_random, r.predicted,
-               r.found, r.seconds, r.skipped);
+    fmt::print(stderr, "{} {}/{} {}: truth {} before {:.1f} ", t.subject, t.first, t.second, i, r.truth, r.before);
+    if (r.skipped.empty() && r.tied)
+      fmt::print(stderr, "planned {} random {}{} predicted {:.1f} found {:.1f} ({:.1f} s)\n", r.planned,
+                 r.at_random_is_more ? ">" : "", r.at_random, r.predicted, r.found, r.seconds);
+    else
+      fmt::print(stderr, "{}\n", r.skipped.empty() ? "no tie" : r.skipped);
     out.push_back(r);
   }
   return out;
@@ -231,26 +251,38 @@ std::vector<LoopResult> run_loops(const Tied& t, std::size_t truths, std::uint64
 
 std::string loop_table(const std::vector<std::pair<Tied, std::vector<LoopResult>>>& all) {
   std::string out =
-      "| subject | tied | truths | readings planned, median | of `random` for as much, median | told rightly | "
-      "predicted "
-      "λ², median | found, median | slope |\n|---|---|---|---|---|---|---|---|---|\n";
+      "| subject | tied, λ | truths | of these tied | readings planned, median | of `random` for as much, median | "
+      "told "
+      "rightly | predicted λ², median | found, median | slope ± standard error "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const auto& [tied, results] : all) {
-    std::size_t n = 0, right = 0;
-    double xy = 0, xx = 0;
+    std::size_t n = 0, right = 0, tried = 0;
+    double xy = 0, xx = 0, rest = 0;
     bool more = false;
     const double random = median(results, [](const LoopResult& r) { return r.at_random; });
     for (const LoopResult& r : results) {
       if (!r.skipped.empty()) continue;
+      ++tried;
+      if (!r.tied) continue;
       ++n;
       if (r.right) ++right;
       xy += r.predicted * r.found, xx += r.predicted * r.predicted;
       more = more || (r.at_random_is_more && static_cast<double>(r.at_random) <= random);
     }
-    out += fmt::format("| {} | {} / {} | {} of {} | {:g} | {}{:g} | {} | {:.1f} | {:.1f} | {:.2f} |\n", tied.subject,
-                       tied.first, tied.second, n, results.size(),
+    out +=
+        fmt::format("| {} | {} / {}, {:g} | {} | {} |", tied.subject, tied.first, tied.second, tied.lambda, tried, n);
+    if (n == 0) {
+      out += " | | | | | |\n";
+      continue;
+    }
+    const double slope = xy / xx;
+    for (const LoopResult& r : results)
+      if (r.skipped.empty() && r.tied) rest += std::pow(r.found - slope * r.predicted, 2);
+    const double error = n > 1 ? std::sqrt(rest / static_cast<double>(n - 1) / xx) : NAN;
+    out += fmt::format(" {:g} | {}{:g} | {} | {:.1f} | {:.1f} | {:.2f} ± {:.2f} |\n",
                        median(results, [](const LoopResult& r) { return r.planned; }), more ? "> " : "", random, right,
                        median(results, [](const LoopResult& r) { return r.predicted; }),
-                       median(results, [](const LoopResult& r) { return r.found; }), xy / xx);
+                       median(results, [](const LoopResult& r) { return r.found; }), slope, error);
   }
   return out;
 }

@@ -2,8 +2,9 @@
 // same machine read there, both fitted to everything.
 //
 // A truth is one of the pair, by turns, as large as λ = 8 on the paper's plan, in a machine drawn within all tolerances
-// and read by the MSA in the deformed shape. Beside the plan stand the readings of the campaign "random" that would do
-// as well.
+// and read by the MSA in the deformed shape. Beside the plan stand the readings of the campaign "random", in its order,
+// that promise the same probability of the true effect. Truths that the paper's plan has decided already, by a
+// probability of 0.95 for either, are counted apart: they are no ties.
 #pragma once
 
 #include <string>
@@ -15,10 +16,13 @@ namespace deflect::benchmark {
 
 struct Tied {
   std::string subject, first, second;  ///< built-in device or frame; effects
+  double lambda = 8;                   ///< of the truth on the paper's plan
+  double moment = 0;                   ///< Nm: largest of the rig; 0: 1 Nm, the force on a lever of 20 mm
 };
 
 struct LoopResult {
   std::string truth, skipped;
+  bool tied = true;                ///< by the paper's plan
   double before = 0;               ///< χ² of the wrong one − χ² of the true one on the paper's plan
   std::size_t planned = 0;         ///< readings
   std::size_t at_random = 0;       ///< of the campaign "random" for the same expected probability

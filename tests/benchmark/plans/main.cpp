@@ -1,7 +1,9 @@
-// benchmark_plans [--truths N] [--threads N] [--pair SUBJECT,FIRST,SECOND]… [--precision DEVICE]
+// benchmark_plans [--truths N] [--threads N] [--pair SUBJECT,FIRST,SECOND[,LAMBDA[,MOMENT]]]… [--precision DEVICE]
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -12,21 +14,31 @@ namespace {
 
 using deflect::benchmark::Tied;
 
+/// Alike under the paper's plan: play against friction and against what else steps or bends its line; what yields along
+/// the legs against what yields at the platform; roots that turn against roots that shift.
 const std::vector<Tied> usual = {
     {"haptic-6psu-ideal-joints", "joint_clearance", "joint_friction"},
-    {"haptic-6psu-ideal-joints", "actuator_compliance", "platform_flexibility"},
-    {"haptic-6psu-ideal-joints", "guide_root_compliance", "carriage_compliance"},
-    {"stewart-6ups", "joint_clearance", "one_sided_actuation"},
-    {"stewart-6ups", "actuator_compliance", "base_tilt"},
-    {"stewart-6ups", "actuator_compliance", "hertz_contact"},
-    {"portal-semi-rigid", "clearance@support.A.ux", "linear@support.A.ux"},
-    {"portal-semi-rigid", "linear@support.A.ux", "linear@support.A.ry"},
-    {"portal-semi-rigid", "factor@beam_1.start.ry", "linear@beam_1.end.ry"},
+    {"haptic-6psu-ideal-joints", "joint_clearance", "actuator_backlash", 6},
+    {"haptic-6psu-ideal-joints", "joint_friction", "load_misalignment", 4},
+    {"haptic-6psu-ideal-joints", "actuator_compliance", "platform_flexibility", 8, 5},
+    {"haptic-6psu-ideal-joints", "guide_root_compliance", "carriage_compliance", 4},
+    {"stewart-6ups", "joint_clearance", "actuator_hardening"},
+    {"stewart-6ups", "actuator_compliance", "tool_compliance"},
+    {"stewart-6ups", "base_tilt", "base_compliance", 4},
+    {"portal-semi-rigid", "clearance@support.D.uz", "settled@support.D.uz"},
+    {"portal-semi-rigid", "friction@beam_2.end.ry", "factor@beam_2.end.ry"},
+    {"portal-semi-rigid", "push@support.D.ry", "push@support.D.ux", 4},
 };
 
 Tied pair_of(const std::string& text) {
-  const std::size_t a = text.find(','), b = text.find(',', a + 1);
-  return {text.substr(0, a), text.substr(a + 1, b - a - 1), text.substr(b + 1)};
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+  parts.resize(std::max<std::size_t>(parts.size(), 3));
+  Tied out{parts[0], parts[1], parts[2]};
+  if (parts.size() > 3) out.lambda = std::atof(parts[3].c_str());
+  if (parts.size() > 4) out.moment = std::atof(parts[4].c_str());
+  return out;
 }
 
 }  // namespace
