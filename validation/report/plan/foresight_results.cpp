@@ -92,8 +92,8 @@ Json insight_json(const plan::Insight& i) {
 }  // namespace
 
 std::string foresight_report(const plan::Foresight& f) {
-  return fmt::format("{}: what {} will be able to tell ({} tolerances are what a calibration would fit)\n\n", f.subject,
-                     f.campaign, f.given.parameters) +
+  return fmt::format("{}: what {} will be able to tell (a calibration would fit {} tolerance{})\n\n", f.subject,
+                     f.campaign, f.given.parameters, f.given.parameters == 1 ? "" : "s") +
          indices_table(f) + "\n" + detectable_table(f.given.detectable) + left_out_words(f.given.left_out);
 }
 
