@@ -143,6 +143,7 @@ const std::vector<std::pair<std::string, Rooms>>& table() {
         "validation/json",
         "msa/fields",
         "msa/mechanism",
+        "analytic",
         "msa/frame/file",
         "meshes",
         "validation/parallel",

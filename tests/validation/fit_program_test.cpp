@@ -11,12 +11,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An arm with a softer second joint, measured at nine poses, and again at twenty others.
 class FitProgram : public ::testing::Test {
  protected:
-  void SetUp() override {
+  /// An arm with a softer second joint, measured at nine poses.
+  void measure() const {
     ASSERT_EQ(run("add arm factor@joint_2.rz --set factor=0.8 -o " + file("soft.yaml")).code, 0);
     ASSERT_EQ(run("simulate " + file("soft.yaml") + " --campaign paper --seed 1 -o " + file("first.csv")).code, 0);
+  }
+  /// The same arm again, at twenty other poses.
+  void measure_again() const {
     ASSERT_EQ(run("simulate " + file("soft.yaml") + " --campaign random --seed 2 -o " + file("second.csv")).code, 0);
   }
   test::Run fit(const std::string& more = "") const {
@@ -32,6 +35,8 @@ class FitProgram : public ::testing::Test {
 };
 
 TEST_F(FitProgram, FitsPredictsAndValidatesOneAfterTheOther) {
+  measure();
+  measure_again();
   const test::Run fitted = fit();
   ASSERT_EQ(fitted.code, 0) << fitted.out;
   const nlohmann::json parameter = json("fit.json")["parameters"][0];
@@ -63,6 +68,7 @@ TEST_F(FitProgram, FitsPredictsAndValidatesOneAfterTheOther) {
 }
 
 TEST_F(FitProgram, RefusesWithTheRemedy) {
+  measure();
   const std::string data = file("first.csv"), same = file("same.csv");
   fs::copy_file(data, same);
   const std::pair<std::string, const char*> refused[] = {
@@ -95,6 +101,7 @@ TEST_F(FitProgram, AFrameIsPredictedUnderFactorsOnItsLoadCases) {
 }
 
 TEST_F(FitProgram, ThePageOfAValidationPrints) {
+  measure();
   const std::string page = file("page.html"), pdf = file("page.pdf");
   const test::Run run = test::deflect("compare arm " + file("first.csv") + " --validation --report " + page);
   if (run.code == 2 && run.out.find("built without pages") != std::string::npos) GTEST_SKIP() << run.out;

@@ -13,6 +13,7 @@
 #include "msa/base/error.h"
 #include "msa/base/outcome.h"
 #include "msa/frame/file/frame_file.h"
+#include "tests/support/cantilever.h"
 #include "tests/support/devices.h"
 #include "tests/support/paths.h"
 #include "validation/fit/predicted.h"
@@ -29,23 +30,13 @@ using namespace fit;
 using measurement::Measurements;
 using subject::Subject;
 
-// A cantilever of 1 m along x in the plane xz, E = 210 GPa, a square of 20 mm: under P at the tip P L³/(3 E I) = 1.19
-// mm, under 10 N.
-constexpr const char* cantilever = R"(
-name: cantilever
-plane: xz
-materials: {steel: {E: 210 GPa, nu: 0.3}}
-sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
-nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
-members: {beam: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}}
-supports: {A: clamped}
-loads: {tip: {nodes: {B: {fz: -10 N}}}}
-sensors: {z: {node: B, direction: uz, sigma: 1 um}}
-)";
-constexpr double tip = 10 / (3 * 210e9 * (0.02 * 0.02 * 0.02 * 0.02 / 12)), sigma = 1e-6;
+using test::cantilever::tip;
+
+constexpr double sigma = 1e-6;
+const std::string file = test::cantilever::file("sensors: {z: {node: B, direction: uz, sigma: 1 um}}\n");
 
 Subject frame_of(const std::string& more = "", const std::string& from = "", const std::string& to = "") {
-  std::string text = cantilever + more;
+  std::string text = file + more;
   if (!from.empty()) text.replace(text.find(from), from.size(), to);
   return frame::parse_frame(text, "frame.yaml");
 }
@@ -77,7 +68,7 @@ compare::ComparisonOptions as_recorded() {
 
 FitResult fitted(const Subject& s, const Measurements& data, const std::vector<std::string>& paths,
                  const std::vector<std::string>& priors = {}) {
-  return fit::fit(s, data, free_parameters(s, paths, priors, cantilever), as_recorded());
+  return fit::fit(s, data, free_parameters(s, paths, priors, file), as_recorded());
 }
 
 std::string refusal(const Subject& s, const std::vector<std::string>& paths,

@@ -4,6 +4,7 @@
 
 #include "msa/base/error.h"
 #include "msa/frame/file/frame_file.h"
+#include "tests/support/cantilever.h"
 #include "tests/support/effects.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/effect_file.h"
@@ -18,28 +19,27 @@ namespace {
 using namespace measurement;
 using subject::Subject;
 
-// A cantilever of 1 m along x, held on the way by a rod below it: E = 210 GPa, A = 400 mm².
+using test::cantilever::A;
+using test::cantilever::E;
+using test::cantilever::I;
+
+// The cantilever, which grows with temperature.
 std::string cantilever(const std::string& from = "", const std::string& to = "") {
-  std::string text = R"(
-name: cantilever
-plane: xz
-materials: {steel: {E: 210 GPa, nu: 0.3, expansion: 1e-5 1/K}}
-sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
-nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
-members: {beam: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}}
-supports: {A: clamped}
-loads: {tip: {nodes: {B: {fz: -10 N}}}, pull: {nodes: {B: {fx: 100 N}}}}
-sensors:
+  std::string text = test::cantilever::file(R"(sensors:
   z: {node: B, direction: uz, sigma: 1 um, gain: 2}
   x: {node: B, direction: ux, sigma: 0.01 um}
   N: {member: beam, force: axial, sigma: 0.01 N}
   turn: {node: B, direction: ry, sigma: 1e-3 mrad}
 tolerances: {load: 0.1 %}
-)";
-  if (!from.empty()) text.replace(text.find(from), from.size(), to);
+)",
+                                            "pull: {nodes: {B: {fx: 100 N}}}");
+  const auto replace = [&](const std::string& old, const std::string& by) {
+    text.replace(text.find(old), old.size(), by);
+  };
+  replace("nu: 0.3", "nu: 0.3, expansion: 1e-5 1/K");
+  if (!from.empty()) replace(from, to);
   return text;
 }
-constexpr double E = 210e9, A = 4e-4, I = 0.02 * 0.02 * 0.02 * 0.02 / 12;
 
 std::vector<VectorX> predicted(const std::string& yaml, const std::string& rows) {
   const Subject s = frame::parse_frame(yaml, "frame.yaml");

@@ -10,6 +10,7 @@
 #include "msa/base/error.h"
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/frame_tolerances.h"
+#include "tests/support/cantilever.h"
 #include "tests/support/effects.h"
 #include "tests/support/paths.h"
 #include "validation/compare/comparison.h"
@@ -26,25 +27,19 @@ namespace {
 using namespace measurement;
 using subject::Subject;
 
-// A cantilever of 1 m along x in the plane xz, E = 210 GPa, a square of 20 mm: A = 400 mm², I = 20⁴/12 mm⁴.
-constexpr const char* cantilever = R"(
-name: cantilever
-plane: xz
-materials: {steel: {E: 210 GPa, nu: 0.3}}
-sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
-nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
-members: {beam: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}}
-supports: {A: clamped}
-loads: {tip: {nodes: {B: {fz: -10 N}}}, pull: {nodes: {B: {fx: 100 N}}}}
-sensors:
+using test::cantilever::A;
+using test::cantilever::E;
+using test::cantilever::I;
+
+const std::string cantilever = test::cantilever::file(R"(sensors:
   z: {node: B, direction: uz, sigma: 1 um, gain: 2}
   turn: {node: B, direction: ry, sigma: 1e-3 mrad}
   N: {member: beam, force: axial, sigma: 0.01 N}
   gauge: {member: beam, strain: {at: 0.25, y: 0 mm, z: 10 mm}, sigma: 0.01 um/m}
   root: {support: A, reaction: my, sigma: 1 Nmm, offset: 5 Nmm}
 tolerances: {modulus: 1 %, node.position: 1 mm, member.bending_factor: 2 %}
-)";
-constexpr double E = 210e9, A = 4e-4, I = 0.02 * 0.02 * 0.02 * 0.02 / 12;
+)",
+                                                      "pull: {nodes: {B: {fx: 100 N}}}");
 
 Subject frame_of(const std::string& yaml = cantilever) { return frame::parse_frame(yaml, "frame.yaml"); }
 

@@ -144,8 +144,31 @@ TEST_F(SimulateProgram, RefusesOptionsThatCannotBe) {
   expect_refused("--threads 0.5", "--threads 0.5: give a whole number");
 }
 
+/// Refused at the first reading, within a fraction of a second.
+const std::string too_large = "--force 1e6 --geometry second-order --elements 1";
+
 TEST_F(SimulateProgram, NamesTheReadingThatItCannotCompute) {
-  expect_refused("--force 1e6 --threads 1", "campaign:2: the MSA finds no equilibrium", 4);
+  expect_refused(too_large + " --threads 1", "campaign:2: the MSA finds no equilibrium", 4);
+}
+
+// The three planar legs of a 3-RRR cannot be joined out of their plane: a shifted joint leaves a loop open.
+TEST_F(SimulateProgram, SaysWhyAnOverconstrainedMachineCannotBeBuilt) {
+  std::string device = contents(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/devices/3-rrr.yaml");
+  const std::string tolerances = "\ntolerances:\n";
+  ASSERT_NE(device.find(tolerances), std::string::npos);
+  device.insert(device.find(tolerances) + tolerances.size(), "  joint_position: 0.05 mm\n");
+  const std::string simulated = "simulate " + file("shifted.yaml", device) + " --campaign paper -o " + path("data.csv");
+  const test::Run refused = test::deflect(simulated);
+  EXPECT_EQ(refused.code, 3) << refused.out;
+  for (const char* says :
+       {"leg 1", "the machine as drawn can. It is over-constrained (", "joint_position", "--tolerances 0"})
+    EXPECT_NE(refused.out.find(says), std::string::npos) << says << "\n" << refused.out;
+  EXPECT_FALSE(std::filesystem::exists(folder / "data.csv"));
+  EXPECT_EQ(test::deflect(simulated + " --tolerances 0").code, 0);
+  const test::Run compared = test::deflect("compare " + path("shifted.yaml") + " " + path("data.csv"));
+  EXPECT_EQ(compared.code, 3) << compared.out;
+  EXPECT_NE(compared.out.find("the machine as drawn stands at every pose"), std::string::npos) << compared.out;
+  EXPECT_EQ(compared.out.find("exchanged"), std::string::npos) << compared.out;
 }
 
 TEST_F(SimulateProgram, RefusesCampaignsDevicesAndFilesThatAreNone) {
@@ -172,7 +195,7 @@ TEST_F(SimulateProgram, RefusesCampaignsDevicesAndFilesThatAreNone) {
 TEST_F(SimulateProgram, AnOldFileStaysWhereANewOneIsRefused) {
   const std::string old = made("");
   EXPECT_EQ(simulate("--with joint_clearance,gap_mm=1e9").code, 2);
-  EXPECT_EQ(simulate("--force 1e6").code, 4);
+  EXPECT_EQ(simulate(too_large).code, 4);
   EXPECT_EQ(contents(folder / "data.csv"), old);
 }
 

@@ -14,6 +14,7 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "msa/frame/file/frame_file.h"
+#include "tests/support/cantilever.h"
 #include "tests/support/devices.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/campaign.h"
@@ -102,22 +103,16 @@ TEST(Hull, NearestPointFulfilsItsCondition) {
   }
 }
 
-// As in the tests of fits: a cantilever of 1 m, tip load.
-constexpr const char* cantilever = R"(
-name: cantilever
-plane: xz
-materials: {steel: {E: 210 GPa, nu: 0.3}}
-sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
-nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
-members: {beam: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}}
-supports: {A: clamped}
-loads: {tip: {nodes: {B: {fz: -10 N}}}}
-sensors: {z: {node: B, direction: uz, sigma: 10 um}}
-tolerances: {modulus: 1 %, load: 0.5 %}
-)";
-constexpr double tip = 10 / (3 * 210e9 * (0.02 * 0.02 * 0.02 * 0.02 / 12)), sigma = 10e-6;
+using test::cantilever::tip;
 
-Subject beam() { return frame::parse_frame(cantilever, "frame.yaml"); }
+constexpr double sigma = 10e-6;
+
+Subject beam() {
+  return frame::parse_frame(
+      test::cantilever::file(
+          "sensors: {z: {node: B, direction: uz, sigma: 10 um}}\ntolerances: {modulus: 1 %, load: 0.5 %}\n"),
+      "frame.yaml");
+}
 
 /// Readings of the tip; `read(factor, session)` in m.
 Measurements read(const std::function<double(double, int)>& tip_of, std::uint64_t seed = 0,
@@ -195,6 +190,29 @@ TEST(Validity, CalibrationDataAreKeptApart) {
   ASSERT_TRUE(s.calibration);
   EXPECT_EQ(s.calibration->readings, 24u);
   EXPECT_NEAR(s.calibration->rms_E, sigma, 0.6 * sigma);
+}
+
+// Zeros at no load are equal in any two files.
+TEST(Validity, ReadingsWithoutLoadMayBeEqual) {
+  const auto with_zero = [](const char* rows, const char* name) {
+    return beam().placed(
+        measurement::parse_measurements("load.tip,z_mm\n0,0\n" + std::string(rows), name, beam().instruments()));
+  };
+  const Measurements data = with_zero("1,-1.19\n-1,1.191\n", "data.csv"), other = with_zero("1,-1.192\n", "other.csv");
+  ValidationOptions o = as_recorded();
+  o.calibration = &other;
+  EXPECT_EQ(validate(beam(), data, o).calibration->readings, 2u);
+}
+
+// A factor on a load case is no force: of two readings with both, one is mostly the case, one mostly the force.
+TEST(Validity, LoadsOfOneKindAreComparedWithEachOther) {
+  const Measurements data = beam().placed(measurement::parse_measurements(
+      "load.tip,node.B.fx_N,z_mm\n1,1,-1.19\n0.1,50,-0.119\n", "data.csv", beam().instruments()));
+  const ValidationStudy s = validate(beam(), data, as_recorded());
+  std::vector<std::string> directions;
+  for (const WithoutGroup& w : s.without)
+    if (w.kind == "load direction") directions.push_back(w.name);
+  EXPECT_EQ(directions, (std::vector<std::string>{"load.tip > 0", "node.B.fx > 0"}));
 }
 
 TEST(Validity, SaysHowFarAUseIsFromWhatWasValidated) {

@@ -103,6 +103,20 @@ TEST(VerdictWords, AnErrorIsSaidToFallWhereItFallsAsPrinted) {
   }
 }
 
+TEST(VerdictWords, SeveralTitlesMakeOneSentence) {
+  Diagnosis d;
+  d.verdict = Verdict::unknown_effect;
+  d.pattern = "it grows with z";
+  d.missing = {
+      {&test::effect("joint_clearance"), {}}, {&test::effect("load_gain"), {}}, {&test::effect("modulus"), {}}};
+  const std::string said = verdict_words(d), headline = headline_words(d);
+  EXPECT_TRUE(has(said, ", not even with this: Every leg has play")) << said;
+  for (const std::string& text : {said, headline}) {
+    EXPECT_TRUE(has(text, "; and the load cell reads")) << text;
+    EXPECT_TRUE(has(text, "; and Young's modulus")) << text;
+  }
+}
+
 TEST(VerdictWords, NoiseExplainsOnlyWhatItExplains) {
   Diagnosis d;
   d.baseline = {4637e-6, 4637e-6, 5.4e6};

@@ -257,6 +257,10 @@ std::vector<RecordingMistake> recording_mistakes(const subject::Subject& subject
 }
 
 std::string within_reach_hint(const subject::Subject& subject, const measurement::Measurements& data) {
+  if (outcome_of<ModelError>([&] { return subject.stand(data); }))
+    return "; the machine as drawn stands at every pose, but not with its parts off by their tolerances. Where more "
+           "constraints than needed hold a machine, it fits together only as drawn: take tolerances of positions and "
+           "lengths (joint_position, link_length, member.length, …) out of the device";
   std::string words;
   for (const auto& corrections : {recording::mistaken_pose_lengths(data), recording::mistaken_poses(data)})
     for (const recording::Correction& correction : corrections)

@@ -61,8 +61,8 @@ using ComparedAgain = std::function<std::optional<MisfitAccount>(const measureme
 std::vector<RecordingMistake> recording_mistakes(const subject::Subject&, const Comparison&, int threads,
                                                  const ComparedAgain&);
 
-/// A hint to append to the message about an unreachable pose: the corrections of the poses that make all of them
-/// reachable; empty where there is none.
+/// A hint to append to the message about a machine that does not stand: that it does as drawn, without tolerances; else
+/// the corrections of the poses that make all of them reachable; empty where there is none.
 std::string within_reach_hint(const subject::Subject&, const measurement::Measurements&);
 
 }  // namespace deflect::compare

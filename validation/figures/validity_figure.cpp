@@ -13,7 +13,7 @@
 namespace deflect::figures {
 namespace {
 
-/// Of each quantity the errors over u_val in percentiles: 2.5, 25, 50, 75, 97.5, mapped back from u.
+/// Of each quantity its errors over u_val: their mean, and two of their standard deviations to either side.
 std::string error_rows(const validity::ValidationStudy& s, std::string& labels, double& most) {
   std::string out = "$errors << EOD\n";
   for (std::size_t i = 0; i < s.channels.size(); ++i) {

@@ -6,8 +6,8 @@
 
 namespace deflect::figures {
 
-/// "validation": for every quantity the mean error E and its range of two validation uncertainties, over u_val; and
-/// both distribution functions of u-pooling, that of the measurements and the diagonal.
+/// "validation": for every quantity the errors E over u_val, their mean and two of their standard deviations to either
+/// side; and both distribution functions of u-pooling, that of the measurements and the diagonal.
 Figure validity_figure(const validity::ValidationStudy&, const FigureStyle& = {});
 
 }  // namespace deflect::figures

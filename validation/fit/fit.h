@@ -33,8 +33,8 @@ struct FitResult {
   MatrixX correlation;
   std::vector<Undetermined> undetermined;
   bool converged = true;
-  diagnosis::Quality before,
-      after;  ///< held-out: before as in `compare`, after with parameters fitted without the pose
+  diagnosis::Quality before;               ///< held-out as in `compare`
+  diagnosis::Quality after;                ///< held-out with parameters fitted without the pose
   double chi2_before = 0, chi2_after = 0;  ///< of the whitened numbers, priors apart
   std::size_t readings = 0, poses = 0, numbers = 0, set_aside = 0;
   measurement::Quantity quantity = measurement::Quantity::length;  ///< of errors

@@ -4,8 +4,9 @@
 //
 //   r  measured − predicted, n numbers (m, rad, …)
 //   δ  parameters from their fitted values, in their coordinates (FreeParameter); P = ∂prediction/∂δ by differences
-//   η  tolerances common to all poses, in standard deviations, and the size of the deformed shape's part; A their
-//   effect ε  noise, load errors, errors of a pose
+//   η  tolerances common to all poses, in standard deviations, and the size of the deformed shape's part
+//   A  ∂prediction/∂η
+//   ε  noise, load errors, errors of a pose
 // With z = W_O W_N r and B = W_O W_N [P A] (whitening.h),
 //   Λ = Λ₀ + BᵀB,   mean Λ⁻¹(Λ₀μ₀ + Bᵀz),   covariance Λ⁻¹.
 // A parameter without a prior has the variance of a uniform distribution over its range of search, which counts only

@@ -4,8 +4,7 @@
 //
 //   f      a theory's prediction in the geometry in which equilibrium really is, at the fitted parameters
 //   δ, η   deviations of parameters, and tolerances common to all poses, jointly normal as the fit left them
-//   (posterior.h);
-//          without a fit η ~ N(0, 1)
+//          (posterior.h); without a fit η ~ N(0, 1)
 //   s      errors of the pose: A of its own tolerances
 //   t      relative standard deviation of a load
 //   c      discrepancy as a share of the size S of the reading's predictions of that quantity (Discrepancy)

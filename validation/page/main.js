@@ -5,6 +5,7 @@ import {drawingHeadline, drawn} from './drawing.js';
 import {frameHeadline, framed} from './frames.js';
 import {loadWords, machine} from './machine.js';
 import {curves, errorHeat, failureMap, findings, residuals, testHeat} from './measured.js';
+import {foreseen, foresightHeadline, planHeadline, planned} from './plans.js';
 import {fitHeadline, fitted, predicted, predictionHeadline, validity, validityHeadline} from './validity.js';
 import {candidates, diagnosisHeadline, fall, leftOut, mapped, solved, strained, unexplained, unseen, validated} from './results.js';
 
@@ -24,7 +25,7 @@ function solveHeadline(solve) {
 
 /** What was found: `words` that a person reads, and in small the ids and values that belong to them. */
 function headline() {
-  const kinds = [['validity', validityHeadline], ['fit', fitHeadline], ['prediction', predictionHeadline], ['diagnosis', diagnosisHeadline], ['comparison', (c) => ({words: c.verdict})], ['history', historyHeadline], ['solve', solveHeadline], ['check', checkHeadline], ['frame', frameHeadline], ['drawing', drawingHeadline],
+  const kinds = [['validity', validityHeadline], ['fit', fitHeadline], ['prediction', predictionHeadline], ['diagnosis', diagnosisHeadline], ['plan', planHeadline], ['foresight', foresightHeadline], ['comparison', (c) => ({words: c.verdict})], ['history', historyHeadline], ['solve', solveHeadline], ['check', checkHeadline], ['frame', frameHeadline], ['drawing', drawingHeadline],
     ['validation', (v) => ({words: `Both theories agree to ${num(v.max_relative_difference, 2)}, relative, at ${new Set(v.points.map((p) => p.point)).size} points.`})],
     ['map', (m) => ({words: `The stiffness is known at ${m.reached} of ${m.poses} poses of the workspace${m.max_relative_difference === undefined ? '' : `; both theories agree to ${num(m.max_relative_difference, 2)}, relative`}.`})]];
   for (const [kind, words] of kinds) if (of(kind).length) return words(of(kind)[0]);
@@ -93,7 +94,7 @@ function sections() {
     ['Errors by group', () => (first ? errorHeat(first) : comparisons.map((c) => errorHeat({device: c.device, result: c, unit: 'mm'})))],
     ['Residuals', () => first && residuals(first, 0)],
     ['Residuals of the last version', () => versions.length > 1 && residuals(last, 1)],
-    ...[['The drawing', 'drawing', drawn], ['The displacement', 'solve', solved], ['The frame', 'frame', framed], ['The checks', 'check', checked], ['Validity', 'validity', validity], ['The fit', 'fit', fitted], ['The prediction', 'prediction', predicted], ['The validation', 'validation', validated], ['The map', 'map', mapped]]
+    ...[['The drawing', 'drawing', drawn], ['The displacement', 'solve', solved], ['The frame', 'frame', framed], ['The checks', 'check', checked], ['Validity', 'validity', validity], ['The fit', 'fit', fitted], ['The prediction', 'prediction', predicted], ['The plan', 'plan', planned], ['The campaign', 'foresight', foreseen], ['The validation', 'validation', validated], ['The map', 'map', mapped]]
       .flatMap(([name, kind, make]) => of(kind).map((result) => [name, () => make(result)])),
     ['Strained tolerances', () => diagnosis && strained(diagnosis)],
     ['What this campaign can see', () => diagnosis && unseen(diagnosis)],

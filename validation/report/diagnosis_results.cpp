@@ -205,8 +205,7 @@ std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   j["set_aside"] = d.set_aside;
   j["strained_tolerances"] = strained_json(d.strained);
   j["detectable"] = detectable_json(d.detectable);
-  j["left_out"] = Json::array();
-  for (const diagnosis::LeftOut& e : d.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});
+  j["left_out"] = left_out_json(d.left_out);
   return json::json_text(j);
 }
 

@@ -53,6 +53,22 @@ std::string left_out_words(const std::vector<diagnosis::LeftOut>& all) {
   return out + (all.size() > most_shown ? and_more(all.size()) + ", with the reasons\n" : " (why: --json)\n");
 }
 
+Json left_out_json(const std::vector<diagnosis::LeftOut>& all) {
+  Json out = Json::array();
+  for (const diagnosis::LeftOut& e : all) out.push_back({{"effect", e.effect}, {"why", e.why}});
+  return out;
+}
+
+Json rows_json(const MatrixX& m, const std::string& what) {
+  Json out = Json::array();
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index k = 0; k < m.cols(); ++k) row.push_back(json::json_number(m(i, k), what));
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
 std::string detectable_table(const std::vector<diagnosis::Detectable>& all) {
   std::vector<const diagnosis::Detectable*> order;
   for (const diagnosis::Detectable& e : all) order.push_back(&e);

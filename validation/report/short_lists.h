@@ -20,6 +20,12 @@ Json strained_json(const std::vector<std::pair<std::string, double>>&);
 /// "not looked at: joint_preload, motor_compliance (why: --json)", a line; empty where nothing was left out.
 std::string left_out_words(const std::vector<diagnosis::LeftOut>&);
 
+/// [{"effect", "why"}, …], all of them.
+Json left_out_json(const std::vector<diagnosis::LeftOut>&);
+
+/// [[…], …] by rows. NumericalError naming `what` where a number is none.
+Json rows_json(const MatrixX&, const std::string& what);
+
 /// "stiffness_N_per_mm 29100", the smallest size that shows, or "none within bounds".
 std::string sizes_of(const diagnosis::Detectable&);
 

@@ -28,21 +28,27 @@ std::string first_of_all(const std::vector<compare::RecordingMistake>& mistakes)
   return "Before anything else: " + mistakes.front().sentence + ".";
 }
 
-std::string joined_by_and(const diagnosis::Hypothesis& effects) {
-  std::string out;
-  for (const effects::PlacedEffect& e : effects)
-    out += (out.empty() ? "" : " and ") + e.effect->title + " (" + placed_words(e) + ")";
-  return out;
-}
-
 /// "The guideway of one leg bends more easily than the others: leg 4".
 std::string titled_words(const effects::PlacedEffect& e) {
   return e.leg ? fmt::format("{}: {}", e.effect->title, effects::site_of(e)) : e.effect->title;
 }
 
-std::string joined_titles(const diagnosis::Hypothesis& effects, const char* between) {
+std::string titled_with_id(const effects::PlacedEffect& e) {
+  return fmt::format("{} ({})", e.effect->title, placed_words(e));
+}
+
+/// A title that goes on a sentence: "The clamp yields" → "the clamp yields"; a name such as "Young's modulus" stays.
+std::string continued(std::string title) {
+  constexpr const char* begins[] = {"The ", "A ", "An ", "Every ", "Each ", "One "};
+  for (const char* word : begins)
+    if (title.starts_with(word)) title.front() = static_cast<char>(title.front() - 'A' + 'a');
+  return title;
+}
+
+/// Titles, which are sentences, as one sentence.
+std::string joined_titles(const diagnosis::Hypothesis& effects, std::string (*words)(const effects::PlacedEffect&)) {
   std::string out;
-  for (const effects::PlacedEffect& e : effects) out += (out.empty() ? "" : between) + titled_words(e);
+  for (const effects::PlacedEffect& e : effects) out += out.empty() ? words(e) : "; and " + continued(words(e));
   return out;
 }
 
@@ -115,7 +121,7 @@ std::string verdict_words(const compare::Comparison& c) {
 std::string verdict_words(const diagnosis::Diagnosis& d) {
   if (diagnosis::is_mistaken(d)) return first_of_all(d.mistakes);
   const std::string outliers = outlier_words(d.set_aside, d.readings);
-  const std::string names = joined_by_and(d.missing);
+  const std::string names = joined_titles(d.missing, titled_with_id);
   switch (d.verdict) {
     case diagnosis::Verdict::nothing_missing:
       return outliers +
@@ -136,7 +142,7 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
       return outliers +
              fmt::format(
                  "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
-                 names.empty() ? "" : ", not even with " + names, d.pattern);
+                 names.empty() ? "" : ", not even with this: " + names, d.pattern);
   }
   return "";
 }
@@ -148,7 +154,7 @@ std::string headline_words(const diagnosis::Diagnosis& d) {
     case diagnosis::Verdict::nothing_missing:
       return verdict_words(d);
     case diagnosis::Verdict::effect:
-      return outliers + fmt::format("{}. This is missing from the model. {}", joined_titles(d.missing, "; and "),
+      return outliers + fmt::format("{}. This is missing from the model. {}", joined_titles(d.missing, titled_words),
                                     fall_of_error(d));
     case diagnosis::Verdict::ambiguous: {
       std::string either;
@@ -164,7 +170,7 @@ std::string headline_words(const diagnosis::Diagnosis& d) {
       return outliers +
              fmt::format(
                  "Something is missing that no effect of the catalogue explains to the noise{}. What is left: {}.",
-                 d.missing.empty() ? "" : ", not even with this: " + joined_titles(d.missing, "; and "), d.pattern);
+                 d.missing.empty() ? "" : ", not even with this: " + joined_titles(d.missing, titled_words), d.pattern);
   }
   return "";
 }

@@ -9,7 +9,7 @@ namespace deflect::result_files {
 
 struct ReadResult {
   std::string kind;  ///< "diagnosis", "comparison", "history", "validation", "map", "drawing", "check", "frame",
-                     ///< "solve", "validity", "fit", "prediction"
+                     ///< "solve", "validity", "fit", "prediction", "plan", "foresight"
   Json json;
 };
 

@@ -33,19 +33,20 @@ std::vector<std::string> labels_of(const Measurements& m) {
   return out;
 }
 
-/// The component that is largest beside what it is at most in the file.
+/// Channels of one kind are compared as they are: forces, moments, factors on load cases.
+int kind_of(const measurement::LoadChannel& c) { return c.name.starts_with("load.") ? 2 : c.moment ? 1 : 0; }
+
+/// The channel that is largest over the largest of its kind in the file, and its sense.
 std::vector<std::string> directions_of(const Measurements& m) {
   const std::vector<measurement::LoadChannel> channels = measurement::load_channels(m);
   const MatrixX loads = measurement::loads_of(m);
-  VectorX most = loads.cwiseAbs().rowwise().maxCoeff();
-  // Forces against forces, moments against moments.
-  for (const bool moment : {false, true}) {
-    double all = 0;
-    for (Eigen::Index i = 0; i < most.size(); ++i)
-      if (nth(channels, i).moment == moment) all = std::max(all, most(i));
-    for (Eigen::Index i = 0; i < most.size(); ++i)
-      if (nth(channels, i).moment == moment) most(i) = std::max(all, 1e-300);
+  std::array<double, 3> largest_of = {1e-300, 1e-300, 1e-300};
+  for (Eigen::Index i = 0; i < loads.rows(); ++i) {
+    double& largest = nth(largest_of, kind_of(nth(channels, i)));
+    largest = std::max(largest, loads.row(i).cwiseAbs().maxCoeff());
   }
+  VectorX most(loads.rows());
+  for (Eigen::Index i = 0; i < most.size(); ++i) most(i) = nth(largest_of, kind_of(nth(channels, i)));
   std::vector<std::string> out;
   for (Eigen::Index k = 0; k < loads.cols(); ++k) {
     Eigen::Index largest = 0;

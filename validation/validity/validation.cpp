@@ -102,11 +102,18 @@ bool same_reading(const Measurements& a, const measurement::Reading& r, const Me
          (p.joints.size() == 0 || p.joints == o.joints);
 }
 
+/// At no load many readings are zero, and equal without being the same.
+bool is_loaded(const measurement::Reading& r) {
+  const auto any = [](double x) { return x != 0; };
+  return !r.load.isZero(0) || std::any_of(r.factors.begin(), r.factors.end(), any) ||
+         std::any_of(r.at_points.begin(), r.at_points.end(), [](const Vector6& F) { return !F.isZero(0); });
+}
+
 /// What a model was fitted to cannot validate it.
 void require_apart(const Measurements& calibration, const Measurements& validation) {
   for (const measurement::Reading& r : calibration.readings)
     for (const measurement::Reading& q : validation.readings)
-      if (same_reading(calibration, r, validation, q))
+      if (is_loaded(r) && same_reading(calibration, r, validation, q))
         throw InputError(
             fmt::format("{}:{}: the same reading stands in {}:{}: data that a model was calibrated with "
                         "cannot validate it; give readings of their own for validation",

@@ -68,7 +68,7 @@ struct ValidationOptions {
 };
 
 /// The study keeps a reference to the data, which must outlive it. InputError where calibration and validation share a
-/// reading: what a model was fitted to cannot validate it.
+/// reading under load: what a model was fitted to cannot validate it.
 ValidationStudy validate(const subject::Subject&, const measurement::Measurements&, const ValidationOptions& = {},
                          const parallel::Work& = {});
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "analytic/constraint.h"
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/number_words.h"
@@ -19,6 +20,7 @@
 #include "validation/cli/talk.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
+#include "validation/measurement/configure_all.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
 #include "validation/report/effect_results.h"
@@ -106,11 +108,13 @@ prediction::SimulationOptions options_of(const SimulateArguments& a) {
   return o;
 }
 
-/// Every member in `elements` equal parts.
+bool is_named(const std::string& campaign) {
+  return std::find(std::begin(prediction::campaign_names), std::end(prediction::campaign_names), campaign) !=
+         std::end(prediction::campaign_names);
+}
+
 measurement::Measurements plan_of(const SimulateArguments& a, const Mechanism& m, std::uint64_t seed) {
-  const bool named = std::any_of(std::begin(prediction::campaign_names), std::end(prediction::campaign_names),
-                                 [&](const char* name) { return a.campaign == name; });
-  if (!named && std::filesystem::exists(a.campaign)) return read_plan(a.campaign, m);
+  if (!is_named(a.campaign) && std::filesystem::exists(a.campaign)) return read_plan(a.campaign, m);
   if (!(std::isfinite(a.force) && a.force != 0))
     throw InputError(fmt::format("--force {}: give a force in N other than zero", a.force));
   return prediction::campaign(a.campaign, m, a.force, seed);
@@ -124,6 +128,38 @@ std::string way_out(const Mechanism& m, const measurement::Measurements& plan, c
   const bool named = plan.origin == "campaign";
   return fmt::format(": the machine as drawn gives way above {} % of the loads{}", digits_of(100 * share, 2),
                      named ? fmt::format(", --force {} N", digits_of(share * a.force, 2)) : "");
+}
+
+/// What to say where the machine as built cannot take a pose of the plan: nothing where the machine as drawn cannot
+/// either. An over-constrained machine is assembled without strain only where its positions and lengths are exact.
+std::string way_to_assemble(const Mechanism& m, const measurement::Measurements& plan, double tolerances) {
+  if (tolerances == 0) return "";
+  const auto drawn = outcome_of<ModelError>([&] { return measurement::configure_all(m, plan); });
+  if (!drawn) return "";
+  const int redundant = drawn->empty() ? 0 : analytic::redundant_constraints(drawn->front());
+  const std::string remedy = "build it as drawn with --tolerances 0, or with smaller ones, such as --tolerances 0.1";
+  if (redundant == 0)
+    return fmt::format(": the machine as drawn can, the deviations within its tolerances are too large for it: {}",
+                       remedy);
+  return fmt::format(
+      ": the machine as drawn can. It is over-constrained ({} more constraint{} than hold it), so that deviations of "
+      "positions and lengths leave its loops open: take those tolerances out of the device (joint_position, "
+      "link_length, member.length, …), or build it as drawn with --tolerances 0",
+      redundant, redundant == 1 ? "" : "s");
+}
+
+/// simulate(); its refusals with the way out.
+measurement::Measurements readings_of(const Mechanism& m, const measurement::Measurements& plan,
+                                      const prediction::SimulationOptions& o, const SimulateArguments& a,
+                                      const parallel::Work& work) {
+  const auto assembled = [&] {
+    auto made = outcome_of<ModelError>([&] { return prediction::simulate(m, plan, o, work); });
+    if (!made) throw ModelError(made.why + way_to_assemble(m, plan, o.tolerances), made.cause);
+    return std::move(*made);
+  };
+  auto made = outcome_of<NumericalError>(assembled);
+  if (!made) throw NumericalError(made.why + way_out(m, plan, o, a));
+  return std::move(*made);
 }
 
 void tell_done(const SimulateArguments& a, const measurement::Measurements& data, const std::string& name,
@@ -141,9 +177,7 @@ void tell_done(const SimulateArguments& a, const measurement::Measurements& data
 void run_frame(const SimulateArguments& a, subject::Subject s) {
   const std::vector<effects::Effect> all = known_effects(a.files, s);
   const prediction::SimulationOptions o = options_of(a);
-  const bool named = std::any_of(std::begin(prediction::campaign_names), std::end(prediction::campaign_names),
-                                 [&](const char* name) { return a.campaign == name; });
-  measurement::Measurements plan = !named && std::filesystem::exists(a.campaign)
+  measurement::Measurements plan = !is_named(a.campaign) && std::filesystem::exists(a.campaign)
                                        ? read_plan(a.campaign, s)
                                        : subject::frame_campaign(a.campaign, *s.frame(), o.seed);
   std::string hidden;
@@ -181,9 +215,7 @@ void run(const SimulateArguments& a) {
        nth(geometry_names, o.geometry));
   const int threads = parse_threads(a.threads);
   const measurement::Measurements data = timed_with_progress("simulate: MSA at every reading", [&](const auto& told) {
-    auto made = outcome_of<NumericalError>([&] { return prediction::simulate(m, plan, o, {threads, nullptr, told}); });
-    if (!made) throw NumericalError(made.why + way_out(m, plan, o, a));
-    return std::move(*made);
+    return readings_of(m, plan, o, a, {threads, nullptr, told});
   });
   tell_done(a, data, m.name, hidden, added, o.seed);
 }

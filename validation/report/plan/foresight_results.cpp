@@ -53,7 +53,10 @@ std::string indices_table(const plan::Foresight& f) {
   for (const Row& r : all)
     rows.push_back(
         {"  " + r.name, fmt::format(fmt::runtime(r.form), r.given), fmt::format(fmt::runtime(r.form), r.better)});
-  return aligned(rows);
+  std::string out = aligned(rows);
+  if (a.O[0] == 0 || b.O[0] == 0)
+    out += "  O1 to O5 are 0 where some tolerance, or several together, leave no trace in the readings\n";
+  return out;
 }
 
 Json insight_json(const plan::Insight& i) {
@@ -81,22 +84,16 @@ Json insight_json(const plan::Insight& i) {
                                {"mistaken_for", d.mistaken_for},
                                {"cosine", json::json_number(d.cosine, "cosine")}});
   }
-  j["cosines"] = Json::array();
-  for (Eigen::Index a = 0; a < i.cosines.rows(); ++a) {
-    Json row = Json::array();
-    for (Eigen::Index b = 0; b < i.cosines.cols(); ++b) row.push_back(json::json_number(i.cosines(a, b), "cosine"));
-    j["cosines"].push_back(std::move(row));
-  }
-  j["left_out"] = Json::array();
-  for (const diagnosis::LeftOut& e : i.left_out) j["left_out"].push_back({{"effect", e.effect}, {"why", e.why}});
+  j["cosines"] = rows_json(i.cosines, "cosine");
+  j["left_out"] = left_out_json(i.left_out);
   return j;
 }
 
 }  // namespace
 
 std::string foresight_report(const plan::Foresight& f) {
-  return fmt::format("{}: what {} will be able to tell ({} tolerances are what a calibration would fit)\n\n", f.subject,
-                     f.campaign, f.given.parameters) +
+  return fmt::format("{}: what {} will be able to tell (a calibration would fit {} tolerance{})\n\n", f.subject,
+                     f.campaign, f.given.parameters, f.given.parameters == 1 ? "" : "s") +
          indices_table(f) + "\n" + detectable_table(f.given.detectable) + left_out_words(f.given.left_out);
 }
 

@@ -98,16 +98,6 @@ Json parameter_json(const fit::FittedParameter& p) {
   return j;
 }
 
-Json rows_json(const MatrixX& m) {
-  Json out = Json::array();
-  for (Eigen::Index i = 0; i < m.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index k = 0; k < m.cols(); ++k) row.push_back(json::json_number(m(i, k), "covariance"));
-    out.push_back(std::move(row));
-  }
-  return out;
-}
-
 Json numbers_json(const VectorX& v) {
   Json out = Json::array();
   for (const double x : v) out.push_back(json::json_number(x, "mean"));
@@ -126,8 +116,9 @@ Json posterior_json(const fit::FitResult& r) {
   Json names = Json::array();
   for (const fit::FittedParameter& p : r.parameters) names.push_back(p.path);
   for (const std::string& t : r.tolerances) names.push_back(t);
-  return {
-      {"names", names}, {"mean", numbers_json(r.posterior.mean)}, {"covariance", rows_json(r.posterior.covariance)}};
+  return {{"names", names},
+          {"mean", numbers_json(r.posterior.mean)},
+          {"covariance", rows_json(r.posterior.covariance, "covariance")}};
 }
 
 }  // namespace
@@ -163,6 +154,13 @@ std::vector<std::string> fit_warnings(const fit::FitResult& r) {
   return out;
 }
 
+Json discrepancies_json(const std::vector<fit::Discrepancy>& all) {
+  Json out = Json::array();
+  for (const fit::Discrepancy& d : all)
+    out.push_back({{"quantity", measurement::row_of(d.quantity).what}, {"share", d.share}});
+  return out;
+}
+
 std::string fit_report(const fit::FitResult& r) {
   std::string out = fmt::format("{} fitted to {}: {} readings, {} numbers{}\n", r.device, r.data, r.readings, r.numbers,
                                 r.set_aside ? fmt::format(", {} readings set aside", r.set_aside) : "");
@@ -195,7 +193,7 @@ std::string fit_json(const fit::FitResult& r) {
   j["unit"] = unit.coarse;  // of what ends with _mm
   j["parameters"] = Json::array();
   for (const fit::FittedParameter& p : r.parameters) j["parameters"].push_back(parameter_json(p));
-  j["correlation"] = rows_json(r.correlation);
+  j["correlation"] = rows_json(r.correlation, "correlation");
   j["undetermined"] = Json::array();
   for (const fit::Undetermined& u : r.undetermined)
     j["undetermined"].push_back({{"sentence", u.sentence},
@@ -210,9 +208,7 @@ std::string fit_json(const fit::FitResult& r) {
   j["findings"] = r.findings;
   j["strained_tolerances"] = strained_json(r.strained);
   j["tolerance_scale"] = r.tolerance_scale;
-  j["discrepancy"] = Json::array();
-  for (const fit::Discrepancy& d : r.discrepancies)
-    j["discrepancy"].push_back({{"quantity", measurement::row_of(d.quantity).what}, {"share", d.share}});
+  j["discrepancy"] = discrepancies_json(r.discrepancies);
   j["noise"] = Json::array();
   for (const auto& [quantity, sigma] : r.sigma)
     j["noise"].push_back({{"quantity", measurement::row_of(quantity).what}, {"sigma_SI", sigma}});

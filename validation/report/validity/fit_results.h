@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "validation/fit/fit.h"
+#include "validation/json/json_text.h"
 
 namespace deflect::report {
 
@@ -22,5 +23,8 @@ std::vector<std::string> fitted_words(const fit::FitResult&);
 
 /// What a person should know before trusting the values: far from priors, misfit left, search not ended.
 std::vector<std::string> fit_warnings(const fit::FitResult&);
+
+/// [{"quantity", "share"}, …].
+Json discrepancies_json(const std::vector<fit::Discrepancy>&);
 
 }  // namespace deflect::report

@@ -10,6 +10,7 @@
 #include "validation/json/json_text.h"
 #include "validation/report/compare_words.h"
 #include "validation/report/text.h"
+#include "validation/report/validity/fit_results.h"
 
 namespace deflect::report {
 namespace {
@@ -258,9 +259,7 @@ std::string validity_json(const ValidationStudy& s) {
   j["area"] = s.area;
   j["expected_area"] = s.expected_area;
   j["u"] = curve_json(s.u);
-  j["discrepancy"] = Json::array();
-  for (const fit::Discrepancy& d : s.discrepancies)
-    j["discrepancy"].push_back({{"quantity", measurement::row_of(d.quantity).what}, {"share", d.share}});
+  j["discrepancy"] = discrepancies_json(s.discrepancies);
   j["domain"] = Json::array();
   for (const validity::Range& r : s.domain) {
     Json range = {{"name", r.name}, {"unit", r.unit}, {"low", r.low}, {"high", r.high}};
