@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 #include "validation/measurement/measurements.h"
 
@@ -153,7 +154,7 @@ TEST_F(SimulateProgram, NamesTheReadingThatItCannotCompute) {
 
 // The three planar legs of a 3-RRR cannot be joined out of their plane: a shifted joint leaves a loop open.
 TEST_F(SimulateProgram, SaysWhyAnOverconstrainedMachineCannotBeBuilt) {
-  std::string device = contents(std::filesystem::path(DEFLECT_SOURCE_DIR) / "validation/devices/3-rrr.yaml");
+  std::string device = contents(std::filesystem::path(test::source_dir()) / "validation/devices/3-rrr.yaml");
   const std::string tolerances = "\ntolerances:\n";
   ASSERT_NE(device.find(tolerances), std::string::npos);
   device.insert(device.find(tolerances) + tolerances.size(), "  joint_position: 0.05 mm\n");
