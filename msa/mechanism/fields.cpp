@@ -8,6 +8,7 @@
 #include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/field_lists.h"
+#include "msa/mechanism/rig_fields.h"
 
 namespace deflect {
 namespace {
@@ -113,6 +114,19 @@ void fields(FieldVisitor& v, PoseSpace& s) {
             "needs at least one: write for example 'poses: [{shift: [0 mm, 0 mm, 100 mm]}]'");
 }
 
+/// The sensors of a machine whose legs are described already.
+class SensorElements final : public Elements {
+ public:
+  explicit SensorElements(Mechanism& m) : machine_(m) {}
+  std::size_t size() const override { return machine_.sensors.size(); }
+  std::string name(std::size_t i) const override { return machine_.sensors[i].first; }
+  void add(const std::string& name) override { machine_.sensors.emplace_back(name, PointSensor()); }
+  void describe_element(FieldVisitor& v, std::size_t i) override { describe(v, machine_.sensors[i].second, machine_); }
+
+ private:
+  Mechanism& machine_;
+};
+
 }  // namespace
 
 constexpr Range poisson{-1, 0.5, true};
@@ -211,7 +225,7 @@ void describe(FieldVisitor& v, Mechanism& m) {
 
   describe_workspace(v, m.workspace);
   describe_rig(v, m.load_cell, m.sensor, m.trusted);
-  NamedElements<PointSensor> sensors(m.sensors);
+  SensorElements sensors(m);
   v.entries("sensors", sensors, Need::optional, "instruments by name, beside the one at the tool point");
   NamedElements<LoadPoint> loads(m.loads);
   v.entries("loads", loads, Need::optional, "points by name at which loads act, beside the tool point");

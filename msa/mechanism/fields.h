@@ -24,7 +24,6 @@ void describe(FieldVisitor&, Named<Part>& chain, std::size_t);
 void describe(FieldVisitor&, Mount&);
 void describe(FieldVisitor&, Misfit&);
 void describe(FieldVisitor&, LegDeviation&);
-void describe(FieldVisitor&, PointSensor&);
 void describe(FieldVisitor&, LoadPoint&);
 void describe(FieldVisitor&, Placement&);
 void describe(FieldVisitor&, PolygonSpace::Corner&);

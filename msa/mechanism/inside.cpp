@@ -167,7 +167,9 @@ PartEnd end_of(const Inside& at, const Configuration& c) {
 
 void complete_sensor(const Mechanism& m, PointSensor& s) {
   const std::optional<NamedPart> part = inside_part(m, s);
-  if (part && part->freedom) s.rotation = *part->freedom >= 3;
+  if (!part || !part->freedom) return;
+  s.rotation = *part->freedom >= 3;
+  s.direction = freedom_names.at(*part->freedom);
 }
 
 }  // namespace deflect

@@ -56,8 +56,8 @@ PartEnd end_of(const Inside&, const Configuration&);
 /// The part itself.
 const PlacedPart& part_at(const Inside&, const Configuration&);
 
-/// Sets what follows from the rest: whether a drive turns. Throws as part_of_drive() and part_of_body(), with
-/// "sensors.NAME: " before it.
+/// Sets what follows from the rest: `direction` of a drive, its freedom, and whether it turns. Throws as
+/// part_of_drive() and part_of_body(), with "sensors.NAME: " before it.
 void complete_sensor(const Mechanism&, PointSensor&);
 
 }  // namespace deflect

@@ -8,9 +8,12 @@
 #include <optional>
 #include <string_view>
 
+#include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/field_lists.h"
+#include "msa/mechanism/inside.h"
 #include "msa/mechanism/rig_fields.h"
 
 namespace deflect {
@@ -145,7 +148,7 @@ void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<s
   v.object("rig", Need::optional, false, both, "how loads and displacements are recorded");
 }
 
-void describe(FieldVisitor& v, PointSensor& s) {
+void describe(FieldVisitor& v, PointSensor& s, const Mechanism& m) {
   v.text("drive", s.drive, Need::optional, "drive whose force the sensor reads, as in 'leg.2.actuator'");
   std::string force = s.drive.empty() ? "false" : "true";
   v.word("force", force, {"force", {"false", "true"}, "false"}, "with a drive: that its force or moment is read");
@@ -165,6 +168,13 @@ void describe(FieldVisitor& v, PointSensor& s) {
     describe_direction(v, s.direction, s.axis, s.rotation);
     describe_errors(v, s, s.rotation ? Dimension::angle : Dimension::length);
   } else {
+    if (s.direction.empty()) {  // read, and not yet complete
+      const auto complete = outcome_of<InputError>([&] {
+        complete_sensor(m, s);
+        return true;
+      });
+      v.require(complete.value.has_value(), "drive", complete.why);
+    }
     describe_errors(v, s, s.rotation ? Dimension::moment : Dimension::force);
   }
 }

@@ -12,6 +12,9 @@ namespace deflect {
 /// rotation about it.
 void describe_direction(FieldVisitor&, std::string& text, Vector3& axis, bool& rotation);
 
+/// A sensor of a machine whose legs are described already: its drive says in which unit it reads.
+void describe(FieldVisitor&, PointSensor&, const Mechanism&);
+
 /// gain, sigma, zero and offset, of this dimension.
 void describe_errors(FieldVisitor&, InstrumentErrors&, Dimension);
 

@@ -58,12 +58,12 @@ std::vector<VectorX> predicted(const Mechanism& m, const Measurements& data, con
 TEST(InsideLegs, ByHand) {
   const Mechanism m = springs();
   const Measurements data = parse_measurements(
-      "x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,fx_N,fy_N,fz_N,F_N,M_Nmm,z1_mm,y1_mm,turn_rad,probe_mm\n"
-      "200,0,0,0,0,0,0,5,10,0,0,0,0,0,0\n",
+      "pose,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,fx_N,fy_N,fz_N,F_N,M_Nmm,z1_mm,y1_mm,turn_rad,probe_mm\n"
+      "A,200,0,0,0,0,0,0,5,10,0,0,0,0,0,0\n",
       "data.csv", instruments_of(m));
   ASSERT_EQ(data.instruments.sensors.size(), 6U);
-  EXPECT_EQ(data.instruments.sensors[0].quantity, Quantity::force);
-  EXPECT_EQ(data.instruments.sensors[1].quantity, Quantity::moment);
+  EXPECT_EQ(data.instruments.sensors[0].quantity, measurement::Quantity::force);
+  EXPECT_EQ(data.instruments.sensors[1].quantity, measurement::Quantity::moment);
   for (const char* theory : {"analytic", "msa"}) {
     const VectorX read = predicted(m, data, theory).front();
     EXPECT_NEAR(read(6), 2 * 10, 1e-9) << theory;           // pulled: positive; the gain is 2
@@ -79,7 +79,7 @@ TEST(InsideLegs, ByHand) {
 TEST(InsideLegs, TurnWithTheMachine) {
   const Mechanism m = springs();
   const Measurements data = parse_measurements(
-      "x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,fx_N,fy_N,fz_N,M_Nmm,y1_mm\n200,0,0,0,0,0,-400,900,0,0,0\n",
+      "pose,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,fx_N,fy_N,fz_N,M_Nmm,y1_mm\nA,200,0,0,0,0,0,-400,900,0,0,0\n",
       "data.csv", instruments_of(m));
   double theta = 0.1;
   for (int i = 0; i < 200; ++i) theta = 0.2 * (900 * std::cos(theta) + 400 * std::sin(theta)) / 1000;
@@ -238,8 +238,8 @@ TEST(InsideLegs, AreRefusedWithLineAndRemedy) {
       << said;
   said = refusal("drive: leg.slide", "drive: leg.pad");
   EXPECT_TRUE(has(said, "two.yaml:10: ") && has(said, "is not driven")) << said;
-  said = refusal("drive: leg.1.motor", "drive: leg.2.motor");
-  EXPECT_TRUE(has(said, "two.yaml:11: ") && has(said, "from 1 to 1")) << said;
+  said = refusal("drive: leg.slide", "drive: leg.2.slide");
+  EXPECT_TRUE(has(said, "two.yaml:10: ") && has(said, "from 1 to 1")) << said;
   said = refusal("drive: leg.slide, force: true", "drive: leg.slide");
   EXPECT_TRUE(has(said, "force") && has(said, "must be true")) << said;
   said = refusal("body: leg.slide", "body: plattform");
@@ -253,7 +253,7 @@ TEST(InsideLegs, AreMeasuredLikeOthers) {
   Mechanism m = with_drive_sensors(test::device("haptic-6psu-ideal-joints"));
   m.sensors.front().second.gain_text = "1 ± 2 %", m.sensors.front().second.gain_sigma = 0.02;
   m.sensors.back().second.free_zero = true;
-  const Measurements data = prediction::simulate(m, prediction::campaign("random", m, 50, 3));
+  const Measurements data = prediction::simulate(m, prediction::campaign("random", m, 50, 3), {});
   EXPECT_NE(measurements_text(data).find("drive1_N"), std::string::npos);
   EXPECT_EQ(parse_measurements(measurements_text(data), "again.csv", instruments_of(m)).instruments.sensors.size(), 6U);
   std::set<std::string> ids;

@@ -137,8 +137,12 @@ class Builder {
     const PlacedJoint* waiting = nullptr;       // a joint whose far side is the next member's node
     std::vector<std::pair<Path, bool>> joints;  // since the last connection; whether they stand on its far side
     const auto attach = [&](int node, const Vector3& p) {
-      for (const auto& [part, far] : joints)
-        open_[{leg_, part}] = {pending_.size(), far ? node : at, node, open_[{leg_, part}].own};
+      for (const auto& [part, far] : joints) {
+        Open& open = open_[{leg_, part}];
+        open.pending = pending_.size();
+        open.side = far ? node : at;
+        open.behind = open.own ? node : open.side;
+      }
       joints.clear();
       if (waiting)
         joint(at, node, *waiting, leg.name + " " + waiting->part);
