@@ -20,14 +20,12 @@ const OneSidedLaw* one_sided_of(const SteppedLaw& l) { return std::get_if<OneSid
 
 bool bends(const SteppedLaw& l) { return !friction_of(l) && !clearance_of(l) && !one_sided_of(l); }
 
-int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
-
-double compliance(const OneSidedLaw& l, double f) { return (f < 0 ? l.push : l.pull).value_or(0); }
+int sense(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 
 /// δ of the preloaded law before any load.
 double at_rest(const SteppedLaw& l) {
   if (const OneSidedLaw* one = one_sided_of(l)) return compliance(*one, l.preload) * l.preload;
-  if (const ClearanceLaw* play = clearance_of(l)) return play->gap * sign(l.preload);
+  if (const ClearanceLaw* play = clearance_of(l)) return play->gap * sense(l.preload);
   return l.preload == 0 || friction_of(l) ? 0 : analytic::deflection(l.law, l.preload);
 }
 
@@ -79,7 +77,7 @@ SamePhases::LawPhase SamePhases::phase(Eigen::Index i, const VectorX& d, const V
   if (const ClearanceLaw* play = clearance_of(l)) {
     const double there = d(i) + at_rest(l);
     if (in.phase == 0)
-      in.phase = std::abs(there) > play->gap ? sign(there) : 0;
+      in.phase = std::abs(there) > play->gap ? sense(there) : 0;
     else if (in.phase * f <= 0)
       in.phase = 0;
   } else if (one_sided_of(l)) {
@@ -87,7 +85,7 @@ SamePhases::LawPhase SamePhases::phase(Eigen::Index i, const VectorX& d, const V
   } else if (const FrictionLaw* friction = friction_of(l)) {
     const double limit = limit_of(l, s);
     if (in.phase == 0)
-      in.phase = std::abs(f) > limit ? sign(f) : 0;
+      in.phase = std::abs(f) > limit ? sense(f) : 0;
     else if (in.phase * (friction->stiffness * (d(i) - slip_of(*friction, slips)) + l.preload) < limit)
       in.phase = 0;
     if (l.load >= 0 && in.of_load * s(l.load) < 0) in.of_load = -in.of_load;
@@ -171,7 +169,7 @@ void SamePhases::remember(const VectorX& f0, const std::vector<double>& slips, c
     const double f = s(i) + l.preload;
     in = {};
     if (clearance_of(l))
-      in.phase = std::abs(f) > no_force * std::abs(f0(i)) ? sign(f) : 0;
+      in.phase = std::abs(f) > no_force * std::abs(f0(i)) ? sense(f) : 0;
     else if (one_sided_of(l))
       in.phase = f < 0 ? -1 : 1;
     else if (const FrictionLaw* friction = friction_of(l))

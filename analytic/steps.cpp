@@ -24,8 +24,6 @@ constexpr double no_force = 1e-11;  // of the largest
 
 double sign(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
 
-double compliance(const OneSidedLaw& l, double f) { return (f < 0 ? l.push : l.pull).value_or(0); }
-
 /// δ of a preloaded law before any load.
 double at_rest(const Law& law, double P) { return P == 0 ? 0 : analytic::deflection(law, P); }
 
@@ -362,6 +360,8 @@ class Balance {
 };
 
 }  // namespace
+
+double compliance(const OneSidedLaw& l, double f) { return (f < 0 ? l.push : l.pull).value_or(0); }
 
 Step SteppedLaw::at_force(double f) const {
   Member m{this};

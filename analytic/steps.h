@@ -44,6 +44,9 @@ struct SteppedLaw {
   double stored_energy(double f, const Step&) const;
 };
 
+/// Compliance in the sense of the force f.
+double compliance(const OneSidedLaw&, double f);
+
 /// Response of a mechanism to given steps: the force in each law, the displacement of T, and the largest force.
 struct SteppedForces {
   VectorX forces;

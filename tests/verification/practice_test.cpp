@@ -198,7 +198,7 @@ class Cycloid : public testing::TestWithParam<const char*> {};
 
 // No truth is known but the loops themselves: what is named sits at the drive, friction among it, and gives the lost
 // motion that the loop shows to a tenth. Of the play tests; the README of the diagnosis has the stiffness tests, which
-// take minutes each.
+// take up to two minutes each.
 TEST_P(Cycloid, WhatIsNamedSitsAtTheDriveAndGivesTheLostMotion) {
   const std::filesystem::path folder = test::source_dir() + "/validation/measurements/cycloid";
   const Mechanism m = read_mechanism(folder / "actuator.yaml");

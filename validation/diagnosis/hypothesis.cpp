@@ -81,6 +81,12 @@ struct Start {
   double chi2 = INFINITY;
 };
 
+/// Without those that cannot be predicted.
+void deepest_first(std::vector<Start>& all) {
+  std::erase_if(all, [](const Start& s) { return !std::isfinite(s.chi2); });
+  std::stable_sort(all.begin(), all.end(), [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
+}
+
 /// Values that were fitted to an end of their range say little there: where others join them a search may not leave it.
 /// The same with their starts in their place; nothing where none stands at an end.
 std::optional<VectorX> off_the_ends(const FitProblem& problem, const VectorX& from) {
@@ -112,29 +118,40 @@ std::vector<Start> best_starts(const FitProblem& problem, const std::vector<Vect
   });
   const auto first = std::find_if(reasons.begin(), reasons.end(), [](const std::string& r) { return !r.empty(); });
   if (first != reasons.end() && why.empty()) why = *first;
-  std::erase_if(all, [](const Start& s) { return !std::isfinite(s.chi2); });
-  std::stable_sort(all.begin(), all.end(), [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
+  deepest_first(all);
   if (all.size() > count) all.resize(count);
   return all;
 }
 
 /// Beside friction, χ² has valleys besides the deepest one: a slip comes before or after a turn of the load.
 bool may_have_valleys(const effects::PlacedEffect& e) { return is_shaped(e) && e.effect->parameters.size() > 1; }
-constexpr std::size_t valleys = 5;
+constexpr std::size_t valleys = 5, followed = 2;
+constexpr int few_steps = 8, all_steps = 40;
+
+FreeResidual of_all(const FitProblem& problem, const VectorX& x) {
+  std::vector<Eigen::Index> all(as_size(x.size()));
+  std::iota(all.begin(), all.end(), 0);
+  return {&problem, x, all};
+}
+
+/// Some steps of a search, within the bounds.
+Start nearer(const FitProblem& problem, Start start, int evaluations) {
+  const VectorX x = minimised(of_all(problem, start.x), start.x, evaluations);
+  if (!x.allFinite()) return start;
+  const VectorX inside = problem.coordinates(problem.values(x));
+  const double chi2 = problem.residual_or_wall(inside).squaredNorm();
+  if (chi2 <= start.chi2) start = {inside, chi2};
+  return start;
+}
 
 Fit search_from(const FitProblem& problem, const Start& start) {
   Fit out;
   VectorX best = start.x;
   std::optional<VectorX> residual;
   if (best.size() > 0) {
-    std::vector<Eigen::Index> all(as_size(best.size()));
-    std::iota(all.begin(), all.end(), 0);
-    const FreeResidual free{&problem, best, all};
-    const VectorX x = minimised(free, best, 40);
-    if (x.allFinite() && problem.residual_or_wall(x).squaredNorm() <= start.chi2) best = x;
-    const VectorX inside = problem.coordinates(problem.values(best));  // the bounds
-    if ((residual = problem.residual(inside))) best = inside;
-    free.df(best, out.signature);
+    best = nearer(problem, start, all_steps).x;
+    residual = problem.residual(best);
+    of_all(problem, best).df(best, out.signature);
     const MatrixX information = out.signature.transpose() * out.signature;
     out.covariance = information.completeOrthogonalDecomposition().pseudoInverse();
   }
@@ -143,6 +160,22 @@ Fit search_from(const FitProblem& problem, const Start& start) {
   out.chi2 = out.residual.squaredNorm();
   out.found = true;
   return out;
+}
+
+/// Follows several valleys for a few steps, which tell most of their depths, and the deepest of them to the bottom.
+Fit deepest(const FitProblem& problem, std::vector<Start> begun, int threads) {
+  if (begun.size() > followed) {
+    parallel::for_each_case(begun.size(), 1, threads,
+                            [&](std::size_t i) { begun[i] = nearer(problem, begun[i], few_steps); });
+    deepest_first(begun);
+    begun.resize(followed);
+  }
+  std::vector<Fit> ends(begun.size());
+  parallel::for_each_case(begun.size(), 1, threads, [&](std::size_t i) { ends[i] = search_from(problem, begun[i]); });
+  Fit best;
+  for (Fit& each : ends)
+    if (!best.found || each.chi2 < best.chi2) best = std::move(each);
+  return best;
 }
 
 }  // namespace
@@ -164,12 +197,7 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
       begun = best_starts(problem, starts(h.back()), from, valleys, why, threads);
       if (begun.size() > 1 && !(may_have_valleys(h.back()) && problem.has_history(begun.front().x))) begun.resize(1);
     }
-    std::vector<Fit> ends(begun.size());
-    parallel::for_each_case(begun.size(), 1, threads, [&](std::size_t i) { ends[i] = search_from(problem, begun[i]); });
-    Fit best = not_found(why);
-    for (Fit& each : ends)
-      if (!best.found || each.chi2 < best.chi2) best = std::move(each);
-    return best;
+    return begun.empty() ? not_found(why) : deepest(problem, std::move(begun), threads);
   });
   return fitted ? *fitted : not_found(fitted.why);  // the effects may not go together in this subject
 }
@@ -188,14 +216,10 @@ Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int th
         begun[i].x = problem.coordinates(values);
         if (const auto r = problem.residual(begun[i].x)) begun[i].chi2 = r->squaredNorm();
       });
-      std::stable_sort(begun.begin(), begun.end(), [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
+      deepest_first(begun);
       begun.resize(std::min(begun.size(), valleys));
-      std::vector<Fit> fits(begun.size());
-      parallel::for_each_case(begun.size(), 1, threads, [&](std::size_t i) {
-        if (std::isfinite(begun[i].chi2)) fits[i] = search_from(problem, begun[i]);
-      });
-      for (Fit& each : fits)
-        if (each.found && each.chi2 < found.chi2) found = std::move(each);
+      if (Fit again = deepest(problem, std::move(begun), threads); again.found && again.chi2 < found.chi2)
+        found = std::move(again);
     }
     first += own;
   }

@@ -9,7 +9,8 @@
 namespace deflect::diagnosis {
 namespace {
 
-constexpr std::size_t most_effects = 4, most_rounds = 6;
+constexpr std::size_t usual_effects = 4, most_effects = 6, most_rounds = 12;
+constexpr double own_part_of_many = 0.5;       // of χ²: what more effects than usual must take off, each
 constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; of those that tie
 constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
 constexpr double never = -1e6;
@@ -23,6 +24,7 @@ class Search {
   bool add(const std::vector<Candidate>& all, double least) {
     const auto best = std::max_element(all.begin(), all.end(), less_likely);
     if (best == all.end() || !(best->class_log_odds > least)) return false;
+    if (s_.effects.size() >= usual_effects && best->fit.chi2 > own_part_of_many * s_.fit.chi2) return false;
     if (!s_.effects.empty() && seen().held_out_rmse(subject_with(seen(), best->hypothesis, best->fit.values)) >
                                    seen().held_out_rmse(subject_with(seen(), s_.effects, s_.fit.values)))
       return false;
