@@ -49,11 +49,14 @@ export function errorHeat(version) {
   const same = groups.filter(([, e]) => (e.unit || unitOf(version)) === unitOf(version));
   const unit = fineOf(unitOf(version))[0];
   const worst = Math.max(...same.map(([, e]) => e.worst_mm)), largest = Math.max(...same.map(([, e]) => e.rmse_mm));
-  const rows = groups.map(([by, e]) => [by === 'pose' ? e.group : `${by}: ${e.group}`, e.rmse_mm, ...e.bias_mm, e.worst_mm, e.worst_line]);
-  return figure('errors', 'Errors by group', `Root mean square, mean by axis and worst of measured − predicted, ${unit}. ${version.device}.`,
-    table(['group', 'rms', 'mean x', 'mean y', 'mean z', 'worst', 'in line'], rows, {
-      shade: (i, j) => (j === 0 || j === 6 || !same.includes(groups[i]) ? null : Math.abs(rows[i][j]) / (j === 5 ? worst : largest)),
-      show: (x, i, j) => (j === 0 || j === 6 ? String(x) : same.includes(groups[i]) ? num(fineOf(unitOf(version))[1] * x) : sized(x, groups[i][1].unit)),
+  // Without a tool point there are no axes to take means along.
+  const axes = groups.some(([, e]) => e.bias_mm.some((x) => x !== 0)) ? ['mean x', 'mean y', 'mean z'] : [];
+  const worstAt = 2 + axes.length, lineAt = worstAt + 1;
+  const rows = groups.map(([by, e]) => [by === 'pose' ? e.group : `${by}: ${e.group}`, e.rmse_mm, ...(axes.length ? e.bias_mm : []), e.worst_mm, e.worst_line]);
+  return figure('errors', 'Errors by group', `Root mean square${axes.length ? ', mean by axis' : ''} and worst of measured − predicted, ${unit}. ${version.device}.`,
+    table(['group', 'rms', ...axes, 'worst', 'in line'], rows, {
+      shade: (i, j) => (j === 0 || j === lineAt || !same.includes(groups[i]) ? null : Math.abs(rows[i][j]) / (j === worstAt ? worst : largest)),
+      show: (x, i, j) => (j === 0 || j === lineAt ? String(x) : same.includes(groups[i]) ? num(fineOf(unitOf(version))[1] * x) : sized(x, groups[i][1].unit)),
     }),
     numbers('errors-by-group', () => ({columns: ['by', 'group', 'readings', 'rmse_mm', 'mean_x_mm', 'mean_y_mm', 'mean_z_mm', 'worst_mm', 'worst_line'],
       rows: groups.map(([by, e]) => [by, e.group, e.readings, e.rmse_mm, ...e.bias_mm, e.worst_mm, e.worst_line])})));
@@ -147,7 +150,7 @@ export function curves(versions) {
     return el('div', {}, el('h3', {}, curve.site), picture);
   });
   return figure('curves', 'Force–elongation of the sites, beyond the model’s',
-    'Read off the residuals without a law: a slope is a compliance, a step at zero free travel, an odd one a damaged leg. The band is one standard deviation; flat at zero means that nothing is missing there.',
+    'Read off the residuals without a law: a slope is a compliance, a step at zero free travel, one unlike its fellows a damaged part. The band is one standard deviation; flat at zero means that nothing is missing there.',
     versions.length > 1 ? el('p', {}, el('span', {class: 'swatch', style: {background: 'var(--blue)'}}), 'as given ', el('span', {class: 'swatch', style: {background: 'var(--guilty)'}}), 'with what was found') : null,
     el('div', {class: 'grid'}, cells),
     numbers('force-elongation', () => ({

@@ -13,6 +13,7 @@
 #include "msa/fields/file_kind.h"
 #include "msa/fields/tree_edit.h"
 #include "msa/frame/file/frame_fields.h"
+#include "msa/frame/file/frame_part.h"
 #include "msa/frame/file/frame_tolerances.h"
 #include "msa/frame/file/short_forms.h"
 
@@ -51,6 +52,18 @@ YamlNode tree_of(const FrameDescription& f, bool absent_ends) {
   return writer.tree();
 }
 
+DependentFrame edited_whole(const DependentFrame& before, const std::vector<TreeEdit>& edits) {
+  // The laws of all ends of a large frame are many: only edits of members need them.
+  const bool of_members = std::any_of(edits.begin(), edits.end(), [](const TreeEdit& edit) {
+    const std::vector<std::string> at = segments_of(edit.path);
+    return at.size() > 2 && at[0] == "members" && (at[2] == "start" || at[2] == "end" || at[2] == "*");
+  });
+  YamlNode tree = tree_of(before.frame, of_members || !before.depends.empty());
+  attach(tree, before.depends);
+  for (const TreeEdit& edit : edits) apply(tree, spelled_out(edit), origin_of(edit));
+  return frame_of(stripped(tree), origin_of(edits.back()));
+}
+
 }  // namespace
 
 YamlNode tree_of(const FrameDescription& f) { return tree_of(f, true); }
@@ -73,15 +86,11 @@ FrameDescription edited(const FrameDescription& f, const std::vector<Edit>& edit
 
 DependentFrame edited_in_turn(DependentFrame before, const std::vector<TreeEdit>& edits) {
   if (edits.empty()) return before;
-  // The laws of all ends of a large frame are many: only edits of members need them.
-  const bool of_members = std::any_of(edits.begin(), edits.end(), [](const TreeEdit& edit) {
-    const std::vector<std::string> at = segments_of(edit.path);
-    return at.size() > 2 && at[0] == "members" && (at[2] == "start" || at[2] == "end" || at[2] == "*");
-  });
-  YamlNode tree = tree_of(before.frame, of_members || !before.depends.empty());
-  attach(tree, before.depends);
-  for (const TreeEdit& edit : edits) apply(tree, spelled_out(edit), origin_of(edit));
-  return frame_of(stripped(tree), origin_of(edits.back()));
+  if (const auto entries = edited_entries(before.frame, edits)) {
+    auto part = outcome_of<InputError>([&] { return edited_whole(part_of(before, *entries), edits); });
+    if (part) return with_part(std::move(before), *entries, std::move(*part));
+  }
+  return edited_whole(before, edits);  // messages name what the whole frame has
 }
 
 void for_each_number(FrameDescription& f, const std::function<void(std::size_t, double&)>& call) {
