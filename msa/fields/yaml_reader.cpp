@@ -130,7 +130,15 @@ class Builder : public YAML::EventHandler {
 };
 
 class Ignore : public YAML::EventHandler {
-  void OnDocumentStart(const YAML::Mark&) override {}
+ public:
+  /// At a comma or a closing bracket where a value is wanted yaml-cpp finds an empty document, and does so again for
+  /// ever.
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (mark.pos == begun_) throw YAML::ParserException(mark, "a value, a key or the end was expected here");
+    begun_ = mark.pos;
+  }
+
+ private:
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
   void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
@@ -139,6 +147,8 @@ class Ignore : public YAML::EventHandler {
   void OnSequenceEnd() override {}
   void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
   void OnMapEnd() override {}
+
+  int begun_ = -1;  // where the last document begins
 };
 
 /// Bytes of the UTF-8 sequence that begins here, 0 when there is none.

@@ -15,6 +15,7 @@
 #include "msa/base/units.h"
 #include "msa/fields/field_reader.h"
 #include "msa/fields/file_kind.h"
+#include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/fields.h"
 #include "msa/mechanism/joint_table.h"
 #include "validation/effects/effect_value.h"
@@ -222,6 +223,15 @@ void trim(std::string& text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
 }
 
+/// A text as YAML, in quotation marks where it needs them.
+std::string written(const std::string& text) {
+  YamlNode node;
+  node.kind = YamlNode::Kind::scalar;
+  node.text = text;
+  node.quoted = true;
+  return flow_yaml(node);
+}
+
 }  // namespace
 
 Effect parse_effect(std::string_view yaml, const std::string& origin) {
@@ -250,25 +260,29 @@ std::string write_effect(const Effect& e) {
   std::string name = e.name;
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return !in_name(c); }, '_');
-  std::string out = fmt::format("name: {}\ntitle: \"{}\"\nscope: {}\n", name, e.title, nth(scope_names, e.scope));
+  std::string out =
+      fmt::format("name: {}\ntitle: {}\nscope: {}\n", written(name), written(e.title), nth(scope_names, e.scope));
   if (!e.parameters.empty()) out += "parameters:\n";
   for (const EffectParameter& p : e.parameters) {
     out += fmt::format("  {}: {{start: {:.17g}, low: {:.17g}, high: {:.17g}, scale: {}", p.name, p.start, p.low, p.high,
                        p.log ? "log" : "linear");
     if (p.vanishes)
       out += std::isinf(*p.vanishes) ? ", vanishes: infinity" : fmt::format(", vanishes: {}", *p.vanishes);
-    out += fmt::format(", about: \"{}\"{}}}\n", p.about, p.optional ? ", value: optional" : "");
+    out += fmt::format(", about: {}{}}}\n", written(p.about), p.optional ? ", value: optional" : "");
   }
   out += "edits:\n";
-  for (const EffectEdit& edit : e.edits)
-    out += fmt::format("  - {{at: [{}], {}: {}}}\n", fmt::join(edit.paths, ", "), nth(action_keys, edit.action),
-                       edit.value);
+  for (const EffectEdit& edit : e.edits) {
+    std::vector<std::string> paths;
+    for (const std::string& path : edit.paths) paths.push_back(written(path));
+    out += fmt::format("  - {{at: [{}], {}: {}}}\n", fmt::join(paths, ", "), nth(action_keys, edit.action), edit.value);
+  }
   out += "pages:\n";
   for (const auto& [key, text] : {std::pair{"machine", &e.pages.machine},
                                   {"data", &e.pages.data},
                                   {"bench", &e.pages.bench},
                                   {"cure", &e.pages.cure}})
-    out += fmt::format("  {}: \"{}\"\n", key, *text);
+    out += fmt::format("  {}: {}\n", key, written(*text));
+  if (!e.see.empty()) out += fmt::format("see: {}\n", written(e.see));
   return out;
 }
 
