@@ -126,5 +126,35 @@ TEST(Uncertainty, ToleranceScaleIsFoundBesidePatterns) {
   }
 }
 
+/// ln L of the part of r beside F, of covariance 1 + s² A Aᵀ, written out.
+double restricted_log_likelihood(const MatrixX& A, const MatrixX& F, const VectorX& r, double s) {
+  const MatrixX Q = MatrixX(F.householderQr().householderQ()).rightCols(F.rows() - F.cols());
+  const Eigen::LLT<MatrixX> S(Q.transpose() * (MatrixX::Identity(r.size(), r.size()) + s * s * A * A.transpose()) * Q);
+  const VectorX left = Q.transpose() * r;
+  return -0.5 * left.dot(S.solve(left)) - S.matrixLLT().diagonal().array().log().sum();
+}
+
+// The likeliest of the factors 1, 1.1, 1.21 … 3 where ln of its likelihood is more than 2 above that of 1, else 1.
+TEST(Uncertainty, ToleranceScaleIsTheLikeliestOfItsSteps) {
+  std::vector<MeasuredValue> values(60);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = tool_point_value(i / 3, i % 3, 0, {});
+  const MatrixX A = noise(60, 10, 8), F = noise(60, 2, 9);
+  const Uncertainty u(A, values, std::vector<double>(60, 1), std::vector<VectorX>(20, Vector6::Zero()), 0);
+  int little = 0, just_enough = 0;
+  for (double times = 1; times < 3; times += 0.05) {
+    const VectorX r = times * A * noise(10, 1, 10) + noise(60, 1, 11) + 30 * F * VectorX::Ones(2);
+    double best = 1, rise = 0;
+    for (double s = 1; s <= 3; s *= 1.1) {
+      const double here = restricted_log_likelihood(A, F, r, s) - restricted_log_likelihood(A, F, r, 1);
+      if (here > rise) rise = here, best = s;
+    }
+    EXPECT_EQ(u.scale_of_tolerances(r, F), rise > 2 ? best : 1) << times << " " << rise;
+    little += rise > 1 && rise <= 2;
+    just_enough += rise > 2 && rise < 4;
+  }
+  EXPECT_GT(little, 0);
+  EXPECT_GT(just_enough, 0);
+}
+
 }  // namespace
 }  // namespace deflect

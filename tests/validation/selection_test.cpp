@@ -1,0 +1,108 @@
+// The odds of candidates by their definition, and when one more effect is taken.
+#include "validation/diagnosis/selection.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+#include "validation/diagnosis/evidence.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
+
+namespace deflect {
+namespace {
+
+using namespace diagnosis;
+using namespace effects;
+
+/// The change along axis i of a residual of six numbers.
+Signature along(const std::string& effect, Eigen::Index i, bool shaped = false) {
+  Signature s;
+  s.effect = {&test::effect(effect), {}};
+  s.basis = MatrixX::Zero(6, 1);
+  s.basis(i, 0) = 1;
+  s.at_start = s.basis.col(0);
+  s.shaped = shaped;
+  return s;
+}
+
+// Something is missing with probability 0.8, and is not in the catalogue with 0.1 of that; the entries share the rest
+// alike. Of the shapes of a shaped effect one in three, or so, does what the best does.
+TEST(Candidates, OddsArePriorTimesEvidence) {
+  const std::vector<Signature> all = {along("guide_root_compliance", 0), along("modulus", 1),
+                                      along("joint_clearance", 2, true), along("sensor_drift", 3)};
+  const Candidates candidates(all, 1);
+  const double prior = 0.8 * (1 - 0.1) / 4;
+  for (const double gain : {0.0, 7.0, 40.0})
+    for (const Signature& s : all)
+      EXPECT_NEAR(candidates.class_log_odds_of(s.effect, gain),
+                  std::log(prior / (1 - 0.8)) + log_evidence(gain, 1, false) - (s.shaped ? std::log(3) : 0), 1e-12)
+          << s.effect.effect->name << " " << gain;
+}
+
+// Two entries that do the same have the prior of one together.
+TEST(Candidates, WhatTheDataCannotTellApartSharesAPrior) {
+  const std::vector<Signature> all = {along("guide_root_compliance", 0), along("modulus", 0), along("sensor_drift", 3)};
+  const Candidates candidates(all, 1);
+  const double gain = 12, evidence = log_evidence(gain, 1, false);
+  for (const Signature& s : all)
+    EXPECT_NEAR(candidates.class_log_odds_of(s.effect, gain), std::log(0.8 * 0.9 / 2 / 0.2) + evidence, 1e-12);
+}
+
+/// The size of the sensor's drift, and what came of it.
+struct Step {
+  double odds = 0;  ///< ln, of a second effect beside the first
+  std::size_t effects = 0;
+};
+
+Step with_drift(double metres) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const std::vector<Effect> effects = {test::effect("guide_root_compliance"), test::effect("sensor_drift")};
+  Mechanism truth = with_effect(m, effects[0], test::values({5e6}));
+  truth.sensor.drift = Vector3(metres, 0, 0);
+  prediction::SimulationOptions exact;
+  exact.tolerances = 0;
+  const measurement::Measurements data = prediction::simulate(truth, prediction::campaign("paper", m, 50, 1), exact);
+  const Observations o(subject::Subject(m), data, {});
+  const std::vector<Signature> all = signatures(o, effects, 1);
+  const Candidates candidates(all, 1);
+  const Fit null = fit_of_all(o, {}, VectorX(0));
+  const std::vector<Candidate> first = candidates.beside(o, {}, null, -1e6);
+  const auto best = std::max_element(first.begin(), first.end(), [](const Candidate& a, const Candidate& b) {
+    return a.class_log_odds < b.class_log_odds;
+  });
+  Step out;
+  const Observations granted = o.granted(subject_with(o, best->hypothesis, best->fit.values));
+  const Fit alone = fit_of_all(granted, best->hypothesis, best->fit.values);
+  out.odds = -1e9;
+  for (const Candidate& c : candidates.beside(granted, best->hypothesis, alone, -1e6))
+    out.odds = std::max(out.odds, c.class_log_odds);
+  out.effects = select(o, candidates, first).effects.size();
+  return out;
+}
+
+/// A drift for which ln of the odds lies within 0.5 of what is wanted, by bisection between 0.1 µm and 1 mm.
+Step with_odds_about(double wanted) {
+  double low = 1e-7, high = 1e-3;
+  Step s;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = std::sqrt(low * high);
+    s = with_drift(middle);
+    if (std::abs(s.odds - wanted) < 0.5) return s;
+    (s.odds < wanted ? low : high) = middle;
+  }
+  ADD_FAILURE() << "no drift has ln of the odds " << wanted << "; the last, " << s.odds;
+  return s;
+}
+
+// A second effect is taken where the odds for it are above e⁴ = 55, and not before.
+TEST(Selection, TakesAFurtherEffectFromOddsOfFiftyFive) {
+  EXPECT_EQ(with_odds_about(3.2).effects, 1u);
+  EXPECT_EQ(with_odds_about(5).effects, 2u);
+}
+
+}  // namespace
+}  // namespace deflect
