@@ -94,7 +94,7 @@ bool simulate(const Pipeline& p, const fs::path& folder, PipelineJudgement& j) {
                                   std::min(p.noise_mm, 999.0), p.seed);
   if (p.noise_rad > 0) words += fmt::format(" --noise-rotation {:.6g}", std::min(p.noise_rad, 1.0));
   if (p.outliers > 0) words += fmt::format(" --outliers {}", p.outliers);
-  for (const HiddenEffect& h : p.hidden) words += fmt::format(" --with {}", h.words);
+  for (const HiddenEffect& h : p.hidden) words += fmt::format(" --with '{}'", h.words);
   if (step("simulate", words, folder, j).code != 0) return false;
   const auto data =
       outcome_of([&] { return measurement::read_measurements(folder / "data.csv", p.subject.instruments()); });

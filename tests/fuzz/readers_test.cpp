@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <random>
 
 #include "msa/base/files.h"
@@ -103,10 +106,12 @@ std::string changed(std::string text, const std::string& other, Generator& g) {
 }
 
 /// Without sanitizers and without a look at what is reached, but in the tests' own program: the first that fails of
-/// each target is kept in the folder attack/.
+/// each target is kept in the folder attack/. DEFLECT_FUZZ=frame: that target alone.
 TEST(FuzzedReadersOnDemand, TakeChangedSeeds) {
   if (attack::count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to the number of texts for each reader";
+  const char* only = std::getenv("DEFLECT_FUZZ");
   for (const Target& t : targets()) {
+    if (only && t.name != only) continue;
     Generator g(attack::first_on_demand() + 1);
     const std::vector<std::filesystem::path> files = seed_files(t);
     std::vector<std::string> seeds;
@@ -114,7 +119,7 @@ TEST(FuzzedReadersOnDemand, TakeChangedSeeds) {
     unsigned failures = 0;
     for (unsigned i = 0; i < attack::count_on_demand(); ++i) {
       const std::string text = changed(seeds[below(g, seeds.size())], seeds[below(g, seeds.size())], g);
-      write_text(attack::failures_folder() / (t.name + "-last"), text);  // it may be the last
+      std::ofstream(attack::failures_folder() / (t.name + "-last")) << text;  // it may be the last
       try {
         t.run(text);
       } catch (const std::exception& e) {
@@ -124,6 +129,7 @@ TEST(FuzzedReadersOnDemand, TakeChangedSeeds) {
       }
     }
     fmt::print("{:<12} {} texts, {} failures\n", t.name, attack::count_on_demand(), failures);
+    std::fflush(stdout);
   }
 }
 
