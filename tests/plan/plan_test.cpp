@@ -159,6 +159,53 @@ TEST(Plan, GrowsWithEveryReadingAndNotWithThreads) {
   EXPECT_EQ(one.probability, two.probability);
 }
 
+TEST(Plan, ChanceOfConfusionIsTheTailBeyondHalfTheDistance) {
+  EXPECT_DOUBLE_EQ(chance_of_confusion(0), 0.5);
+  EXPECT_NEAR(chance_of_confusion(4 * 1.959964 * 1.959964), 0.025, 1e-8);  // the line between them is 1.96 σ away
+}
+
+TEST(Plan, TheBetterCampaignTakesTheWrongEffectMoreSeldom) {
+  std::vector<effects::Effect> some;
+  for (const char* name : {"actuator_compliance", "platform_flexibility", "joint_compliance", "tool_compliance"})
+    some.push_back(effect(name));
+  ForesightOptions o;
+  o.limits.moment = 5;
+  const Foresight f = foresight(machine(), prediction::campaign("paper", machine(), 50, 1), some, o);
+  ASSERT_EQ(f.given.separations.rows(), 4);
+  const auto mean = [](const MatrixX& separations) {
+    double sum = 0;
+    for (Eigen::Index i = 0; i < 4; ++i)
+      for (Eigen::Index k = 0; k < 4; ++k)
+        if (i != k) sum += chance_of_confusion(separations(i, k));
+    return sum / 12;
+  };
+  // Of two effects of λ = 8 what is left of one beside the other is 8 times the sine between their signatures.
+  for (Eigen::Index i = 0; i < 4; ++i)
+    for (Eigen::Index k = 0; k < 4; ++k)
+      EXPECT_NEAR(f.given.separations(i, k), 64 * (1 - std::pow(f.given.cosines(i, k), 2)), 1e-9);
+  // Actuators and platform are one at poses that are not tilted: alone they give 2 of 12 chances of one half.
+  EXPECT_GT(mean(f.given.separations), 1.0 / 12);
+  EXPECT_LT(mean(f.better.separations), 0.7 * mean(f.given.separations));
+}
+
+/// A force beside the tool point: with a moment about an axis across it.
+TEST(Plan, ForcesActBesideTheToolPointToo) {
+  const Possible all = possible_readings(machine(), paper(), {}, false, 1);
+  std::size_t beside = 0;
+  for (std::size_t i = all.taken; i < all.all.readings.size(); ++i) {
+    const Vector6& load = all.all.readings[i].load;
+    if (load.head<3>().isZero(0) || load.tail<3>().isZero(0)) continue;
+    EXPECT_NEAR(load.head<3>().dot(load.tail<3>()), 0, 0);  // what a force on a lever gives
+    ++beside;
+  }
+  EXPECT_EQ(beside % 24, 0u);
+  EXPECT_GT(beside, 0u);
+  Limits forces;
+  forces.forces_only = true;
+  const Possible without = possible_readings(machine(), paper(), forces, false, 1);
+  for (const measurement::Reading& r : without.all.readings) EXPECT_TRUE(r.load.tail<3>().isZero(0));
+}
+
 TEST(Plan, IsAFileWithEmptyCellsThatReadsBack) {
   const Plan p = plan_of({rival("actuator_compliance", values({4000})), rival("platform_flexibility", values({2500}))});
   const std::string text = measurement::measurements_text(p.readings, {true, true, true, true, false, false});

@@ -121,6 +121,15 @@ TEST(Fit, AToleranceOfTheSameNumberGivesWay) {
   EXPECT_NEAR(other.parameters[0].deviation, std::hypot(0.01 / 1.01, deviation), 1e-5);
 }
 
+// The description that is judged before the fit is the one that `diagnose` judges, with its tolerance.
+TEST(Fit, TheMisfitBeforeIsThatOfADiagnosis) {
+  const Subject s = frame_of("tolerances: {modulus: 2 %}"), truth = frame_of("", "210 GPa", "189 GPa");
+  const Measurements data = exact(truth);
+  const diagnosis::Observations declared(s, data, as_recorded());
+  EXPECT_NEAR(fitted(s, data, {"materials.steel.E"}).chi2_before, declared.null_residual().squaredNorm(),
+              1e-9 * declared.null_residual().squaredNorm());
+}
+
 TEST(Fit, WarnsWhereAValueIsFarFromWhatWasDeclared) {
   const Measurements data = exact(frame_of("", "210 GPa", "189 GPa"));
   const FitResult r = fitted(frame_of("tolerances: {modulus: 1 %}"), data, {"materials.steel.E"});

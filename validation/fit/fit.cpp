@@ -31,6 +31,7 @@ diagnosis::Fit searched(const diagnosis::Observations& o, const diagnosis::Hypot
 struct Round {
   diagnosis::Observations observations;
   VectorX values;
+  double declared_chi2 = 0;  // of the subject as given, with all tolerances as declared
 };
 
 Round fitted_round(const subject::Subject& s, const measurement::Measurements& data,
@@ -38,6 +39,7 @@ Round fitted_round(const subject::Subject& s, const measurement::Measurements& d
                    const parallel::Work& work) {
   const diagnosis::Observations observed(s, data, options, work);
   Round out{observed.exact_in(replaced_tolerances(s, all, observed.comparison().tolerances.nuisances)), {}};
+  out.declared_chi2 = observed.null_residual().squaredNorm();
   VectorX start(std::ssize(all));
   for (std::size_t i = 0; i < all.size(); ++i) start(as_index(i)) = all[i].value;
   const Freed freed(all);
@@ -97,7 +99,7 @@ void add_quality(FitResult& out, const Round& before, const Round& after, const 
   const diagnosis::Observations &first = before.observations, &last = after.observations;
   const auto n = static_cast<double>(last.numbers());
   const auto freedoms = std::max(1.0, n - static_cast<double>(out.parameters.size()));
-  out.chi2_before = first.null_residual().squaredNorm();
+  out.chi2_before = before.declared_chi2;
   out.chi2_after = last.whitened_residual(s).squaredNorm();
   out.before = {first.rmse(first.subject()), first.held_out_rmse(first.subject()),
                 out.chi2_before / static_cast<double>(first.numbers())};

@@ -33,9 +33,11 @@ struct FitResult {
   MatrixX correlation;
   std::vector<Undetermined> undetermined;
   bool converged = true;
-  diagnosis::Quality before;               ///< held-out as in `compare`
-  diagnosis::Quality after;                ///< held-out with parameters fitted without the pose
-  double chi2_before = 0, chi2_after = 0;  ///< of the whitened numbers, priors apart
+  diagnosis::Quality before;  ///< held-out as in `compare`
+  diagnosis::Quality after;   ///< held-out with parameters fitted without the pose
+  /// Of the whitened numbers, priors apart. Before: as in `diagnose`, with all tolerances as declared; after: without
+  /// those that free parameters take the place of.
+  double chi2_before = 0, chi2_after = 0;
   std::size_t readings = 0, poses = 0, numbers = 0, set_aside = 0;
   measurement::Quantity quantity = measurement::Quantity::length;  ///< of errors
   double noise_and_tolerances = 0;                                 ///< root mean square expected with nothing missing

@@ -24,7 +24,8 @@ using measurement::Measurements;
 using measurement::Reading;
 
 constexpr int test_poses = 12;
-constexpr double seen = 1e-3;  // λ at the start, below which a campaign shows nothing of an effect
+constexpr double seen = 1e-3;   // λ at the start, below which a campaign shows nothing of an effect
+constexpr double as_large = 8;  // λ of an effect in the given campaign
 
 /// Where the machine will be used, if nobody says: the largest force of the campaign at poses of its workspace, or at
 /// its own poses.
@@ -112,6 +113,30 @@ class Seeing {
   const Measurements& use_;
 };
 
+/// By how much the change that an effect makes at its start is to be stretched.
+double size_of(const diagnosis::Detectable& in_given) {
+  return in_given.lambda_at_start > seen ? as_large / in_given.lambda_at_start : 1;
+}
+
+/// Insight::separations, from the signatures: λ at the start and cosines. Effects that one campaign does not show at
+/// all are not in its rows; their λ is 0.
+MatrixX separations(const Insight& of, const Insight& given) {
+  const auto n = std::ssize(given.names);
+  MatrixX out = MatrixX::Zero(n, n);
+  std::vector<Eigen::Index> at;
+  for (const std::string& name : given.names)
+    at.push_back(std::find(of.names.begin(), of.names.end(), name) - of.names.begin());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (nth(at, i) == std::ssize(of.names)) continue;
+    const double lambda = size_of(nth(given.detectable, i)) * nth(of.detectable, nth(at, i)).lambda_at_start;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double c = nth(at, k) == std::ssize(of.names) ? 0 : of.cosines(nth(at, i), nth(at, k));
+      out(i, k) = lambda * lambda * std::max(0.0, 1 - c * c);
+    }
+  }
+  return out;
+}
+
 /// What every effect changes in the readings that could be taken, as large as it is λ = 8 in the campaign given.
 MatrixX changes(const Prospect& prospect, const subject::Subject& s, const Insight& given, int threads) {
   const VectorX nominal = prospect.predicted(s);
@@ -125,7 +150,7 @@ MatrixX changes(const Prospect& prospect, const subject::Subject& s, const Insig
       return VectorX(prospect.predicted(with) - nominal);
     });
     if (!changed || !*changed || !(*changed)->allFinite()) return;
-    all[i] = **changed * (d.lambda_at_start > seen ? 8 / d.lambda_at_start : 1);
+    all[i] = **changed * size_of(d);
   });
   MatrixX out(nominal.size(), 0);
   for (const std::optional<VectorX>& each : all) {
@@ -137,6 +162,8 @@ MatrixX changes(const Prospect& prospect, const subject::Subject& s, const Insig
 }
 
 }  // namespace
+
+double chance_of_confusion(double separation) { return std::erfc(std::sqrt(std::max(0.0, separation) / 8)) / 2; }
 
 Measurements filled_in(const subject::Subject& s, Measurements plan, const ForesightOptions& o, bool linear) {
   const measurement::Instruments known = s.instruments();
@@ -188,6 +215,7 @@ Foresight foresight(const subject::Subject& s, const Measurements& plan, const s
   const Measurements use = o.use ? *o.use : usual_use(s, plan, o.limits, o.seed);
   const Seeing seeing(s, effects, o, use);
   out.given = seeing.insight(plan, work.part(0, 0.4));
+  out.given.separations = separations(out.given, out.given);
 
   const Measurements data = filled_in(s, plan, o, true);
   for (const Reading& r : data.readings)
@@ -214,6 +242,7 @@ Foresight foresight(const subject::Subject& s, const Measurements& plan, const s
   Measurements better = as_plan(prospect.possible(), choice.blocks);
   better.origin = "better campaign";
   out.better = seeing.insight(s.placed(better), work.part(0.7, 1));
+  out.better.separations = separations(out.better, out.given);
   return out;
 }
 

@@ -47,7 +47,12 @@ struct Insight {
   std::size_t parameters = 0, numbers = 0;
   double error_before = 0, error_after = 0;  ///< m or rad: test-pose criterion by the tolerances, and once they are
                                              ///< fitted
+  MatrixX separations;  ///< λ² of what is left of one effect (row) beside tolerances and another (column), each as
+                        ///< large as λ = 8 in the given campaign
 };
+
+/// Chance of taking the wrong one of two effects, one of which is there: Φ(−λ/2), λ² their separation.
+double chance_of_confusion(double separation);
 
 struct Foresight {
   std::string subject, campaign;

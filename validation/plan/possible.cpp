@@ -46,7 +46,7 @@ double settable(double x) {
   return std::round(x * scale) / scale;
 }
 
-std::vector<Load> loads_of_machine(const subject::LargestLoads& most, bool forces_only, bool diagonals) {
+std::vector<Load> loads_of_machine(const subject::LargestLoads& most, bool forces_only, bool together) {
   std::vector<Load> out;
   const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
   for (Eigen::Index i = 0; i < (forces_only ? 3 : 6); ++i)
@@ -58,13 +58,26 @@ std::vector<Load> loads_of_machine(const subject::LargestLoads& most, bool force
   for (const double x : {1.0, -1.0})
     for (const double y : {1.0, -1.0})
       for (const double z : {1.0, -1.0}) {
-        if (!diagonals || most.force == 0) continue;
+        if (!together || most.force == 0) continue;
         Load load;
         load.at_T.head<3>() = settable(most.force / std::sqrt(3)) * Vector3(x, y, z);
         load.words = fmt::format("{}fx {}fy {}fz", sign_of(x), sign_of(y), sign_of(z));
         load.in_full = true;
         out.push_back(load);
       }
+  if (!together || forces_only || most.force == 0 || most.moment == 0) return out;
+  for (Eigen::Index i = 0; i < 3; ++i)  // beside the tool point
+    for (Eigen::Index k = 0; k < 3; ++k)
+      for (const double force : {1.0, -1.0})
+        for (const double moment : {1.0, -1.0}) {
+          if (i == k) continue;
+          Load load;
+          load.at_T(i) = settable(force * most.force);
+          load.at_T(3 + k) = settable(moment * most.moment);
+          load.words = fmt::format("{}{} {}{}", sign_of(force), nth(names, i), sign_of(moment), nth(names, 3 + k));
+          load.in_full = true;
+          out.push_back(load);
+        }
   return out;
 }
 

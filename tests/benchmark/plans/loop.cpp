@@ -92,13 +92,13 @@ class Loop {
     const effects::PlacedEffect& truth = pair_[index % 2];
     out.truth = truth.effect->name;
     const std::uint64_t machine = seed_ + 1000 * index;
-    const Measurements paper = campaign_of(subject_, "paper", machine);
+    const Measurements paper = sequenced(campaign_of(subject_, "paper", machine));
     compare::ComparisonOptions recorded;
     recorded.as_recorded = true;
-    const Measurements as_drawn = sequenced(read(subject_, paper, machine, machine + 1));
+    const Measurements as_drawn = read(subject_, paper, machine, machine + 1);
     const diagnosis::Observations healthy(subject_, as_drawn, recorded, parallel::alone);
     const subject::Subject built = effects::with_effect(subject_, {truth, sized(healthy, truth, tied_.lambda)});
-    const Measurements before = sequenced(read(built, paper, machine, machine + 2));
+    const Measurements before = read(built, paper, machine, machine + 2);
     std::vector<plan::Rival> rivals = fitted(before, out.before, index % 2);
     if (rivals.size() < 2) {
       out.skipped = "one of the two cannot be fitted";
@@ -196,7 +196,7 @@ class Loop {
                           std::uint64_t machine) const {
     plan::Possible both;
     both.taken = before.readings.size();
-    both.all = read(built, subject_.placed(measurement::joined({sequenced(before), plan})), machine, machine + 3);
+    both.all = read(built, subject_.placed(measurement::joined({before, plan})), machine, machine + 3);
     both.blocks = {{both.taken, plan.readings.size(), before.poses.size()}};
     return plan::without_data(std::move(both)).all;
   }

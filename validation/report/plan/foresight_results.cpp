@@ -27,6 +27,27 @@ std::size_t pairs_alike(const plan::Insight& i) {
   return out;
 }
 
+/// How two different effects of the given campaign, each as large as λ = 8 there, are told apart.
+struct Confusion {
+  std::size_t pairs = 0, told = 0;  ///< told: the wrong one is taken in less than one case of twenty
+  double mean = 0;                  ///< chance of taking the wrong one, over the pairs and both as the true one
+};
+
+Confusion confusion(const plan::Insight& i, const plan::Insight& given) {
+  Confusion out;
+  const MatrixX& s = i.separations;
+  for (Eigen::Index a = 0; a < s.rows(); ++a)
+    for (Eigen::Index b = a + 1; b < s.rows(); ++b) {
+      if (nth(given.detectable, a).effect.effect == nth(given.detectable, b).effect.effect) continue;
+      const double one = plan::chance_of_confusion(s(a, b)), other = plan::chance_of_confusion(s(b, a));
+      ++out.pairs;
+      out.told += std::max(one, other) < 0.05 ? 1 : 0;
+      out.mean += (one + other) / 2;
+    }
+  if (out.pairs > 0) out.mean /= static_cast<double>(out.pairs);
+  return out;
+}
+
 std::string indices_table(const plan::Foresight& f) {
   struct Row {
     std::string name;
@@ -35,11 +56,15 @@ std::string indices_table(const plan::Foresight& f) {
   };
   const plan::Observability &a = f.given.observability, &b = f.better.observability;
   const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  const Confusion here = confusion(f.given, f.given), there = confusion(f.better, f.given);
   std::vector<Row> all = {
       {"readings", count(f.given.readings.readings.size()), count(f.better.readings.readings.size()), "{:.0f}"},
       {"poses", count(f.given.readings.poses.size()), count(f.better.readings.poses.size()), "{:.0f}"},
       {"effects that show within their bounds", count(that_show(f.given)), count(that_show(f.better)), "{:.0f}"},
       {"pairs of effects alike (cosine > 0.995)", count(pairs_alike(f.given)), count(pairs_alike(f.better)), "{:.0f}"},
+      {fmt::format("of {} pairs told apart at λ = 8, wrong in less than 5 %", here.pairs), count(here.told),
+       count(there.told), "{:.0f}"},
+      {"chance of taking the wrong one of two, mean, %", 100 * here.mean, 100 * there.mean, "{:.2f}"},
       {"error in use before fitting, µm rms", um * f.given.error_before, um * f.better.error_before, "{:.3g}"},
       {"error in use after fitting, µm rms (test poses)", um * f.given.error_after, um * f.better.error_after,
        "{:.3g}"}};
@@ -59,7 +84,7 @@ std::string indices_table(const plan::Foresight& f) {
   return out;
 }
 
-Json insight_json(const plan::Insight& i) {
+Json insight_json(const plan::Insight& i, const plan::Insight& given) {
   Json j;
   j["readings"] = i.readings.readings.size();
   j["poses"] = i.readings.poses.size();
@@ -67,6 +92,10 @@ Json insight_json(const plan::Insight& i) {
   j["numbers"] = i.numbers;
   j["effects_that_show"] = that_show(i);
   j["pairs_alike"] = pairs_alike(i);
+  const Confusion c = confusion(i, given);
+  j["pairs"] = c.pairs;
+  j["pairs_told_apart"] = c.told;
+  j["chance_of_confusion"] = json::json_number(c.mean, "chance of confusion");
   j["error_before_um"] = json::json_number(um * i.error_before, "error");
   j["error_after_um"] = json::json_number(um * i.error_after, "error");
   for (std::size_t k = 0; k < 5; ++k)
@@ -103,8 +132,8 @@ std::string foresight_json(const plan::Foresight& f) {
   j["subject"] = f.subject;
   j["campaign"] = f.campaign;
   j["toward"] = nth(plan::toward_names, f.toward);
-  j["given"] = insight_json(f.given);
-  j["better"] = insight_json(f.better);
+  j["given"] = insight_json(f.given, f.given);
+  j["better"] = insight_json(f.better, f.given);
   return json::json_text(j);
 }
 
