@@ -205,9 +205,9 @@ Command plan_command() {
   return {
       "plan",
       "Plan which readings to take. For effects that a diagnosis could not tell apart, the command chooses the "
-      "readings "
-      "that separate them most: pose or load case, load, sense, size, loading or unloading. To judge a reading, each "
-      "effect is fitted again to what the other would read, with all tolerances free under their priors. The command "
+      "readings that separate them most: pose or load case, load, sense, size, loading or unloading. To judge a "
+      "reading, each effect is fitted again to what the other would read, with all tolerances free under their priors. "
+      "The command "
       "says how probable the right effect will be after these readings, writes the file that the laboratory fills in, "
       "and names pairs that no reading separates. With --before it says what a campaign will be able to tell before "
       "it is measured, and writes a better one of the same length",
@@ -217,8 +217,7 @@ Command plan_command() {
            {"diagnosis", "DIAGNOSIS.json", "result of deflect diagnose --json", &a->diagnosis},
            {"data", "DATA",
             "the measurements that were diagnosed, if they are no longer where the diagnosis names them; several files "
-            "are "
-            "sessions of one campaign",
+            "are sessions of one campaign",
             &a->data},
            {"--before", "paper|cycle|rich|random|FILE",
             "instead of a diagnosis: a campaign by its name, or a measurement file, whose readings may be empty",

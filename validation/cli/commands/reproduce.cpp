@@ -184,9 +184,8 @@ Command reproduce_command(const std::vector<Command>& others) {
   return {"reproduce",
           "Run the command that made a result file again, and compare. The file's provenance names the command, the "
           "version and the machine, and its inputs by their hashes (SHA-256). Inputs are looked for in the current "
-          "folder, then "
-          "in that of the result. Numbers must agree to --tolerance, all else exactly. Exit code 0: the same; 4: not, "
-          "with the first differences; 2: an input is missing or has changed",
+          "folder, then in that of the result. Numbers must agree to --tolerance, all else exactly. Exit code 0: the "
+          "same; 4: not, with the first differences; 2: an input is missing or has changed",
           "deflect reproduce diagnosis.json",
           {{"result", "RESULT.json", "a result written by --json", &a->result, true},
            {"--tolerance", "X", "relative difference of numbers to ignore (default 1e-9)", &a->tolerance},
