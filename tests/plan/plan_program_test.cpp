@@ -26,6 +26,12 @@ class PlanProgram : public testing::Test {
     ASSERT_EQ(diagnosed.code, 0) << diagnosed.out;
   }
   static void TearDownTestSuite() { folder.reset(); }
+  /// Readings of a healthy arm in a file.
+  static std::string scara(const std::string& seed) {
+    const std::string file = path("scara_" + seed + ".csv");
+    EXPECT_EQ(test::deflect("simulate scara --campaign paper --machine 3 --seed " + seed + " -o " + file).code, 0);
+    return file;
+  }
   static std::string path(const std::string& name) { return (*folder / name).string(); }
   static inline std::unique_ptr<test::Folder> folder;
 };
@@ -50,6 +56,34 @@ TEST_F(PlanProgram, TheLoopFromATieToItsEnd) {
   const auto second = nlohmann::json::parse(test::contents(path("again.json")));
   ASSERT_FALSE(second.at("missing").empty());
   EXPECT_EQ(second.at("missing").front(), "actuator_compliance");
+  EXPECT_EQ(second.at("data"), path("paper.csv") + " + " + path("filled.csv"));
+}
+
+// A diagnosis of several sessions names all of them: a plan and a page find them again.
+TEST_F(PlanProgram, SeveralSessionsAreFoundAgain) {
+  auto diagnosis = nlohmann::json::parse(test::contents(path("diagnosis.json")));
+  std::filesystem::create_directory(path("elsewhere"));
+  std::filesystem::copy_file(path("paper.csv"), path("elsewhere/second.csv"));
+  diagnosis["data"] = path("paper.csv") + " + gone/second.csv";
+  std::ofstream(path("elsewhere/two.json")) << diagnosis.dump(2);
+  const std::string planned = "plan " + device + " " + path("elsewhere/two.json") + " --readings 1 ";
+  const test::Run found = test::deflect(planned + "-o " + path("more.csv") + " --json " + path("more.json"));
+  ASSERT_EQ(found.code, 0) << found.out;
+  EXPECT_EQ(nlohmann::json::parse(test::contents(path("more.json"))).at("taken"), 54);
+  EXPECT_NE(found.out.find("deflect diagnose " + device + " " + path("paper.csv") + " " + path("elsewhere/second.csv") +
+                           " " + path("more.csv")),
+            std::string::npos)
+      << found.out;
+  std::filesystem::remove(path("elsewhere/second.csv"));
+  const test::Run lost = test::deflect(planned);
+  EXPECT_EQ(lost.code, 2) << lost.out;
+  EXPECT_NE(lost.out.find("'gone/second.csv', are not there"), std::string::npos) << lost.out;
+  const test::Run page = test::deflect("report " + path("more.json") + " -o " + path("plan.html"));
+  if (page.code == 2 && page.out.find("built without pages") != std::string::npos) GTEST_SKIP() << page.out;
+  EXPECT_EQ(page.code, 0) << page.out;
+  const test::Run sessions = test::deflect("diagnose scara " + scara("1") + " " + scara("2") +
+                                           " --bootstrap 99 --report " + path("sessions.html"));
+  EXPECT_EQ(sessions.code, 0) << sessions.out;
 }
 
 TEST_F(PlanProgram, AnEmptyPlanIsRefusedUntilItIsFilledIn) {

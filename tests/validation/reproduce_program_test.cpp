@@ -107,6 +107,38 @@ TEST_F(ReproduceProgram, InputsAreFoundNextToTheResult) {
   EXPECT_EQ(run.code, 0) << run.out;
 }
 
+TEST_F(ReproduceProgram, SaysFromWhichFolderInputsAreMissing) {
+  make("devices 3-rrr > mine.yaml");
+  make("show mine.yaml --json show.json");
+  std::ofstream(folder / "mine.yaml", std::ios::app) << "# another line\n";
+  const test::Run run =
+      test::command("cd / && '" DEFLECT_PROGRAM "' reproduce '" + (folder / "show.json").string() + "'");
+  EXPECT_EQ(run.code, 2) << run.out;
+  EXPECT_NE(run.out.find("Seen from /: mine.yaml is missing"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("Seen from " + (folder / "").parent_path().string() + ": mine.yaml has changed"),
+            std::string::npos)
+      << run.out;
+}
+
+// Plans read a diagnosis or a campaign, fits and predictions a description: all are inputs.
+TEST_F(ReproduceProgram, FitsPredictionsAndPlansNameTheirInputs) {
+  make("simulate 3-rrr --campaign paper --seed 5 -o data.csv");
+  make("devices 3-rrr > mine.yaml");
+  make("fit mine.yaml data.csv --free materials.aluminium.E -o fitted.yaml --json fit.json");
+  make("predict fitted.yaml --plan data.csv --fit fit.json --json predict.json");
+  make("plan mine.yaml --before data.csv --json plan.json");
+  const auto inputs = [&](const std::string& name) {
+    std::vector<std::string> out;
+    const Json all = result(name)["provenance"]["inputs"];
+    for (const Json& input : all) out.push_back(input["name"]);
+    return out;
+  };
+  EXPECT_EQ(inputs("fit.json"), (std::vector<std::string>{"mine.yaml", "data.csv"}));
+  EXPECT_EQ(inputs("predict.json"), (std::vector<std::string>{"fitted.yaml", "data.csv", "fit.json"}));
+  EXPECT_EQ(inputs("plan.json"), (std::vector<std::string>{"mine.yaml", "data.csv", "effects/catalogue"}));
+  for (const char* name : {"fit.json", "predict.json", "plan.json"}) expect_reproduced(name);
+}
+
 TEST_F(ReproduceProgram, WhatIsNoResultIsRefused) {
   std::ofstream(folder / "list.json") << "[1, 2]";
   expect_refused("list.json", 2, "provenance");

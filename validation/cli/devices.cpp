@@ -19,6 +19,7 @@
 #include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
 #include "validation/cli/talk.h"
+#include "validation/measurement/joined.h"
 #include "validation/report/schema_results.h"
 
 namespace deflect::cli {
@@ -138,6 +139,12 @@ measurement::Measurements read_data(const std::string& file, const subject::Subj
       count([](const measurement::Reading& r) { return r.sigma_u || r.sigma_th; }),
       data.readings.front().sequence ? "in a known order" : "in an unknown order");
   return data;
+}
+
+measurement::Measurements read_sessions(const std::vector<std::string>& files, const subject::Subject& subject) {
+  std::vector<measurement::Measurements> sessions;
+  for (const std::string& file : files) sessions.push_back(read_data(file, subject));
+  return subject.placed(measurement::joined(sessions));
 }
 
 measurement::Measurements read_plan(const std::string& file, const subject::Subject& subject) {

@@ -45,6 +45,9 @@ std::filesystem::path subject_file(const std::string& name_or_path);
 /// read_measurements() with the instruments of the subject, with a summary if verbose.
 measurement::Measurements read_data(const std::string& file, const subject::Subject&);
 
+/// Of several files, which are sessions of one campaign, all readings as one (joined.h).
+measurement::Measurements read_sessions(const std::vector<std::string>& files, const subject::Subject&);
+
 /// Poses and loads to be measured with the instruments of the subject.
 measurement::Measurements read_plan(const std::string& file, const subject::Subject&);
 

@@ -90,10 +90,8 @@ int main(int argc, char** argv) {
   std::vector<Command> commands = {new_command(),      show_command(),     solve_command(),   validate_command(),
                                    frame_command(),    map_command(),      export_command(),  devices_command(),
                                    check_command(),    effects_command(),  add_command(),     compare_command(),
-                                   simulate_command(), diagnose_command(), history_command(), report_command()};
-  commands.push_back(fit_command());
-  commands.push_back(predict_command());
-  commands.push_back(plan_command());
+                                   simulate_command(), diagnose_command(), history_command(), report_command(),
+                                   fit_command(),      predict_command(),  plan_command()};
   commands.push_back(reproduce_command(commands));
   commands.push_back(completion_command(commands));
   std::vector<CLI::App*> parsers;

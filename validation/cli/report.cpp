@@ -51,6 +51,13 @@ page::PageSource source_of(const std::string& path) {
   return {std::filesystem::path(path).filename().string(), read_text(path)};
 }
 
+/// The file of the measurements; of several sessions all readings as one.
+page::PageSource source_of(const measurement::Measurements& data) {
+  std::error_code error;
+  if (std::filesystem::exists(data.origin, error)) return source_of(data.origin);
+  return {data.origin, measurement::measurements_text(data)};
+}
+
 page::PageContents contents(const std::string& device) {
   page::PageContents page;
   page.version = DEFLECT_VERSION;
@@ -127,7 +134,7 @@ void write_report(const std::string& file, const std::string& device, const std:
                   std::vector<page::PageResult> results) {
   const compare::Comparison &first = versions.front(), &last = versions.back();
   page::PageContents page = contents(device);
-  page.data = source_of(first.study.data->origin);
+  page.data = source_of(*first.study.data);
   page.results = std::move(results);
   const std::string origin = page.results.empty() ? first.data : page.results.front().origin;
   if (versions.size() > 1 && origin != "history")

@@ -131,7 +131,8 @@ Command compare_command() {
             "uncertainty, domain, groups left out, maturity. The model should not be fitted to these data",
             &a->validation},
            {"--calibration", "DATA",
-            "with --validation: the data that the model was calibrated with, which must be others", &a->calibration},
+            "with --validation: the data that the model was calibrated with, which must not be the same readings",
+            &a->calibration},
            {"--use", "FILE",
             "with --validation: poses and loads at which the model will be used; predicted there, with the "
             "distance to what was validated",

@@ -8,7 +8,6 @@
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/diagnosis.h"
-#include "validation/measurement/joined.h"
 #include "validation/report/diagnosis_results.h"
 
 namespace deflect::cli {
@@ -25,9 +24,7 @@ struct DiagnoseArguments {
 void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   require_pages(a.report);
   const subject::Subject m = read_subject(a.device);
-  std::vector<measurement::Measurements> sessions;
-  for (const std::string& file : a.data) sessions.push_back(read_data(file, m));
-  const measurement::Measurements data = m.placed(measurement::joined(sessions));
+  const measurement::Measurements data = read_sessions(a.data, m);
   tell_size(data, 1200);
   const std::vector<effects::Effect> effects = known_effects(a.files, m);
   diagnosis::DiagnosisOptions o;

@@ -50,8 +50,8 @@ Command fit_command() {
       "fit",
       "Fit parameters of your choice to measurements, with all tolerances free under their priors. The report gives "
       "values with 95 % intervals, their correlation, what the data do not determine, and the error before and after, "
-      "also at held-out poses. The description with the fitted values is written. A tolerance of a parameter's own "
-      "number gives way to it. A number that cannot be negative is fitted on a logarithmic scale",
+      "also at held-out poses. The command also writes the description with the fitted values. A tolerance of a "
+      "parameter's own number gives way to it. A number that cannot be negative is fitted on a logarithmic scale",
       "deflect fit arm measurements.csv --free leg.joint_2.rz.stiffness --free materials.aluminium.E --prior "
       "\"materials.aluminium.E=70 GPa ± 2 %\" -o fitted.yaml --json fit.json",
       {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
@@ -25,9 +26,9 @@ namespace {
 constexpr double most_readings = 1e5;
 
 struct PlanArguments {
-  std::string device, diagnosis, data, before, output, json, out, poses = "workspace", aim = "effects", use;
+  std::string device, diagnosis, before, output, json, out, poses = "workspace", aim = "effects", use;
   std::string force, moment, sigma_mm, sigma_rad;
-  std::vector<std::string> files;
+  std::vector<std::string> data, files;
   bool forces_only = false;
   double group = 1, readings = 30, probability = 0.95, most_poses = 0, seed = 1, threads = 0;
   FigureArguments figures;
@@ -53,29 +54,47 @@ plan::Limits limits_of(const PlanArguments& a, const subject::Subject& s) {
   return out;
 }
 
+/// The files of a diagnosis' measurements: several sessions are named as "first.csv + second.csv".
+std::vector<std::string> session_files(const std::string& named) {
+  std::error_code error;
+  if (std::filesystem::exists(named, error)) return {named};
+  constexpr std::string_view between = " + ";
+  std::vector<std::string> out;
+  for (std::size_t from = 0; from <= named.size();) {
+    const std::size_t to = std::min(named.find(between, from), named.size());
+    out.push_back(named.substr(from, to - from));
+    from = to + between.size();
+  }
+  return out;
+}
+
 /// The measurements that were diagnosed: as given, else as the diagnosis names them, there or next to it.
 measurement::Measurements diagnosed_data(const PlanArguments& a, const diagnosis::FoundEffects& found,
                                          const subject::Subject& s) {
-  if (!a.data.empty()) return read_data(a.data, s);
+  if (!a.data.empty()) return read_sessions(a.data, s);
   if (found.data.empty())
     throw InputError(fmt::format("{}: names no measurements: give them too, as in deflect plan {} {} DATA", a.diagnosis,
                                  a.device, a.diagnosis));
-  const std::filesystem::path as_named = found.data,
-                              beside = std::filesystem::path(a.diagnosis).parent_path() / as_named.filename();
-  if (std::filesystem::exists(as_named)) return read_data(as_named, s);
-  if (std::filesystem::exists(beside)) return read_data(beside, s);
-  throw InputError(
-      fmt::format("{}: the measurements it names, '{}', are not there: give them too, as in deflect plan "
-                  "{} {} DATA",
-                  a.diagnosis, found.data, a.device, a.diagnosis));
+  std::vector<std::string> files = session_files(found.data);
+  for (std::string& file : files) {
+    if (std::filesystem::exists(file)) continue;
+    const std::filesystem::path beside =
+        std::filesystem::path(a.diagnosis).parent_path() / std::filesystem::path(file).filename();
+    if (!std::filesystem::exists(beside))
+      throw InputError(fmt::format(
+          "{}: the measurements it names, '{}', are not there: give them too, as in deflect plan {} {} DATA",
+          a.diagnosis, file, a.device, a.diagnosis));
+    file = beside.string();
+  }
+  return read_sessions(files, s);
 }
 
 const diagnosis::FoundTie& tie_of(const PlanArguments& a, const diagnosis::FoundEffects& found) {
   if (found.ties.empty())
     throw InputError(
-        fmt::format("{}: no effects are tied in this diagnosis, or it is of a version that did not write "
-                    "what it fitted: diagnose again; what a campaign will tell before it is measured "
-                    "says --before CAMPAIGN",
+        fmt::format("{}: no effects are tied in this diagnosis, or an older version wrote it without what it "
+                    "fitted: diagnose again. To see what a campaign will tell before it is measured, use --before "
+                    "CAMPAIGN",
                     a.diagnosis));
   const int group = whole("--group", a.group, 1, static_cast<double>(found.ties.size()));
   return found.ties[as_size(group - 1)];
@@ -173,7 +192,8 @@ void run(const PlanArguments& a) {
   }
   fmt::print("{}", report::plan_report(p));
   if (!a.output.empty() && any)
-    fmt::print("\n{0}: fill in the empty cells, then: deflect diagnose {1} {2} {0}\n", a.output, a.device, p.data);
+    fmt::print("\n{0}: fill in the empty cells, then: deflect diagnose {1} {2} {0}\n", a.output, a.device,
+               fmt::join(session_files(p.data), " "));
   if (!a.output.empty() && !any) fmt::print("nothing to fill in: {} is not written\n", a.output);
   if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(a.out).string());
 }
@@ -184,19 +204,23 @@ Command plan_command() {
   auto a = std::make_shared<PlanArguments>();
   return {
       "plan",
-      "Plan which readings to take. Of effects that a diagnosis could not tell apart the command chooses the readings "
-      "(pose or load case, load, sense, size, loading or unloading) that separate them most, each fitted again to what "
-      "the other would read, with all tolerances free under their priors. It says how probable the right one will be "
-      "after them, writes the file that the laboratory fills in, and names pairs that no reading separates. With "
-      "--before it says what a campaign will be able to tell before it is measured, and writes a better one of the "
-      "same length",
+      "Plan which readings to take. For effects that a diagnosis could not tell apart, the command chooses the "
+      "readings that separate them most: pose or load case, load, sense, size, loading or unloading. To judge a "
+      "reading, each effect is fitted again to what the other would read, with all tolerances free under their priors. "
+      "The command "
+      "says how probable the right effect will be after these readings, writes the file that the laboratory fills in, "
+      "and names pairs that no reading separates. With --before it says what a campaign will be able to tell before "
+      "it is measured, and writes a better one of the same length",
       "deflect plan haptic-6psu-ideal-joints diagnosis.json -o next.csv",
       with_figures(
-          {{"device", "SUBJECT", "built-in device or frame, or a file of one", &a->device, true},
-           {"diagnosis", "DIAGNOSIS", "result of deflect diagnose --json", &a->diagnosis},
-           {"data", "DATA", "the measurements it is of, where they are not where it says", &a->data},
-           {"--before", "CAMPAIGN",
-            "instead of DIAGNOSIS: a measurement file, whose readings may be empty, or paper, cycle, rich, random",
+          {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
+           {"diagnosis", "DIAGNOSIS.json", "result of deflect diagnose --json", &a->diagnosis},
+           {"data", "DATA",
+            "the measurements that were diagnosed, if they are no longer where the diagnosis names them; several files "
+            "are sessions of one campaign",
+            &a->data},
+           {"--before", "paper|cycle|rich|random|FILE",
+            "instead of a diagnosis: a campaign by its name, or a measurement file, whose readings may be empty",
             &a->before},
            {"--aim", "effects|precision",
             "with --before: what the better campaign is for: to see effects and tell them apart (default), or to "
@@ -207,7 +231,7 @@ Command plan_command() {
             &a->use},
            {"--group", "N", "which tie of the diagnosis (default 1)", &a->group},
            {"--readings", "N", "most readings (default 30)", &a->readings},
-           {"--probability", "P", "expected of the right effect, at which the plan ends (default 0.95)",
+           {"--probability", "P", "the plan ends where the right effect is expected to be this probable (default 0.95)",
             &a->probability},
            {"--max-force", "N", "largest force along an axis (default: that of the data)", &a->force},
            {"--max-moment", "NMM",
@@ -227,7 +251,7 @@ Command plan_command() {
            {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
            {"--seed", "N", "seed of the poses and parameters drawn by lot (default 1)", &a->seed},
            {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
-           {"-o,--output", "PLAN", "file to be filled in", &a->output},
+           {"-o,--output", "FILE", "write the plan: a measurement file to be filled in", &a->output},
            {"--json", "FILE", "write the result", &a->json},
            {"--out", "DIR", "write the figure (SVG, PDF, PNG) with its caption, and its table", &a->out}},
           &a->figures),

@@ -88,9 +88,9 @@ Command predict_command() {
   auto a = std::make_shared<PredictArguments>();
   return {
       "predict",
-      "Predict readings with 95 % intervals, at one pose under one load or for a whole plan. The interval has what is "
-      "not known of parameters (from a fit), of tolerances (as the fit left them), of the load, what the fit left "
-      "unexplained, and the noise of a reading; each share is told, and every theory's number",
+      "Predict readings with 95 % intervals, at one pose under one load or for a whole plan. The interval covers the "
+      "uncertainty of parameters (from a fit), of tolerances (as the fit left them) and of the load, what the fit left "
+      "unexplained, and the noise of a reading. The report gives each share, and every theory's number",
       "deflect predict fitted.yaml --at 25,25,198.9 --load 50,0,0 --fit fit.json",
       {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
        {"--at,--pose", "x,y,z,roll,pitch,yaw|CASE=FACTOR,...",
@@ -98,7 +98,7 @@ Command predict_command() {
        {"--joints", "q1,...,qn", "joint coordinates instead of --at: slides in mm, turns in rad, or with unit",
         &a->joints},
        {"--load", "fx,fy,fz,mx,my,mz", "wrench on the tool point in base axes, N and Nmm (default 0)", &a->load},
-       {"--plan", "FILE", "a measurement file that gives poses and loads; its readings are not looked at", &a->plan},
+       {"--plan", "FILE", "a measurement file that gives poses and loads; its readings are ignored", &a->plan},
        {"--fit", "FIT.json", "the result of 'deflect fit --json' for this description", &a->fit},
        theories_option(&a->theories),
        {"--sigma", "MM", "standard deviation of a translation in mm, where neither sensor nor fit has it",

@@ -43,8 +43,8 @@ Command report_command() {
   auto a = std::make_shared<ReportArguments>();
   return {"report",
           "Write one self-contained page from several results (--json of diagnose, compare, history, solve, validate, "
-          "map, frame, check, show): pictures with their numbers. With --device and --data the page draws the machine "
-          "with its residuals and adds the effects that a diagnosis among the results found",
+          "map, frame, check, show, fit, predict, plan): pictures with their numbers. With --device and --data the "
+          "page draws the machine with its residuals and adds the effects that a diagnosis among the results found",
           "deflect report diagnosis.json solve.json --device haptic-6psu-ideal-joints --data measurements.csv "
           "-o report.html",
           {{"results", "RESULT.json", "results written by --json", &a->results, true},

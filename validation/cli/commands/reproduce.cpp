@@ -8,6 +8,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/outcome.h"
 #include "validation/cli/command.h"
 #include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
@@ -52,36 +53,47 @@ class Scratch {
 
 /// "hidden.csv is missing", "hidden.csv has changed"; empty where it is as it was.
 std::string changed(const HashedFile& input) {
-  if (input.sha256.empty()) return fmt::format("{} was no file: what it held is gone", input.name);
-  std::error_code error;
-  const bool named = input.name.find('/') != input.name.npos || input.name.find('.') != input.name.npos;
-  if (named && input.name != "effects/catalogue" && !fs::exists(input.name, error))
-    return fmt::format("{} is missing", input.name);
-  return hash_of(input.name) == input.sha256 ? "" : fmt::format("{} has changed", input.name);
+  if (input.sha256.empty()) return fmt::format("{} was a pipe or a device: what it held is gone", input.name);
+  const auto now = outcome_of<InputError>([&] { return hash_of(input.name); });
+  if (!now) return fmt::format("{} is missing", input.name);
+  return *now == input.sha256 ? "" : fmt::format("{} has changed", input.name);
 }
 
-/// Inputs are looked for in the current folder, then in that of the result.
-void require_inputs(const Provenance& p, const fs::path& result) {
-  const auto all_changed = [&] {
-    std::vector<std::string> out;
-    for (const HashedFile& input : p.inputs)
-      if (std::string words = changed(input); !words.empty()) out.push_back(std::move(words));
-    return out;
-  };
-  const std::vector<std::string> here = all_changed();
-  if (here.empty()) return;
-  const fs::path before = fs::current_path();
-  fs::current_path(fs::absolute(result).parent_path());
-  if (all_changed().empty()) return;
-  fs::current_path(before);
+/// Of the inputs, seen from the current folder.
+std::vector<std::string> all_changed(const Provenance& p) {
+  std::vector<std::string> out;
+  for (const HashedFile& input : p.inputs)
+    if (std::string words = changed(input); !words.empty()) out.push_back(std::move(words));
+  return out;
+}
+
+/// Goes to the folder from which all inputs are found as they were: the current one, or that of the result.
+void go_to_inputs(const Provenance& p, const fs::path& result) {
+  const fs::path here = fs::current_path(), there = fs::absolute(result).lexically_normal().parent_path();
+  std::string words;
+  for (const fs::path& folder : here == there ? std::vector<fs::path>{here} : std::vector<fs::path>{here, there}) {
+    fs::current_path(folder);
+    const std::vector<std::string> changes = all_changed(p);
+    if (changes.empty()) return;
+    words += fmt::format(" Seen from {}: {}.", folder.string(), fmt::join(changes, "; "));
+  }
+  fs::current_path(here);
   throw InputError(
-      fmt::format("{}: {}: give the inputs that it was made from", result.string(), fmt::join(here, "; ")));
+      fmt::format("{}: its inputs are not as they were.{} Put them back into one of these folders, or make the result "
+                  "again",
+                  result.string(), words));
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
     text.replace(at, from.size(), to);
   return text;
+}
+
+std::string ending(const parallel::ChildOutcome& outcome) {
+  if (outcome.start_error != 0) return "cannot be started";
+  if (WIFSIGNALED(outcome.status)) return fmt::format("is ended by signal {}", WTERMSIG(outcome.status));
+  return fmt::format("ends with exit code {}", WEXITSTATUS(outcome.status));
 }
 
 /// Runs the command anew, with what it writes in the scratch folder; its result, in which that folder's file has the
@@ -102,8 +114,7 @@ std::string run_again(const Provenance& p, const std::string& result, const fs::
   words.push_back("--json=" + written.string());
   const parallel::ChildOutcome outcome = parallel::run_child(words, "");
   if (!outcome.succeeded())
-    throw NumericalError(fmt::format("{}: 'deflect {}' now ends with exit code {}: {}", result,
-                                     fmt::join(p.command, " "), WEXITSTATUS(outcome.status),
+    throw NumericalError(fmt::format("{}: 'deflect {}' now {}: {}", result, fmt::join(p.command, " "), ending(outcome),
                                      outcome.errors.substr(0, outcome.errors.find('\n'))));
   const std::string text = read_text(written);
   return was.empty() ? text : replaced(text, is, was);
@@ -138,7 +149,7 @@ void run(const ReproduceArguments& a) {
   const Json before = json::parse_json(read_text(a.result), a.result, "give a result that --json wrote, whole");
   const Provenance p = result_files::read_provenance(before, a.result);
   require_command(p, a);
-  require_inputs(p, a.result);
+  go_to_inputs(p, a.result);
   const Scratch scratch;
   const Json again = json::parse_json(timed(fmt::format("deflect {}", fmt::join(p.command, " ")),
                                             [&] { return run_again(p, a.result, scratch.path()); }),
@@ -146,7 +157,7 @@ void run(const ReproduceArguments& a) {
   const Provenance now = result_files::read_provenance(again, "the result made anew");
   std::vector<std::string> others = result_files::differences(before, again, a.tolerance, most_shown);
   for (std::size_t i = 0; i < std::min(p.outputs.size(), now.outputs.size()); ++i)
-    if (p.outputs[i].sha256 != now.outputs[i].sha256)
+    if (!p.outputs[i].sha256.empty() && p.outputs[i].sha256 != now.outputs[i].sha256)
       others.push_back(fmt::format("provenance.outputs[{}]: {} is another file", i, p.outputs[i].name));
   const std::vector<std::string> where = elsewhere(p, now);
   if (!json.empty())
@@ -170,17 +181,16 @@ Command reproduce_command(const std::vector<Command>& others) {
   for (const Command& command : others)
     for (const Option& o : command.options)
       if (o.flags == "--json") a->commands.push_back(command.name);
-  return {
-      "reproduce",
-      "Run again what a result file was made by, and compare. The file's provenance names the command, the version "
-      "and the machine, and its inputs by their hashes (SHA-256). Inputs are looked for in the current folder, then "
-      "in that of the result. Numbers must agree to --tolerance, all else exactly. Exit code 0: the same; 4: not, "
-      "with the first differences; 2: an input is missing or has changed",
-      "deflect reproduce diagnosis.json",
-      {{"result", "RESULT.json", "a result written by --json", &a->result, true},
-       {"--tolerance", "X", "relative difference of numbers to ignore (default 1e-9)", &a->tolerance},
-       {"--json", "FILE", "write the differences", &a->json}},
-      [a] { run(*a); }};
+  return {"reproduce",
+          "Run the command that made a result file again, and compare. The file's provenance names the command, the "
+          "version and the machine, and its inputs by their hashes (SHA-256). Inputs are looked for in the current "
+          "folder, then in that of the result. Numbers must agree to --tolerance, all else exactly. Exit code 0: the "
+          "same; 4: not, with the first differences; 2: an input is missing or has changed",
+          "deflect reproduce diagnosis.json",
+          {{"result", "RESULT.json", "a result written by --json", &a->result, true},
+           {"--tolerance", "X", "relative difference of numbers to ignore (default 1e-9)", &a->tolerance},
+           {"--json", "FILE", "write the differences", &a->json}},
+          [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli
