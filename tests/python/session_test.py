@@ -100,6 +100,7 @@ class Session(unittest.TestCase):
         self.assertEqual(found.verdict, found.content["verdict"])
         planned = deflect.plan("haptic-6psu-ideal-joints", before="paper")
         self.assert_same("plan haptic-6psu-ideal-joints --before paper -o better.csv", planned)
+        self.assertEqual(len(planned.rows()), len(planned.given["detectable"]))
         self.assertEqual(planned.measurements.text, (self.folder / "better.csv").read_text())
 
     def test_fit_and_predict(self):

@@ -5,7 +5,6 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
-#include "msa/frame/mechanism/build.h"
 #include "validation/diagnosis/found_effects.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"

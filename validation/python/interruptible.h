@@ -34,7 +34,6 @@ class OneBlasThread {
 /// On Ctrl-C, or where `progress` raises, the work ends when it next tells how far it is, and the exception goes on.
 template <class F>
 auto interruptible(const pybind11::object& progress, const F& work) {
-  using namespace std::chrono_literals;
   std::optional<decltype(work(parallel::Told()))> result;
   std::exception_ptr thrown;
   std::atomic<bool> stop = false;
@@ -59,7 +58,7 @@ auto interruptible(const pybind11::object& progress, const F& work) {
       std::atomic<bool>& stop;
       ~AtEnd() { stop = true; }
     } const at_end{stop};
-    for (std::unique_lock lock(mutex); !ended.wait_for(lock, 100ms, [&] { return done; });) {
+    for (std::unique_lock lock(mutex); !ended.wait_for(lock, std::chrono::milliseconds(100), [&] { return done; });) {
       lock.unlock();
       {
         const pybind11::gil_scoped_acquire acquired;

@@ -9,7 +9,6 @@
 #include "msa/base/index.h"
 #include "msa/base/units.h"
 #include "msa/frame/file/frame_analysis.h"
-#include "msa/frame/mechanism/build.h"
 #include "validation/python/bindings.h"
 #include "validation/python/interruptible.h"
 #include "validation/python/mechanism.h"

@@ -114,12 +114,13 @@ Subject edited(const Subject& s, const std::vector<std::tuple<std::string, std::
                                                           {"multiply", Edit::Action::multiply},
                                                           {"add", Edit::Action::add}};
   std::vector<Edit> all;
-  for (const auto& [path, value, action] : edits) {
+  for (const auto& edit : edits) {
+    const std::string &path = std::get<0>(edit), &action = std::get<2>(edit);
     const auto found =
         std::find_if(std::begin(actions), std::end(actions), [&](const auto& a) { return action == a.first; });
     if (found == std::end(actions))
       throw InputError(fmt::format("edit '{}': '{}' is no action; write set, append, multiply or add", path, action));
-    all.push_back({path, value, found->second});
+    all.push_back({path, std::get<1>(edit), found->second});
   }
   return s.edited(all);
 }

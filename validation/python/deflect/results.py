@@ -109,9 +109,12 @@ class Prediction(Result):
 
 
 class Plan(Result):
-    """Of plan(): what a campaign tells; rows: the readings or the detectable effects."""
+    """Of plan(): the chosen readings, which are the rows; with ``before`` what the ``given`` campaign and a ``better`` one
+    tell, and rows: the effects by how large they must be to show in the given one."""
 
-    table = "readings"
+    def rows(self) -> list[dict[str, Any]]:
+        table = self.content["given"]["detectable"] if "given" in self.content else self.content["readings"]
+        return [dict(_flat(row)) for row in table]
 
 
 class History(Result):
