@@ -112,7 +112,7 @@ TEST_F(ReproduceProgram, SaysFromWhichFolderInputsAreMissing) {
   make("show mine.yaml --json show.json");
   std::ofstream(folder / "mine.yaml", std::ios::app) << "# another line\n";
   const test::Run run =
-      test::command("cd / && '" DEFLECT_PROGRAM "' reproduce '" + (folder / "show.json").string() + "'");
+      test::command("cd / && '" + test::program() + "' reproduce '" + (folder / "show.json").string() + "'");
   EXPECT_EQ(run.code, 2) << run.out;
   EXPECT_NE(run.out.find("Seen from /: mine.yaml is missing"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("Seen from " + (folder / "").parent_path().string() + ": mine.yaml has changed"),
