@@ -51,6 +51,25 @@ TEST(EffectFile, EveryFieldIsRead) {
   EXPECT_EQ(e.see, "the drawing");
 }
 
+// Quotation marks, line ends and what YAML would take for something else come back as they were.
+TEST(EffectFile, WhatIsWrittenReadsBack) {
+  Effect e = parse_effect(effect_text(), "pad.yaml");
+  e.title = "A \"pad\", {soft}: 3 mm # of rubber";
+  e.parameters[0].about = "of the pad, C:\\pads";
+  e.pages.machine = "First line.\nSecond line.";
+  e.pages.data = "1e3";
+  e.see = "the drawing: no. 7";
+  const Effect read = parse_effect(write_effect(e), "written.yaml");
+  EXPECT_EQ(read.name, e.name);
+  EXPECT_EQ(read.title, e.title);
+  EXPECT_EQ(read.parameters[0].about, e.parameters[0].about);
+  EXPECT_EQ(read.pages.machine, e.pages.machine);
+  EXPECT_EQ(read.pages.data, e.pages.data);
+  EXPECT_EQ(read.see, e.see);
+  EXPECT_EQ(read.edits[0].paths, e.edits[0].paths);
+  EXPECT_EQ(read.edits[0].value, e.edits[0].value);
+}
+
 TEST(EffectFile, UnitsFollowFromNames) {
   EXPECT_EQ(unit_of_parameter("stiffness_N_per_mm"), "N/mm");
   EXPECT_EQ(unit_of_parameter("stiffness_Nmm_per_rad"), "Nmm/rad");

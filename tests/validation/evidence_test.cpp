@@ -31,6 +31,17 @@ MatrixX noise(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
   return out;
 }
 
+// By hand, so that the two stand on nothing of their own below; sums that overflow without care are right too.
+TEST(Evidence, MeansAndStepsAreThoseOfTheirWords) {
+  EXPECT_NEAR(log_mean_exp({std::log(1.0), std::log(3.0)}), std::log(2.0), 1e-15);
+  EXPECT_NEAR(log_mean_exp({1000 + std::log(1.0), 1000 + std::log(3.0)}), 1000 + std::log(2.0), 1e-12);
+  EXPECT_NEAR(log_mean_exp({-1e6}), -1e6, 1e-9);
+  const std::vector<double> steps = log_spaced(1, 16, 2);  // the middles of two octaves each
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_NEAR(steps[0], 2, 1e-14);
+  EXPECT_NEAR(steps[1], 8, 1e-14);
+}
+
 // One parameter: z = a + N(0, 1), a ~ N(0, τ²), against a = 0: the mean over τ of N(z; 0, 1 + τ²)/N(z; 0, 1).
 TEST(Evidence, OfOneParameterIsTheRatioOfMarginalDensities) {
   for (const double z : {0.0, 1.0, 3.0, 5.0, 20.0}) {

@@ -168,6 +168,8 @@ TEST(ToleranceModel, AMachineOfSofterSteelMovesInProportion) {
   EXPECT_EQ(A.cols(), std::ssize(t.nuisances));
   EXPECT_GT(A.col(slider).head(9).norm(), 0);
   EXPECT_EQ(A.col(slider).tail(72).norm(), 0);
+  // By its σ over some 100 mm of guideway: deflections as its cube, so that they change by far less than a percent.
+  EXPECT_LT(A.col(slider).head(9).norm(), 1e-2 * d.head(9).norm());
 }
 
 // Readings of a pose are predicted alone there: their rank among them says nothing of a drift over all.
