@@ -30,7 +30,7 @@ double at_rest(const SteppedLaw& l) {
 }
 
 double slip_of(const FrictionLaw& l, const std::vector<double>& slips) {
-  const auto n = static_cast<std::size_t>(l.number);
+  const std::size_t n = as_size(l.number);
   return l.number >= 0 && n < slips.size() ? slips[n] : 0;
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "tests/attack/count.h"
 #include "tests/fuzz/targets.h"
 
@@ -38,7 +39,7 @@ TEST(FuzzedReaders, TakeBrokenSeeds) {
 }
 
 using Generator = std::mt19937_64;
-std::size_t below(Generator& g, std::size_t n) { return static_cast<std::size_t>(g() % n); }
+std::size_t below(Generator& g, std::size_t n) { return as_size(g() % n); }
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> out(1);

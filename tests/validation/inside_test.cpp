@@ -9,6 +9,7 @@
 #include <set>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/place.h"
 #include "tests/support/devices.h"
@@ -152,7 +153,7 @@ TEST(DriveForces, DoTheWorkOfTheLoad) {
       const Configuration& c = placed[p];
       const std::size_t i = data.poses[p].readings.front();
       VectorX q(std::ssize(c.actuators));
-      for (std::size_t k = 0; k < c.actuators.size(); ++k) q(static_cast<Eigen::Index>(k)) = c.actuators[k].value;
+      for (std::size_t k = 0; k < c.actuators.size(); ++k) q(as_index(k)) = c.actuators[k].value;
       ASSERT_EQ(q.size(), std::ssize(m.sensors)) << name;
       VectorX wanted(q.size());
       for (Eigen::Index k = 0; k < q.size(); ++k) {
@@ -207,7 +208,7 @@ TEST(InsideLegs, TheoriesAgree) {
       Eigen::Index worst = 0;
       const double off = (ma - mb).cwiseAbs().maxCoeff(&worst);
       EXPECT_LT(off, bound * std::max(ma.cwiseAbs().maxCoeff(), a.head<3>().norm()))
-          << name << " " << parts[static_cast<std::size_t>(worst)] << (geometry == Geometry::finite ? " finite" : "");
+          << name << " " << parts[as_size(worst)] << (geometry == Geometry::finite ? " finite" : "");
     }
   }
 }

@@ -77,6 +77,24 @@ struct Promise {
 };
 constexpr double certain = 1e9;
 
+/// Fits those that can still come near the best, which promise the most first. `fit_one`, given the signature and the
+/// number of threads within, returns ln of the odds found. Returns the bar that further ones must exceed.
+template <class FitOne>
+double fit_in_turn(std::vector<Promise> all, double bar, int threads, const FitOne& fit_one) {
+  std::stable_sort(all.begin(), all.end(), [](const Promise& a, const Promise& b) { return a.most > b.most; });
+  for (std::size_t from = 0; from < all.size() && all[from].most > bar; from += at_once) {
+    const std::size_t count = std::min(at_once, all.size() - from);
+    // Where few are fitted, one with many starts would keep one thread busy long after the others.
+    const int within = count < at_once ? threads : 1;
+    std::vector<double> found(count, out_of_question);
+    parallel::for_each_case(count, 1, threads, [&](std::size_t k) {
+      if (all[from + k].most > bar) found[k] = fit_one(all[from + k].signature, within);
+    });
+    bar = std::max(bar, *std::max_element(found.begin(), found.end()) - far_behind);
+  }
+  return bar;
+}
+
 /// Physics lets it act to one side only, and the residual asks for the other.
 bool wrong_way(const Signature& s, const VectorX& residual) {
   return !s.shaped && s.one_sided && s.at_start.dot(residual) > 0;
@@ -185,20 +203,12 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   const std::size_t all = parts[0].size() + parts[1].size();
   std::atomic<std::size_t> done = 0;
   double bar = least;
-  for (std::vector<Promise>& part : parts) {
-    std::stable_sort(part.begin(), part.end(), [](const Promise& a, const Promise& b) { return a.most > b.most; });
-    for (std::size_t from = 0; from < part.size() && part[from].most > bar; from += at_once) {
-      const std::size_t count = std::min(at_once, part.size() - from);
-      // Where few are fitted, one with many starts would keep one thread busy long after the others.
-      const int within = count < at_once ? threads_ : 1;
-      parallel::for_each_case(count, 1, threads_, [&](std::size_t k) {
-        if (part[from + k].most > bar) fit_one(part[from + k].signature, within);
-        if (progress_) progress_(++done, all);
-      });
-      for (std::size_t k = from; k < from + count; ++k)
-        if (out[part[k].signature].fit.found) bar = std::max(bar, out[part[k].signature].log_odds - far_behind);
-    }
-  }
+  for (std::vector<Promise>& part : parts)
+    bar = fit_in_turn(std::move(part), bar, threads_, [&](std::size_t i, int within) {
+      fit_one(i, within);
+      if (progress_) progress_(++done, all);
+      return out[i].fit.found ? out[i].log_odds : out_of_question;
+    });
   for (Candidate& c : out) c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations.numbers());
   if (progress_) progress_(1, 1);
   add_up_classes(out);
