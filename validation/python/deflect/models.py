@@ -18,7 +18,7 @@ from .units import displacement_from_mm, loads_in_mm, poses_in_mm, require_units
 
 @dataclasses.dataclass(frozen=True)
 class Place:
-    """Where an effect can act: see `deflect effects --device`."""
+    """Where an effect can act: see `deflect effects --device`. `also`: paths of the other parts of a group."""
 
     id: str
     name: str
@@ -29,6 +29,7 @@ class Place:
     freedoms: tuple[str, ...] = ()
     motion: str = ""
     leg: int | None = None
+    also: tuple[str, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -71,7 +72,10 @@ class Subject:
 
     def places(self) -> list[Place]:
         """The places where effects can act, from what the parts are."""
-        return [Place(**{**p, "freedoms": tuple(p["freedoms"])}) for p in json.loads(self._core.places_json())]
+        return [
+            Place(**{**p, "freedoms": tuple(p["freedoms"]), "also": tuple(p.get("also", ()))})
+            for p in json.loads(self._core.places_json())
+        ]
 
     def sensors(self) -> list[Sensor]:
         """Its named sensors; a machine without any is read at its tool point."""
