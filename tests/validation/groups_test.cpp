@@ -86,7 +86,7 @@ std::set<std::string> edits_of(const Effect& e, const Subject& s) {
   for (const EffectEdit& edit : e.edits)
     for (const std::string& path : paths_of(edit, s))
       out.insert(
-          fmt::format("{} {} {}", path, static_cast<int>(edit.action), edit.value.substr(0, edit.value.find(','))));
+          fmt::format("{} {} {}", path, fmt::underlying(edit.action), edit.value.substr(0, edit.value.find(','))));
   return out;
 }
 

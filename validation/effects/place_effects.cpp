@@ -75,7 +75,7 @@ std::optional<std::string> key_of(const Effect& e, const subject::Subject& subje
     if (!paths) return std::nullopt;
     for (const std::string& path : *paths)
       edits.insert(
-          fmt::format("{} {} {}", path, static_cast<int>(edit.action), std::regex_replace(edit.value, names, "$$")));
+          fmt::format("{} {} {}", path, fmt::underlying(edit.action), std::regex_replace(edit.value, names, "$$")));
   }
   return fmt::format("{} {}", e.scope == Scope::one_leg, fmt::join(edits, "; "));
 }

@@ -21,8 +21,8 @@
 //   load_friction  drives that yield                           the same, in proportion to the load in what yields
 //   restraint  free freedoms                                   a spring side by side
 //
-// Places may be groups (place_groups.h), in which each part has the law with the same value. Members that have all of one
-// section are no place for a factor, because the section's dimensions say the same.
+// Places may be groups (place_groups.h), in which each part has the law with the same value. Members that have all of
+// one section are no place for a factor, because the section's dimensions say the same.
 //
 // At the ends of a frame's members, which are many, no play and nothing one-sided is looked for.
 //

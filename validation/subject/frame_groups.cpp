@@ -62,7 +62,7 @@ void add_held(const std::vector<Held>& held, const char* id, const char* words, 
 /// Ends that turn in the same way: in a plane frame all of them do, whatever axis of the member that is.
 void add_ends(const FrameDescription& f, const std::vector<Place>& ends, Groups& out) {
   const auto held = [&](const Place& p) {
-    return f.plane == frame::Plane::none ? held_as(p) : fmt::format("{} {}", static_cast<int>(p.hold), p.one_stiffness);
+    return f.plane == frame::Plane::none ? held_as(p) : fmt::format("{} {}", fmt::underlying(p.hold), p.one_stiffness);
   };
   for (const auto& part : parted(ends, held)) {
     for (const auto& same : parted(part, [](const Place& p) { return p.make; }))

@@ -44,7 +44,7 @@ std::vector<std::vector<Place>> parted(const std::vector<Place>& places,
 }
 
 std::string held_as(const Place& p) {
-  return fmt::format("{} {} {}", fmt::join(p.freedoms, " "), static_cast<int>(p.hold), p.one_stiffness);
+  return fmt::format("{} {} {}", fmt::join(p.freedoms, " "), fmt::underlying(p.hold), p.one_stiffness);
 }
 
 }  // namespace deflect::subject
