@@ -156,7 +156,6 @@ TEST(Groups, AreNamedWhereTheyAreHidden) {
   for (const Case& c : {Case{"tripteron", "linear@leg.revolute_joints.tilt", 2e9, 2},
                         {"tripteron", "linear@revolute_joints.tilt", 5e9},
                         {"arm", "factor@drives.rz", 0.8},
-                        {"gantry", "factor@drives.tz", 0.7},
                         {"lattice-girder", "linear@supports.l0.along_y.uz", 5e4},
                         {"lattice-girder", "linear@supports.uz", 1e5},
                         {"beam-on-springs", "factor@springs.uz", 0.75}}) {
