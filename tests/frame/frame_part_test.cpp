@@ -95,6 +95,15 @@ TEST(FramePart, WhatOtherEntriesForbidIsRefused) {
   EXPECT_FALSE(edited_entries(f, {parsed({"materials.steel.E", "0.9", Action::multiply})}));
 }
 
+// A tolerance of 5 % of nothing is none.
+TEST(FramePart, AShareOfANumberThatVanishesIsRefused) {
+  FrameDescription f = bench();
+  f.tolerances.numbers = {{"members.right.misfit", "5 %"}};
+  EXPECT_THROW(edited(f, {{"members.right.misfit", "0", Action::multiply}}), InputError);
+  EXPECT_THROW(edited(f, {{"members.right.misfit", "-1 mm", Action::add}}), InputError);
+  EXPECT_NO_THROW(edited(f, {{"members.right.misfit", "1 mm", Action::add}}));
+}
+
 TEST(FramePart, MessagesNameWhatTheWholeFrameHas) {
   try {
     edited(bench(), {{"members.beam.facto", "0.7", Action::multiply}});

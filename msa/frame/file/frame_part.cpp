@@ -1,6 +1,7 @@
 #include "msa/frame/file/frame_part.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "msa/base/index.h"
 
@@ -20,6 +21,16 @@ bool any_in(const std::set<EntryName>& entries, const std::string& list) {
 bool prescribed(const FrameDescription& f, const std::string& node) {
   return std::any_of(f.loads.begin(), f.loads.end(),
                      [&](const auto& load) { return find(load.second.displacements, node) != nullptr; });
+}
+
+/// Whether it may leave nothing of a number whose tolerance is a share of it, which the tolerances then refuse.
+bool may_leave_nothing(const FrameDescription& f, const TreeEdit& edit) {
+  const bool may = edit.action == Edit::Action::add ||
+                   (edit.action == Edit::Action::multiply && std::strtod(edit.value.text.c_str(), nullptr) == 0);
+  const std::string field = segments_of(edit.path).back();
+  return may && std::any_of(f.tolerances.numbers.begin(), f.tolerances.numbers.end(), [&](const auto& t) {
+           return segments_of(t.first).back() == field && t.second.find('%') != t.second.npos;
+         });
 }
 
 template <class T>
@@ -45,7 +56,9 @@ std::optional<std::set<EntryName>> edited_entries(const FrameDescription& f, con
   std::set<EntryName> out;
   for (const TreeEdit& edit : edits) {
     const std::vector<std::string> at = segments_of(edit.path);
-    if (at.size() < 3 || edit.action == Edit::Action::set || at[2] == "*" || at[2] == "material") return std::nullopt;
+    if (at.size() < 3 || edit.action == Edit::Action::set || at[2] == "*" || at[2] == "material" ||
+        may_leave_nothing(f, edit))
+      return std::nullopt;
     const bool known = at[0] == "members"    ? find(f.members, at[1]) != nullptr
                        : at[0] == "supports" ? find(f.supports, at[1]) && !prescribed(f, at[1])
                        : at[0] == "springs"  ? find(f.springs, at[1]) != nullptr

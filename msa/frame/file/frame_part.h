@@ -5,7 +5,8 @@
 // members. Whether it is allowed follows from itself and from what it refers to, except where
 //   a load case prescribes a displacement of the support, which must then be rigid,
 //   a member gets another material, which loads by heat and gravity look at,
-//   a value is replaced, because a tolerance may name a number of the one before:
+//   a value is replaced, because a tolerance may name a number of the one before,
+//   a number may become zero of which some tolerance is a share:
 // such edits need the whole frame.
 #pragma once
 
