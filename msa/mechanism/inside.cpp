@@ -8,22 +8,13 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/fields/tree_edit.h"
 #include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/place.h"
 
 namespace deflect {
 namespace {
-
-std::vector<std::string> words_of(const std::string& path) {
-  std::vector<std::string> out;
-  for (std::size_t at = 0; at <= path.size();) {
-    const std::size_t dot = std::min(path.find('.', at), path.size());
-    out.push_back(path.substr(at, dot - at));
-    at = dot + 1;
-  }
-  return out;
-}
 
 std::optional<std::size_t> number(const std::string& word) {
   std::size_t value = 0;
@@ -54,7 +45,7 @@ struct Found {
 
 /// `leg`: keeps the parts that `part` is one of.
 Found found_in(const Mechanism& m, const std::string& path, Named<Part>& leg) {
-  const std::vector<std::string> words = words_of(path);
+  const std::vector<std::string> words = segments_of(path);
   if (words.front() != "leg") refuse(path, "a path to a part begins with 'leg', as in 'leg.2.actuator'");
   Found out;
   std::size_t i = 1;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "msa/fields/tree_edit.h"
 #include "validation/subject/place_groups.h"
 
 namespace deflect::subject {
@@ -17,20 +18,10 @@ struct Container {
   std::string path, id;
 };
 
-std::vector<std::string> words_of(const std::string& path) {
-  std::vector<std::string> out;
-  for (std::size_t at = 0; at <= path.size();) {
-    const std::size_t dot = std::min(path.find('.', at), path.size());
-    out.push_back(path.substr(at, dot - at));
-    at = dot + 1;
-  }
-  return out;
-}
-
 /// A path is a chain "leg" or "mounts.I.leg", then a part; within it the same again; at last "start" or "end". From
 /// without to within; empty for a place that is not in a leg.
 std::vector<Container> containers(const std::string& path) {
-  const std::vector<std::string> words = words_of(path);
+  const std::vector<std::string> words = segments_of(path);
   const auto join = [](const std::string& a, const std::string& b) { return a.empty() ? b : a + "." + b; };
   std::vector<Container> out;
   std::string here, id;
