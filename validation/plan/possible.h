@@ -3,8 +3,8 @@
 // Of a machine: at each pose forces along ±x, ±y, ±z and moments about ±x, ±y, ±z, each in full, half and a fifth; in
 // full, forces along the diagonals of their octants and forces that act beside the tool point, along an axis with a
 // moment about another. Of a frame: each load case with both senses and the same sizes, and each two of them together.
-// Where some rival remembers the loads before it, a reading is a step of a sequence that begins at a
-// new approach of the pose, unloaded: a load goes on; goes on and comes half off, all off, or turns to its opposite.
+// Where some rival remembers the loads before it, a reading is a step of a sequence that begins at a new approach of
+// the pose, unloaded: a load goes on; goes on and comes half off, all off, or turns to its opposite.
 #pragma once
 
 #include <optional>

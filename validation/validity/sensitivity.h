@@ -27,10 +27,9 @@ struct Grouping {
   std::vector<std::size_t> group;  ///< of each reading
 };
 
-/// Those with two groups or more. Load direction: the largest component and its
-/// sense (forces, moments and factors on load cases each over the largest of their kind in the file); load size: thirds
-/// by the size of the prediction; session: by a column whose name begins with note and has "session", "day" or "date"
-/// in it.
+/// Those with two groups or more. Load direction: the largest component and its sense, where forces, moments and
+/// factors on load cases are each taken over the largest of their kind in the file; load size: thirds by the size of
+/// the prediction; session: by a column whose name begins with note and has "session", "day" or "date" in it.
 std::vector<Grouping> groupings(const Errors&);
 
 struct WithoutGroup {
