@@ -264,7 +264,10 @@ TEST(InsideLegs, AreMeasuredLikeOthers) {
   EXPECT_FALSE(ids.contains("zero@drive6")) << "its zero is free";
   std::set<std::string> tolerances;
   const subject::Subject s(m);
-  for (const subject::Tolerance& t : s.stand(data)->deviations(data)->tolerances()) tolerances.insert(t.name);
+  // Each is named: a range-based for keeps only the last of its temporaries.
+  const auto stand = s.stand(data);
+  const auto deviations = stand->deviations(data);
+  for (const subject::Tolerance& t : deviations->tolerances()) tolerances.insert(t.name);
   EXPECT_TRUE(tolerances.contains("gain of drive1"));
   EXPECT_TRUE(tolerances.contains("zero of drive6"));
 }
