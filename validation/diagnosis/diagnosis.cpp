@@ -10,6 +10,7 @@
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/interval.h"
+#include "validation/diagnosis/larger_tolerances.h"
 #include "validation/diagnosis/selection.h"
 #include "validation/diagnosis/splitting.h"
 #include "validation/statistics/columns.h"
@@ -47,14 +48,22 @@ std::string left_over_pattern(const Observations& o, const subject::Subject& sub
   return out.empty() ? "no pattern that was looked for" : out;
 }
 
-/// Probabilities of the first step's candidates and of "nothing", beside that of "unknown": p.
-void weigh(Diagnosis& d, double unknown) {
-  std::vector<double> weights;
-  for (const Candidate& c : d.candidates) weights.push_back(c.log_odds);
-  weights.push_back(0);
-  const std::vector<double> probability = normalised(weights);
-  for (std::size_t i = 0; i < d.candidates.size(); ++i) d.candidates[i].probability = (1 - unknown) * probability[i];
-  d.probability_nothing = (1 - unknown) * probability.back();
+/// ln of the weights of the first step's candidates, then of larger tolerances and of "nothing", 0.
+std::vector<double> log_weights(const std::vector<Candidate>& all, const LargerTolerances& larger) {
+  std::vector<double> out;
+  for (const Candidate& c : all) out.push_back(c.log_odds);
+  out.push_back(larger.log_odds);
+  out.push_back(0);
+  return out;
+}
+
+/// Probabilities of the first step's candidates and of "nothing", beside that of "unknown".
+void weigh(Diagnosis& d, const LargerTolerances& larger, double unknown) {
+  const std::vector<double> probability = normalised(log_weights(d.candidates, larger));
+  const std::size_t count = d.candidates.size();
+  for (std::size_t i = 0; i < count; ++i) d.candidates[i].probability = (1 - unknown) * probability[i];
+  d.probability_larger_tolerances = (1 - unknown) * probability[count];
+  d.probability_nothing = (1 - unknown) * (probability[count] + probability[count + 1]);
   d.probability_unknown = unknown;
 }
 
@@ -63,12 +72,7 @@ double probability_of_unknown(double log_evidence, double prior_odds) {
   return 1 / (1 + std::exp(-log_evidence) / prior_odds);
 }
 
-/// Sum of the weights of "nothing", 1, and all candidates, its logarithm.
-double log_weight(const std::vector<Candidate>& all) {
-  std::vector<double> weights = {0};
-  for (const Candidate& c : all) weights.push_back(c.log_odds);
-  return log_mean_exp(weights) + std::log(static_cast<double>(weights.size()));
-}
+double log_sum_exp(const std::vector<double>& x) { return log_mean_exp(x) + std::log(static_cast<double>(x.size())); }
 
 /// Those of the effects that are called for even where the discrepancy takes what it can.
 Selection beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns, const Candidates& candidates,
@@ -215,8 +219,11 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   std::shared_ptr<const WhitenedFamilies> patterns = o.whitened_patterns();
   const Discrepancy discrepancy(patterns);
   constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
-  weigh(d, probability_of_unknown(discrepancy.log_evidence(null.residual) - log_weight(d.candidates),
-                                  missing_odds * Candidates::prior_unknown));
+  const LargerTolerances larger = larger_tolerances(o);
+  d.larger_tolerances = larger.scale * o.tolerance_scale();
+  weigh(d, larger,
+        probability_of_unknown(discrepancy.log_evidence(null.residual) - log_sum_exp(log_weights(d.candidates, larger)),
+                               missing_odds * Candidates::prior_unknown));
   double least_p = 1;
   const std::vector<double> weights = weights_of(all);
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -226,6 +233,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
                            [&](std::size_t done, std::size_t of) { rounds(done, of); });
   const bool missing = (d.chance < alarm && d.probability_nothing < 0.6) ||
                        (d.probability_unknown > sure && discrepancy.p_value(null.residual) < left_over_p);
+  if (!missing && d.probability_larger_tolerances > 0.5) d.tolerance_scale = d.larger_tolerances;
   const std::vector<Candidate> first = d.candidates;
   sort_candidates(d, o);
 
@@ -236,7 +244,8 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   const double evidence_left = left.log_evidence(found.fit.residual);
   d.unexplained = missing && evidence_left > left_over_evidence && left.p_value(found.fit.residual) < left_over_p;
   if (!found.effects.empty())
-    weigh(d, probability_of_unknown(evidence_left, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
+    weigh(d, larger,
+          probability_of_unknown(evidence_left, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
   if (d.unexplained) {
     found = beside_unknown(patterns, candidates, std::move(found));
     describe_left_over(d, all, found);

@@ -66,6 +66,15 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
   weigh(aside_);
 }
 
+std::vector<double> Observations::log_likelihood_of_scales(const std::vector<double>& scales) const {
+  std::vector<Eigen::Index> free;
+  const std::vector<subject::Tolerance>& all = comparison_->tolerances.nuisances;
+  for (Eigen::Index i = 0; i + 1 < A_.shared.cols(); ++i)
+    if (nth(all, i).zero) free.push_back(i);
+  free.push_back(A_.shared.cols() - 1);  // of the deformed shape
+  return uncertainty_->log_likelihood_of_scales(residual(subject_), MatrixX(measured_.size(), 0), scales, free);
+}
+
 void Observations::count_shape() { A_.shared.rightCols<1>() = shape_known_to * shape_; }
 
 void Observations::move_tolerances(const subject::Subject& subject) {

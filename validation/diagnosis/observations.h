@@ -26,6 +26,9 @@ class Observations {
   const statistics::Uncertainty& uncertainty() const { return *uncertainty_; }
   std::size_t numbers() const { return uncertainty_->count(); }
   double tolerance_scale() const { return tolerance_scale_; }
+  /// ln of the likelihood of null_residual() under tolerances s times as large as they count here, for each s, up to
+  /// one constant. Zeros of readings and the size of the deformed shape's contribution are fitted.
+  std::vector<double> log_likelihood_of_scales(const std::vector<double>& scales) const;
   std::size_t set_aside() const;                             ///< readings
   const std::vector<bool>& aside() const { return aside_; }  ///< by reading
 

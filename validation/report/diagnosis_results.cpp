@@ -168,6 +168,9 @@ std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& d
   if (d.tolerance_scale > 1)
     out += fmt::format("the machine's tolerances look {:.1f} times as large as declared and count so\n",
                        d.tolerance_scale);
+  if (!d.missing.empty() && d.probability_larger_tolerances > 0.01)
+    out += fmt::format("tolerances {:.1f} times as large as declared would explain it too (probability {:.2g})\n",
+                       d.larger_tolerances, d.probability_larger_tolerances);
   if (d.set_aside > 0) out += fmt::format("readings set aside as gross outliers: {}\n", d.set_aside);
   if (!d.strained.empty())
     out += fmt::format("tolerances beyond two standard deviations: {}\n", strained_words(d.strained));
@@ -197,6 +200,8 @@ std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   j["unexplained"] = unexplained_json(d);
   j["found"] = fitted_json(d.missing, d.fit);
   j["probability_nothing"] = d.probability_nothing;
+  j["probability_larger_tolerances"] = d.probability_larger_tolerances;
+  j["larger_tolerances"] = d.larger_tolerances;
   j["probability_unknown"] = d.probability_unknown;
   j["chance_of_any"] = d.chance;
   j["bootstrap_sets"] = d.bootstrap_sets;

@@ -148,6 +148,8 @@ const std::vector<ResultKind>& result_kinds() {
                                                 {"strained_tolerances?[].name", Type::text},
                                                 {"strained_tolerances?[].sigmas", Type::number},
                                                 {"probability_nothing?", Type::number},
+                                                {"probability_larger_tolerances?", Type::number},
+                                                {"larger_tolerances?", Type::number},
                                                 {"probability_unknown?", Type::number}}},
                                               {"plan",
                                                {"rivals", "steps"},

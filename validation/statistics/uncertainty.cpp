@@ -134,18 +134,29 @@ Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<measurement::
   whitening_ = std::make_shared<const Whitening>(blocks_, A_, threads);
 }
 
-// Errors of poses s times as large, those of all too; the span of `beside` is taken out.
+// Errors of poses s times as large, those of all too; what is free is taken out.
+std::vector<double> Uncertainty::log_likelihood_of_scales(const VectorX& residual, const MatrixX& beside,
+                                                          const std::vector<double>& scales,
+                                                          const std::vector<Eigen::Index>& free) const {
+  MatrixX all(residual.size(), beside.cols() + std::ssize(free));
+  all << beside, A_.shared(Eigen::all, free);
+  MatrixX tolerances = A_.shared;
+  tolerances(Eigen::all, free).setZero();
+  const MatrixX flat = all.cols() > 0 ? orthonormal(whitening_->by_noise(all), 1e-8) : all;
+  const ScaledGroups scaled(whitening_->groups_by_noise(), whitening_->by_noise(tolerances), flat, 1e-13);
+  const ScaledGroups::Seen seen = scaled.seen(whitening_->by_noise(residual));
+  std::vector<double> out;
+  for (const double s : scales) out.push_back(scaled.log_likelihood(scaled.at(s * s, s * s), seen));
+  return out;
+}
+
 double Uncertainty::scale_of_tolerances(const VectorX& residual, const MatrixX& beside) const {
   if (A_.cols() == 0) return 1;
-  const MatrixX flat =
-      beside.cols() > 0 ? orthonormal(whitening_->by_noise(beside), 1e-8) : MatrixX(residual.size(), 0);
-  const ScaledGroups scaled(whitening_->groups_by_noise(), whitening_->by_noise(A_.shared), flat, 1e-13);
-  const ScaledGroups::Seen seen = scaled.seen(whitening_->by_noise(residual));
-  const auto log_likelihood = [&](double s) { return scaled.log_likelihood(scaled.at(s * s, s * s), seen); };
-  double best = 1, most = log_likelihood(1) + 2;
-  for (double s = 1; s <= 3; s *= 1.1)
-    if (const double here = log_likelihood(s); here > most) most = here, best = s;
-  return best;
+  std::vector<double> scales;
+  for (double s = 1; s <= 3; s *= 1.1) scales.push_back(s);
+  const std::vector<double> likelihood = log_likelihood_of_scales(residual, beside, scales);
+  const auto best = std::max_element(likelihood.begin(), likelihood.end());
+  return *best > likelihood.front() + 2 ? nth(scales, best - likelihood.begin()) : 1;
 }
 
 Uncertainty::OfContrasts Uncertainty::of_contrasts(const Eigen::SparseMatrix<double, Eigen::RowMajor>& T) const {

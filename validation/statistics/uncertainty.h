@@ -60,6 +60,11 @@ class Uncertainty {
   /// noise, scaled tolerances and the patterns `beside` (columns over the measured numbers, of any size). 1 unless
   /// another factor raises ln of the likelihood by more than 2.
   double scale_of_tolerances(const VectorX& residual, const MatrixX& beside) const;
+  /// ln of the likelihood of a residual under tolerances s times as large, for each s, up to one constant. The columns
+  /// of tolerances with these indices (of the shared ones) and the patterns `beside` are of any size.
+  std::vector<double> log_likelihood_of_scales(const VectorX& residual, const MatrixX& beside,
+                                               const std::vector<double>& scales,
+                                               const std::vector<Eigen::Index>& free = {}) const;
   /// The covariance of T r, noise + E Eᵀ, for contrasts of the measured numbers (rows of T). Each must lie within one
   /// group of A and use no number that is set aside.
   struct OfContrasts {

@@ -13,6 +13,7 @@
 #include "msa/fields/tree_edit.h"
 #include "msa/fields/yaml_tree.h"
 #include "msa/frame/file/frame_file.h"
+#include "msa/frame/file/member_axes.h"
 
 namespace deflect::frame {
 namespace {
@@ -145,12 +146,26 @@ std::vector<NumberMove> number_moves(const FrameDescription& f) {
   return out;
 }
 
+namespace {
+
+/// Members whose implied y_axis would become another one keep that of `drawn`.
+void keep_axes(FrameDescription& built, const FrameDescription& drawn) {
+  const auto implied = [](const FrameDescription& f, const FrameMember& m) {
+    return implied_y_axis(*find(f.nodes, m.to) - *find(f.nodes, m.from));
+  };
+  for (auto& [name, m] : built.members)
+    if (m.y_axis.isZero(0) && implied(built, m) != implied(drawn, m)) m.y_axis = implied(drawn, m);
+}
+
+}  // namespace
+
 FrameDescription moved(const FrameDescription& f, const NumberMove& move, double times) {
   FrameDescription out = f;
   for_each_number(out, [&](std::size_t i, double& x) {
     for (const auto& [index, shift] : move.shifts)
       if (index == i) x += times * shift;
   });
+  if (out.nodes != f.nodes) keep_axes(out, f);
   return out;
 }
 

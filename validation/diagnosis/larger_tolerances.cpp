@@ -1,0 +1,28 @@
+#include "validation/diagnosis/larger_tolerances.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/diagnosis/evidence.h"
+
+namespace deflect::diagnosis {
+
+LargerTolerances larger_tolerances(const Observations& o, double prior) {
+  constexpr double most = 3;
+  constexpr int steps = 24;
+  LargerTolerances out;
+  // Observations that look larger than declared already count as far as they look.
+  const double room = most / o.tolerance_scale();
+  if (!(room > 1.01)) return out;
+  std::vector<double> scales = log_spaced(1, room, steps);
+  scales.push_back(1);
+  std::vector<double> likelihood = o.log_likelihood_of_scales(scales);
+  const double as_declared = likelihood.back();
+  likelihood.pop_back();
+  const auto best = std::max_element(likelihood.begin(), likelihood.end());
+  out.scale = scales[static_cast<std::size_t>(best - likelihood.begin())];
+  out.log_odds = std::log(prior) + log_mean_exp(likelihood) - as_declared;
+  return out;
+}
+
+}  // namespace deflect::diagnosis

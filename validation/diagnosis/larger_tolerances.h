@@ -1,0 +1,23 @@
+// Larger tolerances as a rival of missing effects. A machine whose parts deviate twice as far as declared leaves a
+// misfit that some effect, one of hundreds, comes near. What tells them apart is that larger tolerances show in many
+// places at once.
+//
+// All tolerances are s times as large as declared, ln s uniform between 0 and ln 3. Their evidence against tolerances
+// as declared is B = ⟨L(s)⟩ / L(1), with L(s) the likelihood of the residual where nothing is missing
+// (scaled_groups.h). Zeros of readings and the contribution of the deformed shape are no tolerances: they are fitted at
+// each s.
+#pragma once
+
+#include "validation/diagnosis/observations.h"
+
+namespace deflect::diagnosis {
+
+struct LargerTolerances {
+  double scale = 1;        ///< the likeliest s, of tolerances as they are weighed in the observations
+  double log_odds = -1e9;  ///< ln(prior · B) against nothing missing and tolerances as declared
+};
+
+/// `prior`: odds of larger tolerances against those declared, before any reading.
+LargerTolerances larger_tolerances(const Observations&, double prior = 0.2);
+
+}  // namespace deflect::diagnosis
