@@ -161,7 +161,9 @@ Observations Observations::granted(const subject::Subject& subject) const {
   const std::vector<bool> aside =
       compare::gross_outliers(s, out.A_, comparison_->sigma, out.residual(subject), {}).aside;
   const auto count = as_size(std::count(aside.begin(), aside.end(), true));
-  out.weigh(20 * count <= aside.size() ? aside : aside_);
+  // One in twenty, but of a few readings one as well.
+  const bool few = 20 * count <= aside.size() || (count == 1 && aside.size() >= 10);
+  out.weigh(few ? aside : aside_);
   return out;
 }
 

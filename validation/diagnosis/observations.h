@@ -56,7 +56,8 @@ class Observations {
 
   /// A copy for which this subject counts as right: the contribution of the deformed shape is computed for it, of a
   /// subject without tool point also what its tolerances do (a missing member changes what its neighbours' do), and
-  /// readings that are gross outliers to it are set aside, unless they are more than one in twenty.
+  /// readings that are gross outliers to it are set aside, unless they are more than one in twenty; one of ten
+  /// or more may be.
   Observations granted(const subject::Subject&) const;
   /// A copy in which these tolerances, by their index among those of the comparison, are exact.
   Observations exact_in(const std::vector<std::size_t>& tolerances) const;

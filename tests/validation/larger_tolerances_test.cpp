@@ -1,0 +1,46 @@
+// Larger tolerances as a rival of missing effects: what they say of a frame as declared and of one built worse.
+#include "validation/diagnosis/larger_tolerances.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "msa/frame/file/frame_file.h"
+#include "tests/support/effects.h"
+#include "tests/support/paths.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/subject/simulate_frame.h"
+
+namespace deflect {
+namespace {
+
+const subject::Subject& truss() {
+  static const subject::Subject s =
+      frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames/truss-45.yaml");
+  return s;
+}
+
+measurement::Measurements built_with(double tolerances, std::uint64_t seed) {
+  prediction::SimulationOptions o;
+  o.tolerances = tolerances;
+  o.seed = seed;
+  const frame::FrameDescription& f = *truss().frame();
+  return subject::simulate_frame(f, subject::frame_campaign("random", f, seed), o);
+}
+
+// With n tolerances that the readings see well, ln L(2)/L(1) is n (½ 2² (1 − 2⁻²) − ln 2) = 0.8 n on the average where
+// they are twice as large, and n (½ (1 − 2⁻²) − ln 2) = −0.3 n where they are as declared.
+TEST(LargerTolerances, AreSeenWhereTheyAre) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const measurement::Measurements twice = built_with(2, seed), once = built_with(1, seed);
+    const diagnosis::LargerTolerances larger =
+        diagnosis::larger_tolerances(diagnosis::Observations(truss(), twice, {}));
+    EXPECT_GT(larger.log_odds, 0) << seed;
+    EXPECT_NEAR(larger.scale, 2, 0.7) << seed;
+    EXPECT_LT(diagnosis::larger_tolerances(diagnosis::Observations(truss(), once, {})).log_odds, std::log(0.2)) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace deflect
