@@ -13,6 +13,7 @@
 #include "msa/base/error.h"
 #include "msa/base/outcome.h"
 #include "msa/frame/file/frame_file.h"
+#include "msa/mechanism/device_file.h"
 #include "tests/support/cantilever.h"
 #include "tests/support/devices.h"
 #include "tests/support/paths.h"
@@ -181,6 +182,63 @@ TEST(Fit, NumbersThatMayBeNegativeAreOnALinearScale) {
   const FitResult r = fitted(s, exact(truth), {"nodes.B.0"});
   EXPECT_FALSE(r.parameters[0].positive);
   EXPECT_NEAR(r.parameters[0].fitted, 1, 1e-3);  // a beam that rises by 2 mm is 2e-6 m longer and bends as before
+}
+
+/// A drive of 1000 Nm/rad beside a friction of 4 Nm, which starts so and sticks at so many Nm/rad.
+Subject drive_of(double start, double stuck = 3000) {
+  return parse_mechanism(
+      fmt::format(
+          "name: drive\nkinematics: {{family: chains}}\nleg: {{drive: {{joint: motor, rz: {{law: linear, stiffness: "
+          "1000 Nm/rad}}, beside: {{rz: {{law: friction, moment: 4 Nm, stiffness: {} Nm/rad, start: {}}}}}}}}}\n",
+          stuck, start),
+      "drive.yaml");
+}
+
+/// What the drive reads in a loop to ±10 Nm, without noise.
+Measurements exact_loop(const Subject& s) {
+  std::string csv = "pose,q1_rad,fx_N,fy_N,fz_N,mz_Nmm,thz_rad,sigma_th_rad,sequence\n";
+  for (int i = 1; i <= 40; ++i) {
+    const int torque = std::abs((i + 30) % 40 - 20) - 10;  // Nm: 1 … 10 … −10 … 0
+    csv += fmt::format("1,0,0,0,0,{},0,1e-5,{}\n", 1000 * torque, i);
+  }
+  Measurements out = measurement::parse_measurements(csv, "loop.csv");
+  const std::vector<VectorX> d = s.stand(out)->predict(out);
+  for (std::size_t i = 0; i < d.size(); ++i) out.readings[i].displacement[5] = d[i](5);
+  return out;
+}
+
+FitResult fitted_start(const Subject& s, const Measurements& loop) {
+  return fit::fit(s, loop, free_parameters(s, {"leg.drive.beside.rz.start"}, {}), as_recorded());
+}
+
+// A start lies between −1 and 1; a factor on 0.4 reaches 1 at 2.5.
+TEST(Fit, KnowsTheBoundsOfTheDescription) {
+  const FreeParameter start = free_parameters(drive_of(-0.6), {"leg.drive.beside.rz.start"}, {})[0];
+  EXPECT_FALSE(start.positive);
+  EXPECT_NEAR(start.least, -1, 1e-7);
+  EXPECT_NEAR(start.most, 1, 1e-7);
+  EXPECT_NEAR(search_range(start), 2, 1e-6);
+  const FreeParameter E = free_parameters(frame_of(), {"materials.steel.E"}, {})[0];
+  EXPECT_NEAR(E.most / E.least, 1e6, 1);
+  const FreeParameter nu = free_parameters(frame_of(), {"materials.steel.nu"}, {})[0];
+  EXPECT_NEAR(nu.most, 0.5, 1e-6);
+}
+
+// Of a load M that came and went, friction that takes 3/4 of it keeps 3/4 M − 4 Nm. A search from −0.6 that may go
+// beyond −1 meets what the description refuses.
+TEST(Fit, StaysWithinTheBoundsOfTheDescription) {
+  const FitResult r = fitted_start(drive_of(-0.6), exact_loop(drive_of(-0.9)));
+  EXPECT_NEAR(r.parameters[0].fitted, -0.9, 0.1 * r.parameters[0].deviation);
+  EXPECT_TRUE(r.converged);
+}
+
+// The loop begins as after −10 Nm, of which friction keeps 3.5 Nm. Where it sticks at 1800 Nm/rad it takes 0.64 of the
+// load in place of 0.75 and keeps 2.4 Nm at most: the fit ends at the bound.
+TEST(Fit, EndsAtABoundWhereTheDataAskForMore) {
+  const FitResult r = fitted_start(drive_of(-0.8, 1800), exact_loop(drive_of(-1)));
+  EXPECT_NEAR(r.parameters[0].fitted, -1, 1e-6);
+  EXPECT_GE(r.parameters[0].low, -1 - 1e-9);
+  EXPECT_TRUE(r.converged);
 }
 
 TEST(Fit, WritesADescriptionThatReadsBackWithTheValues) {

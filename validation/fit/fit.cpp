@@ -27,6 +27,12 @@ diagnosis::Fit searched(const diagnosis::Observations& o, const diagnosis::Hypot
   return out;
 }
 
+VectorX values_of(const std::vector<FreeParameter>& all) {
+  VectorX out(std::ssize(all));
+  for (std::size_t i = 0; i < all.size(); ++i) out(as_index(i)) = all[i].value;
+  return out;
+}
+
 /// One round of the fit: what is observed, the tolerances that the parameters replace, values in SI.
 struct Round {
   diagnosis::Observations observations;
@@ -40,10 +46,8 @@ Round fitted_round(const subject::Subject& s, const measurement::Measurements& d
   const diagnosis::Observations observed(s, data, options, work);
   Round out{observed.exact_in(replaced_tolerances(s, all, observed.comparison().tolerances.nuisances)), {}};
   out.declared_chi2 = observed.null_residual().squaredNorm();
-  VectorX start(std::ssize(all));
-  for (std::size_t i = 0; i < all.size(); ++i) start(as_index(i)) = all[i].value;
   const Freed freed(all);
-  out.values = freed.values(searched(out.observations, freed.hypothesis(), freed.effect_values(start)).values);
+  out.values = freed.values(searched(out.observations, freed.hypothesis(), freed.effect_values(values_of(all))).values);
   return out;
 }
 
@@ -81,7 +85,8 @@ void add_parameters(FitResult& out, const subject::Subject& s, const std::vector
     p.fitted = values(i);
     p.deviation = std::sqrt(out.posterior.covariance(i, i));
     const double x = p.coordinate(p.fitted);
-    p.low = p.value_at(x - normal95 * p.deviation), p.high = p.value_at(x + normal95 * p.deviation);
+    p.low = std::max(p.least, p.value_at(x - normal95 * p.deviation));
+    p.high = std::min(p.most, p.value_at(x + normal95 * p.deviation));
     if (p.prior)
       p.pull =
           (x - p.coordinate(p.prior->mean)) / (p.positive ? p.prior->deviation / p.prior->mean : p.prior->deviation);
@@ -92,6 +97,28 @@ void add_parameters(FitResult& out, const subject::Subject& s, const std::vector
       out.correlation(i, j) =
           out.posterior.covariance(i, j) / std::sqrt(out.posterior.covariance(i, i) * out.posterior.covariance(j, j));
   }
+}
+
+/// How far the parameters' coordinates are from the posterior's mean, those held that stand at a bound and would leave
+/// it: the mean of the others is then that given these, δ − C(:,i)/C(i,i) δ_i.
+VectorX step_left(const Posterior& posterior, const std::vector<FreeParameter>& all, const VectorX& values) {
+  constexpr double near = 1e-6;  // of the range: a search comes so close
+  const auto k = std::ssize(all);
+  VectorX step = posterior.mean.head(k);
+  MatrixX C = posterior.covariance.topLeftCorner(k, k);
+  for (bool leaves = true; leaves;) {
+    leaves = false;
+    for (Eigen::Index i = 0; i < k && !leaves; ++i) {
+      const FreeParameter& p = nth(all, i);
+      const double x = p.coordinate(values(i)), reach = near * search_range(p);
+      leaves = (step(i) > 0 && p.coordinate(p.most) - x < reach) || (step(i) < 0 && x - p.coordinate(p.least) < reach);
+      if (!leaves) continue;
+      step -= VectorX(C.col(i) / C(i, i)) * step(i);
+      step(i) = 0;
+      C -= MatrixX(C.col(i) * C.row(i) / C(i, i));
+    }
+  }
+  return step;
 }
 
 void add_quality(FitResult& out, const Round& before, const Round& after, const subject::Subject& s,
@@ -127,8 +154,9 @@ FitResult fit(const subject::Subject& s, const measurement::Measurements& data, 
   require_no_mistake(c, data.origin);
   compare::ComparisonOptions as_recorded = options;
   as_recorded.as_recorded = true;
-  const std::vector<FreeParameter> moved = in_version(all, first.values);
   const subject::Subject fitted = with_values(s, all, first.values);
+  std::vector<FreeParameter> moved = in_version(all, first.values);
+  for (FreeParameter& p : moved) p = bounded(std::move(p), fitted);
   const Round last = fitted_round(fitted, data, moved, as_recorded, work.part(0.5, 1));
   const Learnt learnt(last.observations, moved, last.values);
 
@@ -142,8 +170,8 @@ FitResult fit(const subject::Subject& s, const measurement::Measurements& data, 
   out.set_aside = last.observations.set_aside();
   out.posterior = learnt.posterior();
   const std::vector<subject::Tolerance>& tolerances = last.observations.comparison().tolerances.nuisances;
-  add_parameters(out, s, all, last.values);
-  const VectorX shift = out.posterior.mean.head(std::ssize(all));
+  add_parameters(out, s, in_version(moved, values_of(all)), last.values);
+  const VectorX shift = step_left(out.posterior, moved, last.values);
   for (Eigen::Index i = 0; i < shift.size(); ++i)
     out.converged = out.converged && std::abs(shift(i)) < 0.1 * nth(out.parameters, i).deviation;
   out.undetermined = undetermined(learnt.whitened_derivative(), moved, last.values);

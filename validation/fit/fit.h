@@ -4,7 +4,7 @@
 // Least squares of the whitened residual, with a row for each prior, by Levenberg–Marquardt (hypothesis.h) from the
 // values of the description. The deformed shape, gross outliers and the size of tolerances are then judged anew by the
 // fitted subject, and the fit is repeated. Intervals are those of the posterior (posterior.h), symmetric in the
-// coordinate of each parameter.
+// coordinate of each parameter and cut where the description's bounds are.
 #pragma once
 
 #include <optional>
@@ -32,7 +32,7 @@ struct FitResult {
   std::vector<FittedParameter> parameters;
   MatrixX correlation;
   std::vector<Undetermined> undetermined;
-  bool converged = true;
+  bool converged = true;      ///< what is left to go is small, but for parameters at a bound that would leave it
   diagnosis::Quality before;  ///< held-out as in `compare`
   diagnosis::Quality after;   ///< held-out with parameters fitted without the pose
   /// Of the whitened numbers, priors apart. Before: as in `diagnose`, with all tolerances as declared; after: without

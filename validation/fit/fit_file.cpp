@@ -99,7 +99,7 @@ class Reader {
                             }
                             if (!own.positive) own.prior = Prior{own.per_unit * value, own.per_unit * deviation};
                             take_value(s, own, first, before, value);
-                            out.parameters.push_back(std::move(own));
+                            out.parameters.push_back(bounded(std::move(own), s));
                           });
       fitted.push_back(value * out.parameters.back().per_unit);
     }

@@ -46,6 +46,7 @@ effects::Effect effect(const std::string& path, effects::EffectEdit::Action acti
 effects::Effect factor_on(const FreeParameter& p) {
   effects::EffectParameter factor{"factor", "", 1, 1 / most_factor, most_factor, true, {}, "times the value"};
   if (p.prior) factor.prior = {p.prior->mean / p.value, p.prior->deviation / p.value};
+  factor.low = std::max(factor.low, p.least / p.value), factor.high = std::min(factor.high, p.most / p.value);
   return effect(p.path, effects::EffectEdit::Action::multiply, std::move(factor));
 }
 
@@ -58,13 +59,35 @@ effects::Effect shift_of(const FreeParameter& p) {
     range = std::abs(shift.prior->mean) + most_deviations * shift.prior->deviation;
     shift.low = -range, shift.high = range;
   }
+  shift.low = std::max(shift.low, (p.least - p.value) / p.per_unit);
+  shift.high = std::min(shift.high, (p.most - p.value) / p.per_unit);
   return effect(p.path, effects::EffectEdit::Action::add, std::move(shift));
+}
+
+effects::Effect effect_of(const FreeParameter& p) { return p.positive ? factor_on(p) : shift_of(p); }
+
+/// The farthest from the value on the way to `end`, in the effect's parameter, that the description takes.
+double allowed_to(const subject::Subject& s, const effects::Effect& e, double end) {
+  const effects::EffectParameter& p = e.parameters.front();
+  const auto refused = [&](double x) {
+    return !outcome_of<InputError>([&] { return effects::with_effect(s, {{&e, {}}, VectorX::Constant(1, x)}); });
+  };
+  if (!refused(end)) return end;
+  const auto at = [&](double share) {
+    return p.log ? p.start * std::pow(end / p.start, share) : p.start + share * (end - p.start);
+  };
+  double inside = 0, outside = 1;
+  while (outside - inside > 1e-9) {
+    const double middle = 0.5 * (inside + outside);
+    (refused(at(middle)) ? outside : inside) = middle;
+  }
+  return at(inside);
 }
 
 /// The numbers that a path moves, by index.
 std::vector<std::size_t> moved_numbers(const subject::Subject& s, const std::string& path) {
   const effects::Effect e = effect(path, effects::EffectEdit::Action::multiply,
-                                   {"factor", "", 1.5, 1 / most_factor, most_factor, true, {}, ""});
+                                   {"factor", "", 1, 1 / most_factor, most_factor, true, {}, ""});
   return effects::PreparedEffects(s, {{&e, {}}}).moved_by(0);
 }
 
@@ -170,9 +193,18 @@ double FreeParameter::value_at(double x) const { return positive ? std::exp(x) :
 double FreeParameter::scale() const { return positive ? 1 : value != 0 ? std::abs(value) : prior->deviation; }
 
 double search_range(const FreeParameter& p) {
-  const effects::Effect e = p.positive ? factor_on(p) : shift_of(p);
+  const effects::Effect e = effect_of(p);
   const effects::EffectParameter& own = e.parameters.front();
   return p.positive ? std::log(own.high / own.low) : p.per_unit * (own.high - own.low);
+}
+
+FreeParameter bounded(FreeParameter p, const subject::Subject& s) {
+  p.least = -std::numeric_limits<double>::infinity(), p.most = std::numeric_limits<double>::infinity();
+  const effects::Effect e = effect_of(p);
+  const effects::EffectParameter& own = e.parameters.front();
+  const auto value = [&](double x) { return p.positive ? p.value * x : p.value + p.per_unit * x; };
+  p.least = value(allowed_to(s, e, own.low)), p.most = value(allowed_to(s, e, own.high));
+  return p;
 }
 
 PriorText prior_text(const std::string& given) {
@@ -212,6 +244,7 @@ std::vector<FreeParameter> free_parameters(const subject::Subject& s, const std:
     if (p.value == 0 && !p.prior)
       throw InputError(
           fmt::format("--free {0}: the value is 0, which tells no scale: give it by --prior \"{0}=0 ± …\"", p.path));
+  for (FreeParameter& p : out) p = bounded(std::move(p), s);
   return out;
 }
 
@@ -264,7 +297,7 @@ std::optional<double> declared_deviation(const subject::Subject& s, const FreePa
 }
 
 Freed::Freed(const std::vector<FreeParameter>& all) : parameters_(all) {
-  for (const FreeParameter& p : all) effects_.push_back(p.positive ? factor_on(p) : shift_of(p));
+  for (const FreeParameter& p : all) effects_.push_back(effect_of(p));
 }
 
 diagnosis::Hypothesis Freed::hypothesis() const {

@@ -3,8 +3,11 @@
 //
 // A number that the description does not allow to be negative is searched and judged on a logarithmic scale, x = ln p;
 // any other on a linear one, x = p. A path that stands for several numbers moves them together: all by one factor.
+// Every number is searched within the bounds of the description: as far as it is not refused, and no farther than three
+// decades (log), ten times its size (linear) or fifty standard deviations of a prior.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +31,8 @@ struct FreeParameter {
   double value = 0;       ///< SI, in the description; 1 for a common factor
   bool common = false;    ///< the path stands for numbers of different size: the parameter is their common factor
   bool positive = false;  ///< on a logarithmic scale
+  /// SI, or of the common factor: it is searched between these, and the description takes it there.
+  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
   std::optional<Prior> prior;
   std::vector<std::size_t> numbers;  ///< that it moves, by index among those of the description with its legs resolved
 
@@ -46,13 +51,17 @@ struct PriorText {
 /// InputError where the text is not of that form.
 PriorText prior_text(const std::string& given);
 
-/// The parameter at a path, without prior. `yaml`: text of the subject's file, for the unit; in the preferred unit
-/// without. InputError where the path leads to no number.
+/// The parameter at a path, without prior and bounds. `yaml`: text of the subject's file, for the unit; in the
+/// preferred unit without. InputError where the path leads to no number.
 FreeParameter parameter_at(const subject::Subject&, const std::string& path, const std::string& yaml = "");
 
-/// The parameters in this subject. `yaml`: text of its file, for the units. InputError "--free PATH: …" where a path
-/// leads to no number, two paths move one number, or a number that is zero and may be negative has no prior, which
-/// alone tells its scale; "--prior …" for a prior of no free parameter or with a unit that does not fit.
+/// The parameter with bounds about its value, which the subject has: as far as a search goes, or as the description
+/// takes the number, to 1e-9 of the range.
+FreeParameter bounded(FreeParameter, const subject::Subject&);
+
+/// The parameters in this subject, with their bounds. `yaml`: text of its file, for the units. InputError "--free PATH:
+/// …" where a path leads to no number, two paths move one number, or a number that is zero and may be negative has no
+/// prior, which alone tells its scale; "--prior …" for a prior of no free parameter or with a unit that does not fit.
 std::vector<FreeParameter> free_parameters(const subject::Subject&, const std::vector<std::string>& paths,
                                            const std::vector<std::string>& priors, const std::string& yaml = "");
 
