@@ -211,7 +211,7 @@ FitResult fitted_start(const Subject& s, const Measurements& loop) {
   return fit::fit(s, loop, free_parameters(s, {"leg.drive.beside.rz.start"}, {}), as_recorded());
 }
 
-// A start lies between −1 and 1; a factor on 0.4 reaches 1 at 2.5.
+// A start lies between −1 and 1, a Poisson ratio below 0.5; a modulus is searched three decades to each side.
 TEST(Fit, KnowsTheBoundsOfTheDescription) {
   const FreeParameter start = free_parameters(drive_of(-0.6), {"leg.drive.beside.rz.start"}, {})[0];
   EXPECT_FALSE(start.positive);
