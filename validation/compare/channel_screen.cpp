@@ -81,7 +81,8 @@ double ChannelScreen::loss(const recording::Correction& c) const {
   const bool other_loads = data.instruments.load_points != study_->data->instruments.load_points ||
                            measurement::loads_of(data) != study_->loads;
   if (!other_loads) return loss(data, study_->predicted);
-  const auto predicted = outcome_of([&] { return subject_.stand(data)->predict(data, {}, {threads_}); });
+  const auto predicted =
+      outcome_of([&] { return subject_.stand(data, study_->standing.get())->predict(data, {}, {threads_}); });
   return predicted ? loss(data, *predicted) : std::numeric_limits<double>::infinity();
 }
 

@@ -85,8 +85,13 @@ std::vector<FrameMove> frame_moves(const FrameDescription& f, const measurement:
 
 class FrameDeviations final : public Deviations {
  public:
-  FrameDeviations(std::shared_ptr<const FrameDescription> linear, const measurement::Measurements& data)
-      : frame_(linear), data_(data), drawn_(std::move(linear), data), moves_(frame_moves(*frame_, data)) {
+  /// `further`: of a frame that may differ little, null for none. It serves where the frame itself cannot be known.
+  FrameDeviations(std::shared_ptr<const FrameDescription> linear, const measurement::Measurements& data,
+                  std::shared_ptr<const FrameNearby> further)
+      : frame_(linear),
+        data_(data),
+        drawn_(linear, data, std::make_shared<const FrameNearby>(*linear, data, std::move(further))),
+        moves_(frame_moves(*frame_, data)) {
     for (const FrameMove& move : moves_) tolerances_.push_back(move.tolerance);
   }
 
@@ -113,7 +118,7 @@ std::unique_ptr<const Deviations> FrameStanding::deviations(const measurement::M
   FrameDescription linear = *frame_;
   linear.geometry = Geometry::linear;
   linear.load_steps = 1;
-  return std::make_unique<FrameDeviations>(std::make_shared<const FrameDescription>(std::move(linear)), data);
+  return std::make_unique<FrameDeviations>(std::make_shared<const FrameDescription>(std::move(linear)), data, near_);
 }
 
 /// Of one reading, where the description gives it: scatter, and rounding to a step, which is as good as even over it.

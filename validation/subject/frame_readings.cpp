@@ -207,9 +207,6 @@ std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Me
 std::optional<std::vector<VectorX>> by_known_frame(const FrameDescription& f, const measurement::Measurements& data,
                                                    const frame::KnownFrame& known) {
   const Named<LoadCase> loads = unit_loads(f, data);
-  if (!std::equal(loads.begin(), loads.end(), known.loads().begin(), known.loads().end(),
-                  [](const auto& load, const std::string& name) { return load.first == name; }))
-    return std::nullopt;
   std::vector<std::size_t> order(data.readings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const char* const remembers = law_with_history(f);
@@ -251,8 +248,8 @@ void let_stick(const FrameDescription& f, const measurement::Measurements& data,
 std::vector<VectorX> predicted_readings(const FrameDescription& frame, const measurement::Measurements& data,
                                         Geometry geometry, const FrameNearby* near) {
   std::optional<std::vector<VectorX>> out;
-  const frame::KnownFrame* known = near && geometry == Geometry::linear ? near->known() : nullptr;
-  if (known) out = by_known_frame(frame, data, *known);
+  for (const FrameNearby* n = geometry == Geometry::linear ? near : nullptr; n && !out; n = n->further())
+    if (const frame::KnownFrame* known = n->known()) out = by_known_frame(frame, data, *known);
   if (!out) {
     FrameDescription f = frame;
     f.geometry = geometry;
@@ -264,8 +261,9 @@ std::vector<VectorX> predicted_readings(const FrameDescription& frame, const mea
   return std::move(*out);
 }
 
-FrameNearby::FrameNearby(const FrameDescription& f, const measurement::Measurements& data)
-    : frame_(f), loads_(unit_loads(f, data)) {}
+FrameNearby::FrameNearby(const FrameDescription& f, const measurement::Measurements& data,
+                         std::shared_ptr<const FrameNearby> further)
+    : frame_(f), loads_(unit_loads(f, data)), further_(std::move(further)) {}
 
 const frame::KnownFrame* FrameNearby::known() const {
   std::call_once(once_, [&] {

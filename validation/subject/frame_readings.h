@@ -23,13 +23,17 @@ std::vector<VectorX> predicted_readings(const frame::FrameDescription&, const me
 /// What is known of a frame under the loads of measurements (known_frame.h), computed when it is first asked for.
 class FrameNearby {
  public:
-  FrameNearby(const frame::FrameDescription&, const measurement::Measurements&);
+  /// `further`: another frame, asked where nothing is known of this one or a frame is not near enough to it.
+  FrameNearby(const frame::FrameDescription&, const measurement::Measurements&,
+              std::shared_ptr<const FrameNearby> further = nullptr);
+  const FrameNearby* further() const { return further_.get(); }
   /// Null where nothing can be known: the frame does not stand without its laws that are not linear.
   const frame::KnownFrame* known() const;
 
  private:
   frame::FrameDescription frame_;
   Named<frame::LoadCase> loads_;
+  std::shared_ptr<const FrameNearby> further_;
   mutable std::once_flag once_;
   mutable std::unique_ptr<const frame::KnownFrame> known_;
 };

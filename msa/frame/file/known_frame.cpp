@@ -13,6 +13,7 @@
 #include "msa/frame/file/port_laws.h"
 #include "msa/frame/structure/assembly.h"
 #include "msa/frame/structure/reactions.h"
+#include "msa/frame/structure/relative.h"
 
 namespace deflect::frame {
 namespace {
@@ -165,7 +166,7 @@ struct KnownFrame::Impl {
   std::optional<VectorX> solve(const Near&, const VectorX& forces) const;
   std::optional<VectorX> from_nothing(const Near&, const VectorX& forces, const VectorX& values) const;
   State seen(const Near&, VectorX u, const VectorX& forces, std::vector<ElementLoad>, const Input&) const;
-  std::optional<State> under_load(const Near&, const std::string& name, const LoadCase&, std::size_t) const;
+  std::optional<State> under_load(const Near&, const std::string& name, const LoadCase&) const;
   std::optional<State> under_input(const Near&, const TakenLaws&) const;
 };
 
@@ -282,11 +283,11 @@ State KnownFrame::Impl::seen(const Near& n, VectorX u, const VectorX& forces, st
   return out;
 }
 
-std::optional<State> KnownFrame::Impl::under_load(const Near& n, const std::string& name, const LoadCase& load,
-                                                  std::size_t k) const {
+std::optional<State> KnownFrame::Impl::under_load(const Near& n, const std::string& name, const LoadCase& load) const {
   CaseLoad own = load_of(n.rest, n.m, name, load);
   std::optional<VectorX> state;
-  if (own.values == cases[k].values) {
+  const auto k = as_size(std::find(names.begin(), names.end(), name) - names.begin());
+  if (k < names.size() && own.values == cases[k].values) {
     state = solve(n, own.forces - cases[k].forces - excess(n, moved[k]));
     if (state) *state += moved[k];
   } else {
@@ -314,6 +315,10 @@ KnownFrame::KnownFrame(const FrameDescription& f, Named<LoadCase> loads) {
   out->rest.loads = std::move(loads);
   for (const auto& [name, load] : out->rest.loads) out->names.push_back(name);
   const FrameModel bare = build_frame(out->rest);
+  if (wants_relative_motion(bare.model)) {
+    impl_ = std::move(out);
+    return;
+  }
   FrameResult result = analyse(out->rest);
   if (const std::string failed = failed_check(result); !failed.empty())
     throw NumericalError(fmt::format("{}: {}", f.name, failed));
@@ -332,8 +337,6 @@ KnownFrame::KnownFrame(const FrameDescription& f, Named<LoadCase> loads) {
 
 KnownFrame::~KnownFrame() = default;
 
-const std::vector<std::string>& KnownFrame::loads() const { return impl_->names; }
-
 std::optional<MatrixX> KnownFrame::readings(const FrameDescription& f, const Named<LoadCase>& loads,
                                             const std::vector<const FrameSensor*>& sensors, const MatrixX& factors,
                                             bool in_sequence) const {
@@ -341,8 +344,8 @@ std::optional<MatrixX> KnownFrame::readings(const FrameDescription& f, const Nam
   if (!n) return std::nullopt;
   const auto ports = std::ssize(n->taken);
   std::vector<State> states;
-  for (std::size_t k = 0; k < loads.size(); ++k) {
-    std::optional<State> state = impl_->under_load(*n, loads[k].first, loads[k].second, k);
+  for (const auto& [name, load] : loads) {
+    std::optional<State> state = impl_->under_load(*n, name, load);
     if (!state) return std::nullopt;
     states.push_back(std::move(*state));
   }
@@ -376,7 +379,7 @@ std::optional<Passages> KnownFrame::passages(const std::vector<const FrameSensor
   };
   for (std::size_t k = 0; k < impl_->names.size(); ++k) {
     const auto& [name, load] = impl_->rest.loads[k];
-    const std::optional<State> state = impl_->under_load(*n, name, load, k);
+    const std::optional<State> state = impl_->under_load(*n, name, load);
     if (!state) return std::nullopt;
     all_at(*state, out.carried, k);
   }

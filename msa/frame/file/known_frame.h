@@ -32,25 +32,23 @@ struct Passages {
 class KnownFrame {
  public:
   /// The frame in linear geometry, without its laws that are not linear, under these loads. Throws as analyse() does,
-  /// and NumericalError where one of its checks fails.
+  /// and NumericalError where one of its checks fails. A frame with parts so stiff that they need coordinates of their
+  /// own (relative.h) is not solved: nothing is near it.
   KnownFrame(const FrameDescription&, Named<LoadCase> loads);
   ~KnownFrame();
   KnownFrame(const KnownFrame&) = delete;
   KnownFrame& operator=(const KnownFrame&) = delete;
 
-  /// The true readings of sensors (rows) by column of `factors` on the loads, which are in the order and under the
-  /// names of the constructor, as the near frame has them. Columns follow one another where `in_sequence`.
-  /// Nullopt where the frame is not near enough: other parts, misfits, parts so stiff that they need coordinates of
-  /// their own (relative.h), or a state that is not found to 1e-12 of its change.
+  /// The true readings of sensors (rows) by column of `factors` on the loads as the near frame has them; those under a
+  /// name of the constructor's take about the time of the change. Columns follow one another where `in_sequence`.
+  /// Nullopt where the frame is not near enough: other parts, misfits, or a state that is not found to 1e-12 of its
+  /// change.
   std::optional<MatrixX> readings(const FrameDescription&, const Named<LoadCase>& loads,
                                   const std::vector<const FrameSensor*>&, const MatrixX& factors,
                                   bool in_sequence) const;
 
   /// Of freedoms where something passes: rigid or elastic ones. Nullopt as readings().
   std::optional<Passages> passages(const std::vector<const FrameSensor*>&, const std::vector<TakenLaws>&) const;
-
-  /// The names of the loads.
-  const std::vector<std::string>& loads() const;
 
  private:
   struct Impl;

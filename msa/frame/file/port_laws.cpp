@@ -88,6 +88,42 @@ void add_structure(Model& m, const MatrixX& H, const std::vector<LinearForm>& y)
   }
 }
 
+/// y by port (rows) and column of loads at the ports. Where all laws are linear, columns are sums of the answers to
+/// unit loads. Nullopt where an equilibrium is not found.
+std::optional<MatrixX> in_equilibrium(Model m, const std::vector<LinearForm>& y, const MatrixX& loads,
+                                      bool in_sequence) {
+  const int scalars = m.dofs();
+  const Eigen::Index ports = loads.rows();
+  Solver solver(std::move(m));
+  const auto under = [&](const VectorX& at_ports) {
+    VectorX load = VectorX::Zero(scalars);
+    for (Eigen::Index p = 0; p < ports; ++p)
+      for (const Term& t : nth(y, p)) load(t.dof) = at_ports(p);
+    return solver.solve(load);
+  };
+  const auto of_ports = [&](const Solution& s) {
+    VectorX out(ports);
+    for (Eigen::Index p = 0; p < ports; ++p) out(p) = evaluate(nth(y, p), s.fine);
+    return out;
+  };
+  if (solver.linear_springs()) {
+    MatrixX by_unit = MatrixX::Zero(ports, ports);
+    for (Eigen::Index p = 0; p < ports; ++p)
+      if (!loads.row(p).isZero(0)) by_unit.col(p) = of_ports(under(VectorX::Unit(ports, p)));
+    return by_unit * loads;
+  }
+  MatrixX out(ports, loads.cols());
+  std::vector<double> slips;
+  for (Eigen::Index c = 0; c < loads.cols(); ++c) {
+    solver.begin_slips(slips);
+    const Solution s = under(loads.col(c));
+    if (!s.converged) return std::nullopt;
+    if (in_sequence) slips = s.slips;
+    out.col(c) = of_ports(s);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<MatrixX> inputs_of_ports(const FrameDescription& f, const std::vector<TakenLaws>& ports,
@@ -103,25 +139,9 @@ std::optional<MatrixX> inputs_of_ports(const FrameDescription& f, const std::vec
   }
   add_structure(m, structure->H, y);
   const MatrixX loads = structure->to_loads * unloaded;
-  return outcome_of([&]() -> std::optional<MatrixX> {
-           const int scalars = m.dofs();
-           Solver solver(std::move(m));
-           MatrixX out(std::ssize(ports), unloaded.cols());
-           std::vector<double> slips;
-           for (Eigen::Index c = 0; c < unloaded.cols(); ++c) {
-             VectorX load = VectorX::Zero(scalars), of_ports(std::ssize(ports));
-             for (std::size_t p = 0; p < ports.size(); ++p)
-               for (const Term& t : y[p]) load(t.dof) = loads(as_index(p), c);
-             solver.begin_slips(slips);
-             const Solution s = solver.solve(load);
-             if (!s.converged) return std::nullopt;
-             if (in_sequence) slips = s.slips;
-             for (std::size_t p = 0; p < ports.size(); ++p) of_ports(as_index(p)) = evaluate(y[p], s.fine);
-             out.col(c) = structure->from_y * of_ports + structure->from_unloaded * unloaded.col(c);
-           }
-           return out;
-         })
-      .value.value_or(std::nullopt);
+  const auto found = outcome_of([&] { return in_equilibrium(std::move(m), y, loads, in_sequence); });
+  if (!found || !*found) return std::nullopt;
+  return MatrixX(structure->from_y * **found + structure->from_unloaded * unloaded);
 }
 
 }  // namespace deflect::frame
