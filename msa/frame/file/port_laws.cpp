@@ -13,6 +13,7 @@ namespace deflect::frame {
 namespace {
 
 constexpr double no_digits = 1e-11;  // relative: a stiffness below that is rounding
+constexpr double few_digits = 1e-6;  // of a condition number's inverse: extended digits are needed below that
 
 /// The structure as springs between the ports: gradient(y) = H y − load, y the e and δ of the ports.
 struct Condensed {
@@ -88,38 +89,57 @@ void add_structure(Model& m, const MatrixX& H, const std::vector<LinearForm>& y)
   }
 }
 
-/// y by port (rows) and column of loads at the ports. Where all laws are linear, columns are sums of the answers to
-/// unit loads. Nullopt where an equilibrium is not found.
+/// Of chains side by side, each of linear laws in series: 1/k = Σ 1/kᵢ of a chain.
+double stiffness_of(LawSprings& springs, const TakenLaws& port) {
+  double sum = 0;
+  for (const std::vector<Law>& chain : port.chains) {
+    FreedomLaws laws;
+    laws.set(port.freedom, chain);
+    double compliance = 0;
+    const auto freedoms = springs.freedoms({}, laws);
+    for (const SpringLaw& law : freedoms[port.freedom].laws) compliance += 1 / tangent(law, 0);
+    sum += 1 / compliance;
+  }
+  return sum;
+}
+
+bool all_linear(const std::vector<TakenLaws>& ports) {
+  for (const TakenLaws& port : ports)
+    for (const std::vector<Law>& chain : port.chains)
+      if (!std::all_of(chain.begin(), chain.end(), [](const Law& law) { return is_linear(law); })) return false;
+  return true;
+}
+
+/// y by port (rows) and column of loads at the ports, with laws of stiffnesses k: (H + k) y = load. Nullopt where that
+/// leaves too few digits.
+std::optional<MatrixX> with_stiffnesses(MatrixX H, const VectorX& k, const MatrixX& loads) {
+  H.diagonal() += k;
+  const VectorX unit = H.diagonal().cwiseMax(0).cwiseSqrt();
+  if (!(unit.minCoeff() > 0) || !unit.allFinite()) return std::nullopt;
+  const VectorX per_unit = unit.cwiseInverse();
+  const Eigen::LLT<MatrixX> llt(per_unit.asDiagonal() * H * per_unit.asDiagonal());
+  if (llt.info() != Eigen::Success || !(llt.rcond() > few_digits)) return std::nullopt;
+  MatrixX y = per_unit.asDiagonal() * llt.solve(MatrixX(per_unit.asDiagonal() * loads));
+  y += per_unit.asDiagonal() * llt.solve(MatrixX(per_unit.asDiagonal() * (loads - H * y)));
+  return y;
+}
+
+/// y as before, with any laws: the springs of `m`. Nullopt where an equilibrium is not found.
 std::optional<MatrixX> in_equilibrium(Model m, const std::vector<LinearForm>& y, const MatrixX& loads,
                                       bool in_sequence) {
   const int scalars = m.dofs();
-  const Eigen::Index ports = loads.rows();
   Solver solver(std::move(m));
-  const auto under = [&](const VectorX& at_ports) {
-    VectorX load = VectorX::Zero(scalars);
-    for (Eigen::Index p = 0; p < ports; ++p)
-      for (const Term& t : nth(y, p)) load(t.dof) = at_ports(p);
-    return solver.solve(load);
-  };
-  const auto of_ports = [&](const Solution& s) {
-    VectorX out(ports);
-    for (Eigen::Index p = 0; p < ports; ++p) out(p) = evaluate(nth(y, p), s.fine);
-    return out;
-  };
-  if (solver.linear_springs()) {
-    MatrixX by_unit = MatrixX::Zero(ports, ports);
-    for (Eigen::Index p = 0; p < ports; ++p)
-      if (!loads.row(p).isZero(0)) by_unit.col(p) = of_ports(under(VectorX::Unit(ports, p)));
-    return by_unit * loads;
-  }
-  MatrixX out(ports, loads.cols());
+  MatrixX out(loads.rows(), loads.cols());
   std::vector<double> slips;
   for (Eigen::Index c = 0; c < loads.cols(); ++c) {
+    VectorX load = VectorX::Zero(scalars);
+    for (Eigen::Index p = 0; p < loads.rows(); ++p)
+      for (const Term& t : nth(y, p)) load(t.dof) = loads(p, c);
     solver.begin_slips(slips);
-    const Solution s = under(loads.col(c));
+    const Solution s = solver.solve(load);
     if (!s.converged) return std::nullopt;
     if (in_sequence) slips = s.slips;
-    out.col(c) = of_ports(s);
+    for (Eigen::Index p = 0; p < loads.rows(); ++p) out(p, c) = evaluate(nth(y, p), s.fine);
   }
   return out;
 }
@@ -130,18 +150,26 @@ std::optional<MatrixX> inputs_of_ports(const FrameDescription& f, const std::vec
                                        const MatrixX& response, const MatrixX& unloaded, bool in_sequence) {
   const std::optional<Condensed> structure = condensed(ports, response);
   if (!structure) return std::nullopt;
-  Model m;
+  const MatrixX loads = structure->to_loads * unloaded;
+  const auto answer = [&](const MatrixX& y) {
+    return MatrixX(structure->from_y * y + structure->from_unloaded * unloaded);
+  };
   LawSprings springs(f);
+  if (all_linear(ports)) {
+    VectorX k(std::ssize(ports));
+    for (std::size_t p = 0; p < ports.size(); ++p) k(as_index(p)) = stiffness_of(springs, ports[p]);
+    if (const std::optional<MatrixX> y = with_stiffnesses(structure->H, k, loads)) return answer(*y);
+  }
+  Model m;
   std::vector<LinearForm> y;
   for (const TakenLaws& port : ports) {
     y.push_back(add_chain(m, springs, port, port.chains.front(), {}));
     for (std::size_t k = 1; k < port.chains.size(); ++k) add_chain(m, springs, port, port.chains[k], y.back());
   }
   add_structure(m, structure->H, y);
-  const MatrixX loads = structure->to_loads * unloaded;
   const auto found = outcome_of([&] { return in_equilibrium(std::move(m), y, loads, in_sequence); });
   if (!found || !*found) return std::nullopt;
-  return MatrixX(structure->from_y * **found + structure->from_unloaded * unloaded);
+  return answer(**found);
 }
 
 }  // namespace deflect::frame
