@@ -149,6 +149,16 @@ void sort_candidates(Diagnosis& d, const Observations& o) {
   }
 }
 
+/// What the data cannot tell apart, and the reading that would.
+void note_ties(Diagnosis& d, const Selection& found, const measurement::Measurements& data) {
+  for (const Tie& tie : found.ties) {
+    if (tie.names.empty()) continue;
+    d.indistinguishable.push_back(tie.names);
+    d.ties.push_back(tie);
+    if (auto split = splitting_reading(found.observations, data, tie)) d.splitting.push_back(std::move(*split));
+  }
+}
+
 /// The limits of the values of those that tie.
 void bound_ties(Diagnosis& d, const Observations& o, int threads) {
   for (Candidate& c : d.candidates)
@@ -254,12 +264,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   d.fit = last_fit(seen, d.missing, found.fit, work.threads);
   add_left_out(d.left_out, first);
   d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
-  for (const Tie& tie : found.ties) {
-    if (tie.names.empty()) continue;
-    d.indistinguishable.push_back(tie.names);
-    d.ties.push_back(tie);
-    if (auto split = splitting_reading(seen, data, tie)) d.splitting.push_back(std::move(*split));
-  }
+  note_ties(d, found, data);
   bound_ties(d, o, work.threads);
   d.verdict = verdict_of(d);
   d.final = quality(seen, d.missing, d.fit);
