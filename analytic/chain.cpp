@@ -186,7 +186,7 @@ ChainResponse Chain::respond(const Vector6& F, double least, const ChainConditio
   return r;
 }
 
-Vector6 Chain::deflection(const Vector6& F, const ChainConditions& c) const {
+Vector6 Chain::deflection(const Vector6& F, const ChainConditions& c, bool* converged) const {
   Vector6 d = misfit + c.warmer * expansion + C * F;
   for (const ElasticFreedom& f : freedoms) {
     const double force = f.twist.dot(F);
@@ -196,7 +196,11 @@ Vector6 Chain::deflection(const Vector6& F, const ChainConditions& c) const {
       d += f.twist * (step.offset + step.compliance * force);
     }
   }
-  for (const Group& g : groups) d += g.solve(F, c).t;
+  for (const Group& g : groups) {
+    const Group::State state = g.solve(F, c);
+    d += state.t;
+    if (converged && !state.converged) *converged = false;
+  }
   return d;
 }
 
@@ -214,6 +218,21 @@ bool Chain::linear() const {
   };
   return std::all_of(freedoms.begin(), freedoms.end(), linear_spring) &&
          std::all_of(groups.begin(), groups.end(), [](const Group& g) { return g.linear(); });
+}
+
+bool Chain::straight(const ChainConditions& c) const {
+  const auto held = [&](const SteppedLaw& law) {
+    const auto n = as_size(law.number);
+    return law.number >= 0 && n < c.steps.size() && !c.steps[n].released;
+  };
+  const auto same_at_any_force = [&](const ElasticFreedom& f) {
+    return std::all_of(f.stepped.begin(), f.stepped.end(), held) &&
+           std::all_of(f.spring.laws.begin(), f.spring.laws.end(), deflect::is_linear);
+  };
+  return std::all_of(freedoms.begin(), freedoms.end(), same_at_any_force) &&
+         std::all_of(groups.begin(), groups.end(), [&](const Group& g) {
+           return std::all_of(g.branches.begin(), g.branches.end(), [&](const Chain& b) { return b.straight(c); });
+         });
 }
 
 bool Chain::fits() const {
@@ -278,6 +297,42 @@ bool Chain::has_steps() const {
          std::any_of(groups.begin(), groups.end(), [](const Group& g) {
            return std::any_of(g.branches.begin(), g.branches.end(), [](const Chain& b) { return b.has_steps(); });
          });
+}
+
+Group legs_of(const Configuration& c, const AsPrinted& as_printed) {
+  std::vector<Chain> chains;
+  for (const PlacedLeg& leg : c.legs) {
+    Vector3 reference = c.pose.p_WT;
+    if (leg.beside) {  // which no equation of the paper is about
+      chains.push_back(chain_of(leg, reference, c.size));
+      continue;
+    }
+    if (as_printed.count(Erratum::tcp_transfer))  // the platform joint: where the last member ends
+      for (const PlacedPart& part : leg.parts)
+        if (const auto* m = std::get_if<PlacedMember>(&part)) reference = m->p_W_end;
+    chains.push_back(chain_of(leg, reference, c.size, as_printed));
+  }
+  return group_of("the mechanism", std::move(chains), c.size);
+}
+
+Matrix6 Group::stiffness(const std::vector<Vector6>& wrenches, const ChainConditions& c) const {
+  Matrix6 K = Matrix6::Zero();
+  for (std::size_t i = 0; i < branches.size(); ++i) K += branches[i].stiffness(wrenches[i], c);
+  return K;
+}
+
+Resistance Group::resistance(const std::vector<Vector6>& wrenches, const ChainConditions& c) const {
+  std::vector<Resistance> parts;
+  for (std::size_t i = 0; i < branches.size(); ++i) parts.push_back(branches[i].resistance(wrenches[i], c));
+  return side_by_side(parts, length);
+}
+
+bool Group::linear() const {
+  return std::all_of(branches.begin(), branches.end(), [](const Chain& c) { return c.linear(); });
+}
+
+bool Group::fits() const {
+  return std::all_of(branches.begin(), branches.end(), [](const Chain& c) { return c.fits(); });
 }
 
 }  // namespace deflect::analytic

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,12 +72,15 @@ struct Chain {
   /// Displacement under F without J_q θ, and its tangent. In the tangent forces below `least` (N, Nm) count as `least`,
   /// so that unloaded contacts have a finite compliance. With least = 0 they count as free, as do released steps.
   ChainResponse respond(const Vector6& F, double least, const ChainConditions&) const;
-  Vector6 deflection(const Vector6& F, const ChainConditions&) const;
+  /// `converged` is set to false where an inner group did not converge.
+  Vector6 deflection(const Vector6& F, const ChainConditions&, bool* converged = nullptr) const;
   /// Tangent stiffness K_c. Contacts without load have no stiffness. Throws ModelError where it is infinite.
   Matrix6 stiffness(const Vector6& F, const ChainConditions&) const;
   Resistance resistance(const Vector6& F, const ChainConditions&) const;
   /// Whether no law's stiffness depends on its load.
   bool linear() const;
+  /// The same where laws that jump are held in the steps of the conditions, none of them released.
+  bool straight(const ChainConditions&) const;
   bool fits() const;  ///< whether neither the chain nor a branch of it has a misfit
   /// Adds the strain energy of each part, J.
   void add_energies(const Vector6& F, const ChainConditions&, std::map<std::string, double>&) const;
@@ -124,9 +128,13 @@ struct Group {
   bool fits() const;
 
  private:
+  struct Straight;
+  std::shared_ptr<const Straight> factorised(const ChainConditions&) const;
   double share_of_step(const std::vector<Vector6>& from, const std::vector<Vector6>& step, double least,
                        const ChainConditions&) const;
-  void settle(State&, double least, const ChainConditions&) const;
+  void settle(State&, double least, const ChainConditions&, const Straight*) const;
+
+  mutable std::shared_ptr<const Straight> straight_ = {};  ///< the last one: a group is used by one thread at a time
 };
 
 /// The chain of a leg, referred to the point p_W (T, unless (46) is taken as printed).

@@ -5,17 +5,18 @@
 
 namespace deflect::analytic {
 
-/// Under unit loads, each law held by its compliance alone.
+/// Under unit loads and one kelvin, each law held by its compliance alone.
 AnalyticModel::Between AnalyticModel::between(const Imposed& imposed) const {
   ChainConditions under;
   for (Eigen::Index i = 0; i < imposed.c.size(); ++i) under.steps.push_back({0, imposed.c(i), false});
-  Between out{MatrixX(imposed.c.size(), 6),
-              Matrix6(),
-              std::vector<Matrix6>(legs_.branches.size()),
+  Between out{MatrixX(imposed.c.size(), 7),
+              Matrix67(),
+              std::vector<Matrix67>(legs_.branches.size()),
               imposed,
               {stepped_, imposed}};
-  for (Eigen::Index k = 0; k < 6; ++k) {
-    const Vector6 F = Vector6::Unit(k);
+  for (Eigen::Index k = 0; k < 7; ++k) {
+    const Vector6 F = k < 6 ? Vector6(Vector6::Unit(k)) : Vector6(Vector6::Zero());
+    under.warmer = k < 6 ? 0 : 1;
     const AnalyticSolution s = equilibrium_under(F, under);
     VectorX forces = VectorX::Zero(imposed.c.size());
     for (std::size_t l = 0; l < s.leg_wrenches.size(); ++l) {
@@ -30,8 +31,8 @@ AnalyticModel::Between AnalyticModel::between(const Imposed& imposed) const {
 }
 
 AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
-  const bool straight = conditions.geometry == Geometry::linear && conditions.warmer == 0 && as_printed_.empty() &&
-                        legs_.fits() && !stepped_.empty() && !lines_;
+  const bool straight =
+      conditions.geometry == Geometry::linear && as_printed_.empty() && legs_.fits() && !stepped_.empty() && !lines_;
   if (!straight || !imposed_ || imposed_->S.size() == 0 ||
       (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_))
     return solve(F, conditions);
@@ -39,9 +40,11 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
   Between& b = *between_;
   const double length = legs_.length;
   const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
-  const Vector6 load = F + weight_;
-  SteppedForces at{b.forces * load, b.displacement * load, size(load), length, true};
-  for (const Matrix6& W : b.wrenches) at.largest = std::max(at.largest, size(W * load));
+  Vector7 driving;
+  driving << F + weight_, conditions.warmer;
+  SteppedForces at{b.forces * driving, b.displacement * driving,
+                   std::max(size(driving.head<6>()), held_without_load(conditions)), length, true};
+  for (const Matrix67& W : b.wrenches) at.largest = std::max(at.largest, size(W * driving));
   const SteppedForces held = at;
   const Imposed& known = b.known;
   // Of loads in a sequence the next one finds most laws as the last one left them.
@@ -57,7 +60,7 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
           at.displacement = held.displacement + known.T * offsets;
           return at;
         },
-        *imposed_);
+        *imposed_, false);
     *imposed_ = known;
     if (frictions_ > 0) b.same.remember(held.forces, conditions.slips, searched);
     return searched;

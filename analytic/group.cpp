@@ -19,18 +19,19 @@ Vector6 weighed(const Vector6& F, double length) {
   return w;
 }
 
+}  // namespace
+
 /// One branch linearised about its force, in the principal axes of its compliance (singular values: as printed it need
-/// not be symmetric): it carries N λ more when Mᵀt = g λ + e, t what the far body moves more and `d` by how much the
-/// branch is ahead of it; M = N but for signs where C is symmetric. A g that is lost in the rounding of the largest is
-/// 0: there the branch is rigid.
+/// not be symmetric): it carries N λ more when Mᵀt = g λ + e, t what the far body moves more, e = Mᵀd with d by how
+/// much the branch is ahead of it; M = N but for signs where C is symmetric. A g that is lost in the rounding of the
+/// largest is 0: there the branch is rigid.
 struct LinearisedBranch {
-  LinearisedBranch(const Flexibility& f, double length, const Vector6& d) : N(f.N), M(f.N) {
+  LinearisedBranch(const Flexibility& f, double length) : N(f.N), M(f.N) {
     if (N.cols() == 0) return;
     if (f.rooted) {
       const Principal p = principal(f, length);
       M = N *= p.V;
       g = p.g;
-      e = M.transpose() * d;
       return;
     }
     const Eigen::JacobiSVD<MatrixX> principal(f.N.transpose() * f.C * f.N, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -39,11 +40,10 @@ struct LinearisedBranch {
     g = principal.singularValues();
     for (Eigen::Index i = 0; i < g.size(); ++i)
       if (!(g(i) > 1e-14 * g(0))) g(i) = 0;
-    e = M.transpose() * d;
   }
 
   Matrix6X N, M;
-  VectorX g, e;
+  VectorX g;
 };
 
 /// Branches side by side: Σ N_i λ_i = F, M_iᵀt = g_i λ_i + e_i, with t = c R y. What yields is eliminated,
@@ -52,9 +52,11 @@ struct LinearisedBranch {
 ///   [ Σ (c/g) Rᵀn mᵀR    B          ] [y]   [ Rᵀ(F + Σ n e/g) ]
 ///   [ Aᵀ                −g/c − Y Zᵀ ] [μ] = [ e/c             ]
 /// Z spans the forces of rigid branches that cancel each other, none of which act when the branches fit, Yᵀe = 0.
-class Parallel {
+/// Factorised once for any F and e.
+class BranchesInParallel {
  public:
-  Parallel(std::vector<LinearisedBranch> branches, const Matrix6X& R) : branches_(std::move(branches)), R_(R) {
+  BranchesInParallel(std::vector<LinearisedBranch> branches, const Matrix6X& R)
+      : branches_(std::move(branches)), R_(R) {
     for (const LinearisedBranch& b : branches_)
       if (b.g.size() > 0) c_ = std::max(c_, b.g(0));
     if (c_ == 0) c_ = 1;
@@ -72,7 +74,7 @@ class Parallel {
         } else {
           append(B, n);
           append(A, m);
-          kept_.push_back({b.g(j) / c_, b.e(j) / c_});
+          kept_.push_back(b.g(j) / c_);
         }
       }
     const Eigen::Index k = B.cols();
@@ -83,8 +85,8 @@ class Parallel {
       S.bottomLeftCorner(k, r) = A.transpose();
       MatrixX yields = MatrixX::Zero(k, k);
       for (Eigen::Index i = 0; i < k; ++i) {
-        S(r + i, r + i) = -nth(kept_, i).g;
-        yields(i, i) = nth(kept_, i).g > 0 ? 1 : 0;
+        S(r + i, r + i) = -nth(kept_, i);
+        yields(i, i) = nth(kept_, i) > 0 ? 1 : 0;
       }
       const auto cancelling = [&](const MatrixX& columns) {
         MatrixX rows(k, r + k);
@@ -100,18 +102,26 @@ class Parallel {
       lu_.compute(S);
   }
 
-  /// Displacement and the branches' wrenches under F. `size`: of forces, against which contradictions count.
-  void solve(const Vector6& F, Vector6& t, std::vector<Vector6>& wrenches, double& size,
+  const std::vector<LinearisedBranch>& branches() const { return branches_; }
+
+  /// Displacement and the branches' wrenches under F, with e by branch. `size`: of forces, against which contradictions
+  /// count.
+  void solve(const Vector6& F, const std::vector<VectorX>& e, Vector6& t, std::vector<Vector6>& wrenches, double& size,
              const std::string& name) const {
     const Eigen::Index r = R_.cols(), k = std::ssize(kept_);
     VectorX right(r + k);
     right.head(r) = R_.transpose() * F;
-    for (const LinearisedBranch& b : branches_)
-      for (Eigen::Index j = 0; j < b.g.size(); ++j)
-        if (eliminated(b, j)) right.head(r) += R_.transpose() * b.N.col(j) * (b.e(j) / b.g(j));
-    for (Eigen::Index i = 0; i < k; ++i) right(r + i) = nth(kept_, i).e;
     size = std::max(size, F.norm());
-    for (const LinearisedBranch& b : branches_) size = std::max(size, b.e.norm() / c_);
+    Eigen::Index rigid = r;
+    for (std::size_t i = 0; i < branches_.size(); ++i) {
+      const LinearisedBranch& b = branches_[i];
+      for (Eigen::Index j = 0; j < b.g.size(); ++j)
+        if (eliminated(b, j))
+          right.head(r) += R_.transpose() * b.N.col(j) * (e[i](j) / b.g(j));
+        else
+          right(rigid++) = e[i](j) / c_;
+      size = std::max(size, e[i].norm() / c_);
+    }
     if (k > 0 && (Y_.transpose() * right.tail(k)).norm() > 1e-9 * size)
       throw ModelError(
           fmt::format("{} cannot be assembled: the misfits contradict each other by {:.3g} mm and nothing yields", name,
@@ -127,7 +137,7 @@ class Parallel {
       const LinearisedBranch& b = branches_[i];
       wrenches[i].setZero();
       for (Eigen::Index j = 0; j < b.g.size(); ++j)
-        wrenches[i] += b.N.col(j) * (eliminated(b, j) ? (b.M.col(j).dot(t) - b.e(j)) / b.g(j) : solution(next++));
+        wrenches[i] += b.N.col(j) * (eliminated(b, j) ? (b.M.col(j).dot(t) - e[i](j)) / b.g(j) : solution(next++));
     }
   }
 
@@ -142,21 +152,19 @@ class Parallel {
   }
 
  private:
-  struct Kept {
-    double g, e;
-  };
-
   bool eliminated(const LinearisedBranch& b, Eigen::Index j) const { return b.g(j) > 1e-6 * c_; }
 
   std::vector<LinearisedBranch> branches_;
-  const Matrix6X& R_;
-  double c_ = 0;  // largest compliance
-  std::vector<Kept> kept_;
+  Matrix6X R_;
+  double c_ = 0;              // largest compliance
+  std::vector<double> kept_;  // g/c of what stays
   MatrixX Y_;
   Eigen::PartialPivLU<MatrixX> lu_;
   /// Where forces are kept: stiff branches that hold each other leave only their small g to tell how they share a load.
   Eigen::PartialPivLU<Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>> fine_;
 };
+
+namespace {
 
 /// The twists J to which no wrench of the branches does work, and the others, R.
 template <class Branches>
@@ -174,6 +182,13 @@ void split(const Branches& branches, double length, Matrix6X& J, Matrix6X& R) {
 
 }  // namespace
 
+/// Branches none of which yields otherwise under other forces, factorised for these compliances of steps.
+struct Group::Straight {
+  std::vector<double> compliances;
+  std::vector<Flexibility> tangents;
+  BranchesInParallel parallel;
+};
+
 Group group_of(const std::string& name, std::vector<Chain> branches, double length) {
   Group g;
   g.name = name;
@@ -190,22 +205,6 @@ Group group_of(const std::string& name, std::vector<Chain> branches, double leng
   return g;
 }
 
-Group legs_of(const Configuration& c, const AsPrinted& as_printed) {
-  std::vector<Chain> chains;
-  for (const PlacedLeg& leg : c.legs) {
-    Vector3 reference = c.pose.p_WT;
-    if (leg.beside) {  // which no equation of the paper is about
-      chains.push_back(chain_of(leg, reference, c.size));
-      continue;
-    }
-    if (as_printed.count(Erratum::tcp_transfer))  // the platform joint: where the last member ends
-      for (const PlacedPart& part : leg.parts)
-        if (const auto* m = std::get_if<PlacedMember>(&part)) reference = m->p_W_end;
-    chains.push_back(chain_of(leg, reference, c.size, as_printed));
-  }
-  return group_of("the mechanism", std::move(chains), c.size);
-}
-
 /// Rᵀ Σ N_i λ_i = RᵀF, then N_iᵀ t = N_iᵀ d_i; nothing where a branch has let go.
 std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const ChainConditions& c) const {
   const VectorX lambda = determinate->solve(R.transpose() * F);
@@ -217,21 +216,44 @@ std::optional<Group::State> Group::solve_by_statics(const Vector6& F, const Chai
   for (const Chain& branch : branches) {
     const Eigen::Index own = branch.N.cols();
     s.wrenches.push_back(branch.N * lambda.segment(at, own));
-    const ChainResponse r = branch.respond(s.wrenches.back(), 0, c);
-    if (r.tangent.N.cols() < own) return std::nullopt;
-    s.converged = s.converged && r.converged;
-    e.segment(at, own) = branch.N.transpose() * r.d;
+    if (branch.straight(c)) {
+      e.segment(at, own) = branch.N.transpose() * branch.deflection(s.wrenches.back(), c, &s.converged);
+    } else {
+      const ChainResponse r = branch.respond(s.wrenches.back(), 0, c);
+      if (r.tangent.N.cols() < own) return std::nullopt;
+      s.converged = s.converged && r.converged;
+      e.segment(at, own) = branch.N.transpose() * r.d;
+    }
     at += own;
   }
   s.t = R * determinate->transpose().solve(e);
   return s;
 }
 
+/// Nothing where the stiffness of a branch depends on its force.
+std::shared_ptr<const Group::Straight> Group::factorised(const ChainConditions& c) const {
+  const auto straight = [&](const Chain& b) { return b.straight(c); };
+  if (!c.printed.empty() || !std::all_of(branches.begin(), branches.end(), straight)) return nullptr;
+  std::vector<double> compliances;
+  for (const Step& step : c.steps) compliances.push_back(step.compliance);
+  if (straight_ && straight_->compliances == compliances) return straight_;
+  std::vector<Flexibility> tangents;
+  std::vector<LinearisedBranch> linearised;
+  for (const Chain& branch : branches) {
+    tangents.push_back(branch.respond(Vector6::Zero(), 1, c).tangent);
+    linearised.emplace_back(tangents.back(), length);
+  }
+  straight_ = std::make_shared<const Straight>(
+      Straight{std::move(compliances), std::move(tangents), BranchesInParallel(std::move(linearised), R)});
+  return straight_;
+}
+
 Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   // A chain alone is asked directly: stiffness is needed to share forces only.
   if (branches.size() == 1) {
-    const ChainResponse r = branches[0].respond(F, 0, c);
-    return {r.d, {F}, r.converged, 1, 0};
+    State s{Vector6::Zero(), {F}, true, 1, 0};
+    s.t = branches[0].deflection(F, c, &s.converged);
+    return s;
   }
   if (determinate)
     if (std::optional<State> s = solve_by_statics(F, c)) return *s;
@@ -245,20 +267,32 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   double change = std::numeric_limits<double>::infinity(), size_of_forces = 0;
   double held = 0;  // what free deflections would bring, were the far body to stay
   const bool straight = linear();
+  const std::shared_ptr<const Straight> known = R.cols() > 0 ? factorised(c) : nullptr;
   while (!s.converged && s.iterations < 100) {
     ++s.iterations;
-    std::vector<LinearisedBranch> linearised;
     Vector6 missing = F, moved;
+    std::vector<VectorX> e(branches.size());
+    std::vector<LinearisedBranch> linearised;
     for (std::size_t i = 0; i < branches.size(); ++i) {
-      const ChainResponse r = branches[i].respond(s.wrenches[i], least, c);
-      linearised.emplace_back(r.tangent, length, r.d - s.t);
+      Vector6 ahead = -s.t;
+      if (known) {
+        ahead += branches[i].deflection(s.wrenches[i], c);
+      } else {
+        const ChainResponse r = branches[i].respond(s.wrenches[i], least, c);
+        linearised.emplace_back(r.tangent, length);
+        ahead += r.d;
+      }
       missing -= s.wrenches[i];
-      const LinearisedBranch& b = linearised.back();
+      const LinearisedBranch& b = known ? known->parallel.branches()[i] : linearised.back();
+      e[i] = b.M.transpose() * ahead;
       for (Eigen::Index j = 0; j < b.g.size(); ++j)
-        if (b.g(j) > 1e-6 * b.g(0)) held = std::max(held, std::abs(b.e(j)) / b.g(j));
+        if (b.g(j) > 1e-6 * b.g(0)) held = std::max(held, std::abs(e[i](j)) / b.g(j));
     }
     std::vector<Vector6> more(branches.size());
-    Parallel(std::move(linearised), R).solve(missing, moved, more, size_of_forces, name);
+    if (known)
+      known->parallel.solve(missing, e, moved, more, size_of_forces, name);
+    else
+      BranchesInParallel(std::move(linearised), R).solve(missing, e, moved, more, size_of_forces, name);
     const double before = change;
     double largest = 0;
     change = 0;
@@ -281,9 +315,9 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
     // Where nothing depends on its load the first step is the answer, and the second takes its rounding off.
     s.converged = s.converged || (straight && s.iterations > 2 && !(change < 0.5 * before));
     // Of a contact that is hardly loaded, forces that settle may leave the deflection open.
-    if (s.converged) settle(s, least, c);
+    if (s.converged) settle(s, least, c, known.get());
   }
-  if (R.cols() == 0) settle(s, least, c);
+  if (R.cols() == 0) settle(s, least, c, nullptr);
   return s;
 }
 
@@ -313,22 +347,27 @@ double Group::share_of_step(const std::vector<Vector6>& from, const std::vector<
 }
 
 /// Whether the branches' ends are where the far body is.
-void Group::settle(State& s, double least, const ChainConditions& c) const {
+void Group::settle(State& s, double least, const ChainConditions& c, const Straight* known) const {
   double size = 0, largest = 0;
   for (const Vector6& wrench : s.wrenches) largest = std::max(largest, weighed(wrench, length).norm());
   s.misfit = 0;
   for (std::size_t i = 0; i < branches.size(); ++i) {
     if (branches[i].N.cols() == 0) continue;
-    const ChainResponse r = branches[i].respond(s.wrenches[i], least, c);
+    ChainResponse r;
+    if (known)
+      r.d = branches[i].deflection(s.wrenches[i], c, &r.converged);
+    else
+      r = branches[i].respond(s.wrenches[i], least, c);
+    const Flexibility& tangent = known ? known->tangents[i] : r.tangent;
     s.converged = s.converged && r.converged;
-    if (r.tangent.N.cols() == 0) continue;
-    const VectorX d = r.tangent.N.transpose() * r.d, moved = r.tangent.N.transpose() * s.t;
+    if (tangent.N.cols() == 0) continue;
+    const VectorX d = tangent.N.transpose() * r.d, moved = tangent.N.transpose() * s.t;
     s.misfit = std::max(s.misfit, (moved - d).cwiseAbs().maxCoeff());
     size = std::max({size, moved.cwiseAbs().maxCoeff(), d.cwiseAbs().maxCoeff()});
     // Forces are known to the rounding of the largest: beside a rigid branch the others carry as much by chance, which
     // no further step takes off.
     if (s.iterations > 10)
-      size = std::max(size, 1e-6 * (r.tangent.roots.transpose() * r.tangent.N).squaredNorm() * largest);
+      size = std::max(size, 1e-6 * (tangent.roots.transpose() * tangent.N).squaredNorm() * largest);
   }
   if (size > 0) s.misfit /= size;
   s.converged = s.converged && s.misfit < 1e-9;
@@ -349,31 +388,11 @@ Flexibility Group::flexibility(const std::vector<Vector6>& wrenches, double leas
   if (others.cols() == 0) return f;
   f.N = carried_wrenches(f.J, length);
   std::vector<LinearisedBranch> linearised;
-  for (const Flexibility& t : tangents) linearised.emplace_back(t, length, Vector6::Zero());
-  f.C = Parallel(std::move(linearised), others).compliance();
+  for (const Flexibility& t : tangents) linearised.emplace_back(t, length);
+  f.C = BranchesInParallel(std::move(linearised), others).compliance();
   f.rooted = std::all_of(tangents.begin(), tangents.end(), [](const Flexibility& t) { return t.rooted; });
   if (f.rooted) f.roots = roots_of(f.C, length);
   return f;
-}
-
-Matrix6 Group::stiffness(const std::vector<Vector6>& wrenches, const ChainConditions& c) const {
-  Matrix6 K = Matrix6::Zero();
-  for (std::size_t i = 0; i < branches.size(); ++i) K += branches[i].stiffness(wrenches[i], c);
-  return K;
-}
-
-Resistance Group::resistance(const std::vector<Vector6>& wrenches, const ChainConditions& c) const {
-  std::vector<Resistance> parts;
-  for (std::size_t i = 0; i < branches.size(); ++i) parts.push_back(branches[i].resistance(wrenches[i], c));
-  return side_by_side(parts, length);
-}
-
-bool Group::linear() const {
-  return std::all_of(branches.begin(), branches.end(), [](const Chain& c) { return c.linear(); });
-}
-
-bool Group::fits() const {
-  return std::all_of(branches.begin(), branches.end(), [](const Chain& c) { return c.fits(); });
 }
 
 }  // namespace deflect::analytic

@@ -140,8 +140,7 @@ AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& 
     }
   const double length = legs_.length;
   const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
-  // Where heat or misfits are all that drives it, forces that should vanish are the rounding of those that they held.
-  const double held = 1e-3 * (heat_force_ * std::abs(conditions.warmer) + misfit_force_);
+  const double held = held_without_load(conditions);
   if (!imposed_) imposed_ = std::make_shared<Imposed>();
   const BalancedSteps found = balance(
       stepped_, conditions.slips,

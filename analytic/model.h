@@ -7,6 +7,7 @@
 // assembled state.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -68,8 +69,8 @@ class AnalyticModel {
   AnalyticSolution solve(const Vector6& F_T_W, const Conditions& = {}) const;
 
   /// Only displacement, slips, convergence and message of solve(): for fits, which need many loads. Where laws jump in
-  /// linear geometry, the linear rest of the mechanism is solved once for six loads, so that each further load solves
-  /// only the laws.
+  /// linear geometry, the linear rest of the mechanism is solved once for six loads and a temperature, so that each
+  /// further load solves only the laws.
   AnalyticSolution displaced(const Vector6& F_T_W, const Conditions& = {}) const;
 
   /// The assembled state: displacement of T from the drawing, and the legs' wrenches by misfits.
@@ -117,15 +118,21 @@ class AnalyticModel {
   std::vector<SteppedLaw> stepped_;
   std::optional<Lines> lines_;  ///< set where only friction elements beside the legs jump
   int frictions_ = 0;
-  /// Linear response, to a load at T including weight, of everything except the laws that jump.
+  using Vector7 = Eigen::Matrix<double, 7, 1>;
+  using Matrix67 = Eigen::Matrix<double, 6, 7>;
+  /// Linear response, to a load at T including weight and to K above 20 °C, of everything except the laws that jump.
   struct Between {
-    MatrixX forces;  ///< of the laws, by load
-    Matrix6 displacement;
-    std::vector<Matrix6> wrenches;  ///< of the legs
-    Imposed known;                  ///< of which it is
-    SamePhases same;                ///< as the last load left the laws
+    MatrixX forces;  ///< of the laws, by load and kelvin
+    Matrix67 displacement;
+    std::vector<Matrix67> wrenches;  ///< of the legs
+    Imposed known;                   ///< of which it is
+    SamePhases same;                 ///< as the last load left the laws
   };
   Between between(const Imposed&) const;
+  /// Where heat or misfits are all that drives it, forces that should vanish are the rounding of this force.
+  double held_without_load(const Conditions& c) const {
+    return 1e-3 * (heat_force_ * std::abs(c.warmer) + misfit_force_);
+  }
 
   // Made on first use: a model may be used by one thread at a time.
   mutable std::shared_ptr<Between> between_;

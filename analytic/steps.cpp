@@ -128,8 +128,9 @@ Phase phase_at_rest(const Law& law) {
 
 class Balance {
  public:
-  Balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask, Imposed& imposed)
-      : ask_(ask), imposed_(imposed), n_(std::ssize(laws)), own_laws_(laws) {
+  Balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask, Imposed& imposed,
+          bool extent)
+      : ask_(ask), imposed_(imposed), extent_(extent), n_(std::ssize(laws)), own_laws_(laws) {
     for (SteppedLaw& l : own_laws_) {
       members_.push_back({&l});
       if (auto* table = std::get_if<TableLaw>(&l.law); table && table->remembers())
@@ -204,7 +205,7 @@ class Balance {
  private:
   /// The laws in equilibrium, with limits of frictions that are those of the loads beside them.
   SetValuedSolution settled(const LinearRelation& relation) {
-    if (growing_.empty()) return solve(relation, laws_, imposed_.T);
+    if (growing_.empty()) return solve(relation, laws_, watched());
     SetValuedSolution found;
     VectorX limits(std::ssize(growing_));
     double rounding = 0;
@@ -220,7 +221,7 @@ class Balance {
         m.limit = tried(i);
         nth(laws_, nth(growing_, i)) = scalar_law(*m.stepped, m.slip, m.limit);
       }
-      found = solve(relation, laws_, imposed_.T);
+      found = solve(relation, laws_, watched());
       if (found.outcome != SetValuedSolution::Outcome::solved) return std::nullopt;
       for (Eigen::Index i = 0; i < tried.size(); ++i) {
         const SteppedLaw& law = *nth(members_, nth(growing_, i)).stepped;
@@ -232,6 +233,9 @@ class Balance {
     if (!settle(limits, of_loads, rounding)) found.outcome = SetValuedSolution::Outcome::undecided;
     return found;
   }
+
+  /// How far T can move in unloaded play is searched for only where it is asked for.
+  MatrixX watched() const { return extent_ ? imposed_.T : MatrixX(0, n_); }
 
   SteppedForces answer(const VectorX& o) const {
     std::vector<Step> steps;
@@ -302,10 +306,12 @@ class Balance {
     }
     BalancedSteps out = conclude();
     out.offsets = found.o;
-    for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)
-      if (found.loose.row(i).cwiseAbs().maxCoeff() > 0) out.loose.push_back(nth(members_, i).stepped->part);
-    out.twists = imposed_.T * found.loose;
-    out.least = found.least, out.most = found.most;
+    if (extent_) {
+      for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)
+        if (found.loose.row(i).cwiseAbs().maxCoeff() > 0) out.loose.push_back(nth(members_, i).stepped->part);
+      out.twists = imposed_.T * found.loose;
+      out.least = found.least, out.most = found.most;
+    }
     if (own_) imposed_ = Imposed();  // belongs to this load alone
     return out;
   }
@@ -350,6 +356,7 @@ class Balance {
 
   const AskSteps& ask_;
   Imposed& imposed_;
+  bool extent_;
   std::optional<Imposed> own_;  // where S belongs to a load
   Eigen::Index n_;
   std::vector<SteppedLaw> own_laws_;  // tables with what is left in them
@@ -386,8 +393,8 @@ double SteppedLaw::stored_energy(double f, const Step& s) const {
 }
 
 BalancedSteps balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask,
-                      Imposed& imposed) {
-  return Balance(laws, slips, ask, imposed).search();
+                      Imposed& imposed, bool extent) {
+  return Balance(laws, slips, ask, imposed, extent).search();
 }
 
 }  // namespace deflect::analytic

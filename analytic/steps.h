@@ -80,8 +80,8 @@ struct BalancedSteps {
 /// Finds the steps in which every law is consistent with its force. The forces decrease with the offsets, so that
 /// forces and deflections of the laws minimise a convex function (set_valued_laws.h). Nonlinear laws that are not steps
 /// are linearised about the last offsets until everything agrees. `slips`: before the load. `imposed`: of this
-/// mechanism; computed where it is empty.
+/// mechanism; computed where it is empty. `extent`: whether loose, twists, least and most are asked for.
 BalancedSteps balance(const std::vector<SteppedLaw>&, const std::vector<double>& slips, const AskSteps&,
-                      Imposed& imposed);
+                      Imposed& imposed, bool extent = true);
 
 }  // namespace deflect::analytic
