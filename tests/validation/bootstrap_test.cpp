@@ -20,7 +20,8 @@ Signature along_axes(Eigen::Index from, Eigen::Index count = 1) {
   Signature s;
   s.basis = MatrixX::Zero(rows, count);
   for (Eigen::Index i = 0; i < count; ++i) s.basis(from + i, i) = 1;
-  s.at_start = s.basis.col(0);
+  s.start = VectorX::Unit(s.basis.cols(), 0);
+  s.lambda = 1;
   return s;
 }
 

@@ -24,7 +24,8 @@ Signature along(const std::string& effect, Eigen::Index i, bool shaped = false) 
   s.effect = {&test::effect(effect), {}};
   s.basis = MatrixX::Zero(6, 1);
   s.basis(i, 0) = 1;
-  s.at_start = s.basis.col(0);
+  s.start = VectorX::Unit(s.basis.cols(), 0);
+  s.lambda = 1;
   s.shaped = shaped;
   return s;
 }

@@ -38,8 +38,7 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int sets
   std::vector<double> wanted;
   const std::vector<double> weights = weights_of(all);
   std::vector<double> senses;
-  for (const Signature& s : all)
-    senses.push_back(s.one_sided && !s.shaped && s.basis.cols() > 0 ? s.basis.col(0).dot(s.at_start) : 0);
+  for (const Signature& s : all) senses.push_back(s.one_sided && !s.shaped && s.basis.cols() > 0 ? s.start(0) : 0);
   for (std::size_t i = 0; i < all.size(); ++i)
     wanted.push_back(std::max(gain_at_p_value(all[i], least_p * weights[i]), std::numeric_limits<double>::min()));
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(inner_products(all));

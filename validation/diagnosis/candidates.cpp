@@ -97,7 +97,7 @@ double fit_in_turn(std::vector<Promise> all, double bar, int threads, const FitO
 
 /// Physics lets it act to one side only, and the residual asks for the other.
 bool wrong_way(const Signature& s, const VectorX& residual) {
-  return !s.shaped && s.one_sided && s.at_start.dot(residual) > 0;
+  return !s.shaped && s.one_sided && s.start_along(residual) > 0;
 }
 
 /// What a fit may gain where the signature says `gain`: little more where one law at a place is nearly proportional.

@@ -11,7 +11,7 @@ std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all, bool
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Signature& s = all[i];
     if (s.effect.effect->place && !laws_at_places) continue;
-    Detectable d{s.effect, s.at_start.norm(), {}, "", 0};
+    Detectable d{s.effect, s.lambda, {}, "", 0};
     const VectorX start = effects::start_values(*s.effect.effect);
     for (Eigen::Index k = 0; k < start.size(); ++k) {
       const effects::EffectParameter& p = nth(s.effect.effect->parameters, k);

@@ -44,7 +44,7 @@ std::vector<Localised> localised(const std::vector<Signature>& all, const Fit& f
       continue;
     taken.push_back(i);
     std::string what = words_of(all[i].effect);
-    if (all[i].one_sided && all[i].at_start.dot(fit.residual) > 0)
+    if (all[i].one_sided && all[i].start_along(fit.residual) > 0)
       what += ", the other way: the machine yields less there than the model";
     out.push_back({all[i].effect, std::move(what), std::min(1.0, gain[i] / beyond)});
   }

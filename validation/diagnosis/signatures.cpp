@@ -129,18 +129,19 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<effec
     const auto looked_at = outcome_of([&] {
       if (std::optional<VectorX> change = statics.change(places[i])) {
         s.one_sided = one_sided(places[i]);
-        s.at_start = std::move(*change);
-        const double size = s.at_start.norm();
-        if (size > unseen)
-          s.basis = s.at_start / size;
+        s.lambda = change->norm();
+        s.start = VectorX::Constant(1, s.lambda);
+        if (s.lambda > unseen)
+          s.basis = *change / s.lambda;
         else
           why[i] = "changes nothing that was measured";
         return true;
       }
       const VectorX start = effects::start_values(*places[i].effect);
       const MatrixX columns = directions(o, places[i], start, s.shaped);
-      s.at_start =
+      const VectorX at_start =
           !s.shaped && columns.cols() == start.size() ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0));
+      s.lambda = at_start.norm();
       s.one_sided = s.shaped ? amplitude_from_nothing(*places[i].effect) : one_sided(places[i]);
       if (!columns.allFinite())
         why[i] = "the prediction with it is no number";
@@ -148,6 +149,11 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<effec
         s.basis = s.shaped ? unit_columns(columns) : statistics::orthonormal(columns);
       else
         why[i] = "changes nothing that was measured";
+      if (s.basis.cols() == 0) return true;
+      if (!s.shaped)
+        s.start = s.basis.transpose() * at_start;
+      else if (s.start = VectorX::Zero(s.basis.cols()); s.lambda > unseen)
+        s.start(0) = s.lambda;  // its first column
       return true;
     });
     // The subject cannot stand with it, or it wants what the file does not have: a sequence.
@@ -175,8 +181,9 @@ std::optional<VectorX> guess(const Signature& s, const VectorX& residual) {
   if (e.parameters.size() != 1) return std::nullopt;
   const effects::EffectParameter& p = e.parameters.front();
   if (!p.vanishes) return std::nullopt;
-  // at_start is the change of the residual: to take it away the effect must be −⟨r, s⟩/⟨s, s⟩ times that large.
-  const double times = -s.at_start.dot(residual) / s.at_start.squaredNorm();
+  // With s the change of the residual r at the start: to take r away the effect must be −⟨r, s⟩/⟨s, s⟩ times that
+  // large.
+  const double times = -s.start_along(residual) / s.start.squaredNorm();
   const bool infinite = std::isinf(*p.vanishes);
   double value = infinite ? p.start / times : *p.vanishes + times * (p.start - *p.vanishes);
   if (infinite && !(times > 0)) return std::nullopt;

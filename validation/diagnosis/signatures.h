@@ -16,10 +16,13 @@ struct Signature {
   /// shapes, of which only one applies.
   MatrixX basis;
   bool shaped = false;
-  VectorX at_start;        ///< change of the whitened residual at the start values; λ is its norm
+  VectorX start;           ///< change of the whitened residual at the start values is basis · start
+  double lambda = 0;       ///< its norm
   bool one_sided = false;  ///< physics fixes the amplitude's sign (where shaped, that of the columns)
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
+  /// Inner product of the change at the start values with a residual.
+  double start_along(const VectorX& residual) const { return start.dot(basis.transpose() * residual); }
 };
 
 /// An effect that cannot be tested on these data, and why.
