@@ -73,6 +73,24 @@ TEST(MeasuredFrame, APostOutOfPlumbKeepsItsAxes) {
   EXPECT_LT(farthest, 0.1);
 }
 
+// Of a frame with a member that is all but missing, tolerances are read beside the frame it was made of as by the
+// analysis of each.
+TEST(MeasuredFrame, ToleranceBesideAMissingMember) {
+  const Subject s = built_in("truss-45");
+  const Measurements data = subject::frame_campaign("paper", *s.frame(), 1);
+  frame::FrameDescription without = *s.frame();
+  without.members.front().second.factor = 1e-9;
+  const Subject granted(without);
+  const auto drawn = s.stand(data);
+  const auto near = granted.stand(data, drawn.get()), alone = granted.stand(data);
+  const auto quick = near->deviations(data), whole = alone->deviations(data);
+  for (const std::size_t k : {0, 40, 90}) {
+    const std::vector<VectorX> a = quick->with(k)->predict(data, {}), b = whole->with(k)->predict(data, {});
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LE((a[i] - b[i]).norm(), 1e-9 * b[i].norm()) << k << " " << i;
+  }
+}
+
 // Hooke and Euler–Bernoulli by hand: tip −P L³/3EI with the gain 2, its slope, N, strain M z/EI at a quarter, the
 // clamp's moment with its offset.
 TEST(MeasuredFrame, SensorsReadWhatBeamTheorySays) {
