@@ -5,8 +5,8 @@
 
 namespace deflect::frame {
 
-/// The vector that a zero y_axis stands for: the base z, or the base x where the sine of the angle between the member and
-/// the base z is below 1e-3.
+/// The vector that a zero y_axis stands for: the base z, or the base x where the sine of the angle between the member
+/// and the base z is below 1e-3.
 inline Vector3 implied_y_axis(const Vector3& along) {
   const bool vertical = along.head<2>().norm() < 1e-3 * along.norm();
   return vertical ? Vector3::UnitX() : Vector3::UnitZ();
