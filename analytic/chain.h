@@ -130,6 +130,14 @@ struct Group {
  private:
   struct Straight;
   std::shared_ptr<const Straight> factorised(const ChainConditions&) const;
+  struct NewtonStep {
+    Vector6 moved;              ///< the far body
+    std::vector<Vector6> more;  ///< on each branch
+    double held;                ///< what free deflections would bring, were the far body to stay
+  };
+  /// `size`: of forces, against which contradictions of rigid branches count; grows.
+  NewtonStep newton_step(const Vector6& F, const State&, double least, const ChainConditions&, const Straight* known,
+                         double& size) const;
   double share_of_step(const std::vector<Vector6>& from, const std::vector<Vector6>& step, double least,
                        const ChainConditions&) const;
   void settle(State&, double least, const ChainConditions&, const Straight*) const;

@@ -148,4 +148,20 @@ Matrix6 stiffness(const Flexibility& f, double length, const std::string& name) 
   return finite(resistance(f, length), length, name);
 }
 
+LinearisedBranch::LinearisedBranch(const Flexibility& f, double length) : N(f.N), M(f.N) {
+  if (N.cols() == 0) return;
+  if (f.rooted) {
+    const Principal p = principal(f, length);
+    M = N *= p.V;
+    g = p.g;
+    return;
+  }
+  const Eigen::JacobiSVD<MatrixX> axes(f.N.transpose() * f.C * f.N, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  N *= axes.matrixV();
+  M *= axes.matrixU();
+  g = axes.singularValues();
+  for (Eigen::Index i = 0; i < g.size(); ++i)
+    if (!(g(i) > 1e-14 * g(0))) g(i) = 0;
+}
+
 }  // namespace deflect::analytic

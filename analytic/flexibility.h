@@ -66,4 +66,15 @@ Matrix6 stiffness(const Flexibility&, double length, const std::string& name);
 /// The same from a known Resistance.
 Matrix6 finite(const Resistance&, double length, const std::string& name);
 
+/// A branch linearised about its force, in the principal axes of its compliance (singular values: as printed it need
+/// not be symmetric): it carries N λ more when Mᵀt = g λ + e, t what the far body moves more, e = Mᵀd with d by how
+/// much the branch is ahead of it; M = N but for signs where C is symmetric. A g that is lost in the rounding of the
+/// largest is 0: there the branch is rigid.
+struct LinearisedBranch {
+  LinearisedBranch(const Flexibility&, double length);
+
+  Matrix6X N, M;
+  VectorX g;
+};
+
 }  // namespace deflect::analytic

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 
@@ -20,31 +19,6 @@ Vector6 weighed(const Vector6& F, double length) {
 }
 
 }  // namespace
-
-/// One branch linearised about its force, in the principal axes of its compliance (singular values: as printed it need
-/// not be symmetric): it carries N λ more when Mᵀt = g λ + e, t what the far body moves more, e = Mᵀd with d by how
-/// much the branch is ahead of it; M = N but for signs where C is symmetric. A g that is lost in the rounding of the
-/// largest is 0: there the branch is rigid.
-struct LinearisedBranch {
-  LinearisedBranch(const Flexibility& f, double length) : N(f.N), M(f.N) {
-    if (N.cols() == 0) return;
-    if (f.rooted) {
-      const Principal p = principal(f, length);
-      M = N *= p.V;
-      g = p.g;
-      return;
-    }
-    const Eigen::JacobiSVD<MatrixX> principal(f.N.transpose() * f.C * f.N, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    N *= principal.matrixV();
-    M *= principal.matrixU();
-    g = principal.singularValues();
-    for (Eigen::Index i = 0; i < g.size(); ++i)
-      if (!(g(i) > 1e-14 * g(0))) g(i) = 0;
-  }
-
-  Matrix6X N, M;
-  VectorX g;
-};
 
 /// Branches side by side: Σ N_i λ_i = F, M_iᵀt = g_i λ_i + e_i, with t = c R y. What yields is eliminated,
 /// λ = (mᵀt − e)/g; what hardly yields, or not at all, stays as an unknown force μ along B = RᵀN, with A = RᵀM, so that
@@ -248,6 +222,34 @@ std::shared_ptr<const Group::Straight> Group::factorised(const ChainConditions& 
   return straight_;
 }
 
+Group::NewtonStep Group::newton_step(const Vector6& F, const State& s, double least, const ChainConditions& c,
+                                     const Straight* known, double& size) const {
+  Vector6 missing = F;
+  std::vector<VectorX> e(branches.size());
+  std::vector<LinearisedBranch> linearised;
+  NewtonStep step{Vector6::Zero(), std::vector<Vector6>(branches.size()), 0};
+  for (std::size_t i = 0; i < branches.size(); ++i) {
+    Vector6 ahead = -s.t;
+    if (known) {
+      ahead += branches[i].deflection(s.wrenches[i], c);
+    } else {
+      const ChainResponse r = branches[i].respond(s.wrenches[i], least, c);
+      linearised.emplace_back(r.tangent, length);
+      ahead += r.d;
+    }
+    missing -= s.wrenches[i];
+    const LinearisedBranch& b = known ? known->parallel.branches()[i] : linearised.back();
+    e[i] = b.M.transpose() * ahead;
+    for (Eigen::Index j = 0; j < b.g.size(); ++j)
+      if (b.g(j) > 1e-6 * b.g(0)) step.held = std::max(step.held, std::abs(e[i](j)) / b.g(j));
+  }
+  if (known)
+    known->parallel.solve(missing, e, step.moved, step.more, size, name);
+  else
+    BranchesInParallel(std::move(linearised), R).solve(missing, e, step.moved, step.more, size, name);
+  return step;
+}
+
 Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   // A chain alone is asked directly: stiffness is needed to share forces only.
   if (branches.size() == 1) {
@@ -270,39 +272,18 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   const std::shared_ptr<const Straight> known = R.cols() > 0 ? factorised(c) : nullptr;
   while (!s.converged && s.iterations < 100) {
     ++s.iterations;
-    Vector6 missing = F, moved;
-    std::vector<VectorX> e(branches.size());
-    std::vector<LinearisedBranch> linearised;
-    for (std::size_t i = 0; i < branches.size(); ++i) {
-      Vector6 ahead = -s.t;
-      if (known) {
-        ahead += branches[i].deflection(s.wrenches[i], c);
-      } else {
-        const ChainResponse r = branches[i].respond(s.wrenches[i], least, c);
-        linearised.emplace_back(r.tangent, length);
-        ahead += r.d;
-      }
-      missing -= s.wrenches[i];
-      const LinearisedBranch& b = known ? known->parallel.branches()[i] : linearised.back();
-      e[i] = b.M.transpose() * ahead;
-      for (Eigen::Index j = 0; j < b.g.size(); ++j)
-        if (b.g(j) > 1e-6 * b.g(0)) held = std::max(held, std::abs(e[i](j)) / b.g(j));
-    }
-    std::vector<Vector6> more(branches.size());
-    if (known)
-      known->parallel.solve(missing, e, moved, more, size_of_forces, name);
-    else
-      BranchesInParallel(std::move(linearised), R).solve(missing, e, moved, more, size_of_forces, name);
+    const NewtonStep step = newton_step(F, s, least, c, known.get(), size_of_forces);
+    held = std::max(held, step.held);
     const double before = change;
     double largest = 0;
     change = 0;
-    for (const Vector6& each : more) change = std::max(change, weighed(each, length).norm());
+    for (const Vector6& each : step.more) change = std::max(change, weighed(each, length).norm());
     // A contact that a misfit strains may be thrown to and fro across its rest, where it is soft: shorter steps end
     // that.
-    const double part = s.iterations > 5 ? share_of_step(s.wrenches, more, least, c) : 1;
-    s.t += part * moved;
+    const double part = s.iterations > 5 ? share_of_step(s.wrenches, step.more, least, c) : 1;
+    s.t += part * step.moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
-      s.wrenches[i] += part * more[i];
+      s.wrenches[i] += part * step.more[i];
       largest = std::max(largest, weighed(s.wrenches[i], length).norm());
     }
     least = 1e-13 * std::max(load, largest);

@@ -44,7 +44,7 @@ struct Diagnosis {
   double probability_nothing = 0, probability_unknown = 0;
   /// Of the first, the part of machines whose tolerances are larger than declared (larger_tolerances.h).
   double probability_larger_tolerances = 0;
-  double larger_tolerances = 1;  ///< how large they would be, times those declared
+  double larger_tolerances = 1;       ///< how large they would be, times those declared
   double chance = 1;                  ///< that some effect looks as good where nothing is missing
   int bootstrap_sets = 0;             ///< simulated data sets that `chance` is computed from
   std::vector<Candidate> candidates;  ///< of the first step, best first
