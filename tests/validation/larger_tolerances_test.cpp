@@ -1,6 +1,7 @@
 // Larger tolerances as a rival of missing effects: what they say of a frame as declared and of one built worse.
 #include "validation/diagnosis/larger_tolerances.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "tests/support/effects.h"
 #include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/report/verdict_words.h"
 #include "validation/subject/simulate_frame.h"
 
 namespace deflect {
@@ -25,7 +27,8 @@ measurement::Measurements built_with(double tolerances, std::uint64_t seed) {
   prediction::SimulationOptions o;
   o.tolerances = tolerances;
   o.seed = seed;
-  const frame::FrameDescription& f = *truss().frame();
+  frame::FrameDescription f = *truss().frame();
+  f.geometry = Geometry::finite;  // not the one that the diagnosis uses
   return subject::simulate_frame(f, subject::frame_campaign("random", f, seed), o);
 }
 
@@ -40,6 +43,18 @@ TEST(LargerTolerances, AreSeenWhereTheyAre) {
     EXPECT_NEAR(larger.scale, 2, 0.7) << seed;
     EXPECT_LT(diagnosis::larger_tolerances(diagnosis::Observations(truss(), once, {})).log_odds, std::log(0.2)) << seed;
   }
+}
+
+// Before they were a rival of effects this set was called a modulus.
+TEST(LargerTolerances, AreToldInPlaceOfAnEffect) {
+  const diagnosis::Diagnosis d = diagnosis::diagnose(truss(), built_with(2, 2), test::all_effects(), {{}, 199});
+  EXPECT_EQ(d.verdict, diagnosis::Verdict::nothing_missing);
+  EXPECT_GT(d.probability_larger_tolerances, 0.5);
+  EXPECT_LE(d.probability_larger_tolerances, d.probability_nothing);
+  EXPECT_EQ(d.tolerance_scale, 1) << "they do not count as larger";
+  const std::string said = report::verdict_words(d);
+  EXPECT_NE(said.find(fmt::format("{:.1f} times as far as the tolerances", d.larger_tolerances)), std::string::npos)
+      << said;
 }
 
 }  // namespace

@@ -53,8 +53,8 @@ Subject built_in(const std::string& name) {
   return frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" / (name + ".yaml"));
 }
 
-// A post of 1 m that leans by 5 mm is out of plumb by more than the 1e-3 up to which the base x is implied for its
-// y_axis; its gauge stays where it was glued.
+// A post of 1.5 m whose node is 5 mm off is out of plumb by more than the 1e-3 up to which the base x is implied for
+// its y_axis; its gauge stays where it was glued.
 TEST(MeasuredFrame, APostOutOfPlumbKeepsItsAxes) {
   const frame::FrameDescription drawn =
       frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames/portal-semi-rigid.yaml");

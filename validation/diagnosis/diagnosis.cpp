@@ -243,7 +243,6 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
                            [&](std::size_t done, std::size_t of) { rounds(done, of); });
   const bool missing = (d.chance < alarm && d.probability_nothing < 0.6) ||
                        (d.probability_unknown > sure && discrepancy.p_value(null.residual) < left_over_p);
-  if (!missing && d.probability_larger_tolerances > 0.5) d.tolerance_scale = d.larger_tolerances;
   const std::vector<Candidate> first = d.candidates;
   sort_candidates(d, o);
 

@@ -165,17 +165,9 @@ std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& d
     if (!d.nearest.empty()) out += fmt::format(" the nearest entry, {}, {:.0f} %", d.nearest, 100 * d.nearest_share);
     out += "\n";
   }
-  if (d.missing.empty() && d.probability_larger_tolerances > 0.5)
-    out += fmt::format(
-        "the machine's tolerances look {:.1f} times as large as declared, which explains these readings"
-        " without any effect (probability {:.2g})\n",
-        d.tolerance_scale, d.probability_larger_tolerances);
-  else if (d.tolerance_scale > 1)
+  if (d.tolerance_scale > 1)
     out += fmt::format("the machine's tolerances look {:.1f} times as large as declared and count so\n",
                        d.tolerance_scale);
-  if (!d.missing.empty() && d.probability_larger_tolerances > 0.01)
-    out += fmt::format("tolerances {:.1f} times as large as declared would explain it too (probability {:.2g})\n",
-                       d.larger_tolerances, d.probability_larger_tolerances);
   if (d.set_aside > 0) out += fmt::format("readings set aside as gross outliers: {}\n", d.set_aside);
   if (!d.strained.empty())
     out += fmt::format("tolerances beyond two standard deviations: {}\n", strained_words(d.strained));

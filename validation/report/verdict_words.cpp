@@ -13,8 +13,9 @@
 namespace deflect::report {
 namespace {
 
-constexpr double like_noise = 1.3;          // χ² per degree of freedom up to which a residual passes for noise
-constexpr double headline_of_outliers = 5;  // % of the readings
+constexpr double like_noise = 1.3;            // χ² per degree of freedom up to which a residual passes for noise
+constexpr double headline_of_outliers = 5;    // % of the readings
+constexpr double likely = 0.5, rival = 0.01;  // probabilities of larger tolerances that are told
 
 /// "2.13 µm rms, 1.02 times what noise and tolerances give (chi2 per degree of freedom)".
 std::string residual_words(double rmse, double chi2_per_dof, measurement::Quantity q) {
@@ -77,6 +78,28 @@ std::string fall_of_error(const diagnosis::Diagnosis& d) {
   return fmt::format("The error does not fall with it: {:.2f} {} rms before, {:.2f} with it.", from, unit, to);
 }
 
+/// Where that is not out of the question: that no effect is needed if parts deviate farther than declared.
+std::string larger_tolerances_words(const diagnosis::Diagnosis& d) {
+  if (d.missing.empty() || !(d.probability_larger_tolerances > rival)) return "";
+  return fmt::format(
+      " Tolerances {:.1f} times as large as declared would explain the readings without it (probability "
+      "{:.2g}).",
+      d.larger_tolerances, d.probability_larger_tolerances);
+}
+
+std::string nothing_missing_words(const diagnosis::Diagnosis& d) {
+  const std::string left = residual_words(d.baseline.rmse, d.baseline.chi2_per_dof, d.quantity) + ".";
+  if (d.probability_larger_tolerances > likely)
+    return fmt::format(
+        "No effect is called for: the readings are those of parts that deviate {:.1f} times as far as "
+        "the tolerances declare (probability {:.2g}). What is left is {}",
+        d.larger_tolerances, d.probability_larger_tolerances, left);
+  return (passes_for_noise(d.baseline.chi2_per_dof)
+              ? "Nothing is missing that these data can show: what is left is "
+              : "No effect is called for, but noise and tolerances do not explain all: what is left is ") +
+         left;
+}
+
 }  // namespace
 
 std::string outlier_words(std::size_t set_aside, std::size_t readings) {
@@ -124,19 +147,17 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
   const std::string names = joined_titles(d.missing, titled_with_id);
   switch (d.verdict) {
     case diagnosis::Verdict::nothing_missing:
-      return outliers +
-             (passes_for_noise(d.baseline.chi2_per_dof)
-                  ? "Nothing is missing that these data can show: what is left is "
-                  : "No effect is called for, but noise and tolerances do not explain all: what is left is ") +
-             residual_words(d.baseline.rmse, d.baseline.chi2_per_dof, d.quantity) + ".";
+      return outliers + nothing_missing_words(d);
     case diagnosis::Verdict::effect:
-      return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d));
+      return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d)) + larger_tolerances_words(d);
     case diagnosis::Verdict::ambiguous: {
       std::string group;
       for (const std::vector<std::string>& g : d.indistinguishable)
         group += fmt::format("{}{}", group.empty() ? "" : "; and ", fmt::join(g, " or "));
-      return outliers + fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}. {}", group,
-                                    names, fall_of_error(d));
+      return outliers +
+             fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}. {}", group, names,
+                         fall_of_error(d)) +
+             larger_tolerances_words(d);
     }
     case diagnosis::Verdict::unknown_effect:
       return outliers +
