@@ -26,7 +26,7 @@ using namespace parallel;
 
 constexpr const char* usage = R"(benchmark_diagnosis [options]
   --devices A,B  machines and frames with sensors: entries and laws at places hidden alike, one row each; 'all' for
-                 every built-in one. --sets N is then of each (default 24); --json FILE is written anew after each
+                 all of them. --sets N is then of each (default 24); --json FILE is written anew after each
   --group NAME   one group of sets: {}
   --sets N       about N sets, every group thinned alike (default: all)
   --seed N       of everything drawn by lot (default 1)

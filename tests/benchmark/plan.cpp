@@ -84,8 +84,13 @@ VectorX numbers_of(const Measurements& data) {
 }  // namespace
 
 Measurements simulated(const subject::Subject& s, const Measurements& plan, const SimulationOptions& o) {
-  if (s.machine()) return simulate(*s.machine(), plan, o, alone);
-  return subject::simulate_frame(*s.frame(), plan, o);
+  if (!s.machine()) return subject::simulate_frame(*s.frame(), plan, o);
+  Measurements out = simulate(*s.machine(), plan, o, alone);
+  const bool record = !measured_values(plan).empty();
+  for (std::size_t i = 0; record && i < out.readings.size(); ++i)
+    for (std::size_t k = 0; k < 6; ++k)
+      if (!plan.readings[i].displacement[k]) out.readings[i].displacement[k].reset();
+  return out;
 }
 
 Plan::Plan(const subject::Subject& s, const std::vector<Effect>& effects, const std::string& name, std::uint64_t seed,
@@ -95,13 +100,18 @@ Plan::Plan(const subject::Subject& s, const std::vector<Effect>& effects, const 
   if (o.temperature) simulation.temperature = 22, simulation.swing = 2;
   const Mechanism* m = s.machine();
   if (m) simulation.division = frame::equal_division(configure(*m, home_pose(*m)), elements);
-  readings = m ? campaign(name, *m, force, seed) : subject::frame_campaign(name, *s.frame(), seed);
+  if (o.record) {
+    readings = *o.record;
+    simulation.sigma_th = readings.readings.front().sigma_th;
+  } else {
+    readings = m ? campaign(name, *m, force, seed) : subject::frame_campaign(name, *s.frame(), seed);
+  }
   healthy = simulated(s, readings, simulation);
   observations = std::make_unique<Observations>(s, healthy, ComparisonOptions(), alone);
   signatures = diagnosis::signatures(*observations, effects, 1);
   const VectorX rest = observations->residual(s);
   nominal = numbers_of(healthy) - rest;
-  if (!m) return;
+  if (!m || o.record) return;
   elsewhere = new_poses(*m, seed + 1);
   nominal_elsewhere = predict_elsewhere(*this, *m, theory("analytic"));
   if (!o.changes) return;
@@ -138,7 +148,7 @@ const Plan& Plans::at(const std::string& campaign, int variant) {
   Slot& slot = slots_[at * variants + static_cast<std::size_t>(variant)];
   std::call_once(slot.once, [&] {
     slot.plan = std::make_unique<Plan>(device_, effects_, campaign, seed_ + 1000 * (at + 1) + 10 * variant,
-                                       PlanOptions{sigma_u, variant % 2 == 1, true});
+                                       PlanOptions{sigma_u, nullptr, variant % 2 == 1, true});
   });
   return *slot.plan;
 }

@@ -26,7 +26,10 @@ struct Change {
 };
 
 struct PlanOptions {
-  double sigma = sigma_u;    ///< m: of a machine's reading
+  double sigma = sigma_u;  ///< m: of a machine's reading
+  /// A record of a machine whose poses, loads, σ and filled cells are the plan, in place of a campaign; there are no
+  /// new poses then.
+  const measurement::Measurements* record = nullptr;
   bool temperature = false;  ///< is recorded
   bool changes = true;       ///< `changes` is wanted: for the other methods
 };
@@ -55,7 +58,7 @@ struct Plan {
 };
 
 /// The plan's readings as taken from a subject; of a machine by the MSA in the deformed shape, of a frame by the MSA in
-/// the geometry that it names.
+/// the geometry that it names. Of a record that is the plan the same cells are filled.
 measurement::Measurements simulated(const subject::Subject&, const measurement::Measurements& plan,
                                     const prediction::SimulationOptions&);
 

@@ -16,6 +16,7 @@
 #include "tests/benchmark/as_measured.h"
 #include "tests/benchmark/hidden.h"
 #include "tests/benchmark/oracle.h"
+#include "tests/benchmark/random_arm.h"
 #include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/interval.h"
@@ -37,6 +38,11 @@ constexpr double separable = 9;  // difference of 2 ln L
 constexpr const char* of_machines[] = {"rich", "random"};
 constexpr const char* of_frames[] = {"rich", "cycle"};
 const std::string data_folder = test::source_dir() + "/validation";
+/// A gear unit whose output is locked, loaded by its own motor: measured as two of its records were.
+const std::string actuator = "cycloidal-actuator", of_actuator = data_folder + "/measurements/cycloid/";
+constexpr const char* records[] = {"baseline_play_initial.csv", "conic_disk_play_initial.csv"};
+/// Arms by the dice, by seed.
+constexpr std::pair<const char*, std::uint64_t> arms[] = {{"random-arm-1", 1}, {"random-arm-2", 2}};
 
 struct Order {
   SetKind kind;
@@ -80,10 +86,18 @@ class Examined {
     effects_ = catalogue(data_folder + "/effects/catalogue");
     for (effects::Effect& e : place_effects(subject_, effects_)) effects_.push_back(std::move(e));
     PlanOptions o;
-    if (subject_.machine()) o.sigma = sigma_for(subject_);
     o.changes = false;
-    for (const char* campaign : subject_.machine() ? of_machines : of_frames)
-      plans_.push_back(std::make_unique<Plan>(subject_, effects_, campaign, seed, o));
+    if (subject_.name() == actuator) {
+      for (const char* name : records) {
+        const Measurements record = read_measurements(of_actuator + name);
+        o.record = &record;
+        plans_.push_back(std::make_unique<Plan>(subject_, effects_, name, seed, o));
+      }
+    } else {
+      if (subject_.machine()) o.sigma = sigma_for(subject_);
+      for (const char* campaign : subject_.machine() ? of_machines : of_frames)
+        plans_.push_back(std::make_unique<Plan>(subject_, effects_, campaign, seed, o));
+    }
     for (const auto& plan : plans_) oracles_.emplace_back(*plan, 0.25, 0.5, seed, threads);
   }
 
@@ -142,7 +156,8 @@ class Examined {
     }
     count_intervals(d, hidden, out);
     if (!gone.empty()) count_places(d, hidden.front(), out);
-    if (out.kind == SetKind::one && out.lambda > 7 && subject_.machine()) predict_new_poses(d, plan, truth, out);
+    if (out.kind == SetKind::one && out.lambda > 7 && plan.nominal_elsewhere.size() > 0)
+      predict_new_poses(d, plan, truth, out);
   }
 
   static void ask(const Oracle& oracle, const Plan& plan, const Measurements& data, SubjectSet& out) {
@@ -258,6 +273,9 @@ subject::Subject built_in(const std::string& name, bool frame) {
     f.geometry = Geometry::finite;
     return f;
   }
+  for (const auto& [arm, seed] : arms)
+    if (name == arm) return random_arm(seed);
+  if (name == actuator) return read_mechanism(of_actuator + "actuator.yaml");
   return read_mechanism(data_folder + "/devices/" + name + ".yaml");
 }
 
@@ -268,6 +286,8 @@ std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked,
                                           const std::function<void(const std::vector<SubjectRow>&)>& done) {
   const std::vector<std::string> frames = measured_frames();
   std::vector<std::string> known = files_in("/devices"), names = asked;
+  known.push_back(actuator);
+  for (const auto& [arm, own_seed] : arms) known.emplace_back(arm);
   known.insert(known.end(), frames.begin(), frames.end());
   if (names == std::vector<std::string>{"all"}) names = known;
   for (const std::string& name : names)
@@ -277,12 +297,14 @@ std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked,
   std::vector<SubjectRow> out;
   for (const std::string& name : names) {
     const bool frame = holds(frames, name);
+    // A subject's sets are the same whatever others are asked for.
+    const auto place = static_cast<std::size_t>(std::find(known.begin(), known.end(), name) - known.begin());
     const Examined examined(built_in(name, frame), seed, threads);
     SubjectRow row{name, frame, examined.candidates(), std::vector<SubjectSet>(sets)};
     parallel::for_each_case(sets, 1, threads, [&](std::size_t k) {
       try {
-        const std::size_t first = out.size() % 2 * std::size(turns) / 2;  // few sets of each are all kinds of set
-        row.sets[k] = examined.diagnosed(first + k, seed + 1000 * k + 100000 * out.size());
+        const std::size_t first = place % 2 * std::size(turns) / 2;  // few sets of each are all kinds of set
+        row.sets[k] = examined.diagnosed(first + k, seed + 1000 * k + 100000 * place);
       } catch (const std::runtime_error& e) {
         row.sets[k].skipped = e.what();
       }

@@ -1,6 +1,9 @@
 // How well each machine and each frame is diagnosed: the same questions to all of them, entries and laws at places
 // hidden alike.
 //
+// Beside the built-in ones stand the actuator of validation/measurements/cycloid, read as its records are, and two arms
+// by the dice (random_arm.h).
+//
 // A set is measured on a subject within its tolerances. Of a machine: by the MSA in the deformed shape, σ of a reading
 // a fiftieth of the rms displacement; the diagnosis uses the closed form. Of a frame, for which there is no other
 // theory: by the MSA with 'geometry: finite' (corotational elements), the effect in it, with the σ of its own sensors;
@@ -61,9 +64,9 @@ struct SubjectRow {
   std::vector<SubjectSet> sets;
 };
 
-/// Of the built-in machines and frames of those names ("all": every machine and the frames with sensors), so many sets
-/// each; in parallel, the same for any number of threads. `done` is called with what there is after each subject.
-/// InputError on an unknown name.
+/// Of the machines and frames of those names ("all": every machine and the frames with sensors), so many sets each; in
+/// parallel, the same for any number of threads. `done` is called with what there is after each subject. InputError on
+/// an unknown name.
 std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& names, std::size_t sets, std::uint64_t seed,
                                           int threads,
                                           const std::function<void(const std::vector<SubjectRow>&)>& done = {});
