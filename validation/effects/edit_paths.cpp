@@ -18,6 +18,7 @@
 #include "msa/mechanism/mechanism_tree.h"
 #include "msa/mechanism/place.h"
 #include "validation/subject/machine_places.h"
+#include "validation/subject/part_roles.h"
 
 namespace deflect::effects {
 namespace {
@@ -89,27 +90,41 @@ std::vector<std::string> moduli(const std::string& path, const Description& m) {
 /// "leg.…", as the reader has seen to, in one leg.
 std::string in_leg(const std::string& path, int leg) { return fmt::format("leg[{}]{}", leg, path.substr(3)); }
 
+/// Of a bar: its beginning, x along it.
+std::vector<std::string> bars(const Mechanism& m) {
+  std::vector<std::string> out;
+  for (const subject::Place& p : subject::places_of(m))
+    if (p.kind == subject::PlaceKind::line) out.push_back(p.path);
+  return out;
+}
+
+std::vector<std::string> sections_of_guides(const Mechanism& m) {
+  std::vector<std::string> out;
+  for (const std::string& name : subject::guided_sections(m)) out.push_back("sections." + name);
+  return out;
+}
+
 /// Parts by what they are for, not by their names.
 struct Role {
   std::string_view selector;
-  bool (*is)(const subject::Place&);
+  std::vector<std::string> (*parts)(const Mechanism&);
   const char* none;
 };
 constexpr Role roles[] = {
-    {"leg.<line>", [](const subject::Place& p) { return p.kind == subject::PlaceKind::line; },
-     "no bar carries a force along itself alone"},
-    {"leg.<guide>",
-     [](const subject::Place& p) { return p.kind == subject::PlaceKind::clamp && p.freedoms.size() == 2 && p.slides; },
-     "no slide that is driven holds a member"},
+    {"leg.<line>", bars, "no bar carries a force along itself alone"},
+    {"leg.<pivot>", subject::pivots_of_bars, "no bar begins at a pivot with axes along it"},
+    {"leg.<guide>", subject::guides, "no slide that is driven holds a member"},
+    {"leg.<guided>", subject::guided_members, "no slide that is driven holds a member"},
+    {"leg.<carriage>", subject::carriages, "no fixed joint stands at the tip of a member that a driven slide holds"},
+    {"leg.<seat>", subject::seats, "no leg ends in a fixed joint with the axes of the platform"},
+    {"sections.<guided>", sections_of_guides, "no slide that is driven holds a member"},
 };
 
 std::vector<std::string> of_role(const Role& role, const std::string& rest, const Mechanism& m,
                                  std::optional<int> leg) {
   std::vector<std::string> out;
-  for (const subject::Place& p : subject::places_of(m)) {
-    if (!role.is(p) || (leg && !p.in_legs()) || (p.rotation() && p.freedoms.front() != 3)) continue;
-    out.push_back((leg ? in_leg(p.path, *leg) : p.path) + rest);
-  }
+  for (const std::string& path : role.parts(m))
+    if (!leg || path.starts_with("leg.")) out.push_back((leg ? in_leg(path, *leg) : path) + rest);
   if (out.empty()) throw InputError(fmt::format("{}{}: {}", role.selector, rest, role.none));
   return out;
 }

@@ -34,7 +34,11 @@ struct EffectParameter {
 /// device has is taken. They are paths as edited() takes them, or contain selectors:
 ///   leg.<actuated>  every part with a driven freedom (in the legs, in separate mounts, in branches);
 ///   leg.<line>      the start of every bar that can carry only a force along itself, x along it;
+///   leg.<pivot>     the joint at which such a bar begins, z along it, in families with named axes;
 ///   leg.<guide>     every driven slide that holds a member;
+///   leg.<guided>, sections.<guided>  that member, its section;
+///   leg.<carriage>  a fixed joint at that member's tip;
+///   leg.<seat>      a fixed joint at the end of a leg in the axes of the platform;
 ///   …<motion>       after leg.<actuated>: each of its driven freedoms;
 ///   …<slide>        those along an axis;
 ///   …<turn>         those about an axis;

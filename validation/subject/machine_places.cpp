@@ -11,23 +11,10 @@
 #include "msa/mechanism/mechanism_tree.h"
 #include "msa/mechanism/place.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/subject/part_roles.h"
 
 namespace deflect::subject {
 namespace {
-
-/// A joint beside which nothing moves along: a pivot, with so many free turns.
-std::optional<int> free_turns(const Part& part) {
-  const auto* joint = std::get_if<Joint>(&part);
-  if (!joint) return std::nullopt;
-  const std::array<Freedom, 6> f = freedoms_of(*joint);
-  int turns = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    const bool held = !joint->laws[i].empty();
-    if (f[i] == Freedom::free && !held && i < 3) return std::nullopt;
-    if (f[i] == Freedom::free && !held) ++turns;
-  }
-  return turns;
-}
 
 class Places {
  public:
@@ -46,7 +33,7 @@ class Places {
         all.push_back({PlaceKind::member, {}, id, here});
         if (!before || !std::holds_alternative<Joint>(*before)) end(PlaceKind::clamp, here + ".start", id + ".start");
         if (!after || !std::holds_alternative<Joint>(*after)) end(PlaceKind::member_end, here + ".end", id + ".end");
-        if (in_line(parts, i)) all.push_back({PlaceKind::line, {}, id + ".start", here + ".start", {0}});
+        if (is_bar(parts, i)) all.push_back({PlaceKind::line, {}, id + ".start", here + ".start", {0}});
         for (std::size_t k = first; k < all.size(); ++k) all[k].make = std::get<Member>(part).section;
       } else if (const auto* group = std::get_if<Parallel>(&part)) {
         branches(*group, here, id);
@@ -101,21 +88,6 @@ class Places {
     Place both = a;
     both.freedoms.push_back(b.freedoms.front());
     all.push_back(std::move(both));
-  }
-
-  /// Between two pivots that leave it no more than one turn, about itself.
-  static bool in_line(const Named<Part>& parts, std::size_t member) {
-    const auto turns_from = [&](std::ptrdiff_t step) {
-      for (std::ptrdiff_t i = as_index(member) + step; 0 <= i && i < std::ssize(parts); i += step) {
-        const Part& part = nth(parts, i).second;
-        if (std::holds_alternative<Parallel>(part)) return 0;
-        const std::optional<int> turns = free_turns(part);
-        if (std::holds_alternative<Joint>(part) && !turns) return 0;
-        if (turns && *turns > 0) return *turns;
-      }
-      return 0;
-    };
-    return turns_from(-1) + turns_from(1) >= 5;
   }
 };
 
