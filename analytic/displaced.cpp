@@ -30,13 +30,33 @@ AnalyticModel::Between AnalyticModel::between(const Imposed& imposed) const {
   return out;
 }
 
+/// Whether these are the forces with the laws at these offsets: that the rest of the mechanism is linear.
+bool AnalyticModel::agrees(const Vector6& F, double warmer, const VectorX& offsets, const SteppedForces& told) const {
+  ChainConditions under;
+  under.warmer = warmer;
+  std::vector<Step> steps;
+  for (Eigen::Index i = 0; i < offsets.size(); ++i) steps.push_back({offsets(i), between_->known.c(i), false});
+  const SteppedForces found = under_steps(F, under, steps, told.largest);
+  constexpr double alike = 1e-8;
+  return found.converged &&
+         (found.forces - told.forces).norm() <= alike * std::max(found.largest, told.forces.norm()) &&
+         (found.displacement - told.displacement).norm() <= alike * found.displacement.norm();
+}
+
 AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
   const bool straight =
       conditions.geometry == Geometry::linear && as_printed_.empty() && legs_.fits() && !stepped_.empty() && !lines_;
-  if (!straight || !imposed_ || imposed_->S.size() == 0 ||
+  if (!straight || (imposed_ && imposed_->S.size() == 0) ||
       (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_))
     return solve(F, conditions);
-  if (!between_) between_ = std::make_shared<Between>(between(*imposed_));
+  refuse_motions(F + weight_);
+  if (!imposed_) {
+    ChainConditions under;
+    imposed_ = std::make_shared<Imposed>(imposed_on(
+        stepped_, [&](const std::vector<Step>& steps) { return under_steps(Vector6::Zero(), under, steps, 0); }));
+  }
+  const bool first = !between_;
+  if (first) between_ = std::make_shared<Between>(between(*imposed_));
   Between& b = *between_;
   const double length = legs_.length;
   const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
@@ -65,13 +85,24 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
     if (frictions_ > 0) b.same.remember(held.forces, conditions.slips, searched);
     return searched;
   }();
+  const VectorX offsets = found.offsets.size() > 0 ? found.offsets : VectorX::Zero(known.c.size());
+  const Vector6 displacement = held.displacement + known.T * offsets;
+  if (first) {
+    SteppedForces told = held;
+    told.forces -= known.S * offsets;
+    told.displacement = displacement;
+    if (!found.converged || !agrees(F + weight_, conditions.warmer, offsets, told)) {
+      imposed_ = std::make_shared<Imposed>();  // what offsets do depends on the load
+      between_.reset();
+      return solve(F, conditions);
+    }
+  }
   AnalyticSolution s;
   s.converged = found.converged;
   s.message = found.reason;
   s.slips = found.slips;
   s.load = F;
-  s.displacement = held.displacement;
-  if (found.offsets.size() > 0) s.displacement += known.T * found.offsets;
+  s.displacement = displacement;
   return s;
 }
 

@@ -120,12 +120,31 @@ AnalyticSolution AnalyticModel::solution(const Group::State& state, const Vector
   return s;
 }
 
-AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& conditions) const {
+void AnalyticModel::refuse_motions(const Vector6& F) const {
   refuse_motion(through_.J_q, through_.length);
   // Where an erratum takes away the moments' arms, the smallest displacement answers loads that drive no free motion.
   const bool driven =
       (legs_.J.transpose() * F).norm() > 1e-9 * (F.head<3>().norm() + F.tail<3>().norm() / legs_.length);
   if (driven || !as_printed_.count(Erratum::tcp_transfer)) refuse_motion(legs_.J, legs_.length);
+}
+
+SteppedForces AnalyticModel::under_steps(const Vector6& F, ChainConditions& under, const std::vector<Step>& steps,
+                                         double held) const {
+  under.steps = steps;
+  const AnalyticSolution s = equilibrium_under(F, under);
+  const double length = legs_.length;
+  const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
+  SteppedForces out{VectorX::Zero(std::ssize(stepped_)), s.displacement, std::max(size(F), held), length, s.converged};
+  for (std::size_t i = 0; i < s.leg_wrenches.size(); ++i) {
+    legs_.branches[i].add_step_forces(s.leg_wrenches[i], under, out.forces);
+    out.largest = std::max(out.largest, size(s.leg_wrenches[i]));
+  }
+  through_.add_step_forces(F, under, out.forces);
+  return out;
+}
+
+AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& conditions) const {
+  refuse_motions(F);
   ChainConditions under = as_printed_;
   under.warmer = conditions.warmer;
   if (conditions.geometry != Geometry::linear && !(F.isZero(0) && legs_.fits()))
@@ -138,24 +157,10 @@ AnalyticSolution AnalyticModel::equilibrium(const Vector6& F, const Conditions& 
       s.slips = found->slips;
       return s;
     }
-  const double length = legs_.length;
-  const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
   const double held = held_without_load(conditions);
   if (!imposed_) imposed_ = std::make_shared<Imposed>();
   const BalancedSteps found = balance(
-      stepped_, conditions.slips,
-      [&](const std::vector<Step>& steps) {
-        under.steps = steps;
-        const AnalyticSolution s = equilibrium_under(F, under);
-        const auto n = std::ssize(stepped_);
-        SteppedForces out{VectorX::Zero(n), s.displacement, std::max(size(F), held), length, s.converged};
-        for (std::size_t i = 0; i < s.leg_wrenches.size(); ++i) {
-          legs_.branches[i].add_step_forces(s.leg_wrenches[i], under, out.forces);
-          out.largest = std::max(out.largest, size(s.leg_wrenches[i]));
-        }
-        through_.add_step_forces(F, under, out.forces);
-        return out;
-      },
+      stepped_, conditions.slips, [&](const std::vector<Step>& steps) { return under_steps(F, under, steps, held); },
       *imposed_);
   under.steps = found.steps;
   AnalyticSolution s = equilibrium_under(F, under);

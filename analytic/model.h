@@ -101,6 +101,9 @@ class AnalyticModel {
 
  private:
   AnalyticSolution equilibrium(const Vector6& F, const Conditions&) const;
+  void refuse_motions(const Vector6& F) const;
+  /// With the laws held in these steps; `held`: a force whose rounding is nothing.
+  SteppedForces under_steps(const Vector6& F, ChainConditions&, const std::vector<Step>&, double held) const;
   AnalyticSolution equilibrium_under(const Vector6& F, const ChainConditions&) const;
   AnalyticSolution solution(const Group::State&, const Vector6& F, const ChainConditions&) const;
   AnalyticSolution deformed_equilibrium(const Vector6& F, Geometry) const;
@@ -129,6 +132,7 @@ class AnalyticModel {
     SamePhases same;                 ///< as the last load left the laws
   };
   Between between(const Imposed&) const;
+  bool agrees(const Vector6& driving, double warmer, const VectorX& offsets, const SteppedForces&) const;
   /// Where heat or misfits are all that drives it, forces that should vanish are the rounding of this force.
   double held_without_load(const Conditions& c) const {
     return 1e-3 * (heat_force_ * std::abs(c.warmer) + misfit_force_);

@@ -148,6 +148,12 @@ class Balance {
     }
   }
 
+  /// The compliances and what offsets do.
+  void impose() {
+    stiff();
+    linearise(VectorX::Zero(n_), answer(VectorX::Zero(n_)), 1e3);
+  }
+
   BalancedSteps search() {
     if (imposed_.c.size() == 0) stiff();
     SteppedForces at = answer(VectorX::Zero(n_));
@@ -390,6 +396,12 @@ double SteppedLaw::stored_energy(double f, const Step& s) const {
   const auto* l = std::get_if<OneSidedLaw>(&law);
   const auto stored = [&](double force) { return l ? compliance(*l, force) * force * force / 2 : 0; };
   return stored(own) - stored(preload) - preload * d;
+}
+
+Imposed imposed_on(const std::vector<SteppedLaw>& laws, const AskSteps& ask) {
+  Imposed out;
+  Balance(laws, {}, ask, out, false).impose();
+  return out;
 }
 
 BalancedSteps balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask,

@@ -84,4 +84,8 @@ struct BalancedSteps {
 BalancedSteps balance(const std::vector<SteppedLaw>&, const std::vector<double>& slips, const AskSteps&,
                       Imposed& imposed, bool extent = true);
 
+/// What balance() computes where `imposed` is empty: compliances and the response to offsets, of a mechanism without
+/// load. Right for all loads where all that does not jump is linear.
+Imposed imposed_on(const std::vector<SteppedLaw>&, const AskSteps&);
+
 }  // namespace deflect::analytic

@@ -66,7 +66,8 @@ std::vector<double> shared_priors(const std::vector<Signature>& all, const std::
 
 /// What is sure to be less likely than the best by this logarithm is not fitted.
 constexpr double far_behind = 6;
-/// Fits that are begun together. The next ones are compared with the best of these; the number does not depend on the
+/// Fits that are begun together: first one, then twice as many each time, up to this. The next ones are compared with
+/// the best of these, so that one that explains nearly all spares most others. The numbers do not depend on the
 /// threads, so that the answer does not.
 constexpr std::size_t at_once = 8;
 
@@ -82,8 +83,9 @@ constexpr double certain = 1e9;
 template <class FitOne>
 double fit_in_turn(std::vector<Promise> all, double bar, int threads, const FitOne& fit_one) {
   std::stable_sort(all.begin(), all.end(), [](const Promise& a, const Promise& b) { return a.most > b.most; });
-  for (std::size_t from = 0; from < all.size() && all[from].most > bar; from += at_once) {
-    const std::size_t count = std::min(at_once, all.size() - from);
+  std::size_t count = 0;
+  for (std::size_t from = 0; from < all.size() && all[from].most > bar; from += count) {
+    count = std::min({std::max<std::size_t>(1, 2 * count), at_once, all.size() - from});
     // Where few are fitted, one with many starts would keep one thread busy long after the others.
     const int within = count < at_once ? threads : 1;
     std::vector<double> found(count, out_of_question);

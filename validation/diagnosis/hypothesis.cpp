@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -38,7 +38,7 @@ std::vector<VectorX> starts(const effects::PlacedEffect& e) {
       for (int k = 0; k < count; ++k) tries.push_back(std::exp(low + (high - low) * (k + 0.5) / count));
       tries.push_back(p.start);
     } else
-      tries = {p.start, p.low + 0.9 * (p.high - p.low), p.low + 0.1 * (p.high - p.low)};
+      tries = {p.start};  // others: elsewhere()
     std::vector<VectorX> more;
     for (const VectorX& begun : out)
       for (const double value : tries) {
@@ -46,6 +46,20 @@ std::vector<VectorX> starts(const effects::PlacedEffect& e) {
         more.back()(as_index(i)) = value;
       }
     out = std::move(more);
+  }
+  return out;
+}
+
+/// The same start with each state that nothing fixes (how friction began) far up and far down its range.
+std::vector<VectorX> elsewhere(const effects::PlacedEffect& e, const VectorX& start) {
+  std::vector<VectorX> out;
+  for (std::size_t i = 0; i < e.effect->parameters.size(); ++i) {
+    const effects::EffectParameter& p = e.effect->parameters[i];
+    if (p.log || (p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high)) continue;
+    for (const double share : {0.9, 0.1}) {
+      out.push_back(start);
+      out.back()(as_index(i)) = p.low + share * (p.high - p.low);
+    }
   }
   return out;
 }
@@ -99,6 +113,17 @@ std::optional<VectorX> off_the_ends(const FitProblem& problem, const VectorX& fr
   return out;
 }
 
+/// χ² at each; those that cannot be predicted are left out. `why`: what the first of these met with.
+void look_at(std::vector<Start>& all, const FitProblem& problem, std::string& why, int threads) {
+  std::vector<std::string> reasons(all.size());
+  parallel::for_each_case(all.size(), 1, threads, [&](std::size_t i) {
+    if (const auto r = problem.residual(all[i].x, &reasons[i])) all[i].chi2 = r->squaredNorm();
+  });
+  const auto first = std::find_if(reasons.begin(), reasons.end(), [](const std::string& r) { return !r.empty(); });
+  if (first != reasons.end() && why.empty()) why = *first;
+  deepest_first(all);
+}
+
 /// The best of the last effect's values, behind those of the effects before; so many at most, the best first.
 /// `why`: what the first that cannot be predicted met with.
 std::vector<Start> best_starts(const FitProblem& problem, const std::vector<VectorX>& tails, const VectorX& from,
@@ -112,15 +137,30 @@ std::vector<Start> best_starts(const FitProblem& problem, const std::vector<Vect
       values << head, tail;
       all.push_back({problem.coordinates(values)});
     }
-  std::vector<std::string> reasons(all.size());
-  parallel::for_each_case(all.size(), 1, threads, [&](std::size_t i) {
-    if (const auto r = problem.residual(all[i].x, &reasons[i])) all[i].chi2 = r->squaredNorm();
-  });
-  const auto first = std::find_if(reasons.begin(), reasons.end(), [](const std::string& r) { return !r.empty(); });
-  if (first != reasons.end() && why.empty()) why = *first;
-  deepest_first(all);
+  look_at(all, problem, why, threads);
   if (all.size() > count) all.resize(count);
   return all;
+}
+
+/// As many starts, the best of these and of the same with other states at the beginning of this effect, whose values
+/// begin at `first`.
+void look_elsewhere(std::vector<Start>& begun, const FitProblem& problem, const effects::PlacedEffect& e,
+                    Eigen::Index first, int threads) {
+  const std::size_t count = begun.size();
+  const auto own = std::ssize(e.effect->parameters);
+  std::vector<Start> more;
+  for (const Start& start : begun) {
+    VectorX values = problem.values(start.x);
+    for (const VectorX& other : elsewhere(e, VectorX(values.segment(first, own)))) {
+      values.segment(first, own) = other;
+      more.push_back({problem.coordinates(values)});
+    }
+  }
+  std::string why;
+  look_at(more, problem, why, threads);
+  begun.insert(begun.end(), more.begin(), more.end());
+  deepest_first(begun);
+  if (begun.size() > count) begun.resize(count);
 }
 
 /// Beside friction, χ² has valleys besides the deepest one: a slip comes before or after a turn of the load.
@@ -152,8 +192,10 @@ Fit search_from(const FitProblem& problem, const Start& start) {
     best = nearer(problem, start, all_steps).x;
     residual = problem.residual(best);
     of_all(problem, best).df(best, out.signature);
+    // What the data say nothing of is left open by far more than its bounds: a step of size 1 is a large one.
+    constexpr double next_to_nothing = 1e-8;
     const MatrixX information = out.signature.transpose() * out.signature;
-    out.covariance = information.completeOrthogonalDecomposition().pseudoInverse();
+    out.covariance = (information + next_to_nothing * MatrixX::Identity(best.size(), best.size())).inverse();
   }
   out.values = problem.values(best);
   out.residual = residual ? *residual : problem.residual_or_wall(best);
@@ -195,6 +237,7 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
     if (guess) begun = best_starts(problem, {*guess}, from, 1, why, 1);
     if (begun.empty()) {
       begun = best_starts(problem, starts(h.back()), from, valleys, why, threads);
+      look_elsewhere(begun, problem, h.back(), from.size(), threads);
       if (begun.size() > 1 && !(may_have_valleys(h.back()) && problem.has_history(begun.front().x))) begun.resize(1);
     }
     return begun.empty() ? not_found(why) : deepest(problem, std::move(begun), threads);
@@ -209,15 +252,16 @@ Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int th
     const auto own = std::ssize(e.effect->parameters);
     if (h.size() > 1 && may_have_valleys(e) && problem.has_history(problem.coordinates(found.values))) {
       const std::vector<VectorX> tries = starts(e);
-      std::vector<Start> begun(tries.size());
-      parallel::for_each_case(tries.size(), 1, threads, [&](std::size_t i) {
+      std::vector<Start> begun;
+      for (const VectorX& own_values : tries) {
         VectorX values = found.values;
-        values.segment(first, own) = tries[i];
-        begun[i].x = problem.coordinates(values);
-        if (const auto r = problem.residual(begun[i].x)) begun[i].chi2 = r->squaredNorm();
-      });
-      deepest_first(begun);
+        values.segment(first, own) = own_values;
+        begun.push_back({problem.coordinates(values)});
+      }
+      std::string why;
+      look_at(begun, problem, why, threads);
       begun.resize(std::min(begun.size(), valleys));
+      look_elsewhere(begun, problem, e, first, threads);
       if (Fit again = deepest(problem, std::move(begun), threads); again.found && again.chi2 < found.chi2)
         found = std::move(again);
     }
