@@ -158,12 +158,14 @@ Named<Part> leg_parts(const Mechanism& m, int leg) {
 }
 
 Mechanism resolved(const Mechanism& m) {
+  if (!m.legs.empty()) return m;
   Mechanism out = m;
   for (int leg = 1; leg <= leg_count(m); ++leg) out.legs.push_back(leg_parts(m, leg));
   return out;
 }
 
 DependentMechanism resolved(const DependentMechanism& d) {
+  if (!d.mechanism.legs.empty()) return d;
   DependentMechanism out = d;
   for (int leg = 1; leg <= leg_count(d.mechanism); ++leg) {
     MarkedLeg marked = marked_leg(d, leg);

@@ -126,5 +126,15 @@ TEST(NumberTolerances, MistakesAreToldWithTheirLine) {
     }
 }
 
+TEST(NumberTolerances, AreTheSameOfAMechanismWhoseLegsAreWorkedOut) {
+  Mechanism m = test::device("arm");
+  m.tolerances.numbers = {{"drive.stiffness", "2 %"}, {"joint.position", "0.1 mm"}};
+  const Mechanism once = resolved(m);
+  const std::size_t count = number_moves(once).size();
+  EXPECT_GT(count, 0u);
+  EXPECT_EQ(number_moves(resolved(once)).size(), count);
+  EXPECT_EQ(resolved(once).legs.size(), once.legs.size());
+}
+
 }  // namespace
 }  // namespace deflect

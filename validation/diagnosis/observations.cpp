@@ -82,9 +82,16 @@ void Observations::move_tolerances(const subject::Subject& subject) {
   auto moved = outcome_of([&] {
     return statistics::tolerance_model(*subject.stand(*s.data, s.standing.get()), *s.data, s.values, {threads_});
   });
+  if (!moved || moved->A.groups.size() != A_.groups.size()) return;
+  // A law that an effect adds may have numbers to which a tolerance applies: these are fitted. They come behind those of
+  // the laws that were there, by the same name.
   const Eigen::Index shared = A_.shared.cols();
-  if (!moved || moved->A.shared.cols() + 1 != shared || moved->A.groups.size() != A_.groups.size()) return;
-  A_ = std::move(moved->A);
+  std::vector<Eigen::Index> same;
+  for (Eigen::Index i = 0; i < moved->A.shared.cols() && std::ssize(same) + 1 < shared; ++i)
+    if (nth(moved->nuisances, i).name == comparison_->tolerances.nuisances[same.size()].name) same.push_back(i);
+  if (std::ssize(same) + 1 != shared) return;
+  A_ = moved->A;
+  A_.shared = moved->A.shared(Eigen::all, same);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, shared);
   count_shape();

@@ -1,0 +1,94 @@
+// Measurement sets of an arm made by foreign_arms.py, which shares nothing with deflect: what is hidden in each is
+// found, or tied with what these readings cannot tell from it, and its values are right. Some are in
+// tests/verification/foreign_arms; DEFLECT_FOREIGN_ARMS names a folder with others, as the program writes them.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "msa/mechanism/device_file.h"
+#include "tests/support/effects.h"
+#include "tests/support/paths.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/diagnosis/interval.h"
+#include "validation/effects/place_effects.h"
+#include "validation/json/json_text.h"
+#include "validation/subject/subject.h"
+
+namespace deflect {
+namespace {
+
+const std::string own = test::source_dir() + "/tests/verification/foreign_arms";
+
+std::filesystem::path folder() {
+  const char* named = std::getenv("DEFLECT_FOREIGN_ARMS");
+  return named ? named : own;
+}
+
+Json truths() {
+  std::ifstream file(folder() / "truth.json");
+  return Json::parse(file);
+}
+
+std::vector<std::string> sets() {
+  const Json all = truths();
+  std::vector<std::string> out;
+  for (auto each = all.begin(); each != all.end(); ++each) out.push_back(each.key());
+  return out;
+}
+
+/// An interval of a normal distribution misses by more than 1.6 times its half-width in two of a thousand.
+constexpr double far_off = 1.6;
+
+void expect_values(const diagnosis::Diagnosis& d, const Json& hidden) {
+  std::size_t at = 0;
+  for (const effects::PlacedEffect& e : d.missing)
+    for (const effects::EffectParameter& p : e.effect->parameters) {
+      const auto [low, high] = diagnosis::interval95(d.missing, d.fit, at++);
+      if (!hidden.contains(e.effect->name) || !hidden.at(e.effect->name).contains(p.name)) continue;
+      const double value = d.fit.values(static_cast<Eigen::Index>(at) - 1);
+      const double truth = hidden.at(e.effect->name).at(p.name);
+      EXPECT_GE(truth, value - far_off * (value - low)) << e.effect->name << " " << p.name << " = " << value;
+      EXPECT_LE(truth, value + far_off * (high - value)) << e.effect->name << " " << p.name << " = " << value;
+    }
+}
+
+class ForeignArm : public testing::TestWithParam<std::string> {};
+
+TEST_P(ForeignArm, WhatIsHiddenIsNamedOrTied) {
+  const Json truth = truths().at(GetParam());
+  const subject::Subject s = read_mechanism(own + "/arm.yaml");
+  const auto data = s.placed(measurement::read_measurements(folder() / (GetParam() + ".csv"), s.instruments()));
+  std::vector<effects::Effect> all = test::all_effects();
+  for (effects::Effect& e : effects::place_effects(s, all)) all.push_back(std::move(e));
+  const diagnosis::Diagnosis d = diagnosis::diagnose(s, data, all, {{}, 199});
+  std::vector<std::string> found;
+  for (const effects::PlacedEffect& e : d.missing) found.push_back(e.effect->name);
+  for (const auto& tie : d.indistinguishable) found.insert(found.end(), tie.begin(), tie.end());
+  const std::string said =
+      fmt::format("{}: {}", diagnosis::verdict_names[static_cast<int>(d.verdict)], fmt::join(found, ", "));
+  const Json& hidden = truth.at("effects");
+  if (truth.at("unknown").get<bool>()) {
+    EXPECT_EQ(d.verdict, diagnosis::Verdict::unknown_effect) << said;
+  } else if (hidden.empty()) {
+    EXPECT_EQ(d.verdict, diagnosis::Verdict::nothing_missing) << said;
+  } else {
+    for (auto each = hidden.begin(); each != hidden.end(); ++each)
+      EXPECT_NE(std::find(found.begin(), found.end(), each.key()), found.end()) << each.key() << " in " << said;
+    EXPECT_EQ(d.missing.size(), hidden.size()) << said;
+    expect_values(d, hidden);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, ForeignArm, testing::ValuesIn(sets()), [](const auto& set) {
+  std::string name = set.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace deflect
