@@ -164,7 +164,7 @@ Observations Observations::granted(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
   if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) out.shape_ = *shape;
   out.count_shape();
-  if (!s.standing->has_tool_point()) out.move_tolerances(subject);
+  out.move_tolerances(subject);
   const std::vector<bool> aside =
       compare::gross_outliers(s, out.A_, comparison_->sigma, out.residual(subject), {}).aside;
   const auto count = as_size(std::count(aside.begin(), aside.end(), true));
