@@ -15,8 +15,8 @@ An effect of one's own is the dict of an effect file whose "edits" is a function
 >>> deflect.diagnose(m, data, effects=[pad])
 
 with_effect(), simulate(), diagnose(), plan() and effects() take it like an entry of the catalogue. It is for trying an
-idea: every prediction calls Python and reads the edited description anew, some hundred times slower than an effect file
-whose numbers are set in place. The function gets {name: value}, in the units of the names, and returns edits as in an
+idea, and the slow way: for every value of its parameters that a search tries, Python is called, one thread at a time, and
+the edited description is read anew, where the numbers of an effect file are set in place. The function gets {name: value}, in the units of the names, and returns edits as in an
 effect file, [{"at": path, "append": law}, {"at": path, "multiply": 1.1}], without "$name". It must give the same for the
 same values, and may be called in any thread. It is not called where every parameter that can vanish does. For values that
 cannot be it raises InputError. Pages that explain it may be left out.

@@ -9,7 +9,7 @@ import numpy as np
 
 model = deflect.load("haptic-6psu-ideal-joints")
 data = deflect.simulate(model, ("guide_root_compliance", {"stiffness_Nmm_per_rad": 5e6}), seed=7)
-print(len(data), "readings at", len(set(data.columns["pose"])), "poses")
+print(len(data), "readings of three components at", len(set(data.columns["pose"])), "poses")
 
 # %% [markdown]
 # ## 1. Does the model fail, and how?
@@ -21,7 +21,7 @@ print(compared.verdict)
 compared
 
 # %% [markdown]
-# Ten times what noise and tolerances allow. The misfit is proportional to the load and alike in all legs: a compliance.
+# The misfit is many times what noise and tolerances allow, and its findings say what it looks like.
 #
 # ## 2. The first suspect: the modulus
 # A softer steel makes the error fall by far. That proves nothing: look at the value that it needs.
@@ -41,17 +41,27 @@ fitted.plot().savefig("modulus.png", dpi=110)
 # where nothing is missing.
 
 # %%
-suspects = {"guide_root_compliance": ("stiffness_Nmm_per_rad", np.geomspace(1e6, 3e7, 13)),
-            "carriage_compliance": ("stiffness_N_per_mm", np.geomspace(300, 3e5, 13)),
-            "joint_compliance": ("stiffness_N_per_mm", np.geomspace(300, 3e5, 13))}
+def scan(effect, parameter, low, high):
+    """(χ² per degree of freedom, value) where it is least: nine values over all, then nine between the best's neighbours."""
+    for _ in range(2):
+        values = np.geomspace(low, high, 9)
+        chi2 = [deflect.compare(model.with_effect(effect, **{parameter: v}), data).baseline["chi2_per_dof"] for v in values]
+        i = int(np.argmin(chi2))
+        low, high = values[max(i - 1, 0)], values[min(i + 1, 8)]
+    return chi2[i], values[i]
+
+
+suspects = {"guide_root_compliance": ("stiffness_Nmm_per_rad", 1e6, 1e8),
+            "carriage_compliance": ("stiffness_N_per_mm", 300, 3e4),
+            "joint_compliance": ("stiffness_N_per_mm", 300, 3e4)}
 best = {}
-for effect, (parameter, values) in suspects.items():
-    chi2 = [deflect.compare(model.with_effect(effect, **{parameter: v}), data).baseline["chi2_per_dof"] for v in values]
-    best[effect] = (min(chi2), values[int(np.argmin(chi2))])
-    print(f"{effect:24} chi2/dof {best[effect][0]:8.2f} at {best[effect][1]:.3g} {parameter}")
+for effect, (parameter, low, high) in suspects.items():
+    best[effect] = scan(effect, parameter, low, high)
+    print(f"{effect:24} chi2/dof {best[effect][0]:6.3f} at {best[effect][1]:.3g} {parameter}")
 
 # %% [markdown]
-# One of them explains the data to the noise, the others do not.
+# One of them explains the data to the noise. The others do not, close as they come: of 2160 numbers χ² per degree of freedom
+# has the standard deviation √(2/2160) = 0.03.
 
 # %%
 found = min(best, key=lambda effect: best[effect][0])

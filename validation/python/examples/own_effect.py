@@ -6,7 +6,7 @@
 # %%
 import deflect
 import numpy as np
-from matplotlib.figure import Figure
+from matplotlib import pyplot
 
 model = deflect.load("haptic-6psu-ideal-joints")
 
@@ -69,7 +69,7 @@ fall.plot().savefig("own-history.png", dpi=110)
 fall
 
 # %%
-figure = Figure(figsize=(5, 3.2), layout="constrained")
+figure = pyplot.figure(figsize=(5, 3.2), layout="constrained")
 axes = figure.subplots()
 z = np.linspace(-60, 60, 241)
 at_home = np.tile(model.home, (len(z), 1))
@@ -81,4 +81,3 @@ axes.set_xlabel("force along z (N)")
 axes.set_ylabel("displacement along z (mm)")
 axes.legend()
 figure.savefig("own-curve.png", dpi=110)
-figure

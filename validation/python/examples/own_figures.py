@@ -5,7 +5,7 @@
 # %%
 import deflect
 import numpy as np
-from matplotlib.figure import Figure
+from matplotlib import pyplot
 
 m = deflect.load("haptic-6psu")
 print(m)
@@ -27,7 +27,7 @@ for axis in range(3):
 print(np.round(along["analytic"], 6))
 
 # %%
-fig10 = Figure(figsize=(6.3, 4.2), layout="constrained")
+fig10 = pyplot.figure(figsize=(6.3, 4.2), layout="constrained")
 upper, lower = fig10.subplots(2, 1, sharex=True, height_ratios=(3, 1))
 for axis, (marker, colour) in enumerate(zip("osD", ("#0072B2", "#D55E00", "#009E73"))):
     at = np.arange(9) + 0.16 * (axis - 1)
@@ -40,7 +40,6 @@ upper.legend(ncol=3, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), frameo
 lower.set_ylabel("difference (fm)")
 lower.set_xlabel("point of the workspace")
 fig10.savefig("fig10.png", dpi=110)
-fig10
 
 # %% [markdown]
 # The result of `validate` has the same numbers, and a picture of its own.
@@ -63,7 +62,7 @@ compliance = m.displacement(poses, [50, 0, 0])[:, 0] / 50
 stiffness = (1 / compliance).reshape(x.shape)
 print(f"from {stiffness.min():.1f} to {stiffness.max():.1f} N/mm")
 
-fig11 = Figure(figsize=(5, 4), layout="constrained")
+fig11 = pyplot.figure(figsize=(5, 4), layout="constrained")
 axes = fig11.subplots()
 image = axes.contourf(x, z, np.log10(stiffness), 40, cmap="viridis")
 curves = axes.contour(x, z, stiffness, [100, 200, 300, 500, 700, 1000], colors="w", linewidths=0.7)
@@ -72,7 +71,6 @@ axes.set_xlabel("x (mm)")
 axes.set_ylabel("z (mm)")
 fig11.colorbar(image, label="log10 of the stiffness along x (N/mm)")
 fig11.savefig("fig11.png", dpi=110)
-fig11
 
 # %%
 deflect.map(m, 15).plot().savefig("fig11-of-map.png", dpi=80)
