@@ -136,7 +136,8 @@ def readable(largest: float, of: str = "m") -> tuple[str, float]:
 
 def fine(unit: str) -> tuple[str, float]:
     """A unit a thousand times smaller, for residuals, and how many of it are one."""
-    return {"mm": ("µm", 1e3), "rad": ("mrad", 1e3), "mrad": ("µrad", 1e3), "m": ("mm", 1e3)}.get(unit, (unit, 1.0))
+    finer = {"mm": ("µm", 1e3), "rad": ("mrad", 1e3), "mrad": ("µrad", 1e3), "m": ("mm", 1e3), "um_per_m": ("µm/m", 1.0)}
+    return finer.get(unit, (unit, 1.0))
 
 
 def clip(words: Any, most: int) -> str:

@@ -15,11 +15,13 @@ An effect of one's own is the dict of an effect file whose "edits" is a function
 >>> deflect.diagnose(m, data, effects=[pad])
 
 with_effect(), simulate(), diagnose(), plan() and effects() take it like an entry of the catalogue. It is for trying an
-idea, and the slow way: for every value of its parameters that a search tries, Python is called, one thread at a time, and
-the edited description is read anew, where the numbers of an effect file are set in place. The function gets {name: value}, in the units of the names, and returns edits as in an
-effect file, [{"at": path, "append": law}, {"at": path, "multiply": 1.1}], without "$name". It must give the same for the
-same values, and may be called in any thread. It is not called where every parameter that can vanish does. For values that
-cannot be it raises InputError. Pages that explain it may be left out.
+idea, and the slow way: for every value of its parameters that a search tries, Python is called, one thread at a time,
+and the edited description is read anew, where the numbers of an effect file are set in place.
+
+The function gets {name: value}, in the units of the names, and returns edits as in an effect file, without "$name":
+[{"at": path, "append": law}, {"at": path, "multiply": 1.1}]. It must give the same for the same values, and may be
+called in any thread. It is not called where every parameter that can vanish does. For values that cannot be it raises
+InputError. Title, scope (then: machine) and pages may be left out.
 """
 
 from __future__ import annotations
@@ -67,4 +69,5 @@ def law(curve: Callable[[float], float], loads: Iterable[float], *, rotation: bo
                          f"piece, more than {within:g} of the largest deflection: give more loads there, or a larger "
                          "'within'")
     force, motion = ("Nm", "mrad") if rotation else ("N", "mm")
-    return {"law": "table", "points": [[f"{f!r} {force}", f"{d!r} {motion}"] for f, d in zip(at.tolist(), deflection.tolist())]}
+    pairs = zip(at.tolist(), deflection.tolist())
+    return {"law": "table", "points": [[f"{f!r} {force}", f"{d!r} {motion}"] for f, d in pairs]}
