@@ -43,7 +43,7 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
   const double length = weighing_length(K_SI);
   const Matrix6 K = weighed(K_SI, length);
   const double scale = K.cwiseAbs().maxCoeff();
-  if (!std::isfinite(scale)) {
+  if (!K.allFinite()) {
     out = {false, false, false, "the stiffness is not finite"};
     return out;
   }
