@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
@@ -25,6 +26,16 @@ Matrix6 weighed(const Matrix6& K, double length) {
   return inverse.asDiagonal() * K * inverse.asDiagonal();
 }
 
+/// Which eigenvalue fails smallest ≥ −tolerance · largest, as a sentence; empty: none does. A Cholesky factorisation
+/// that succeeds is that of a matrix within some fifty roundings of the largest entry, far less than any tolerance, and
+/// costs a tenth of the eigenvalues, which are left to the matrices where it fails.
+std::string negative_eigenvalue(const Matrix6& symmetric, double tolerance) {
+  if (Eigen::LLT<Matrix6>(symmetric).info() == Eigen::Success) return "";
+  const Vector6 all = Eigen::SelfAdjointEigenSolver<Matrix6>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+  if (all(0) >= -tolerance * all(5)) return "";
+  return fmt::format("K >= 0 fails: the smallest eigenvalue is {:.3g} of the largest; ", all(0) / all(5));
+}
+
 }  // namespace
 
 StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffness>& legs, double tolerance) {
@@ -32,7 +43,7 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
   const double length = weighing_length(K_SI);
   const Matrix6 K = weighed(K_SI, length);
   const double scale = K.cwiseAbs().maxCoeff();
-  if (!std::isfinite(scale)) {
+  if (!K.allFinite()) {
     out = {false, false, false, "the stiffness is not finite"};
     return out;
   }
@@ -41,12 +52,9 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
   if (!out.symmetric)
     out.failure +=
         fmt::format("K = K^T fails: the largest difference is {:.3g} of the largest entry; ", asymmetry / scale);
-  const Vector6 eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Matrix6>(Matrix6((K + K.transpose()) / 2), Eigen::EigenvaluesOnly).eigenvalues();
-  out.positive = eigenvalues(0) >= -tolerance * eigenvalues(5);
-  if (!out.positive)
-    out.failure += fmt::format("K >= 0 fails: the smallest eigenvalue is {:.3g} of the largest; ",
-                               eigenvalues(0) / eigenvalues(5));
+  const std::string negative = negative_eigenvalue((K + K.transpose()) / 2, tolerance);
+  out.positive = negative.empty();
+  out.failure += negative;
   for (const LegStiffness& leg : legs) {
     const Matrix6 K_c = weighed(leg.K, length);
     const double leg_scale = K_c.cwiseAbs().maxCoeff();

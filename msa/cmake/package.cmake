@@ -23,6 +23,6 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, fonts-dejavu-core, libopenblas0-pthread")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, openmpi-bin")
 if(TARGET deflect_python)  # the package deflect, for Debian's Python
-  string(APPEND CPACK_DEBIAN_PACKAGE_SUGGESTS ", python3, python3-numpy")
+  string(APPEND CPACK_DEBIAN_PACKAGE_SUGGESTS ", python3, python3-numpy, python3-matplotlib")
 endif()
 include(CPack)

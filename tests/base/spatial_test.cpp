@@ -40,6 +40,18 @@ TEST(Spatial, AxesAlongXAreRightHandedAndRefuseAParallelReference) {
   EXPECT_THROW(axes_along_x({0, 0, 2}, {0, 0, 1}), std::invalid_argument);
 }
 
+TEST(StiffnessChecks, ASmallestEigenvalueIsNegativeByTheToleranceAtMost) {
+  const Matrix3 R = axes_along_x({1, 2, 3}, {0, 0, 1});
+  for (const double share : {-1.0, 0.0, 0.5, 2.0}) {
+    Matrix6 K = Matrix6::Zero();  // blocks of equal trace, so that lengths do not weigh
+    K.topLeftCorner<3, 3>() = R * Vector3(-share * 0.6e-9, 0.4, 0.6).asDiagonal() * R.transpose();
+    K.bottomRightCorner<3, 3>().diagonal() << 0.2, 0.3, 0.5;
+    K = (K + K.transpose().eval()) / 2;
+    EXPECT_EQ(check_stiffness(K, {}).positive, share < 1) << share;
+    EXPECT_EQ(check_stiffness(K, {}, 1e-8).failure, "") << share;
+  }
+}
+
 TEST(StiffnessChecks, FindEachFaultByName) {
   Matrix6 K = Matrix6::Zero();
   K.diagonal() << 1e5, 2e5, 3e5, 400, 500, 600;

@@ -78,6 +78,12 @@ class Loaded(unittest.TestCase):
         for each in (m, f, s, f.solve(), deflect.validate(m)):
             for other in (pickle.loads(pickle.dumps(each)), copy.copy(each), copy.deepcopy(each)):
                 self.assertEqual(each, other)
+        data = deflect.simulate("haptic-6psu-ideal-joints", campaign="paper")
+        compared = deflect.compare("haptic-6psu-ideal-joints", data)
+        again = pickle.loads(pickle.dumps(compared))
+        self.assertEqual(again, compared)
+        np.testing.assert_array_equal(again.residuals["residual"], compared.residuals["residual"])
+        self.assertEqual(pickle.loads(pickle.dumps(data)), data)
         other = pickle.loads(pickle.dumps(s))
         np.testing.assert_array_equal(other.displacement, s.displacement)
         np.testing.assert_array_equal(other.stiffness, s.stiffness)
@@ -170,6 +176,21 @@ class Threads(unittest.TestCase):
         with concurrent.futures.ThreadPoolExecutor(4) as pool:
             beside = list(pool.map(lambda p: m.solve(p, [50, 0, 0]).displacement, poses))
         np.testing.assert_array_equal(alone, beside)
+
+    def test_studies_beside_each_other(self):
+        """Readings compared, effects written in Python and many poses, in threads at once: as one after another."""
+        m = deflect.load("haptic-6psu-ideal-joints")
+        data = [deflect.simulate(m, campaign="paper", seed=seed) for seed in range(4)]
+        own = {"name": "own", "parameters": {"factor": {"start": 0.9, "low": 0.5, "high": 2, "vanishes": 1}},
+               "edits": lambda p: [{"at": "materials.steel.E", "multiply": p["factor"]}]}
+
+        def study(seed):
+            poses = m.home + np.random.default_rng(seed).uniform(-10, 10, (300, 6)) * [1, 1, 1, 0.1, 0.1, 0.1]
+            return (deflect.compare(m.with_effect(own, factor=1 + 0.01 * seed), data[seed], threads=2).json,
+                    m.stiffness(poses, [50, 0, 0], threads=2).tobytes())
+
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            self.assertEqual(list(pool.map(study, range(4))), [study(seed) for seed in range(4)])
 
 
 if __name__ == "__main__":

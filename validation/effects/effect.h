@@ -4,10 +4,12 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "msa/base/spatial.h"
 #include "validation/subject/place.h"
 
 namespace deflect::effects {
@@ -81,6 +83,10 @@ struct Effect {
   int line = 0;        ///< of the effect's name in that file
   /// Set for an effect that is a law at a place (place_effects.h) and not an entry of a file.
   std::optional<subject::Place> place;
+  /// Set where a function computes the edits, without "$name" in them, from the values of the parameters (in their
+  /// units): `edits` are then those at the start values. The same values must give the same edits, in any thread. It is
+  /// not called where every parameter that can vanish does: nothing is edited then. May throw InputError.
+  std::function<std::vector<EffectEdit>(const VectorX& values)> edits_at = nullptr;
 };
 
 /// Whether all it changes is the shape in which equilibrium is written (`geometry`): its size is then known and there

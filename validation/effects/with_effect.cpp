@@ -80,6 +80,20 @@ std::string line_of(const Effect& e, std::size_t edit) {
   return fmt::format("{}:{}: edits.{}: ", e.origin, e.edits[edit].line, edit);
 }
 
+/// The effect with the edits that its function computes for these values.
+Effect with_computed_edits(const Effect& e, const VectorX& values) {
+  Effect out = e;
+  out.edits_at = nullptr;
+  bool can_vanish = false, vanishes = true;
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    if (!e.parameters[i].vanishes) continue;
+    can_vanish = true;
+    vanishes = vanishes && e.parameters[i].vanishes == values(as_index(i));
+  }
+  out.edits = can_vanish && vanishes ? std::vector<EffectEdit>() : e.edits_at(values);
+  return out;
+}
+
 /// Edit by edit, so that a message can name the line that does not fit, and an edit can reach into the one before.
 template <class Dependent>
 Dependent one_by_one(const Dependent& m, const Effect& e, const VectorX& values, std::optional<int> leg,
@@ -122,6 +136,7 @@ Dependent with_effect_in(const Dependent& m, const Effect& e, const VectorX& giv
                          std::size_t first) {
   const VectorX values = with_optional(e, given);
   check_arguments(e, description(m), values, leg);
+  if (e.edits_at) return with_effect_in(m, with_computed_edits(e, values), values, leg, first);
   auto at_once = outcome_of<InputError>([&] {
     std::vector<TreeEdit> all;
     for (const EffectEdit& edit : e.edits)

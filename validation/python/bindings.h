@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,10 +22,25 @@ namespace deflect::python {
 /// A text and what messages call it, in place of a file.
 using NamedText = std::pair<std::string, std::string>;
 
-/// The effects that functions know: the folder of the catalogue, and texts of others.
+/// An effect whose edits a Python function computes. `head`: an effect file with its parameters, whose edits do not
+/// count. `edits`: called with the parameters' values, returns (whether they are possible, an effect file with the
+/// edits for them or else what is wrong). It is held with the interpreter's lock alone.
+struct ComputedEffect {
+  NamedText head;
+  std::shared_ptr<pybind11::function> edits;
+
+  ComputedEffect(NamedText, pybind11::function);
+  effects::Effect effect() const;
+};
+
+/// The effects that functions know: the folder of the catalogue, texts of others, and computed ones.
 struct EffectSources {
   std::string catalogue;
   std::vector<NamedText> own;
+  std::vector<ComputedEffect> computed;
+
+  /// Catalogue and own ones.
+  std::vector<effects::Effect> named() const;
 
   /// These, and the laws at the subject's places.
   std::vector<effects::Effect> known(const subject::Subject&) const;

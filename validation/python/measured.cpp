@@ -46,11 +46,13 @@ compare::ComparisonOptions comparison_options(const Noise& n) { return {n.transl
 /// A JSON of the contract, and what a person reads.
 using Told = std::pair<std::string, std::string>;
 
-Told compare(const Subject& s, const NamedText& csv, const Noise& noise, int threads, const py::object& progress) {
+/// The same, and the table of residuals.
+std::tuple<std::string, std::string, std::string> compare(const Subject& s, const NamedText& csv, const Noise& noise,
+                                                          int threads, const py::object& progress) {
   return interruptible(progress, [&](const auto& told) {
     const Measurements data = data_of(s, csv);
     const compare::Comparison c = compare::compare(s, data, comparison_options(noise), {threads, nullptr, told});
-    return Told(report::compare_json(c), report::compare_report(c));
+    return std::tuple(report::compare_json(c), report::compare_report(c), report::residuals_csv(c));
   });
 }
 

@@ -24,9 +24,37 @@ namespace deflect::python {
 namespace py = pybind11;
 using subject::Subject;
 
-std::vector<effects::Effect> EffectSources::known(const Subject& s) const {
+ComputedEffect::ComputedEffect(NamedText text, py::function f)
+    : head(std::move(text)), edits(new py::function(std::move(f)), [](py::function* each) {
+        const py::gil_scoped_acquire acquired;
+        delete each;
+      }) {}
+
+effects::Effect ComputedEffect::effect() const {
+  effects::Effect e = effects::parse_effect(head.first, head.second);
+  e.edits_at = [f = edits, origin = head.second](const VectorX& values) {
+    std::pair<bool, std::string> found;
+    {
+      const py::gil_scoped_acquire acquired;
+      found = (*f)(std::vector<double>(values.begin(), values.end())).cast<std::pair<bool, std::string>>();
+    }
+    if (!found.first) throw InputError(fmt::format("{}: {}", origin, found.second));
+    return found.second.empty() ? std::vector<effects::EffectEdit>()
+                                : effects::parse_effect(found.second, origin).edits;
+  };
+  e.edits = e.edits_at(effects::start_values(e));
+  return e;
+}
+
+std::vector<effects::Effect> EffectSources::named() const {
   std::vector<effects::Effect> all = effects::catalogue(catalogue);
   for (const auto& [text, origin] : own) effects::add_effect(all, effects::parse_effect(text, origin));
+  for (const ComputedEffect& each : computed) effects::add_effect(all, each.effect());
+  return all;
+}
+
+std::vector<effects::Effect> EffectSources::known(const Subject& s) const {
+  std::vector<effects::Effect> all = named();
   for (effects::Effect& e : effects::place_effects(s, all)) all.push_back(std::move(e));
   return all;
 }
@@ -134,9 +162,11 @@ Subject with_effect(const Subject& s, const EffectSources& sources, const AskedE
 }  // namespace
 
 void bind_subjects(py::module_& m) {
-  py::class_<EffectSources>(m, "EffectSources").def(py::init([](std::string catalogue, std::vector<NamedText> own) {
-    return EffectSources{std::move(catalogue), std::move(own)};
-  }));
+  py::class_<ComputedEffect>(m, "ComputedEffect").def(py::init<NamedText, py::function>());
+  py::class_<EffectSources>(m, "EffectSources")
+      .def(py::init([](std::string catalogue, std::vector<NamedText> own, std::vector<ComputedEffect> computed) {
+        return EffectSources{std::move(catalogue), std::move(own), std::move(computed)};
+      }));
   py::class_<AskedEffect>(m, "AskedEffect")
       .def(py::init([](std::string name, std::optional<int> leg, std::vector<std::pair<std::string, double>> values) {
         return AskedEffect{std::move(name), leg, std::move(values)};
@@ -160,9 +190,7 @@ void bind_subjects(py::module_& m) {
   m.def("suggestion", &suggestion);
   m.def("effects_json", [](const EffectSources& sources, const std::optional<Subject>& s) {
     if (s) return report::effects_json(sources.known(*s), s);
-    std::vector<effects::Effect> all = effects::catalogue(sources.catalogue);
-    for (const auto& [text, origin] : sources.own) effects::add_effect(all, effects::parse_effect(text, origin));
-    return report::effects_json(all, std::nullopt);
+    return report::effects_json(sources.named(), std::nullopt);
   });
 }
 

@@ -11,6 +11,7 @@ out. Base axes; translation first.
 
 from . import _core
 from .errors import Error, InputError, MechanismError, NumericalError
+from .laws import law
 from .measurements import Measurements
 from .models import Frame, Model, Place, Remark, Sensor, Subject, frame, load
 from .results import (Comparison, Diagnosis, Fit, FrameSolution, History, Plan, Prediction, Result, StiffnessMap,
@@ -24,5 +25,5 @@ theories = _core.theories
 __all__ = ["Comparison", "Diagnosis", "Error", "Fit", "Frame", "FrameSolution", "History", "InputError", "Measurements",
            "MechanismError", "Model", "NumericalError", "Place", "Plan", "Prediction", "Remark", "Result", "Sensor",
            "Solution", "StiffnessMap", "Subject", "TheoryAnswer", "Validation", "Validity", "built_in", "compare",
-           "diagnose", "effects", "fit", "frame", "history", "load", "map", "plan", "predict", "simulate", "theories",
+           "diagnose", "effects", "fit", "frame", "history", "law", "load", "map", "plan", "predict", "simulate", "theories",
            "validate"]

@@ -68,15 +68,42 @@ def description(source: Any, kinds: tuple[str, ...]) -> tuple[str, str]:
 
 
 def effect_sources(own: Any = ()) -> _core.EffectSources:
-    """The catalogue and own effects: files, texts or dicts."""
+    """The catalogue and own effects: files, texts or dicts; dicts whose "edits" is a function are computed ones."""
     if isinstance(own, (str, dict, os.PathLike)):
         own = [own]
-    texts = []
+    texts, computed = [], []
     for each in own:
-        if isinstance(each, dict):
-            texts.append((as_yaml(each), "dict"))
+        if isinstance(each, dict) and callable(each.get("edits")):
+            computed.append(_computed(each))
+        elif isinstance(each, dict):
+            texts.append((as_yaml(with_pages(each)), f"effect {each.get('name', '')}".strip()))
         elif isinstance(each, str) and "\n" in each:
             texts.append((each, "text"))
         else:
             texts.append((_core.read_text(os.fspath(each)), os.fspath(each)))
-    return _core.EffectSources(str(data_folder() / "effects" / "catalogue"), texts)
+    return _core.EffectSources(str(data_folder() / "effects" / "catalogue"), texts, computed)
+
+
+def with_pages(effect: dict[str, Any]) -> dict[str, Any]:
+    """A trial needs no explanation: pages that are not there are empty, and the title is the name."""
+    pages = {page: "not described" for page in ("machine", "data", "bench", "cure")}
+    return {"title": effect.get("name", ""), "scope": "machine", **effect, "pages": {**pages, **effect.get("pages", {})}}
+
+
+def _computed(effect: dict[str, Any]) -> _core.ComputedEffect:
+    full, function = with_pages(effect), effect["edits"]
+    parameters = full.get("parameters", {})
+    names = list(parameters)
+    about = {"about": "of an effect written in Python"}
+    head = {**full, "parameters": {n: {**about, **p} for n, p in parameters.items()},
+            "edits": [{"at": "leg.x", "set": "$" + n} for n in names] or [{"at": "leg.x", "set": 0}]}
+    bare = {name: value for name, value in full.items() if name != "parameters"}
+
+    def edits(values: list[float]) -> tuple[bool, str]:
+        try:
+            made = list(function(dict(zip(names, values))))
+        except InputError as impossible:
+            return False, str(impossible)
+        return True, as_yaml({**bare, "edits": made}) if made else ""
+
+    return _core.ComputedEffect((as_yaml(head), f"effect {full.get('name', '')}"), edits)

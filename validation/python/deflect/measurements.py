@@ -9,7 +9,7 @@ from typing import Any, Mapping
 
 import numpy as np
 
-from . import _core, _sources
+from . import _core, _sheet, _sources, notebook
 from .errors import InputError
 
 POSE = ("x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg")
@@ -85,9 +85,12 @@ class Measurements:
 
     def to_dataframe(self):
         """Needs pandas."""
-        import pandas
+        return _sheet.pandas().DataFrame(self.columns)
 
-        return pandas.DataFrame(self.columns)
+    def _repr_html_(self) -> str:
+        columns = self.columns
+        rows = [dict(zip(columns, row)) for row in zip(*columns.values())]
+        return notebook.heading(repr(self)) + notebook.table_of(rows, 8)
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))

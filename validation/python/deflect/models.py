@@ -104,14 +104,15 @@ class Subject:
 
     def with_effect(self, effect: Any, /, *, leg: int | None = None, effects: Any = (), **parameters: float):
         """With an effect of the catalogue, of its places ("clearance@elbow.rz") or of ``effects`` (files, texts or
-        dicts of effect files); or one such dict itself. Parameters in the units that their names end with:
+        dicts of effect files, see deflect.law); or one such dict itself. Parameters in the units that their names end
+        with:
 
         >>> m.with_effect("guide_root_compliance", stiffness_Nmm_per_rad=5e6)
 
         Raises InputError for an effect, parameter or leg that it does not have.
         """
         if isinstance(effect, dict):
-            effects, effect = [effect], effect["effect"]
+            effects, effect = [effect], effect["name"]
         asked = _core.AskedEffect(effect, leg, [(k, float(v)) for k, v in parameters.items()])
         return type(self)(self._core.with_effect(_sources.effect_sources(effects), asked))
 
@@ -228,6 +229,27 @@ class Model(Subject):
         if one:
             return by_theory[one]
         return by_theory[_core.reference_theory] if theory is None else by_theory
+
+
+    def derivatives(self, paths: str | Iterable[str], poses: Any, loads: Any = None, *, theory: str | None = None,
+                    step: float = 1e-4, threads: int = 0, units: str = "mm") -> np.ndarray:
+        """∂d/∂ln p: what the displacement of T changes by where a number p of the description grows, per relative
+        change of it: 0.01 of it is the change for 1 %.
+
+        ``paths``   numbers of the description by their paths, as for edited(); "materials.*.E" grows all moduli alike
+        ``poses``, ``loads``, ``theory``, ``threads``, ``units``  as for displacement()
+        ``step``    relative, of the central difference
+
+        Returns (n, 6, number of paths), or (6, number of paths) for one pose. A number that is 0 has the derivative 0.
+        """
+        if not 0 < step < 0.5:
+            raise InputError(f"step = {step}: give a relative step above 0 and below 0.5")
+        columns = []
+        for path in [paths] if isinstance(paths, str) else paths:
+            more, less = (self.edited(path, 1 + s, "multiply").displacement(
+                poses, loads, theory=theory, threads=threads, units=units) for s in (step, -step))
+            columns.append((more - less) / (2 * step))
+        return np.stack(columns, axis=-1)
 
 
 class Frame(Subject):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import csv
 import functools
-import html
+import io
 import json as _json
 from typing import Any, Iterator
 
 import numpy as np
 
+from . import _sheet, notebook
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -26,8 +28,9 @@ class Result:
     json: str
     report: str = dataclasses.field(default="", compare=False)
 
-    #: the member of the JSON that is a table, for rows() and to_dataframe()
+    #: the member of the JSON that is a table, for rows() and to_dataframe(); and who draws it
     table = ""
+    drawing = ""
 
     @functools.cached_property
     def content(self) -> dict[str, Any]:
@@ -50,9 +53,12 @@ class Result:
 
     def to_dataframe(self):
         """rows() as a pandas.DataFrame. Needs pandas."""
-        import pandas
+        return _sheet.pandas().DataFrame(self.rows())
 
-        return pandas.DataFrame(self.rows())
+    def plot(self, figure: Any = None):
+        """Its picture, a matplotlib Figure in the style of the program's figures: ``r.plot().savefig("r.pdf")``. With
+        ``figure`` it is drawn there: ``r.plot(pyplot.figure())``, for a window. ImportError without matplotlib."""
+        return notebook.drawn(self, figure)
 
     def save(self, path) -> None:
         """Writes the JSON, which `deflect report` and functions that take results read."""
@@ -67,7 +73,7 @@ class Result:
         return f"<{type(self).__name__}: {first}>"
 
     def _repr_html_(self) -> str:
-        return f"<pre style='line-height:1.25'>{html.escape(str(self))}</pre>"
+        return notebook.html_of(self)
 
 
 def _flat(row: Any, before: str = "") -> Iterator[tuple[str, Any]]:
@@ -78,39 +84,60 @@ def _flat(row: Any, before: str = "") -> Iterator[tuple[str, Any]]:
             yield before + name, value
 
 
+@dataclasses.dataclass(frozen=True, repr=False)
 class Comparison(Result):
-    """Of compare(): ``findings``, ``tests``, ``patterns``, ``errors``, ``baseline`` …; rows: the tests."""
+    """Of compare(): ``findings``, ``tests``, ``patterns``, ``errors``, ``baseline`` …; rows: the tests.
 
+    ``readings_csv``  the table of residuals, as `deflect compare --out` writes it
+    """
+
+    readings_csv: str = dataclasses.field(default="", compare=False)
     table = "tests"
+    drawing = "figures.comparison"
+
+    @functools.cached_property
+    def residuals(self) -> dict[str, Any]:
+        """Every measured number: "line" (of the file), "pose" and "component" and "unit" (str), "measured", "predicted",
+        "residual" and its "sigma" of noise and tolerances, (n,) each, in that unit."""
+        rows = list(csv.DictReader(io.StringIO(self.readings_csv)))
+        words = ("pose", "component", "unit")
+        return {name: [r[name] for r in rows] if name in words else np.array([float(r[name]) for r in rows])
+                for name in (rows[0] if rows else ())}
 
 
 class Validity(Result):
     """Of compare(validation=True): ``sentence``, ``agreement``, ``channels``, ``domain`` …; rows: the channels."""
 
     table = "channels"
+    drawing = "figures_more.validity"
 
 
 class Diagnosis(Result):
     """Of diagnose(): ``verdict``, ``missing``, ``candidates`` …; rows: the candidates."""
 
     table = "candidates"
+    drawing = "figures.diagnosis"
 
 
 class Fit(Result):
     """Of fit(): ``parameters``, ``correlation``, ``before``, ``after`` …; rows: the parameters."""
 
     table = "parameters"
+    drawing = "figures_more.fit"
 
 
 class Prediction(Result):
     """Of predict(): ``numbers`` with their intervals; rows: these."""
 
     table = "numbers"
+    drawing = "figures_more.prediction"
 
 
 class Plan(Result):
     """Of plan(): the chosen readings, which are the rows; with ``before`` what the ``given`` campaign and a ``better`` one
     tell, and rows: the effects by how large they must be to show in the given one."""
+
+    drawing = "figures_more.plan"
 
     def rows(self) -> list[dict[str, Any]]:
         table = self.content["given"]["detectable"] if "given" in self.content else self.content["readings"]
@@ -121,16 +148,20 @@ class History(Result):
     """Of history(): one row for each version."""
 
     table = "versions"
+    drawing = "figures.history"
 
 
 class Validation(Result):
     """Of validate(): rows: a point and a load each."""
 
     table = "points"
+    drawing = "figures.validation"
 
 
 class StiffnessMap(Result):
     """Of map(): ``arrays`` in the order of ``grid``."""
+
+    drawing = "figures.stiffness_map"
 
     @functools.cached_property
     def columns(self) -> dict[str, np.ndarray]:
@@ -150,6 +181,8 @@ class StiffnessMap(Result):
 
 class FrameSolution(Result):
     """Of Frame.solve(): ``cases`` by name. Tables as arrays: displacements(), reactions(), members()."""
+
+    drawing = "figures_more.frame"
 
     def _table(self, case: str | None, what: str, name: str) -> dict[str, Any]:
         cases = self.content["cases"]
@@ -198,5 +231,3 @@ def progress_of(progress: Any, what: str) -> Any:
         print(f"\r{what} {100 * share:3.0f} %", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
 
     return tell
-
-

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import html
 import json as _json
 from typing import Any
 
 import numpy as np
 
-from . import _core
+from . import _core, _sheet, notebook
 from .units import displacement_from_mm, stiffness_from_mm
 
 
@@ -93,9 +92,14 @@ class Solution:
 
     def to_dataframe(self):
         """rows() as a pandas.DataFrame. Needs pandas."""
-        import pandas
+        return _sheet.pandas().DataFrame(self.rows())
 
-        return pandas.DataFrame(self.rows())
+    drawing = "figures.solution"
+
+    def plot(self, figure: Any = None):
+        """Displacement by every theory, what they differ by, and the shares of the parts: a matplotlib Figure, as
+        Result.plot()."""
+        return notebook.drawn(self, figure)
 
     def __eq__(self, other: Any) -> bool:
         return isinstance(other, Solution) and self.json == other.json
@@ -112,4 +116,4 @@ class Solution:
         return f"<Solution: displacement {np.array2string(self.displacement, precision=6)}>"
 
     def _repr_html_(self) -> str:
-        return f"<pre style='line-height:1.25'>{html.escape(self.report)}</pre>"
+        return notebook.html_of(self)
