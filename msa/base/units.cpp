@@ -215,6 +215,8 @@ std::string format_quantity(double value, Dimension dimension) {
 }
 
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
+  constexpr std::size_t longest = 200;  // a longer word is no misspelling, and the distance would take long
+  if (word.size() > longest) return "";
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
   for (const std::string& candidate : known) {

@@ -42,11 +42,12 @@ void check_controller(const Mechanism& m, const YamlNode& tree, const std::strin
 void check_tolerances(const Mechanism& m, const YamlNode& tree, const std::string& origin) {
   if (m.tolerances.numbers.empty()) return;
   const Mechanism each_leg = resolved(m);
-  for (const auto& [key, value] : m.tolerances.numbers) {
+  for (const auto& number : m.tolerances.numbers) {
+    const std::string& key = number.first;
     const int line = tree.child("tolerances")->child(key)->line;
     told_at<InputError>([&] { return fmt::format("{}:{}: tolerances.{}: ", origin, line, key); },
                         [&] {
-                          check_tolerance(each_leg, key, value);
+                          check_tolerance(each_leg, key, number.second);
                           return true;
                         });
   }
@@ -54,7 +55,9 @@ void check_tolerances(const Mechanism& m, const YamlNode& tree, const std::strin
 
 /// Sensors in legs name parts, which only the whole description knows.
 void complete_sensors(Mechanism& m, const YamlNode& tree, const std::string& origin) {
-  for (auto& [name, sensor] : m.sensors) {
+  for (auto& named : m.sensors) {
+    const std::string& name = named.first;
+    auto& sensor = named.second;
     const YamlNode* at = tree.child("sensors") ? tree.child("sensors")->child(name) : nullptr;
     const int line = at ? at->line : 0;
     told_at<InputError>(

@@ -196,6 +196,7 @@ TEST(Units, NearestWordIsNearOrNone) {
   EXPECT_EQ(nearest("steal", {"steel", "aluminium"}), "steel");
   EXPECT_EQ(nearest("xyzzy", {"steel", "aluminium"}), "");
   EXPECT_EQ(nearest("steel", {}), "");
+  EXPECT_EQ(nearest(std::string(200, 'a') + "b", {std::string(200, 'a')}), "");  // no name is as long
 }
 
 }  // namespace

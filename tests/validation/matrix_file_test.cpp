@@ -90,6 +90,16 @@ TEST(MatrixFile, RoundingCoversWhatPrintingLost) {
   }
 }
 
+TEST(MatrixFile, AZeroMayHaveAnyExponent) {
+  for (const char* zero : {"0.00e-2147483648", "0.00e2147483647", "0e-99999999999"}) {
+    const PrintedMatrix K = parse_matrix(std::string(zero) + " 2.5\n", "K.txt");
+    EXPECT_EQ(K.values, Eigen::RowVector2d(0, 2.5)) << zero;
+    EXPECT_EQ(K.rounding(1), 0.005) << zero;
+    EXPECT_TRUE(K.rounding.allFinite() && K.rounding(0) >= 0) << zero;
+    EXPECT_TRUE(parse_matrix(zero, "K.txt").rounding.allFinite()) << zero;
+  }
+}
+
 TEST(MatrixFile, TwistsAreColumnsHoweverTheyAreWritten) {
   const test::Folder folder;
   std::ofstream(folder / "rows.csv") << "1,2,3,4,5,6\n7,8,9,10,11,12\n";
@@ -152,6 +162,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"WordInTheFirstRow", "1,2,3x,4,5,6\n" + five, "1: column 3: '3x'"},
         BadFile{"EmptyCell", row + "1,,3,4,5,6\n" + five, "2: column 2: the cell is empty"},
         BadFile{"Expression", "1,2,3,4,5,2*pi\n" + five, "'2*pi' is not a finite number"},
+        BadFile{"EmptyQuotes", "\"\" 1,5 2,5\n", "the matrix is 1×2"},
+        BadFile{"NumbersOfRowsAlone", ",a\n1\n2\n", "the matrix is 2×1"},
         BadFile{"Complex", "1+2i,2,3,4,5,6\n" + five, "'1+2i' is not a finite number"},
         BadFile{"FiveRows", five, "the matrix is 5×6, a stiffness is 6×6"},
         BadFile{"SevenRows", five + row + row, "the matrix is 7×6"},
@@ -170,7 +182,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"Binary", std::string("\x93NUMPY\0\1", 8), "binary"},
         BadFile{"OpenBracket", "K = [1 2 3; 4 5 6", "not closed"},
         BadFile{"TwoMatrices", "K = [1 2; 3 4]; J = [1 2];", "follows the matrix"},
-        BadFile{"ThreeDeep", "[[[1, 2]]]", "three deep"}, BadFile{"BadFactor", "2x *\n1 2\n", "'2x ' is not a finite"},
+        BadFile{"ThreeDeep", "[[[1, 2]]]", "three deep"},
+        BadFile{"LargeFactor", "1e101 *\n1 2\n", "the factor 1e+101 is too large"},
+        BadFile{"LargeProduct", "1e60 *\n1 1e50\n", "2: column 2: 1e+50 times the factor 1e+60 is too large"},
+        BadFile{"BadFactor", "2x *\n1 2\n", "'2x ' is not a finite"},
         BadFile{"NotJson", "{\"K\": [NaN]}", "not valid JSON: JSON has no NaN"},
         BadFile{"OtherJson", "{\"displacement\": [1]}", "there is no 'analytic' on the way"},
         BadFile{"JsonOfNumber", "{\"analytic\": {\"stiffness\": 1}}", "is not a matrix"},

@@ -152,12 +152,6 @@ std::string site_of(const PlacedEffect& p) {
   return p.leg ? fmt::format("leg {}", *p.leg) : nth(scope_names, p.effect->scope);
 }
 
-VectorX start_values(const Effect& e) {
-  VectorX out(std::ssize(e.parameters));
-  for (std::size_t i = 0; i < e.parameters.size(); ++i) out(as_index(i)) = e.parameters[i].start;
-  return out;
-}
-
 DependentMechanism with_effect(const DependentMechanism& m, const Effect& e, const VectorX& given,
                                std::optional<int> leg, std::size_t first) {
   return with_effect_in(m, e, given, leg, first);
@@ -204,14 +198,6 @@ std::vector<PlacedEffect> places_of(const Effect& e, const subject::Subject& sub
   for (int leg = 1; leg <= subject.legs(); ++leg)
     if (!why_not(e, subject, leg)) out.push_back({&e, leg});
   return out;
-}
-
-void require_in_bounds(const std::string& given, const Effect& e, const EffectParameter& p, double value) {
-  if (p.low <= value && value <= p.high) return;
-  throw InputError(
-      fmt::format("{}: the value must lie between {:g} and {:g} ({}). For another range, copy the effect with 'deflect "
-                  "effects {} --yaml', rename it and pass its file with --effects",
-                  given, p.low, p.high, p.about, e.name));
 }
 
 }  // namespace deflect::effects

@@ -19,6 +19,10 @@ namespace {
 using Eigen::Index;
 
 constexpr double largest_number = 1e100;
+constexpr int largest_power = 100;  ///< of ten: a zero may have any exponent, its rounding has none beyond this
+
+/// Of a power of ten as text: beyond it only zero is a double.
+constexpr int largest_exponent = 1'000'000;
 
 /// Fewer digits than these are taken for round numbers typed by hand, not for a bad print.
 constexpr int fewest_digits = 3;
@@ -64,6 +68,7 @@ Number number(const MatrixRow& row, std::size_t column, const MatrixText& layout
   if (e < text.size()) {
     const std::size_t from = text[e + 1] == '+' ? e + 2 : e + 1;
     std::from_chars(text.data() + from, text.data() + text.size(), n.last);
+    n.last = std::clamp(n.last, -largest_exponent, largest_exponent);
   }
   if (const auto point = mantissa.find('.'); point != mantissa.npos)
     n.last -= static_cast<int>(mantissa.size() - point - 1);
@@ -86,12 +91,12 @@ bool is_header(const std::vector<MatrixRow>& rows) {
   return first.size() > 1 && std::none_of(first.begin() + 1, first.end(), [](const auto& c) { return number_like(c); });
 }
 
-/// A first column of names, or of row numbers below a header that has no cell for it.
+/// A first column of names, or of row numbers below a header that has no cell for it, beside others.
 bool is_name_column(const std::vector<MatrixRow>& rows, const MatrixRow* header) {
+  if (std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.cells.size() < 2; })) return false;
   std::vector<std::string> first;
   for (const MatrixRow& row : rows) first.push_back(row.cells.front());
-  if (std::none_of(first.begin(), first.end(), [](const auto& c) { return number_like(c); }))
-    return std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.cells.size() > 1; });
+  if (std::none_of(first.begin(), first.end(), [](const auto& c) { return number_like(c); })) return true;
   return header && counts_up(first) &&
          (header->cells.front().empty() || header->cells.size() + 1 == rows.front().cells.size());
 }
@@ -130,6 +135,8 @@ PrintedMatrix numbers_of(MatrixText layout, const std::string& file) {
       throw InputError(fmt::format("{}:{}: the row has {} numbers where the first has {}; {}", file, row.line,
                                    row.cells.size(), columns, sizes_remedy(layout.rows)));
   }
+  if (!(std::abs(layout.factor) <= largest_number))
+    throw InputError(fmt::format("{}: the factor {:g} is too large for a matrix", file, layout.factor));
   int digits = fewest_digits, last = numbers.front().last;
   double largest = 0;
   for (const Number& n : numbers) {
@@ -146,7 +153,11 @@ PrintedMatrix numbers_of(MatrixText layout, const std::string& file) {
     const double value = numbers[k].value;
     const int significant = value == 0 ? last : leading(value) - digits + 1;
     out.values(i, j) = layout.factor * value;
-    out.rounding(i, j) = std::abs(layout.factor) * 0.5 * std::pow(10.0, std::max(significant, last));
+    if (!(std::abs(out.values(i, j)) <= largest_number))
+      throw InputError(fmt::format("{}:{}: column {}: {:g} times the factor {:g} is too large for a stiffness", file,
+                                   nth(layout.rows, i).line, j + 1, value, layout.factor));
+    const int power = std::min(std::max(significant, last), largest_power);
+    out.rounding(i, j) = std::abs(layout.factor) * 0.5 * std::pow(10.0, power);
   }
   return out;
 }

@@ -138,7 +138,7 @@ bool commas_are_decimal(const std::vector<std::pair<std::string_view, std::size_
     const std::vector<std::string> words = split(line, ' ');
     several = several || words.size() > 1;
     for (const std::string& word : words)
-      if (std::count(word.begin(), word.end(), ',') > 1 || word.front() == ',' || word.back() == ',') return false;
+      if (std::count(word.begin(), word.end(), ',') > 1 || word.starts_with(',') || word.ends_with(',')) return false;
   }
   return several;
 }

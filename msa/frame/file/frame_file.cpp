@@ -24,13 +24,14 @@ namespace {
 /// Each value of a key must be a tolerance of some number.
 void check_tolerances(const FrameDescription& f, const YamlNode& tree, const std::string& origin) {
   const YamlNode* given = tree.child("tolerances");
-  for (const auto& [key, value] : f.tolerances.numbers) {
+  for (const auto& number : f.tolerances.numbers) {
+    const std::string& key = number.first;
     const YamlNode* node = given ? given->child(key) : nullptr;
     const auto place = [&] {
       return fmt::format("{}{}: tolerances.{}: ", origin, node && node->line > 0 ? fmt::format(":{}", node->line) : "",
                          key);
     };
-    told_at<InputError>(place, [&] { require_tolerance(f, key, value); });
+    told_at<InputError>(place, [&] { require_tolerance(f, key, number.second); });
   }
 }
 
