@@ -66,7 +66,8 @@ fs::path built_in(const std::string& name, const BuiltIn& kind, const std::vecto
       return file;
   if (name.find('/') != name.npos || name.ends_with(".yaml") || fs::exists(name)) return name;
   if (is_among(name, others)) throw InputError(fmt::format("'{}' is {}", name, kind.other));
-  const std::string hint = nearest(name, names);
+  std::string hint = nearest(name, names);
+  if (hint.empty()) hint = nearest(name, others);
   throw InputError(fmt::format("there is no {} '{}'{}: name a built-in one ({}) or a file", kind.what, name,
                                hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), fmt::join(names, ", ")));
 }

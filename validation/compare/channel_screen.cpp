@@ -3,20 +3,46 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "msa/frame/file/frame_description.h"
+#include "validation/recording/other_quantities.h"
 
 namespace deflect::compare {
 namespace {
 
 constexpr double share_of_predicted = 0.01, part_taken_away = 0.4, worse_by = 5;
 constexpr double beyond_chance = 30, largest_factor = 2;
+constexpr double most_of_misfit = 0.8, far_less = 1.0 / 36;
 
 bool has_free_zero(const subject::Subject& subject, const std::string& sensor) {
   const frame::FrameSensor* found = subject.frame() ? find(subject.frame()->sensors, sensor) : nullptr;
   return found && found->free_zero;
+}
+
+/// Of these sensors in place of those that the measurements have: by reading, after the first six numbers.
+std::optional<std::vector<VectorX>> predicted_by(const subject::Subject& subject, measurement::Measurements m,
+                                                 const std::vector<recording::OtherQuantity>& all,
+                                                 const measurement::SensorChannel& channel, int threads) {
+  frame::FrameDescription f = *subject.frame();
+  m.instruments.sensors.clear();
+  for (const recording::OtherQuantity& each : all) {
+    f.sensors.emplace_back(each.correction.id, each.shown);
+    m.instruments.sensors.push_back({each.correction.id, channel.quantity, channel.sigma});
+  }
+  for (measurement::Reading& r : m.readings) r.sensors.assign(all.size(), std::nullopt);
+  const subject::Subject with(std::move(f));
+  return outcome_of([&] { return with.stand(m)->predict(m, {}, {threads}); }).value;
+}
+
+/// χ² of numbers y against p, each off by e, from their means where the zero is free.
+double chi2_of(const VectorX& y, const VectorX& p, const VectorX& e, bool free_zero) {
+  const VectorX weight = e.cwiseAbs2().cwiseInverse();
+  const VectorX off = y - p;
+  const double zero = free_zero ? off.dot(weight) / weight.sum() : 0;
+  return (off.array() - zero).square().matrix().dot(weight);
 }
 
 }  // namespace
@@ -74,6 +100,46 @@ bool ChannelScreen::follows(std::size_t channel, double factor) const {
   if (has_free_zero(subject_, study_->data->instruments.sensors[channel - 6].name) && weight > 0)
     zz -= z1 * z1 / weight, zp -= z1 * p1 / weight;
   return 2 * zp - zz > beyond_chance && zp < largest_factor * zz && zz < largest_factor * zp;
+}
+
+std::vector<std::pair<recording::Correction, double>> ChannelScreen::other_quantities(const Comparison& c) const {
+  std::vector<double> misfit(scale_.size(), 0);
+  for (std::size_t i = 0; i < study_->values.size(); ++i)
+    if (const double e = deviation_(as_index(i)); e > 0)
+      misfit[study_->values[i].channel] += std::pow(c.residual(as_index(i)) / e, 2);
+  const auto worst = std::max_element(misfit.begin(), misfit.end());
+  const auto channel = as_size(worst - misfit.begin());
+  std::vector<std::pair<recording::Correction, double>> out;
+  if (!subject_.frame() || channel < 6 || *worst < most_of_misfit * std::reduce(misfit.begin(), misfit.end()))
+    return out;
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < study_->values.size(); ++i)
+    if (study_->values[i].channel == channel && deviation_(as_index(i)) > 0) own.push_back(i);
+  const measurement::SensorChannel& sensor = study_->data->instruments.sensors[channel - 6];
+  const auto all = recording::other_quantities(*study_->data, *subject_.frame(), channel - 6);
+  const auto predicted = predicted_by(subject_, *study_->data, all, sensor, threads_);
+  if (!predicted) return out;
+  const bool free_zero = has_free_zero(subject_, sensor.name);
+  const auto n = std::ssize(own);
+  VectorX y(n), p(n), before(n), e(n), noise(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const measurement::MeasuredValue& v = study_->values[nth(own, i)];
+    y(i) = v.value;
+    before(i) = study_->predicted[v.reading](as_index(channel));
+    e(i) = deviation_(as_index(nth(own, i)));
+    noise(i) = c.sigma[nth(own, i)];
+  }
+  const double as_named = chi2_of(y, before, e, free_zero);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    for (Eigen::Index i = 0; i < n; ++i) p(i) = (*predicted)[study_->values[nth(own, i)].reading](as_index(6 + k));
+    const double share = share_of_predicted * p.norm() / std::sqrt(static_cast<double>(n));
+    const double chi2 = chi2_of(y, p, (e.array().square() + share * share).sqrt().matrix(), free_zero);
+    const VectorX near = (noise.array().square() + share * share).sqrt();
+    const double by_following = chi2_of(y, VectorX::Zero(n), near, free_zero) - chi2_of(y, p, near, free_zero);
+    if (chi2 < far_less * as_named && by_following > beyond_chance)
+      out.emplace_back(all[k].correction, chi2 / static_cast<double>(n));
+  }
+  return out;
 }
 
 double ChannelScreen::loss(const recording::Correction& c) const {

@@ -21,6 +21,10 @@ class ChannelScreen {
   /// Else the prediction is nothing, nearly, and any correction that makes nothing of the readings would fit: readings
   /// of a hundredth of another channel are not in µm.
   bool follows(const recording::Correction&) const;
+  /// What the channel that holds most of the misfit may show in place of its own quantity, each with the mean of χ² of
+  /// the channel's numbers then, for which 1 % of what it would read may be off beside noise and tolerances. Those that
+  /// leave less than 1/36 of it and that the readings follow beyond chance; none where no channel holds four fifths.
+  std::vector<std::pair<recording::Correction, double>> other_quantities(const Comparison&) const;
   /// A correction is promising with a loss below this: it takes away 40 % of what is beyond noise and tolerances.
   double promising() const { return promising_; }
   /// Losses that differ by less are alike.

@@ -17,6 +17,7 @@
 #include "validation/compare/held_out.h"
 #include "validation/compare/outliers.h"
 #include "validation/compare/residual_study.h"
+#include "validation/compare/shown_instead.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
@@ -275,10 +276,10 @@ std::vector<VectorX> supposed_shape(const ResidualStudy& known, const ResidualSt
 /// The account of corrected data. The deformed shape takes longest: at first it is supposed from that of the recorded
 /// data. Where the corrected ones are not right then, even if it is off by a fifth and half of what else speaks against
 /// them is its doing, they are not.
-std::optional<MisfitAccount> compared_again(const Comparison& recorded, const measurement::Measurements& data,
-                                            const ComparisonOptions& o, const parallel::Work& work,
-                                            const CanBeRight& can_be_right) {
-  Comparing comparing(*recorded.study.subject, data, o, work);
+std::optional<MisfitAccount> compared_again(const Comparison& recorded, const subject::Subject& subject,
+                                            const measurement::Measurements& data, const ComparisonOptions& o,
+                                            const parallel::Work& work, const CanBeRight& can_be_right) {
+  Comparing comparing(subject, data, o, work);
   MisfitAccount at_best;
   at_best.numbers = static_cast<double>(comparing.c.numbers);
   at_best.share = comparing.c.all.measured > 0 ? comparing.c.all.rmse / comparing.c.all.measured : 0;
@@ -314,10 +315,16 @@ Comparison compare(const subject::Subject& subject, const measurement::Measureme
   if (!compared) throw ModelError(compared.why + within_reach_hint(subject, data), compared.cause);
   Comparison& c = *compared;
   if (o.as_recorded) return std::move(c);
+  const ComparedAs again = [&](const subject::Subject& as_read, const measurement::Measurements& other,
+                               const CanBeRight& can_be_right) {
+    return compared_again(c, as_read, other, o, work.quiet(), can_be_right);
+  };
   c.mistakes = recording_mistakes(subject, c, work.threads,
                                   [&](const measurement::Measurements& other, const CanBeRight& can_be_right) {
-                                    return compared_again(c, other, o, work.quiet(), can_be_right);
+                                    return again(subject, other, can_be_right);
                                   });
+  if (!is_mistaken(c))
+    if (auto shown = shown_instead(subject, c, work.threads, again)) c.mistakes.insert(c.mistakes.begin(), *shown);
   return std::move(c);
 }
 

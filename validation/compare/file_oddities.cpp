@@ -1,12 +1,15 @@
 #include "validation/compare/file_oddities.h"
-#include "msa/base/index.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
+
+#include "msa/base/index.h"
+#include "validation/measurement/column_names.h"
 
 namespace deflect::compare {
 namespace {
@@ -27,30 +30,40 @@ bool temperature_varies(const measurement::Measurements& data) {
          });
 }
 
-/// Root mean squares by component of what was measured, of what is predicted there, and how many there are.
-struct ByComponent {
-  std::array<double, 6> measured{}, predicted{}, sigma{};
-  std::array<std::size_t, 6> count{};
+/// Root mean squares by channel of what was measured, of what is predicted there, and how many there are.
+struct ByChannel {
+  std::vector<double> measured, predicted, sigma;
+  std::vector<std::size_t> count;
+  std::vector<measurement::Quantity> quantity;
 
-  explicit ByComponent(const Comparison& c) {
+  explicit ByChannel(const Comparison& c)
+      : measured(6 + c.study.data->instruments.sensors.size(), 0),
+        predicted(measured),
+        sigma(measured),
+        count(measured.size(), 0),
+        quantity(measured.size(), measurement::Quantity::length) {
     for (std::size_t i = 0; i < c.study.values.size(); ++i) {
       const measurement::MeasuredValue& v = c.study.values[i];
-      if (!v.of_tool_point()) continue;
       const double p = c.study.predicted[v.reading](as_index(v.channel));
       measured[v.channel] += v.value * v.value;
       predicted[v.channel] += p * p;
       sigma[v.channel] += c.sigma[i] * c.sigma[i];
+      quantity[v.channel] = v.quantity;
       ++count[v.channel];
     }
-    for (std::size_t k = 0; k < 6; ++k)
+    for (std::size_t k = 0; k < count.size(); ++k)
       for (auto* sum : {&measured, &predicted, &sigma})
         (*sum)[k] = std::sqrt((*sum)[k] / static_cast<double>(std::max<std::size_t>(1, count[k])));
   }
 };
 
+std::string column_of(const measurement::Measurements& data, std::size_t channel) {
+  return channel < 6 ? measured_names[channel] : measurement::sensor_column(data.instruments.sensors[channel - 6]);
+}
+
 void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
   const measurement::Measurements& data = *c.study.data;
-  const ByComponent by(c);
+  const ByChannel by(c);
   const bool measured = std::any_of(c.study.values.begin(), c.study.values.end(),
                                     [](const measurement::MeasuredValue& v) { return v.value != 0; });
   const bool loaded = !c.study.loads.isZero(0);
@@ -67,13 +80,13 @@ void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
                                 quantity_of_errors(c.study.values)))});
     return;
   }
-  for (std::size_t k = 0; k < 6; ++k)
+  for (std::size_t k = 0; k < by.count.size(); ++k)
     if (by.count[k] >= least_numbers && by.measured[k] == 0 && by.predicted[k] > 5 * by.sigma[k])
       out.push_back(
-          {{fmt::format("zero_column_{}", measured_names[k])},
+          {{fmt::format("zero_column_{}", column_of(data, k))},
            fmt::format("{} is 0 in every reading, where {} rms are predicted: was its sensor connected? Leave "
                        "the column away if it was not measured",
-                       measured_names[k], size_words(by.predicted[k], measurement::displacement_quantity(k)))});
+                       column_of(data, k), size_words(by.predicted[k], by.quantity[k]))});
 }
 
 /// Whether readings are written more finely than they scatter, so that chance does not make them alike: most of them
@@ -110,6 +123,22 @@ void add_identical_rows(const Comparison& c, std::vector<RecordingMistake>& out)
                              "twice is not two readings; remove the copies, or number the readings in a column "
                              "sequence if they were taken",
                              copies, line, of)});
+}
+
+/// A number that was read more than once, with its σ; that of a sensor with what errors of the load do to it.
+struct Replicate {
+  double value, sigma;
+  std::size_t line;
+};
+
+std::optional<Replicate> replicate_of(const Comparison& c, std::size_t reading, std::size_t channel) {
+  const measurement::Measurements& data = *c.study.data;
+  const measurement::Reading& r = data.readings[reading];
+  const std::optional<double>& value = channel < 6 ? r.displacement[channel] : r.sensors[channel - 6];
+  const std::optional<double>& sigma = channel < 6 ? r.sigma_u : data.instruments.sensors[channel - 6].sigma;
+  if (!value || !sigma) return std::nullopt;
+  const double load = channel < 6 ? 0 : c.study.subject->load_tolerance() * *value;
+  return Replicate{*value, std::hypot(*sigma, load), r.line};
 }
 
 /// "in µm" where σ is as many times what it should be.
@@ -181,31 +210,34 @@ std::vector<RecordingMistake> sigma_oddities(const Comparison& c) {
 
 std::vector<RecordingMistake> contradictions(const Comparison& c) {
   const measurement::Measurements& data = *c.study.data;
+  const std::size_t sensors = data.instruments.sensors.size();
   std::vector<RecordingMistake> out;
   std::size_t more = 0;
   constexpr std::size_t most = 5;
   for (const std::vector<std::size_t>& group : measurement::replicates(data))
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::size_t low = group[0], high = group[0];
-      for (const std::size_t i : group) {
-        const auto& u = data.readings[i].displacement;
-        if (!u[k]) continue;
-        if (!data.readings[low].displacement[k] || *u[k] < *data.readings[low].displacement[k]) low = i;
-        if (!data.readings[high].displacement[k] || *u[k] > *data.readings[high].displacement[k]) high = i;
-      }
-      const measurement::Reading &a = data.readings[low], &b = data.readings[high];
-      if (!a.sigma_u || !b.sigma_u || !a.displacement[k] || !b.displacement[k]) continue;
-      const double apart = *b.displacement[k] - *a.displacement[k];
-      if (!(apart > 10 * std::hypot(*a.sigma_u, *b.sigma_u))) continue;
+    for (std::size_t k = 0; k < 3 + sensors; ++k) {
+      const std::size_t channel = k < 3 ? k : k + 3;
+      std::optional<Replicate> low, high;
+      for (const std::size_t i : group)
+        if (const auto each = replicate_of(c, i, channel)) {
+          if (!low || each->value < low->value) low = each;
+          if (!high || each->value > high->value) high = each;
+        }
+      if (!low) continue;
+      const double apart = high->value - low->value, deviation = std::hypot(low->sigma, high->sigma);
+      if (!(apart > 10 * deviation)) continue;
       if (out.size() == most) {
         ++more;
         continue;
       }
+      const measurement::Quantity quantity =
+          channel < 6 ? measurement::Quantity::length : data.instruments.sensors[channel - 6].quantity;
       out.push_back({{"contradiction"},
-                     fmt::format("lines {} and {} contradict each other: u{}_mm differs by {:.3g} at the same pose and "
-                                 "load, {:.0f} of its standard deviations",
-                                 std::min(a.line, b.line), std::max(a.line, b.line), "xyz"[k], 1e3 * apart,
-                                 apart / std::hypot(*a.sigma_u, *b.sigma_u)),
+                     fmt::format("lines {} and {} contradict each other: {} differs by {:.3g} at the same {}load, "
+                                 "{:.0f} of its standard deviations",
+                                 std::min(low->line, high->line), std::max(low->line, high->line),
+                                 column_of(data, channel), measurement::row_of(quantity).per_SI * apart,
+                                 data.instruments.stationary ? "" : "pose and ", apart / deviation),
                      false});
     }
   if (more > 0) out.push_back({{"contradiction"}, fmt::format("{} more such pairs", more), false});

@@ -1,16 +1,41 @@
 #include "validation/compare/outliers.h"
-#include "msa/base/index.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "msa/base/index.h"
+#include "validation/statistics/columns.h"
+
 namespace deflect::compare {
 
-constexpr double limit = 4.5;
+namespace {
 
-Outliers gross_outliers(const ResidualStudy& s, const statistics::PartedColumns& A, const std::vector<double>& sigma,
-                        const VectorX& residual, const MatrixX& patterns, int threads) {
+constexpr double gross = 4.5;
+constexpr Eigen::Index fewest_rows = 4;  // under a load, for its own share in a channel
+
+/// What any linear effect does to the readings of a subject without tool point: each channel answers each load in its
+/// own way. One column for each pair, over the measured numbers.
+MatrixX linear_answers(const ResidualStudy& s) {
+  const Eigen::Index channels = 6 + std::ssize(s.data->instruments.sensors);
+  MatrixX all = MatrixX::Zero(std::ssize(s.values), channels * s.loads.rows());
+  for (std::size_t i = 0; i < s.values.size(); ++i)
+    for (Eigen::Index load = 0; load < s.loads.rows(); ++load)
+      all(as_index(i), load * channels + as_index(s.values[i].channel)) = s.loads(load, as_index(s.values[i].reading));
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index k = 0; k < all.cols(); ++k)
+    if ((all.col(k).array() != 0).count() >= fewest_rows) known.push_back(k);
+  return all(Eigen::all, known);
+}
+
+/// More than chance sets aside: one of ten or more may be, and one in twenty.
+bool many(const std::vector<bool>& aside) {
+  const auto count = as_size(std::count(aside.begin(), aside.end(), true));
+  return 20 * count > aside.size() && !(count == 1 && aside.size() >= 10);
+}
+
+Outliers outliers_beside(const ResidualStudy& s, const statistics::PartedColumns& A, const std::vector<double>& sigma,
+                         const VectorX& residual, const MatrixX& patterns, int threads) {
   const auto without = [&](const std::vector<bool>& aside) {
     return statistics::Uncertainty(A, s.values, sigma, s.predicted, s.subject->load_tolerance(), aside, threads);
   };
@@ -33,11 +58,27 @@ Outliers gross_outliers(const ResidualStudy& s, const statistics::PartedColumns&
     std::nth_element(sorted.begin(), sorted.begin() + as_index(sorted.size() / 2), sorted.end());
     const double typical = sorted[sorted.size() / 2];  // about 1.2 for three Gaussian numbers
     std::vector<bool> next(aside.size());
-    for (std::size_t i = 0; i < worst.size(); ++i) next[i] = worst[i] > limit * std::max(1.0, typical / 1.2);
+    for (std::size_t i = 0; i < worst.size(); ++i) next[i] = worst[i] > gross * std::max(1.0, typical / 1.2);
     if (next == aside) return {std::move(aside), std::move(*uncertainty)};
     aside = next;
   }
   return {aside, without(aside)};
+}
+
+}  // namespace
+
+Outliers gross_outliers(const ResidualStudy& s, const statistics::PartedColumns& A, const std::vector<double>& sigma,
+                        const VectorX& residual, const MatrixX& patterns, int threads) {
+  Outliers found = outliers_beside(s, A, sigma, residual, patterns, threads);
+  if (s.standing->has_tool_point() || !many(found.aside)) return found;
+  std::vector<MatrixX> columns = {linear_answers(s)};
+  if (patterns.cols() > 0) columns.push_back(patterns);
+  const MatrixX all = statistics::side_by_side(columns, residual.size());
+  Outliers fewer = outliers_beside(s, A, sigma, residual, all, threads);
+  return std::count(fewer.aside.begin(), fewer.aside.end(), true) <
+                 std::count(found.aside.begin(), found.aside.end(), true)
+             ? std::move(fewer)
+             : std::move(found);
 }
 
 }  // namespace deflect::compare

@@ -11,6 +11,10 @@ namespace deflect::compare {
 /// readings kept, a component is left that exceeds 4.5 standard deviations of the scatter of the readings; chance does
 /// this to one reading in 50 000. Repeated until nothing changes (at most five times). `A`, `sigma` and `residual`
 /// belong to the study's values, as in uncertainty.h.
+///
+/// Of a subject without tool point more than one reading in twenty that way may be one effect that is missing: a sensor
+/// that shows some of another is off under the loads that move the other, and nowhere else. Then they are looked for
+/// again beside whatever a linear effect can do, and the fewer are set aside.
 struct Outliers {
   std::vector<bool> aside;
   statistics::Uncertainty uncertainty;  ///< of the readings kept

@@ -9,9 +9,11 @@
 
 #include "msa/base/number_words.h"
 #include "msa/base/outcome.h"
+#include "msa/frame/file/frame_description.h"
 #include "validation/compare/channel_screen.h"
 #include "validation/compare/correction_screen.h"
 #include "validation/compare/file_oddities.h"
+#include "validation/compare/shown_instead.h"
 #include "validation/recording/channel_mistakes.h"
 #include "validation/recording/recording_mistakes.h"
 
@@ -133,6 +135,21 @@ std::vector<Tried> promising_channels(const ChannelScreen& screen, const std::ve
   return std::move(out).sorted();
 }
 
+std::vector<Tried> promising_others(const ChannelScreen& screen, const Comparison& c) {
+  std::vector<Tried> out;
+  for (auto& [correction, loss] : screen.other_quantities(c)) out.push_back({std::move(correction), loss});
+  std::stable_sort(out.begin(), out.end(), [](const Tried& a, const Tried& b) { return a.loss < b.loss; });
+  return out;
+}
+
+/// The subject as it is read where sensors show other quantities.
+subject::Subject subject_as_read(const subject::Subject& subject, const recording::Correction& correction) {
+  if (!correction.description) return subject;
+  frame::FrameDescription f = *subject.frame();
+  correction.description(f);
+  return f;
+}
+
 /// Those that do as well as the first from `from` on.
 std::size_t end_of_equals(const std::vector<Tried>& all, std::size_t from, double within) {
   std::size_t to = from + 1;
@@ -142,7 +159,7 @@ std::size_t end_of_equals(const std::vector<Tried>& all, std::size_t from, doubl
 
 class MistakeSearch {
  public:
-  MistakeSearch(const Comparison& c, const MisfitAccount& before, double equal_within, const ComparedAgain& again)
+  MistakeSearch(const Comparison& c, const MisfitAccount& before, double equal_within, const ComparedAs& again)
       : c_(c), before_(before), equal_within_(equal_within), again_(again) {}
 
   /// The best of several are tried on all readings, until one leaves nothing to explain.
@@ -172,11 +189,12 @@ class MistakeSearch {
   void try_one(const std::vector<Tried>& all, std::size_t from, std::size_t to,
                const recording::Correction& correction) {
     const auto compared = outcome_of([&] {
-      return again_(recording::corrected(*c_.study.data, correction), [&](const MisfitAccount& at_best) {
-        const double gain =
-            at_best.left > 0 ? shorter_by(at_best, correction) : std::numeric_limits<double>::infinity();
-        return cures(before_, at_best, correction.fitted, gain);
-      });
+      return again_(subject_as_read(*c_.study.subject, correction), recording::corrected(*c_.study.data, correction),
+                    [&](const MisfitAccount& at_best) {
+                      const double gain =
+                          at_best.left > 0 ? shorter_by(at_best, correction) : std::numeric_limits<double>::infinity();
+                      return cures(before_, at_best, correction.fitted, gain);
+                    });
     });
     if (!compared || !*compared) return;  // the corrected data ask for what the machine cannot do, or cannot be right
     const MisfitAccount& after = **compared;
@@ -203,7 +221,7 @@ class MistakeSearch {
   const Comparison& c_;
   const MisfitAccount& before_;
   const double equal_within_;
-  const ComparedAgain& again_;
+  const ComparedAs& again_;
   std::optional<RecordingMistake> found_;
   double most_ = 0;  // shorter by
   bool right_ = false;
@@ -228,7 +246,9 @@ MisfitAccount account_of(const Comparison& c) {
 }
 
 std::vector<RecordingMistake> recording_mistakes(const subject::Subject& subject, const Comparison& c, int threads,
-                                                 const ComparedAgain& again) {
+                                                 const ComparedAgain& compared) {
+  const ComparedAs again = [&](const subject::Subject&, const measurement::Measurements& data,
+                               const CanBeRight& can_be_right) { return compared(data, can_be_right); };
   std::vector<RecordingMistake> out = file_oddities(c);
   const MisfitAccount before = account_of(c);
   // Where nearly all is misfit it may be the readings that are in another unit than their σ: they are asked first.
@@ -254,6 +274,16 @@ std::vector<RecordingMistake> recording_mistakes(const subject::Subject& subject
   if (out.empty()) out = sigma;
   for (RecordingMistake& each : contradictions(c)) out.push_back(std::move(each));
   return out;
+}
+
+std::optional<RecordingMistake> shown_instead(const subject::Subject& subject, const Comparison& c, int threads,
+                                              const ComparedAs& again) {
+  const MisfitAccount before = account_of(c);
+  if (!subject.frame() || !fits_badly(c, before)) return std::nullopt;
+  const ChannelScreen screen(subject, c, threads);
+  MistakeSearch search(c, before, screen.equal_within(), again);
+  search.look_among(promising_others(screen, c));
+  return search.found();
 }
 
 std::string within_reach_hint(const subject::Subject& subject, const measurement::Measurements& data) {

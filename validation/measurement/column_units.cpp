@@ -110,15 +110,33 @@ const std::vector<ColumnUnit>* units_of(Quantity q) {
   return nullptr;
 }
 
-/// The same of an instrument's column: "probe", "handle.fx".
-std::pair<const std::vector<ColumnUnit>*, std::string> units_of(const std::string& stem, const Instruments& known) {
-  for (const SensorChannel& sensor : known.sensors)
-    if (stem == in_lower_case(sensor.name)) return {units_of(sensor.quantity), sensor_column(sensor)};
-  for (const std::string& point : known.load_points)
-    for (std::size_t i = 0; i < 6; ++i)
-      if (const std::string name = load_column(point, i); stem == in_lower_case(name.substr(0, name.rfind('_'))))
-        return {i < 3 ? &force_units : &moment_units, name};
+/// The same of an instrument's column: "probe", "handle.fx". Names that differ by upper and lower case alone are told
+/// apart where they are written as they are.
+std::pair<const std::vector<ColumnUnit>*, std::string> units_of(const std::string& stem, std::string_view written,
+                                                                const Instruments& known) {
+  for (const bool exactly : {true, false}) {
+    const auto is = [&](const std::string& name) {
+      return exactly ? written.substr(0, stem.size()) == name && stem.size() == name.size()
+                     : stem == in_lower_case(name);
+    };
+    for (const SensorChannel& sensor : known.sensors)
+      if (is(sensor.name)) return {units_of(sensor.quantity), sensor_column(sensor)};
+    for (const std::string& point : known.load_points)
+      for (std::size_t i = 0; i < 6; ++i)
+        if (const std::string name = load_column(point, i); is(name.substr(0, name.rfind('_'))))
+          return {i < 3 ? &force_units : &moment_units, name};
+  }
   return {nullptr, ""};
+}
+
+/// The load case of a column "load.snow".
+std::optional<std::string> load_case_of(std::string_view written, const Instruments& known) {
+  for (const bool exactly : {true, false})
+    for (const std::string& load_case : known.load_cases)
+      if (const std::string name = "load." + load_case;
+          exactly ? written == name : in_lower_case(written) == in_lower_case(name))
+        return name;
+  return std::nullopt;
 }
 
 /// The units of a stem, and the name that goes with the first of them.
@@ -147,8 +165,7 @@ std::optional<NamedColumn> named_column(std::string_view written, std::string_vi
   for (const char* name : {"pose", "sequence"})
     if (lower == name) return NamedColumn{name, ""};
   if (is_note(lower)) return NamedColumn{lower, ""};
-  for (const std::string& load_case : known.load_cases)
-    if (written == "load." + load_case) return NamedColumn{std::string(written), ""};
+  if (auto load_case = load_case_of(written, known)) return NamedColumn{std::move(*load_case), ""};
   auto [stem, own] = stem_and_unit(written);
   unit = trimmed(without_brackets(trimmed(unit)));
   if (unit == "-") unit = {};
@@ -157,7 +174,7 @@ std::optional<NamedColumn> named_column(std::string_view written, std::string_vi
   std::string name;
   const ColumnUnit* found = nullptr;
   const std::vector<ColumnUnit>* units = nullptr;
-  std::tie(units, name) = units_of(stem, known);
+  std::tie(units, name) = units_of(stem, written, known);
   if (units) {
     // An instrument's name comes first: a sensor may be called q1.
   } else if (is_joint(stem)) {

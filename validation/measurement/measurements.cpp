@@ -38,6 +38,8 @@ bool says_not_measured(std::string_view cell) {
   return std::find(std::begin(words), std::end(words), lower) != std::end(words);
 }
 
+bool is_dash(std::string_view cell) { return cell == "-" || cell == "--" || cell == "–" || cell == "—"; }
+
 class Reader {
  public:
   Reader(const CsvTable& table, const std::string& origin, const Instruments& known, bool plan)
@@ -72,12 +74,12 @@ class Reader {
       r.sensors.push_back(measured(row, s.column));
       if (r.sensors.back()) *r.sensors.back() /= row_of(s.sensor.quantity).per_SI;
     }
-    for (const LoadCaseColumn& c : columns_.load_cases) r.factors.push_back(measured(row, c.column).value_or(0));
+    for (const LoadCaseColumn& c : columns_.load_cases) r.factors.push_back(load_or_none(row, c.column));
     if (!columns_.load_points.empty()) r.at_tool = r.load;
     for (const LoadPointColumns& p : columns_.load_points) {
       r.at_points.push_back(Vector6::Zero());
       for (std::size_t i = 0; i < 6; ++i)
-        if (p.load[i]) r.at_points.back()(as_index(i)) = measured(row, p.load[i]).value_or(0) / (i < 3 ? 1 : 1e3);
+        if (p.load[i]) r.at_points.back()(as_index(i)) = load_or_none(row, *p.load[i]) / (i < 3 ? 1 : 1e3);
     }
     r.sigma_u = sigma(row, columns_.sigma_u, 1e3);
     r.sigma_th = sigma(row, columns_.sigma_th, 1);
@@ -201,6 +203,18 @@ class Reader {
       return std::nullopt;
     }
     return number(row, *column);
+  }
+
+  /// Of a load beside others an empty cell or a dash says that there is none; no number says nothing.
+  double load_or_none(std::size_t row, const ReadColumn& column) {
+    const std::string_view cell = table_.text(row, column.index);
+    if (cell.empty() || is_dash(cell)) return 0;
+    if (says_not_measured(cell))
+      table_.refuse(row, column.index,
+                    fmt::format("'{}' is no load: write its number, 0 where there was none, or leave the row away "
+                                "where nobody knows it",
+                                excerpt(cell)));
+    return number(row, column);
   }
 
   std::optional<double> sigma(std::size_t row, const std::optional<ReadColumn>& column, double per_SI) {

@@ -9,6 +9,10 @@
 
 #include "validation/measurement/measurements.h"
 
+namespace deflect::frame {
+struct FrameDescription;
+}
+
 namespace deflect::recording {
 
 /// Six numbers that are six others, each times a factor: out(k) = factor[k] · in(from[k]).
@@ -30,6 +34,7 @@ struct Correction {
   std::function<void(measurement::PoseGroup&)> pose;            ///< empty: poses are as recorded
   std::function<void(measurement::Measurements&)> readings;     ///< of sensors and of loads at nodes; or empty
   std::vector<std::pair<std::size_t, double>> scaled_channels;  ///< by channel: the factor that `readings` applies
+  std::function<void(frame::FrameDescription&)> description;    ///< of what sensors really show; or empty
   bool sigma_too = true;                                        ///< a unit of displacements is the unit of their σ too
   int fitted = 0;                                               ///< numbers that were fitted to the data
 };

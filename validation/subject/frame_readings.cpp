@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <optional>
 
@@ -161,8 +160,10 @@ std::vector<VectorX> by_superposition(const FrameDescription& f, const measureme
 }
 
 /// Whether some law of the frame is so.
-bool any_law(const FrameDescription& f, const std::function<bool(const Law&)>& is) {
+template <class Is>
+bool any_law(const FrameDescription& f, const Is& is) {
   const auto in = [&](const frame::FreedomLaws& laws) {
+    if (laws.empty()) return false;  // most are
     for (std::size_t i = 0; i < 6; ++i)
       for (const bool beside : {false, true}) {
         const std::vector<Law> all = laws.at(i, beside);
@@ -179,7 +180,7 @@ bool any_law(const FrameDescription& f, const std::function<bool(const Law&)>& i
 /// What of the frame remembers earlier loads, so that the order of the readings matters; null: nothing.
 const char* law_with_history(const FrameDescription& f) {
   if (any_law(f, [](const Law& law) { return row_of(law).has_history; })) return "friction";
-  return any_law(f, deflect::has_history) ? "a table with 'unloading'" : nullptr;
+  return any_law(f, [](const Law& law) { return deflect::has_history(law); }) ? "a table with 'unloading'" : nullptr;
 }
 
 std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Measurements& data) {

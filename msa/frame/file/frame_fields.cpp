@@ -53,7 +53,7 @@ void describe_material(FieldVisitor& v, FrameMaterial& m) {
 void describe_count(FieldVisitor& v, const char* key, int& count, const char* about) {
   double number = count;
   v.quantity(key, number, {Dimension::none, Range{1, 10000}, 1}, about);
-  v.require(number == std::floor(number), key, fmt::format("{} is not a whole number", number));
+  if (number != std::floor(number)) v.require(false, key, fmt::format("{} is not a whole number", number));
   count = static_cast<int>(number);
 }
 
@@ -112,10 +112,11 @@ void describe_member(FieldVisitor& v, FrameMember& m, const FrameNames& names) {
   v.quantity("misfit", m.misfit, {Dimension::length, {}, 0}, "how much too long the member is, without force");
   v.quantity("heated", m.heated, {Dimension::temperature, {}, 0}, "how much warmer it is than at the assembly");
   const FrameMaterial* of = material < 0 ? nullptr : &nth(names.frame.materials, material).second;
-  v.require(m.heated == 0 || !of || of->expansion, "heated",
-            fmt::format("material '{0}' has no thermal expansion: write for example 'expansion: 12e-6 1/K' in "
-                        "materials.{0}",
-                        m.material));
+  if (m.heated != 0 && of && !of->expansion)
+    v.require(false, "heated",
+              fmt::format("material '{0}' has no thermal expansion: write for example 'expansion: 12e-6 1/K' in "
+                          "materials.{0}",
+                          m.material));
   describe_count(v, "elements", m.elements, "elements of equal length");
   if (a < 0 || b < 0) return;
 

@@ -96,13 +96,13 @@ DependentFrame edited_in_turn(DependentFrame before, const std::vector<TreeEdit>
 
 void for_each_number(FrameDescription& f, const std::function<void(std::size_t, double&)>& call) {
   NumberCalls walk(call);
-  describe(walk, f);
+  describe(walk, f, false);  // absent ends have no numbers
 }
 
 std::vector<DescribedNumber> described_numbers(const FrameDescription& f) {
   FrameDescription copy = f;
   NumberList walk;
-  describe(walk, copy);
+  describe(walk, copy, false);
   return std::move(walk.found);
 }
 

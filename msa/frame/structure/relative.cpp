@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "msa/base/index.h"
 #include "msa/frame/structure/elimination.h"
@@ -11,14 +14,86 @@
 namespace deflect::frame {
 namespace {
 
-/// Nm/rad; of a linear spring along a line its stiffness times the squared length of the structure.
-double softest(const Model& m) {
-  double least = std::numeric_limits<double>::infinity();
+constexpr double beside_others = 1e4;
+
+/// What a part joins, and how stiffly: Nm/rad; of a linear spring along a line its stiffness times the squared length
+/// of the structure.
+struct Joining {
+  std::vector<int> nodes;  ///< the ground counts as one behind the others; empty: inside of a joint
+  double stiffness = 0;
+};
+
+/// The nodes in which a form has freedoms; with one alone the ground.
+std::vector<int> joined_by(const Model& m, const LinearForm& form) {
+  const auto count = static_cast<int>(m.nodes.size());
+  std::vector<int> out;
+  for (const Term& t : form)
+    if (t.dof < 6 * count && std::find(out.begin(), out.end(), t.dof / 6) == out.end()) out.push_back(t.dof / 6);
+  if (out.size() == 1) out.push_back(count);
+  return out;
+}
+
+std::vector<Joining> joinings(const Model& m) {
+  std::vector<Joining> out;
   const double length = characteristic_length(m);
-  for (const Beam& b : m.beams) least = std::min({least, b.rigidity.EIy / b.length, b.rigidity.EIz / b.length});
+  for (const Beam& b : m.beams) out.push_back({{b.a, b.b}, std::min(b.rigidity.EIy, b.rigidity.EIz) / b.length});
   for (const Spring& s : m.springs)
     if (const auto* linear = std::get_if<LinearSpring>(&s.law); linear && linear->k > 0)
-      least = std::min(least, linear->k * (s.law.rotation ? 1 : length * length));
+      out.push_back({joined_by(m, s.elongation), linear->k * (s.law.rotation ? 1 : length * length)});
+  return out;
+}
+
+/// Sets of nodes that hang together.
+class Together {
+ public:
+  explicit Together(std::size_t nodes) : of_(nodes) { std::iota(of_.begin(), of_.end(), 0); }
+  /// Whether they were apart.
+  bool join(const std::vector<int>& nodes) {
+    bool apart = false;
+    for (const int node : nodes)
+      if (const int a = set_of(nodes.front()), b = set_of(node); a != b) {
+        nth(of_, b) = a;
+        apart = true;
+      }
+    return apart;
+  }
+
+ private:
+  int set_of(int node) {
+    while (nth(of_, node) != node) node = nth(of_, node) = nth(of_, nth(of_, node));
+    return node;
+  }
+  std::vector<int> of_;
+};
+
+/// Freedoms that half of the nodes or more hold: a plane frame holds them everywhere, and no node is supported by that.
+std::array<bool, 6> held_in_common(const Model& m) {
+  std::array<std::size_t, 6> count{};
+  for (const Constraint& c : m.constraints)
+    if (c.form.size() == 1 && std::cmp_less(c.form.front().dof, 6 * m.nodes.size()))
+      ++nth(count, c.form.front().dof % 6);
+  std::array<bool, 6> out{};
+  for (std::size_t i = 0; i < 6; ++i) out[i] = 2 * count[i] >= m.nodes.size();
+  return out;
+}
+
+/// The softest part that others hang on. Parts join what they connect one after the other, the stiffest first. One that
+/// connects what hangs together already, a member that is all but missing beside others, moves little: it counts as
+/// beside_others times as stiff as it is.
+double softest(const Model& m) {
+  std::vector<Joining> all = joinings(m);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Joining& a, const Joining& b) { return a.stiffness > b.stiffness; });
+  Together together(m.nodes.size() + 1);
+  const std::array<bool, 6> common = held_in_common(m);
+  for (const Constraint& c : m.constraints)
+    if (const std::vector<int> nodes = joined_by(m, c.form); !nodes.empty())
+      if (c.form.size() > 1 || !nth(common, c.form.front().dof % 6)) together.join(nodes);
+  double least = std::numeric_limits<double>::infinity();
+  for (const Joining& part : all) {
+    const bool carries = part.nodes.empty() || together.join(part.nodes);
+    least = std::min(least, part.stiffness * (carries ? 1 : beside_others));
+  }
   return least;
 }
 

@@ -177,6 +177,9 @@ void tell_done(const SimulateArguments& a, const measurement::Measurements& data
 void run_frame(const SimulateArguments& a, subject::Subject s) {
   const std::vector<effects::Effect> all = known_effects(a.files, s);
   const prediction::SimulationOptions o = options_of(a);
+  if (a.force != SimulateArguments().force)
+    throw InputError(
+        "--force is for machines: a frame is loaded by its load cases; give their loads in the frame file");
   measurement::Measurements plan = !is_named(a.campaign) && std::filesystem::exists(a.campaign)
                                        ? read_plan(a.campaign, s)
                                        : subject::frame_campaign(a.campaign, *s.frame(), o.seed);

@@ -1,0 +1,169 @@
+// Mistakes of recording in files of frames: channels that show another quantity or nothing, readings that contradict
+// each other, loads that nobody knows, names in another case.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "msa/base/error.h"
+#include "msa/frame/file/frame_file.h"
+#include "tests/support/paths.h"
+#include "validation/compare/comparison.h"
+#include "validation/subject/simulate_frame.h"
+#include "validation/subject/subject.h"
+
+namespace deflect {
+namespace {
+
+using namespace measurement;
+using subject::Subject;
+
+frame::FrameDescription built_in(const std::string& name) {
+  return frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" / (name + ".yaml"));
+}
+
+/// Readings of the frame where `sensor` is another one.
+Measurements read_with(const frame::FrameDescription& f, const std::string& sensor, const frame::FrameSensor& instead) {
+  frame::FrameDescription other = f;
+  for (auto& [name, value] : other.sensors)
+    if (name == sensor) value = instead;
+  return subject::simulate_frame(other, subject::frame_campaign("rich", f, 1), {});
+}
+
+/// Ids of the first mistake that is found, if it is certain.
+std::vector<std::string> mistake_in(const frame::FrameDescription& f, const Measurements& data) {
+  const compare::Comparison c = compare::compare(Subject(f), data);
+  return compare::is_mistaken(c) ? c.mistakes.front().ids : std::vector<std::string>();
+}
+
+bool holds(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+struct Shown {
+  const char *frame, *sensor;
+  void (*turn)(frame::FrameSensor&);
+  const char* id;
+};
+
+class ShowsAnother : public testing::TestWithParam<Shown> {};
+
+TEST_P(ShowsAnother, IsSaidWithWhatItShows) {
+  const Shown& p = GetParam();
+  const frame::FrameDescription f = built_in(p.frame);
+  frame::FrameSensor instead = *find(f.sensors, p.sensor);
+  p.turn(instead);
+  const std::vector<std::string> ids = mistake_in(f, read_with(f, p.sensor, instead));
+  EXPECT_TRUE(holds(ids, p.id)) << (ids.empty() ? "none" : ids.front());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Channels, ShowsAnother,
+    testing::Values(
+        Shown{"portal-semi-rigid", "top_x", [](frame::FrameSensor& s) { s.of = "M", s.axis = Vector3::UnitZ(); },
+              "top_x_shows_uz of node M"},
+        Shown{"portal-semi-rigid", "turn_C", [](frame::FrameSensor& s) { s.of = "M"; }, "turn_C_shows_ry of node M"},
+        Shown{"portal-semi-rigid", "foot_z", [](frame::FrameSensor& s) { s.of = "A"; }, "foot_z_shows_fz of support A"},
+        Shown{"beam-on-springs", "S_mid", [](frame::FrameSensor& s) { s.of = "rail7"; },
+              "S_mid_shows_the strain of member rail7 at 1 of its length, y = 0 mm, z = -70 mm"},
+        Shown{"truss-45", "F_C0a", [](frame::FrameSensor& s) { s.of = "C0b"; }, "F_C0a_shows_axial of member C0b"},
+        Shown{"lattice-girder", "mid_l", [](frame::FrameSensor& s) { s.of = "l3"; }, "mid_l_shows_uz of node l3"}));
+
+// What is there in a healthy frame, or missing in one member, is no mistake of a channel.
+TEST(FrameRecording, AChannelIsNotSaidToShowAnotherWhereItDoesNot) {
+  frame::FrameDescription f = built_in("portal-semi-rigid");
+  const Measurements healthy = subject::simulate_frame(f, subject::frame_campaign("rich", f, 1), {});
+  EXPECT_TRUE(mistake_in(f, healthy).empty());
+  frame::FrameDescription soft = f;
+  for (auto& [name, member] : soft.members)
+    if (name == "left") member.factor = 0.5;
+  EXPECT_TRUE(mistake_in(f, subject::simulate_frame(soft, subject::frame_campaign("rich", f, 1), {})).empty());
+  frame::FrameDescription gain = f;
+  for (auto& [name, sensor] : gain.sensors)
+    if (name == "S_left") sensor.gain = 1.3;
+  EXPECT_TRUE(mistake_in(f, subject::simulate_frame(gain, subject::frame_campaign("rich", f, 1), {})).empty());
+}
+
+TEST(FrameRecording, AChannelOfZerosWasNotConnected) {
+  const frame::FrameDescription f = built_in("beam-on-springs");
+  Measurements data = subject::simulate_frame(f, subject::frame_campaign("rich", f, 1), {});
+  for (Reading& r : data.readings) r.sensors[7] = 0;
+  EXPECT_EQ(mistake_in(f, data), std::vector<std::string>{"zero_column_S_mid_um_per_m"});
+}
+
+// Row 3 and its repetition differ by 1 mm, 500 times the noise of the dial gauge.
+TEST(FrameRecording, ReplicatesThatContradictEachOtherAreNamedByLine) {
+  const frame::FrameDescription f = built_in("beam-on-springs");
+  Measurements data = subject::simulate_frame(f, subject::frame_campaign("rich", f, 1), {});
+  for (std::size_t i = 0; i < data.readings.size(); ++i) data.readings[i].line = i + 2;
+  *data.readings[1].sensors[2] += 1e-3;
+  const compare::Comparison c = compare::compare(Subject(f), data);
+  const auto found = std::find_if(c.mistakes.begin(), c.mistakes.end(), [](const auto& m) {
+    return m.ids.front() == "contradiction" && m.sentence.find("z4_mm differs by ") != std::string::npos;
+  });
+  ASSERT_NE(found, c.mistakes.end());
+  EXPECT_FALSE(found->certain);
+  EXPECT_NE(found->sentence.find("lines 3 and "), std::string::npos) << found->sentence;
+  EXPECT_NE(found->sentence.find("at the same load"), std::string::npos) << found->sentence;
+}
+
+// More than a quarter of the readings, those under wind, is off by what another sensor reads: that is one effect and
+// not so many outliers.
+TEST(FrameRecording, WhatIsOffUnderOneLoadIsNotSetAside) {
+  frame::FrameDescription f = built_in("lattice-girder");
+  frame::FrameDescription with = f;
+  for (auto& [name, sensor] : with.sensors)
+    if (name == "slide_x") sensor.crosstalk = {{"wind_y", 0.3}};
+  const compare::Comparison c =
+      compare::compare(Subject(f), subject::simulate_frame(with, subject::frame_campaign("rich", f, 1), {}));
+  EXPECT_LE(20 * c.set_aside.size(), c.readings);
+}
+
+Measurements read(const Subject& s, const std::string& csv) {
+  return s.placed(parse_measurements(csv, "data.csv", s.instruments()));
+}
+
+TEST(FrameRecording, ALoadThatNobodyKnowsIsRefused) {
+  const Subject s = built_in("portal-semi-rigid");
+  const auto refusal = [&](const std::string& cell) -> std::string {
+    try {
+      read(s, fmt::format("top_x_mm,load.side,node.M.fz_N\n2,1,0\n2,{},1\n", cell));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  for (const char* cell : {"NaN", "#N/A", "n.a.", "#VALUE!"})
+    EXPECT_NE(refusal(cell).find(fmt::format("data.csv:3: column 'load.side': '{}' is no load", cell)),
+              std::string::npos)
+        << refusal(cell);
+  for (const char* none : {"", "-", "0"}) EXPECT_EQ(refusal(none), "");
+}
+
+TEST(FrameRecording, NamesMayBeWrittenInAnotherCase) {
+  const Subject s = built_in("portal-semi-rigid");
+  const Measurements data = read(s, "LOAD.SIDE,NODE.M.FZ_N,TOP_X_MM\n0.5,3,2\n");
+  EXPECT_EQ(data.instruments.load_cases, std::vector<std::string>{"side"});
+  EXPECT_EQ(data.readings.front().factors.front(), 0.5);
+  EXPECT_EQ(data.readings.front().at_points.front()(2), 3);
+  EXPECT_NEAR(*data.readings.front().sensors.front(), 2e-3, 1e-18);
+}
+
+// Where names differ by their case alone, each is what it says.
+TEST(FrameRecording, NamesThatDifferByTheirCaseAreTwo) {
+  frame::FrameDescription f = built_in("portal-semi-rigid");
+  f.sensors.emplace_back("TOP_X", f.sensors.front().second);
+  f.sensors.back().second.of = "C";
+  f.loads.emplace_back("SIDE", f.loads.front().second);
+  const Measurements data = read(Subject(f), "load.SIDE,TOP_X_mm,load.side,top_x_mm\n1,2,3,4\n");
+  const Instruments& read_by = data.instruments;
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(data.readings.front().factors[k], read_by.load_cases[k] == "SIDE" ? 1 : 3);
+    EXPECT_NEAR(*data.readings.front().sensors[k], read_by.sensors[k].name == "TOP_X" ? 2e-3 : 4e-3, 1e-18);
+  }
+}
+
+}  // namespace
+}  // namespace deflect
