@@ -62,7 +62,7 @@ TEST_P(ShowsAnother, IsSaidWithWhatItShows) {
 INSTANTIATE_TEST_SUITE_P(
     Channels, ShowsAnother,
     testing::Values(
-        Shown{"portal-semi-rigid", "top_x", [](frame::FrameSensor& s) { s.of = "M", s.axis = Vector3::UnitZ(); },
+        Shown{"portal-semi-rigid", "top_x", [](frame::FrameSensor& s) { s.of = "M", s.direction = "uz"; },
               "top_x_shows_uz of node M"},
         Shown{"portal-semi-rigid", "turn_C", [](frame::FrameSensor& s) { s.of = "M"; }, "turn_C_shows_ry of node M"},
         Shown{"portal-semi-rigid", "foot_z", [](frame::FrameSensor& s) { s.of = "A"; }, "foot_z_shows_fz of support A"},

@@ -15,21 +15,22 @@ namespace deflect::frame {
 namespace {
 
 constexpr double beside_others = 1e4;
+constexpr int ground = -1;
 
 /// What a part joins, and how stiffly: Nm/rad; of a linear spring along a line its stiffness times the squared length
 /// of the structure.
 struct Joining {
-  std::vector<int> nodes;  ///< the ground counts as one behind the others; empty: inside of a joint
+  std::vector<int> nodes;  ///< the ground counts as one; empty: inside of a joint
   double stiffness = 0;
 };
 
 /// The nodes in which a form has freedoms; with one alone the ground.
 std::vector<int> joined_by(const Model& m, const LinearForm& form) {
-  const auto count = static_cast<int>(m.nodes.size());
   std::vector<int> out;
   for (const Term& t : form)
-    if (t.dof < 6 * count && std::find(out.begin(), out.end(), t.dof / 6) == out.end()) out.push_back(t.dof / 6);
-  if (out.size() == 1) out.push_back(count);
+    if (std::cmp_less(t.dof, 6 * m.nodes.size()) && std::find(out.begin(), out.end(), t.dof / 6) == out.end())
+      out.push_back(t.dof / 6);
+  if (out.size() == 1) out.push_back(ground);
   return out;
 }
 
@@ -46,12 +47,12 @@ std::vector<Joining> joinings(const Model& m) {
 /// Sets of nodes that hang together.
 class Together {
  public:
-  explicit Together(std::size_t nodes) : of_(nodes) { std::iota(of_.begin(), of_.end(), 0); }
+  explicit Together(std::size_t nodes) : of_(nodes + 1) { std::iota(of_.begin(), of_.end(), 0); }
   /// Whether they were apart.
   bool join(const std::vector<int>& nodes) {
     bool apart = false;
     for (const int node : nodes)
-      if (const int a = set_of(nodes.front()), b = set_of(node); a != b) {
+      if (const int a = set_of(nodes.front() + 1), b = set_of(node + 1); a != b) {
         nth(of_, b) = a;
         apart = true;
       }
@@ -63,7 +64,7 @@ class Together {
     while (nth(of_, node) != node) node = nth(of_, node) = nth(of_, nth(of_, node));
     return node;
   }
-  std::vector<int> of_;
+  std::vector<int> of_;  // by node, the ground first
 };
 
 /// Freedoms that half of the nodes or more hold: a plane frame holds them everywhere, and no node is supported by that.
@@ -84,7 +85,7 @@ double softest(const Model& m) {
   std::vector<Joining> all = joinings(m);
   std::stable_sort(all.begin(), all.end(),
                    [](const Joining& a, const Joining& b) { return a.stiffness > b.stiffness; });
-  Together together(m.nodes.size() + 1);
+  Together together(m.nodes.size());
   const std::array<bool, 6> common = held_in_common(m);
   for (const Constraint& c : m.constraints)
     if (const std::vector<int> nodes = joined_by(m, c.form); !nodes.empty())

@@ -19,10 +19,10 @@ void give_contacts_stiffness(Model&);
 bool wants_relative_motion(const Model&, double ratio = 1e5);
 
 /// Gives relative coordinates to springs that jump, to beams whose bending stiffness EI/L exceeds `ratio` times that of
-/// the softest beam or spring that others hang on, and to linear springs whose stiffness times the squared length of the structure exceeds
-/// 1e4 times that limit (a translational spring; a rotational one counts alike). A part beside stiffer ones, a member
-/// that is all but missing, moves little, and others lose no digits by it: it counts as 1e4 times as stiff as it is.
-/// Returns the names of those parts.
+/// the softest beam or spring that others hang on, and to linear springs whose stiffness times the squared length of
+/// the structure exceeds 1e4 times that limit (a translational spring; a rotational one counts alike). A part beside
+/// stiffer ones, a member that is all but missing, moves little, and others lose no digits by it: it counts as 1e4
+/// times as stiff as it is. Returns the names of those parts.
 std::vector<std::string> use_relative_motion(Model&, double ratio = 1e5);
 
 }  // namespace deflect::frame
