@@ -83,8 +83,8 @@ void Observations::move_tolerances(const subject::Subject& subject) {
     return statistics::tolerance_model(*subject.stand(*s.data, s.standing.get()), *s.data, s.values, {threads_});
   });
   if (!moved || moved->A.groups.size() != A_.groups.size()) return;
-  // A law that an effect adds may have numbers to which a tolerance applies: these are fitted. They come behind those of
-  // the laws that were there, by the same name.
+  // A law that an effect adds may have numbers to which a tolerance applies: these are fitted. They come behind those
+  // of the laws that were there, by the same name.
   const Eigen::Index shared = A_.shared.cols();
   std::vector<Eigen::Index> same;
   for (Eigen::Index i = 0; i < moved->A.shared.cols() && std::ssize(same) + 1 < shared; ++i)
