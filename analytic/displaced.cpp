@@ -30,6 +30,29 @@ AnalyticModel::Between AnalyticModel::between(const Imposed& imposed) const {
   return out;
 }
 
+/// Made on first use.
+AnalyticModel::Between& AnalyticModel::linear_response() const {
+  if (!imposed_) {
+    ChainConditions under;
+    imposed_ = std::make_shared<Imposed>(imposed_on(
+        stepped_, [&](const std::vector<Step>& steps) { return under_steps(Vector6::Zero(), under, steps, 0); }));
+  }
+  if (!between_) between_ = std::make_shared<Between>(between(*imposed_));
+  return *between_;
+}
+
+/// With no offsets on the laws.
+SteppedForces AnalyticModel::held_under(const Between& b, const Vector6& F, const Conditions& conditions) const {
+  const double length = legs_.length;
+  const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
+  Vector7 driving;
+  driving << F, conditions.warmer;
+  SteppedForces out{b.forces * driving, b.displacement * driving, std::max(size(F), held_without_load(conditions)),
+                    length, true};
+  for (const Matrix67& W : b.wrenches) out.largest = std::max(out.largest, size(W * driving));
+  return out;
+}
+
 /// Whether these are the forces with the laws at these offsets: that the rest of the mechanism is linear.
 bool AnalyticModel::agrees(const Vector6& F, double warmer, const VectorX& offsets, const SteppedForces& told) const {
   ChainConditions under;
@@ -58,13 +81,7 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
   const bool first = !between_;
   if (first) between_ = std::make_shared<Between>(between(*imposed_));
   Between& b = *between_;
-  const double length = legs_.length;
-  const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
-  Vector7 driving;
-  driving << F + weight_, conditions.warmer;
-  SteppedForces at{b.forces * driving, b.displacement * driving,
-                   std::max(size(driving.head<6>()), held_without_load(conditions)), length, true};
-  for (const Matrix67& W : b.wrenches) at.largest = std::max(at.largest, size(W * driving));
+  SteppedForces at = held_under(b, F + weight_, conditions);
   const SteppedForces held = at;
   const Imposed& known = b.known;
   // Of loads in a sequence the next one finds most laws as the last one left them.

@@ -132,6 +132,8 @@ class AnalyticModel {
     SamePhases same;                 ///< as the last load left the laws
   };
   Between between(const Imposed&) const;
+  Between& linear_response() const;
+  SteppedForces held_under(const Between&, const Vector6& F, const Conditions&) const;
   bool agrees(const Vector6& driving, double warmer, const VectorX& offsets, const SteppedForces&) const;
   /// Where heat or misfits are all that drives it, forces that should vanish are the rounding of this force.
   double held_without_load(const Conditions& c) const {

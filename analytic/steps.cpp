@@ -101,23 +101,6 @@ ScalarLaw scalar_law(const SteppedLaw& stepped, double slip, double limit) {
           [=](double d) { return slope(d) * (d + rest) - P; }, slope};
 }
 
-/// δ of a law where δ + c f = p.
-double at_sum(const ScalarLaw& law, double c, double p) {
-  const auto lacks = [&](double d) { return p - d - c * law.force(d); };  // falls with d
-  if (std::isfinite(law.low) && lacks(law.low) <= 0) return law.low;
-  if (std::isfinite(law.high) && lacks(law.high) >= 0) return law.high;
-  double low = law.low, high = law.high;
-  for (double width = std::abs(p) + 1e-12; !std::isfinite(low) || !std::isfinite(high); width *= 4) {
-    if (!std::isfinite(low) && lacks(-width) > 0) low = -width;
-    if (!std::isfinite(high) && lacks(width) < 0) high = width;
-  }
-  for (int i = 0; i < 200 && high - low > 1e-16 * (std::abs(low) + std::abs(high)); ++i) {
-    const double middle = low + (high - low) / 2;
-    (lacks(middle) > 0 ? low : high) = middle;
-  }
-  return low + (high - low) / 2;
-}
-
 /// Whether it bends: its force follows from its deflection.
 bool bends(const Law& law) { return !deflect::jumps(law) || remembers(law); }
 
@@ -189,7 +172,7 @@ class Balance {
         if ((at.converged && lacking < (1 - 1e-4 * part) * before) || part < 1e-4 || p.size() == 0) break;
         for (Eigen::Index i = 0; i < n_; ++i) {
           const double c = imposed_.c(i), here = p(i) + part / 2 * (target(i) - p(i));
-          const double d = at_sum(nth(laws_, i), c, here);
+          const double d = deflection_at_sum(nth(laws_, i), c, here);
           s(i) = (here - d) / c;
           o(i) = d - c * s(i);
         }
