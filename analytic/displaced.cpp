@@ -72,15 +72,12 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
   if (!straight || (imposed_ && imposed_->S.size() == 0) ||
       (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_))
     return solve(F, conditions);
+  // A law that bends is found about the first load, by all its digits.
+  const auto bends = [](const SteppedLaw& l) { return !is_linear(l.law) && row_of(l.law).curve != Curve::jumps; };
+  if (!imposed_ && std::any_of(stepped_.begin(), stepped_.end(), bends)) return solve(F, conditions);
   refuse_motions(F + weight_);
-  if (!imposed_) {
-    ChainConditions under;
-    imposed_ = std::make_shared<Imposed>(imposed_on(
-        stepped_, [&](const std::vector<Step>& steps) { return under_steps(Vector6::Zero(), under, steps, 0); }));
-  }
   const bool first = !between_;
-  if (first) between_ = std::make_shared<Between>(between(*imposed_));
-  Between& b = *between_;
+  Between& b = linear_response();
   SteppedForces at = held_under(b, F + weight_, conditions);
   const SteppedForces held = at;
   const Imposed& known = b.known;
