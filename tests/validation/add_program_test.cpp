@@ -183,7 +183,8 @@ TEST_F(AddProgram, RefusesValuesThatDoNotFit) {
 TEST_F(AddProgram, RefusesWhatTheDeviceCannotHaveAndNamesTheNearest) {
   expect_refused("haptic-6psu guide_rot_compliance --set a=1", "did you mean 'guide_root_compliance'?");
   expect_refused("haptic-6ps modulus --set factor=0.9", "did you mean 'haptic-6psu'?");
-  expect_refused("tripteron carriage_compliance --set stiffness_N_per_mm=2000", "no fixed joint stands at the tip of a member");
+  expect_refused("tripteron carriage_compliance --set stiffness_N_per_mm=2000",
+                 "no fixed joint stands at the tip of a member");
 }
 
 TEST_F(AddProgram, KnowsEffectsOfOnesOwn) {
