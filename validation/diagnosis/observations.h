@@ -54,9 +54,9 @@ class Observations {
   /// its number of standard deviations.
   std::vector<std::pair<std::string, double>> strained(const subject::Subject&) const;
 
-  /// A copy for which this subject counts as right: the contribution of the deformed shape is computed for it, of a
-  /// subject without tool point also what its tolerances do (a missing member changes what its neighbours' do), and
-  /// readings that are gross outliers to it are set aside, unless they are more than one in twenty; one of ten
+  /// A copy for which this subject counts as right: what its tolerances do and the contribution of the deformed shape
+  /// are computed for it (a missing member changes what its neighbours' tolerances do, a payload what those of drives
+  /// do), and readings that are gross outliers to it are set aside, unless they are more than one in twenty; one of ten
   /// or more may be.
   Observations granted(const subject::Subject&) const;
   /// A copy in which these tolerances, by their index among those of the comparison, are exact.
