@@ -140,6 +140,7 @@ VectorX beyond_catalogue(const Plan& plan, const VectorX& change, const effects:
 
 double beyond_others(const Plan& plan, const VectorX& change, const std::vector<std::string>& left_out) {
   constexpr int most = 4;
+  constexpr double least_own = 1e-6;  // of a unit column: less is rounding
   VectorX left = change;
   MatrixX taken(change.size(), 0);
   for (int round = 0; round < most; ++round) {
@@ -147,13 +148,17 @@ double beyond_others(const Plan& plan, const VectorX& change, const std::vector<
     MatrixX best;
     for (const Signature& s : plan.signatures) {
       if (std::find(left_out.begin(), left_out.end(), s.effect.effect->name) != left_out.end()) continue;
-      const auto columns = s.shaped ? s.basis.cols() : 1;
-      for (Eigen::Index i = 0; i < columns; ++i) {
-        MatrixX own = s.shaped ? MatrixX(s.basis.col(i)) : s.basis;
-        own = statistics::orthonormal(own - taken * (taken.transpose() * own), 1e-6);
-        const double g = (own.transpose() * left).squaredNorm();
-        if (g > gain) gain = g, best = own;
+      const MatrixX beside = s.basis - taken * (taken.transpose() * s.basis);
+      if (s.shaped || s.basis.cols() == 1) {  // one column at a time
+        for (const auto column : beside.colwise()) {
+          const double length = column.norm(), along = column.dot(left);
+          if (length > least_own && along * along > gain * length * length)
+            gain = along * along / (length * length), best = column / length;
+        }
+        continue;
       }
+      const MatrixX own = statistics::orthonormal(beside, least_own);
+      if (const double g = (own.transpose() * left).squaredNorm(); g > gain) gain = g, best = own;
     }
     if (best.cols() == 0) break;
     taken = statistics::side_by_side({taken, best}, change.size());

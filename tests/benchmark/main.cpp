@@ -27,7 +27,7 @@ using namespace parallel;
 constexpr const char* usage = R"(benchmark_diagnosis [options]
   --devices A,B  machines and frames with sensors: entries and laws at places hidden alike, one row each; 'all' for
                  all of them. --sets N is then of each (default 24); --json FILE is written anew after each
-  --group NAME   one group of sets: {}
+  --group NAME   one group of sets: {}; with --devices {}
   --sets N       about N sets, every group thinned alike (default: all)
   --seed N       of everything drawn by lot (default 1)
   --threads N    sets side by side in a process (default 0: all cores); the scores do not depend on it
@@ -96,8 +96,14 @@ Arguments parse(int argc, char** argv) {
         throw InputError("see --help");
     }
   if (optind < argc) throw InputError(fmt::format("'{}' is no option; see --help", argv[optind]));
-  if (!a.group.empty() && std::find(std::begin(group_names), std::end(group_names), a.group) == std::end(group_names))
-    throw InputError(fmt::format("--group '{}': write {}", a.group, fmt::join(group_names, ", ")));
+  const auto check_group = [&](const auto& names) {
+    if (!a.group.empty() && std::find(std::begin(names), std::end(names), a.group) == std::end(names))
+      throw InputError(fmt::format("--group '{}': write {}", a.group, fmt::join(names, ", ")));
+  };
+  if (a.devices.empty())
+    check_group(group_names);
+  else
+    check_group(set_kind_names);
   return a;
 }
 
@@ -106,7 +112,11 @@ void run_subjects(const Arguments& a) {
     if (!a.json.empty()) write_text(a.json, json_text(subjects_json(rows)));
     fmt::print(stderr, "{}: done\n", rows.back().name);
   };
-  fmt::print("{}", subjects_report(diagnose_subjects(a.devices, a.sets > 0 ? a.sets : 24, a.seed, a.threads, done)));
+  std::optional<SetKind> kind;
+  for (std::size_t i = 0; i < std::size(set_kind_names); ++i)
+    if (a.group == set_kind_names[i]) kind = static_cast<SetKind>(i);
+  fmt::print("{}",
+             subjects_report(diagnose_subjects(a.devices, a.sets > 0 ? a.sets : 24, kind, a.seed, a.threads, done)));
 }
 
 void run_all(const Arguments& a, Ranks* ranks) {
@@ -153,7 +163,7 @@ int main(int argc, char** argv) {
   const auto work = [&](Ranks* ranks) {
     const Arguments a = parse(argc, argv);
     if (!a.help) return run_all(a, ranks);
-    if (!ranks || ranks->first()) fmt::print(usage, fmt::join(group_names, ", "));
+    if (!ranks || ranks->first()) fmt::print(usage, fmt::join(group_names, ", "), fmt::join(set_kind_names, ", "));
   };
   return run_on_ranks(work, [](const Ending& end) { fmt::print(stderr, "benchmark_diagnosis: {}\n", end.message); });
 }

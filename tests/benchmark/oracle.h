@@ -1,6 +1,12 @@
 // How much could be told at all: an answer by exact Bayes, which knows the list of effects, their priors, the sizes
 // that are drawn (λ = 4, 8 or 16) and the noise.
+//
+// Where two effects may be hidden it also knows that both have the same λ, 8 or 16. What two do together is taken as
+// the sum of what each does alone.
 #pragma once
+
+#include <string>
+#include <vector>
 
 #include "tests/benchmark/hidden.h"
 
@@ -19,15 +25,21 @@ class Oracle {
   /// Of a whitened residual (Σ^(−1/2) (measured − predicted)).
   Answer answer(const VectorX& residual) const;
 
+  /// The most probable list of effects where none, one or two may be hidden, with probabilities 1/5, 3/5 and 1/5 before
+  /// the data.
+  std::vector<std::string> answer_of_two(const VectorX& residual) const;
+
  private:
   /// One of the things that can be hidden: of an effect, at a place, with a sign and a size.
   struct Case {
     const effects::Effect* effect;
+    double lambda;
     double prior;
     VectorX change;
   };
   double nothing_;
   std::vector<Case> cases_;
+  MatrixX between_;  ///< inner products of the changes
 };
 
 }  // namespace deflect::benchmark

@@ -16,7 +16,7 @@ using Sets = std::vector<SubjectSet>;
 using Which = std::function<bool(const SubjectSet&)>;
 
 bool right(const SubjectSet& s) { return exactly(s.answer, s.classes); }
-bool open(const SubjectSet& s) { return s.kind == SetKind::left_out || s.kind == SetKind::unknown; }
+bool open(const SubjectSet& s) { return is_open(s.kind); }
 bool unknown(const SubjectSet& s) { return s.answer.verdict == "unknown_effect"; }
 bool wrong(const SubjectSet& s) { return !right(s) && confident_and_wrong(s.answer, s.classes); }
 Which of(SetKind kind, double lambda = 0) {
@@ -45,9 +45,11 @@ std::string false_alarms(const Sets& all, SetKind kind) {
   return share(all, of(kind), [](const SubjectSet& s) { return !right(s); });
 }
 
-std::string beside_oracle(const Sets& all) {
+/// Of the sets that the oracle answers rightly: of pairs, or of one effect or none.
+std::string beside_oracle(const Sets& all, bool pairs) {
   return share(
-      all, [](const SubjectSet& s) { return s.oracle_asked && s.oracle_right; }, right);
+      all, [=](const SubjectSet& s) { return s.oracle_asked && s.oracle_right && (s.kind == SetKind::pair) == pairs; },
+      right);
 }
 
 /// "2.1 / 1.9": how many effects are left in question by the diagnosis and by the oracle, where one is named.
@@ -68,7 +70,7 @@ std::string localisation(const Sets& all) {
     if (!open(s)) continue;
     ++sets;
     found += s.told_rightly > 0;
-    told += s.told;
+    told += static_cast<double>(s.told.size());
     rightly += s.told_rightly;
   }
   if (sets == 0) return "";
@@ -135,7 +137,7 @@ const std::vector<ScoreRow>& score_rows() {
       {"right class named, λ = 4", ".75", [](const Sets& s) { return right_class(s, 4); }},
       {"– λ = 8", ".95", [](const Sets& s) { return right_class(s, 8); }},
       {"– λ = 16", ".99", [](const Sets& s) { return right_class(s, 16); }},
-      {"share of the oracle's right answers", ".95", beside_oracle},
+      {"share of the oracle's right answers", ".95", [](const Sets& s) { return beside_oracle(s, false); }},
       {"truth among the effects reported, λ ≥ 8", ".98", truth_reported},
       {"effects reported / by the oracle, mean, λ ≥ 8", "1.1 ×", sizes},
       {"ties said to be ties, λ ≥ 8", "",
@@ -155,6 +157,9 @@ const std::vector<ScoreRow>& score_rows() {
       {"place of what is not among the candidates, F1", ".90", localisation},
       {"two effects exactly, λ = 8", ".88", [](const Sets& s) { return share(s, of(SetKind::pair, 8), right); }},
       {"– λ = 16", ".97", [](const Sets& s) { return share(s, of(SetKind::pair, 16), right); }},
+      {"– by the oracle", "",
+       [](const Sets& s) { return share(s, of(SetKind::pair), [](const SubjectSet& x) { return x.oracle_right; }); }},
+      {"– share of the oracle's right answers", ".95", [](const Sets& s) { return beside_oracle(s, true); }},
       {"false of all effects reported where two are hidden", "", false_discoveries},
       {"95 % intervals that hold the truth", ".93–.97", intervals},
       {"bias of the value, σ", "0", mean_bias},
@@ -192,7 +197,7 @@ std::string subjects_report(const std::vector<SubjectRow>& rows) {
         fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", r.name, r.candidates,
                     right_class(own, 4), right_class(own, 8), right_class(own, 16), truth_reported(own),
                     false_alarms(own, SetKind::healthy), share(own, known, wrong), share(own, of(SetKind::pair), right),
-                    intervals(own), beside_oracle(own), localisation(own), seconds(own));
+                    intervals(own), beside_oracle(own, false), localisation(own), seconds(own));
   }
   for (const SubjectRow& r : rows)
     for (const SubjectSet& s : r.sets)

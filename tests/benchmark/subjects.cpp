@@ -46,13 +46,13 @@ constexpr std::pair<const char*, std::uint64_t> arms[] = {{"random-arm-1", 1}, {
 
 struct Order {
   SetKind kind;
-  double lambda = 0;
+  double lambda = 0;   ///< of what is not among the candidates λ_res
   bool place = false;  ///< a law at a place is hidden, else an entry
 };
 constexpr Order turns[] = {{SetKind::healthy},       {SetKind::one, 4},         {SetKind::one, 8, true},
-                           {SetKind::one, 16},       {SetKind::pair, 8},        {SetKind::unknown, 32, true},
+                           {SetKind::one, 16},       {SetKind::pair, 8},        {SetKind::unknown, 9, true},
                            {SetKind::stress},        {SetKind::one, 4, true},   {SetKind::one, 8},
-                           {SetKind::one, 16, true}, {SetKind::pair, 16, true}, {SetKind::left_out, 16, true}};
+                           {SetKind::one, 16, true}, {SetKind::pair, 16, true}, {SetKind::left_out, 18, true}};
 
 std::vector<std::string> files_in(const std::string& folder) {
   std::vector<std::string> out;
@@ -127,14 +127,14 @@ class Examined {
       out.skipped = "the MSA finds no equilibrium";
       return out;
     }
-    const bool open = order.kind == SetKind::left_out || order.kind == SetKind::unknown;
     std::vector<std::string> gone;
-    if (open)
-      gone = order.kind == SetKind::unknown ? out.classes.front()
-                                            : std::vector{std::string(hidden.front().effect.effect->name)};
-    if (open) out.lambda_res = beyond_others(plan, hidden.front().change, gone);
+    if (is_open(order.kind)) {
+      gone = taken_out(plan, order.kind, hidden.front());
+      out.lambda = hidden.front().lambda();
+      out.lambda_res = beyond_others(plan, hidden.front().change, gone);
+    }
     diagnose_with(gone, *data, plan, hidden, truth, out);
-    if (order.kind == SetKind::healthy || order.kind == SetKind::one) ask(oracles_[which], plan, *data, out);
+    if (order.kind != SetKind::stress && !is_open(order.kind)) ask(oracles_[which], plan, *data, out);
     return out;
   }
 
@@ -161,8 +161,16 @@ class Examined {
   }
 
   static void ask(const Oracle& oracle, const Plan& plan, const Measurements& data, SubjectSet& out) {
-    const Oracle::Answer best = oracle.answer(plan.observations->uncertainty().whitened(plan.residual(data)));
+    const VectorX residual = plan.observations->uncertainty().whitened(plan.residual(data));
     out.oracle_asked = true;
+    if (out.kind == SetKind::pair) {
+      Answer two;
+      two.verdict = "effect";
+      two.missing = oracle.answer_of_two(residual);
+      out.oracle_right = exactly(two, out.classes);
+      return;
+    }
+    const Oracle::Answer best = oracle.answer(residual);
     out.oracle_right = out.classes.empty() ? best.first.empty() : holds(out.classes.front(), best.first);
     out.oracle_reported = best.reported;
   }
@@ -174,7 +182,7 @@ class Examined {
     if (d.unexplained)
       for (const Localised& l : d.localised) told.push_back(l.effect.effect);
     for (const effects::Effect* each : told) {
-      ++out.told;
+      out.told.push_back(each->name);
       out.told_rightly += (each->place && each->place->path == hidden.effect.effect->place->path) ||
                           holds(out.classes.front(), each->name);
     }
@@ -222,7 +230,9 @@ class Examined {
       if (order.kind == SetKind::pair) places.push_back(true);
       hidden.clear();
       for (const bool place : places)
-        if (auto h = drawn_one(plan, place, order.lambda, random)) hidden.push_back(std::move(*h));
+        if (auto h =
+                is_open(order.kind) ? drawn_unknown(plan, order, random) : drawn_one(plan, place, order.lambda, random))
+          hidden.push_back(std::move(*h));
       if (hidden.size() < places.size() || (hidden.size() > 1 && too_near(plan, hidden))) continue;
       try {
         subject::Subject truth = subject_;
@@ -248,6 +258,28 @@ class Examined {
     if (choice.empty()) return std::nullopt;
     const auto lot = static_cast<std::size_t>(random.uniform(0, static_cast<double>(choice.size())));
     return hidden_effect(plan, *choice[lot], lambda, random);
+  }
+
+  /// A law as large as its λ_res wants (to a tenth). None where the other effects leave too little of the one drawn.
+  std::optional<Hidden> drawn_unknown(const Plan& plan, const Order& order, Random& random) const {
+    constexpr double first = 16, least_left = 0.05, accuracy = 0.1;
+    const Random lots = random;
+    double lambda = first;
+    for (int tries = 0; tries < 6; ++tries) {
+      random = lots;  // the same law with the same signs
+      std::optional<Hidden> h = drawn_one(plan, order.place, lambda, random);
+      if (!h) return std::nullopt;
+      const double left = beyond_others(plan, h->change, taken_out(plan, order.kind, *h));
+      if (std::abs(left / order.lambda - 1) < accuracy) return h;
+      if (left < least_left * h->lambda()) return std::nullopt;
+      lambda *= order.lambda / left;
+    }
+    return std::nullopt;
+  }
+
+  /// What is no candidate where this one is hidden.
+  static std::vector<std::string> taken_out(const Plan& plan, SetKind kind, const Hidden& h) {
+    return kind == SetKind::unknown ? alike(plan, h) : std::vector{std::string(h.effect.effect->name)};
   }
 
   static EffectClass alike(const Plan& plan, const Hidden& h) {
@@ -281,8 +313,8 @@ subject::Subject built_in(const std::string& name, bool frame) {
 
 }  // namespace
 
-std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked, std::size_t sets, std::uint64_t seed,
-                                          int threads,
+std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked, std::size_t sets,
+                                          std::optional<SetKind> kind, std::uint64_t seed, int threads,
                                           const std::function<void(const std::vector<SubjectRow>&)>& done) {
   const std::vector<std::string> frames = measured_frames();
   std::vector<std::string> known = files_in("/devices"), names = asked;
@@ -300,13 +332,17 @@ std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked,
     // A subject's sets are the same whatever others are asked for.
     const auto place = static_cast<std::size_t>(std::find(known.begin(), known.end(), name) - known.begin());
     const Examined examined(built_in(name, frame), seed, threads);
+    const std::size_t first = place % 2 * std::size(turns) / 2;  // few sets of each are all kinds of set
+    std::vector<std::size_t> wanted;
+    for (std::size_t k = 0; wanted.size() < sets; ++k)
+      if (!kind || turns[(first + k) % std::size(turns)].kind == *kind) wanted.push_back(k);
     SubjectRow row{name, frame, examined.candidates(), std::vector<SubjectSet>(sets)};
-    parallel::for_each_case(sets, 1, threads, [&](std::size_t k) {
+    parallel::for_each_case(sets, 1, threads, [&](std::size_t i) {
+      const std::size_t k = wanted[i];
       try {
-        const std::size_t first = place % 2 * std::size(turns) / 2;  // few sets of each are all kinds of set
-        row.sets[k] = examined.diagnosed(first + k, seed + 1000 * k + 100000 * place);
+        row.sets[i] = examined.diagnosed(first + k, seed + 1000 * k + 100000 * place);
       } catch (const std::runtime_error& e) {
-        row.sets[k].skipped = e.what();
+        row.sets[i].skipped = e.what();
       }
     });
     out.push_back(std::move(row));

@@ -15,13 +15,14 @@
 //   stress     nothing, but doubled tolerances, t(3) noise or 2 % gross outliers (1)
 //   one        an entry or a law at a place, by turns and drawn by lot, at λ = 4, 8 and 16 (6)
 //   pair       two of them, at λ = 8 and 16 each (2)
-//   left out   a law at a place, λ = 16, which is taken out of the candidates: is the place found by what acts near
-//              it? (1)
-//   unknown    one of them, λ = 32, all that the data cannot tell from it taken out (1)
+//   left out   a law at a place, λ_res = 18, which is taken out of the candidates: is the place found by what acts
+//              near it? (1)
+//   unknown    one of them, λ_res = 9, all that the data cannot tell from it taken out (1)
 //
 // Effects that the data cannot tell from the hidden one (2 Δ ln L < 9) are its class (class_judge.h). λ_res of what is
 // not among the candidates: what is left of its change once the four of them that take most of it off, one after the
-// other, are taken out of it; four are as many as a diagnosis names.
+// other, are taken out of it; four are as many as a diagnosis names. A law of which the others leave less than a
+// twentieth of λ is not drawn: no answer could tell that it is unknown.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +38,9 @@ namespace deflect::benchmark {
 enum class SetKind { healthy, stress, one, pair, left_out, unknown };
 inline constexpr const char* set_kind_names[] = {"healthy", "stress", "one", "pair", "left out", "unknown"};
 
+/// What is hidden is not among the candidates.
+inline bool is_open(SetKind kind) { return kind == SetKind::left_out || kind == SetKind::unknown; }
+
 struct SubjectSet {
   SetKind kind = SetKind::healthy;
   std::string skipped;                ///< why there is no such set; empty where there is one
@@ -45,14 +49,17 @@ struct SubjectSet {
   double lambda = 0, lambda_res = 0;  ///< of each hidden effect; of what is not among the candidates
   Answer answer;
   double seconds = 0;  ///< of the diagnosis
-  /// Answers by an exact Bayes oracle (oracle.h), of one effect or none.
+  /// Answers by an exact Bayes oracle (oracle.h), of one effect or none, or of a pair.
   bool oracle_asked = false, oracle_right = false;
   std::size_t oracle_reported = 0;
   /// 95 % intervals of effects that are found where they are, and those that hold the truth; (found − true)/σ of the
   /// first value.
   int intervals = 0, covering = 0;
   std::optional<double> bias;
-  int told = 0, told_rightly = 0;  ///< places, where something is not among the candidates
+  /// Where something is not among the candidates: effects named and laws at the places told, and how many of them act
+  /// at the hidden one's place or are of its class.
+  std::vector<std::string> told;
+  int told_rightly = 0;
   /// Of a machine with one hidden effect: rms error of the prediction at new poses over σ of a reading.
   std::optional<double> new_poses;
 };
@@ -64,11 +71,11 @@ struct SubjectRow {
   std::vector<SubjectSet> sets;
 };
 
-/// Of the machines and frames of those names ("all": every machine and the frames with sensors), so many sets each; in
-/// parallel, the same for any number of threads. `done` is called with what there is after each subject. InputError on
-/// an unknown name.
-std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& names, std::size_t sets, std::uint64_t seed,
-                                          int threads,
+/// Of the machines and frames of those names ("all": every machine and the frames with sensors), so many sets each, or
+/// so many of one kind; in parallel, the same for any number of threads. `done` is called with what there is after each
+/// subject. InputError on an unknown name.
+std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& names, std::size_t sets,
+                                          std::optional<SetKind> kind, std::uint64_t seed, int threads,
                                           const std::function<void(const std::vector<SubjectRow>&)>& done = {});
 
 }  // namespace deflect::benchmark
