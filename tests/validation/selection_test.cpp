@@ -1,6 +1,7 @@
 // The odds of candidates by their definition, and when one more effect is taken.
 #include "validation/diagnosis/selection.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -103,6 +104,72 @@ Step with_odds_about(double wanted) {
 TEST(Selection, TakesAFurtherEffectFromOddsOfFiftyFive) {
   EXPECT_EQ(with_odds_about(3.2).effects, 1u);
   EXPECT_EQ(with_odds_about(5).effects, 2u);
+}
+
+/// Of the size at which it changes the readings by λ: a compliance is in proportion to it.
+double stiffness_for(const Signature& s, double lambda) {
+  return s.effect.effect->parameters.front().start * s.lambda / lambda;
+}
+
+/// An effect of one parameter, its size, that yields at the places of several others at once: at size 1 as each of them
+/// would with its stiffness.
+Effect all_at_once(const std::vector<std::pair<const Effect*, double>>& parts) {
+  Effect out;
+  out.name = out.title = "all_at_once";
+  out.scope = Scope::machine;
+  EffectParameter size;
+  size.name = "size";
+  size.start = 1;
+  size.high = 100;
+  size.vanishes = 0;
+  out.parameters = {size};
+  out.edits_at = [parts](const VectorX& values) {
+    std::vector<EffectEdit> edits;
+    for (const auto& [effect, stiffness] : parts)
+      for (EffectEdit edit : effect->edits) {
+        edit.value = fmt::format("{{law: linear, stiffness: {:.17g} {}}}", stiffness / values(0),
+                                 effect->parameters.front().unit);
+        edits.push_back(edit);
+      }
+    return edits;
+  };
+  out.edits = out.edits_at(VectorX::Ones(1));
+  return out;
+}
+
+// Two effects of λ = 20 each, and a third that resembles their sum: it takes both half-way and yields at one place
+// more. Alone it explains most, and beside it each of the two would have to act backwards in part; the two together are
+// right.
+TEST(Selection, TwoEffectsAreFoundThatAThirdResembles) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const Effect &root = test::effect("guide_root_compliance"), &base = test::effect("base_tilt"),
+               &actuator = test::effect("actuator_compliance");
+  const measurement::Measurements plan = prediction::campaign("rich", m, 50, 1);
+  prediction::SimulationOptions exact;
+  exact.tolerances = 0;
+  const measurement::Measurements healthy = prediction::simulate(m, plan, exact);
+  const Observations unloaded(subject::Subject(m), healthy, {});
+  const std::vector<Signature> alone = signatures(unloaded, {root, base, actuator}, 1);
+  ASSERT_EQ(alone.size(), 3u);
+  const double of_root = stiffness_for(alone[0], 20), of_base = stiffness_for(alone[1], 20);
+  const Effect third = all_at_once({{&root, of_root}, {&base, of_base}, {&actuator, stiffness_for(alone[2], 15)}});
+  const std::vector<Effect> effects = {root, base, third};
+
+  Mechanism truth = with_effect(m, root, test::values({of_root}));
+  truth = with_effect(truth, base, test::values({of_base}));
+  const measurement::Measurements data = prediction::simulate(truth, plan, exact);
+  const Observations o(subject::Subject(m), data, {});
+  const std::vector<Signature> all = signatures(o, effects, 1);
+  const Candidates candidates(all, 1);
+  const std::vector<Candidate> first = candidates.beside(o, {}, fit_of_all(o, {}, VectorX(0)), -1e6);
+  const auto best = std::max_element(first.begin(), first.end(),
+                                     [](const Candidate& a, const Candidate& b) { return a.log_odds < b.log_odds; });
+  ASSERT_EQ(best->added().effect->name, "all_at_once");
+  const Selection found = select(o, candidates, first);
+  std::vector<std::string> names;
+  for (const PlacedEffect& e : found.effects) names.push_back(e.effect->name);
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"base_tilt", "guide_root_compliance"}));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/diagnosis/pairs.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 
@@ -23,9 +24,9 @@ constexpr double bent = 8;                         // that a fit may gain beyond
 constexpr double of_its_own = 0.05;                // share of a signature that others must leave it
 
 /// Per signature the first one that does all but the same.
-std::vector<std::size_t> classes_of(const std::vector<Signature>& all) {
+std::vector<std::size_t> classes_of(const std::vector<Signature>& all, const MatrixX& inner_products) {
   std::vector<std::size_t> out(all.size());
-  const MatrixX between = cosines(all);
+  const MatrixX between = cosines(all, inner_products);
   for (std::size_t i = 0; i < all.size(); ++i) {
     out[i] = i;
     for (std::size_t k = 0; k < i; ++k)
@@ -131,7 +132,8 @@ Candidates::Candidates(const std::vector<Signature>& all, int threads,
     : signatures_(all),
       threads_(threads),
       progress_(std::move(progress)),
-      classes_(classes_of(all)),
+      between_(inner_products(all)),
+      classes_(classes_of(all, between_)),
       priors_(shared_priors(all, classes_)),
       class_priors_(summed(priors_, classes_)) {}
 
@@ -215,6 +217,39 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   if (progress_) progress_(1, 1);
   add_up_classes(out);
   return out;
+}
+
+std::optional<TwoCandidates> Candidates::two_beside(const Observations& o, const Hypothesis& before, const Fit& so_far,
+                                                    double least, double each) const {
+  constexpr std::size_t looked_at = 4;
+  constexpr double signatures_may_miss = 4;  // of ln of the odds
+  const MatrixX fitted = statistics::orthonormal(so_far.signature);
+  const auto of_class = [&](std::size_t i, double gain) { return log_odds(i, gain, class_priors_[i]); };
+  const std::vector<PairOfSignatures> promising =
+      best_pairs(signatures_, between_, so_far.residual, fitted, of_class, least - signatures_may_miss, looked_at);
+  const auto together = [&](const Hypothesis& others, const Fit& fitted_so_far, std::size_t i) {
+    Hypothesis h = others;
+    h.push_back(signatures_[i].effect);
+    return TwoCandidates{h, fit(o, h, fitted_so_far.values, guess(signatures_[i], fitted_so_far.residual))};
+  };
+  std::vector<TwoCandidates> all(promising.size());
+  parallel::for_each_case(promising.size(), 1, threads_, [&](std::size_t k) {
+    const auto [first, second, gain_of_first, gain] = promising[k];
+    all[k].log_odds = out_of_question;
+    const TwoCandidates alone = together(before, so_far, first), other = together(before, so_far, second);
+    if (!alone.fit.found || !other.fit.found) return;
+    TwoCandidates both = together(alone.hypothesis, alone.fit, second);
+    if (!both.fit.found || wants_more_than_there_can_be(both.hypothesis, both.fit)) return;
+    const double chi2 = both.fit.chi2, of_second = of_class(second, std::max(0.0, alone.fit.chi2 - chi2)),
+                 of_first = of_class(first, std::max(0.0, other.fit.chi2 - chi2));
+    if (of_first < each || of_second < each) return;
+    both.log_odds = of_class(first, std::max(0.0, so_far.chi2 - alone.fit.chi2)) + of_second;
+    all[k] = std::move(both);
+  });
+  const auto best = std::max_element(
+      all.begin(), all.end(), [](const TwoCandidates& a, const TwoCandidates& b) { return a.log_odds < b.log_odds; });
+  if (best == all.end() || !(best->log_odds > least)) return std::nullopt;
+  return std::move(*best);
 }
 
 void add_left_out(std::vector<LeftOut>& noted, const std::vector<Candidate>& all) {

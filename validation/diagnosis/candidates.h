@@ -24,6 +24,13 @@ struct Candidate {
   const effects::PlacedEffect& added() const { return hypothesis.back(); }
 };
 
+/// Two effects fitted together beside the accepted ones.
+struct TwoCandidates {
+  Hypothesis hypothesis;  ///< the accepted effects first; the two last
+  Fit fit;
+  double log_odds = 0;  ///< ln(prior · evidence) of the classes of both, against the accepted effects alone
+};
+
 class Candidates {
  public:
   /// The signatures must outlive it. progress(done, all) counts within one round.
@@ -39,6 +46,12 @@ class Candidates {
   /// ln(prior · evidence) of the whole class of this effect, against its absence.
   double class_log_odds_of(const effects::PlacedEffect&, double gain) const;
 
+  /// The likeliest two effects beside others that are fitted already, if ln of their odds exceeds `least` and each of
+  /// them is called for beside the other, by odds of `each`. Of all pairs those are fitted that promise most by their
+  /// signatures (pairs.h).
+  std::optional<TwoCandidates> two_beside(const Observations&, const Hypothesis&, const Fit&, double least,
+                                          double each) const;
+
   int threads() const { return threads_; }
 
   static constexpr double prior_missing = 0.8, prior_unknown = 0.1;  ///< prior_unknown: as a share of prior_missing
@@ -50,6 +63,7 @@ class Candidates {
   const std::vector<Signature>& signatures_;
   int threads_;
   std::function<void(std::size_t, std::size_t)> progress_;
+  MatrixX between_;                   ///< inner_products() of the signatures
   std::vector<std::size_t> classes_;  ///< for each signature, the first that these data cannot distinguish from it
   /// The places of an entry share the entry's prior; the effects of one class have one share together.
   std::vector<double> priors_, class_priors_;

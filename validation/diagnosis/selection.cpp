@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 #include "validation/diagnosis/evidence.h"
 
@@ -25,9 +26,7 @@ class Search {
     const auto best = std::max_element(all.begin(), all.end(), less_likely);
     if (best == all.end() || !(best->class_log_odds > least)) return false;
     if (s_.effects.size() >= usual_effects && best->fit.chi2 > own_part_of_many * s_.fit.chi2) return false;
-    if (!s_.effects.empty() && seen().held_out_rmse(subject_with(seen(), best->hypothesis, best->fit.values)) >
-                                   seen().held_out_rmse(subject_with(seen(), s_.effects, s_.fit.values)))
-      return false;
+    if (!s_.effects.empty() && !falls(best->hypothesis, best->fit.values)) return false;
     grant(best->hypothesis, best->fit.values);
     return true;
   }
@@ -64,6 +63,17 @@ class Search {
     return false;
   }
 
+  /// A single effect, or two at once of a few, exchanged for two others that explain the data better together; true
+  /// when that was done.
+  bool exchange_for_two() {
+    const std::size_t n = s_.effects.size();
+    if (n == 1) return exchange({0}, called_for);
+    for (std::size_t i = 1; i < n && n <= usual_effects; ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (exchange({k, i}, better)) return true;
+    return false;
+  }
+
   Selection&& result() { return std::move(s_); }
   std::size_t size() const { return s_.effects.size(); }
 
@@ -83,6 +93,39 @@ class Search {
   }
 
   const Observations& seen() const { return s_.observations; }
+
+  /// Those effects, given in order, exchanged for two others whose odds are better by `more`.
+  bool exchange(const std::vector<std::size_t>& given, double more) {
+    Hypothesis others = s_.effects;
+    VectorX values = s_.fit.values;
+    for (std::size_t k = given.size(); k-- > 0;) std::tie(others, values) = without(others, values, given[k]);
+    const Fit rest = fit_of_all(seen(), others, values);
+    if (!rest.found) return false;  // the others need them
+    const double now = given.size() == 1
+                           ? candidates_.class_log_odds_of(s_.effects[given[0]], gain(rest, s_.fit))
+                           : std::max(odds_of_two(rest, given[0], given[1]), odds_of_two(rest, given[1], given[0]));
+    const std::optional<TwoCandidates> two = candidates_.two_beside(seen(), others, rest, now + more, called_for);
+    if (!two || !falls(two->hypothesis, two->fit.values)) return false;
+    grant(two->hypothesis, two->fit.values);
+    return true;
+  }
+
+  /// ln of the odds of effect `first` beside the others and of effect `second` beside these, all as they are fitted.
+  double odds_of_two(const Fit& rest, std::size_t first, std::size_t second) const {
+    const auto [h, values] = without(s_.effects, s_.fit.values, second);
+    const Fit alone = fit_of_all(seen(), h, values);
+    if (!alone.found) return never;
+    return candidates_.class_log_odds_of(s_.effects[first], gain(rest, alone)) +
+           candidates_.class_log_odds_of(s_.effects[second], gain(alone, s_.fit));
+  }
+
+  static double gain(const Fit& without, const Fit& with) { return std::max(0.0, without.chi2 - with.chi2); }
+
+  /// Whether the error at held-out poses is no larger than it is now.
+  bool falls(const Hypothesis& h, const VectorX& values) const {
+    return !(seen().held_out_rmse(subject_with(seen(), h, values)) >
+             seen().held_out_rmse(subject_with(seen(), s_.effects, s_.fit.values)));
+  }
 
   /// By what is the same to these data, then by the entry's own.
   static bool less_likely(const Candidate& a, const Candidate& b) {
@@ -139,8 +182,7 @@ Selection select(const Observations& o, const Candidates& candidates, const std:
   Search search(o, candidates);
   if (!search.add(first, 0)) return search.result();
   for (std::size_t round = 0; round < most_rounds; ++round) {
-    const bool changed = search.reconsider();
-    if (changed) continue;
+    if (search.reconsider() || search.exchange_for_two()) continue;
     if (search.size() == most_effects || !search.add(search.further(), called_for)) break;
   }
   return search.result();

@@ -1,6 +1,7 @@
 // Stepwise selection of effects. Effects are added one by one as long as the evidence supports them. After each
 // addition every accepted effect is tested again, given the others: it is dropped where it is no longer needed, and
-// replaced where another does better.
+// replaced where another does better. Before a further one is added, two of the effects at once, or a single one, are
+// replaced by two others that do better together (pairs.h).
 //
 // Four effects are enough where noise is what is left. Where the model is far worse than the noise, as of a real gear
 // unit, evidence calls for ever more; a fifth and a sixth are added where each takes off half of what the others leave.

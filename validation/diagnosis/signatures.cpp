@@ -234,8 +234,9 @@ MatrixX inner_products(const std::vector<Signature>& all) {
   return out;
 }
 
-MatrixX cosines(const std::vector<Signature>& all) {
-  const MatrixX inner = inner_products(all);
+MatrixX cosines(const std::vector<Signature>& all) { return cosines(all, inner_products(all)); }
+
+MatrixX cosines(const std::vector<Signature>& all, const MatrixX& inner) {
   MatrixX out(std::ssize(all), std::ssize(all));
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {

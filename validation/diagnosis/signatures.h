@@ -56,9 +56,11 @@ double own_share(const Signature&, const MatrixX& beside);
 /// Inner products of the columns of all bases, in the order of the signatures.
 MatrixX inner_products(const std::vector<Signature>&);
 
-/// Largest cosine between the spans of two signatures; cosines(): for every pair.
+/// Largest cosine between the spans of two signatures; cosines(): for every pair, from their inner_products() where
+/// these are known.
 double cosine(const Signature&, const Signature&);
 MatrixX cosines(const std::vector<Signature>&);
+MatrixX cosines(const std::vector<Signature>&, const MatrixX& inner_products);
 
 /// p-value of a gain in χ² as if this were the only effect tested.
 double single_p_value(const Signature&, double gain);
