@@ -11,6 +11,7 @@
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/diagnosis/larger_tolerances.h"
+#include "validation/diagnosis/left_over.h"
 #include "validation/diagnosis/selection.h"
 #include "validation/diagnosis/splitting.h"
 #include "validation/statistics/columns.h"
@@ -22,9 +23,6 @@ constexpr double alarm = 0.02;  // chance above which nothing is called missing
 constexpr double sure = 0.7;    // probability from which something unknown is there
 constexpr std::size_t quality_of = 5;
 constexpr double worth_limits = 0.01;  // probability of a candidate
-constexpr double left_over_evidence = 2, left_over_p = 3e-3;
-// Times the misfit with all effects: without any of them, for them to be most of the matter; then without one of them.
-constexpr double large_part = 4, small_part = 1.25;
 
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
@@ -74,35 +72,14 @@ double probability_of_unknown(double log_evidence, double prior_odds) {
 
 double log_sum_exp(const std::vector<double>& x) { return log_mean_exp(x) + std::log(static_cast<double>(x.size())); }
 
-/// Those of the effects that are called for even where the discrepancy takes what it can.
-Selection beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns, const Candidates& candidates,
-                         Selection s) {
-  const Discrepancy all(patterns);
-  const Discrepancy left(patterns, s.fit.signature);
-  const Discrepancy::Size size = left.likeliest(s.fit.residual);
-  const bool most = s.observations.null_residual().squaredNorm() > large_part * s.fit.chi2;
-  const double own_part = most ? small_part : large_part;
-  for (std::size_t i = s.effects.size(); i-- > 0;) {
-    auto [others, values] = without(s.effects, s.fit.values, i);
-    Fit rest = fit_of_all(s.observations, others, values);
-    if (!rest.found || rest.chi2 > own_part * s.fit.chi2) continue;  // the others need it; or much is its own
-    const double gain = all.chi2(rest.residual, size) - all.chi2(s.fit.residual, size);
-    if (candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) > called_for) continue;
-    s.effects = std::move(others);
-    s.fit = std::move(rest);
-    if (i < s.ties.size()) s.ties.erase(s.ties.begin() + as_index(i));
-  }
-  return s;
-}
-
 /// Of what is left unexplained: its size, its pattern, where it acts, the entry that comes nearest.
-void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const Selection& found) {
+void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const Selection& found, int threads) {
   const Observations& o = found.observations;
   const auto numbers = static_cast<double>(o.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
   d.pattern = left_over_pattern(o, subject_with(o, found.effects, found.fit.values));
-  d.localised = localised(all, found.fit, numbers);
+  d.localised = localised(at_places(all, found.fit, threads), found.fit.chi2, numbers);
   const MatrixX fitted = statistics::orthonormal(found.fit.signature);
   for (const Signature& s : all)
     if (const double share = most_gain(s, found.fit.residual, fitted) / left;
@@ -242,22 +219,21 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   d.chance = chance_of_any(all, least_p, options.bootstrap_sets, work,
                            [&](std::size_t done, std::size_t of) { rounds(done, of); });
   const bool missing = (d.chance < alarm && d.probability_nothing < 0.6) ||
-                       (d.probability_unknown > sure && discrepancy.p_value(null.residual) < left_over_p);
+                       (d.probability_unknown > sure && discrepancy.p_value(null.residual) < LeftOver::least_p);
   const std::vector<Candidate> first = d.candidates;
   sort_candidates(d, o);
 
   Selection found = missing ? select(o, candidates, first) : Selection{o, {}, null, {}, {}};
   const Observations& seen = found.observations;
   if (!found.effects.empty()) patterns = seen.whitened_patterns();
-  const Discrepancy left(patterns, found.fit.signature);
-  const double evidence_left = left.log_evidence(found.fit.residual);
-  d.unexplained = missing && evidence_left > left_over_evidence && left.p_value(found.fit.residual) < left_over_p;
+  const LeftOver left = left_over(patterns, all, found.fit, work.threads);
+  d.unexplained = missing && left.significant();
   if (!found.effects.empty())
     weigh(d, larger,
-          probability_of_unknown(evidence_left, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
+          probability_of_unknown(left.log_evidence, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
   if (d.unexplained) {
-    found = beside_unknown(patterns, candidates, std::move(found));
-    describe_left_over(d, all, found);
+    found = named_beside_unknown(patterns, all, candidates, std::move(found));
+    describe_left_over(d, all, found, work.threads);
   }
   d.missing = found.effects;
   d.fit = last_fit(seen, d.missing, found.fit, work.threads);

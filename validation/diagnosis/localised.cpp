@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
-#include "validation/statistics/columns.h"
+#include "validation/diagnosis/evidence.h"
 
 namespace deflect::diagnosis {
 namespace {
 
-constexpr double alike_place = 0.995;  // cosine from which one place stands for another
-constexpr double beyond_chance = 30;   // in χ², of a few hundred that are looked at
+constexpr double together_told = 0.95;  // probability
+constexpr double beyond_chance = 30;    // in χ², of a few hundred that are looked at
 
 /// The effect's title in the middle of a sentence, with the leg's number where it is one.
 std::string words_of(const effects::PlacedEffect& e) {
@@ -25,28 +26,31 @@ std::string words_of(const effects::PlacedEffect& e) {
 
 }  // namespace
 
-std::vector<Localised> localised(const std::vector<Signature>& all, const Fit& fit, double numbers, std::size_t most) {
-  const MatrixX fitted = statistics::orthonormal(fit.signature);
-  std::vector<double> gain(all.size(), 0);
+std::vector<Localised> localised(const std::vector<AtPlace>& places, double chi2, double numbers, std::size_t most) {
+  if (places.empty()) return {};
+  const AtPlace& first = *std::max_element(places.begin(), places.end(),
+                                           [](const AtPlace& a, const AtPlace& b) { return a.gain < b.gain; });
+  const double scale = std::max(1.0, (chi2 - first.gain) / std::max(1.0, numbers - first.dimension));
+  std::vector<double> weights;
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!all[i].effect.effect->place) continue;
-    gain[i] = most_gain(all[i], fit.residual, fitted);
-    order.push_back(i);
+  for (const AtPlace& p : places) {
+    order.push_back(order.size());
+    weights.push_back(std::log(p.prior) + log_evidence(p.gain / scale, p.dimension, false));
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gain[a] > gain[b]; });
-  const double beyond = std::max(1.0, fit.chi2 - numbers);
+  const std::vector<double> probability = normalised(weights);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return probability[a] > probability[b]; });
+
+  const double beyond = std::max(1.0, chi2 - numbers);
   std::vector<Localised> out;
-  std::vector<std::size_t> taken;
+  double sum = 0;
   for (const std::size_t i : order) {
-    if (out.size() == most || gain[i] < beyond_chance) break;
-    if (std::any_of(taken.begin(), taken.end(), [&](std::size_t k) { return cosine(all[i], all[k]) > alike_place; }))
-      continue;
-    taken.push_back(i);
-    std::string what = words_of(all[i].effect);
-    if (all[i].one_sided && all[i].start_along(fit.residual) > 0)
-      what += ", the other way: the machine yields less there than the model";
-    out.push_back({all[i].effect, std::move(what), std::min(1.0, gain[i] / beyond)});
+    const AtPlace& p = places[i];
+    if (out.size() == most || sum > together_told || p.gain < beyond_chance) break;
+    sum += probability[i];
+    std::string what = words_of(p.best->effect);
+    if (p.other_way) what += ", the other way: the machine yields less there than the model";
+    out.push_back({p.best->effect, std::move(what), std::min(1.0, p.gain / beyond), probability[i]});
   }
   return out;
 }

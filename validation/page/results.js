@@ -48,10 +48,12 @@ export function candidates(d) {
 export function unexplained(d) {
   const {significant, share_of_misfit, pattern, localised = [], nearest, nearest_share} = d.unexplained;
   if (!significant) return null;
-  const rows = [...localised.map((l) => [l.what, l.share]), ...(nearest ? [[`nearest entry: ${nearest}`, nearest_share]] : [])];
+  const rows = [...localised.map((l) => [`at this place, most like: ${l.what}`, l.share, l.probability]),
+    ...(nearest ? [[`nearest entry: ${nearest}`, nearest_share, '–']] : [])];
+  const columns = ['', 'share', 'probability of the place'];
   return figure('unexplained', 'What is left unexplained', `${num(100 * share_of_misfit, 3)} % of the misfit beyond noise and tolerances: ${pattern}. Of that explains:`,
-    table(['', 'share'], rows, {shade: (i, j) => (j ? rows[i][1] : null), show: (x) => (typeof x === 'number' ? num(100 * x, 3) + ' %' : x)}),
-    numbers('unexplained', () => ({columns: ['what', 'share'], rows})));
+    table(columns, rows, {shade: (i, j) => (j === 1 ? rows[i][1] : null), show: (x) => (typeof x === 'number' ? num(100 * x, 3) + ' %' : x)}),
+    numbers('unexplained', () => ({columns: ['what', ...columns.slice(1)], rows})));
 }
 
 export function unseen(d) {

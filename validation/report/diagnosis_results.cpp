@@ -85,6 +85,7 @@ Json unexplained_json(const diagnosis::Diagnosis& d) {
   for (const diagnosis::Localised& l : d.localised)
     localised.push_back({{"what", l.what},
                          {"share", l.share},
+                         {"probability", l.probability},
                          {"effect", l.effect.effect->name},
                          {"place", place_json(*l.effect.effect->place, l.effect.leg)}});
   return {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained},
@@ -161,7 +162,9 @@ std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& d
                      d.chance, d.bootstrap_sets);
   if (d.unexplained) {
     out += fmt::format("left unexplained: {:.0f} % of the misfit; of that", 100 * d.share_unexplained);
-    for (const diagnosis::Localised& l : d.localised) out += fmt::format(" {:.0f} % by {};", 100 * l.share, l.what);
+    for (const diagnosis::Localised& l : d.localised)
+      out += fmt::format(" {:.0f} % by a law at a place that comes nearest to '{}' (probability of the place {:.2f});",
+                         100 * l.share, l.what, l.probability);
     if (!d.nearest.empty()) out += fmt::format(" the nearest entry, {}, {:.0f} %", d.nearest, 100 * d.nearest_share);
     out += "\n";
   }

@@ -1,0 +1,70 @@
+#include "validation/diagnosis/left_over.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "msa/base/index.h"
+#include "validation/diagnosis/evidence.h"
+
+namespace deflect::diagnosis {
+namespace {
+
+// Times the misfit with all effects: without any of them, for them to be most of the matter; then without one of them.
+constexpr double large_part = 4, small_part = 1.25;
+
+/// The likeliest place.
+const AtPlace* likeliest(const std::vector<AtPlace>& places) {
+  const AtPlace* out = nullptr;
+  double most = -INFINITY;
+  for (const AtPlace& p : places)
+    if (const double l = std::log(p.prior) + log_evidence(p.gain, p.dimension, false); l > most) most = l, out = &p;
+  return out;
+}
+
+bool at_the_same_part(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
+  return a.effect->place && b.effect->place && a.effect->place->path == b.effect->place->path;
+}
+
+/// Whether an unknown law at another place takes what this effect explains: with the effect and a law at a place the
+/// readings are not clearly likelier than with a law at a place alone.
+bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Fit& with, const Fit& without,
+                        const std::vector<Signature>& all, const Candidates& candidates) {
+  const std::vector<AtPlace> alone = at_places(all, without, candidates.threads());
+  const AtPlace* place = likeliest(alone);
+  if (!place || at_the_same_part(e, place->best->effect)) return false;
+  const double more = log_evidence(at_places(all, with, candidates.threads())) - log_evidence(alone);
+  return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.chi2)) + more < called_for;
+}
+
+}  // namespace
+
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,
+                   const Fit& fit, int threads) {
+  const Discrepancy common(patterns, fit.signature);
+  const std::vector<AtPlace> places = at_places(all, fit, threads);
+  return {log_mean_exp({common.log_evidence(fit.residual), log_evidence(places)}),
+          std::min(1.0, 2 * std::min(common.p_value(fit.residual), p_value(places)))};
+}
+
+Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns,
+                               const std::vector<Signature>& all, const Candidates& candidates, Selection s) {
+  const Discrepancy common(patterns), left(patterns, s.fit.signature);
+  const Discrepancy::Size size = left.likeliest(s.fit.residual);
+  const bool most = s.observations.null_residual().squaredNorm() > large_part * s.fit.chi2;
+  const double own_part = most ? small_part : large_part;
+  for (std::size_t i = s.effects.size(); i-- > 0;) {
+    auto [others, values] = without(s.effects, s.fit.values, i);
+    Fit rest = fit_of_all(s.observations, others, values);
+    if (!rest.found) continue;  // the others need it
+    const double gain = common.chi2(rest.residual, size) - common.chi2(s.fit.residual, size);
+    const bool is_common = rest.chi2 <= own_part * s.fit.chi2 &&
+                           candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) <= called_for;
+    if (!is_common && !is_a_law_elsewhere(s.effects[i], s.fit, rest, all, candidates)) continue;
+    s.effects = std::move(others);
+    s.fit = std::move(rest);
+    if (i < s.ties.size()) s.ties.erase(s.ties.begin() + as_index(i));
+  }
+  return s;
+}
+
+}  // namespace deflect::diagnosis

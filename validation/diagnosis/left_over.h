@@ -1,0 +1,30 @@
+// What is left of the misfit once effects are fitted: whether something unknown is in it, and which effects stay named
+// beside it.
+#pragma once
+
+#include <memory>
+
+#include "validation/diagnosis/at_places.h"
+#include "validation/diagnosis/selection.h"
+
+namespace deflect::diagnosis {
+
+/// Something unknown shows as a pattern that is common in machines (discrepancy.h) or as an unknown law at a place
+/// (at_places.h); both have the same prior.
+struct LeftOver {
+  double log_evidence = 0;  ///< in favour of something unknown
+  double p_value = 1;       ///< chance of as much where only noise and tolerances are left
+
+  bool significant() const { return log_evidence > 2 && p_value < least_p; }
+  static constexpr double least_p = 3e-3;
+};
+
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<Signature>&, const Fit&,
+                   int threads);
+
+/// Those of the effects that are called for even beside something unknown: where it takes what a common pattern can,
+/// and where it is a law at a place other than the effect's own.
+Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<Signature>&,
+                               const Candidates&, Selection);
+
+}  // namespace deflect::diagnosis
