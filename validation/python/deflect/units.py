@@ -29,6 +29,13 @@ def loads_in_mm(loads: np.ndarray) -> np.ndarray:
     return out
 
 
+def displacement_in_mm(d: np.ndarray) -> np.ndarray:
+    """A copy: (…, 3) or (…, 6)."""
+    out = np.array(d, dtype=float)
+    out[..., :3] *= 1e3
+    return out
+
+
 def displacement_from_mm(d: np.ndarray) -> np.ndarray:
     """In place: (…, 6)."""
     d[..., :3] /= 1e3
