@@ -16,7 +16,7 @@ from .errors import InputError
 from .results import progress_of
 from .results_of_shapes import Drawing, FrameSolution
 from .solution import Solution
-from .units import displacement_from_mm, loads_in_mm, poses_in_mm, require_units, stiffness_from_mm
+from .units import Numbers, displacement_from_mm, loads_in_mm, poses_in_mm, require_units, stiffness_from_mm
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Subject:
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.source)
 
-    def show(self, pose: Iterable[float] | None = None, *, joints: Iterable[float] | None = None) -> Drawing:
+    def show(self, pose: Numbers | None = None, *, joints: Numbers | None = None) -> Drawing:
         """As drawn, before any solution, as `deflect show`: members, joints, and motions that nothing resists.
 
         ``pose``, ``joints``  of a machine, as for solve(); home without
@@ -95,10 +95,10 @@ class Subject:
 
     def places(self) -> list[Place]:
         """The places where effects can act, from what the parts are."""
-        return [
-            Place(**{**p, "freedoms": tuple(p["freedoms"]), "also": tuple(p.get("also", ()))})
-            for p in json.loads(self._core.places_json())
-        ]
+        found: list[dict[str, Any]] = json.loads(self._core.places_json())
+        for p in found:
+            p.update(freedoms=tuple(p["freedoms"]), also=tuple(p.get("also", ())))
+        return [Place(**p) for p in found]
 
     def sensors(self) -> list[Sensor]:
         """Its named sensors; a machine without any is read at its tool point."""
@@ -182,8 +182,8 @@ class Model(Subject):
         """How many."""
         return self._core.legs
 
-    def solve(self, pose: Iterable[float] | None = None, load: Iterable[float] | None = None, *,
-              joints: Iterable[float] | None = None, geometry: str = "linear", theories: Iterable[str] | None = None,
+    def solve(self, pose: Numbers | None = None, load: Numbers | None = None, *,
+              joints: Numbers | None = None, geometry: str = "linear", theories: Iterable[str] | None = None,
               elements: int = 0, units: str = "mm") -> Solution:
         """One pose under one load by every theory, with the checks of `deflect solve`.
 
@@ -261,8 +261,8 @@ class Model(Subject):
             return by_theory[one]
         return by_theory[_core.reference_theory] if theory is None else by_theory
 
-    def export(self, path: str | os.PathLike[str], *, pose: Iterable[float] | None = None,
-               joints: Iterable[float] | None = None, load: Iterable[float] | None = None, to: str | None = None,
+    def export(self, path: str | os.PathLike[str], *, pose: Numbers | None = None,
+               joints: Numbers | None = None, load: Numbers | None = None, to: str | None = None,
                element_size: float = 5, scale: float | None = None) -> tuple[str, str]:
         """Writes the loaded mechanism for other programs, as `deflect export`; returns the paths of two files: the shape
         unloaded, with displacements and forces as fields, and the deflected shape.

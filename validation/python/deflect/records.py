@@ -11,7 +11,6 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 import typing
 from typing import Annotated, Any, Dict, Iterator, List, Optional, TypeVar
 
@@ -58,8 +57,6 @@ class Record:
     def __eq__(self, other: Any) -> bool:
         return type(self) is type(other) and self.to_dict() == other.to_dict()
 
-    __hash__ = None  # type: ignore[assignment]
-
 
 @dataclasses.dataclass(frozen=True)
 class Field:
@@ -71,13 +68,21 @@ class Field:
     others: bool
 
 
-@functools.cache
+_FIELDS: dict[type, tuple[Field, ...]] = {}
+
+
 def fields_of(kind: type) -> tuple[Field, ...]:
     """The fields of a record's class, in the order in which they are written."""
+    if kind not in _FIELDS:
+        _FIELDS[kind] = _fields(kind)
+    return _FIELDS[kind]
+
+
+def _fields(kind: Any) -> tuple[Field, ...]:
     hints = typing.get_type_hints(kind, include_extras=True)
     out = []
     for each in dataclasses.fields(kind):
-        hint, marks = hints[each.name], ()
+        hint, marks = hints[each.name], []
         if typing.get_origin(hint) is Annotated:
             hint, *marks = typing.get_args(hint)
         out.append(Field(each.name, hint, "maybe" in marks, "others" in marks))
@@ -165,8 +170,8 @@ def differences(hint: Any, value: Any, at: str = "") -> List[str]:
         return [d for name, each in value.items() for d in differences(arguments[1], each, f"{at}.{name}")]
     if hint is Array:
         return _differences_of_array(value, at)
-    wanted = {float: (int, float), int: int, str: str, bool: bool}.get(hint, ())
-    fits = isinstance(value, wanted) and (hint is bool or not isinstance(value, bool))
+    wanted: dict[Any, tuple[type, ...]] = {float: (int, float), int: (int,), str: (str,), bool: (bool,)}
+    fits = isinstance(value, wanted.get(hint, ())) and (hint is bool or not isinstance(value, bool))
     return [] if fits else [f"{at}: {value!r:.60} is no {getattr(hint, '__name__', hint)}"]
 
 

@@ -14,9 +14,6 @@ import numpy as np
 from . import _sheet, notebook, records, schema, schema_fitted, schema_measured
 from .records import Array, Maybe
 
-_result = dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
-
-
 class Result(records.Record):
     """What a function of deflect found: a dataclass whose fields are the members of the JSON, equal to it:
     ``r.to_dict() == r.content``.
@@ -109,7 +106,7 @@ def _flat(row: Any, before: str = "") -> Iterator[tuple[str, Any]]:
             yield before + name, value
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Comparison(Result):
     """Of compare(): ``findings``, ``tests``, ``patterns``, ``errors``, ``baseline`` …; rows: the tests. Names in _mm are in
     ``unit``.
@@ -158,7 +155,7 @@ class Comparison(Result):
                 for name in (rows[0] if rows else ())}
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Validity(Result):
     """Of compare(validation=True): ``sentence``, ``agreement``, ``channels``, ``domain`` …; rows: the channels."""
 
@@ -190,7 +187,7 @@ class Validity(Result):
     _drawn_by = "figures_more.validity"
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Diagnosis(Result):
     """Of diagnose(): ``verdict``, ``missing``, ``candidates``, ``found`` …; rows: the candidates. Names in _mm are in
     ``unit``."""
@@ -232,7 +229,7 @@ class Diagnosis(Result):
     _drawn_by = "figures.diagnosis"
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Fit(Result):
     """Of fit(): ``parameters``, ``correlation`` (k, k), ``before``, ``after``, ``posterior`` …; rows: the parameters. Names
     in _mm are in ``unit``.
@@ -271,7 +268,7 @@ class Fit(Result):
     _beside = ("model", "given")
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Prediction(Result):
     """Of predict(): ``numbers`` with their intervals; rows: these."""
 
@@ -288,7 +285,7 @@ class Prediction(Result):
     _drawn_by = "figures_more.prediction"
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Plan(Result):
     """Of plan() after a diagnosis: the chosen ``readings``, which are the rows, and what they tell apart.
 
@@ -315,7 +312,7 @@ class Plan(Result):
     _beside = ("measurements",)
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Foresight(Result):
     """Of plan(before=…): what the ``given`` campaign and a ``better`` one tell; rows: the effects by how large they must be
     to show in the given one.
@@ -339,7 +336,7 @@ class Foresight(Result):
         return [dict(_flat(row)) for row in self.content["given"]["detectable"]]
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class History(Result):
     """Of history(): one row for each version. Names in _mm are in ``unit``."""
 
@@ -353,7 +350,7 @@ class History(Result):
     _drawn_by = "figures.history"
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Validation(Result):
     """Of validate(): rows: a point and a load each."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from typing import Any, Dict, List
 
@@ -9,10 +10,10 @@ import numpy as np
 
 from . import schema, schema_shapes
 from .records import Array, Maybe, Others
-from .results import Result, _flat, _result
+from .results import Result, _flat
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class StiffnessMap(Result):
     """Of map(): ``arrays`` in the order of ``grid``: (n,) lists by name, and by theory and name; ``ranges`` of these;
     ``correlations`` by axis, of the stiffness with the mean length of slides, under their names in the JSON."""
@@ -53,7 +54,7 @@ class StiffnessMap(Result):
         return [dict(zip(names, row)) for row in zip(*values)]
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class FrameSolution(Result):
     """Of Frame.solve(): ``cases`` by name. Tables as arrays: displacements(), reactions(), members()."""
 
@@ -104,7 +105,7 @@ class FrameSolution(Result):
         return list(self.content["cases"])
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Drawing(Result):
     """Of show(): the machine or frame as its file draws it, base axes, mm: ``members``, ``joints``, ``frames``,
     ``instruments``, ``lines`` between ``points_mm`` (n, 3), ``motions`` that nothing resists, ``trouble``; rows: the
@@ -130,7 +131,7 @@ class Drawing(Result):
     _drawn_by = "figures_shapes.drawing"
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Check(Result):
     """Of check(): ``passes``, ``verdict`` in a sentence, the ``checks``, which are the rows, and ``diagnosis``: mistakes
     that explain the matrix."""

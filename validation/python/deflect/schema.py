@@ -8,12 +8,9 @@ from typing import Any, Dict, List
 
 from .records import Array, Maybe, Others, Record
 
-_part = dataclasses.dataclass(frozen=True, eq=False)
-
-
 # Of every result
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Theory(Record):
     """A theory: ``name`` of its members, ``title``, and how it is spoken of."""
 
@@ -22,7 +19,7 @@ class Theory(Record):
     spoken: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class HashedFile(Record):
     """A file with the SHA-256 of its bytes."""
 
@@ -30,7 +27,7 @@ class HashedFile(Record):
     sha256: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Machine(Record):
     """The computer that a result was made on."""
 
@@ -39,7 +36,7 @@ class Machine(Record):
     compiler: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Provenance(Record):
     """What the program made a result from; functions of this package leave it out."""
 
@@ -51,7 +48,7 @@ class Provenance(Record):
     machine: Machine
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Share(Record):
     """The share of a part in the strain energy."""
 
@@ -59,7 +56,7 @@ class Share(Record):
     share: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Strained(Record):
     """A tolerance that would have to be so many standard deviations off."""
 
@@ -67,7 +64,7 @@ class Strained(Record):
     sigmas: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Mistake(Record):
     """A mistake of recording that the data look like."""
 
@@ -76,7 +73,7 @@ class Mistake(Record):
     certain: bool
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class LeftOut(Record):
     """An effect that was not looked at, and why."""
 
@@ -84,7 +81,7 @@ class LeftOut(Record):
     why: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class PlaceOf(Record):
     """The place of a law; ``also``: paths of the other parts of a group."""
 
@@ -98,7 +95,7 @@ class PlaceOf(Record):
 
 # Of solve
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class TheoryAnswer(Record):
     """``displacement`` (6,): ux uy uz, thx thy thz of the tool point; ``stiffness`` (6, 6): tangent under the load, base
     axes. ``from_linear``: in a deformed shape, by how much the displacement differs from the linear one."""
@@ -108,7 +105,7 @@ class TheoryAnswer(Record):
     from_linear: Maybe[float] = None
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class SolveChecks(Record):
     """Whether the stiffness is symmetric and positive and no passive joint is resisted (in linear geometry)."""
 
@@ -117,7 +114,7 @@ class SolveChecks(Record):
     passive_joints_free: Maybe[bool]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Joint(Record):
     """A commanded joint coordinate: a slide in mm or a turn in rad."""
 
@@ -126,7 +123,7 @@ class Joint(Record):
     value_mm: Maybe[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Assembly(Record):
     """The mechanism assembled with its misfits, without load: wrenches on legs, and offsets of T by theory under
     "analytic_offset" …"""
@@ -135,7 +132,7 @@ class Assembly(Record):
     leg_wrenches_N_Nmm: Maybe[Dict[str, Array]]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Floating(Record):
     """Play that nothing loads: T may move from the least to the most (mm, rad; NaN without end)."""
 
@@ -146,7 +143,7 @@ class Floating(Record):
 
 # Of validate and map
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Point(Record):
     """A point and a load: ``pose`` (6,), and (6,) displacements by theory (mm, rad)."""
 
@@ -158,7 +155,7 @@ class Point(Record):
     by_theory: Others[Array]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Erratum(Record):
     """The price of an erratum: ratios printed / corrected for loads along x, y, z, or why it is refused."""
 
@@ -170,7 +167,7 @@ class Erratum(Record):
     failed_check: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class MeshRow(Record):
     """What the theories differ by with elements of this size."""
 
@@ -179,7 +176,7 @@ class MeshRow(Record):
     max_relative_difference: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Grid(Record):
     """Coordinates of the poses of a map, x fastest."""
 
@@ -190,7 +187,7 @@ class Grid(Record):
     order: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class OutOfReach(Record):
     """How many poses are out of reach for a reason, with an example in words."""
 
@@ -199,7 +196,7 @@ class OutOfReach(Record):
     example: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Range(Record):
     """Smallest and largest over a map, and the poses (6,) where they are."""
 
@@ -209,7 +206,7 @@ class Range(Record):
     largest_at: Array
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Correlation(Record):
     """By ranks and linear."""
 

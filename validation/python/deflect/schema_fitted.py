@@ -9,19 +9,16 @@ from .records import Array, Maybe, Others, Record
 from .schema import LeftOut
 from .schema_measured import Quality
 
-_part = dataclasses.dataclass(frozen=True, eq=False)
-
-
 # Of fit, predict and compare with validation
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class FittedQuality(Quality):
     """With χ² itself."""
 
     chi2: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Prior(Record):
     """A mean with its standard deviation, in the unit of the parameter."""
 
@@ -29,7 +26,7 @@ class Prior(Record):
     deviation: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class OfEffect(Record):
     """The effect whose parameter was fitted."""
 
@@ -37,7 +34,7 @@ class OfEffect(Record):
     leg: Maybe[int]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class FittedParameter(Record):
     """A fitted number in ``unit`` with its 95 % interval (None: open); ``deviation`` is of its logarithm where ``scale``
     is "log". ``before``: in the description, or of an effect where the search began."""
@@ -58,7 +55,7 @@ class FittedParameter(Record):
     tolerance_deviations: Maybe[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Undetermined(Record):
     """A direction (n,) of the parameters that the data do not determine, in a sentence; None: nothing resists."""
 
@@ -67,7 +64,7 @@ class Undetermined(Record):
     deviation: Optional[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Discrepancy(Record):
     """What is left at held-out poses beyond noise, as a share of a reading."""
 
@@ -75,7 +72,7 @@ class Discrepancy(Record):
     share: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class NoiseOf(Record):
     """Noise of a reading of a quantity, m or rad …"""
 
@@ -83,7 +80,7 @@ class NoiseOf(Record):
     sigma_SI: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Posterior(Record):
     """What the fit leaves of parameters and tolerances: ``mean`` (n,) and ``covariance`` (n, n)."""
 
@@ -92,7 +89,7 @@ class Posterior(Record):
     covariance: Array
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Deviations(Record):
     """Shares of the standard deviation of a predicted reading."""
 
@@ -105,7 +102,7 @@ class Deviations(Record):
     reading: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class PredictedNumber(Record):
     """A predicted reading with its 95 % interval, and by theory."""
 
@@ -120,7 +117,7 @@ class PredictedNumber(Record):
     by_theory: Others[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Agreement(Record):
     """χ² of all errors together."""
 
@@ -129,7 +126,7 @@ class Agreement(Record):
     p_value: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class ModelBias(Record):
     """Of ln S/D: the factor of the model and its scatter, the uncertainty of the measurements taken off."""
 
@@ -140,7 +137,7 @@ class ModelBias(Record):
     pairs: int
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Channel(Record):
     """Errors E = S − D of a channel and their uncertainty u_val, in its unit."""
 
@@ -163,7 +160,7 @@ class Channel(Record):
     bias: Maybe[ModelBias]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class OfCurve(Record):
     """A point of the distribution function of all errors."""
 
@@ -171,7 +168,7 @@ class OfCurve(Record):
     F: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class DomainRange(Record):
     """A range of validation, and of use where that was given."""
 
@@ -184,7 +181,7 @@ class DomainRange(Record):
     outside: Maybe[bool]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class WithoutGroup(Record):
     """The agreement without a group of readings."""
 
@@ -195,7 +192,7 @@ class WithoutGroup(Record):
     changes: bool
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Sameness(Record):
     """Whether a parameter is the same in all groups."""
 
@@ -205,7 +202,7 @@ class Sameness(Record):
     p_value: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Calibration(Record):
     """The data of the calibration beside those of the validation."""
 
@@ -217,7 +214,7 @@ class Calibration(Record):
     unit: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class UsePoint(Record):
     """A point of use, and how far it is from where the model was validated."""
 
@@ -229,7 +226,7 @@ class UsePoint(Record):
     words: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class UseNumber(Record):
     """A prediction at a point of use."""
 
@@ -242,7 +239,7 @@ class UseNumber(Record):
     where: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Use(Record):
     """The intended use."""
 
@@ -251,7 +248,7 @@ class Use(Record):
     numbers: List[UseNumber]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Maturity(Record):
     """What is known of an element of a scheme of maturity."""
 
@@ -262,7 +259,7 @@ class Maturity(Record):
 
 # Of plan
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class PlanValue(Record):
     """A parameter of a rival."""
 
@@ -270,7 +267,7 @@ class PlanValue(Record):
     value: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class PlanRival(Record):
     """A rival of the tie that a plan tells apart."""
 
@@ -279,7 +276,7 @@ class PlanRival(Record):
     parameters: List[PlanValue]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class PlannedReading(Record):
     """A reading in words: pose, where that is, load, and how to come there."""
 
@@ -289,7 +286,7 @@ class PlannedReading(Record):
     how: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Separation(Record):
     """How far readings tell two effects apart."""
 
@@ -299,7 +296,7 @@ class Separation(Record):
     log_bayes_factor: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class PlanStep(Record):
     """After so many readings: the expected probability of the right effect."""
 
@@ -308,7 +305,7 @@ class PlanStep(Record):
     separations: List[Separation]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Inseparable(Record):
     """Two effects that no static reading tells apart, and what does instead."""
 
@@ -317,7 +314,7 @@ class Inseparable(Record):
     instead: List[str]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Foreseen(Record):
     """How large an effect must be to show in a campaign (NaN: never)."""
 
@@ -329,7 +326,7 @@ class Foreseen(Record):
     cosine: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Insight(Record):
     """What a campaign can tell: pairs of effects, errors before and after (µm), indices O1 … O5 of observability, and
     ``cosines`` (n, n) of the signatures."""

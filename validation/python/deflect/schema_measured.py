@@ -9,12 +9,9 @@ from typing import List, Optional
 from .records import Array, Maybe, Record
 from .schema import PlaceOf, Strained
 
-_part = dataclasses.dataclass(frozen=True, eq=False)
-
-
 # Of compare
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Quality(Record):
     """The error of a model: root mean square, the same at held-out poses, and χ² per degree of freedom."""
 
@@ -23,7 +20,7 @@ class Quality(Record):
     chi2_per_dof: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Baseline(Quality):
     """Of a comparison: p of so large a χ² by chance, the size of the readings, and the largest residual."""
 
@@ -32,7 +29,7 @@ class Baseline(Quality):
     worst_mm: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class PureError(Record):
     """Scatter of replicates."""
 
@@ -40,7 +37,7 @@ class PureError(Record):
     degrees_of_freedom: int
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Finding(Record):
     """A pattern that the residuals have, in a sentence, with its amplitudes and how much of the misfit it takes."""
 
@@ -57,7 +54,7 @@ class Finding(Record):
     instead: List[str]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class DeformedShape(Record):
     """What equilibrium in the deformed shape contributes, and its amplitude in the data."""
 
@@ -66,7 +63,7 @@ class DeformedShape(Record):
     deviation: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class ContrastTest(Record):
     """A question that readings answer by themselves; ``needs`` says what is missing for it."""
 
@@ -78,7 +75,7 @@ class ContrastTest(Record):
     needs: Maybe[str]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class PatternTest(Record):
     """A pattern tried alone."""
 
@@ -90,7 +87,7 @@ class PatternTest(Record):
     p_value: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class ErrorGroup(Record):
     """Errors of a group of readings; ``bias_mm`` (3,)."""
 
@@ -103,7 +100,7 @@ class ErrorGroup(Record):
     worst_line: int
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class ErrorGroups(Record):
     """Errors by what readings have in common."""
 
@@ -114,7 +111,7 @@ class ErrorGroups(Record):
     by_heading: List[ErrorGroup]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class ToleranceSize(Record):
     """By how much one standard deviation of a tolerance moves the readings, root mean square."""
 
@@ -122,7 +119,7 @@ class ToleranceSize(Record):
     rms_mm: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class InnerSite(Record):
     """A place inside whose yielding the sensors show."""
 
@@ -139,7 +136,7 @@ class InnerSite(Record):
     share_of_misfit: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class ResidualForce(Record):
     """The force at a place in one reading, and how much more it is than predicted."""
 
@@ -149,7 +146,7 @@ class ResidualForce(Record):
     unit: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Inside(Record):
     """What sensors at several places tell of the inside."""
 
@@ -158,7 +155,7 @@ class Inside(Record):
     reading_line: int
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Version(Record):
     """A version of a model against the data of a history."""
 
@@ -175,7 +172,7 @@ class Version(Record):
 
 # Of diagnose
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class FoundValue(Record):
     """A parameter with its 95 % interval; None where that is open."""
 
@@ -185,7 +182,7 @@ class FoundValue(Record):
     high95: Optional[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class TriedValue(Record):
     """The same of a candidate; None where its value is infinite."""
 
@@ -195,7 +192,7 @@ class TriedValue(Record):
     high95: Optional[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class FoundEffect(Record):
     """An effect at its site with its values."""
 
@@ -207,7 +204,7 @@ class FoundEffect(Record):
     parameters: List[FoundValue]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Candidate(FoundEffect):
     """An effect that was tried, with its probability and the error with it."""
 
@@ -218,7 +215,7 @@ class Candidate(FoundEffect):
     chi2_per_dof: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Rival(Record):
     """One of a tie: effects that were fitted together."""
 
@@ -226,14 +223,14 @@ class Rival(Record):
     effects: List[FoundEffect]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Tie(Record):
     """Effects of which the data support one as much as the other."""
 
     rivals: List[Rival]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Splitting(Record):
     """A reading in which two effects differ most."""
 
@@ -245,7 +242,7 @@ class Splitting(Record):
     sentence: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Localised(Record):
     """Where what is left unexplained acts."""
 
@@ -255,7 +252,7 @@ class Localised(Record):
     place: PlaceOf
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Unexplained(Record):
     """What no known effect explains."""
 
@@ -267,7 +264,7 @@ class Unexplained(Record):
     nearest_share: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Detectable(Record):
     """How large an effect must be to show in these data (NaN: never), and what it would be mistaken for."""
 

@@ -8,12 +8,9 @@ from typing import List
 from .records import Array, Maybe, Record
 from .schema import Share
 
-_part = dataclasses.dataclass(frozen=True, eq=False)
-
-
 # Of drawings
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Driven(Record):
     """An actuator with its coordinate."""
 
@@ -22,7 +19,7 @@ class Driven(Record):
     unit: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class DrawnMember(Record):
     """A straight member; ``axes`` (3, 3): its x, y, z as columns; ``size_mm`` of its section along y and z."""
 
@@ -38,7 +35,7 @@ class DrawnMember(Record):
     round: bool
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class DrawnJoint(Record):
     """A joint; ``freedoms``: a letter for each of x y z rx ry rz."""
 
@@ -52,7 +49,7 @@ class DrawnJoint(Record):
     driven: bool
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class DrawnFrame(Record):
     """Base or tool, or a node with what holds it."""
 
@@ -62,7 +59,7 @@ class DrawnFrame(Record):
     held: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class DrawnInstrument(Record):
     """A sensor or a point of load."""
 
@@ -72,7 +69,7 @@ class DrawnInstrument(Record):
     axis: Maybe[Array]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class DrawnMotion(Record):
     """A motion that nothing resists: displacements (n, 3) of the points."""
 
@@ -82,7 +79,7 @@ class DrawnMotion(Record):
 
 # Of check
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class MatrixCheck(Record):
     """One check of a matrix with its bounds; ``measured`` is missing where it could not be judged."""
 
@@ -94,7 +91,7 @@ class MatrixCheck(Record):
     passes: bool
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class MatrixDiagnosis(Record):
     """A mistake that explains a matrix, and what to do."""
 
@@ -106,7 +103,7 @@ class MatrixDiagnosis(Record):
 
 # Of frames
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class NodeDisplacement(Record):
     """Of a node, base axes."""
 
@@ -119,7 +116,7 @@ class NodeDisplacement(Record):
     rz_rad: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Reaction(Record):
     """On a node, of the freedoms that its support holds."""
 
@@ -132,7 +129,7 @@ class Reaction(Record):
     mz_Nmm: Maybe[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class SpringForce(Record):
     """Of a spring, of the freedoms in which it acts."""
 
@@ -145,7 +142,7 @@ class SpringForce(Record):
     mz_Nmm: Maybe[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class ConstraintForce(Record):
     """What holds a constraint: a force or a moment."""
 
@@ -154,7 +151,7 @@ class ConstraintForce(Record):
     moment_Nmm: Maybe[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class SectionForces(Record):
     """At an end of a member, in its axes."""
 
@@ -166,7 +163,7 @@ class SectionForces(Record):
     Mz_Nmm: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Member(Record):
     """Forces in a member, its largest bending moments with where they are, and its strain energy."""
 
@@ -180,7 +177,7 @@ class Member(Record):
     energy_Nmm: float
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class LoadPath(Record):
     """How the load was followed in a deformed shape."""
 
@@ -192,7 +189,7 @@ class LoadPath(Record):
     message: str
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class FrameChecks(Record):
     """Residual, equilibrium and (in linear geometry) energy, relative."""
 
@@ -201,7 +198,7 @@ class FrameChecks(Record):
     energy: Maybe[float]
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Case(Record):
     """A load case of a frame."""
 
@@ -216,7 +213,7 @@ class Case(Record):
     checks: FrameChecks
 
 
-@_part
+@dataclasses.dataclass(frozen=True, eq=False)
 class Solver(Record):
     """The solver of the equations, why it was taken, and of an iterative one its end."""
 

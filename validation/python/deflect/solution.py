@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from typing import Any, List
 
@@ -9,12 +10,12 @@ import numpy as np
 
 from . import _core, records, schema
 from .records import Array, Maybe, Others
-from .results import Result, _result
+from .results import Result
 from .schema import TheoryAnswer
 from .units import displacement_from_mm, stiffness_from_mm
 
 
-@_result
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Solution(Result):
     """Of Model.solve(): a dataclass equal to the JSON. Units mm, rad, N/mm, N, Nmm. With units="SI" ``displacement``,
     ``stiffness`` and ``by_theory`` are in m, rad, N/m, N, Nm; all else is as in the JSON. Base axes; translation first.

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Sequence, Union
 
 import numpy as np
 
 from .errors import InputError
+
+#: a list of numbers
+Numbers = Union[Sequence[float], np.ndarray]
 
 
 def require_units(units: str) -> bool:

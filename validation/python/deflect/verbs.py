@@ -211,8 +211,8 @@ def plan(model: Any, diagnosis: Any = None, data: Any = None, *, before: Any = N
             raise InputError("give a diagnosis and its data, or before=CAMPAIGN to plan before measuring")
         found = _core.next_readings(s._core, result_text(diagnosis), text_of(data), group, readings, probability, noise,
                                     asked, sources, threads, told)
-    kind = Plan if before is None else Foresight
-    return kind(found[0], found[1], measurements=Measurements(found[2], "plan") if found[2] else None)
+    chosen = Measurements(found[2], "plan") if found[2] else None
+    return Plan(*found[:2], measurements=chosen) if before is None else Foresight(*found[:2], measurements=chosen)
 
 
 def history(data: Any, models: Iterable[Any], *, sigma: float | None = None, sigma_rotation: float | None = None,
