@@ -36,6 +36,22 @@ const ModuleHead* try_load(const ModuleKind& kind, const fs::path& file, std::st
   return nullptr;
 }
 
+/// Folders above the shared library that this code is part of, if any: a package for Python may lie below the build
+/// tree or below a prefix that the interpreter does not.
+std::vector<fs::path> above_the_library(const fs::path& program) {
+  Dl_info here{};
+  std::error_code error;
+  if (::dladdr(reinterpret_cast<void*>(&try_load), &here) == 0 || here.dli_fname == nullptr) return {};
+  const std::string name = here.dli_fname;  // of a program as it was called, maybe without its folder
+  const fs::path library = fs::absolute(name, error);
+  if (error || name.find('/') == name.npos || fs::equivalent(library, program, error) || error) return {};
+  std::vector<fs::path> folders;
+  for (fs::path each = library.parent_path(); each != each.root_path(); each = each.parent_path())
+    for (const fs::path& folder : {each, each / DEFLECT_LIBDIR / "deflect"})
+      if (fs::exists(folder, error)) folders.push_back(folder);
+  return folders;
+}
+
 }  // namespace
 
 std::vector<fs::path> module_folders() {
@@ -43,13 +59,14 @@ std::vector<fs::path> module_folders() {
   std::error_code error;
   if (const char* const chosen = std::getenv("DEFLECT_PLUGIN_DIR"); chosen != nullptr && *chosen != 0)
     folders.push_back(fs::absolute(chosen, error));
-  const fs::path own = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path program = fs::read_symlink("/proc/self/exe", error), own = program.parent_path();
   if (!own.empty()) {
     folders.push_back(own);
     folders.push_back((own.parent_path() / DEFLECT_LIBDIR / "deflect").lexically_normal());
   }
   folders.emplace_back(fs::path(DEFLECT_FULL_LIBDIR) / "deflect");
   if (!own.empty()) folders.push_back(own.parent_path());
+  for (fs::path& folder : above_the_library(program)) folders.push_back(std::move(folder));
   return folders;
 }
 

@@ -22,7 +22,8 @@ struct ModuleKind {
 
 /// Folders in which modules are searched, in order: the folder in the environment variable DEFLECT_PLUGIN_DIR, the
 /// program's own folder, the library folder of the installation that the program belongs to, the one chosen when
-/// deflect was configured, and the folder above the program's (for tests in a build tree).
+/// deflect was configured, the folder above the program's (for tests in a build tree), and, where this code is in a
+/// shared library (the package for Python), the folders above it and their library folders.
 std::vector<std::filesystem::path> module_folders();
 
 /// Loads the module from the first folder that has a matching one; it stays loaded. Throws ModelError with what was

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "msa/base/files.h"
+#include "tests/house/confinements.h"
 
 namespace deflect::house {
 namespace {
@@ -39,8 +40,8 @@ const std::vector<std::pair<std::string, Rooms>>& table() {
       {"validation/parallel", {"msa/base"}},
       {"validation/theories", {"msa/base", "msa/mechanism", "analytic", "msa/frame/mechanism", "meshes"}},
       {"validation/studies",
-       {"msa/base", "msa/mechanism", "analytic", "validation/measurement", "validation/parallel",
-        "validation/theories"}},
+       {"msa/base", "msa/mechanism", "analytic", "msa/frame/mechanism", "meshes", "validation/measurement",
+        "validation/parallel", "validation/theories"}},
       {"validation/prediction",
        {"msa/base", "msa/mechanism", "msa/frame/mechanism", "validation/measurement", "validation/parallel",
         "validation/theories", "validation/studies"}},
@@ -92,10 +93,30 @@ const std::vector<std::pair<std::string, Rooms>>& table() {
        {"msa/base", "validation/json", "validation/measurement", "validation/compare", "validation/report",
         "validation/result_files", "validation/figures", "validation/scene"}},
       {"validation/python",
-       {"msa/base", "msa/fields", "msa/mechanism", "msa/frame/structure", "msa/frame/file", "validation/parallel",
-        "validation/studies", "validation/measurement", "validation/prediction", "validation/compare",
-        "validation/subject", "validation/effects", "validation/diagnosis", "validation/fit", "validation/validity",
-        "validation/plan", "validation/report", "validation/report/validity", "validation/report/plan"}},
+       {"msa/base",
+        "msa/fields",
+        "msa/mechanism",
+        "msa/frame/structure",
+        "msa/frame/file",
+        "meshes",
+        "validation/parallel",
+        "validation/studies",
+        "validation/measurement",
+        "validation/prediction",
+        "validation/compare",
+        "validation/subject",
+        "validation/effects",
+        "validation/diagnosis",
+        "validation/fit",
+        "validation/validity",
+        "validation/plan",
+        "validation/matrix",
+        "validation/report",
+        "validation/report/validity",
+        "validation/report/plan",
+        "validation/result_files",
+        "validation/figures",
+        "validation/page"}},
       {"validation/cli",
        {"msa/base",
         "validation/json",
@@ -153,35 +174,6 @@ const std::vector<std::pair<std::string, Rooms>>& table() {
   };
   return rooms;
 }
-
-/// Where a third-party library may be included: in files whose path matches `where`, and in no more than
-/// `files`; `beside` them a program may that measures it alone.
-struct Confinement {
-  const char* what;
-  const char* includes;
-  const char* where;
-  const char* rule;
-  std::size_t files;
-  const char* beside = "";
-};
-constexpr std::size_t any_number = 1000000;
-
-const Confinement confinements[] = {
-    {"CHOLMOD", "(suitesparse/)?cholmod.*|Eigen/CholmodSupport", "msa/frame/structure/[^/]+\\.cpp",
-     "one .cpp file of msa/frame/structure", 1, "tests/benchmark/frames/bare_cholmod\\.cpp"},
-    {"SPQR", "(suitesparse/)?(SuiteSparseQR.*|spqr.*)|Eigen/SPQRSupport", "msa/frame/structure/[^/]+\\.cpp",
-     "one .cpp file of msa/frame/structure", 1},
-    {"Gmsh", "gmsh\\.h.*", "meshes/gmsh_[^/]+\\.cpp", "meshes/gmsh_*.cpp", any_number},
-    {"MPI", "mpi\\.h", "validation/parallel/mpi_[^/]+\\.cpp", "validation/parallel/mpi_*.cpp", any_number},
-    {"cereal", "cereal/.*", "validation/parallel/pack\\.h", "validation/parallel/pack.h", 1},
-    {"yaml-cpp", "yaml-cpp/.*", "msa/fields/[^/]*(reader|writer)[^/]*\\.cpp", "the reader and the writer of msa/fields",
-     any_number},
-    {"pybind11", "pybind11/.*", "validation/python/.*", "validation/python", any_number},
-    {"CLI11", "CLI/.*", "validation/cli/[^/]+\\.cpp", "one .cpp file of validation/cli", 1},
-    {"nlohmann json", "nlohmann/.*", "(validation|tests)/.*", "validation and tests", any_number},
-    {"libmd", "sha2\\.h", "validation/result_files/[^/]+\\.cpp", "one .cpp file of validation/result_files", 1},
-    {"GoogleTest", "g(test|mock)/.*", "tests/.*", "tests", any_number},
-};
 
 const Rooms* allowed_in(const std::string& room) {
   for (const auto& [name, others] : table())

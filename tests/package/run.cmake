@@ -79,13 +79,13 @@ function(check_documents prefix)
 endfunction()
 check_documents(${prefix})
 
-# The package for Python solves a machine that it knows by its name.
+# The package for Python solves a machine that it knows by its name, and finds the module with Gmsh.
 function(check_python prefix)
   if(NOT PYTHON)
     return()
   endif()
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PYTHON_DIR} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} -c
-      "import deflect\nprint(deflect.__file__, deflect.load('haptic-6psu').solve([0, 0, 200], [50, 0, 0]).report)")
+      "import deflect\nm = deflect.load('haptic-6psu')\nm.export('${SCRATCH}/python.msh')\nprint(deflect.__file__, m.solve([0, 0, 200], [50, 0, 0]).report)")
   if(NOT output MATCHES "^${prefix}/${PYTHON_DIR}" OR NOT output MATCHES "displacement")
     message(FATAL_ERROR "The installed package for Python does not solve:\n${output}")
   endif()

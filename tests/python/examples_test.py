@@ -20,7 +20,7 @@ except ImportError:
 
 PICTURES = {"own_figures": ["fig10", "fig11", "fig11-of-map"], "truss": ["truss", "truss-residuals", "truss-diagnosis"],
             "missing_effect": ["residuals", "modulus", "diagnosis", "history"], "measurement_plan": ["alike"],
-            "own_effect": ["own-effect", "own-history", "own-curve"]}
+            "own_effect": ["own-effect", "own-fit", "own-history", "own-curve"]}
 
 
 def size_of(png):

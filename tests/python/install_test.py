@@ -22,13 +22,15 @@ class Install(unittest.TestCase):
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             code = ("import deflect; m = deflect.load('haptic-6psu'); print(deflect.__file__, deflect.__version__, "
-                    "*m.solve([25, 25, 198.9], [50, 0, 0]).displacement.tolist(), len(deflect.effects()))")
+                    "*m.solve([25, 25, 198.9], [50, 0, 0]).displacement.tolist(), len(deflect.effects())); "
+                    "m.export('loaded.msh')  # by the module with Gmsh")
             environment = {**os.environ, "PYTHONPATH": folder}
             out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=folder,
                                  env=environment).stdout.split()
             self.assertTrue(out[0].startswith(folder), out[0])
-            here = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
-                                  check=True).stdout.split()
+            self.assertTrue((pathlib.Path(folder) / "loaded.msh").exists())
+            here = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
+                                  cwd=folder).stdout.split()
             self.assertEqual(out[1:], here[1:])
         self.assertEqual([f for f in sorted(PACKAGE.rglob("*")) if "__pycache__" not in str(f)],
                          [f for f in before if "__pycache__" not in str(f)], "pip left files in the checkout")

@@ -1,11 +1,14 @@
 """Many poses at once: the numbers of one at a time, arrays as they are, no memory left behind, Ctrl-C."""
 
+import os
+import pickle
 import resource
 import signal
 import subprocess
 import sys
 import threading
 import time
+import tracemalloc
 import unittest
 
 import numpy as np
@@ -66,6 +69,22 @@ class ManyPoses(unittest.TestCase):
         np.testing.assert_array_equal(self.m.displacement(backwards, load),
                                       self.m.displacement(np.ascontiguousarray(backwards), load))
 
+    def test_arrays_are_not_copied(self):
+        """Peak memory of NumPy: beside the result nothing of the size of C-contiguous poses, loads or the result."""
+        poses = poses_of(20_000)
+        loads = np.tile([50.0, 0, 0, 0, 0, 0], (len(poses), 1))
+
+        def peak(poses, loads):
+            tracemalloc.start()
+            d = self.m.displacement(poses, loads, theory="analytic")
+            most = tracemalloc.get_traced_memory()[1]
+            tracemalloc.stop()
+            return most / d.nbytes
+
+        self.assertLess(peak(poses, loads), 1.1)
+        self.assertGreater(peak(np.asfortranarray(poses), loads), 1.9)  # such a copy would be seen
+        self.assertGreater(peak(poses, loads.astype(np.float32)), 1.9)
+
     def test_SI(self):
         poses = poses_of(10)
         si = poses.copy()
@@ -113,6 +132,34 @@ class ManyPoses(unittest.TestCase):
         calls(300)
         # One leaked result of a call (50 × 36 numbers) each time would be 4 MB.
         self.assertLess(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before, 2048)
+
+    def test_resident_memory_stays_flat(self):
+        """Calls for one pose, and now and then results, members of them, copies and errors. DEFLECT_CALLS=1000000 for a
+        long run; what a leak of one array of six numbers would be then is 100 MB."""
+        m, pose, load = self.m, np.array([25, 25, 198.9, 0, 0, 0.0]), np.array([50.0, 0, 0, 0, 0, 0])
+
+        def calls(n):
+            for i in range(n):
+                m.displacement(pose, load, theory=None if i % 10 == 0 else "analytic")
+                if i % 300 == 0:
+                    s = pickle.loads(pickle.dumps(m.solve(pose, load)))
+                    s.by_theory["msa"].stiffness  # noqa: B018
+                    m.edited("materials.*.E", 1.01, "multiply")
+                    with self.assertRaises(deflect.MechanismError):
+                        m.displacement([1000, 0, 0])
+
+        def resident():
+            with open("/proc/self/statm") as file:
+                return int(file.read().split()[1]) * resource.getpagesize()
+
+        n = int(os.environ.get("DEFLECT_CALLS", 3000))
+        calls(max(1000, n // 100))
+        before = resident()
+        calls(n)
+        grown = resident() - before
+        if n > 3000:
+            print(f"{n} calls: {before / 1e6:.1f} MB before, {grown / 1e6:+.2f} MB after")
+        self.assertLess(grown, 1e6)
 
     def test_progress_is_told_and_may_end_the_work(self):
         told = []

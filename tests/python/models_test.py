@@ -71,6 +71,29 @@ class Loaded(unittest.TestCase):
         self.assertGreater(yields.solve(load=load).displacement[0], m.solve(load=load).displacement[0])
         self.assertEqual(m.yaml, before)
 
+    def test_another_name_keeps_the_comments(self):
+        scara = deflect.load("scara")
+        self.assertIn("#", scara.source)
+        for name in ("mine", "a: b #c", "1e3"):
+            mine = scara.named(name)
+            self.assertEqual(mine.name, name)
+            self.assertEqual(mine.source.count("#"), scara.source.count("#") + name.count("#"))
+            with tempfile.TemporaryDirectory() as folder:
+                mine.save(folder + "/mine.yaml")
+                self.assertEqual(deflect.load(folder + "/mine.yaml"), mine)
+
+    def test_places_and_sensors(self):
+        m, truss = deflect.load("haptic-6psu"), deflect.load("truss-45")
+        self.assertEqual(m.sensors(), [])
+        sensors = truss.sensors()
+        self.assertTrue(all(s.name and s.unit for s in sensors))
+        data = deflect.simulate(truss, campaign="paper", seed=1)
+        self.assertTrue({f"{s.name}_{s.unit}" for s in sensors} <= set(data.columns))
+        for place in truss.places() + m.places():
+            again = pickle.loads(pickle.dumps(place))
+            self.assertEqual(again, place)
+            self.assertEqual(copy.copy(place), place)
+
     def test_pickle_and_copy(self):
         m = deflect.load("haptic-6psu")
         f = deflect.frame(TRUSS)
@@ -108,6 +131,14 @@ class Solved(unittest.TestCase):
         si = m.solve([0.025, 0.025, 0.1989, *np.deg2rad([1, 2, 3])], [50, 0, 0, 0.1, 0, 0], units="SI")
         np.testing.assert_allclose(si.displacement[:3], mm.displacement[:3] / 1e3, rtol=1e-9)
         np.testing.assert_allclose(si.displacement[3:], mm.displacement[3:], rtol=1e-9)
+        # Slides in m, by joints as by pose.
+        joints = {j["name"]: j for j in m.solve().content["joints"]}
+        self.assertTrue(all("value_rad" in j for j in joints.values()) or all("value_mm" in j for j in joints.values()))
+        at = [j.get("value_rad", j.get("value_mm")) for j in joints.values()]
+        slides = "value_mm" in next(iter(joints.values()))
+        of_joints = m.solve(joints=[q / 1e3 if slides else q for q in at], load=[50, 0, 0], units="SI")
+        np.testing.assert_allclose(of_joints.displacement, m.solve(load=[50, 0, 0], units="SI").displacement, rtol=1e-6,
+                                   atol=1e-12)
         # What a stiffness is for: K d = F in the same units, of a linear machine.
         ideal = deflect.load("haptic-6psu-ideal-joints")
         F = np.array([50, 0, 0, 0.1, 0, 0])
@@ -129,6 +160,12 @@ class Solved(unittest.TestCase):
         np.testing.assert_allclose(members["end.N_N"], -1000 / np.sqrt(2), rtol=1e-3)
         self.assertEqual(r.reactions()["fz_N"].shape, (3,))
         self.assertEqual(len(r.rows()), 3)
+        nodes, members = f.nodes(), f.members()
+        self.assertEqual(nodes["node"], ["A", "B", "T"])
+        np.testing.assert_allclose(nodes["z_mm"], [0, 0, 1000])
+        self.assertTrue(nodes["held"][0])
+        self.assertEqual((members["member"], members["start_mm"].shape), (["a", "b"], (2, 3)))
+        np.testing.assert_allclose(members["length_mm"], np.sqrt(2) * 1000)
 
 
 class Errors(unittest.TestCase):

@@ -83,6 +83,53 @@ class Effects(unittest.TestCase):
         self.assertTrue(any({"own_clamp", "guide_root_compliance"} <= set(tie) for tie in found.indistinguishable),
                         found.indistinguishable)
 
+    def test_fitted_as_the_entry(self):
+        """By a function, by the catalogue and by the number that the effect brings: one fit."""
+        m = deflect.load(IDEAL)
+        data = deflect.simulate(m, ("guide_root_compliance", {"stiffness_Nmm_per_rad": 5e6}), campaign="paper", seed=3)
+        own = deflect.fit(m, data, clamp())
+        entry = deflect.fit(m, data, ("guide_root_compliance", {"stiffness_Nmm_per_rad": 2e6}))
+        self.assertEqual(own.parameters[0].path, "own_clamp.stiffness_Nmm_per_rad")
+        self.assertEqual((own.parameters[0].of.effect, own.parameters[0].unit), ("own_clamp", "Nmm/rad"))
+        self.assertEqual(entry.parameters[0].before, 2e6)
+        for one in (own, entry):
+            p = one.parameters[0]
+            self.assertTrue(p.low95 < 5e6 < p.high95, p)
+            self.assertAlmostEqual(p.value / own.parameters[0].value, 1, delta=0.02 * p.deviation)
+            self.assertAlmostEqual(p.deviation / own.parameters[0].deviation, 1, delta=1e-3)
+            self.assertLess(one.after.rmse_mm, one.before.rmse_mm)
+        self.assertEqual(own.model, m.with_effect(clamp(), stiffness_Nmm_per_rad=own.parameters[0].value))
+        at = {"at": [25, 25, 198.9], "load": [50, 0, 0]}
+        first = deflect.predict(m, **at, fit=own, effects=[clamp()])
+        self.assertEqual(deflect.predict(own.model, **at, fit=own, effects=[clamp()]), first)
+        second = deflect.predict(m, **at, fit=entry)
+        for a, b in zip(first.numbers, second.numbers):
+            self.assertAlmostEqual(a.value, b.value, delta=1e-2 * abs(a.high95 - a.low95))
+            self.assertAlmostEqual(a.deviation.parameters / b.deviation.parameters, 1, delta=0.01)
+        with self.assertRaisesRegex(deflect.InputError, "own_clamp"):
+            deflect.predict(m, **at, fit=own)
+        si = deflect.predict(m, at=[0.025, 0.025, 0.1989], load=[50, 0, 0], fit=entry, units="SI")
+        self.assertAlmostEqual(si.numbers[0].value / second.numbers[0].value, 1, delta=1e-9)
+
+    def test_fitted_beside_a_number_with_a_prior(self):
+        m = deflect.load(IDEAL)
+        data = deflect.simulate(m, ("guide_root_compliance", {"stiffness_Nmm_per_rad": 5e6}), campaign="paper", seed=3)
+        f = deflect.fit(m, data, [clamp(), "materials.steel.E"],
+                        prior={"own_clamp.stiffness_Nmm_per_rad": "5e6 Nmm/rad ± 10 %", "materials.steel.E": "210 GPa ± 1 %"})
+        self.assertEqual([p.path for p in f.parameters], ["materials.steel.E", "own_clamp.stiffness_Nmm_per_rad"])
+        self.assertEqual(f.parameters[1].prior.mean, 5e6)
+        self.assertEqual(f.correlation.shape, (2, 2))
+
+    def test_fit_refuses(self):
+        m = deflect.load(IDEAL)
+        data = deflect.simulate(m, campaign="paper", seed=3)
+        with self.assertRaisesRegex(deflect.InputError, "did you mean 'guide_root_compliance'"):
+            deflect.fit(m, data, "guide_root_complianse")
+        with self.assertRaisesRegex(deflect.InputError, "leg_defect.*one leg"):
+            deflect.fit(m, data, "leg_defect")
+        leg = deflect.fit(m, data, ("leg_defect", {"leg": 4}))
+        self.assertTrue(leg.parameters[0].path.startswith("leg_defect[4]."))
+
     def test_listed_and_applied(self):
         listed = {e["effect"]: e for e in deflect.effects(IDEAL, [clamp()])}["own_clamp"]
         self.assertTrue(listed["applies"])

@@ -1,15 +1,19 @@
 """Pictures of results by matplotlib, tables by pandas, and what a notebook shows."""
 
 import base64
+import contextlib
 import io
 import re
 import subprocess
 import sys
+import types
 import unittest
+import unittest.mock
 
 import numpy as np
 
 import deflect
+from every_result import IDEAL, results
 
 try:
     import matplotlib.image
@@ -19,25 +23,6 @@ try:
     import pandas
 except ImportError:
     pandas = None
-
-IDEAL = "haptic-6psu-ideal-joints"
-
-
-def results():
-    """One of each kind, by name."""
-    m, data = deflect.load(IDEAL), deflect.simulate(IDEAL, ("joint_clearance", {"gap_mm": 0.02}), campaign="paper", seed=5)
-    fitted = deflect.fit(m, data, "materials.steel.E")
-    tied = deflect.diagnose(m, data, bootstrap=99)
-    out = {"solution": m.solve([20, 0, 180], [50, 0, 0]), "validation": deflect.validate("haptic-6psu"),
-           "map": deflect.map(m, 4), "slice": deflect.map(m, 4, x=0), "frame": deflect.frame("logan-5-8").solve(),
-           "comparison": deflect.compare(m, data), "validity": deflect.compare(m, data, validation=True),
-           "diagnosis": tied, "fit": fitted, "prediction": deflect.predict(m, data), "history":
-           deflect.history(data, [m, fitted.model]), "foresight": deflect.plan(m, before="paper"),
-           "truss": deflect.compare("truss-45", deflect.simulate("truss-45", campaign="paper"))}
-    if tied.indistinguishable:
-        out["plan"] = deflect.plan(m, tied, data, readings=3)
-    return out
-
 
 @unittest.skipUnless(matplotlib, "matplotlib is not installed (apt install python3-matplotlib): no pictures")
 class Pictures(unittest.TestCase):
@@ -55,7 +40,7 @@ class Pictures(unittest.TestCase):
         for name, result in self.results.items():
             with self.subTest(name):
                 figure = result.plot()
-                self.assertAlmostEqual(figure.get_figwidth() * 25.4, 170 if name in ("map", "slice") else 160, places=6)
+                self.assertAlmostEqual(figure.get_figwidth() * 25.4, 170 if isinstance(result, deflect.StiffnessMap) else 160, places=6)
                 pixels = self.pixels(figure)
                 dark = (pixels.min(axis=2) < 0.9)
                 self.assertGreater(dark.mean(), 0.005, "the picture is empty")
@@ -142,6 +127,34 @@ class Tables(unittest.TestCase):
         again = deflect.Measurements.from_dataframe(data.to_dataframe())
         np.testing.assert_array_equal(again.columns["ux_mm"], data.columns["ux_mm"])
         self.assertEqual(deflect.compare(IDEAL, data.to_dataframe()).baseline, deflect.compare(IDEAL, data).baseline)
+
+
+class Progress(unittest.TestCase):
+    def test_in_a_terminal_a_line(self):
+        with contextlib.redirect_stderr(io.StringIO()) as told:
+            deflect.map(IDEAL, 3, progress=True)
+        self.assertTrue(told.getvalue().startswith("\r"))
+        self.assertTrue(told.getvalue().endswith("\rmap 100 %\n"), told.getvalue())
+
+    def test_in_a_notebook_a_bar(self):
+        """With what a notebook's kernel offers: an output that is written anew in its place."""
+        shown = []
+
+        class Handle:
+            update = staticmethod(shown.append)
+
+        def display(words, display_id):
+            shown.append(words)
+            return Handle if display_id else None
+
+        kernel = types.SimpleNamespace(get_ipython=lambda: types.SimpleNamespace(kernel=True))
+        shown_by = types.SimpleNamespace(HTML=str, display=display)
+        with unittest.mock.patch.dict(sys.modules, {"IPython": kernel, "IPython.display": shown_by}):
+            with contextlib.redirect_stderr(io.StringIO()) as told:
+                deflect.map(IDEAL, 3, progress=True)
+        self.assertEqual(told.getvalue(), "")
+        self.assertIn("value='0.000'", shown[0])
+        self.assertEqual(shown[-1], "<progress value='1.000' max='1'></progress> map 100 %")
 
 
 class Without(unittest.TestCase):

@@ -137,6 +137,12 @@ class Data(unittest.TestCase):
         # Loads are read in N and displacements in mm, and both back: rounding alone is left of the linear answer; the
         # deformed shape, in which measurements are predicted, changes it by the square of the rotation.
         self.assertLess(compared.baseline["rmse_mm"], 0.05 * np.abs(d[:, :3]).max())
+        si = poses / 1e3
+        again = deflect.Measurements.from_arrays(si, loads, d[:, :3] / 1e3, columns={"sigma_u_mm": np.full(18, 0.01)},
+                                                 units="SI")
+        for name, values in data.columns.items():
+            if name != "pose":
+                np.testing.assert_allclose(again.columns[name], values, rtol=1e-14)
         with tempfile.TemporaryDirectory() as folder:
             data.to_csv(folder + "/data.csv")
             self.assertEqual(deflect.Measurements.from_csv(folder + "/data.csv"), data)

@@ -188,6 +188,13 @@ Observations Observations::weighed_for(const subject::Subject& subject) const {
   return out;
 }
 
+Observations Observations::about(const subject::Subject& subject) const {
+  Observations out = *this;
+  out.subject_ = subject;
+  out.null_ = out.whitened_residual(subject);
+  return out;
+}
+
 Observations Observations::exact_in(const std::vector<std::size_t>& tolerances) const {
   Observations out = *this;
   for (const std::size_t i : tolerances) out.A_.shared.col(as_index(i)).setZero();

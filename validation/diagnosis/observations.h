@@ -59,6 +59,9 @@ class Observations {
   /// do), and readings that are gross outliers to it are set aside, unless they are more than one in twenty; one of ten
   /// or more may be.
   Observations granted(const subject::Subject&) const;
+  /// A copy whose hypotheses are about this subject: effects are added to it, it is subject() and null_residual() is
+  /// its. Weights, tolerances and what is granted stay those of the subject of this one.
+  Observations about(const subject::Subject&) const;
   /// A copy in which these tolerances, by their index among those of the comparison, are exact.
   Observations exact_in(const std::vector<std::size_t>& tolerances) const;
 

@@ -33,22 +33,41 @@ VectorX values_of(const std::vector<FreeParameter>& all) {
   return out;
 }
 
-/// One round of the fit: what is observed, the tolerances that the parameters replace, values in SI.
+/// One round of the fit: what is observed, without the tolerances that the parameters replace; values in SI.
 struct Round {
   diagnosis::Observations observations;
   VectorX values;
   double declared_chi2 = 0;  // of the subject as given, with all tolerances as declared
 };
 
-Round fitted_round(const subject::Subject& s, const measurement::Measurements& data,
-                   const std::vector<FreeParameter>& all, const compare::ComparisonOptions& options,
-                   const parallel::Work& work) {
-  const diagnosis::Observations observed(s, data, options, work);
-  Round out{observed.exact_in(replaced_tolerances(s, all, observed.comparison().tolerances.nuisances)), {}};
-  out.declared_chi2 = observed.null_residual().squaredNorm();
+Round fitted_round(const diagnosis::Observations& observed, const std::vector<std::size_t>& exact,
+                   const std::vector<FreeParameter>& all) {
+  Round out{observed.exact_in(exact), {}, observed.null_residual().squaredNorm()};
   const Freed freed(all);
   out.values = freed.values(searched(out.observations, freed.hypothesis(), freed.effect_values(values_of(all))).values);
   return out;
+}
+
+Round first_round(const subject::Subject& s, const measurement::Measurements& data,
+                  const std::vector<FreeParameter>& all, const compare::ComparisonOptions& options,
+                  const parallel::Work& work) {
+  const diagnosis::Observations observed(s, data, options, work);
+  return fitted_round(observed, replaced_tolerances(s, all, observed.comparison().tolerances.nuisances), all);
+}
+
+/// Weighed and judged by the subject with the values found so far; the search is about its numbers, without effects.
+Round next_round(const Round& before, const subject::Subject& numbers, const measurement::Measurements& data,
+                 const std::vector<FreeParameter>& all, const compare::ComparisonOptions& options,
+                 const parallel::Work& work) {
+  const bool effects = has_effects(all);
+  const subject::Subject judge = effects ? with_values(numbers, all, values_of(all)) : numbers;
+  const diagnosis::Observations observed(judge, data, options, work);
+  const std::vector<subject::Tolerance>& tolerances = observed.comparison().tolerances.nuisances;
+  std::vector<std::size_t> exact = replaced_tolerances(numbers, all, tolerances);
+  if (!effects) return fitted_round(observed, exact, all);
+  for (const std::size_t i : added_tolerances(before.observations.comparison().tolerances.nuisances, tolerances))
+    exact.push_back(i);
+  return fitted_round(observed.about(numbers), exact, all);
 }
 
 void require_no_mistake(const compare::Comparison& c, const std::string& origin) {
@@ -149,15 +168,15 @@ VectorX fitted_values(const FitResult& r) {
 
 FitResult fit(const subject::Subject& s, const measurement::Measurements& data, const std::vector<FreeParameter>& all,
               const compare::ComparisonOptions& options, const parallel::Work& work) {
-  const Round first = fitted_round(s, data, all, options, work.part(0, 0.5));
+  const Round first = first_round(s, data, all, options, work.part(0, 0.5));
   const compare::Comparison& c = first.observations.comparison();
   require_no_mistake(c, data.origin);
   compare::ComparisonOptions as_recorded = options;
   as_recorded.as_recorded = true;
-  const subject::Subject fitted = with_values(s, all, first.values);
+  const subject::Subject numbers = with_numbers(s, all, first.values);
   std::vector<FreeParameter> moved = in_version(all, first.values);
-  for (FreeParameter& p : moved) p = bounded(std::move(p), fitted);
-  const Round last = fitted_round(fitted, data, moved, as_recorded, work.part(0.5, 1));
+  for (FreeParameter& p : moved) p = bounded(std::move(p), numbers);
+  const Round last = next_round(first, numbers, data, moved, as_recorded, work.part(0.5, 1));
   const Learnt learnt(last.observations, moved, last.values);
 
   FitResult out;
@@ -175,7 +194,7 @@ FitResult fit(const subject::Subject& s, const measurement::Measurements& data, 
   for (Eigen::Index i = 0; i < shift.size(); ++i)
     out.converged = out.converged && std::abs(shift(i)) < 0.1 * nth(out.parameters, i).deviation;
   out.undetermined = undetermined(learnt.whitened_derivative(), moved, last.values);
-  const subject::Subject final = with_values(fitted, moved, last.values);
+  const subject::Subject final = with_values(numbers, moved, last.values);
   add_quality(out, first, last, final, learnt);
   const compare::Comparison& after = last.observations.comparison();
   out.quantity = compare::quantity_of_errors(after.study.values);

@@ -8,6 +8,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "validation/effects/effect_file.h"
 #include "validation/json/json_text.h"
 
 namespace deflect::fit {
@@ -20,10 +21,10 @@ class Reader {
   Reader(const std::string& text, const std::string& origin)
       : origin_(origin), root_(json::parse_json(text, origin, remedy)) {}
 
-  Knowledge read(const subject::Subject& s) const {
+  Knowledge read(const subject::Subject& s, const std::vector<effects::Effect>& effects) const {
     Knowledge out;
     if (!root_.is_object() || root_.value("kind", Json()) != "fit") fail("kind", "is not a fit");
-    read_parameters(s, out);
+    read_parameters(s, effects, out);
     const Json& posterior = member(root_, "posterior", "");
     const std::vector<std::string> names = texts(member(posterior, "names", "posterior."));
     out.posterior.parameters = std::ssize(out.parameters);
@@ -80,10 +81,47 @@ class Reader {
     fail("quantity", "is unknown");
   }
 
-  void read_parameters(const subject::Subject& s, Knowledge& out) const {
+  /// Those of the effect that parameters[from] is of, in the effect's order.
+  std::vector<FreeParameter> read_effect(const Json& all, std::size_t from, const subject::Subject& s,
+                                         const std::vector<effects::Effect>& effects) const {
+    const Json& of = member(all[from], "of", "parameters.");
+    const Json& name = member(of, "effect", "parameters.of.");
+    if (!name.is_string()) fail("parameters.of.effect", "is no text");
+    if (effects.empty())
+      throw InputError(
+          fmt::format("{}: parameters of the effect {} were fitted: give the description that was fitted, "
+                      "which lacks the effect, and the effect",
+                      origin_, name.get<std::string>()));
+    FreedEffect freed{std::make_shared<const effects::Effect>(effects::find_effect(effects, name.get<std::string>())),
+                      std::nullopt};
+    if (of.contains("leg")) {
+      if (!of["leg"].is_number_integer()) fail("parameters.of.leg", "is no whole number");
+      freed.leg = of["leg"].get<int>();
+    }
+    std::vector<FreeParameter> out = parameters_of(s, freed);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (from + i >= all.size() || all[from + i].value("path", Json()) != out[i].path)
+        fail("parameters", fmt::format("has not all parameters of {}, one after the other", freed.name()));
+      if (!out[i].positive)
+        out[i].prior =
+            Prior{number(all[from + i], "value", "parameters."), number(all[from + i], "deviation", "parameters.")};
+    }
+    return out;
+  }
+
+  void read_parameters(const subject::Subject& s, const std::vector<effects::Effect>& effects, Knowledge& out) const {
     const Json& all = member(root_, "parameters", "");
     std::vector<double> fitted;
-    for (const Json& p : all) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Json& p = all[i];
+      if (p.is_object() && p.contains("of")) {
+        for (FreeParameter& own : read_effect(all, i, s, effects)) {
+          fitted.push_back(number(all[fitted.size()], "value", "parameters."));
+          out.parameters.push_back(std::move(own));
+        }
+        i = fitted.size() - 1;
+        continue;
+      }
       const Json& path = member(p, "path", "parameters.");
       if (!path.is_string()) fail("parameters.path", "is no text");
       const double value = number(p, "value", "parameters."), before = number(p, "before", "parameters.");
@@ -125,8 +163,9 @@ class Reader {
 
 }  // namespace
 
-Knowledge read_fit(const std::string& json, const std::string& origin, const subject::Subject& s) {
-  return Reader(json, origin).read(s);
+Knowledge read_fit(const std::string& json, const std::string& origin, const subject::Subject& s,
+                   const std::vector<effects::Effect>& effects) {
+  return Reader(json, origin).read(s, effects);
 }
 
 }  // namespace deflect::fit

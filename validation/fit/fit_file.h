@@ -19,8 +19,10 @@ struct Knowledge {
   std::vector<std::pair<measurement::Quantity, double>> sigma;  ///< noise of a reading, SI
 };
 
-/// Of a fit of this subject, whether it has the fitted values already or those before. InputError "origin: member: …"
-/// for JSON that is not such a result, for parameters that the subject lacks or has with other values.
-Knowledge read_fit(const std::string& json, const std::string& origin, const subject::Subject&);
+/// Of a fit of this subject, whether it has the fitted values already or those before; effects that were fitted it must
+/// lack, and `effects` have. InputError "origin: member: …" for JSON that is not such a result, for parameters that the
+/// subject lacks or has with other values.
+Knowledge read_fit(const std::string& json, const std::string& origin, const subject::Subject&,
+                   const std::vector<effects::Effect>& effects = {});
 
 }  // namespace deflect::fit

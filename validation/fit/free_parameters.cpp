@@ -66,6 +66,15 @@ effects::Effect shift_of(const FreeParameter& p) {
 
 effects::Effect effect_of(const FreeParameter& p) { return p.positive ? factor_on(p) : shift_of(p); }
 
+/// The effect that is free, with what is known of its parameters before, the first of which is all[from].
+effects::Effect freed_effect(const std::vector<FreeParameter>& all, std::size_t from) {
+  effects::Effect out = *all[from].of->effect;
+  for (std::size_t i = 0; i < out.parameters.size(); ++i)
+    if (const std::optional<Prior>& prior = all[from + i].prior)
+      out.parameters[i].prior = {prior->mean, prior->deviation};
+  return out;
+}
+
 /// The farthest from the value on the way to `end`, in the effect's parameter, that the description takes.
 double allowed_to(const subject::Subject& s, const effects::Effect& e, double end) {
   const effects::EffectParameter& p = e.parameters.front();
@@ -156,14 +165,14 @@ void take_priors(std::vector<FreeParameter>& all, const std::vector<std::string>
       throw InputError(
           fmt::format("--prior '{}': '{}' is not among --free{}", given, text.path, suggestion(text.path, paths)));
     if (p->prior) throw InputError(fmt::format("--prior '{}': '{}' has a prior already", given, text.path));
-    p->prior =
-        told_at<InputError>([&] { return fmt::format("--prior '{}': ", given); }, [&] { return parsed(text, *p); });
+    p->prior = told_at<InputError>([&] { return fmt::format("--prior '{}': ", given); },
+                                   [&] { return p->of ? prior_in_unit(text, *p) : parsed(text, *p); });
   }
 }
 
 /// Whether the tolerance moves every number that the parameter does.
 bool moves_all_of(const NumberMove& move, const FreeParameter& p) {
-  return std::all_of(p.numbers.begin(), p.numbers.end(), [&](std::size_t number) {
+  return !p.of && std::all_of(p.numbers.begin(), p.numbers.end(), [&](std::size_t number) {
     return std::any_of(move.shifts.begin(), move.shifts.end(), [&](const auto& each) { return each.first == number; });
   });
 }
@@ -190,15 +199,21 @@ std::string trimmed(const std::string& text) {
 
 double FreeParameter::coordinate(double p) const { return positive ? std::log(p) : p; }
 double FreeParameter::value_at(double x) const { return positive ? std::exp(x) : x; }
-double FreeParameter::scale() const { return positive ? 1 : value != 0 ? std::abs(value) : prior->deviation; }
+double FreeParameter::scale() const {
+  if (positive) return 1;
+  if (value != 0) return std::abs(value);
+  return prior ? prior->deviation : 0.1 * (most - least);
+}
 
 double search_range(const FreeParameter& p) {
+  if (p.of) return p.coordinate(p.most) - p.coordinate(p.least);
   const effects::Effect e = effect_of(p);
   const effects::EffectParameter& own = e.parameters.front();
   return p.positive ? std::log(own.high / own.low) : p.per_unit * (own.high - own.low);
 }
 
 FreeParameter bounded(FreeParameter p, const subject::Subject& s) {
+  if (p.of) return p;
   p.least = -std::numeric_limits<double>::infinity(), p.most = std::numeric_limits<double>::infinity();
   const effects::Effect e = effect_of(p);
   const effects::EffectParameter& own = e.parameters.front();
@@ -232,16 +247,24 @@ FreeParameter parameter_at(const subject::Subject& s, const std::string& path, c
 }
 
 std::vector<FreeParameter> free_parameters(const subject::Subject& s, const std::vector<std::string>& paths,
-                                           const std::vector<std::string>& priors, const std::string& yaml) {
+                                           const std::vector<std::string>& priors, const std::string& yaml,
+                                           const std::map<std::string, FreedEffect>& effects) {
   if (paths.empty()) throw InputError("name the parameters to fit: --free materials.steel.E");
-  std::vector<FreeParameter> out;
+  std::vector<FreeParameter> out, of_effects;
   for (const std::string& path : paths)
-    out.push_back(told_at<InputError>([&] { return fmt::format("--free {}: ", path); },
-                                      [&] { return parameter_at(s, path, yaml); }));
+    told_at<InputError>([&] { return fmt::format("--free {}: ", path); },
+                        [&] {
+                          const auto effect = effects.find(path);
+                          if (effect == effects.end()) return out.push_back(parameter_at(s, path, yaml));
+                          for (FreeParameter& p : parameters_of(s, effect->second)) of_effects.push_back(std::move(p));
+                          if (std::count(paths.begin(), paths.end(), path) > 1)
+                            throw InputError("the effect is named twice: name it once");
+                        });
   require_apart(out);
+  out.insert(out.end(), of_effects.begin(), of_effects.end());
   take_priors(out, priors);
   for (const FreeParameter& p : out)
-    if (p.value == 0 && !p.prior)
+    if (p.value == 0 && !p.prior && !p.of)
       throw InputError(
           fmt::format("--free {0}: the value is 0, which tells no scale: give it by --prior \"{0}=0 ± …\"", p.path));
   for (FreeParameter& p : out) p = bounded(std::move(p), s);
@@ -256,18 +279,36 @@ std::vector<FreeParameter> in_version(std::vector<FreeParameter> all, const Vect
 VectorX first_numbers(const subject::Subject& s, const std::vector<FreeParameter>& all) {
   const std::vector<DescribedNumber> numbers = numbers_of(s);
   VectorX out(std::ssize(all));
-  for (std::size_t i = 0; i < all.size(); ++i) out(as_index(i)) = numbers.at(all[i].numbers.front()).value;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    out(as_index(i)) = all[i].of ? all[i].value : numbers.at(all[i].numbers.front()).value;
   return out;
 }
 
-subject::Subject with_values(const subject::Subject& s, const std::vector<FreeParameter>& all, const VectorX& values) {
+namespace {
+
+subject::Subject with_those(const subject::Subject& s, const std::vector<FreeParameter>& all, const VectorX& values,
+                            bool effects_too) {
   const Freed freed(all);
-  const diagnosis::Hypothesis h = freed.hypothesis();
   const VectorX of_effects = freed.effect_values(values);
   subject::Subject out = s;
-  for (std::size_t i = 0; i < h.size(); ++i)
-    out = effects::with_effect(out, effects::EffectInstance{h[i], of_effects.segment(as_index(i), 1)});
+  std::size_t from = 0;
+  for (const effects::PlacedEffect& each : freed.hypothesis()) {
+    const std::size_t count = each.effect->parameters.size();
+    if (effects_too || !all[from].of)
+      out = effects::with_effect(out, {each, of_effects.segment(as_index(from), as_index(count))});
+    from += count;
+  }
   return out;
+}
+
+}  // namespace
+
+subject::Subject with_values(const subject::Subject& s, const std::vector<FreeParameter>& all, const VectorX& values) {
+  return with_those(s, all, values, true);
+}
+
+subject::Subject with_numbers(const subject::Subject& s, const std::vector<FreeParameter>& all, const VectorX& values) {
+  return with_those(s, all, values, false);
 }
 
 std::vector<std::size_t> replaced_tolerances(const subject::Subject& s, const std::vector<FreeParameter>& all,
@@ -285,6 +326,7 @@ std::vector<std::size_t> replaced_tolerances(const subject::Subject& s, const st
 }
 
 std::optional<double> declared_deviation(const subject::Subject& s, const FreeParameter& p) {
+  if (p.of) return std::nullopt;
   const double first = first_numbers(s, {p})(0);
   for (const NumberMove& move : number_moves(s)) {
     if (!moves_all_of(move, p)) continue;
@@ -297,12 +339,18 @@ std::optional<double> declared_deviation(const subject::Subject& s, const FreePa
 }
 
 Freed::Freed(const std::vector<FreeParameter>& all) : parameters_(all) {
-  for (const FreeParameter& p : all) effects_.push_back(effect_of(p));
+  for (std::size_t i = 0; i < all.size(); i += effects_.back().parameters.size())
+    effects_.push_back(all[i].of ? freed_effect(all, i) : effect_of(all[i]));
 }
 
 diagnosis::Hypothesis Freed::hypothesis() const {
   diagnosis::Hypothesis out;
-  for (const effects::Effect& e : effects_) out.push_back({&e, {}});
+  std::size_t from = 0;
+  for (const effects::Effect& e : effects_) {
+    const std::optional<FreedEffect>& of = parameters_[from].of;
+    out.push_back({&e, of ? of->leg : std::nullopt});
+    from += e.parameters.size();
+  }
   return out;
 }
 
@@ -310,7 +358,7 @@ VectorX Freed::effect_values(const VectorX& values) const {
   VectorX out(values.size());
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const FreeParameter& p = nth(parameters_, i);
-    out(i) = p.positive ? values(i) / p.value : (values(i) - p.value) / p.per_unit;
+    out(i) = p.of ? values(i) : p.positive ? values(i) / p.value : (values(i) - p.value) / p.per_unit;
   }
   return out;
 }
@@ -319,7 +367,7 @@ VectorX Freed::values(const VectorX& of_effects) const {
   VectorX out(of_effects.size());
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const FreeParameter& p = nth(parameters_, i);
-    out(i) = p.positive ? p.value * of_effects(i) : p.value + p.per_unit * of_effects(i);
+    out(i) = p.of ? of_effects(i) : p.positive ? p.value * of_effects(i) : p.value + p.per_unit * of_effects(i);
   }
   return out;
 }

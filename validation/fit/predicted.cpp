@@ -38,7 +38,8 @@ std::vector<VectorX> linear(const subject::Standing& standing, const Measurement
   return by_theory(standing, plan, *theories::all_theories().front(), Geometry::linear, parallel::alone);
 }
 
-/// Tolerances and the deformed shape at the plan: those that the fit knows, in its order, and others.
+/// Tolerances and the deformed shape at the plan: those that the fit knows, in its order, and others. `without`: the
+/// subject without the effects that were fitted, if any were.
 struct Tolerances {
   MatrixX known, other;  // measured numbers × tolerances
   VectorX own;           // variance by the pose's own
@@ -47,15 +48,20 @@ struct Tolerances {
 
 Tolerances tolerances_of(const Subject& s, const subject::Standing& standing, const Measurements& plan,
                          const std::vector<MeasuredValue>& values, const VectorX& shape,
-                         const std::optional<Knowledge>& fit, const parallel::Work& work) {
+                         const std::optional<Knowledge>& fit, const subject::Standing* without,
+                         const parallel::Work& work) {
   const statistics::ToleranceModel model = statistics::tolerance_model(standing, plan, values, work);
   const double scale = fit ? fit->tolerance_scale : 1;
   std::vector<std::string> names = fit ? fit->tolerances : std::vector<std::string>();
   std::vector<bool> taken(names.size());
   const auto n = std::ssize(values);
   Tolerances out{MatrixX::Zero(n, std::ssize(names)), MatrixX(n, 0), VectorX::Zero(n), model.A.groups};
-  const std::vector<std::size_t> replaced =
+  std::vector<std::size_t> replaced =
       fit ? replaced_tolerances(s, fit->parameters, model.nuisances) : std::vector<std::size_t>();
+  if (without)
+    for (const std::size_t i :
+         added_tolerances(statistics::tolerance_model(*without, plan, values, work).nuisances, model.nuisances))
+      replaced.push_back(i);
   const auto put = [&](const std::string& name, const VectorX& column) {
     for (std::size_t k = 0; k < names.size(); ++k)
       if (!taken[k] && names[k] == name) {
@@ -148,11 +154,13 @@ PredictedPlan predict(const Subject& given, const Measurements& plan, const std:
   const VectorX predicted = statistics::rows_of(values, all.front());
   const VectorX shape = predicted - statistics::rows_of(values, linear(*standing, out.plan));
   MatrixX P(predicted.size(), 0);
+  const Subject numbers = fit ? with_numbers(given, fit->parameters, fit->values) : given;
   if (fit)
-    P = derivatives(s, in_version(fit->parameters, fit->values), fit->values, [&](const Subject& moved) {
+    P = derivatives(numbers, in_version(fit->parameters, fit->values), fit->values, [&](const Subject& moved) {
       return statistics::rows_of(values, linear(*moved.stand(out.plan, standing.get()), out.plan));
     });
-  Joint joint = joint_of(P, tolerances_of(s, *standing, out.plan, values, shape, fit, work), fit);
+  const auto without = fit && has_effects(fit->parameters) ? numbers.stand(out.plan) : nullptr;
+  Joint joint = joint_of(P, tolerances_of(s, *standing, out.plan, values, shape, fit, without.get(), work), fit);
   out.errors = std::move(joint.root);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto row = as_index(i);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "validation/effects/effect.h"
+#include "validation/effects/with_effect.h"
 #include "validation/measurement/measurements.h"
 #include "validation/subject/subject.h"
 
@@ -53,6 +54,10 @@ struct AskedEffect {
   std::vector<std::pair<std::string, double>> values;
 };
 
+/// The effect with its values; those not given are the ones at which a search begins. InputError as instance() of
+/// found_effects.h, and for values out of bounds. The effect must outlive it.
+effects::EffectInstance instance_of(const effects::Effect&, const AskedEffect&);
+
 /// Standard deviations of readings where a file has none; and whether the search for recording mistakes is left out.
 struct Noise {
   std::optional<double> sigma_mm, sigma_rad;
@@ -78,5 +83,6 @@ void bind_subjects(pybind11::module_&);
 void bind_studies(pybind11::module_&);
 void bind_measured(pybind11::module_&);
 void bind_campaigns(pybind11::module_&);
+void bind_structures(pybind11::module_&);
 
 }  // namespace deflect::python

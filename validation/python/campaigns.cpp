@@ -57,24 +57,10 @@ struct SimulateAsked {
   prediction::SimulationOptions options = {};
 };
 
-/// The effects with their values; those not given keep the value at which a search begins.
 std::vector<effects::EffectInstance> instances(const std::vector<AskedEffect>& asked,
                                                const std::vector<effects::Effect>& known) {
   std::vector<effects::EffectInstance> out;
-  for (const AskedEffect& a : asked) {
-    const effects::Effect& e = effects::find_effect(known, a.name);
-    diagnosis::FoundEffect found{a.name, a.leg, a.values};
-    for (std::size_t i = 0; const effects::EffectParameter& p : e.parameters) {
-      const auto given =
-          std::find_if(a.values.begin(), a.values.end(), [&](const auto& v) { return v.first == p.name; });
-      const double start = effects::start_values(e)(as_index(i++));
-      if (given == a.values.end())
-        found.parameters.emplace_back(p.name, start);
-      else
-        effects::require_in_bounds(fmt::format("{}, {} = {:g}", e.name, p.name, given->second), e, p, given->second);
-    }
-    out.push_back(diagnosis::instance(e, found));
-  }
+  for (const AskedEffect& each : asked) out.push_back(instance_of(effects::find_effect(known, each.name), each));
   return out;
 }
 

@@ -2,8 +2,10 @@
 #include <fmt/ranges.h>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "validation/compare/history.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/effects/effect_file.h"
 #include "validation/fit/fit.h"
 #include "validation/fit/fit_file.h"
 #include "validation/fit/plan_of_one.h"
@@ -115,11 +117,33 @@ struct Fitted {
   Subject subject;
 };
 
-Fitted fit(const Subject& s, const NamedText& csv, const std::vector<std::string>& free,
-           const std::vector<std::string>& priors, const std::string& yaml, const Noise& noise, int threads,
+/// What a user sets free: paths and names of effects, with the effects; the search begins at values given.
+struct FreeAsked {
+  std::vector<std::string> free, priors;
+  std::string yaml;  ///< of the subject, for the units
+  EffectSources sources;
+  std::vector<AskedEffect> effects;
+
+  std::vector<fit::FreeParameter> parameters(const Subject& s) const {
+    std::map<std::string, fit::FreedEffect> freed;
+    if (!effects.empty()) {
+      const std::vector<effects::Effect> known = sources.known(s);
+      for (const AskedEffect& asked : effects) {
+        effects::Effect e = effects::find_effect(known, asked.name);
+        const VectorX start = instance_of(e, asked).values;
+        for (std::size_t i = 0; i < e.parameters.size(); ++i) e.parameters[i].start = start(as_index(i));
+        const fit::FreedEffect each{std::make_shared<const effects::Effect>(std::move(e)), asked.leg};
+        freed.emplace(each.name(), each);
+      }
+    }
+    return fit::free_parameters(s, free, priors, yaml, freed);
+  }
+};
+
+Fitted fit(const Subject& s, const NamedText& csv, const FreeAsked& free, const Noise& noise, int threads,
            const py::object& progress) {
   return interruptible(progress, [&](const auto& told) {
-    const std::vector<fit::FreeParameter> parameters = fit::free_parameters(s, free, priors, yaml);
+    const std::vector<fit::FreeParameter> parameters = free.parameters(s);
     const Measurements data = data_of(s, csv);
     const fit::FitResult r = fit::fit(s, data, parameters, comparison_options(noise), {threads, nullptr, told});
     return Fitted{{report::fit_json(r), report::fit_report(r)}, fit::with_values(s, parameters, fit::fitted_values(r))};
@@ -129,21 +153,24 @@ Fitted fit(const Subject& s, const NamedText& csv, const std::vector<std::string
 /// What is to be predicted: a plan; or of a machine one pose, of a frame factors on load cases.
 struct PredictAsked {
   std::optional<NamedText> plan;
-  std::vector<double> pose, joints, load;
+  Asked at;
+  std::vector<double> load;
   std::vector<std::pair<std::string, double>> factors;
 
   Measurements of(const Subject& s) const {
     if (plan) return plan_of(s, *plan);
     if (s.frame()) return fit::plan_of_one(s, factors);
-    return fit::plan_of_one(stand_of(*s.machine(), {pose, joints}), wrench_from_mm(load_from(load)), !joints.empty());
+    return fit::plan_of_one(stand_of(*s.machine(), at), wrench_from_mm(load_from(load)), !at.joints.empty());
   }
 };
 
-Told predict(const Subject& s, const PredictAsked& asked, const std::optional<NamedText>& fit, const Noise& noise,
-             const std::vector<std::string>& theories, int threads, const py::object& progress) {
+Told predict(const Subject& s, const PredictAsked& asked, const std::optional<NamedText>& fit,
+             const std::optional<EffectSources>& sources, const Noise& noise, const std::vector<std::string>& theories,
+             int threads, const py::object& progress) {
   return interruptible(progress, [&](const auto& told) {
     std::optional<fit::Knowledge> known;
-    if (fit) known = fit::read_fit(fit->first, fit->second, s);
+    if (fit)
+      known = fit::read_fit(fit->first, fit->second, s, sources ? sources->known(s) : std::vector<effects::Effect>());
     fit::PredictedPlanOptions o;
     o.theories = theories::theories_named(fmt::format("{}", fmt::join(theories, ",")));
     o.sigma_u = noise.translation();
@@ -171,16 +198,20 @@ void bind_measured(py::module_& m) {
   });
   m.def("diagnose", &diagnose);
   m.def("history", &history);
-  m.def("fit", [](const Subject& s, const NamedText& csv, const std::vector<std::string>& free,
-                  const std::vector<std::string>& priors, const std::string& yaml, const Noise& noise, int threads,
+  py::class_<FreeAsked>(m, "FreeAsked")
+      .def(py::init([](std::vector<std::string> free, std::vector<std::string> priors, std::string yaml,
+                       EffectSources sources, std::vector<AskedEffect> effects) {
+        return FreeAsked{std::move(free), std::move(priors), std::move(yaml), std::move(sources), std::move(effects)};
+      }));
+  m.def("fit", [](const Subject& s, const NamedText& csv, const FreeAsked& free, const Noise& noise, int threads,
                   const py::object& progress) {
-    const Fitted f = fit(s, csv, free, priors, yaml, noise, threads, progress);
+    const Fitted f = fit(s, csv, free, noise, threads, progress);
     return py::make_tuple(f.told.first, f.told.second, f.subject);
   });
   py::class_<PredictAsked>(m, "PredictAsked")
-      .def(py::init([](std::optional<NamedText> plan, std::vector<double> pose, std::vector<double> joints,
-                       std::vector<double> load, std::vector<std::pair<std::string, double>> factors) {
-        return PredictAsked{std::move(plan), std::move(pose), std::move(joints), std::move(load), std::move(factors)};
+      .def(py::init([](std::optional<NamedText> plan, Asked at, std::vector<double> load,
+                       std::vector<std::pair<std::string, double>> factors) {
+        return PredictAsked{std::move(plan), std::move(at), std::move(load), std::move(factors)};
       }));
   m.def("predict", &predict);
 }

@@ -11,14 +11,14 @@
 namespace deflect::python {
 namespace {
 
-Stand stand_at_joints(const Mechanism& m, const std::vector<double>& joints) {
+Stand stand_at_joints(const Mechanism& m, const std::vector<double>& joints, double slides_per_m) {
   const std::vector<Actuator> actuators = actuators_of(m);
   if (joints.size() != actuators.size())
     throw InputError(
         fmt::format("joints: {} coordinates, but {} has {} actuators", joints.size(), m.name, actuators.size()));
   VectorX q(std::ssize(joints));
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    q(as_index(i)) = actuators[i].rotation ? joints[i] : joints[i] / 1e3;
+    q(as_index(i)) = actuators[i].rotation ? joints[i] : joints[i] / slides_per_m;
     if (actuators[i].rotation) require_digits_of_angle(joints[i], fmt::format("{:g} rad", joints[i]));
   }
   Configuration c = configure_joints(m, q);
@@ -36,7 +36,7 @@ const Mechanism& machine_of(const subject::Subject& s) {
 
 Stand stand_of(const Mechanism& m, const Asked& at) {
   if (!at.pose.empty() && !at.joints.empty()) throw InputError("give either pose or joints");
-  if (!at.joints.empty()) return stand_at_joints(m, at.joints);
+  if (!at.joints.empty()) return stand_at_joints(m, at.joints, at.slides_per_m);
   if (at.pose.empty()) return stand(m, mm_deg_from(home_pose(m)));
   const Vector6 pose = six("pose", at.pose);
   for (const double deg : pose.tail<3>()) require_digits_of_angle(deg * pi / 180, fmt::format("{:g} deg", deg));

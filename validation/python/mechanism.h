@@ -13,6 +13,7 @@ namespace deflect::python {
 struct Asked {
   std::vector<double> pose;    ///< x y z (mm), or with roll pitch yaw (deg)
   std::vector<double> joints;  ///< one for each actuator: slides in mm, turns in rad
+  double slides_per_m = 1e3;   ///< 1: slides in m
 };
 
 /// InputError for a frame.

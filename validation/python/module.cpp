@@ -11,6 +11,7 @@ PYBIND11_MODULE(_core, m) {
   bind_studies(m);
   bind_measured(m);
   bind_campaigns(m);
+  bind_structures(m);
 }
 
 }  // namespace deflect::python

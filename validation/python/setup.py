@@ -19,6 +19,7 @@ from setuptools.command.build_ext import build_ext
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+GMSH = "deflect_gmsh.so"  # loaded where members are divided or a .msh is written
 SUFFIX = sysconfig.get_config_var("EXT_SUFFIX")
 
 
@@ -38,7 +39,7 @@ class ByCMake(build_ext):
             subprocess.run(["cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                             "-DDEFLECT_TESTS=OFF", "-DDEFLECT_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}"],
                            check=True)
-        subprocess.run(["cmake", "--build", str(build), "--target", "deflect_python"], check=True)
+        subprocess.run(["cmake", "--build", str(build), "--target", "deflect_python", "deflect_gmsh"], check=True)
         module = build / "python" / "deflect" / f"_core{SUFFIX}"
         if not module.exists():
             raise SystemExit(f"{build} was made for another Python than {sys.executable}: name another folder by "
@@ -46,6 +47,7 @@ class ByCMake(build_ext):
         target = pathlib.Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(module, target)
+        shutil.copyfile(build / GMSH, target.parent / GMSH)
 
 
 class WithModule(Distribution):

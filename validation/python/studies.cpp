@@ -123,7 +123,7 @@ Told solve_frame(const Subject& s, const std::string& solver, const py::object& 
 }
 
 Told validate(const Subject& s, const std::vector<std::pair<std::string, std::vector<double>>>& points, double force_N,
-              const std::vector<std::string>& names, const std::string& as_printed, bool errata,
+              const std::vector<std::string>& names, const std::string& as_printed, bool errata, bool mesh_study,
               const py::object& progress) {
   const Mechanism& m = machine_of(s);
   if (!std::isfinite(force_N) || force_N == 0)
@@ -136,7 +136,12 @@ Told validate(const Subject& s, const std::vector<std::pair<std::string, std::ve
     const studies::Validation v = studies::validate(m, at, force_N, printed, {}, theories_of(names));
     std::vector<studies::ErratumPrice> prices;
     if (errata) prices = studies::price_errata(m, at, force_N);
-    return Told(report::validation_json(v, prices), report::validation_table(v));
+    std::vector<studies::MeshStudyRow> mesh;
+    if (mesh_study) mesh = studies::mesh_study(m, at, force_N);
+    std::string told = report::validation_table(v);
+    if (errata) told += "\n" + report::errata_table(prices);
+    if (mesh_study) told += "\n" + report::mesh_study_table(mesh);
+    return Told(report::validation_json(v, prices, mesh), std::move(told));
   });
 }
 
@@ -187,8 +192,8 @@ Told map(const Subject& s, const MapAsked& asked, int threads, const py::object&
 }  // namespace
 
 void bind_studies(py::module_& m) {
-  py::class_<Asked>(m, "Asked").def(py::init([](std::vector<double> pose, std::vector<double> joints) {
-    return Asked{std::move(pose), std::move(joints)};
+  py::class_<Asked>(m, "Asked").def(py::init([](std::vector<double> pose, std::vector<double> joints, bool si) {
+    return Asked{std::move(pose), std::move(joints), si ? 1.0 : 1e3};
   }));
   py::class_<studies::SolveResult>(m, "SolveResult")
       .def("displacement",

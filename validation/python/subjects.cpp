@@ -5,6 +5,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/index.h"
 #include "msa/base/units.h"
 #include "msa/fields/file_kind.h"
 #include "msa/frame/file/frame_file.h"
@@ -57,6 +58,21 @@ std::vector<effects::Effect> EffectSources::known(const Subject& s) const {
   std::vector<effects::Effect> all = named();
   for (effects::Effect& e : effects::place_effects(s, all)) all.push_back(std::move(e));
   return all;
+}
+
+effects::EffectInstance instance_of(const effects::Effect& e, const AskedEffect& asked) {
+  diagnosis::FoundEffect found{asked.name, asked.leg, asked.values};
+  const VectorX start = effects::start_values(e);
+  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+    const effects::EffectParameter& p = e.parameters[i];
+    const auto given = std::find_if(asked.values.begin(), asked.values.end(),
+                                    [&](const auto& value) { return value.first == p.name; });
+    if (given == asked.values.end())
+      found.parameters.emplace_back(p.name, start(as_index(i)));
+    else
+      effects::require_in_bounds(fmt::format("{}, {} = {:g}", e.name, p.name, given->second), e, p, given->second);
+  }
+  return diagnosis::instance(e, found);
 }
 
 Vector6 six(const char* what, const std::vector<double>& given, std::initializer_list<std::size_t> counts) {

@@ -91,7 +91,8 @@ std::vector<std::vector<std::string>> with_printed(const studies::Validation& va
 
 }  // namespace
 
-std::string validation_json(const studies::Validation& validation, const std::vector<studies::ErratumPrice>& prices) {
+std::string validation_json(const studies::Validation& validation, const std::vector<studies::ErratumPrice>& prices,
+                            const std::vector<studies::MeshStudyRow>& mesh) {
   Json points = Json::array();
   for (const studies::ValidationRow& row : validation.rows) {
     const std::string name = row_name(row);
@@ -128,6 +129,11 @@ std::string validation_json(const studies::Validation& validation, const std::ve
     price["failed_check"] = p.failed_check;
     result["errata"].push_back(std::move(price));
   }
+  for (const studies::MeshStudyRow& row : mesh)
+    result["mesh_study"].push_back(
+        {{"element_mm", row.size_mm},
+         {"elements_per_leg", row.elements},
+         {"max_relative_difference", json::json_number(row.relative_difference, "mesh study")}});
   return json::json_text(result);
 }
 
@@ -158,6 +164,14 @@ std::string validation_csv(const studies::Validation& validation) {
     if (several) text += "," + csv_number(row.relative_difference, name + ", relative_difference");
     text += "\n";
   }
+  return text;
+}
+
+std::string mesh_study_table(const std::vector<studies::MeshStudyRow>& rows) {
+  std::string text = "Mesh: largest relative difference of the two theories as the elements shrink.\n";
+  text += fmt::format("{:>12}  {:>16}  {:>10}\n", "element", "elements per leg", "difference");
+  for (const studies::MeshStudyRow& row : rows)
+    text += fmt::format("{:>9} mm  {:>16}  {:>10.2g}\n", row.size_mm, row.elements, row.relative_difference);
   return text;
 }
 

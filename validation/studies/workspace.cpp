@@ -9,6 +9,7 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "msa/mechanism/configuration.h"
+#include "msa/mechanism/stand.h"
 #include "validation/measurement/random.h"
 
 namespace deflect::studies {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "meshes/structure.h"
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
@@ -16,6 +15,7 @@
 #include "validation/figures/fig10.h"
 #include "validation/report/validation_results.h"
 #include "validation/studies/errata_prices.h"
+#include "validation/studies/mesh_study.h"
 #include "validation/studies/points_file.h"
 #include "validation/studies/validate.h"
 #include "validation/studies/workspace.h"
@@ -29,18 +29,6 @@ struct ValidateArguments {
   bool errata = false, mesh_study = false;
   FigureArguments figures;
 };
-
-void print_mesh_study(const Mechanism& m, const std::vector<studies::ValidationPoint>& points, double load_N) {
-  fmt::print("\nMesh: largest relative difference of the two theories as the elements shrink.\n");
-  fmt::print("{:>12}  {:>16}  {:>10}\n", "element", "elements per leg", "difference");
-  for (const double size_mm : {200.0, 100.0, 50.0, 25.0, 10.0, 5.0, 2.0}) {
-    const frame::MemberDivision division = divide_members(configure(m, home_pose(m)), size_mm / 1e3);
-    std::size_t elements = 0;
-    for (const auto& [part, at] : division) elements += at.size() - 1;
-    fmt::print("{:>9} mm  {:>16}  {:>10.2g}\n", size_mm, elements,
-               studies::validate(m, points, load_N, {}, division).max_relative_difference);
-  }
-}
 
 void run(const ValidateArguments& a) {
   require_pages(a.report);
@@ -61,6 +49,8 @@ void run(const ValidateArguments& a) {
             [&] { return studies::validate(m, points, a.load_N, as_printed, divide(m, a.element_size), theories); });
   std::vector<studies::ErratumPrice> prices;
   if (a.errata) prices = timed("price of the errata", [&] { return studies::price_errata(m, points, a.load_N); });
+  std::vector<studies::MeshStudyRow> mesh;
+  if (a.mesh_study) mesh = timed("mesh study", [&] { return studies::mesh_study(m, points, a.load_N); });
   const std::filesystem::path folder = a.out;
   if (!a.out.empty()) {
     std::vector<figures::Figure> figures = {figures::fig10(v, style)};
@@ -69,10 +59,10 @@ void run(const ValidateArguments& a) {
     write_table(folder / "validation.csv", report::validation_csv(v));
     if (a.errata) write_table(folder / "errata.csv", report::errata_csv(prices));
   }
-  if (!a.json.empty()) write_result(a.json, report::validation_json(v, prices));
+  if (!a.json.empty()) write_result(a.json, report::validation_json(v, prices, mesh));
   fmt::print("{}", report::validation_table(v));
   if (a.errata) fmt::print("\n{}", report::errata_table(prices));
-  if (a.mesh_study) print_mesh_study(m, points, a.load_N);
+  if (a.mesh_study) fmt::print("\n{}", report::mesh_study_table(mesh));
   if (!a.out.empty()) fmt::print("\nFigures and tables: {}\n", std::filesystem::absolute(folder).string());
   if (!a.report.empty()) {
     std::vector<scene::SceneStand> stands;
@@ -80,7 +70,8 @@ void run(const ValidateArguments& a) {
       stands.push_back({p.label, p.pose_mm_deg, stand(m, p.pose_mm_deg).configuration});
     std::vector<Vector6> loads;
     for (int axis = 0; axis < 3; ++axis) loads.push_back(a.load_N * Vector6::Unit(axis));
-    write_report_of_stands(a.report, a.device, m, stands, loads, {"validate", report::validation_json(v, prices)});
+    write_report_of_stands(a.report, a.device, m, stands, loads,
+                           {"validate", report::validation_json(v, prices, mesh)});
   }
 }
 

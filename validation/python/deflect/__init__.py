@@ -9,21 +9,25 @@ Units are those of files and results: mm, deg for poses, rad for displacements, 
 out. Base axes; translation first.
 """
 
-from . import _core
+from . import _core, records, schema, schema_fitted, schema_measured, schema_shapes
 from .errors import Error, InputError, MechanismError, NumericalError
 from .laws import law
 from .measurements import Measurements
 from .models import Frame, Model, Place, Remark, Sensor, Subject, frame, load
-from .results import (Comparison, Diagnosis, Fit, FrameSolution, History, Plan, Prediction, Result, StiffnessMap,
-                      Validation, Validity)
-from .solution import Solution, TheoryAnswer
-from .verbs import built_in, compare, diagnose, effects, fit, history, map, plan, predict, simulate, validate
+from .records import Record
+from .results import (Comparison, Diagnosis, Fit, Foresight, History, Plan, Prediction, Result, Validation, Validity)
+from .results_of_shapes import Check, Drawing, FrameSolution, StiffnessMap
+from .schema import TheoryAnswer
+from .solution import Solution
+from .verbs import (built_in, check, compare, diagnose, effects, fit, history, map, plan, predict, read, report, simulate,
+                    validate)
 
-__version__ = _core.version
-theories = _core.theories
+__version__: str = _core.version
+theories: tuple[str, ...] = _core.theories
 
-__all__ = ["Comparison", "Diagnosis", "Error", "Fit", "Frame", "FrameSolution", "History", "InputError", "Measurements",
-           "MechanismError", "Model", "NumericalError", "Place", "Plan", "Prediction", "Remark", "Result", "Sensor",
-           "Solution", "StiffnessMap", "Subject", "TheoryAnswer", "Validation", "Validity", "built_in", "compare",
-           "diagnose", "effects", "fit", "frame", "history", "law", "load", "map", "plan", "predict", "simulate", "theories",
-           "validate"]
+__all__ = ["Check", "Comparison", "Diagnosis", "Drawing", "Error", "Fit", "Foresight", "Frame", "FrameSolution", "History",
+           "InputError", "Measurements", "MechanismError", "Model", "NumericalError", "Place", "Plan", "Prediction",
+           "Record", "Remark", "Result", "Sensor", "Solution", "StiffnessMap", "Subject", "TheoryAnswer", "Validation",
+           "Validity", "built_in", "check", "compare", "diagnose", "effects", "fit", "frame", "history", "law", "load",
+           "map", "plan", "predict", "read", "records", "report", "schema", "schema_fitted", "schema_measured",
+           "schema_shapes", "simulate", "theories", "validate"]

@@ -42,7 +42,8 @@ class Sheet:
 
     def __init__(self, title: str, notes: Iterable[str] = (), width_mm: float = 160, figure: Any = None):
         matplotlib = require("matplotlib", "python3-matplotlib")
-        self.width, self.left, self.placed = width_mm, 22.0, []
+        self.width, self.left = width_mm, 22.0
+        self.placed: list[tuple[Any, float, float, float, float]] = []
         self._context = matplotlib.rc_context(style())
         self._context.__enter__()
         self.figure = _figure_class()(dpi=110) if figure is None else figure

@@ -18,7 +18,7 @@ class MechanismError(Error):
     ``{"words": str, "bodies": [str], "held_by_locking": [str]}``; else empty.
     """
 
-    def __init__(self, message: str, motions: list[dict] | None = None):
+    def __init__(self, message: str, motions: list[dict] | None = None) -> None:
         super().__init__(message)
         self.motions = list(motions or [])
 

@@ -235,7 +235,7 @@ def diagnosis(d: Any, figure: Any = None) -> Any:
     axes.invert_yaxis()
     axes.set_xlabel("probability")
     errors = sheet.panel(118, top, sheet.width - 122, h)
-    _before_after(errors, c["baseline"], c["final"], c["noise_floor_mm"], c["unit"], ("as it is", "with the found"))
+    _before_after(errors, c["baseline"], c["final"], c["noise_floor_mm"], c["unit"], ("as it is", "with it"))
     sheet.y = top + h
     return sheet.done(3.4 * LINE)
 

@@ -10,14 +10,17 @@ from ._sheet import COLOURS, DARK, LINE, MARKERS, Sheet, clip
 from .figures import _before_after
 
 ORANGE = COLOURS[1]
+MOST = 24  # rows of a frame's case
 
 
 def fit(f: Any, figure: Any = None) -> Any:
     """Each parameter with its 95 % interval, relative to what the description said; the error before and after."""
     c = f.content
     rows = c["parameters"]
-    sheet = Sheet("Fitted parameters", [f"{c['device']} against {c['data']}",
-                                        "value and 95 % interval, relative to the value before"], figure=figure)
+    words = "value and 95 % interval, relative to the value before"
+    if any("of" in p for p in rows):
+        words += "; of an effect to where the search began"
+    sheet = Sheet("Fitted parameters", [f"{c['device']} against {c['data']}", words], figure=figure)
     top, h = sheet.y + LINE, max(30.0, 6.0 * len(rows))
     axes = sheet.panel(52, top, 48, h)
     for i, p in enumerate(rows):
@@ -77,20 +80,20 @@ def _cosines(c: dict, figure: Any) -> Any:
     sheet = Sheet("How alike effects look: |cosine| of their signatures",
                   [f"{c['subject']}, {c['campaign']}: {given['pairs_told_apart']} of {given['pairs']} pairs told apart; "
                    f"the better plan: {better['pairs_told_apart']}"], figure=figure)
-    side = min(48.0, 2.6 * len(names))
+    side, height = 48.0, max(30.0, 2.7 * len(names))  # so that every name can be read
     image = None
     for k, (title, one) in enumerate((("given", given), ("better", better))):
-        axes = sheet.panel(40 + k * (side + 4), sheet.y + 2 * LINE, side, side)
+        axes = sheet.panel(40 + k * (side + 4), sheet.y + 2 * LINE, side, height)
         axes.grid(False)
         image = axes.imshow(np.abs(np.array(one["cosines"], dtype=float)), vmin=0, vmax=1, cmap="viridis", aspect="auto")
         axes.set_title(title, fontsize=8, loc="left")
         axes.set_xticks([])
         axes.set_yticks(range(len(names)) if k == 0 else [], [clip(n, 30) for n in names] if k == 0 else [],
-                        fontsize=min(7.0, 2.2 * side / len(names)))
+                        fontsize=6)
         axes.tick_params(length=0)
-    bar = sheet.panel(40 + 2 * (side + 4), sheet.y + 2 * LINE, 3, side)
+    bar = sheet.panel(40 + 2 * (side + 4), sheet.y + 2 * LINE, 3, height)
     sheet.figure.colorbar(image, cax=bar, label="|cosine|")
-    sheet.y += 2 * LINE + side
+    sheet.y += 2 * LINE + height
     return sheet.done(LINE)
 
 
@@ -119,16 +122,19 @@ def validity(v: Any, figure: Any = None) -> Any:
 
 
 def frame(f: Any, figure: Any = None) -> Any:
-    """By load case: displacements of the nodes, and the axial force in the members; at most 24 of each, the largest."""
+    """By load case: displacements of the nodes, and the axial force in the members; at most MOST of each, the largest."""
     cases = f.content["cases"]
-    sheet = Sheet(f"{f.content['frame']}: displacements and axial forces", [f"{f.content['geometry']} geometry, MSA"],
-                  figure=figure)
+    first = next(iter(cases.values()))
+    left_out = [f"the {MOST} largest of {len(first[what])} {words}" for what, words in
+                (("displacements", "nodes"), ("members", "members")) if len(first[what]) > MOST]
+    sheet = Sheet(f"{f.content['frame']}: displacements and axial forces",
+                  ["; ".join([f"{f.content['geometry']} geometry, MSA", *left_out])], figure=figure)
     for case in cases:
         d, m = f.displacements(case), f.members(case)
         u = np.stack([d[key] for key in ("ux_mm", "uy_mm", "uz_mm")])
-        nodes = np.sort(np.argsort(-np.abs(u).max(axis=0))[:24])
+        nodes = np.sort(np.argsort(-np.abs(u).max(axis=0))[:MOST])
         force = m["start.N_N"] if "start.N_N" in m else np.zeros(0)
-        members = np.sort(np.argsort(-np.abs(force))[:24])
+        members = np.sort(np.argsort(-np.abs(force))[:MOST])
         top, h = sheet.y + 2 * LINE, max(28.0, 4.2 * max(len(nodes), len(members)))
         sheet.text(f"case {case}", 3, top - 1.5 * LINE, weight="bold")
         axes = sheet.panel(26, top, 52, h)

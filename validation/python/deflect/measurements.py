@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core, _sheet, _sources, notebook
 from .errors import InputError
+from .units import displacement_in_mm, loads_in_mm, poses_in_mm, require_units
 
 POSE = ("x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg")
 LOAD = ("fx_N", "fy_N", "fz_N", "mx_Nmm", "my_Nmm", "mz_Nmm")
@@ -26,31 +27,39 @@ class Measurements:
     ``hidden``  of simulated ones: the effects in them
     """
 
-    def __init__(self, text: str, origin: str = "measurements", hidden: list[dict] | None = None):
+    def __init__(self, text: str, origin: str = "measurements", hidden: list[dict] | None = None) -> None:
         self.text, self.origin, self.hidden = text, origin, hidden
 
     @classmethod
     def from_csv(cls, path: Any) -> "Measurements":
+        """Of a file. InputError where it cannot be read; what it says is read by the function that uses it."""
         return cls(_core.read_text(os.fspath(path)), os.fspath(path))
 
     @classmethod
     def from_arrays(cls, poses: Any = None, loads: Any = None, displacements: Any = None, *,
-                    columns: Mapping[str, Any] | None = None, origin: str = "arrays") -> "Measurements":
+                    columns: Mapping[str, Any] | None = None, origin: str = "arrays",
+                    units: str = "mm") -> "Measurements":
         """Of n readings:
 
         ``poses``          (n, 6) or (n, 3), mm and deg; rows that are equal are readings at one approach, unless
                            ``columns`` has "pose", the labels
         ``loads``          (n, 6) or (n, 3), N and Nmm
         ``displacements``  (n, 6) or (n, 3), mm and rad; NaN was not measured
-        ``columns``        name -> n values: any other columns, sensors too
+        ``columns``        name -> n values: any other columns, sensors too, in the units of their names
+        ``units``          "SI": poses, loads and displacements in m, rad, N, Nm
+
+        Raises InputError for other shapes and for columns of different length.
         """
+        si = require_units(units)
         table: dict[str, Any] = dict(columns or {})
         for names, rows in ((POSE, poses), (LOAD, loads), (DISPLACEMENT, displacements)):
             if rows is None:
                 continue
-            rows = np.asarray(rows, dtype=float)
+            rows = np.array(rows, dtype=float)
             if rows.ndim != 2 or rows.shape[1] not in (3, 6):
                 raise InputError(f"{names[0]} …: shape {rows.shape}; (n, 6) or (n, 3) is wanted")
+            if si:
+                rows = {POSE: poses_in_mm, LOAD: loads_in_mm, DISPLACEMENT: displacement_in_mm}[names](rows)
             padded = np.zeros((len(rows), 6)) if names is POSE else rows
             padded[:, : rows.shape[1]] = rows
             table.update({name: padded[:, i] for i, name in enumerate(names[: padded.shape[1]])})
@@ -68,10 +77,11 @@ class Measurements:
 
     @classmethod
     def from_dataframe(cls, frame: Any, origin: str = "dataframe") -> "Measurements":
-        """Of a pandas.DataFrame whose columns are those of a file."""
+        """Of a pandas.DataFrame whose columns are those of a file. Raises InputError."""
         return cls.from_arrays(columns={str(name): frame[name] for name in frame.columns}, origin=origin)
 
     def to_csv(self, path: Any) -> None:
+        """Writes the file."""
         with open(path, "w", encoding="utf-8", newline="") as file:
             file.write(self.text)
 
@@ -83,8 +93,8 @@ class Measurements:
         return {name.strip(): _array(name.strip(), [row[i] if i < len(row) else "" for row in rows])
                 for i, name in enumerate(names)}
 
-    def to_dataframe(self):
-        """Needs pandas."""
+    def to_dataframe(self) -> Any:
+        """``columns`` as a pandas.DataFrame. ImportError without pandas."""
         return _sheet.pandas().DataFrame(self.columns)
 
     def _repr_html_(self) -> str:

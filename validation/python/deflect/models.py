@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
+import re
 import warnings
-from typing import Any, Iterable
+from typing import Any, Iterable, TypeVar
 
 import numpy as np
 
 from . import _core, _sources
 from .errors import InputError
-from .results import FrameSolution, progress_of
+from .results import progress_of
+from .results_of_shapes import Drawing, FrameSolution
 from .solution import Solution
-from .units import displacement_from_mm, loads_in_mm, poses_in_mm, require_units, stiffness_from_mm
+from .units import Numbers, displacement_from_mm, loads_in_mm, poses_in_mm, require_units, stiffness_from_mm
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,19 +48,24 @@ class Remark(UserWarning):
     """Something in a description that a person should look at again."""
 
 
+S = TypeVar("S", bound="Subject")
+
+
 class Subject:
     """A machine (Model) or a frame (Frame): immutable; changes give another one. Can be pickled, copied and shared by
     threads."""
 
-    def __init__(self, core: _core.Subject, text: str = ""):
+    def __init__(self, core: _core.Subject, text: str = "") -> None:
         self._core, self._text = core, text
 
     @property
     def name(self) -> str:
+        """What the file calls it."""
         return self._core.name
 
     @property
     def about(self) -> str:
+        """What the file says of it in a line."""
         return self._core.about
 
     @property
@@ -70,27 +78,48 @@ class Subject:
         """The text that it was read from, with its comments and units; of a changed one ``yaml``."""
         return self._text or self.yaml
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes ``source`` to a file, which load() and the program read."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.source)
+
+    def show(self, pose: Numbers | None = None, *, joints: Numbers | None = None) -> Drawing:
+        """As drawn, before any solution, as `deflect show`: members, joints, and motions that nothing resists.
+
+        ``pose``, ``joints``  of a machine, as for solve(); home without
+
+        Raises InputError, MechanismError (out of reach).
+        """
+        at = _core.Asked(() if pose is None else pose, () if joints is None else joints, False)
+        return Drawing(*_core.drawing(self._core, at))
+
     def places(self) -> list[Place]:
         """The places where effects can act, from what the parts are."""
-        return [
-            Place(**{**p, "freedoms": tuple(p["freedoms"]), "also": tuple(p.get("also", ()))})
-            for p in json.loads(self._core.places_json())
-        ]
+        found: list[dict[str, Any]] = json.loads(self._core.places_json())
+        for p in found:
+            p.update(freedoms=tuple(p["freedoms"]), also=tuple(p.get("also", ())))
+        return [Place(**p) for p in found]
 
     def sensors(self) -> list[Sensor]:
         """Its named sensors; a machine without any is read at its tool point."""
         return [Sensor(*each) for each in self._core.sensors()]
 
     def effects(self, effects: Any = ()) -> list[dict[str, Any]]:
-        """What it can lack: the catalogue, own ``effects`` and the laws at its places, as `deflect effects --json`."""
+        """What it can lack: the catalogue, own ``effects`` and the laws at its places, as `deflect effects --json`.
+        Raises InputError for an effect that cannot be read."""
         content = json.loads(_core.effects_json(_sources.effect_sources(effects), self._core))
         return content["effects"] if isinstance(content, dict) else content
 
-    def named(self, name: str):
-        """The same under another name."""
-        return type(self)(self._core.named(name), "")
+    def named(self: S, name: str) -> S:
+        """The same under another name; ``source`` keeps its comments."""
+        core = self._core.named(name)
+        written = name if re.fullmatch(r"[A-Za-z][\w .-]*\w", name) else json.dumps(name, ensure_ascii=False)
+        text, times = re.subn(r"^name: .*$", lambda _: f"name: {written}", self._text, flags=re.MULTILINE)
+        if times != 1:
+            text = ""  # not written in a line of its own
+        return type(self)(core, text)
 
-    def edited(self, path: str | dict[str, Any], value: Any = None, action: str = "set"):
+    def edited(self: S, path: str | dict[str, Any], value: Any = None, action: str = "set") -> S:
         """With a field of the description changed; checked like a file. Several by a dict of path -> value.
 
         ``path``    "materials.steel.E", "leg.ball_joint.tz", "leg[4].guideway.bending_factor", "materials.*.E"
@@ -102,7 +131,7 @@ class Subject:
         pairs = path.items() if isinstance(path, dict) else [(path, value)]
         return type(self)(self._core.edited([(p, _sources.as_yaml(v), action) for p, v in pairs]))
 
-    def with_effect(self, effect: Any, /, *, leg: int | None = None, effects: Any = (), **parameters: float):
+    def with_effect(self: S, effect: Any, /, *, leg: int | None = None, effects: Any = (), **parameters: float) -> S:
         """With an effect of the catalogue, of its places ("clearance@elbow.rz") or of ``effects`` (files, texts or
         dicts of effect files, see deflect.law); or one such dict itself. Parameters in the units that their names end
         with:
@@ -150,10 +179,11 @@ class Model(Subject):
 
     @property
     def legs(self) -> int:
+        """How many."""
         return self._core.legs
 
-    def solve(self, pose: Iterable[float] | None = None, load: Iterable[float] | None = None, *,
-              joints: Iterable[float] | None = None, geometry: str = "linear", theories: Iterable[str] | None = None,
+    def solve(self, pose: Numbers | None = None, load: Numbers | None = None, *,
+              joints: Numbers | None = None, geometry: str = "linear", theories: Iterable[str] | None = None,
               elements: int = 0, units: str = "mm") -> Solution:
         """One pose under one load by every theory, with the checks of `deflect solve`.
 
@@ -171,14 +201,12 @@ class Model(Subject):
         if si:
             load = loads_in_mm(_six(load, "load"))
             pose = None if pose is None else poses_in_mm(_six(pose, "pose"))
-            if joints is not None:
-                raise InputError("joints are in mm and rad: units='SI' goes with pose")
-        at = _core.Asked(() if pose is None else pose, () if joints is None else joints)
+        at = _core.Asked(() if pose is None else pose, () if joints is None else joints, si)
         names = _names(theories)
         return Solution(_core.solve(self._core, at, load, geometry, names, elements), units)
 
     def stiffness(self, poses: Any, loads: Any = None, *, theory: str | Iterable[str] | None = None,
-                  out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None):
+                  out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None) -> Any:
         """The 6×6 at many poses, tangent under the loads; in linear geometry.
 
         ``poses``   (n, 6) or (n, 3); or one, (6,) or (3,). C-contiguous float64 of (n, 6) is not copied
@@ -187,21 +215,24 @@ class Model(Subject):
                     names or "all": a dict of name -> array
         ``out_of_reach``  "raise" (MechanismError), or "nan"
         ``threads``       0: all cores. The result has the same bits for any number of them
+        ``units``         "mm": mm, deg, N, Nmm in, N/mm, N, Nmm out; "SI": m, rad, N, Nm, N/m
+        ``progress``      True, or a function of the share that is done
 
-        Returns (n, 6, 6), or (6, 6) for one pose.
+        Returns (n, 6, 6), or (6, 6) for one pose. Raises InputError, MechanismError "pose i: …", NumericalError (a
+        failed check, theories that disagree).
         """
         return self._many(poses, loads, theory, (False, True), out_of_reach, threads, units, progress)
 
     def displacement(self, poses: Any, loads: Any = None, *, theory: str | Iterable[str] | None = None,
-                     out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None):
-        """The displacement of T at many poses under their loads: (n, 6), or (6,) for one pose. Arguments as for
-        stiffness()."""
+                     out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None) -> Any:
+        """The displacement of T at many poses under their loads: (n, 6), or (6,) for one pose; mm and rad, SI: m and rad.
+        Arguments and errors as for stiffness()."""
         return self._many(poses, loads, theory, (True, False), out_of_reach, threads, units, progress)
 
     def solve_many(self, poses: Any, loads: Any = None, *, theory: str | Iterable[str] | None = None,
-                   out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None):
+                   out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None) -> Any:
         """(displacement (n, 6), stiffness (n, 6, 6)) at many poses; a dict of such pairs where a dict is asked for.
-        Arguments as for stiffness()."""
+        Arguments, units and errors as for stiffness()."""
         return self._many(poses, loads, theory, (True, True), out_of_reach, threads, units, progress)
 
     def _many(self, poses, loads, theory, wanted, out_of_reach, threads, units, progress):
@@ -230,6 +261,28 @@ class Model(Subject):
             return by_theory[one]
         return by_theory[_core.reference_theory] if theory is None else by_theory
 
+    def export(self, path: str | os.PathLike[str], *, pose: Numbers | None = None,
+               joints: Numbers | None = None, load: Numbers | None = None, to: str | None = None,
+               element_size: float = 5, scale: float | None = None) -> tuple[str, str]:
+        """Writes the loaded mechanism for other programs, as `deflect export`; returns the paths of two files: the shape
+        unloaded, with displacements and forces as fields, and the deflected shape.
+
+        ``path``   ends in .vtu (ParaView) or .msh (Gmsh); ``to`` "vtk" or "msh" without such an end
+        ``pose``, ``joints``, ``load``  as for solve()
+        ``element_size``  of the MSA, mm
+        ``scale``  factor on displacements in the deflected shape; what makes them visible without
+
+        Raises InputError, MechanismError, NumericalError as solve().
+        """
+        file = os.fspath(path)
+        kinds = {".vtu": "vtk", ".msh": "msh"}
+        kind = to or kinds.get(os.path.splitext(file)[1], "")
+        if not kind:
+            raise InputError(f"{file}: a path that ends in .vtu or .msh is wanted, or to='vtk' or 'msh'")
+        at = _core.Asked(() if pose is None else pose, () if joints is None else joints, False)
+        second, _, _ = _core.export_structure(self._core, file, kind, at, (0.0,) * 6 if load is None else load,
+                                              float(element_size), None if scale is None else float(scale))
+        return file, second
 
     def derivatives(self, paths: str | Iterable[str], poses: Any, loads: Any = None, *, theory: str | None = None,
                     step: float = 1e-4, threads: int = 0, units: str = "mm") -> np.ndarray:
@@ -240,7 +293,8 @@ class Model(Subject):
         ``poses``, ``loads``, ``theory``, ``threads``, ``units``  as for displacement()
         ``step``    relative, of the central difference
 
-        Returns (n, 6, number of paths), or (6, number of paths) for one pose. A number that is 0 has the derivative 0.
+        Returns (n, 6, number of paths), or (6, number of paths) for one pose, mm and rad, SI: m and rad. A number that is
+        0 has the derivative 0. Raises InputError for a path that leads to no number, and as displacement().
         """
         if not 0 < step < 0.5:
             raise InputError(f"step = {step}: give a relative step above 0 and below 0.5")
@@ -255,8 +309,25 @@ class Model(Subject):
 class Frame(Subject):
     """A frame of nodes and members under load cases, read by its sensors."""
 
+    def nodes(self) -> dict[str, Any]:
+        """``{"node": names, "x_mm": (n,), "y_mm": (n,), "z_mm": (n,), "held": words}``, what a support holds."""
+        rows = self.show().frames
+        at = np.array([row.at_mm for row in rows]).reshape(-1, 3)
+        return {"node": [row.name for row in rows], **{f"{axis}_mm": at[:, i] for i, axis in enumerate("xyz")},
+                "held": [row.held for row in rows]}
+
+    def members(self) -> dict[str, Any]:
+        """``{"member": names, "section": names, "material": names, "start_mm": (n, 3), "end_mm": (n, 3), "length_mm":
+        (n,)}``."""
+        rows = self.show().members
+        ends = {name: np.array([row[name] for row in rows]).reshape(-1, 3) for name in ("start_mm", "end_mm")}
+        return {"member": [row.part for row in rows], "section": [row.section for row in rows],
+                "material": [row.material for row in rows], **ends,
+                "length_mm": np.array([row.length_mm for row in rows], dtype=float)}
+
     @property
     def load_cases(self) -> list[str]:
+        """Their names."""
         return self._core.load_cases
 
     def solve(self, *, solver: str = "auto", progress: Any = None) -> FrameSolution:
@@ -320,4 +391,5 @@ def frame(source: Any) -> Frame:
 
 
 def subject_of(source: Any) -> Any:
+    """A Model or a Frame, or what load() takes."""
     return source if isinstance(source, Subject) else load(source)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import base64
 import html
 import importlib
-from typing import Any
+import sys
+from typing import Any, Callable
 
 from . import _sheet
 
@@ -16,10 +17,34 @@ TABLE = ("style='border-collapse:collapse;font-size:90%'", "style='padding:1px 8
 
 def drawn(result: Any, figure: Any = None) -> Any:
     """The picture of a result, by the function that its class names."""
-    if not result.drawing:
+    if not result._drawn_by:
         raise TypeError(f"a {type(result).__name__} has no picture")
-    module, name = result.drawing.split(".")
+    module, name = result._drawn_by.split(".")
     return getattr(importlib.import_module("." + module, __package__), name)(result, figure)
+
+
+def progress(what: str) -> Callable[[float], None]:
+    """Shows the share that is done: in a notebook by a bar, in a terminal by a line of standard error."""
+    IPython = sys.modules.get("IPython")
+    shell = IPython.get_ipython() if IPython else None
+    if shell is not None and hasattr(shell, "kernel"):
+        return _bar(what)
+
+    def tell(share: float) -> None:
+        print(f"\r{what} {100 * share:3.0f} %", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
+
+    return tell
+
+
+def _bar(what: str) -> Callable[[float], None]:
+    """An output of the cell that is written anew in its place."""
+    from IPython.display import HTML, display
+
+    def words(share: float) -> Any:
+        return HTML(f"<progress value='{share:.3f}' max='1'></progress> {html.escape(what)} {100 * share:.0f} %")
+
+    handle = display(words(0), display_id=True)
+    return lambda share: handle.update(words(share))
 
 
 def heading(words: str) -> str:

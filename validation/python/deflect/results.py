@@ -1,66 +1,88 @@
-"""Results: the JSON that the program writes with --json (without its provenance), as an object."""
+"""Results: the JSON that the program writes with --json (without its provenance), as dataclasses."""
 
 from __future__ import annotations
 
-import dataclasses
 import csv
+import dataclasses
 import functools
 import io
 import json as _json
-from typing import Any, Iterator
+from typing import Any, Iterator, List
 
 import numpy as np
 
-from . import _sheet, notebook
+from . import _sheet, notebook, records, schema, schema_fitted, schema_measured
+from .records import Array, Maybe
 
-
-@dataclasses.dataclass(frozen=True, repr=False)
-class Result:
-    """What a function of deflect found.
+class Result(records.Record):
+    """What a function of deflect found: a dataclass whose fields are the members of the JSON, equal to it:
+    ``r.to_dict() == r.content``.
 
     ``json``     text of the JSON, as the program writes it
     ``report``   text for a person, as the program prints it
-    ``content``  the JSON as dicts and lists; its members are attributes too: ``result.verdict``
+    ``content``  the JSON as dicts and lists
 
     Two results are equal where their JSON is. Results can be pickled and copied.
     """
 
-    json: str
-    report: str = dataclasses.field(default="", compare=False)
+    #: the member of the JSON that is a table, for rows() and to_dataframe(); who draws it; what goes with it in a pickle
+    _table = ""
+    _drawn_by = ""
+    _beside: tuple[str, ...] = ()
 
-    #: the member of the JSON that is a table, for rows() and to_dataframe(); and who draws it
-    table = ""
-    drawing = ""
+    def __init__(self, json: str, report: str = "", **beside: Any):
+        """``json``: text of a result of this kind; ``report``: for a person."""
+        self.__dict__.update(_json=json, _report=report, **beside)
+
+    @property
+    def json(self) -> str:
+        """The text of the JSON."""
+        return self._json
+
+    @property
+    def report(self) -> str:
+        """What the program prints for a person."""
+        return self._report
 
     @functools.cached_property
     def content(self) -> dict[str, Any]:
+        """The JSON as dicts, lists and plain values."""
         return _json.loads(self.json)
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name in ("json", "report", "content"):
-            raise AttributeError(name)
-        try:
-            return self.content[name]
-        except KeyError:
-            raise AttributeError(f"{type(self).__name__} has no '{name}'; it has {', '.join(self.content)}") from None
+        if name.startswith("_") or not any(f.name == name for f in records.fields_of(type(self))):
+            words = "" if name.startswith("_") else f"; it has {', '.join(f.name for f in records.fields_of(type(self)))}"
+            raise AttributeError(f"{type(self).__name__} has no '{name}'{words}")
+        self.__dict__.update(records.values_of(type(self), self.content))  # parsed when first asked for
+        return self.__dict__[name]
 
     def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *self.content})
+        return sorted({*super().__dir__(), *(f.name for f in records.fields_of(type(self)))})
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"_json": self.json, "_report": self.report,
+                **{name: self.__dict__[name] for name in self._beside if name in self.__dict__}}
+
+    def __eq__(self, other: Any) -> bool:
+        return type(self) is type(other) and self.json == other.json
+
+    def __hash__(self) -> int:
+        return hash(self.json)
 
     def rows(self) -> list[dict[str, Any]]:
         """The table of this result as flat dicts, one for each row; names of nested members are joined by dots."""
-        return [dict(_flat(row)) for row in self.content.get(self.table, [])]
+        return [dict(_flat(row)) for row in self.content.get(self._table, [])]
 
-    def to_dataframe(self):
-        """rows() as a pandas.DataFrame. Needs pandas."""
+    def to_dataframe(self) -> Any:
+        """rows() as a pandas.DataFrame. ImportError without pandas."""
         return _sheet.pandas().DataFrame(self.rows())
 
-    def plot(self, figure: Any = None):
+    def plot(self, figure: Any = None) -> Any:
         """Its picture, a matplotlib Figure in the style of the program's figures: ``r.plot().savefig("r.pdf")``. With
         ``figure`` it is drawn there: ``r.plot(pyplot.figure())``, for a window. ImportError without matplotlib."""
         return notebook.drawn(self, figure)
 
-    def save(self, path) -> None:
+    def save(self, path: Any) -> None:
         """Writes the JSON, which `deflect report` and functions that take results read."""
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.json)
@@ -84,16 +106,44 @@ def _flat(row: Any, before: str = "") -> Iterator[tuple[str, Any]]:
             yield before + name, value
 
 
-@dataclasses.dataclass(frozen=True, repr=False)
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Comparison(Result):
-    """Of compare(): ``findings``, ``tests``, ``patterns``, ``errors``, ``baseline`` …; rows: the tests.
+    """Of compare(): ``findings``, ``tests``, ``patterns``, ``errors``, ``baseline`` …; rows: the tests. Names in _mm are in
+    ``unit``.
 
     ``readings_csv``  the table of residuals, as `deflect compare --out` writes it
     """
 
-    readings_csv: str = dataclasses.field(default="", compare=False)
-    table = "tests"
-    drawing = "figures.comparison"
+    kind: str
+    device: str
+    data: str
+    readings: int
+    poses: int
+    unit: str
+    baseline: schema_measured.Baseline
+    noise_floor_mm: float
+    sigma_u_mm: float
+    sigma_from_residuals: bool
+    pure_error: Maybe[schema_measured.PureError]
+    verdict: str
+    notes: List[str]
+    findings: List[schema_measured.Finding]
+    unexplained_chi2_per_dof: float
+    deformed_shape: Maybe[schema_measured.DeformedShape]
+    tests: List[schema_measured.ContrastTest]
+    patterns: List[schema_measured.PatternTest]
+    errors: schema_measured.ErrorGroups
+    tolerances: List[schema_measured.ToleranceSize]
+    strained_tolerances: List[schema.Strained]
+    looks_like: List[str]
+    mistakes: List[schema.Mistake]
+    inside: Maybe[schema_measured.Inside]
+    set_aside_lines: List[int]
+    provenance: Maybe[schema.Provenance]
+
+    _table = "tests"
+    _drawn_by = "figures.comparison"
+    _beside = ("readings_csv",)
 
     @functools.cached_property
     def residuals(self) -> dict[str, Any]:
@@ -105,129 +155,222 @@ class Comparison(Result):
                 for name in (rows[0] if rows else ())}
 
 
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Validity(Result):
     """Of compare(validation=True): ``sentence``, ``agreement``, ``channels``, ``domain`` …; rows: the channels."""
 
-    table = "channels"
-    drawing = "figures_more.validity"
+    kind: str
+    device: str
+    data: str
+    sentence: str
+    readings: int
+    poses: int
+    set_aside_lines: List[int]
+    agrees: bool
+    agreement: schema_fitted.Agreement
+    coverage_factor: float
+    channels: List[schema_fitted.Channel]
+    area: float
+    expected_area: float
+    u: List[schema_fitted.OfCurve]
+    discrepancy: List[schema_fitted.Discrepancy]
+    domain: List[schema_fitted.DomainRange]
+    without: List[schema_fitted.WithoutGroup]
+    same: List[schema_fitted.Sameness]
+    calibration: Maybe[schema_fitted.Calibration]
+    use: Maybe[schema_fitted.Use]
+    maturity: List[schema_fitted.Maturity]
+    formulas: List[str]
+    provenance: Maybe[schema.Provenance]
+
+    _table = "channels"
+    _drawn_by = "figures_more.validity"
 
 
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Diagnosis(Result):
-    """Of diagnose(): ``verdict``, ``missing``, ``candidates`` …; rows: the candidates."""
+    """Of diagnose(): ``verdict``, ``missing``, ``candidates``, ``found`` …; rows: the candidates. Names in _mm are in
+    ``unit``."""
 
-    table = "candidates"
-    drawing = "figures.diagnosis"
+    kind: str
+    verdict: str
+    device: str
+    data: str
+    notes: List[str]
+    sentence: str
+    headline: str
+    mistakes: List[schema.Mistake]
+    missing: List[str]
+    candidates: List[schema_measured.Candidate]
+    indistinguishable: List[List[str]]
+    ties: List[schema_measured.Tie]
+    splitting: List[schema_measured.Splitting]
+    baseline: schema_measured.Quality
+    final: schema_measured.Quality
+    unit: str
+    noise_floor_mm: float
+    unexplained: schema_measured.Unexplained
+    found: List[schema_measured.FoundEffect]
+    probability_nothing: float
+    probability_larger_tolerances: float
+    larger_tolerances: float
+    probability_unknown: float
+    chance_of_any: float
+    bootstrap_sets: int
+    tolerance_scale: float
+    readings: int
+    set_aside: int
+    strained_tolerances: List[schema.Strained]
+    detectable: List[schema_measured.Detectable]
+    left_out: List[schema.LeftOut]
+    provenance: Maybe[schema.Provenance]
+
+    _table = "candidates"
+    _drawn_by = "figures.diagnosis"
 
 
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Fit(Result):
-    """Of fit(): ``parameters``, ``correlation``, ``before``, ``after`` …; rows: the parameters."""
+    """Of fit(): ``parameters``, ``correlation`` (k, k), ``before``, ``after``, ``posterior`` …; rows: the parameters. Names
+    in _mm are in ``unit``.
 
-    table = "parameters"
-    drawing = "figures_more.fit"
+    ``model``  the description with the fitted values, and with effects that were fitted
+    ``given``  the description that was fitted
+    """
+
+    kind: str
+    device: str
+    data: str
+    readings: int
+    poses: int
+    numbers: int
+    set_aside: int
+    unit: str
+    parameters: List[schema_fitted.FittedParameter]
+    correlation: Array
+    undetermined: List[schema_fitted.Undetermined]
+    before: schema_fitted.FittedQuality
+    after: schema_fitted.FittedQuality
+    noise_floor_mm: float
+    p_value: float
+    converged: bool
+    warnings: List[str]
+    findings: List[str]
+    strained_tolerances: List[schema.Strained]
+    tolerance_scale: float
+    discrepancy: List[schema_fitted.Discrepancy]
+    noise: List[schema_fitted.NoiseOf]
+    posterior: schema_fitted.Posterior
+    provenance: Maybe[schema.Provenance]
+
+    _table = "parameters"
+    _drawn_by = "figures_more.fit"
+    _beside = ("model", "given")
 
 
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Prediction(Result):
     """Of predict(): ``numbers`` with their intervals; rows: these."""
 
-    table = "numbers"
-    drawing = "figures_more.prediction"
+    kind: str
+    device: str
+    plan: str
+    theories: List[schema.Theory]
+    fitted: bool
+    noise_known: bool
+    numbers: List[schema_fitted.PredictedNumber]
+    provenance: Maybe[schema.Provenance]
+
+    _table = "numbers"
+    _drawn_by = "figures_more.prediction"
 
 
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Plan(Result):
-    """Of plan(): the chosen readings, which are the rows; with ``before`` what the ``given`` campaign and a ``better`` one
-    tell, and rows: the effects by how large they must be to show in the given one."""
+    """Of plan() after a diagnosis: the chosen ``readings``, which are the rows, and what they tell apart.
 
-    drawing = "figures_more.plan"
+    ``measurements``  the readings as a file to be filled in; None where no reading tells the effects apart
+    """
+
+    kind: str
+    subject: str
+    data: str
+    taken: int
+    possible: int
+    rivals: List[schema_fitted.PlanRival]
+    readings: List[schema_fitted.PlannedReading]
+    probability: float
+    separations: List[schema_fitted.Separation]
+    at_random: int
+    at_random_is_more: bool
+    steps: List[schema_fitted.PlanStep]
+    inseparable: List[schema_fitted.Inseparable]
+    provenance: Maybe[schema.Provenance]
+
+    _table = "readings"
+    _drawn_by = "figures_more.plan"
+    _beside = ("measurements",)
+
+
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
+class Foresight(Result):
+    """Of plan(before=…): what the ``given`` campaign and a ``better`` one tell; rows: the effects by how large they must be
+    to show in the given one.
+
+    ``measurements``  the better campaign as a file to be filled in
+    """
+
+    kind: str
+    subject: str
+    campaign: str
+    toward: str
+    given: schema_fitted.Insight
+    better: schema_fitted.Insight
+    provenance: Maybe[schema.Provenance]
+
+    _drawn_by = "figures_more.plan"
+    _beside = ("measurements",)
 
     def rows(self) -> list[dict[str, Any]]:
-        table = self.content["given"]["detectable"] if "given" in self.content else self.content["readings"]
-        return [dict(_flat(row)) for row in table]
+        """The effects by how large they must be to show in the given campaign."""
+        return [dict(_flat(row)) for row in self.content["given"]["detectable"]]
 
 
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class History(Result):
-    """Of history(): one row for each version."""
+    """Of history(): one row for each version. Names in _mm are in ``unit``."""
 
-    table = "versions"
-    drawing = "figures.history"
+    kind: str
+    data: str
+    unit: str
+    versions: List[schema_measured.Version]
+    provenance: Maybe[schema.Provenance]
+
+    _table = "versions"
+    _drawn_by = "figures.history"
 
 
+@dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Validation(Result):
     """Of validate(): rows: a point and a load each."""
 
-    table = "points"
-    drawing = "figures.validation"
+    kind: str
+    device: str
+    theories: List[schema.Theory]
+    points: List[schema.Point]
+    max_relative_difference: Maybe[float]
+    rms_relative_difference: Maybe[float]
+    errata: Maybe[List[schema.Erratum]]
+    mesh_study: Maybe[List[schema.MeshRow]]
+    provenance: Maybe[schema.Provenance]
 
-
-class StiffnessMap(Result):
-    """Of map(): ``arrays`` in the order of ``grid``."""
-
-    drawing = "figures.stiffness_map"
-
-    @functools.cached_property
-    def columns(self) -> dict[str, np.ndarray]:
-        """x_mm, y_mm, z_mm and the arrays of the JSON, (n,) each, x fastest: "guide_mean_mm",
-        "msa.stiffness_x_N_per_mm" …; NaN where a pose is out of reach."""
-        grid = [np.array(self.content["grid"][axis]) for axis in ("x_mm", "y_mm", "z_mm")]
-        z, y, x = np.meshgrid(*reversed(grid), indexing="ij")
-        out = {"x_mm": x.ravel(), "y_mm": y.ravel(), "z_mm": z.ravel()}
-        for name, values in _flat(self.content["arrays"]):
-            out[name] = np.array([np.nan if value is None else value for value in values], dtype=float)
-        return out
-
-    def rows(self) -> list[dict[str, Any]]:
-        names, values = list(self.columns), list(self.columns.values())
-        return [dict(zip(names, row)) for row in zip(*values)]
-
-
-class FrameSolution(Result):
-    """Of Frame.solve(): ``cases`` by name. Tables as arrays: displacements(), reactions(), members()."""
-
-    drawing = "figures_more.frame"
-
-    def _table(self, case: str | None, what: str, name: str) -> dict[str, Any]:
-        cases = self.content["cases"]
-        if case is None:
-            if len(cases) != 1:
-                raise KeyError(f"name one of the load cases: {', '.join(cases)}")
-            case = next(iter(cases))
-        rows = [dict(_flat(row)) for row in cases[case][what]]
-        names = list(dict.fromkeys(key for row in rows for key in row if key != name))
-        out = {name: [row[name] for row in rows]}
-        for key in names:
-            out[key] = np.array([row.get(key, np.nan) for row in rows], dtype=float)
-        return out
-
-    def displacements(self, case: str | None = None) -> dict[str, Any]:
-        """``{"node": names, "ux_mm": (n,), … "rz_rad": (n,)}`` of a load case (of the only one)."""
-        return self._table(case, "displacements", "node")
-
-    def reactions(self, case: str | None = None) -> dict[str, Any]:
-        """``{"node": names, "fx_N": (n,), … "mz_Nmm": (n,)}``; NaN where a support does not hold."""
-        return self._table(case, "reactions", "node")
-
-    def members(self, case: str | None = None) -> dict[str, Any]:
-        """``{"member": names, "start.N_N": (n,), … "energy_Nmm": (n,)}``."""
-        return self._table(case, "members", "member")
-
-    def rows(self) -> list[dict[str, Any]]:
-        """A row for each load case and node."""
-        return [{"case": case, **dict(_flat(row))}
-                for case, of_case in self.content["cases"].items() for row in of_case["displacements"]]
-
-    @property
-    def load_cases(self) -> list[str]:
-        return list(self.content["cases"])
+    _table = "points"
+    _drawn_by = "figures.validation"
 
 
 def progress_of(progress: Any, what: str) -> Any:
-    """None, a function of the share that is done, or for True one that writes it into a line of standard error."""
+    """None, a function of the share that is done, or for True one that shows it: a bar in a notebook, else a line of
+    standard error."""
     if progress is None or progress is False:
         return None
-    if callable(progress):
-        return progress
-    import sys
-
-    def tell(share: float) -> None:
-        print(f"\r{what} {100 * share:3.0f} %", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
-
-    return tell
+    return progress if callable(progress) else notebook.progress(what)

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Sequence, Union
 
 import numpy as np
 
 from .errors import InputError
+
+#: a list of numbers
+Numbers = Union[Sequence[float], np.ndarray]
 
 
 def require_units(units: str) -> bool:
@@ -26,6 +30,13 @@ def poses_in_mm(poses: np.ndarray) -> np.ndarray:
 def loads_in_mm(loads: np.ndarray) -> np.ndarray:
     out = np.array(loads, dtype=float)
     out[..., 3:] *= 1e3
+    return out
+
+
+def displacement_in_mm(d: np.ndarray) -> np.ndarray:
+    """A copy: (…, 3) or (…, 6)."""
+    out = np.array(d, dtype=float)
+    out[..., :3] *= 1e3
     return out
 
 

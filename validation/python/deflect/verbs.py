@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import Any, Iterable, Mapping
+
+import numpy as np
 
 from . import _core, _sources
 from .errors import InputError
 from .measurements import Measurements, maybe_text_of, result_text, text_of
 from .models import Subject, _names, _six, subject_of
-from .results import (Comparison, Diagnosis, Fit, History, Plan, Prediction, StiffnessMap, Validation, Validity,
+from .results import (Comparison, Diagnosis, Fit, Foresight, History, Plan, Prediction, Result, Validation, Validity,
                       progress_of)
+from .results_of_shapes import Check, Drawing, FrameSolution, StiffnessMap
+from .solution import Solution
+from .units import loads_in_mm, poses_in_mm, require_units
 
 
 def compare(model: Any, data: Any, *, sigma: float | None = None, sigma_rotation: float | None = None,
             validation: bool = False, calibration: Any = None, use: Any = None, fit: Any = None,
-            free: Iterable[str] = (), threads: int = 0, progress: Any = None):
+            free: Iterable[str] = (), threads: int = 0, progress: Any = None) -> Comparison | Validity:
     """Where the model fails, nothing fitted: Comparison. With ``validation`` in the words of the validation standards:
     Validity.
 
@@ -23,13 +29,18 @@ def compare(model: Any, data: Any, *, sigma: float | None = None, sigma_rotation
     ``data``   Measurements, a path, the text of a file or a DataFrame
     ``sigma``, ``sigma_rotation``  standard deviations in mm and rad where the data have none
     ``calibration``, ``use``, ``fit``, ``free``  as the options of `deflect compare --validation`
+    ``threads``   0: all cores; they change no bit
+    ``progress``  True, or a function of the share that is done
+
+    Raises InputError with file, line and column, NumericalError where the model cannot be predicted.
     """
     s, noise = subject_of(model), _core.Noise(sigma, sigma_rotation, False)
     told = progress_of(progress, "compare")
     if not validation:
         if calibration is not None or use is not None or fit is not None or free:
             raise InputError("calibration, use, fit and free go with validation=True")
-        return Comparison(*_core.compare(s._core, text_of(data), noise, threads, told))
+        text, report, readings = _core.compare(s._core, text_of(data), noise, threads, told)
+        return Comparison(text, report, readings_csv=readings)
     return Validity(*_core.validity(s._core, text_of(data), noise, maybe_text_of(calibration), maybe_text_of(use),
                                     None if fit is None else result_text(fit), list(free), s.source, threads, told))
 
@@ -37,8 +48,16 @@ def compare(model: Any, data: Any, *, sigma: float | None = None, sigma_rotation
 def diagnose(model: Any, data: Any, *, effects: Any = (), sigma: float | None = None,
              sigma_rotation: float | None = None, as_recorded: bool = False, bootstrap: int = 1999, threads: int = 0,
              progress: Any = None) -> Diagnosis:
-    """Which physical effect is missing. ``data`` may be a list: sessions of one campaign. ``effects``: own effect files,
-    texts or dicts. Arguments as for compare() and of `deflect diagnose`."""
+    """Which physical effect is missing: its probability, values with 95 % intervals, and what is tied.
+
+    ``data``         as for compare(), or a list: sessions of one campaign
+    ``effects``      own effect files, texts or dicts, also with edits by a Python function (the slow way)
+    ``as_recorded``  without the search for mistakes of recording
+    ``bootstrap``    sets drawn with nothing missing, at least 99
+    ``sigma``, ``sigma_rotation``, ``threads``, ``progress``  as for compare()
+
+    Raises InputError, NumericalError.
+    """
     sessions = data if isinstance(data, (list, tuple)) else [data]
     return Diagnosis(*_core.diagnose(subject_of(model)._core, [text_of(each) for each in sessions],
                                      _sources.effect_sources(effects),
@@ -46,39 +65,81 @@ def diagnose(model: Any, data: Any, *, effects: Any = (), sigma: float | None = 
                                      progress_of(progress, "diagnose")))
 
 
-def fit(model: Any, data: Any, free: str | Iterable[str], *, prior: Mapping[str, str] | Iterable[str] = (),
+def _freed(free: Any, effects: Any) -> tuple[list[str], list[_core.AskedEffect], list[Any]]:
+    """What is free: paths and names of effects; the effects asked for; all own effects."""
+    own = [effects] if isinstance(effects, (str, dict, os.PathLike)) else list(effects)
+    names, asked = [], []
+    one = isinstance(free, (str, dict)) or (isinstance(free, tuple) and len(free) == 2 and isinstance(free[1], Mapping))
+    for each in [free] if one else list(free):
+        if isinstance(each, dict):
+            own.append(each)
+            each = each["name"]
+        name, values = (each, {}) if isinstance(each, str) else each
+        if isinstance(each, str) and "." in name and "@" not in name:
+            names.append(name)
+            continue
+        values = dict(values)
+        leg = values.pop("leg", None)
+        asked.append(_core.AskedEffect(name, leg, [(k, float(v)) for k, v in values.items()]))
+        names.append(name if leg is None else f"{name}[{leg}]")
+    return names, asked, own
+
+
+def fit(model: Any, data: Any, free: Any, *, prior: Mapping[str, str] | Iterable[str] = (), effects: Any = (),
         sigma: float | None = None, sigma_rotation: float | None = None, as_recorded: bool = False, threads: int = 0,
         progress: Any = None) -> Fit:
-    """Fits numbers of the description, by their paths, with all tolerances free under their priors.
+    """Fits numbers of the description, by their paths, and parameters of effects, with all tolerances free under their
+    priors.
 
-    ``free``   "materials.aluminium.E", "leg.joint_2.rz.stiffness" …
-    ``prior``  {path: "70 GPa ± 2 %"}, or a list of "path=70 GPa ± 2 %"
+    ``free``     one or a list of: a path, "materials.aluminium.E", "leg.joint_2.rz.stiffness" …; the name of an effect of
+                 the catalogue, of a place or of ``effects``, all of whose parameters are then free; (name, {parameter:
+                 where the search begins, "leg": 4}); the dict of an own effect
+    ``prior``    {path: "70 GPa ± 2 %"}, or a list of "path=70 GPa ± 2 %"; of an effect's parameter
+                 {"rubber_pad.depth_mm": "0.1 ± 10 %"}
+    ``effects``  own effects: files, texts or dicts, also with edits by a Python function (the slow way)
+    ``data``, ``sigma``, ``sigma_rotation``  as for compare()
 
-    The result's ``model`` is the description with the fitted values.
+    The result's ``model`` is the description with the fitted values, ``given`` that without. Raises InputError for what
+    leads to no number or effect, NumericalError where nothing can be predicted.
     """
     s = subject_of(model)
-    free = [free] if isinstance(free, str) else list(free)
+    names, asked, own = _freed(free, effects)
     priors = [f"{path}={value}" for path, value in prior.items()] if isinstance(prior, Mapping) else list(prior)
-    text, report, fitted = _core.fit(s._core, text_of(data), free, priors, s.source,
-                                     _core.Noise(sigma, sigma_rotation, as_recorded), threads,
-                                     progress_of(progress, "fit"))
-    out = Fit(text, report)
-    object.__setattr__(out, "model", type(s)(fitted))
-    return out
+    wanted = _core.FreeAsked(names, priors, s.source, _sources.effect_sources(own), asked)
+    text, report, fitted = _core.fit(s._core, text_of(data), wanted, _core.Noise(sigma, sigma_rotation, as_recorded),
+                                     threads, progress_of(progress, "fit"))
+    return Fit(text, report, model=type(s)(fitted), given=s)
 
 
 def predict(model: Any, plan: Any = None, *, at: Any = None, joints: Any = None, load: Any = None, fit: Any = None,
-            theories: Iterable[str] | None = None, sigma: float | None = None, sigma_rotation: float | None = None,
-            threads: int = 0, progress: Any = None) -> Prediction:
+            effects: Any = (), theories: Iterable[str] | None = None, sigma: float | None = None,
+            sigma_rotation: float | None = None, threads: int = 0, units: str = "mm",
+            progress: Any = None) -> Prediction:
     """Readings with 95 % intervals: of a ``plan`` (as data), or of one reading: ``at`` a pose under a ``load``, or of a
-    frame factors on its load cases, {"snow": 1}. ``fit``: a Fit or its file."""
+    frame factors on its load cases, {"snow": 1}.
+
+    ``fit``      a Fit or its file, of this model, with its values or without. Where parameters of effects were fitted,
+                 the model is that which lacks them (with a Fit, ``fit.model`` will do)
+    ``effects``  own effects that were fitted, as for fit()
+    ``at``, ``joints``, ``load``  mm, deg; mm or rad; N, Nmm; with ``units`` "SI" m, rad, N, Nm. Results are in their units
+    ``sigma``, ``sigma_rotation``  of a reading, mm and rad, where neither sensor nor fit tell it
+
+    Raises InputError, MechanismError, NumericalError.
+    """
     s = subject_of(model)
     if (plan is None) == (at is None and joints is None):
         raise InputError("give either a plan or at (or joints)")
+    if isinstance(fit, Fit) and s == fit.__dict__.get("model"):
+        s = fit.given
     factors = list(at.items()) if isinstance(at, Mapping) else []
-    asked = _core.PredictAsked(maybe_text_of(plan), () if at is None or factors else at,
-                               () if joints is None else joints, (0.0,) * 6 if load is None else load, factors)
-    return Prediction(*_core.predict(s._core, asked, None if fit is None else result_text(fit),
+    si = require_units(units)
+    pose = () if at is None or factors else poses_in_mm(_six(at, "at")) if si else at
+    if si and load is not None:
+        load = loads_in_mm(_six(load, "load"))
+    asked = _core.PredictAsked(maybe_text_of(plan), _core.Asked(pose, () if joints is None else joints, si),
+                               (0.0,) * 6 if load is None else load, factors)
+    sources = _sources.effect_sources(effects) if fit is not None else None
+    return Prediction(*_core.predict(s._core, asked, None if fit is None else result_text(fit), sources,
                                      _core.Noise(sigma, sigma_rotation, False), _names(theories), threads,
                                      progress_of(progress, "predict")))
 
@@ -105,7 +166,10 @@ def simulate(model: Any, effect: Any = (), *, campaign: Any = "rich", force: flo
 
     ``effect``    a name, or (name, {parameter: value, "leg": 4}), or a list of these
     ``campaign``  "paper", "cycle", "rich" or "random"; or a plan, as data
-    Other arguments as the options of `deflect simulate`.
+    ``force``     N; ``noise`` and ``noise_rotation``: standard deviations in mm and rad; ``temperature``: °C, or (mean,
+                  swing)
+    ``effects``   own effects, as for diagnose()
+    Other arguments as the options of `deflect simulate`. Raises InputError, MechanismError, NumericalError.
     """
     s = subject_of(model)
     named = isinstance(campaign, str) and _core.is_campaign(campaign)
@@ -126,10 +190,11 @@ def plan(model: Any, diagnosis: Any = None, data: Any = None, *, before: Any = N
          max_force: float | None = None, max_moment: float | None = None, forces_only: bool = False,
          poses: Any = "workspace", max_poses: int = 0, sigma: float | None = None,
          sigma_rotation: float | None = None, effects: Any = (), seed: int = 1, threads: int = 0,
-         progress: Any = None) -> Plan:
-    """What to measure. ``before``: what a campaign ("paper", … or a plan) will tell, and a better one. Else the readings
-    that tell the tied effects of a ``diagnosis`` (and its ``data``) apart. The result's ``measurements`` are to be
-    filled in. Arguments as the options of `deflect plan`; forces in N, moments in Nmm."""
+         progress: Any = None) -> Plan | Foresight:
+    """What to measure. ``before``: what a campaign ("paper", … or a plan) will tell, and a better one: Foresight. Else the
+    readings that tell the tied effects of a ``diagnosis`` (and its ``data``) apart: Plan. The result's ``measurements``
+    are to be filled in. Arguments as the options of `deflect plan`; forces in N, moments in Nmm, ``sigma`` in mm and
+    ``sigma_rotation`` in rad. Raises InputError, MechanismError, NumericalError."""
     s, noise, told = subject_of(model), _core.Noise(sigma, sigma_rotation, False), progress_of(progress, "plan")
     as_text = isinstance(poses, str) and poses in ("workspace", "measured")
     asked = _core.PlanAsked(max_force, max_moment, forces_only, as_text and poses == "measured",
@@ -146,14 +211,14 @@ def plan(model: Any, diagnosis: Any = None, data: Any = None, *, before: Any = N
             raise InputError("give a diagnosis and its data, or before=CAMPAIGN to plan before measuring")
         found = _core.next_readings(s._core, result_text(diagnosis), text_of(data), group, readings, probability, noise,
                                     asked, sources, threads, told)
-    out = Plan(found[0], found[1])
-    object.__setattr__(out, "measurements", Measurements(found[2], "plan") if found[2] else None)
-    return out
+    chosen = Measurements(found[2], "plan") if found[2] else None
+    return Plan(*found[:2], measurements=chosen) if before is None else Foresight(*found[:2], measurements=chosen)
 
 
 def history(data: Any, models: Iterable[Any], *, sigma: float | None = None, sigma_rotation: float | None = None,
             threads: int = 0, progress: Any = None) -> History:
-    """How the error falls from version to version of a model, on one set of measurements."""
+    """How the error falls from version to version of a model, on one set of measurements. Arguments and errors as for
+    compare()."""
     versions = [subject_of(m)._core for m in models]
     if not versions:
         raise InputError("models: give at least one version")
@@ -162,12 +227,14 @@ def history(data: Any, models: Iterable[Any], *, sigma: float | None = None, sig
 
 
 def validate(model: Any, points: Any = None, *, force: float = 50, theories: Iterable[str] | None = None,
-             as_printed: str = "", errata: bool = False, progress: Any = None) -> Validation:
+             as_printed: str = "", errata: bool = False, mesh_study: bool = False,
+             progress: Any = None) -> Validation:
     """The theories against each other under a force (N) along x, y, z at points of the workspace, or at ``points``:
-    (n, 6) or (n, 3), mm and deg. ``as_printed``, ``errata``: as the options of `deflect validate`."""
+    (n, 6) or (n, 3), mm and deg. ``as_printed``, ``errata``, ``mesh_study``: as the options of `deflect validate`.
+    Raises InputError, MechanismError (out of reach), NumericalError (a failed check, theories that disagree)."""
     rows = [] if points is None else [(str(i), list(row)) for i, row in enumerate(_six(points, "points"))]
     return Validation(*_core.validate(subject_of(model)._core, rows, float(force), _names(theories), as_printed, errata,
-                                     progress_of(progress, "validate")))
+                                     mesh_study, progress_of(progress, "validate")))
 
 
 def map(model: Any, n: int | tuple[int, int, int] = 11, *, x: Any = (), y: Any = (), z: Any = (), tilt: Any = (),  # noqa: A001
@@ -175,7 +242,8 @@ def map(model: Any, n: int | tuple[int, int, int] = 11, *, x: Any = (), y: Any =
         progress: Any = None) -> StiffnessMap:
     """The stiffness over the workspace, on a grid of n or (nx, ny, nz) poses. ``x``, ``y``, ``z``: (from, to) or one
     value, in mm; ``tilt``: roll pitch yaw in deg; ``force`` along x, y, z in turn, in N, or one ``load`` (6,);
-    ``length``: the characteristic length of the isotropy, mm (0: the platform's radius or the machine's extent)."""
+    ``length``: the characteristic length of the isotropy, mm (0: the platform's radius or the machine's extent). Raises
+    InputError, MechanismError (all out of reach), NumericalError."""
     counts = (n, n, n) if isinstance(n, int) else tuple(n)
     ranges = [[float(r)] if isinstance(r, (int, float)) else [float(v) for v in r] for r in (x, y, z)]
     return StiffnessMap(*_core.map(subject_of(model)._core, counts, ranges, list(tilt), [] if load is None else load,
@@ -189,11 +257,64 @@ def built_in() -> dict[str, list[str]]:
 
 
 def effects(model: Any = None, own: Any = ()) -> list[dict[str, Any]]:
-    """The effects that a model can lack, as `deflect effects --json`; with a model also the laws at its places."""
+    """The effects that a model can lack, as `deflect effects --json`; with a model also the laws at its places, and for
+    each whether it ``applies``. ``own``: effects of one's own. Raises InputError."""
     core = None if model is None else subject_of(model)._core
     content = json.loads(_core.effects_json(_sources.effect_sources(own), core))
     return content["effects"] if isinstance(content, dict) else content
 
 
-__all__ = ["built_in", "compare", "diagnose", "effects", "fit", "history", "map", "plan", "predict", "simulate",
-           "validate", "Subject"]
+def check(K: Any, *, unit: str = "mm", passive: Any = None, reference: Any = None, tolerance: float | None = None,
+          size: float | None = None, key: str = "analytic.stiffness") -> Check:
+    """Whether a 6×6 stiffness from elsewhere can be right, and the usual mistake that explains it where not, as `deflect
+    check`.
+
+    ``K``          (6, 6), translation first, rad, or the path of a file: N/mm, N, Nmm, or with ``unit`` "m" N/m, N, Nm
+    ``passive``    (6, m) twists of passive joints as columns, m from 1 to 5: K J = 0 is wanted
+    ``reference``  (6, 6) or a path: what K should equal
+    ``tolerance``  relative difference to ignore, instead of the digits given
+    ``size``       of the device, mm: K's characteristic length must be a tenth to ten times this
+    ``key``        of a JSON file, the member that holds the matrix
+
+    Raises InputError for what is no such matrix. A matrix that fails is an answer: ``passes`` is False.
+    """
+    if unit not in ("mm", "m"):
+        raise InputError(f"unit '{unit}': write 'mm' or 'm'")
+
+    def given(matrix: Any) -> Any:
+        return os.fspath(matrix) if isinstance(matrix, (str, os.PathLike)) else np.asarray(matrix, dtype=float)
+
+    names = [os.fspath(x) if isinstance(x, (str, os.PathLike)) else word if x is not None else ""
+             for x, word in ((K, "K"), (reference, "reference"))]
+    asked = _core.CheckAsked(1e-3 if unit == "mm" else 1.0, tolerance, size, key, *names)
+    return Check(*_core.check(given(K), None if passive is None else np.asarray(passive, dtype=float),
+                              None if reference is None else given(reference), asked))
+
+
+def report(results: Result | Iterable[Result], path: str | os.PathLike[str]) -> None:
+    """Writes one page (HTML) of results, which needs no network, as `deflect report`. Raises InputError where this package
+    was built without pages."""
+    all_of = [results] if isinstance(results, Result) else list(results)
+    _core.write_page(os.fspath(path), [result_text(each) for each in all_of])
+
+
+#: By the member "kind" of the JSON.
+RESULTS: dict[str, type[Result]] = {
+    "check": Check, "comparison": Comparison, "diagnosis": Diagnosis, "drawing": Drawing, "fit": Fit,
+    "foresight": Foresight, "frame": FrameSolution, "history": History, "map": StiffnessMap, "plan": Plan,
+    "prediction": Prediction, "solve": Solution, "validation": Validation, "validity": Validity}
+
+
+def read(path: str | os.PathLike[str]) -> Result:
+    """A result from a file that --json of the program or ``save`` wrote, as an object of its kind. Raises InputError."""
+    text = _core.read_text(os.fspath(path))
+    try:
+        kind = json.loads(text)["kind"]
+        return RESULTS[kind](text)
+    except (ValueError, KeyError, TypeError):
+        raise InputError(f"{os.fspath(path)}: this is no result: give a file of --json, of one of these kinds: "
+                         f"{', '.join(RESULTS)}") from None
+
+
+__all__ = ["built_in", "check", "compare", "diagnose", "effects", "fit", "history", "map", "plan", "predict", "read",
+           "report", "simulate", "validate", "Subject"]

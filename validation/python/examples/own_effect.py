@@ -62,6 +62,19 @@ assert opened.missing == ["rubber_pad"]
 opened.plot().savefig("own-effect.png", dpi=110)
 opened
 
+# %% [markdown]
+# ## Fitted beside a number
+# `fit` takes it too, here beside the modulus, of which 1 % is known before.
+
+# %%
+fitted = deflect.fit(model, data, [pad, "materials.steel.E"], prior={"materials.steel.E": "210 GPa ± 1 %"})
+for p in fitted.parameters:
+    print(f"{p.path:22} {p.value:.5g} [{p.low95:.5g}, {p.high95:.5g}] {p.unit}")
+print(f"correlation {fitted.correlation[0, 1]:.2f}")
+depth = fitted.parameters[1]
+assert depth.low95 < 0.1 < depth.high95
+fitted.plot().savefig("own-fit.png", dpi=110)
+
 # %%
 named = model.with_effect(pad, depth_mm=value["value"]).named("with the pad")
 fall = deflect.history(data, [model, named])

@@ -39,6 +39,7 @@ upper.set_ylabel("deflection along 50 N (mm)")
 upper.legend(ncol=3, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), frameon=False)
 lower.set_ylabel("difference (fm)")
 lower.set_xlabel("point of the workspace")
+lower.set_xticks(range(9))
 fig10.savefig("fig10.png", dpi=110)
 
 # %% [markdown]
@@ -64,12 +65,13 @@ print(f"from {stiffness.min():.1f} to {stiffness.max():.1f} N/mm")
 
 fig11 = pyplot.figure(figsize=(5, 4), layout="constrained")
 axes = fig11.subplots()
-image = axes.contourf(x, z, np.log10(stiffness), 40, cmap="viridis")
+image = axes.pcolormesh(x, z, stiffness, norm="log", cmap="viridis", shading="gouraud")
 curves = axes.contour(x, z, stiffness, [100, 200, 300, 500, 700, 1000], colors="w", linewidths=0.7)
 axes.clabel(curves, fmt="%g")
 axes.set_xlabel("x (mm)")
 axes.set_ylabel("z (mm)")
-fig11.colorbar(image, label="log10 of the stiffness along x (N/mm)")
+bar = fig11.colorbar(image, label="stiffness along x (N/mm)", ticks=[150, 200, 300, 500, 700, 1000, 1500], format="{x:g}")
+bar.minorticks_off()
 fig11.savefig("fig11.png", dpi=110)
 
 # %%

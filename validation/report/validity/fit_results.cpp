@@ -91,6 +91,10 @@ Json parameter_json(const fit::FittedParameter& p) {
             {"scale", p.positive ? "log" : "linear"},
             {"deviation", p.positive ? p.deviation : p.deviation / per}};
   if (p.common) j["common_factor"] = true;
+  if (p.of) {
+    j["of"] = {{"effect", p.of->effect->name}};
+    if (p.of->leg) j["of"]["leg"] = *p.of->leg;
+  }
   j["first_number_SI"] = p.first;
   if (p.prior) j["prior"] = {{"mean", p.prior->mean / per}, {"deviation", p.prior->deviation / per}};
   if (p.pull) j["prior_deviations"] = *p.pull;
