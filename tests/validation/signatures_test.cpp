@@ -60,7 +60,7 @@ TEST(Signatures, GainByAllAmplitudesBesideWhatIsFitted) {
 }
 
 TEST(Signatures, GainByTheBestShapeAndNotAgainstItsSense) {
-  const MatrixX X = noise(30, 3, 4), B = noise(30, 2, 5), none(30, 0);
+  const MatrixX X = noise(30, 3, 4), B = noise(30, 2, 5);
   const MatrixX fitted = statistics::orthonormal(B);
   for (const double sense : {-1.0, 1.0}) {
     VectorX r = noise(30, 1, 6) + sense * 4 * X.col(2);
