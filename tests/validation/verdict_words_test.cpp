@@ -103,6 +103,25 @@ TEST(VerdictWords, AnErrorIsSaidToFallWhereItFallsAsPrinted) {
   }
 }
 
+// The ids of a tie have no leg; the sentences say which one was fitted.
+TEST(VerdictWords, ATieSaysTheLegOfAnEffectOfOneLeg) {
+  const effects::PlacedEffect leg{&test::effect("leg_defect"), 5}, platform{&test::effect("platform_flexibility"), {}};
+  Diagnosis d;
+  d.verdict = Verdict::ambiguous;
+  d.missing = {leg};
+  d.indistinguishable = {{"leg_defect", "platform_flexibility"}};
+  Tie tie;
+  for (const effects::PlacedEffect& e : {leg, platform}) {
+    tie.names.push_back(e.effect->name);
+    tie.rivals.emplace_back().hypothesis = {e};
+  }
+  d.ties.push_back(tie);
+  EXPECT_TRUE(has(verdict_words(d), "what of: leg_defect (leg 5) or platform_flexibility. Best: ")) << verdict_words(d);
+  EXPECT_TRUE(has(headline_words(d), test::effect("leg_defect").title + ": leg 5 – or – " +
+                                         test::effect("platform_flexibility").title + "."))
+      << headline_words(d);
+}
+
 TEST(VerdictWords, SeveralTitlesMakeOneSentence) {
   Diagnosis d;
   d.verdict = Verdict::unknown_effect;

@@ -53,10 +53,12 @@ std::string joined_titles(const diagnosis::Hypothesis& effects, std::string (*wo
   return out;
 }
 
-/// An id of a tie in words; ties are among the candidates.
-std::string title_of(const std::string& id, const diagnosis::Diagnosis& d) {
-  for (const diagnosis::Candidate& c : d.candidates)
-    if (id == placed_words(c.added()) || id == diagnosis::name_of(c.added())) return titled_words(c.added());
+/// An id of a group of indistinguishable effects in words, with the leg at which the effect was fitted.
+std::string rival_words(const std::string& id, const diagnosis::Diagnosis& d,
+                        std::string (*words)(const effects::PlacedEffect&)) {
+  for (const diagnosis::Tie& tie : d.ties)
+    for (const diagnosis::Candidate& c : tie.rivals)
+      if (id == c.added().effect->name) return words(c.added());
   return id;
 }
 
@@ -152,8 +154,11 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
       return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d)) + larger_tolerances_words(d);
     case diagnosis::Verdict::ambiguous: {
       std::string group;
-      for (const std::vector<std::string>& g : d.indistinguishable)
-        group += fmt::format("{}{}", group.empty() ? "" : "; and ", fmt::join(g, " or "));
+      for (const std::vector<std::string>& g : d.indistinguishable) {
+        group += group.empty() ? "" : "; and ";
+        for (const std::string& id : g)
+          group += (&id == &g.front() ? "" : " or ") + rival_words(id, d, diagnosis::name_of);
+      }
       return outliers +
              fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}. {}", group, names,
                          fall_of_error(d)) +
@@ -181,7 +186,8 @@ std::string headline_words(const diagnosis::Diagnosis& d) {
       std::string either;
       for (const std::vector<std::string>& group : d.indistinguishable) {
         if (!either.empty()) either += " And: ";
-        for (const std::string& id : group) either += (&id == &group.front() ? "" : " – or – ") + title_of(id, d);
+        for (const std::string& id : group)
+          either += (&id == &group.front() ? "" : " – or – ") + rival_words(id, d, titled_words);
         either += ".";
       }
       return outliers + fmt::format("Something is missing, and these data cannot tell which of these: {} {}", either,
