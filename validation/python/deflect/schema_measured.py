@@ -244,10 +244,11 @@ class Splitting(Record):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Localised(Record):
-    """Where what is left unexplained acts."""
+    """Where what is left unexplained acts; ``probability`` that it is there and nowhere else."""
 
     what: str
     share: float
+    probability: float
     effect: str
     place: PlaceOf
 
