@@ -144,7 +144,11 @@ class Balance {
       const auto* table = std::get_if<TableLaw>(&m.law());
       return m.slip == 0 && (!table || table->left == std::array<double, 2>{});
     });
-    if (relaxed && at.forces.isZero(0) && at.largest == 0) return at_rest();
+    // Without any force only play has an extent to be told.
+    const bool floats = extent_ && std::any_of(members_.begin(), members_.end(), [](const Member& m) {
+                          return std::holds_alternative<ClearanceLaw>(m.law()) && m.stepped->preload == 0;
+                        });
+    if (relaxed && at.forces.isZero(0) && at.largest == 0 && !floats) return at_rest();
     if (imposed_.S.size() == 0) linearise(VectorX::Zero(n_), at, 1e3);
     VectorX o = VectorX::Zero(n_), p;
     SetValuedSolution found;

@@ -43,8 +43,8 @@ TEST(FloatingPlay, IsTheGapOfTheDrivesThatCarryNothing) {
     Vector3 floats;
   };
   for (const Case& k :
-       {Case{wrench(0, 0, 0, -10, 0, 0), Vector3::Ones()}, Case{wrench(50, 0, 0, 0, 0, 0), Vector3(0, 1, 1)},
-        Case{wrench(50, 20, -30, 0, 0, 0), Vector3::Zero()}}) {
+       {Case{wrench(0, 0, 0, 0, 0, 0), Vector3::Ones()}, Case{wrench(0, 0, 0, -10, 0, 0), Vector3::Ones()},
+        Case{wrench(50, 0, 0, 0, 0, 0), Vector3(0, 1, 1)}, Case{wrench(50, 20, -30, 0, 0, 0), Vector3::Zero()}}) {
     const Answers both = both_of(c, k.F);
     EXPECT_LT(difference(both.closed_form, both.msa, c.size).largest(), 1e-9);
     for (const Answer& a : {both.closed_form, both.msa}) {
