@@ -2,12 +2,15 @@
 """Random frames with laws, and what they do, by a program that shares nothing with deflect: dense stiffness matrices in
 34 digits, members and springs as matrices, and the forces in the laws by coordinate descent on the dual energy
   1/2 f'Cf - d'f + sum of the integrals of delta_i(f_i),
-C the compliance of the linear rest between the laws. From the 24th on, tables are among the laws. Writes law_frames.txt, which law_frames_test.cpp reads:
+C the compliance of the linear rest between the laws. From the 24th on, tables are among the laws; from the 37th on,
+tables and smooth laws stand in series with others, and one or two laws beside a series, at ends, supports and springs.
+Writes law_frames.txt, which law_frames_test.cpp reads:
 
   tests/frame/laws/law_frames.py > tests/frame/laws/law_frames.txt
 """
 import math
 import random
+import sys
 
 from parts import D, Law, axes_of, beam_stiffness, cross, solve
 
@@ -20,6 +23,7 @@ class Frame:
         self.dice = dice = random.Random(seed)
         self.sequence = seed % 2 == 1
         self.more_kinds = ("table",) * 3 if seed >= 24 else ()
+        self.mixed = seed >= 37
         self.frictions = []   # in deflect's order: ends, supports, springs
         n = dice.randint(4, 6)
         self.nodes = [[dice.uniform(-1, 1) + 1.5 * i, dice.uniform(-1, 1), dice.uniform(-1, 1)] for i in range(n)]
@@ -40,8 +44,20 @@ class Frame:
         kind = self.dice.choice(kinds)
         out = [Law(kind, rotation, scale, self.dice)]
         if kind in ("clearance", "one_sided") and self.dice.random() < 0.6:
-            out.append(Law(self.dice.choice(["linear", "power", "hardening"]), rotation, scale, self.dice))
+            behind = ["linear", "power", "hardening"] + ["table"] * 2 * self.mixed
+            out.append(Law(self.dice.choice(behind), rotation, scale, self.dice))
+        elif self.mixed and kind != "friction" and self.dice.random() < 0.4:
+            out.append(Law(self.dice.choice(["power", "hardening", "table"]), rotation, scale, self.dice))
         return out
+
+    def beside(self, rotation):
+        """Laws side by side with a series; each is loaded by itself."""
+        if not self.mixed or self.dice.random() < 0.4:
+            return []
+        scale = 10 ** self.dice.uniform(4, 5.5) * (0.3 if rotation else 1)
+        kinds = [self.dice.choice(["friction", "friction", "hardening", "power", "table"])
+                 for _ in range(self.dice.choice([1, 1, 2]))]
+        return [Law(kind, rotation, scale, self.dice) for kind in kinds]
 
     def member(self, name, a, b):
         dice = self.dice
@@ -61,8 +77,9 @@ class Frame:
                 m["linear"].append((form, stiffness.k))
                 series, beside = [stiffness], []
                 if dice.random() < 0.6:  # the law in series, and the linear one beside it
-                    series, beside = self.laws(i >= 3), [stiffness]
-                    m["laws"].append((form, series))
+                    series, more = self.laws(i >= 3), self.beside(i >= 3)
+                    beside = [stiffness] + more
+                    m["laws"] += [(form, each) for each in [series] + [[law] for law in more]]
                 keys[i] = (slot, series, beside)
         return m
 
@@ -77,9 +94,9 @@ class Frame:
                 self.linear.append((form, law.k))
                 laws[i] = ([law], [])
             elif not rigid[i] and dice.random() < 0.5:
-                series = self.laws(i >= 3)
-                self.elements.append((form, series))
-                laws[i] = ([], series[:1]) if len(series) == 1 and dice.random() < 0.5 else (series, [])
+                series, more = self.laws(i >= 3), self.beside(i >= 3)
+                self.elements += [(form, each) for each in [series] + [[law] for law in more]]
+                laws[i] = ([], series[:1] + more) if len(series) == 1 and dice.random() < 0.5 else (series, more)
         return {"rigid": rigid, "laws": laws}
 
     def spring(self, name, node, to):
@@ -111,9 +128,9 @@ class Frame:
                     self.linear.append((forms[i], law.k))
                     s["laws"][i] = ([law], [])
                 else:
-                    series = self.laws(i >= 3)
-                    self.elements.append((forms[i], series))
-                    s["laws"][i] = (series, [])
+                    series, more = self.laws(i >= 3), self.beside(i >= 3)
+                    self.elements += [(forms[i], each) for each in [series] + [[law] for law in more]]
+                    s["laws"][i] = (series, more)
         return s
 
     # The linear rest
@@ -353,8 +370,8 @@ class Frame:
         return "\n".join(out)
 
 
-def main():
-    for seed in range(37):
+def main(first):
+    for seed in range(first, 53):
         frame = Frame(seed)
         if not frame.has_one_answer():
             continue
@@ -368,4 +385,4 @@ def main():
                 print(f"r {c} {i} " + " ".join(f"{x:.13e}" for x in reactions[n]))
 
 
-main()
+main(int(sys.argv[1]) if len(sys.argv) > 1 else 0)

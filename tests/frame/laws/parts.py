@@ -113,12 +113,8 @@ class Law:
             k, ref = scale * u(0.2, 1), u(1e-4, 1e-3)
             self.text = f"{{law: hardening, stiffness: {k!r} {per}, reference: {ref!r} {m}}}"
 
-            def delta(force):
-                low, high = 0.0, abs(force) / k
-                for _ in range(200):
-                    x = (low + high) / 2
-                    low, high = (x, high) if k * x * (1 + x * x / ref / ref) < abs(force) else (low, x)
-                return math.copysign((low + high) / 2, force)
+            def delta(force):  # of y + y^3 = g, by 4 sinh^3 t + 3 sinh t = sinh 3t
+                return 2 / math.sqrt(3) * ref * math.sinh(math.asinh(1.5 * math.sqrt(3) * force / (k * ref)) / 3)
             self.delta = delta
         elif kind == "table":
             self.table(u, scale, m, f, N, dice)
