@@ -47,6 +47,23 @@ TEST(Replicates, AreReachedInTheSameDirection) {
   EXPECT_EQ(replicates(m, Reached::in_any_direction), (Groups{{0, 2, 5}, {1, 8}, {3, 7}}));
 }
 
+// Loaded in steps, each read twice: the second reading of a step was reached as the first was, so that those on the way
+// up and those on the way down are two groups.
+TEST(Replicates, AStepThatIsReadAgainWasReachedOnce) {
+  const Measurements m =
+      of("a,1,10,0,0,1,,0\n"
+         "a,1,10,0,0,1,,1\n"
+         "a,1,20,0,0,1,,2\n"
+         "a,1,20,0,0,1,,3\n"
+         "a,1,20,0,0,1,,4\n"
+         "a,1,10,0,0,1,,5\n"
+         "a,1,10,0,0,1,,6\n"
+         "b,1,10,0,0,1,,7\n"
+         "a,1,10,0,0,1,,8\n",  // up from no load
+         ",sequence");
+  EXPECT_EQ(replicates(m), (Groups{{0, 1, 8}, {2, 3, 4}, {5, 6}}));
+}
+
 TEST(Replicates, PooledVarianceByHand) {
   // ux: {1, 2, 3} about 2 and {5, 9} about 7 give (1 + 0 + 1 + 4 + 4) / (2 + 1); thx: {1, 2} give 0.5 / 1.
   const Measurements m =

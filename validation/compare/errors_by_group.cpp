@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 
 namespace deflect::compare {
 namespace {
@@ -85,14 +86,17 @@ std::string direction_of(const measurement::Reading& r, const measurement::Measu
   return fmt::format("{}{} {} 0", where, names[largest], F(largest) > 0 ? ">" : "<");
 }
 
-/// By reading: by how much its load is larger than that of the reading before; of a subject without sites.
+/// By reading: by how much its load is larger than that of the reading before, of one that is read again as much as of
+/// its first reading; of a subject without sites.
 VectorX size_changes(const ResidualStudy& s, const VectorX& size) {
   VectorX out = VectorX::Zero(size.size());
   if (!s.data->instruments.stationary) return out;
-  double before = 0;
-  for (const std::size_t i : measurement::in_sequence(*s.data, "loading and unloading")) {
-    out(as_index(i)) = size(as_index(i)) - before;
-    before = size(as_index(i));
+  std::optional<Eigen::Index> last;
+  for (const std::size_t reading : measurement::in_sequence(*s.data, "loading and unloading")) {
+    const Eigen::Index i = as_index(reading);
+    const bool again = last && s.loads.col(i) == s.loads.col(*last);
+    out(i) = again ? out(*last) : size(i) - (last ? size(*last) : 0);
+    last = i;
   }
   return out;
 }

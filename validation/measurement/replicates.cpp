@@ -21,17 +21,24 @@ std::vector<Numbers> to_1e9(const MatrixX& loads) {
   return out;
 }
 
-/// Signs of the changes by which each reading's load was reached; zero without a sequence.
+/// Signs of the changes by which each reading's load was reached, of one that is read again those of its first reading;
+/// zero without a sequence.
 std::vector<Numbers> directions(const Measurements& m, const std::vector<Numbers>& loads) {
   std::vector<Numbers> signs(m.readings.size());
   if (m.readings.empty() || !m.readings.front().sequence) return signs;
   const Numbers none(loads.front().size());
   const Numbers* before = &none;
-  std::optional<std::size_t> pose;
+  std::optional<std::size_t> last;
   for (const std::size_t i : in_sequence(m, "the direction of loading")) {
-    if (m.readings[i].pose != pose) before = &none;
-    pose = m.readings[i].pose;
+    const bool another_pose = !last || m.readings[i].pose != m.readings[*last].pose;
+    const std::optional<std::size_t> earlier = another_pose ? std::nullopt : last;
+    last = i;
     const Numbers& load = loads[i];
+    if (earlier && load == loads[*earlier]) {
+      signs[i] = signs[*earlier];
+      continue;
+    }
+    if (another_pose) before = &none;
     for (std::size_t k = 0; k < load.size(); ++k)
       signs[i].push_back(load[k] > (*before)[k] ? 1 : load[k] < (*before)[k] ? -1 : 0);
     before = &load;

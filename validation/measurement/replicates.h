@@ -1,9 +1,9 @@
 // Replicates: readings that differ by chance only, and what they say about the noise of one reading.
 //
 // Replicates share pose label and load (to 1e-9 N and 1e-9 Nm). Where the file has a sequence they also share the
-// direction in which the load was reached, the signs of its six changes since the reading before; a reading with
-// another pose label before it starts from no load. Otherwise the loop of friction would pass for noise. Temperature
-// is not looked at.
+// direction in which the load was reached, the signs of its changes since the last reading of another load; a reading
+// with another pose label before it starts from no load. Otherwise the loop of friction would pass for noise.
+// Temperature is not looked at.
 //
 // Pooled variance over groups g of n_g values with mean d̄_g ("pure error"):
 //   s² = Σ_g Σ_i (d_gi − d̄_g)² / ν,   ν = Σ_g (n_g − 1),
