@@ -1,11 +1,13 @@
 // A platform that floats in play, and one that yields in fewer than six ways: both theories say the same of both.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "msa/base/error.h"
 #include "msa/frame/mechanism/msa.h"
 #include "msa/mechanism/device_file.h"
+#include "tests/support/devices.h"
 #include "tests/support/mechanisms.h"
 #include "tests/support/paths.h"
 #include "validation/studies/solve.h"
@@ -56,6 +58,28 @@ TEST(FloatingPlay, IsTheGapOfTheDrivesThatCarryNothing) {
         EXPECT_LE(a.stiffness.row(axis).norm(), held * a.stiffness.norm());
       }
     }
+  }
+}
+
+// The legs' lines times the platform's twist stay within the gap of each leg: the twist is lines⁻¹ times any lengths
+// within it, and each of its components reaches the sum of the moduli of its row, times the gap.
+TEST(FloatingPlay, WithoutLoadIsWithinThePlayOfAllLegs) {
+  const Mechanism haptic = test::device("haptic-6psu-ideal-joints");
+  const Mechanism loose = test::with(haptic, "leg.ball_joint.tz", "{law: clearance, gap: 0.02 mm}");
+  const Pose pose = test::home(haptic);
+  Matrix6 lines;
+  for (int leg = 0; leg < 6; ++leg) {
+    const SixPsuLeg at = leg_at(test::six_psu(haptic), leg + 1, pose);
+    const Vector3 n = (at.p_WC - at.p_WB).normalized();
+    lines.row(leg) << n.transpose(), (at.p_WC - pose.p_WT).cross(n).transpose();
+  }
+  const Vector6 reach = 2e-5 * lines.inverse().cwiseAbs().rowwise().sum();
+  const Answers both = both_of(configure(loose, pose), Vector6::Zero());
+  for (const Answer& a : {both.closed_form, both.msa}) {
+    EXPECT_EQ(a.floating.loose.size(), 6u);
+    EXPECT_TRUE(a.displacement.isZero(0));
+    EXPECT_LE((a.floating.most - reach).norm(), 1e-10 * reach.norm());
+    EXPECT_LE((a.floating.least + reach).norm(), 1e-10 * reach.norm());
   }
 }
 

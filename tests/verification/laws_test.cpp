@@ -2,8 +2,6 @@
 // their parameters, in an over-constrained mechanism, and at the limits where the device is the one without them.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "analytic/constraint.h"
 #include "analytic/model.h"
 #include "msa/frame/mechanism/msa.h"
@@ -319,29 +317,6 @@ TEST(WithoutLoad, NothingMovesAndNothingFails) {
       for (const Geometry geometry : {Geometry::linear, Geometry::second_order, Geometry::finite})
         EXPECT_TRUE(frame::MsaModel(c).solve(Vector6::Zero(), geometry).displacement.isZero(0)) << law << site;
     }
-}
-
-// The legs' lines times the platform's twist stay within the gap of each leg: the twist is lines⁻¹ times any lengths
-// within it, and each of its components reaches the sum of the moduli of its row, times the gap.
-TEST(WithoutLoad, ThePlatformFloatsWithinThePlayOfAllLegs) {
-  const Mechanism loose = test::with(haptic(), "leg.ball_joint.tz", "{law: clearance, gap: 0.02 mm}");
-  const Pose pose = test::home(haptic());
-  Matrix6 lines;
-  for (int leg = 0; leg < 6; ++leg) {
-    const SixPsuLeg at = leg_at(test::six_psu(haptic()), leg + 1, pose);
-    const Vector3 n = (at.p_WC - at.p_WB).normalized();
-    lines.row(leg) << n.transpose(), (at.p_WC - pose.p_WT).cross(n).transpose();
-  }
-  const Vector6 reach = 2e-5 * lines.inverse().cwiseAbs().rowwise().sum();
-  const Configuration c = configure(loose, pose);
-  AnalyticAt analytic(c);
-  MsaAt msa(c);
-  for (const Answer& a : {analytic.answer(Vector6::Zero()), msa.answer(Vector6::Zero())}) {
-    EXPECT_EQ(a.floating.loose.size(), 6u);
-    EXPECT_TRUE(a.displacement.isZero(0));
-    EXPECT_LE((a.floating.most - reach).norm(), 1e-10 * reach.norm());
-    EXPECT_LE((a.floating.least + reach).norm(), 1e-10 * reach.norm());
-  }
 }
 
 // A law that bends and carries nothing keeps the stiffness that it has at rest; only a contact has none there.

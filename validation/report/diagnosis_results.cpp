@@ -163,8 +163,8 @@ std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& d
   if (d.unexplained) {
     out += fmt::format("left unexplained: {:.0f} % of the misfit; of that", 100 * d.share_unexplained);
     for (const diagnosis::Localised& l : d.localised)
-      out += fmt::format(" {:.0f} % by a law at a place that comes nearest to '{}' (probability of the place {:.2f});",
-                         100 * l.share, l.what, l.probability);
+      out += fmt::format(" {:.0f} % at one place, most like '{}' (probability of this place {:.2f});", 100 * l.share,
+                         l.what, l.probability);
     if (!d.nearest.empty()) out += fmt::format(" the nearest entry, {}, {:.0f} %", d.nearest, 100 * d.nearest_share);
     out += "\n";
   }
