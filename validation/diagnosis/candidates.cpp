@@ -10,7 +10,6 @@
 
 #include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
-#include "validation/diagnosis/larger_sizes.h"
 #include "validation/diagnosis/pairs.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
@@ -99,12 +98,6 @@ double fit_in_turn(std::vector<Promise> all, double bar, int threads, const FitO
   return bar;
 }
 
-/// What a signature must say that could be gained, where the best of all says `best`. A few directions say less of an
-/// effect that parameters shape than of one that is proportional to its size.
-double enough(const Signature& s, double best) {
-  return std::max(near_nothing, (s.shaped ? 0.1 : 0.5) * best - hopeless);
-}
-
 /// Physics lets it act to one side only, and the residual asks for the other.
 bool wrong_way(const Signature& s, const VectorX& residual) {
   return !s.shaped && s.one_sided && s.start_along(residual) > 0;
@@ -113,16 +106,6 @@ bool wrong_way(const Signature& s, const VectorX& residual) {
 /// What a fit may gain where the signature says `gain`: little more where one law at a place is nearly proportional.
 double can_gain(const Signature& s, double gain) {
   return s.effect.effect->place && !s.shaped ? 1.1 * gain + 3 : 1.2 * gain + bent;
-}
-
-/// χ² beyond the numbers measured, far more than chance: the best that was fitted does not explain it all.
-double far_beyond_noise(double numbers) { return 5 * std::sqrt(2 * numbers); }
-constexpr double small_share = 0.05;  // of the best gain, from which a signature may hide a large effect
-
-/// Of one parameter with a value at which it vanishes: its signature is that of a small size.
-bool has_one_size(const Signature& s) {
-  const std::vector<effects::EffectParameter>& all = s.effect.effect->parameters;
-  return !s.shaped && all.size() == 1 && all.front().vanishes;
 }
 
 Fit better(Fit a, Fit b) { return b.found && (!a.found || b.chi2 < a.chi2) ? b : a; }
@@ -177,36 +160,10 @@ void Candidates::add_up_classes(std::vector<Candidate>& all) const {
     all[i].class_log_odds = all[i].fit.found ? most[classes_[i]] + std::log(sum[classes_[i]]) : out_of_question;
 }
 
-void Candidates::fit_larger_ones(const Observations& observations, const std::vector<Candidate>& fitted,
-                                 const std::vector<double>& shown, const Fit& so_far, double bar,
-                                 const FitFrom& fit_from) const {
-  const double most = *std::max_element(shown.begin(), shown.end());
-  double left = so_far.chi2;
-  for (const Candidate& c : fitted)
-    if (c.fit.found) left = std::min(left, c.fit.chi2);
-  const auto numbers = static_cast<double>(observations.numbers());
-  if (left < numbers + far_beyond_noise(numbers)) return;
-  std::vector<std::optional<SizedEffect>> large(fitted.size());
-  parallel::for_each_case(fitted.size(), 1, threads_, [&](std::size_t i) {
-    const Signature& s = signatures_[i];
-    if (!has_one_size(s) || shown[i] < std::max(near_nothing, small_share * most)) return;
-    const std::optional<VectorX> small = guess(s, so_far.residual);
-    if (small) large[i] = best_size(observations, fitted[i].hypothesis, so_far.values, *small);
-    const double known = fitted[i].fit.found ? fitted[i].fit.chi2 : so_far.chi2;
-    if (large[i] && !(large[i]->chi2 < known)) large[i].reset();
-  });
-  std::vector<Promise> promises;
-  for (std::size_t i = 0; i < large.size(); ++i)
-    if (large[i]) promises.push_back({i, log_odds(i, 1.5 * (so_far.chi2 - large[i]->chi2) + bent, class_priors_[i])});
-  fit_in_turn(std::move(promises), bar, threads_,
-              [&](std::size_t i, int within) { return fit_from(i, large[i]->value, within); });
-}
-
 std::vector<Candidate> Candidates::beside(const Observations& observations, const Hypothesis& before, const Fit& so_far,
                                           double least, const std::optional<effects::EffectInstance>& known) const {
   std::vector<Candidate> out(signatures_.size());
   std::vector<char> allowed(out.size(), 1);
-  std::vector<double> shown(out.size());  // what the signatures say that could be gained
   const MatrixX fitted = statistics::orthonormal(so_far.signature);
   const MatrixX proportional = statistics::orthonormal(columns_of_unshaped(before, so_far.signature));
   double best = 0;
@@ -219,13 +176,16 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
     allowed[i] = !there && own_share(s, proportional) > of_its_own;
     if (allowed[i] && !wrong_way(s, so_far.residual))
       c.gain = std::max(most_gain(s, so_far.residual, fitted), most_gain(s, so_far.residual, proportional));
-    best = std::max(best, shown[i] = c.gain);
+    best = std::max(best, c.gain);
   }
-  const auto fit_from = [&](std::size_t i, const std::optional<VectorX>& begun, int within) {
+  // A few directions say less of an effect that parameters shape than of one that is proportional to its size.
+  const auto enough = [best](const Signature& s) {
+    return std::max(near_nothing, (s.shaped ? 0.1 : 0.5) * best - hopeless);
+  };
+  const auto fit_one = [&](std::size_t i, int within) {
     Candidate& c = out[i];
     const Signature& s = signatures_[i];
-    Fit now = fit(observations, c.hypothesis, so_far.values, begun, within);
-    c.fit = c.fit.found ? better(std::move(c.fit), std::move(now)) : std::move(now);
+    c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual), within);
     if (known && same(*known, s.effect))
       c.fit = better(std::move(c.fit), fit(observations, c.hypothesis, so_far.values, known->values));
     if (s.effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))
@@ -233,14 +193,13 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
                                     s.effect.effect->parameters.front().name, c.fit.values.tail<1>()(0)));
     c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
     c.log_odds = log_odds(i, c.gain, priors_[i]);
-    return c.fit.found ? c.log_odds : out_of_question;
   };
   // Entries first: of the many laws at places only those are fitted that can come near them.
   std::array<std::vector<Promise>, 2> parts;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Signature& s = signatures_[i];
     out[i].log_odds = allowed[i] ? log_odds(i, out[i].gain, priors_[i]) : out_of_question;
-    if (!allowed[i] || out[i].gain < enough(s, best)) continue;
+    if (!allowed[i] || out[i].gain < enough(s)) continue;
     const bool asked_again = known && same(*known, s.effect);
     parts[s.effect.effect->place ? 1 : 0].push_back(
         {i, asked_again ? certain : log_odds(i, can_gain(s, out[i].gain), class_priors_[i])});
@@ -250,11 +209,10 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   double bar = least;
   for (std::vector<Promise>& part : parts)
     bar = fit_in_turn(std::move(part), bar, threads_, [&](std::size_t i, int within) {
-      const double odds = fit_from(i, guess(signatures_[i], so_far.residual), within);
+      fit_one(i, within);
       if (progress_) progress_(++done, all);
-      return odds;
+      return out[i].fit.found ? out[i].log_odds : out_of_question;
     });
-  fit_larger_ones(observations, out, shown, so_far, bar, fit_from);
   for (Candidate& c : out) c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations.numbers());
   if (progress_) progress_(1, 1);
   add_up_classes(out);

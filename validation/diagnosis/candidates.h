@@ -37,10 +37,9 @@ class Candidates {
   Candidates(const std::vector<Signature>&, int threads, std::function<void(std::size_t, std::size_t)> progress = {});
 
   /// Every effect added to others that are fitted already, in the order of the signatures. Fits are made only where an
-  /// effect can come near the best and its log_odds can reach `least`, in its small size first; where that leaves far
-  /// more than chance, in larger sizes too (larger_sizes.h). An effect almost indistinguishable from one of the others
-  /// is not added. `known`: an effect that was fitted together with the others before; its new fit also starts from
-  /// those values, so that it is no worse.
+  /// effect can come near the best and its log_odds can reach `least`. An effect almost indistinguishable from one of
+  /// the others is not added. `known`: an effect that was fitted together with the others before; its new fit also
+  /// starts from those values, so that it is no worse.
   std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                 const std::optional<effects::EffectInstance>& known = {}) const;
 
@@ -60,12 +59,6 @@ class Candidates {
  private:
   double log_odds(std::size_t i, double gain, double prior) const;
   void add_up_classes(std::vector<Candidate>&) const;
-  /// Where all that was fitted leaves far more than chance, fits anew those that explain more in a larger size than as
-  /// they were fitted, if at all. `shown`: gains that the signatures show. `fit_from` takes the signature, a start and
-  /// the number of threads within, and returns ln of the odds.
-  using FitFrom = std::function<double(std::size_t, const std::optional<VectorX>&, int)>;
-  void fit_larger_ones(const Observations&, const std::vector<Candidate>& fitted, const std::vector<double>& shown,
-                       const Fit& so_far, double bar, const FitFrom& fit_from) const;
 
   const std::vector<Signature>& signatures_;
   int threads_;
