@@ -82,7 +82,7 @@ TEST_F(OfAMachine, PosesHaveADisplacementAndACompliance) {
   std::size_t rows = 0;
   for (std::size_t p = 0; p < X.groups.size(); ++p)
     for (std::size_t k = 0; k < X.groups[p].rows.size(); ++k, ++rows) {
-      const auto i = static_cast<std::size_t>(X.groups[p].rows[k]);
+      const auto i = as_size(X.groups[p].rows[k]);
       const measurement::MeasuredValue& v = study.values[i];
       ASSERT_EQ(data.readings[v.reading].pose, p);
       const Vector6 F = data.readings[v.reading].load;

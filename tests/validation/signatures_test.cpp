@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "msa/base/index.h"
 #include "tests/support/effects.h"
 #include "validation/measurement/random.h"
 #include "validation/statistics/columns.h"
@@ -109,7 +110,7 @@ TEST(Signatures, InnerProductsAndCosinesAreThoseOfAllColumns) {
   const MatrixX between = cosines(all);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t k = 0; k < all.size(); ++k)
-      EXPECT_NEAR(between(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)), cosine(all[i], all[k]), 1e-12);
+      EXPECT_NEAR(between(as_index(i), as_index(k)), cosine(all[i], all[k]), 1e-12);
   // Of a shape and a plane: the angle between the line and the plane.
   double most = 0;
   for (const auto column : all[1].basis.colwise()) most = std::max(most, (all[0].basis.transpose() * column).norm());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
 
 namespace deflect::diagnosis {
@@ -20,7 +21,7 @@ LargerTolerances larger_tolerances(const Observations& o, double prior) {
   const double as_declared = likelihood.back();
   likelihood.pop_back();
   const auto best = std::max_element(likelihood.begin(), likelihood.end());
-  out.scale = scales[static_cast<std::size_t>(best - likelihood.begin())];
+  out.scale = scales[as_size(best - likelihood.begin())];
   out.log_odds = std::log(prior) + log_mean_exp(likelihood) - as_declared;
   return out;
 }
