@@ -251,6 +251,12 @@ std::vector<VectorX> predicted_readings(const FrameDescription& frame, const mea
   std::optional<std::vector<VectorX>> out;
   for (const FrameNearby* n = geometry == Geometry::linear ? near : nullptr; n && !out; n = n->further())
     if (const frame::KnownFrame* known = n->known()) out = by_known_frame(frame, data, *known);
+  if (!out && near && geometry == Geometry::linear && !has_linear_laws(frame)) {
+    // A node that moves turns what its semi-rigid ends leave rigid: then the frame is known by itself, which spares a
+    // search for the equilibrium of each reading.
+    const FrameNearby own(frame, data);
+    if (own.known()) out = by_known_frame(frame, data, *own.known());
+  }
   if (!out) {
     FrameDescription f = frame;
     f.geometry = geometry;
