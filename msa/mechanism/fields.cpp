@@ -47,7 +47,7 @@ void place_names(const SixPsu&, Surroundings& s) {
 }
 
 void describe_tolerances(FieldVisitor& v, Tolerances& t) {
-  const Quantity relative = optional(0, Dimension::ratio, not_negative),
+  const Quantity relative = optional(0, Dimension::ratio, Range{0, 1}),
                  absolute = optional(0, Dimension::length, not_negative);
   v.quantity("modulus", t.modulus, relative, "standard deviation of E");
   v.quantity("guide_diameter", t.guide_diameter, relative, "standard deviation of a guideway's diameter");

@@ -83,7 +83,7 @@ bool read_gain(InstrumentErrors& s) {
   const auto sigma = number(percent ? deviation.substr(0, deviation.size() - 1) : deviation);
   if (!sigma || !(*sigma >= 0)) return false;
   s.gain_sigma = percent ? s.gain * *sigma / 100 : *sigma;
-  return true;
+  return s.gain_sigma <= s.gain;
 }
 
 void describe_zero(FieldVisitor& v, bool& free_zero) {
@@ -118,7 +118,8 @@ void describe_direction(FieldVisitor& v, std::string& text, Vector3& axis, bool&
 
 void describe_errors(FieldVisitor& v, InstrumentErrors& e, Dimension d) {
   v.text("gain", e.gain_text, Need::optional, "recorded over true value, as in '1 ± 0.5 %'");
-  v.require(read_gain(e), "gain", "must be a number above 0, or one with its standard deviation, as in '1 ± 0.5 %'");
+  v.require(read_gain(e), "gain",
+            "must be a number above 0, or one with its standard deviation, at most its size, as in '1 ± 0.5 %'");
   Quantity sigma = optional(0, d, not_negative), offset = optional(0, d, {});
   sigma.or_dimension = offset.or_dimension = other_of(d);
   v.quantity("sigma", e.sigma, sigma, "standard deviation of one reading, in a unit of what is read");

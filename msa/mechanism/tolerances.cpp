@@ -13,6 +13,7 @@
 #include "msa/fields/tree_edit.h"
 #include "msa/fields/yaml_tree.h"
 #include "msa/mechanism/configuration.h"
+#include "msa/mechanism/deviation.h"
 #include "msa/mechanism/joint_table.h"
 #include "msa/mechanism/numbers.h"
 #include "msa/mechanism/place.h"
@@ -259,7 +260,7 @@ void check_tolerance(const Mechanism& m, const std::string& key, const std::stri
   if (named && relative(value))
     throw InputError(fmt::format("'{}' must be a length: write for example '0.1 mm'", value));
   const double sigma = sigma_of(value, named ? Dimension::length : numbers.front().dimension);
-  if (sigma < 0) throw InputError(fmt::format("'{}' is a standard deviation: it must be at least 0", value));
+  require_deviation(sigma, value, named ? Dimension::length : numbers.front().dimension);
   if (!named && sigma > 0 && moves_of(numbers, key, value).empty())
     throw InputError(fmt::format("'{}' is a share of a number that is zero: give a unit instead", value));
 }

@@ -104,7 +104,7 @@ const std::vector<Mistake> mistakes = {
      "    rz: {law",
      26,
      {"leg.ball_joint.rz.0.stiffness", "a rotational stiffness (moment per angle) is wanted"}},
-    {"modulus: 1 %", "modulus: -1 %", 31, {"tolerances.modulus: '-1 %' must be at least 0"}},
+    {"modulus: 1 %", "modulus: -1 %", 31, {"tolerances.modulus: '-1 %' must be between 0 and 1"}},
     {"modulus: 1 %", "modulus: 1 mm", 31, {"tolerances.modulus"}},
     {"modulus: 1 %", "modulus: 1 %\n  load_position: 1 mm", 32, {"unknown key, did you mean 'joint_position'?"}},
     // Conditions across fields

@@ -171,6 +171,13 @@ TEST(MeasuredFrame, RefusesSensorsThatCannotBe) {
       refusal("member.bending_factor: 2 %", "member.bend_factor: 2 %").find("did you mean 'member.bending_factor'"),
       std::string::npos);
   EXPECT_NE(refusal("modulus: 1 %", "modulus: -1 %").find("modulus"), std::string::npos);
+  EXPECT_NE(refusal("modulus: 1 %", "modulus: 1e300 %").find("tolerances.modulus: '1e300 %' must be"),
+            std::string::npos);
+  EXPECT_NE(refusal("bending_factor: 2 %", "bending_factor: 1e300 %").find("larger than the number itself"),
+            std::string::npos);
+  EXPECT_NE(refusal("position: 1 mm", "position: 1e300 m").find("'1e300 m' is too large for a length"),
+            std::string::npos);
+  EXPECT_NE(refusal("gain: 2", "gain: 2 ± 1e300 %").find("sensors.z.gain"), std::string::npos);
 }
 
 TEST(MeasuredFrame, FileRoundTrip) {

@@ -129,8 +129,9 @@ void describe_rig(FieldVisitor& v, FrameDescription& f, const FrameNames& names)
   };
   v.object("rig", Need::optional, false, rig, "how loads are recorded");
   const auto tolerances = [&] {
-    v.quantity("modulus", f.tolerances.modulus, {Dimension::ratio, not_negative, 0}, "of each material, relative");
-    v.quantity("load", f.tolerances.load, {Dimension::ratio, not_negative, 0}, "of a recorded load, relative");
+    constexpr Range at_most_all{0, 1};
+    v.quantity("modulus", f.tolerances.modulus, {Dimension::ratio, at_most_all, 0}, "of each material, relative");
+    v.quantity("load", f.tolerances.load, {Dimension::ratio, at_most_all, 0}, "of a recorded load, relative");
     v.others(f.tolerances.numbers,
              "of single numbers: a kind of part and a field (member.bending_factor, node.position), or a path");
   };

@@ -14,6 +14,7 @@
 #include "msa/fields/yaml_tree.h"
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/member_axes.h"
+#include "msa/mechanism/deviation.h"
 
 namespace deflect::frame {
 namespace {
@@ -179,7 +180,7 @@ void require_tolerance(const FrameDescription& f, const std::string& key, const 
                     near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
   const double sigma = sigma_of(value, numbers.front().dimension);
-  if (sigma < 0) throw InputError(fmt::format("'{}' is a standard deviation: it must be at least 0", value));
+  require_deviation(sigma, value, numbers.front().dimension);
   if (sigma > 0 && moves_of(numbers, value).empty())
     throw InputError(fmt::format("'{}' is a share of a number that is zero: give a unit instead", value));
 }
