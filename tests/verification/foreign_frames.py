@@ -201,7 +201,7 @@ NAMES = {"linear": "stiffness", "restraint": "stiffness", "clearance": "gap", "p
 
 def friction_value(f, place, limit):
     """With its stiffness, chosen by the stiffness of the frame there."""
-    port, spring, _ = place_of(f, place)
+    port, spring, _ = place_of(f, place, True)
     return limit, float(f"{FRICTION / Solved(f, port, spring).c:.3g}")
 
 
@@ -229,11 +229,12 @@ def searched(f, effect, limits, factors, weight, target):
 def parameters_of(f, effect, value):
     """In the units of deflect's ids."""
     law, _, place = effect.partition("@")
-    rotation = place.split(".")[-1].startswith("r") and law in ("linear", "restraint", "clearance", "pull", "push")
+    rotation = place.split(".")[-1].startswith("r") and (law in NAMES or law == "friction")
     if law == "elsewhere":
         return {}
     if law == "friction":
-        return {"force_N": value[0], "stiffness_N_per_mm": value[1] / 1e3}
+        return ({"moment_Nmm": float(f"{value[0] * 1e3:.9g}"), "stiffness_Nmm_per_rad": value[1] * 1e3} if rotation else
+                {"force_N": value[0], "stiffness_N_per_mm": value[1] / 1e3})
     if law == "stiction":
         unit, size = COLUMN[kind_of(f["sensors"][place])]
         return {f"stick_{unit}": float(f"{value / size:.9g}")}

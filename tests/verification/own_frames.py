@@ -117,8 +117,17 @@ def member_axes(f, m):
     return length, np.array([x, y, np.cross(x, y)])
 
 
-def member_stiffness(f, name):
-    """12x12 in member axes, the transformation, the length and the rigidities."""
+END_FREEDOMS = ("tx", "ty", "tz", "rx", "ry", "rz")
+
+
+def row_of_end(end, freedom):
+    """Of the 12 in member axes."""
+    return END_FREEDOMS.index(freedom) + (6 if end == "end" else 0)
+
+
+def member_stiffness(f, name, apart=None):
+    """12x12 in member axes, the transformation, the length and the rigidities; `apart`: (end, freedom) whose spring is
+    left out, so that this freedom is the member's own."""
     m = f["members"][name]
     material = f["materials"][m["material"]]
     modulus = material["E"] * m["factor"]
@@ -129,25 +138,39 @@ def member_stiffness(f, name):
         bar = np.zeros((12, 12))
         bar[np.ix_([0, 6], [0, 6])] = k[np.ix_([0, 6], [0, 6])]
         k = bar
-    names = ("tx", "ty", "tz", "rx", "ry", "rz")
-    springs = [(names.index(freedom) + (6 if end == "end" else 0), stiffness)
-               for (of, end, freedom), stiffness in ((key.split("."), v) for key, v in f["ends"].items()) if of == name]
+    springs = [(row_of_end(end, freedom), stiffness)
+               for (of, end, freedom), stiffness in ((key.split("."), v) for key, v in f["ends"].items())
+               if of == name and (end, freedom) != apart]
     return with_end_springs(k, springs), np.kron(np.eye(4), axes), length, (modulus * area, modulus * iy, modulus * iz)
 
 
 class Solved:
-    """Responses of the linear frame, less the connection at `port` (node, freedom), to its load cases."""
+    """Responses of the linear frame, less the connection at `port`, to its load cases. A port is (node, freedom), or
+    (member, end, freedom): there the member's own rotation is one unknown more, and its spring stays."""
 
     def __init__(self, f, port=None, spring=None):
         self.f = f
         nodes = {name: i for i, name in enumerate(f["nodes"])}
         self.index = {(n, d): 6 * i + k for n, i in nodes.items() for k, d in enumerate(FREEDOMS)}
-        size = 6 * len(nodes)
+        at_end = port is not None and len(port) == 3
+        size = 6 * len(nodes) + at_end
         k = np.zeros((size, size))
+        gap = np.zeros(size)  # what the port's opening is of the unknowns
+        if port is not None and not at_end:
+            gap[self.index[port]] = 1
         self.members = {}
         for name, m in f["members"].items():
-            local, t, length, rigidity = member_stiffness(f, name)
+            own = port[1:] if at_end and port[0] == name else None
+            local, t, length, rigidity = member_stiffness(f, name, own)
             at = np.r_[6 * nodes[m["from"]]:6 * nodes[m["from"]] + 6, 6 * nodes[m["to"]]:6 * nodes[m["to"]] + 6]
+            if own:
+                row = row_of_end(*own)
+                gap[at], gap[-1] = t[row], -1
+                t = np.c_[t, np.zeros(12)]
+                t[row] = 0
+                t[row, -1] = 1
+                at = np.r_[at, size - 1]
+                k += np.outer(gap, gap) * f["ends"][".".join(port)]
             k[np.ix_(at, at)] += t.T @ local @ t
             self.members[name] = (local @ t, at, length, rigidity)
         for name, s in f["springs"].items():
@@ -159,7 +182,7 @@ class Solved:
             normal = "xyz".index(({"x", "y", "z"} - set(f["plane"])).pop())
             out = [normal] + [3 + i for i in range(3) if i != normal]
             held |= {6 * i + d for i in nodes.values() for d in out}
-        if port is not None:
+        if port is not None and not at_end:
             held.discard(self.index[port])
         for n, freedoms in f["loss"].items():  # linear springs in supports, or at free freedoms
             for d, stiffness in freedoms.items():
@@ -173,7 +196,7 @@ class Solved:
             for (node, key), value in case.items():
                 loads[self.index[node, FREEDOMS[WRENCH.index(key)]], c] = value
         if port is not None:
-            loads[self.index[port], -1] = -1  # the force f in the connection acts on the node as -f
+            loads[:, -1] = -gap  # the force f in the connection acts against its opening
         self.u = np.zeros_like(loads)
         scaling = 1 / np.sqrt(np.diag(k)[free])
         matrix = k[np.ix_(free, free)] * np.outer(scaling, scaling)
@@ -184,8 +207,7 @@ class Solved:
         self.ground = k @ self.u - loads  # what rigid supports exert
         self.readings = np.array([self.read(s) for s in f["sensors"].values()]).T
         if port is not None:
-            at = self.index[port]
-            self.a, self.c = self.u[at, :-1], -self.u[at, -1]
+            self.a, self.c = gap @ self.u[:, :-1], -(gap @ self.u[:, -1])
 
     def section(self, name, share):
         """[N, Vy, Vz, T, My, Mz] on the face with the outward normal +x; a row for each, a column for each load."""
@@ -244,13 +266,16 @@ def port_forces(law, value, a, c, beside):
     return np.array(out)
 
 
-def place_of(f, place):
-    """The port of a place 'support.A.ux' or 'spring.pad1.uz', the spring that is left out, its compliance."""
+def place_of(f, place, beside=False):
+    """The port of a place 'support.A.ux', 'node.A.ux', 'spring.pad1.uz' or 'beam.start.ry', the spring that is left
+    out, its compliance. A law beside a spring leaves it where it is."""
     kind, name, freedom = place.split(".")
-    if kind == "support":
+    if kind in ("support", "node"):
         return (name, freedom), None, 0.0
+    if kind in f["members"]:
+        return (kind, name, freedom), None, 0.0
     spring = f["springs"][name]
-    return (spring["node"], freedom), name, 1 / spring["stiffness"]
+    return (spring["node"], freedom), None if beside else name, 0.0 if beside else 1 / spring["stiffness"]
 
 
 def readings_of(f, factors, effect=None, value=None):
@@ -283,7 +308,7 @@ def readings_of(f, factors, effect=None, value=None):
     elif law == "linear":
         f["ends"][place] = 1 / (1 / value + (1 / f["ends"][place] if place in f["ends"] else 0))
     elif law in ("clearance", "pull", "push", "friction"):
-        port, spring, beside = place_of(f, place)
+        port, spring, beside = place_of(f, place, law == "friction")
     elif law:
         raise ValueError(effect)
     if port:
