@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdint>
 
 #include "msa/base/outcome.h"
 #include "msa/mechanism/device_file.h"
@@ -103,6 +104,64 @@ TEST_P(Interrupted, AFullDiskIsToldAndLeavesNothing) {
     }
     EXPECT_NE(r.out.find("cannot be written (File too large)"), std::string::npos) << work.name << ": " << r.out;
   }
+}
+
+// Killed again and again, a map that keeps a journal goes on where it stood and ends with the same bytes.
+TEST(InterruptedMap, GoesOnWhereItStood) {
+  const test::Folder folder;
+  const auto map = [&](const char* before, const char* options) {
+    return test::command(fmt::format("cd '{}' && {} '{}' map tripteron --n 17 --threads 1 {}", (folder / ".").string(),
+                                     before, test::program(), options));
+  };
+  const test::Run whole = map("", "--json whole.json");
+  ASSERT_EQ(whole.code, 0) << whole.out;
+  const auto start = std::chrono::steady_clock::now();
+  map("", "--resume journal --json kept.json");
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_EQ(test::contents(folder / "kept.json"), test::contents(folder / "whole.json"));
+  Dice dice(21);
+  const std::filesystem::path journal = folder / "journal", out = folder / "out.json";
+  const unsigned moments = std::max(usual_moments, count_on_demand());
+  unsigned went_on = 0;
+  for (unsigned i = 0; i < moments; ++i) {
+    std::uintmax_t kept = 0;
+    std::string said = "not run";
+    for (int tries = 0; !std::filesystem::exists(out) && tries < 200; ++tries) {
+      const bool there = std::filesystem::exists(journal);
+      const std::uintmax_t size = there ? std::filesystem::file_size(journal) : 0;
+      went_on += size > kept && kept > 0;
+      kept = size;
+      // Early at first, so that it takes several runs however busy the computer is.
+      const double at = seconds * (dice.real(0.1, 0.5) + 0.02 * tries);
+      const std::string timeout = fmt::format("timeout -s {} {:.3f}", dice.chance(0.5) ? "KILL" : "INT", at);
+      said = map(timeout.c_str(), "--resume journal --json out.json").out;
+    }
+    ASSERT_TRUE(std::filesystem::exists(out)) << said;
+    EXPECT_EQ(test::contents(out), test::contents(folder / "whole.json"));
+    map("", "--resume journal --json out.json");  // where it was killed behind its last file
+    EXPECT_FALSE(std::filesystem::exists(journal));
+    std::filesystem::remove(out);
+  }
+  EXPECT_GT(went_on, 0u) << "no run was interrupted twice between its first and its last pose";
+}
+
+TEST(InterruptedMap, IsNotContinuedByAnother) {
+  const test::Folder folder;
+  const auto map = [&](const char* before, const char* options) {
+    return test::command(fmt::format("cd '{}' && {} '{}' map haptic-6psu --resume journal {}", (folder / ".").string(),
+                                     before, test::program(), options));
+  };
+  map("trap '' XFSZ; ulimit -f 64;", "--n 9");  // ends when its journal is full
+  const std::string kept = test::contents(folder / "journal");
+  ASSERT_FALSE(kept.empty());
+  const test::Run other = map("", "--n 8");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.out.find("is the journal of other work: it has 'command --n=9', this run 'command --n=8'"),
+            std::string::npos)
+      << other.out;
+  EXPECT_EQ(test::contents(folder / "journal"), kept);
+  EXPECT_EQ(map("", "--n 9").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "journal"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Work, Interrupted, ::testing::ValuesIn(works),

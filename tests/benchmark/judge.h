@@ -23,6 +23,11 @@ struct Answer {
   double probability = 0;
 };
 
+template <class Archive>
+void serialize(Archive& a, Answer& x) {
+  a(x.verdict, x.missing, x.groups, x.first, x.probability);
+}
+
 enum class Outcome { right, partly, missed, wrong };  // wrong: with confidence
 inline constexpr const char* outcome_names[] = {"right", "partly", "missed", "wrong"};
 

@@ -3,7 +3,9 @@
 #include <getopt.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+#include <optional>
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
@@ -13,8 +15,9 @@
 #include "tests/benchmark/subject_scores.h"
 #include "tests/support/paths.h"
 #include "validation/effects/effect_file.h"
+#include "validation/parallel/journal.h"
 #include "validation/parallel/progress.h"
-#include "validation/parallel/shared_cases.h"
+#include "validation/result_files/sha256.h"
 
 namespace deflect::benchmark {
 namespace {
@@ -32,12 +35,13 @@ constexpr const char* usage = R"(benchmark_diagnosis [options]
   --seed N       of everything drawn by lot (default 1)
   --threads N    sets side by side in a process (default 0: all cores); the scores do not depend on it
   --json FILE    write every set and the scores
+  --resume FILE  keep finished sets in FILE: the same command goes on there after Ctrl-C; removed at the end
   --out DIR      draw how reliable the probabilities are
 Under mpirun the processes share the sets, and the first one writes.
 )";
 
 struct Arguments {
-  std::string group, json, out;
+  std::string group, json, out, resume;
   std::vector<std::string> devices;
   std::size_t sets = 0;
   std::uint64_t seed = 1;
@@ -53,15 +57,11 @@ std::size_t whole(const char* option, const char* text) {
 }
 
 Arguments parse(int argc, char** argv) {
-  const option options[] = {{"devices", required_argument, nullptr, 'd'},
-                            {"group", required_argument, nullptr, 'g'},
-                            {"sets", required_argument, nullptr, 'n'},
-                            {"seed", required_argument, nullptr, 's'},
-                            {"threads", required_argument, nullptr, 't'},
-                            {"json", required_argument, nullptr, 'j'},
-                            {"out", required_argument, nullptr, 'o'},
-                            {"help", no_argument, nullptr, 'h'},
-                            {nullptr, 0, nullptr, 0}};
+  const option options[] = {{"devices", required_argument, nullptr, 'd'}, {"group", required_argument, nullptr, 'g'},
+                            {"sets", required_argument, nullptr, 'n'},    {"seed", required_argument, nullptr, 's'},
+                            {"threads", required_argument, nullptr, 't'}, {"json", required_argument, nullptr, 'j'},
+                            {"out", required_argument, nullptr, 'o'},     {"resume", required_argument, nullptr, 'r'},
+                            {"help", no_argument, nullptr, 'h'},          {nullptr, 0, nullptr, 0}};
   Arguments a;
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) switch (c) {
       case 'd':
@@ -89,6 +89,9 @@ Arguments parse(int argc, char** argv) {
       case 'o':
         a.out = optarg;
         break;
+      case 'r':
+        a.resume = optarg;
+        break;
       case 'h':
         a.help = true;
         break;
@@ -107,7 +110,27 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-void run_subjects(const Arguments& a) {
+/// The hash of the program's and the benchmark's own data: YAML and CSV files.
+std::string hash_of_data() {
+  std::vector<std::filesystem::path> files;
+  for (const char* folder : {"validation", "tests/benchmark"})
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(std::filesystem::path(test::source_dir()) / folder))
+      if (entry.path().extension() == ".yaml" || entry.path().extension() == ".csv") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const std::filesystem::path& file : files) all += read_text(file);
+  return result_files::sha256(all);
+}
+
+/// What the scores depend on.
+std::string identity(const Arguments& a) {
+  return fmt::format("program {}\ndata {}\ngroup '{}'\nsets {}\nseed {}\ndevices {}\n",
+                     result_files::sha256(read_text("/proc/self/exe")), hash_of_data(), a.group, a.sets, a.seed,
+                     fmt::join(a.devices, ","));
+}
+
+void run_subjects(const Arguments& a, Journal* journal) {
   const auto done = [&](const std::vector<SubjectRow>& rows) {
     if (!a.json.empty()) write_text(a.json, json_text(subjects_json(rows)));
     fmt::print(stderr, "{}: done\n", rows.back().name);
@@ -115,15 +138,11 @@ void run_subjects(const Arguments& a) {
   std::optional<SetKind> kind;
   for (std::size_t i = 0; i < std::size(set_kind_names); ++i)
     if (a.group == set_kind_names[i]) kind = static_cast<SetKind>(i);
-  fmt::print("{}",
-             subjects_report(diagnose_subjects(a.devices, a.sets > 0 ? a.sets : 24, kind, a.seed, a.threads, done)));
+  fmt::print("{}", subjects_report(
+                       diagnose_subjects(a.devices, a.sets > 0 ? a.sets : 24, kind, a.seed, a.threads, done, journal)));
 }
 
-void run_all(const Arguments& a, Ranks* ranks) {
-  if (!a.devices.empty()) {
-    if (!ranks || ranks->first()) run_subjects(a);
-    return;
-  }
+void run_groups(const Arguments& a, Ranks* ranks, Journal* journal) {
   const std::string data = test::source_dir() + "/validation";
   const Mechanism device = read_mechanism(data + "/devices/haptic-6psu-ideal-joints.yaml");
   const std::vector<Effect> effects = catalogue(data + "/effects/catalogue");
@@ -137,7 +156,7 @@ void run_all(const Arguments& a, Ranks* ranks) {
     sets.work = [&](std::size_t i) { records[i] = run(orders[i], device, effects, plans); };
     sets.result = [&](std::size_t i) { return packed(records[i]); };
     sets.take = [&](std::size_t i, const std::string& bytes) { records[i] = unpacked(bytes, orders[i]); };
-    for_each_case(sets, ranks, ranks && a.threads == 0 ? ranks->threads() : a.threads,
+    for_each_case(sets, journal, 0, ranks, ranks && a.threads == 0 ? ranks->threads() : a.threads,
                   [&](std::size_t done) { progress.update(done); });
   }
   if (ranks && !ranks->first()) return;
@@ -148,6 +167,17 @@ void run_all(const Arguments& a, Ranks* ranks) {
   }
   if (!a.out.empty()) render(reliability_figure(records), a.out);
   fmt::print("{}", report(records));
+}
+
+void run_all(const Arguments& a, Ranks* ranks) {
+  std::optional<Journal> journal;
+  if (!a.resume.empty()) journal.emplace(a.resume, identity(a), ranks);
+  Journal* const kept = journal ? &*journal : nullptr;
+  if (a.devices.empty())
+    run_groups(a, ranks, kept);
+  else if (!ranks || ranks->first())
+    run_subjects(a, kept);
+  if (journal) journal->remove();
 }
 
 }  // namespace

@@ -29,11 +29,6 @@ void serialize(Archive& a, HiddenEffect& h) {
 }
 
 template <class Archive>
-void serialize(Archive& a, Answer& x) {
-  a(x.verdict, x.missing, x.groups, x.first, x.probability);
-}
-
-template <class Archive>
 void serialize(Archive& a, Record& r) {
   a(r.truth, r.hidden, r.lambda, r.separation, r.lambda_left, r.skipped, r.answers, r.new_poses, r.intervals,
     r.covering, r.seconds);

@@ -22,7 +22,7 @@
 #include "validation/diagnosis/interval.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/place_effects.h"
-#include "validation/parallel/cases.h"
+#include "validation/parallel/pack.h"
 #include "validation/prediction/campaign.h"
 
 namespace deflect::benchmark {
@@ -299,6 +299,8 @@ class Examined {
   std::vector<Oracle> oracles_;
 };
 
+constexpr std::uint64_t most_sets = 1'000'000'000;  // of one subject, so that each has a number of its own
+
 subject::Subject built_in(const std::string& name, bool frame) {
   if (frame) {
     frame::FrameDescription f = frame::read_frame(data_folder + "/frames/" + name + ".yaml");
@@ -313,9 +315,16 @@ subject::Subject built_in(const std::string& name, bool frame) {
 
 }  // namespace
 
+template <class Archive>
+void serialize(Archive& a, SubjectSet& s) {
+  a(s.kind, s.skipped, s.hidden, s.classes, s.lambda, s.lambda_res, s.answer, s.seconds, s.oracle_asked, s.oracle_right,
+    s.oracle_reported, s.intervals, s.covering, s.bias, s.told, s.told_rightly, s.new_poses);
+}
+
 std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked, std::size_t sets,
                                           std::optional<SetKind> kind, std::uint64_t seed, int threads,
-                                          const std::function<void(const std::vector<SubjectRow>&)>& done) {
+                                          const std::function<void(const std::vector<SubjectRow>&)>& done,
+                                          parallel::Journal* journal) {
   const std::vector<std::string> frames = measured_frames();
   std::vector<std::string> known = files_in("/devices"), names = asked;
   known.push_back(actuator);
@@ -337,14 +346,19 @@ std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked,
     for (std::size_t k = 0; wanted.size() < sets; ++k)
       if (!kind || turns[(first + k) % std::size(turns)].kind == *kind) wanted.push_back(k);
     SubjectRow row{name, frame, examined.candidates(), std::vector<SubjectSet>(sets)};
-    parallel::for_each_case(sets, 1, threads, [&](std::size_t i) {
+    parallel::SharedCases cases;
+    cases.count = sets;
+    cases.work = [&](std::size_t i) {
       const std::size_t k = wanted[i];
       try {
         row.sets[i] = examined.diagnosed(first + k, seed + 1000 * k + 100000 * place);
       } catch (const std::runtime_error& e) {
         row.sets[i].skipped = e.what();
       }
-    });
+    };
+    cases.result = [&](std::size_t i) { return parallel::pack(row.sets[i]); };
+    cases.take = [&](std::size_t i, const std::string& bytes) { row.sets[i] = parallel::unpack<SubjectSet>(bytes); };
+    parallel::for_each_case(cases, journal, place * most_sets, nullptr, threads);
     out.push_back(std::move(row));
     if (done) done(out);
   }

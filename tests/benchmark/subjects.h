@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "tests/benchmark/class_judge.h"
+#include "validation/parallel/journal.h"
 
 namespace deflect::benchmark {
 
@@ -73,9 +74,10 @@ struct SubjectRow {
 
 /// Of the machines and frames of those names ("all": every machine and the frames with sensors), so many sets each, or
 /// so many of one kind; in parallel, the same for any number of threads. `done` is called with what there is after each
-/// subject. InputError on an unknown name.
+/// subject. InputError on an unknown name. `journal`: sets that it holds are taken from it, the others kept there.
 std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& names, std::size_t sets,
                                           std::optional<SetKind> kind, std::uint64_t seed, int threads,
-                                          const std::function<void(const std::vector<SubjectRow>&)>& done = {});
+                                          const std::function<void(const std::vector<SubjectRow>&)>& done = {},
+                                          parallel::Journal* journal = nullptr);
 
 }  // namespace deflect::benchmark

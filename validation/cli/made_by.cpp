@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 const Command* running = nullptr;
 
-constexpr std::array<std::string_view, 4> outputs = {"--json", "--out", "-o,--output", "--report"};
+constexpr std::array<std::string_view, 5> outputs = {"--json", "--out", "-o,--output", "--report", "--resume"};
 constexpr const char* catalogue = "effects/catalogue";
 
 bool is_output(const Option& o) { return std::find(outputs.begin(), outputs.end(), o.flags) != outputs.end(); }
@@ -100,6 +100,14 @@ void set_command(const Command& command) { running = &command; }
 
 void write_result(const std::string& file, const std::string& json) {
   write_file(file, running ? result_files::with_provenance(json, provenance_of(*running)) : json);
+}
+
+std::string identity_of_run() {
+  std::string out = fmt::format("program {}, {}\n", DEFLECT_VERSION, result_files::sha256(read_text("/proc/self/exe")));
+  if (!running) return out;
+  for (const std::string& word : words_of(*running)) out += "command " + word + "\n";
+  for (const result_files::HashedFile& f : inputs_of(*running)) out += fmt::format("input {} {}\n", f.name, f.sha256);
+  return out;
 }
 
 const Option* required_output(const Command& command) {

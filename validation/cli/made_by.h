@@ -19,6 +19,10 @@ void write_result(const std::string& file, const std::string& json);
 /// "--name=value", without those that do not change the result. An output that must be given is the last.
 std::vector<std::string> words_of(const Command&);
 
+/// What the running command does and from what, a line each: the program by its version and the hash of its file,
+/// words_of(), inputs with their hashes. Two runs that are alike in it have the same result.
+std::string identity_of_run();
+
 /// The option by which the command must be told a file to write, as in "-o=": nullptr where it has none.
 const Option* required_output(const Command&);
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "msa/mechanism/description.h"
+#include "validation/parallel/journal.h"
 #include "validation/parallel/work.h"
 #include "validation/studies/workspace.h"
 #include "validation/theories/theory.h"
@@ -92,7 +93,9 @@ double weighing_length_mm(const Mechanism&);
 /// for the checks of answer.h apply. The result has the same bits for any number of threads and ranks; of these the
 /// first has it whole, the others their own poses. A pose that the
 /// kinematics refuse is kept with the reason; every other failure ends the map with the error of the first pose in the
-/// grid's order that has one: ModelError, NumericalError. InputError on options that no map can have.
-StiffnessMap map_stiffness(const Mechanism&, const MapOptions&, const parallel::Work& = {});
+/// grid's order that has one: ModelError, NumericalError. InputError on options that no map can have. `journal`: poses
+/// that it holds are taken from it, the others are kept there as they are finished.
+StiffnessMap map_stiffness(const Mechanism&, const MapOptions&, const parallel::Work& = {},
+                           parallel::Journal* journal = nullptr);
 
 }  // namespace deflect::studies

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -16,6 +17,7 @@
 #include "validation/cli/talk.h"
 #include "validation/figures/fig11.h"
 #include "validation/figures/stiffness_length.h"
+#include "validation/parallel/journal.h"
 #include "validation/parallel/progress.h"
 #include "validation/report/map_results.h"
 #include "validation/studies/map.h"
@@ -24,7 +26,7 @@ namespace deflect::cli {
 namespace {
 
 struct MapArguments {
-  std::string device, ranges[3], n, tilt, load, theory, theories, length, json, out, report;
+  std::string device, ranges[3], n, tilt, load, theory, theories, length, json, out, report, resume;
   double force_N = 50, threads = 0;
   FigureArguments figures;
 };
@@ -106,13 +108,15 @@ void run(const MapArguments& a, parallel::Ranks* ranks) {
   const Mechanism m = read_device(a.device);
   const studies::MapOptions o = options_of(m, a);
   const int threads = parse_threads(a.threads, ranks);
+  std::optional<parallel::Journal> journal;
+  if (!a.resume.empty()) journal.emplace(a.resume, identity_of_run(), ranks);
   studies::StiffnessMap map;
   {
     const std::size_t poses = o.grid.size();
     const Step step(fmt::format("map: {} poses, {}", poses, theories::titles_of(o.theories)));
     parallel::Progress progress(poses, "poses", progress_stream());
     const auto told = [&](double share) { progress.update(as_size(std::lround(share * static_cast<double>(poses)))); };
-    map = studies::map_stiffness(m, o, {threads, ranks, told});
+    map = studies::map_stiffness(m, o, {threads, ranks, told}, journal ? &*journal : nullptr);
   }
   if (ranks && !ranks->first()) return;
   require_reached(map);
@@ -136,6 +140,7 @@ void run(const MapArguments& a, parallel::Ranks* ranks) {
     write_report_of_stands(a.report, a.device, m, {{"home", home.pose_mm_deg, home.configuration}}, {load},
                            {"map", report::map_json(map)});
   }
+  if (journal) journal->remove();
 }
 
 }  // namespace
@@ -170,6 +175,9 @@ Command map_command() {
             "platform's radius, or the machine's extent)",
             &a->length},
            {"--threads", "N", "threads per process (default 0: all cores); they do not change the result", &a->threads},
+           {"--resume", "FILE",
+            "keep finished poses in FILE: the same command goes on there after Ctrl-C or a crash; removed at the end",
+            &a->resume},
            {"--json", "FILE", "write the summary and the arrays", &a->json},
            report_option(&a->report),
            {"--out", "DIR",
