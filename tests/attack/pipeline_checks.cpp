@@ -59,16 +59,15 @@ void check_verdict(Checks& c, const Json& d) {
   std::string wanted = left ? "unknown_effect" : d["missing"].empty() ? "nothing_missing" : "effect";
   if (wanted == "effect" && !ties.empty()) wanted = "ambiguous";
   c.require(verdict == wanted, "verdict", "{}, where missing, ties and the rest say {}", verdict, wanted);
-  std::vector<std::string> found, tied;
-  for (const Json& each : d["found"])
-    found.push_back(each["effect"]), tied.push_back(placed_name(each["effect"], each.value("leg", 0)));
+  std::vector<std::string> found;
+  for (const Json& each : d["found"]) found.push_back(each["effect"]);
   c.require(d["missing"].get<std::vector<std::string>>() == found, "found", "{} found of {}", d["found"].dump(),
             d["missing"].dump());
   for (const Json& tie : ties) {
-    const bool holds = std::any_of(tied.begin(), tied.end(), [&](const auto& name) {
+    const bool holds = std::any_of(found.begin(), found.end(), [&](const auto& name) {
       return std::find(tie.begin(), tie.end(), name) != tie.end();
     });
-    c.require(tie.size() > 1 && holds, "tie", "{} with {}", tie.dump(), fmt::join(tied, ", "));
+    c.require(tie.size() > 1 && holds, "tie", "{} with {}", tie.dump(), fmt::join(found, ", "));
   }
 }
 
@@ -96,9 +95,15 @@ void check_parameters(Checks& c, const Json& of, const std::vector<effects::Effe
     check_parameter(c, name, found->parameters[i], parameters[i]);
 }
 
-}  // namespace
+/// χ² of the end over the numbers. The diagnosis divides it by the numbers less the values that it fitted; to `history`
+/// these are given.
+double final_chi2(const Json& d, double numbers) {
+  double values = 0;
+  for (const Json& each : d["found"]) values += static_cast<double>(each["parameters"].size());
+  return d["final"]["chi2_per_dof"].get<double>() * std::max(1.0, numbers - values) / numbers;
+}
 
-double numbers_of(const Json& d) { return 6 * d["readings"].get<double>(); }
+}  // namespace
 
 void check_comparison(const Json& j, std::vector<Contradiction>& wrong) {
   Checks c(wrong);
@@ -114,7 +119,8 @@ void check_comparison(const Json& j, std::vector<Contradiction>& wrong) {
   for (const Json& p : j["patterns"]) c.share(p["p_value"], "p-value of a pattern");
 }
 
-void check_diagnosis(const Json& d, const subject::Subject& subject, std::vector<Contradiction>& wrong) {
+void check_diagnosis(const Json& d, const subject::Subject& subject, double numbers,
+                     std::vector<Contradiction>& wrong) {
   Checks c(wrong);
   check_quality(c, d["baseline"], "quality without effects");
   check_quality(c, d["final"], "quality with effects");
@@ -133,16 +139,16 @@ void check_diagnosis(const Json& d, const subject::Subject& subject, std::vector
     c.require(!each["parameters"].empty(), "found without values", "{}", each.dump());
     check_parameters(c, each, all);
   }
-  const double before = d["baseline"]["chi2_per_dof"], after = d["final"]["chi2_per_dof"];
+  const double before = d["baseline"]["chi2_per_dof"], after = final_chi2(d, numbers);
   if (!d["missing"].empty()) c.require(after < before, "misfit that does not fall", "{} to {}", before, after);
 }
 
-void check_history(const Json& h, const Json& d, std::vector<Contradiction>& wrong) {
+void check_history(const Json& h, const Json& d, double numbers, std::vector<Contradiction>& wrong) {
   Checks c(wrong);
   const Json& versions = h["versions"];
   c.require(versions.size() == 2, "versions", "{}", versions.size());
   for (const Json& v : versions) check_quality(c, v, "quality of a version");
-  const double before = d["baseline"]["chi2_per_dof"], after = d["final"]["chi2_per_dof"];
+  const double before = d["baseline"]["chi2_per_dof"], after = final_chi2(d, numbers);
   const double first = versions[0]["chi2_per_dof"], second = versions[1]["chi2_per_dof"];
   // Where the diagnosis has widened the tolerances its misfit is a smaller one, by their square at most.
   const double scale = d["tolerance_scale"], widened = scale * scale;

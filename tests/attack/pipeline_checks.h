@@ -12,13 +12,10 @@ namespace deflect::attack {
 void check_comparison(const Json&, std::vector<Contradiction>&);
 
 /// Probabilities sum to one, the verdict is what missing, ties and the remainder say, what was found has values within
-/// its interval and its bounds, and the misfit falls.
-void check_diagnosis(const Json&, const subject::Subject&, std::vector<Contradiction>&);
+/// its interval and its bounds, and the misfit falls. `numbers`: how many were measured.
+void check_diagnosis(const Json&, const subject::Subject&, double numbers, std::vector<Contradiction>&);
 
 /// The device with what was found is as good as the diagnosis said.
-void check_history(const Json& history, const Json& diagnosis, std::vector<Contradiction>&);
-
-/// Of a diagnosis: at most so many measured numbers.
-double numbers_of(const Json& diagnosis);
+void check_history(const Json& history, const Json& diagnosis, double numbers, std::vector<Contradiction>&);
 
 }  // namespace deflect::attack

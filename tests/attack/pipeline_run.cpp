@@ -16,6 +16,7 @@
 #include "tests/attack/pipeline_checks.h"
 #include "tests/support/paths.h"
 #include "tests/support/program.h"
+#include "validation/measurement/replicates.h"
 #include "validation/result_files/result_file.h"
 
 namespace deflect::attack {
@@ -67,6 +68,13 @@ std::string plan_text(const measurement::Measurements& plan) {
   return out + "\n";
 }
 
+/// Measured numbers of data.csv.
+double numbers_in(const fs::path& folder) {
+  const measurement::Measurements data =
+      measurement::read_measurements(folder / "data.csv", read_subject(folder / "subject.yaml").instruments());
+  return static_cast<double>(measurement::measured_values(data).size());
+}
+
 /// With what was found in it; nothing where nothing was.
 void add_and_follow(const fs::path& folder, const Json& diagnosis, PipelineJudgement& j) {
   if (diagnosis["missing"].empty()) return;
@@ -79,7 +87,7 @@ void add_and_follow(const fs::path& folder, const Json& diagnosis, PipelineJudge
     return;
   }
   const Json history = result(folder / "history.json", j);
-  if (!history.is_null()) check_history(history, diagnosis, j.wrong);
+  if (!history.is_null()) check_history(history, diagnosis, numbers_in(folder), j.wrong);
 }
 
 }  // namespace
@@ -120,11 +128,14 @@ void run_from_data(const fs::path& folder, bool page, PipelineJudgement& j) {
   if (diagnosis.is_null()) return;
   j.verdict = diagnosis["verdict"];
   j.mistaken = diagnosis["candidates"].empty();
-  check_diagnosis(diagnosis, read_subject(folder / "subject.yaml"), j.wrong);
+  check_diagnosis(diagnosis, read_subject(folder / "subject.yaml"), numbers_in(folder), j.wrong);
   for (const Json& found : diagnosis["found"]) j.missing.push_back(placed_name(found["effect"], found.value("leg", 0)));
   j.reported = j.missing;
-  for (const Json& tie : diagnosis["indistinguishable"])
-    for (const Json& name : tie) j.reported.push_back(name);
+  for (const Json& tie : diagnosis["ties"])
+    for (const Json& rival : tie["rivals"]) {
+      const Json& added = rival["effects"].back();
+      j.reported.push_back(placed_name(added["effect"], added.value("leg", 0)));
+    }
   if (!j.mistaken) j.probability = diagnosis["candidates"][0]["probability"];
   add_and_follow(folder, diagnosis, j);
   if (page)
@@ -137,7 +148,7 @@ double gain_of(const HiddenEffect& h, const fs::path& folder) {
   const Json d = Json::parse(read_text(folder / "diagnosis.json"));
   for (const Json& c : d["candidates"]) {
     if (c["effect"] != h.name || c.value("leg", 0) != h.leg.value_or(0)) continue;
-    return numbers_of(d) * (d["baseline"]["chi2_per_dof"].get<double>() - c["chi2_per_dof"].get<double>());
+    return numbers_in(folder) * (d["baseline"]["chi2_per_dof"].get<double>() - c["chi2_per_dof"].get<double>());
   }
   return 0;
 }
