@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "msa/mechanism/stand.h"
 #include "tests/support/devices.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/prediction/as_built.h"
@@ -28,6 +31,32 @@ TEST(Campaign, HasTheReadingsThatItsHeaderSays) {
     for (const Reading& r : plan.readings) EXPECT_LE(r.load.head<3>().norm(), 50 * (1 + 1e-12));
   }
   EXPECT_THROW(campaign("poor", m, 50, 1), InputError);
+}
+
+// F/5 … F, of all directions: of 280 sizes that are uniform there the smallest and largest lie within 5 % of the ends
+// but for one in a million.
+TEST(Campaign, RandomLoadsAreFromAFifthOfTheForceOn) {
+  double least = 1e9, most = 0;
+  Vector3 sum = Vector3::Zero();
+  for (const Reading& r : campaign("random", ideal(), 50, 1).readings) {
+    least = std::min(least, r.load.head<3>().norm());
+    most = std::max(most, r.load.head<3>().norm());
+    sum += r.load.head<3>().normalized();
+  }
+  EXPECT_GE(least, 10 - 1e-3);
+  EXPECT_LE(least, 12);
+  EXPECT_GE(most, 48);
+  EXPECT_LE(sum.norm() / 280, 0.3);  // expected 0.06
+}
+
+TEST(Campaign, ACycleGoesUpDownAndBackAlongEachAxis) {
+  const Measurements plan = campaign("cycle", ideal(), 40, 1);
+  const double loop[] = {10, 20, 30, 40, 30, 20, 10, 0, -10, -20, -30, -40, -30, -20, -10, 0};
+  for (std::size_t i = 0; i < plan.readings.size(); ++i) {
+    EXPECT_EQ(plan.readings[i].load, Vector6(loop[i % 16] * Vector6::Unit(static_cast<Eigen::Index>(i / 16 % 3)))) << i;
+    EXPECT_EQ(plan.readings[i].pose, i / 48);
+    EXPECT_EQ(plan.readings[i].sequence, static_cast<double>(i));
+  }
 }
 
 TEST(Campaign, WorksForEveryDeviceWithAWorkspace) {
@@ -76,6 +105,78 @@ TEST(Simulate, NoiseAndTolerancesHaveTheirSize) {
       squares += std::pow(*data.readings[i].displacement[k] - d[i](static_cast<Eigen::Index>(k)), 2);
   // 2160 numbers: the estimate scatters by 1/√4320.
   EXPECT_NEAR(std::sqrt(squares / 2160) / 3e-6, 1, 5 / std::sqrt(4320.0));
+}
+
+// A reading in five; each of its numbers 10 to 30 σ off, to either side.
+TEST(Simulate, GrossOutliersAreAsManyAndAsLargeAsSaid) {
+  const Mechanism m = ideal();
+  SimulationOptions o;
+  o.tolerances = 0;
+  o.geometry = Geometry::linear;
+  o.sigma_u = 3e-6;
+  o.outliers = 0.2;
+  const Measurements data = simulate(m, campaign("rich", m, 50, 1), o);
+  const std::vector<VectorX> d = predict(m, configure_all(m, data), data, {});
+  int readings = 0, above = 0, below = 0;
+  double least = 1e9, most = 0;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    int gross = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double off = (*data.readings[i].displacement[k] - d[i](static_cast<Eigen::Index>(k))) / 3e-6;
+      if (std::abs(off) < 5.5) continue;
+      least = std::min(least, std::abs(off)), most = std::max(most, std::abs(off));
+      ++(off > 0 ? above : below);
+      ++gross;
+    }
+    EXPECT_TRUE(gross == 0 || gross == 3) << i;
+    readings += gross > 0;
+  }
+  EXPECT_NEAR(readings, 144, 5 * std::sqrt(720 * 0.2 * 0.8));
+  EXPECT_NEAR(above, below, 5 * std::sqrt(3.0 * 144));
+  EXPECT_GT(least, 10 - 5);
+  EXPECT_LT(least, 13);
+  EXPECT_GT(most, 27);
+  EXPECT_LT(most, 30 + 5);
+}
+
+TEST(Simulate, TheTemperatureSwingsOnceAboutItsMean) {
+  const Mechanism m = ideal();
+  SimulationOptions o;
+  o.tolerances = 0;
+  o.geometry = Geometry::linear;
+  o.temperature = 22, o.swing = 3;
+  const Measurements data = simulate(m, campaign("cycle", m, 50, 1), o);
+  ASSERT_EQ(data.readings.size(), 432u);
+  EXPECT_TRUE(data.temperature_recorded);
+  for (std::size_t i = 0; i < data.readings.size(); ++i)
+    EXPECT_NEAR(data.readings[i].temperature_C, 22 + 3 * std::sin(2 * M_PI * static_cast<double>(i) / 432), 6e-4) << i;
+}
+
+TEST(Simulate, TheShareCarriedIsKnownToAHundredth) {
+  const Mechanism m = test::device("flexure");
+  Measurements plan;
+  plan.poses.push_back({"home", mm_deg_from(home_pose(m)), {}, {0}});
+  Reading r;
+  SimulationOptions o;
+  o.tolerances = 0;
+  const auto carries = [&](double force) {
+    r.load = force * Vector6::Unit(0);
+    plan.readings = {r};
+    try {
+      simulate(m, plan, o);
+      return true;
+    } catch (const NumericalError&) {
+      return false;
+    }
+  };
+  double force = 100;
+  while (force < 1e9 && carries(force)) force *= 10;
+  ASSERT_LT(force, 1e9);
+  const double share = share_carried(m, plan, o);
+  ASSERT_GT(share, 0);
+  ASSERT_LT(share, 1);
+  EXPECT_TRUE(carries(share * force));
+  EXPECT_FALSE(carries(1.0101 * share * force));
 }
 
 TEST(AsBuilt, AMachineAsDrawnIsTheDrawing) {
