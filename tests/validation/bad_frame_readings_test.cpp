@@ -123,11 +123,13 @@ class BadFramePrograms : public ::testing::Test {
 TEST_F(BadFramePrograms, ResultsAndReadingsOfAnotherFrame) {
   const std::string data = path("data.csv"), result = path("d.json");
   expect("simulate " + frame + " --campaign paper -o " + data, 0, "3 readings");
-  expect("compare truss-45 " + data, 2, "data.csv:1: unknown column");
+  expect("compare truss-45 " + data, 2,
+         "data.csv:1: 7 of 9 columns are unknown ('load.above', 'load.twist', 'top_x_mm', 'turn_C_rad', "
+         "'turn_B_rad', …): are these readings of something else? The columns are pose, ");
   expect("compare arm " + data, 2, "data.csv:1: ");
   expect("diagnose " + frame + " " + data + " --json " + result, 0, "");
   expect("report " + result + " --device truss-45 --data " + data + " -o " + path("page.html"), 2,
-         "data.csv:1: unknown column 'load.above'");
+         "d.json: this diagnosis is of 'portal-semi-rigid', but --device is 'truss-45'");
   EXPECT_FALSE(std::filesystem::exists(folder / "page.html"));
   expect("add truss-45 --from " + result + " -o " + path("new.yaml"), 2, "");
 }

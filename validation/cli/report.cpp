@@ -100,10 +100,8 @@ std::vector<Vector6> largest_loads(const measurement::Measurements& data) {
 /// What a diagnosis names as missing, with the values found. Of a diagnosis of another device InputError.
 std::vector<effects::EffectInstance> found_in(const page::PageResult& result, const std::string& device,
                                               const std::vector<effects::Effect>& effects) {
-  const result_files::ReadResult read = result_files::read_result(result.json, result.origin);
-  if (read.kind != "diagnosis") return {};
-  if (const std::string of = read.json.value("device", device); of != device)
-    throw InputError(fmt::format("{}: this diagnosis is of '{}', but --device is '{}'", result.origin, of, device));
+  require_diagnosis_of(device, result);
+  if (result_files::read_result(result.json, result.origin).kind != "diagnosis") return {};
   std::vector<effects::EffectInstance> out;
   for (const diagnosis::FoundEffect& found : diagnosis::parse_found_effects(result.json, result.origin).missing)
     out.push_back(diagnosis::instance(effects::find_effect(effects, found.effect), found));
@@ -128,6 +126,13 @@ void require_pages(const std::string& file) {
       fmt::format("--report {}: this deflect was built without pages: install esbuild, libjs-three and libjs-chart.js, "
                   "configure and build again",
                   file));
+}
+
+void require_diagnosis_of(const std::string& device, const page::PageResult& result) {
+  const result_files::ReadResult read = result_files::read_result(result.json, result.origin);
+  if (read.kind != "diagnosis") return;
+  if (const std::string of = read.json.value("device", device); of != device)
+    throw InputError(fmt::format("{}: this diagnosis is of '{}', but --device is '{}'", result.origin, of, device));
 }
 
 void write_report(const std::string& file, const std::string& device, const std::vector<compare::Comparison>& versions,

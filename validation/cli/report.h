@@ -24,6 +24,10 @@ void require_pages(const std::string& file);
 void write_report(const std::string& file, const std::string& device, const std::vector<compare::Comparison>& versions,
                   std::vector<page::PageResult> results);
 
+/// InputError where the result is a diagnosis of another device: told before its measurements are read, whose columns
+/// would be complained of.
+void require_diagnosis_of(const std::string& device, const page::PageResult&);
+
 /// The page of results. If one is a diagnosis, the versions are the device and the device with each effect found, added
 /// one after the other.
 void write_report_of_diagnosis(const std::string& file, const std::string& device, const subject::Subject&,

@@ -35,6 +35,14 @@ std::string load_column(const std::string& point, std::size_t component) {
   return point + "." + load_columns.at(component);
 }
 
+bool is_misspelled(std::string_view name, const std::vector<std::string>& known) {
+  const std::string word = lower_case(name);
+  return std::any_of(known.begin(), known.end(), [&](const std::string& candidate) {
+    const std::string right = lower_case(candidate), stem(without_unit(right));
+    return word == right || (stem != right && (word == stem || without_unit(word) == stem));
+  });
+}
+
 std::string unknown_column(std::string_view name, const std::vector<std::string>& known) {
   const std::string unknown = fmt::format("unknown column '{}'", excerpt(name));
   const std::string word = lower_case(name);

@@ -26,6 +26,9 @@ inline bool is_note(std::string_view name) { return name.starts_with("note"); }
 /// none is near; a name that differs by its unit only is told which unit its numbers must have.
 std::string unknown_column(std::string_view name, const std::vector<std::string>& known);
 
+/// Whether the name is one of `known` but for its unit or the size of its letters.
+bool is_misspelled(std::string_view name, const std::vector<std::string>& known);
+
 /// The text on one line, or its beginning and "…" where it is too long for a message.
 std::string excerpt(std::string_view);
 

@@ -34,6 +34,12 @@ std::size_t joint_number(std::string_view name) {
   return number;
 }
 
+/// "a, b, c, …"
+std::string few(std::vector<std::string> names, std::size_t most) {
+  if (names.size() > most) names.resize(most), names.push_back("…");
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// Whether only a machine's file has this column.
 bool of_machines(const std::string& name) {
   return joint_number(name) > 0 ||
@@ -49,10 +55,8 @@ class ContractColumns {
     const std::vector<std::string> fixed = fixed_columns(known);
     for (std::size_t column = 0; column < table.header().size(); ++column) {
       const std::string& written = table.header()[column];
-      const std::optional<NamedColumn> named = named_column(written, units_ ? table.text(0, column) : "", known);
-      if (!named || (known.stationary && of_machines(named->name) &&
-                     std::find(fixed.begin(), fixed.end(), named->name) == fixed.end()))
-        refuse(column, fixed);
+      const std::optional<NamedColumn> named = known_column(column, fixed);
+      if (!named) refuse(column, fixed);
       if (is_note(written) || is_note(named->name)) {
         notes_.push_back(column);
         continue;
@@ -82,6 +86,15 @@ class ContractColumns {
   const std::string& written(const ReadColumn& column) const { return table_.header()[column.index]; }
 
  private:
+  /// What the column is called here; nothing where it is unknown.
+  std::optional<NamedColumn> known_column(std::size_t column, const std::vector<std::string>& fixed) const {
+    const std::optional<NamedColumn> named =
+        named_column(table_.header()[column], units_ ? table_.text(0, column) : "", instruments_);
+    const bool elsewhere = named && instruments_.stationary && of_machines(named->name) &&
+                           std::find(fixed.begin(), fixed.end(), named->name) == fixed.end();
+    return elsewhere ? std::nullopt : named;
+  }
+
   /// A row without numbers whose cells are units, two or more.
   bool has_units_row() const {
     if (table_.rows() < 2) return false;
@@ -104,10 +117,30 @@ class ContractColumns {
       table_.refuse(
           0, column,
           fmt::format("the unit below is '{}': name and unit must say the same", excerpt(table_.text(0, column))));
+    refuse_other_subject(known);
     const std::size_t number = std::max<std::size_t>(joint_number(written), 1);
     if (!instruments_.stationary)
       known.insert(known.end(), {joint_column(number - 1, true), joint_column(number - 1, false)});
     table_.refuse_header(unknown_column(written, known));
+  }
+
+  /// Where most columns are unknown, and three or more, none of them is a slip of the pen.
+  void refuse_other_subject(const std::vector<std::string>& known) const {
+    std::vector<std::string> unknown;
+    std::size_t all = 0;
+    for (std::size_t column = 0; column < table_.header().size(); ++column) {
+      const std::string& written = table_.header()[column];
+      if (is_note(written)) continue;
+      ++all;
+      const bool coordinate = !instruments_.stationary && joint_number(written) > 0;
+      if (!coordinate && !known_column(column, known) && !is_misspelled(written, known))
+        unknown.push_back(fmt::format("'{}'", excerpt(written)));
+    }
+    if (unknown.size() < 3 || 2 * unknown.size() <= all) return;
+    table_.refuse_header(
+        fmt::format("{} of {} columns are unknown ({}): are these readings of something else? The columns are {}; the "
+                    "names of remarks begin with note",
+                    unknown.size(), all, few(unknown, 5), few(known, 40)));
   }
 
   const CsvTable& table_;
@@ -197,21 +230,17 @@ void other_columns(const ContractColumns& known, MeasurementColumns& columns) {
 /// A frame is loaded and, unless it is a plan, read.
 void require_stationary(const CsvTable& table, const Instruments& instruments, bool plan,
                         const MeasurementColumns& columns) {
-  const auto some = [](std::vector<std::string> names) {
-    if (names.size() > 8) names.resize(8), names.push_back("…");
-    return fmt::format("{}", fmt::join(names, ", "));
-  };
   std::vector<std::string> sensors, cases;
   for (const SensorChannel& sensor : instruments.sensors) sensors.push_back(sensor_column(sensor));
   for (const std::string& name : instruments.load_cases) cases.push_back("load." + name);
   for (const std::string& point : instruments.load_points) cases.push_back(load_column(point, 0));
   if (!plan && columns.sensors.empty())
     table.refuse_header(
-        fmt::format("no sensor of the frame is read: at least one of the columns {} is wanted", some(sensors)));
+        fmt::format("no sensor of the frame is read: at least one of the columns {} is wanted", few(sensors, 8)));
   if (columns.load_cases.empty() && columns.load_points.empty())
     table.refuse_header(
         fmt::format("no load: at least one column with a factor on a load case or with a load at a node is wanted ({})",
-                    some(cases)));
+                    few(cases, 8)));
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ void run(const ReportArguments& a) {
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
   o.sigma_th = parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1);
   const subject::Subject m = read_subject(a.device);
+  for (const page::PageResult& result : results) require_diagnosis_of(m.name(), result);
   write_report_of_diagnosis(a.output, a.device, m, read_data(a.data, m), known_effects(a.effects, m), o,
                             parse_threads(a.threads), std::move(results));
 }
