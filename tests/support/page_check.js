@@ -54,6 +54,7 @@
       const text = (id) => document.getElementById(id)?.textContent ?? '';
       report.verdict = text('verdict');
       report.ids = text('verdict-ids');
+      report.legend = document.querySelector('#machine .legend')?.textContent ?? '';
       report.title = text('subject');
       report.missing = [...document.querySelectorAll('.missing')].map((each) => each.textContent);
       report.scale = document.querySelector('.scale')?.textContent ?? '';

@@ -290,6 +290,37 @@ TEST_F(ReportProgram, AFrameUnderItsLoadsIsAPage) {
   EXPECT_TRUE(seen.at("deflected"));
 }
 
+// Members C2b and C1b are in one line: what is missing may be in either, and both are marked.
+TEST_F(ReportProgram, ADiagnosedFrameShowsWhereItActs) {
+  const std::string data = "'" + test::source_dir() + "/validation/measurements/frames/truss-45.csv'";
+  run("diagnose truss-45 " + data + " --bootstrap 99 --report " + path("page.html"));
+  const json scene = page_data(contents(folder / "page.html")).at("scene");
+  EXPECT_EQ(scene.at("guilty"), json({"member C2b"}));
+  if (test::browser().empty()) return;
+  const std::string legend = used("page.html").at("legend").get<std::string>();
+  EXPECT_NE(legend.find("acts here: member C2b"), std::string::npos) << legend;
+  EXPECT_NE(legend.find("As likely here: member C1b"), std::string::npos) << legend;
+}
+
+// Of a member that differs at its start only the start is marked; springs stand where their nodes are.
+TEST_F(ReportProgram, EndsAndSpringsOfAFrameAreMarked) {
+  const auto marked = [&](const std::string& frame, const std::string& effect) {
+    run("add " + frame + " " + effect + " --force -o " + path("after.yaml"));
+    run("simulate " + frame + " --campaign cycle -o " + path("data.csv"));
+    run("history " + path("data.csv") + " " + frame + " " + path("after.yaml") + " --report " + path("page.html"));
+    return page_data(contents(folder / "page.html")).at("scene");
+  };
+  EXPECT_EQ(marked("portal-semi-rigid", "factor@beam_1.start.ry --set factor=0.4").at("guilty"),
+            json({"start of beam_1"}));
+  const json scene = marked("beam-on-springs", "clearance@spring.pad3.uz --set gap_mm=0.05");
+  EXPECT_EQ(scene.at("guilty"), json({"spring pad3"}));
+  const auto spring = std::find_if(scene.at("ground").begin(), scene.at("ground").end(),
+                                   [](const json& foot) { return foot.at("name") == "spring pad3"; });
+  ASSERT_NE(spring, scene.at("ground").end());
+  EXPECT_TRUE(spring->at("guilty"));
+  EXPECT_EQ(spring->at("words"), "N6: uz on a spring");
+}
+
 TEST_F(ReportProgram, AMatrixThatFailsItsChecksIsAPageToo) {
   write_text(folder / "K.csv",
              "100,5,0,0,0,0\n0,100,0,0,0,0\n0,0,200,0,0,0\n0,0,0,90000,0,0\n0,0,0,0,90000,0\n0,0,0,0,0,90000\n");

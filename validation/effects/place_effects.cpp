@@ -47,9 +47,20 @@ std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p,
   return out;
 }
 
+/// As name_of(); in a sentence a frame's member, its end and a load say what they are.
+std::string words_of(const subject::Place& p) {
+  const std::string name = subject::name_of(p);
+  if (!p.others.empty()) return name;
+  if (p.path.starts_with("loads.")) return "load " + name;
+  if (!p.path.starts_with("members.")) return name;
+  const std::size_t dot = p.part.rfind('.');
+  if (p.kind != subject::PlaceKind::member_end || dot == std::string::npos) return "member " + name;
+  return fmt::format("{} of {}{}", p.part.substr(dot + 1), p.part.substr(0, dot), name.substr(p.part.size()));
+}
+
 Effect effect_of(const PlaceLaw& law, const subject::Place& p, bool several_legs, bool one_leg) {
   Effect e;
-  const std::string words = subject::name_of(p);
+  const std::string words = words_of(p);
   e.name = fmt::format("{}@{}{}", law.id, one_leg ? "leg." : "", subject::id_of(p));
   e.title = fmt::format("The {}{} {}", words,
                         one_leg                       ? " of one leg"

@@ -135,11 +135,12 @@ function levelAcross(points, size) {
 export function groundUnder(feet, isMachine, machineMiddle, size, upwards) {
   const group = new THREE.Group(), meshes = [], points = [];
   const thick = 0.012 * size, at = feet.map((f) => vector(f.at_mm)), level = isMachine ? levelAcross(at, size) : null;
-  const add = (middle, widths, words, opacity, guilty = false) => {
+  const marked = (foot, otherwise) => (foot.guilty ? 0xd62728 : foot.tied ? 0x8a3ea8 : otherwise);
+  const add = (middle, widths, words, opacity, color = 0xffffff) => {
     const map = hatched();
     const wide = [...widths].sort((a, b) => b - a);
     map.repeat.set(Math.max(1, wide[0] / (0.05 * size)), Math.max(1, wide[1] / (0.05 * size)));
-    const mesh = new THREE.Mesh(shapes.block, new THREE.MeshLambertMaterial({map, color: guilty ? 0xd62728 : 0xffffff, transparent: opacity < 1, opacity, depthWrite: opacity === 1}));
+    const mesh = new THREE.Mesh(shapes.block, new THREE.MeshLambertMaterial({map, color, transparent: opacity < 1, opacity, depthWrite: opacity === 1}));
     mesh.scale.set(...widths);
     mesh.position.copy(middle);
     mesh.userData = {words};
@@ -159,13 +160,13 @@ export function groundUnder(feet, isMachine, machineMiddle, size, upwards) {
     if (foot.whole) {
       const widths = [0.06 * size, 0.06 * size, 0.06 * size], axis = upwards.toArray().map(Math.abs).indexOf(1);
       widths[axis] = thick;
-      return add(at[i].clone().addScaledVector(upwards, -thick / 2), widths, foot.words, 1, foot.guilty);
+      return add(at[i].clone().addScaledVector(upwards, -thick / 2), widths, foot.words, 1, marked(foot, 0xffffff));
     }
-    const cone = new THREE.Mesh(shapes.cone, new THREE.MeshLambertMaterial({color: foot.guilty ? 0xd62728 : 0x8a929b}));
+    const cone = new THREE.Mesh(shapes.cone, new THREE.MeshLambertMaterial({color: marked(foot, 0x8a929b)}));
     cone.scale.setScalar(0.035 * size);
     cone.quaternion.setFromUnitVectors(up, upwards);
     cone.position.copy(at[i]).addScaledVector(upwards, -0.0175 * size);
-    cone.userData = {words: foot.words};
+    cone.userData = {words: foot.words, point: foot.point};
     group.add(cone);
     meshes.push(cone);
     points.push(at[i].clone().addScaledVector(upwards, -0.035 * size));

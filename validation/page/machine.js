@@ -39,22 +39,34 @@ function measured(scene3d) {
   return {box, size, scaleOf, arrow, points, thick};
 }
 
+/**
+ * By cell: 'guilty', 'purple' where what is tied with it acts, or nothing. The end of a member is marked by its outermost
+ * element.
+ */
+function marksOf({bodies, cells, guilty, tied = []}) {
+  const first = {}, last = {};
+  cells.forEach(([, , i], k) => (first[i] ??= k, last[i] = k));
+  const among = (names, i, k) => names.includes('member ' + bodies[i].part) || (first[i] === k && names.includes('start of ' + bodies[i].part)) || (last[i] === k && names.includes('end of ' + bodies[i].part));
+  return cells.map(([, , i], k) => (bodies[i].guilty || among(guilty, i, k) ? 'guilty' : among(tied, i, k) ? 'purple' : ''));
+}
+
 /** Members, joints, tool point and the unloaded shape: what the sliders move. */
 function built(scene3d, size) {
   const {bodies, cells, joints, tool} = scene3d;
   const root = lit(), thin = size * 0.0028, materials = {};
-  for (const name of ['metal', 'pale', 'guilty', 'quiet', 'blue']) materials[name] = new THREE.MeshLambertMaterial();
+  for (const name of ['metal', 'pale', 'guilty', 'purple', 'quiet', 'blue']) materials[name] = new THREE.MeshLambertMaterial();
   materials.text = new THREE.MeshBasicMaterial({depthTest: false, transparent: true});  // loads, seen inside members too
-  const wide = (body) => {
+  const marks = marksOf(scene3d);
+  const wide = (body, mark) => {
     if (!body.size_mm) return [1.6 * thin, 1.6 * thin];
-    return body.size_mm.map((s) => Math.max(s, body.guilty ? 3 * thin : 1.5 * thin));
+    return body.size_mm.map((s) => Math.max(s, mark ? 3 * thin : 1.5 * thin));
   };
   const thickest = {};
-  const rods = cells.map(([a, b, i]) => {
-    const body = bodies[i], widths = wide(body);
+  const rods = cells.map(([a, b, i], k) => {
+    const body = bodies[i], mark = marks[k], widths = wide(body, mark);
     for (const point of [a, b]) thickest[point] = Math.max(thickest[point] || 0, ...widths);
-    const mesh = piece(a, b, widths, body.size_mm && !body.round, materials[body.guilty ? 'guilty' : body.kind === 'member' ? 'metal' : 'quiet'], nameOf(body));
-    Object.assign(mesh.userData, {body: i, point: b});
+    const mesh = piece(a, b, widths, body.size_mm && !body.round, materials[mark || (body.kind === 'member' ? 'metal' : 'quiet')], nameOf(body));
+    Object.assign(mesh.userData, {body: i, point: b, mark});
     root.add(mesh);
     return mesh;
   });
@@ -75,7 +87,7 @@ function built(scene3d, size) {
   const ghost = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({transparent: true, opacity: 0.55}));
   ghost.frustumCulled = false;
   root.add(ghost);
-  return {root, materials, rods, knots, tip, ghost};
+  return {root, materials, rods, knots, tip, ghost, thickest};
 }
 
 /** Named sensors, as pointers that touch what they read, and points of load, each with its arm from the tool point. */
@@ -91,7 +103,7 @@ function instrumentsOf(pose, tip, size, material, thin) {
 
 /** Sensors of a frame: an arrow with the name where and along what it reads. */
 function frameSensors(scene3d, size, materials) {
-  return (scene3d.sensors || []).map((s) => loadArrow(vector(s.at_mm), {vector: s.axis, kind: 'line', words: s.name}, 0.07 * size, materials[s.guilty ? 'guilty' : 'blue'], true, 0.028 * size));
+  return (scene3d.sensors || []).map((s) => loadArrow(vector(s.at_mm), {vector: s.axis, kind: 'line', words: s.name}, 0.07 * size, materials[s.guilty ? 'guilty' : (scene3d.tied || []).includes('sensor ' + s.name) ? 'purple' : 'blue'], true, 0.028 * size));
 }
 
 /**
@@ -107,21 +119,21 @@ function residualForces(measurements) {
   return most > 1e-6 * size ? {more, most, line: inside.reading_line} : null;
 }
 
-/** Members that are not guilty get materials of their own, to be coloured by force. */
+/** Members that are not marked get materials of their own, to be coloured by force. */
 function giveForces(rods, bodies, forces) {
   for (const rod of rods) {
     const body = bodies[rod.userData.body], force = forces && body.kind === 'member' && forces.more.get(body.part);
     if (!force) continue;
     rod.userData.force = force.more;
     rod.userData.words += `, predicted ${num(force.predicted)} N, ${num(Math.abs(force.more))} N ${force.more < 0 ? 'less' : 'more'} by the sensors`;
-    if (!body.guilty) rod.material = rod.material.clone();
+    if (!rod.userData.mark) rod.material = rod.material.clone();
   }
 }
 
-function paintForces(rods, bodies, forces, on, t) {
+function paintForces(rods, forces, on, t) {
   for (const rod of rods) {
-    const {force, body} = rod.userData;
-    if (force === undefined || bodies[body].guilty) continue;
+    const {force, mark} = rod.userData;
+    if (force === undefined || mark) continue;
     rod.material.color.set(t.metal);
     if (on) rod.material.color.lerp(new THREE.Color(force > 0 ? t.orange : t.blue), Math.sqrt(Math.abs(force) / forces.most));
   }
@@ -204,6 +216,7 @@ function legendOf(scene3d, state, guilt, residuals, forces) {
   const shape = scene3d.poses[state.pose].shapes[state.shape];
   return [
     scene3d.guilty.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--guilty)'}}), guilt + ': ' + shorten(scene3d.guilty)) : null,
+    (scene3d.tied || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--purple)'}}), 'As likely here: ' + shorten(scene3d.tied)) : null,
     el('div', {}, `Thin lines: unloaded; solid: deflection × ${num(state.scale, 3)}`),
     (scene3d.sensors || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--blue)'}}), 'sensors') : null,
     shape && shape.arrows.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--text)'}}), scene3d.kind === 'frame' ? 'loads' : 'load on the tool') : null,
@@ -236,12 +249,15 @@ export function machine(scene3d, measurements, guilt) {
   const {box, size, scaleOf, arrow, points, thick} = measured(scene3d);
   const worst = version ? [...version.poses].sort((a, b) => b.rmse - a.rmse)[0].label : null;
   const state = {pose: Math.max(0, poses.findIndex((p) => p.label === worst)), shape: 0, scale: poses[0].shapes.length ? scaleOf(0) : 1, arrows: true, forces: true};
-  const {root, materials, rods, knots, tip, ghost} = built(scene3d, size);
+  const {root, materials, rods, knots, tip, ghost, thickest} = built(scene3d, size);
   const forces = residualForces(measurements);
   giveForces(rods, scene3d.bodies, forces);
   const atTool = version && version.readings.some((r) => r.residual.slice(0, 3).some((x) => x !== null));
   const residuals = atTool ? residualArrows(scene3d, version, size) : null;
   const ground = groundUnder(scene3d.ground, scene3d.kind === 'machine', box.getCenter(new THREE.Vector3()), size, standpoint(box).up);
+  // Cones of springs move with their nodes, below the member.
+  const below = standpoint(box).up.clone().normalize();
+  for (const mesh of ground.meshes) if (mesh.userData.point !== undefined) mesh.userData.below = below.clone().multiplyScalar(-0.0175 * size - 0.5 * (thickest[mesh.userData.point] || 0));
   const moving = new THREE.Group(), corner = box.min.clone().addScalar(-0.02 * size);
   root.add(ground.group, moving, triad(corner, 0.1 * size), ...frameSensors(scene3d, size, materials));
 
@@ -249,7 +265,7 @@ export function machine(scene3d, measurements, guilt) {
   const shot = stage(holder, 'The ' + scene3d.kind + ' under load, in 3D', (renderer, width, height) => {
     const t = theme();
     for (const [name, material] of Object.entries(materials)) material.color.set(t[name]);
-    if (forces) paintForces(rods, scene3d.bodies, forces, state.forces, t);
+    if (forces) paintForces(rods, forces, state.forces, t);
     ghost.material.color.set(t.quiet);
     looking.fit(width, height);
     renderer.render(root, looking.camera);
@@ -267,6 +283,7 @@ export function machine(scene3d, measurements, guilt) {
       put(rod, bent[a], bent[b], rod.geometry === bodies3d.block ? vector(pose.axes[body]) : null);
     }
     for (const knot of knots) knot.position.copy(bent[knot.userData.point]);
+    for (const {position, userData} of ground.meshes) if (userData.below) position.copy(bent[userData.point]).add(userData.below);
     if (tip) tip.position.copy(bent[tool]);
     ghost.geometry.dispose();
     ghost.geometry = new THREE.BufferGeometry().setFromPoints(cells.flatMap(([a, b]) => [rest[a], rest[b]]));

@@ -47,7 +47,22 @@ function guilt() {
   return {ambiguous: 'The best of the tied candidates acts here', unknown_effect: 'What was explained acts here'}[diagnosis.verdict] || 'What is missing acts here';
 }
 
+const listed = {members: 'member', supports: 'support', springs: 'spring', sensors: 'sensor', loads: 'load'};
+/** "member C2b", "start of beam_1", "support B": as the scene of a frame calls the parts of a place. */
+const partsOf = ({path, also = []}) => [path, ...also].map((p) => p.split('.')).filter(([list]) => listed[list])
+  .map(([list, name, end]) => (list === 'members' && (end === 'start' || end === 'end') ? `${end} of ${name}` : `${listed[list]} ${name}`));
+
+/** Parts of a frame in which what is tied with the best candidate acts. */
+function tiedParts() {
+  const rivals = of('diagnosis').flatMap((d) => d.ties || []).flatMap((t) => t.rivals).flatMap((r) => r.effects).filter((e) => e.place);
+  return [...new Set(rivals.flatMap((e) => partsOf(e.place)))].filter((name) => !data.scene.guilty.includes(name));
+}
+
 function machineFigure() {
+  if (data.scene.kind === 'frame') {
+    const tied = data.scene.tied = tiedParts();
+    for (const foot of data.scene.ground) foot.tied = tied.includes(foot.name);
+  }
   if (data.scene.kind === 'frame' && data.versions.length) return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom. Arrows with names: sensors.', attempt('The frame', () => machine(data.scene, data.versions[0], guilt())));
   if (data.scene.kind === 'frame') return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom.', attempt('The frame', () => machine(data.scene, null, '')));
   const version = data.versions[0];

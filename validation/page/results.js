@@ -5,7 +5,8 @@ import {workspace} from './workspace.js';
 
 const places = ['ux', 'uy', 'uz', 'thx', 'thy', 'thz'], efforts = ['fx', 'fy', 'fz', 'mx', 'my', 'mz'];
 
-export const siteName = (c) => `${c.effect} (${c.site})`;
+/** The id of an effect at a place says where it acts; others say it in brackets. */
+export const siteName = (c) => (c.place && c.site === 'machine' ? c.effect : `${c.effect} (${c.site})`);
 /** With so many digits that the bounds can be told from each other. */
 const intervalWords = (value, low, high) => {
   let digits = 4;

@@ -207,6 +207,7 @@ std::string how_read_text(const std::vector<std::string>& how) {
 }
 
 std::string placed_words(const effects::PlacedEffect& e) {
+  if (e.effect->place && !e.leg && e.effect->scope == effects::Scope::machine) return e.effect->name;  // says where
   return fmt::format("{} ({})", e.effect->name, effects::site_of(e));
 }
 

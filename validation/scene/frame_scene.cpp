@@ -65,18 +65,47 @@ void put_members(Json& scene, Json& pose, const FrameDescription& f, const Frame
   pose["axes"].push_back(nullptr);
 }
 
+/// "ux uz"
+std::string acting_words(const frame::Freedoms& acting) {
+  std::string words;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (acting[i]) words += std::string(words.empty() ? "" : " ") + frame::node_freedoms[i];
+  return words;
+}
+
+/// Under each node that a support or a spring holds against the ground.
 Json supports_of(const FrameDescription& f, const FrameResult& r, const std::vector<std::string>& guilty) {
   Json out = Json::array();
   for (const auto& [node, held] : f.supports) {
-    std::string words;
-    for (std::size_t i = 0; i < 6; ++i)
-      if (held[i]) words += std::string(words.empty() ? "" : " ") + frame::node_freedoms[i];
+    const std::string words = acting_words(held);
     if (!words.empty())
       out.push_back({{"at_mm", scene_position(place_of(f, r, node))},
                      {"words", fmt::format("{}: {} held", node, words)},
+                     {"name", "support " + node},
                      {"guilty", is_among("support " + node, guilty)},
                      {"whole", std::count(held.begin(), held.end(), true) == 6}});
   }
+  for (const auto& [name, spring] : f.springs)
+    if (spring.to.empty())
+      out.push_back({{"at_mm", scene_position(place_of(f, r, spring.node))},
+                     {"words", fmt::format("{}: {} on a spring", spring.node, acting_words(spring.acting()))},
+                     {"name", "spring " + name},
+                     {"point", r.structure.nodes.find(spring.node)},
+                     {"guilty", is_among("spring " + name, guilty)},
+                     {"whole", false}});
+  return out;
+}
+
+/// Springs between two nodes, as joints.
+Json springs_between(const FrameDescription& f, const FrameResult& r, const std::vector<std::string>& guilty) {
+  Json out = Json::array();
+  for (const auto& [name, spring] : f.springs)
+    if (!spring.to.empty())
+      out.push_back({{"point", r.structure.nodes.find(spring.node)},
+                     {"leg", ""},
+                     {"part", "spring " + name},
+                     {"driven", false},
+                     {"guilty", is_among("spring " + name, guilty)}});
   return out;
 }
 
@@ -136,6 +165,21 @@ std::vector<std::string> changed_entries(const YamlNode& before, const YamlNode&
   return out;
 }
 
+/// "start of beam" where only the start of this member differs; nothing where more of it does.
+std::string changed_end(const YamlNode& before, const YamlNode& after, const std::string& member) {
+  const YamlNode *a = before.child("members"), *b = after.child("members");
+  const YamlNode *old = a ? a->child(member) : nullptr, *now = b ? b->child(member) : nullptr;
+  if (!old || !now) return "";
+  std::vector<std::string> keys = old->keys;
+  for (const std::string& key : now->keys)
+    if (!is_among(key, keys)) keys.push_back(key);
+  std::erase_if(keys, [&](const std::string& key) {
+    const YamlNode *x = old->child(key), *y = now->child(key);
+    return x && y && flow_yaml(*x) == flow_yaml(*y);
+  });
+  return keys.size() == 1 && (keys[0] == "start" || keys[0] == "end") ? fmt::format("{} of {}", keys[0], member) : "";
+}
+
 Vector3 between(const Vector3& a, const Vector3& b, double share) { return a + share * (b - a); }
 
 /// Where each sensor is, what it reads and along which direction.
@@ -178,7 +222,10 @@ std::vector<std::string> changed_parts(const FrameDescription& before, const Fra
                                    {"springs", "spring"},
                                    {"sensors", "sensor"},
                                    {"loads", "load"}})
-    for (const std::string& name : changed_entries(a, b, list)) out.push_back(fmt::format("{} {}", word, name));
+    for (const std::string& name : changed_entries(a, b, list)) {
+      const std::string end = list == std::string_view("members") ? changed_end(a, b, name) : "";
+      out.push_back(end.empty() ? fmt::format("{} {}", word, name) : end);
+    }
   const std::vector<std::string> sections = changed_entries(a, b, "sections"),
                                  materials = changed_entries(a, b, "materials");
   for (const auto& [name, member] : after.members)
@@ -193,10 +240,11 @@ Json frame_scene_json(const FrameDescription& f, const FrameResult& result, cons
   const std::optional<FrameResult> finer = in_more_elements(f, result);
   const FrameResult& r = finer ? *finer : result;
   Json scene = {{"kind", "frame"}, {"tool", nullptr}, {"guilty", guilty}, {"ground", supports_of(f, r, guilty)}};
-  for (const char* list : {"bodies", "cells", "joints", "poses"}) scene[list] = Json::array();
+  for (const char* list : {"bodies", "cells", "poses"}) scene[list] = Json::array();
   Json pose = {{"label", ""}, {"pose_mm_deg", nullptr}, {"axes", Json::array()}, {"shapes", Json::array()}};
   for (const frame::Node& node : r.structure.model.nodes) pose["points_mm"].push_back(scene_position(node.position));
   put_members(scene, pose, f, r, guilty);
+  scene["joints"] = springs_between(f, r, guilty);
   scene["sensors"] = sensors_of(f, guilty);
   for (const CaseResult& c : r.cases) pose["shapes"].push_back(shape_of(f, r, c));
   scene["poses"].push_back(std::move(pose));

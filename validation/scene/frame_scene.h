@@ -19,8 +19,8 @@ inline constexpr std::size_t most_drawn_members = 3000;
 Json frame_scene_json(const frame::FrameDescription&, const frame::FrameResult&,
                       const std::vector<std::string>& guilty = {});
 
-/// "member beam", "support B", "spring bed", "sensor lvdt": entries that are not alike in two versions of a frame.
-/// Sections and materials stand for the members that have them.
+/// "member beam", "start of beam" where only that end differs, "support B", "spring bed", "sensor lvdt": entries that
+/// are not alike in two versions of a frame. Sections and materials stand for the members that have them.
 std::vector<std::string> changed_parts(const frame::FrameDescription&, const frame::FrameDescription&);
 
 }  // namespace deflect::scene

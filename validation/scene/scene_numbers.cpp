@@ -30,6 +30,11 @@ void put_outline(Json& body, const figures::SectionOutline& o, const SectionProp
   body["round"] = !shaped || o.round;
 }
 
+/// "500 N", "20 kN": the larger unit is a thousand times the other.
+static std::string in_unit(double value, const char* unit, const char* larger) {
+  return value < 1e4 ? fmt::format("{:.4g} {}", value, unit) : fmt::format("{:.4g} {}", value / 1000, larger);
+}
+
 void put_load_arrows(Json& arrows, int point, const Vector6& load) {
   const auto put = [&](const char* kind, const Vector3& v, const std::string& words) {
     if (v.norm() > 0)
@@ -39,8 +44,8 @@ void put_load_arrows(Json& arrows, int point, const Vector6& load) {
                         {"words", words}});
   };
   const Vector3 force = load.head<3>(), moment = load.tail<3>();
-  put("force", force, fmt::format("{:.4g} N", force.norm()));
-  put("moment", moment, fmt::format("{:.4g} Nmm", report::mm * moment.norm()));
+  put("force", force, in_unit(force.norm(), "N", "kN"));
+  put("moment", moment, in_unit(report::mm * moment.norm(), "Nmm", "Nm"));
 }
 
 }  // namespace deflect::scene
