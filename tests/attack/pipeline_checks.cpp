@@ -143,13 +143,17 @@ void check_diagnosis(const Json& d, const subject::Subject& subject, double numb
   if (!d["missing"].empty()) c.require(after < before, "misfit that does not fall", "{} to {}", before, after);
 }
 
-void check_history(const Json& h, const Json& d, double numbers, std::vector<Contradiction>& wrong) {
+void check_history(const Json& h, const Json& d, double numbers, bool noise_is_told,
+                   std::vector<Contradiction>& wrong) {
   Checks c(wrong);
   const Json& versions = h["versions"];
   c.require(versions.size() == 2, "versions", "{}", versions.size());
   for (const Json& v : versions) check_quality(c, v, "quality of a version");
   const double before = d["baseline"]["chi2_per_dof"], after = final_chi2(d, numbers);
-  const double first = versions[0]["chi2_per_dof"], second = versions[1]["chi2_per_dof"];
+  const double first = versions[0]["chi2_per_dof"];
+  double second = versions[1]["chi2_per_dof"];
+  if (!noise_is_told)  // the diagnosis keeps the noise that the first version leaves
+    second *= std::pow(versions[1]["noise_floor_mm"].get<double>() / versions[0]["noise_floor_mm"].get<double>(), 2);
   // Where the diagnosis has widened the tolerances its misfit is a smaller one, by their square at most.
   const double scale = d["tolerance_scale"], widened = scale * scale;
   c.require(first >= 0.9 * before && first <= 1.1 * widened * before, "misfit before, by history",

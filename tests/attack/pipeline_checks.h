@@ -15,7 +15,8 @@ void check_comparison(const Json&, std::vector<Contradiction>&);
 /// its interval and its bounds, and the misfit falls. `numbers`: how many were measured.
 void check_diagnosis(const Json&, const subject::Subject&, double numbers, std::vector<Contradiction>&);
 
-/// The device with what was found is as good as the diagnosis said.
-void check_history(const Json& history, const Json& diagnosis, double numbers, std::vector<Contradiction>&);
+/// The device with what was found is as good as the diagnosis said. `noise_is_told`: by the data or the description.
+void check_history(const Json& history, const Json& diagnosis, double numbers, bool noise_is_told,
+                   std::vector<Contradiction>&);
 
 }  // namespace deflect::attack

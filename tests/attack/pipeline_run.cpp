@@ -75,6 +75,14 @@ double numbers_in(const fs::path& folder) {
   return static_cast<double>(measurement::measured_values(data).size());
 }
 
+/// Whether the data or the subject tell the noise of a reading; where none does, each comparison takes it from what it
+/// leaves.
+bool tells_noise(const fs::path& folder) {
+  const std::string data = read_text(folder / "data.csv");
+  return data.substr(0, data.find('\n')).find("sigma_") != data.npos ||
+         read_text(folder / "subject.yaml").find("sigma") != data.npos;
+}
+
 /// With what was found in it; nothing where nothing was.
 void add_and_follow(const fs::path& folder, const Json& diagnosis, PipelineJudgement& j) {
   if (diagnosis["missing"].empty()) return;
@@ -87,7 +95,7 @@ void add_and_follow(const fs::path& folder, const Json& diagnosis, PipelineJudge
     return;
   }
   const Json history = result(folder / "history.json", j);
-  if (!history.is_null()) check_history(history, diagnosis, numbers_in(folder), j.wrong);
+  if (!history.is_null()) check_history(history, diagnosis, numbers_in(folder), tells_noise(folder), j.wrong);
 }
 
 }  // namespace

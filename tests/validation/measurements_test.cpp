@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "tests/support/measurements.h"
+#include "tests/support/program.h"
 
 namespace deflect {
 namespace {
@@ -195,6 +196,25 @@ TEST(Measurements, TimeGrowsWithTheRowsOnly) {
   EXPECT_EQ(m.poses.size(), 100000u);
   // A quarter of a second, a few without optimisation on a slow machine; anything quadratic would take minutes.
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+// What the reader refuses is not written either.
+TEST(WrittenMeasurements, NumbersBeyondAllProportionAreRefused) {
+  Measurements m;
+  Reading r;
+  r.displacement[1] = 1e9;
+  m.readings = {r};
+  m.poses = {{"home", Vector6::Zero(), {}, {0}}};
+  const test::Folder folder;
+  write_measurements(folder / "data.csv", m);
+  m.readings[0].displacement[1] = 1.1e9;
+  try {
+    write_measurements(folder / "data.csv", m);
+    FAIL() << "written";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("1100000000000 in column 'uy_mm' is out of all proportion"), std::string::npos)
+        << e.what();
+  }
 }
 
 }  // namespace

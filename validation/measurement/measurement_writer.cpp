@@ -5,8 +5,10 @@
 #include <cmath>
 #include <functional>
 
+#include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "msa/base/index.h"
+#include "validation/measurement/largest_measured.h"
 #include "validation/measurement/measurement_columns.h"
 #include "validation/measurement/measurements.h"
 
@@ -108,6 +110,22 @@ std::vector<Column> columns_of(const Measurements& m, const std::array<bool, 6>&
   return columns;
 }
 
+/// What the reader would refuse is not written.
+void require_readable(const std::filesystem::path& path, const Measurements& m) {
+  const auto require = [&](const std::optional<double>& measured, double per_SI, const std::string& column) {
+    if (measured && !(std::abs(*measured * per_SI) <= largest_measured))
+      throw InputError(fmt::format("{}: {} in column '{}' is out of all proportion: numbers up to {:g} are read",
+                                   path.string(), number_text(measured, per_SI), column, largest_measured));
+  };
+  for (const Reading& r : m.readings) {
+    for (std::size_t i = 0; i < 6; ++i) require(r.displacement[i], i < 3 ? 1e3 : 1, displacement_columns[i]);
+    for (std::size_t k = 0; k < r.sensors.size(); ++k) {
+      const SensorChannel& sensor = m.instruments.sensors[k];
+      require(r.sensors[k], row_of(sensor.quantity).per_SI, sensor_column(sensor));
+    }
+  }
+}
+
 }  // namespace
 
 std::string measurements_text(const Measurements& m, const std::array<bool, 6>& to_fill_in) {
@@ -125,6 +143,7 @@ std::string measurements_text(const Measurements& m, const std::array<bool, 6>& 
 
 void write_measurements(const std::filesystem::path& path, const Measurements& m,
                         const std::array<bool, 6>& to_fill_in) {
+  require_readable(path, m);
   write_text(path, measurements_text(m, to_fill_in));
 }
 
