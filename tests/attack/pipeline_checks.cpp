@@ -150,14 +150,16 @@ void check_history(const Json& h, const Json& d, double numbers, bool noise_is_t
   c.require(versions.size() == 2, "versions", "{}", versions.size());
   for (const Json& v : versions) check_quality(c, v, "quality of a version");
   const double before = d["baseline"]["chi2_per_dof"], after = final_chi2(d, numbers);
-  const double first = versions[0]["chi2_per_dof"];
-  double second = versions[1]["chi2_per_dof"];
-  if (!noise_is_told)  // the diagnosis keeps the noise that the first version leaves
-    second *= std::pow(versions[1]["noise_floor_mm"].get<double>() / versions[0]["noise_floor_mm"].get<double>(), 2);
+  const double first = versions[0]["chi2_per_dof"], second = versions[1]["chi2_per_dof"];
   // Where the diagnosis has widened the tolerances its misfit is a smaller one, by their square at most.
   const double scale = d["tolerance_scale"], widened = scale * scale;
   c.require(first >= 0.9 * before && first <= 1.1 * widened * before, "misfit before, by history",
             "{} for {} with tolerances {} times as wide", first, before, scale);
+  const double error = d["final"]["rmse_mm"], followed = versions[1]["rmse_mm"];
+  if (d["set_aside"] == 0)
+    c.require(std::abs(followed - error) <= 0.01 * error + 1e-12, "error after, by history", "{} for {}", followed,
+              error);
+  if (!noise_is_told) return;  // the diagnosis keeps the noise that the first version leaves, history takes it anew
   c.require(second >= 0.9 * after - 0.02 * before && second <= 1.1 * widened * after + 0.02 * before,
             "misfit after, by history", "{} for {}", second, after);
 }

@@ -16,6 +16,7 @@
 #include "tests/attack/pipeline_checks.h"
 #include "tests/support/paths.h"
 #include "tests/support/program.h"
+#include "validation/measurement/column_names.h"
 #include "validation/measurement/replicates.h"
 #include "validation/result_files/result_file.h"
 
@@ -75,12 +76,19 @@ double numbers_in(const fs::path& folder) {
   return static_cast<double>(measurement::measured_values(data).size());
 }
 
-/// Whether the data or the subject tell the noise of a reading; where none does, each comparison takes it from what it
-/// leaves.
+/// Whether the data or the subject tell the noise of every channel; where none does, each comparison takes it from what
+/// it leaves.
 bool tells_noise(const fs::path& folder) {
-  const std::string data = read_text(folder / "data.csv");
-  return data.substr(0, data.find('\n')).find("sigma_") != data.npos ||
-         read_text(folder / "subject.yaml").find("sigma") != data.npos;
+  const std::string data = read_text(folder / "data.csv"), header = "," + data.substr(0, data.find('\n')) + ",";
+  const auto has = [&](const std::string& column) { return header.find("," + column + ",") != header.npos; };
+  bool length = has("ux_mm") || has("uy_mm") || has("uz_mm"),
+       angle = has("thx_rad") || has("thy_rad") || has("thz_rad");
+  for (const measurement::SensorChannel& s : read_subject(folder / "subject.yaml").instruments().sensors) {
+    if (s.sigma || !has(measurement::sensor_column(s))) continue;
+    if (s.quantity != measurement::Quantity::length && s.quantity != measurement::Quantity::angle) return false;
+    (s.quantity == measurement::Quantity::length ? length : angle) = true;
+  }
+  return (!length || has("sigma_u_mm")) && (!angle || has("sigma_th_rad"));
 }
 
 /// With what was found in it; nothing where nothing was.

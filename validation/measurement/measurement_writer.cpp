@@ -8,9 +8,9 @@
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "msa/base/index.h"
-#include "validation/measurement/largest_measured.h"
 #include "validation/measurement/measurement_columns.h"
 #include "validation/measurement/measurements.h"
+#include "validation/measurement/number_limits.h"
 
 namespace deflect::measurement {
 namespace {

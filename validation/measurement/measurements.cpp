@@ -14,8 +14,8 @@
 #include "msa/base/index.h"
 #include "msa/base/spatial.h"
 #include "validation/measurement/csv.h"
-#include "validation/measurement/largest_measured.h"
 #include "validation/measurement/measurement_columns.h"
+#include "validation/measurement/number_limits.h"
 #include "validation/measurement/parse_plan.h"
 
 namespace deflect::measurement {
@@ -23,7 +23,6 @@ namespace {
 
 constexpr double absolute_zero_C = -273.15;
 
-constexpr double least_sigma = 1e-30;  // m, rad
 // Of poses with one label, as encoders read them: from the first of them.
 constexpr double scatter_mm = 0.05, scatter_deg = 0.05, scatter_rad = 1e-3;
 

@@ -9,6 +9,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/frame/file/frame_tolerances.h"
+#include "validation/measurement/number_limits.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/campaign.h"
 #include "validation/subject/frame_readings.h"
@@ -149,7 +150,7 @@ measurement::Measurements simulate_frame(const frame::FrameDescription& f, measu
   };
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
     for (std::size_t k = 0; k < sensors.size(); ++k) {
-      if (sensors[k].sigma || sigma[k] == 0) continue;
+      if (sensors[k].sigma || sigma[k] <= measurement::least_sigma) continue;  // a file cannot tell it
       if (sensors[k].quantity == measurement::Quantity::length) plan.readings[i].sigma_u = sigma[k];
       if (sensors[k].quantity == measurement::Quantity::angle) plan.readings[i].sigma_th = sigma[k];
     }
