@@ -147,7 +147,7 @@ void PoseSweep::at(const Configuration& c) {
 }
 
 /// The legs' compliance and the stiffness of all, at the forces of the laws.
-bool PoseSweep::assemble() {
+bool PoseSweep::assemble(bool loaded) {
   stiffness_.setZero();
   for (Leg& leg : legs_) {
     const Eigen::Index n = leg.N.cols();
@@ -155,21 +155,17 @@ bool PoseSweep::assemble() {
     leg.A = leg.members_A;
     for (Freedom& f : leg.springs) {
       f.yields = compliance(f.spring, f.force);
-      if (!std::isfinite(f.yields)) return false;
+      if (!std::isfinite(f.yields)) {
+        if (loaded) return false;
+        continue;
+      }
       const Eigen::Map<const Numbers> w(f.twist.data(), n);
       leg.A += f.yields * w.lazyProduct(w.transpose());
     }
-    if (n == 1) {
-      if (!(leg.A(0, 0) > 0)) return false;
-      leg.inverse = Small::Constant(1, 1, 1 / leg.A(0, 0));
-      stiffness_ += leg.N.col(0) * (leg.inverse(0, 0) * leg.N.col(0)).transpose();
-    } else {
-      const Eigen::LLT<Small> llt(leg.A);
-      const auto pivots = llt.matrixLLT().diagonal();
-      if (llt.info() != Eigen::Success || !(pivots.minCoeff() > 1e-6 * pivots.maxCoeff())) return false;
-      leg.inverse = llt.solve(Small::Identity(n, n));
-      stiffness_ += leg.N * leg.inverse * leg.N.transpose();
-    }
+    if (!invert(leg)) return false;
+    for (Freedom& f : leg.springs)
+      if (!std::isfinite(f.yields)) release(leg, f);
+    stiffness_ += leg.N * leg.inverse.lazyProduct(leg.N.transpose());
   }
   if (determinate_) return true;
   Matrix6 weighed = stiffness_;
@@ -177,6 +173,34 @@ bool PoseSweep::assemble() {
   weighed.bottomRows<3>() /= size_;
   factor_.compute(weighed);
   return factor_.isPositive() && factor_.vectorD().minCoeff() > 1e-10 * factor_.vectorD().maxCoeff();
+}
+
+bool PoseSweep::invert(Leg& leg) {
+  const Eigen::Index n = leg.N.cols();
+  if (n == 1) {
+    if (!(leg.A(0, 0) > 0)) return false;
+    leg.inverse = Small::Constant(1, 1, 1 / leg.A(0, 0));
+    return true;
+  }
+  const Eigen::LLT<Small> llt(leg.A);
+  const auto pivots = llt.matrixLLT().diagonal();
+  if (llt.info() != Eigen::Success || !(pivots.minCoeff() > 1e-6 * pivots.maxCoeff())) return false;
+  leg.inverse = llt.solve(Small::Identity(n, n));
+  return true;
+}
+
+/// A freedom that yields without end: A⁻¹ − A⁻¹w wᵀA⁻¹ / wᵀA⁻¹w, the limit of (A + y w wᵀ)⁻¹. Its part of the
+/// stiffness, y A⁻¹w wᵀA⁻¹ / (1 + y wᵀA⁻¹w)², goes to 0.
+void PoseSweep::release(Leg& leg, Freedom& f) {
+  f.yields = 0;
+  const Eigen::Map<const Numbers> w(f.twist.data(), leg.N.cols());
+  const Numbers along = leg.inverse.lazyProduct(w);
+  const double held = w.dot(along);
+  constexpr double rounding = 1e-12;
+  const double before = leg.inverse.cwiseAbs().maxCoeff();
+  if (!(held > rounding * w.squaredNorm() * before)) return;
+  leg.inverse -= (along / held).lazyProduct(along.transpose());
+  if (leg.inverse.cwiseAbs().maxCoeff() < rounding * before) leg.inverse.setZero();
 }
 
 /// The laws', from λ of their leg.
@@ -212,7 +236,7 @@ bool PoseSweep::solve(const Vector6& F_T_W, double warmer) {
       tell_forces(leg);
       at += leg.N.cols();
     }
-    if (!linear_ && !assemble()) return false;
+    if (!linear_ && !assemble(!F.isZero(0) || warmer != 0)) return false;
     displacement_ = moved_by_deflections(warmer);
     return true;
   }

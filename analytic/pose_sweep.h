@@ -33,10 +33,11 @@ class PoseSweep {
   void at(const Configuration&);
 
   /// Response at this pose to the wrench F at T, the weight and `warmer` K above 20 °C, base axes, SI: displacement [δ;
-  /// θ] of T from the assembled state, and tangent stiffness. Returns false, without a result, where a pose or load
-  /// needs AnalyticModel: a leg is rigid along a wrench that it carries, a law has no stiffness at its force, the legs
-  /// do not hold T, or, with legs that are not statically determinate, there is a temperature change or a law depends
-  /// on its force.
+  /// θ] of T from the assembled state, and tangent stiffness. A law without stiffness at its force makes its freedom a
+  /// passive one where there is no load at all. Returns false, without a result, where a pose or load needs
+  /// AnalyticModel: a leg is rigid along a wrench that it carries, a law has no stiffness under load, the legs do not
+  /// hold T, or, with legs that are not statically determinate, there is a temperature change or a law depends on its
+  /// force.
   bool solve(const Vector6& F_T_W, double warmer = 0);
 
   const Vector6& displacement() const { return displacement_; }
@@ -90,7 +91,9 @@ class PoseSweep {
 
   static void carry(Leg&, const PlacedLeg&, const Vector3& p_WT, double length);
   bool determine();
-  bool assemble();
+  bool assemble(bool loaded = true);
+  static bool invert(Leg&);
+  static void release(Leg&, Freedom&);
   static void tell_forces(Leg&);
   Vector6 moved_by_deflections(double warmer) const;
 

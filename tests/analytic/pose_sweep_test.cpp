@@ -61,8 +61,18 @@ TEST(PoseSweep, LeavesToTheModelWhatItDoesNotKnow) {
   const Configuration c = configure(m, home_pose(m));
   PoseSweep contacts(c);
   EXPECT_FALSE(contacts.solve(Vector6::Unit(0))) << "no pose yet";
+}
+
+// By hand: each leg of the device carries along its link alone, through two contacts in series.
+TEST(PoseSweep, ContactsWithoutLoadHaveNoStiffness) {
+  const Mechanism m = test::device("haptic-6psu");
+  const Configuration c = configure(m, home_pose(m));
+  PoseSweep contacts(c);
   contacts.at(c);
-  EXPECT_FALSE(contacts.solve(Vector6::Zero())) << "contacts without load have no stiffness";
+  ASSERT_TRUE(contacts.solve(Vector6::Zero()));
+  EXPECT_EQ(contacts.stiffness(), Matrix6(Matrix6::Zero()));
+  EXPECT_EQ(contacts.displacement(), Vector6(Vector6::Zero()));
+  for (const Matrix6& d : contacts.derivatives()) EXPECT_EQ(d, Matrix6(Matrix6::Zero()));
 }
 
 // Six struts are determinate, more are not; bars that bend carry several wrenches each.

@@ -219,8 +219,20 @@ TEST(MsaSweep, LeavesToTheModelWhatItDoesNotKnow) {
   const Configuration c = configure(m, home_pose(m));
   MsaSweep contacts(c);
   EXPECT_FALSE(contacts.solve(50 * Vector6::Unit(0))) << "nowhere yet";
+}
+
+// By hand: each leg of the device carries along its link alone, through two contacts in series. The load that comes
+// next is solved as if it were the first.
+TEST(MsaSweep, ContactsWithoutLoadHaveNoStiffness) {
+  const Mechanism m = test::device("haptic-6psu");
+  const Configuration c = configure(m, home_pose(m));
+  MsaSweep contacts(c);
   contacts.at(c);
-  EXPECT_FALSE(contacts.solve(Vector6::Zero())) << "contacts without load have no stiffness";
+  ASSERT_TRUE(contacts.solve(Vector6::Zero()));
+  EXPECT_EQ(contacts.stiffness(), Matrix6(Matrix6::Zero()));
+  EXPECT_EQ(contacts.displacement(), Vector6(Vector6::Zero()));
+  for (std::size_t i = 0; i < c.legs.size(); ++i) EXPECT_EQ(contacts.leg_stiffness(i), Matrix6(Matrix6::Zero()));
+  expect_the_model(contacts, c, {}, 50 * Vector6::Unit(0), 1e-9);
 }
 
 TEST(MsaSweep, LeavesToTheModelMembersSoStiffThatDigitsWouldBeLost) {

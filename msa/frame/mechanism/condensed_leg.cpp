@@ -230,12 +230,22 @@ bool CondensedLeg::linearise() {
   held_ = end_;
   p_.setZero();
   const Eigen::Index n = theta_.size();
+  bool all_hold = true;
   for (Eigen::Index i = 0; i < n; ++i) {
-    held_.A(i, i) += nth(springs_, i).k;
-    s_(i) = nth(springs_, i).s;
+    const Spring& spring = nth(springs_, i);
+    if (!(spring.k >= 0) || !std::isfinite(spring.k)) return false;
+    all_hold = all_hold && spring.k > 0;
+    held_.A(i, i) += spring.k;
+    s_(i) = spring.s;
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     const double a = held_.A(i, i);
+    if (nth(springs_, i).k == 0 && !(a > idle * end_.A(i, i))) {  // a free joint that does not move, as in pass()
+      held_.A(i, i) = 1;
+      held_.A.row(i).tail(n - i - 1).setZero();
+      held_.G.col(i).setZero();
+      continue;
+    }
     if (!(a > 0)) return false;
     const Vector6 u = held_.G.col(i) / a;
     held_.K -= u * held_.G.col(i).transpose();
@@ -247,6 +257,7 @@ bool CondensedLeg::linearise() {
       s_(j) -= share * s_(i);
     }
   }
+  if (!all_hold && held_.K.cwiseAbs().maxCoeff() < idle * end_.K.cwiseAbs().maxCoeff()) held_.K.setZero();
   return true;
 }
 

@@ -47,8 +47,9 @@ class CondensedLeg {
   bool condense(const PlacedLeg&, const Vector3& p_WT);
   double stiffest() const { return stiffest_; }  ///< of its elements along or across, N/m
 
-  /// Takes in the springs with their present k and s. Returns false where one is not held. Not needed for a leg without
-  /// springs.
+  /// Takes in the springs with their present k and s. Returns false where one is not held, or where k is not finite and
+  /// at least 0. Not needed for a leg without springs. A spring of no stiffness is a free joint: K is exactly 0 where
+  /// only rounding is left of it.
   bool linearise();
   const Matrix6& stiffness() const { return held_.K; }
   const Vector6& pull() const { return p_; }  ///< force on the platform at zero displacement

@@ -60,7 +60,7 @@ bool MsaSweep::solve(const Vector6& F_T_W) {
   if (linear_) {
     displacement_ = moved_by(F);
     iterations_ = 1;
-  } else if (!iterate(F)) {
+  } else if (!(F.isZero(0) ? rest() : iterate(F))) {
     return false;
   }
   energy_ = 0;
@@ -73,15 +73,38 @@ bool MsaSweep::solve(const Vector6& F_T_W) {
   return true;
 }
 
+/// The springs by what they yield at this force beside the preload. Returns false where one has no stiffness there.
+bool MsaSweep::linearise_about(double force) {
+  bool all_hold = true;
+  for (CondensedLeg& leg : legs_)
+    for (CondensedLeg::Spring& spring : leg.springs()) {
+      spring.k = force > 0 ? tangent_at_force(spring.law, force) : tangent(spring.law, 0);
+      spring.s = 0;
+      all_hold = all_hold && spring.k > 0;
+    }
+  return all_hold;
+}
+
+/// No load: nothing moves, if the legs hold T when each spring carries a newton.
+bool MsaSweep::rest() {
+  const auto take_in = [](CondensedLeg& leg) { return leg.linearise(); };
+  if (!linearise_about(1) || !std::all_of(legs_.begin(), legs_.end(), take_in) || !assemble()) return false;
+  (void)linearise_about(0);
+  if (!std::all_of(legs_.begin(), legs_.end(), take_in)) return false;
+  displacement_.setZero();
+  stiffness_.setZero();
+  for (CondensedLeg& leg : legs_) {
+    leg.stretch(displacement_);
+    stiffness_ += leg.stiffness();
+  }
+  iterations_ = 1;
+  return true;
+}
+
 /// Newton on the springs' forces.
 bool MsaSweep::iterate(const Vector6& F) {
   const double size = std::hypot(F.head<3>().norm(), F.tail<3>().norm() / size_);
-  for (CondensedLeg& leg : legs_)
-    for (CondensedLeg::Spring& spring : leg.springs()) {
-      spring.k = tangent_at_force(spring.law, size);
-      spring.s = 0;
-      if (!(spring.k > 0)) return false;
-    }
+  if (!linearise_about(size)) return false;
   for (iterations_ = 1; iterations_ <= most_iterations; ++iterations_) {
     Vector6 left = F;
     for (CondensedLeg& leg : legs_) {

@@ -23,9 +23,10 @@ class MsaSweep {
   void at(const Configuration&);
 
   /// Response at this pose to the wrench F at T and the weight, base axes, SI: displacement [δ; θ] of T and tangent
-  /// stiffness. Returns false, without a result, where nothing holds T in some direction, where a contact carries
-  /// nothing, where the springs' forces do not converge, or where a member is so much stiffer than the whole (10⁵
-  /// times) that condensation would lose digits (relative.h avoids this).
+  /// stiffness. Without any load nothing moves, and contacts that carry nothing have no stiffness. Returns false,
+  /// without a result, where nothing holds T in some direction, where under load a contact carries nothing, where the
+  /// springs' forces do not converge, or where a member is so much stiffer than the whole (10⁵ times) that condensation
+  /// would lose digits (relative.h avoids this).
   bool solve(const Vector6& F_T_W);
 
   const Vector6& displacement() const { return displacement_; }
@@ -42,6 +43,8 @@ class MsaSweep {
  private:
   bool assemble();
   Vector6 moved_by(Vector6 F) const;
+  bool rest();
+  bool linearise_about(double force);
   bool iterate(const Vector6& F);
   double settle();
 
