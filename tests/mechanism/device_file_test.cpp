@@ -181,7 +181,7 @@ TEST(DeviceFile, RandomNumbersComeBackToTheLastBit) {
     std::get<Member>(m.leg[1].second).bending_factor = number();
     m.load_cell = {number(), test::random_vector(random, 0.1)};
     m.sensor = {test::random_vector(random, 0.1), test::random_vector(random, 1e-3)};
-    m.tolerances.load = number();
+    m.tolerances.load = std::ldexp(test::uniform(random, 1, 2), -1 - static_cast<int>(random() % 20));  // a share of 1
 
     const Mechanism r = parse_mechanism(write_mechanism(m), "written");
     const SixPsu& s = test::six_psu(r);
