@@ -97,10 +97,9 @@ std::vector<Vector6> largest_loads(const measurement::Measurements& data) {
   return out;
 }
 
-/// What a diagnosis names as missing, with the values found. Of a diagnosis of another device InputError.
-std::vector<effects::EffectInstance> found_in(const page::PageResult& result, const std::string& device,
+/// What a diagnosis names as missing, with the values found.
+std::vector<effects::EffectInstance> found_in(const page::PageResult& result,
                                               const std::vector<effects::Effect>& effects) {
-  require_diagnosis_of(device, result);
   if (result_files::read_result(result.json, result.origin).kind != "diagnosis") return {};
   std::vector<effects::EffectInstance> out;
   for (const diagnosis::FoundEffect& found : diagnosis::parse_found_effects(result.json, result.origin).missing)
@@ -165,7 +164,7 @@ void write_report_of_diagnosis(const std::string& file, const std::string& devic
   std::string name = m.name();
   for (const page::PageResult& result : results) {
     const auto added = outcome_of<InputError>([&] {
-      for (const effects::EffectInstance& e : found_in(result, m.name(), effects)) {
+      for (const effects::EffectInstance& e : found_in(result, effects)) {
         name += fmt::format(" + {}{}", e.effect->name, e.leg ? " (" + effects::site_of(e) + ")" : "");
         devices.push_back(effects::with_effect(devices.back(), e).named(name));
       }

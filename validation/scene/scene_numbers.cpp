@@ -7,6 +7,14 @@
 #include "validation/report/text.h"
 
 namespace deflect::scene {
+namespace {
+
+/// "500 N", "20 kN": the larger unit is a thousand times the other.
+std::string in_unit(double value, const char* unit, const char* larger) {
+  return value < 1e4 ? fmt::format("{:.4g} {}", value, unit) : fmt::format("{:.4g} {}", value / 1000, larger);
+}
+
+}  // namespace
 
 double scene_digits(double x) {
   if (x == 0) return 0;
@@ -28,11 +36,6 @@ void put_outline(Json& body, const figures::SectionOutline& o, const SectionProp
   const double y = shaped ? o.size_y : 4 * std::sqrt(p.Iz / p.A), z = shaped ? o.size_z : 4 * std::sqrt(p.Iy / p.A);
   body["size_mm"] = {scene_digits(report::mm * y), scene_digits(report::mm * z)};
   body["round"] = !shaped || o.round;
-}
-
-/// "500 N", "20 kN": the larger unit is a thousand times the other.
-static std::string in_unit(double value, const char* unit, const char* larger) {
-  return value < 1e4 ? fmt::format("{:.4g} {}", value, unit) : fmt::format("{:.4g} {}", value / 1000, larger);
 }
 
 void put_load_arrows(Json& arrows, int point, const Vector6& load) {
