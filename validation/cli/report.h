@@ -28,8 +28,8 @@ void write_report(const std::string& file, const std::string& device, const std:
 /// would be complained of.
 void require_diagnosis_of(const std::string& device, const page::PageResult&);
 
-/// The page of results of this device (require_diagnosis_of). If one is a diagnosis, the versions are the device and the
-/// device with each effect found, added one after the other.
+/// The page of results of this device (require_diagnosis_of). If one is a diagnosis, the versions are the device and
+/// the device with each effect found, added one after the other.
 void write_report_of_diagnosis(const std::string& file, const std::string& device, const subject::Subject&,
                                const measurement::Measurements&, const std::vector<effects::Effect>&,
                                const compare::ComparisonOptions&, int threads, std::vector<page::PageResult> results);
