@@ -98,7 +98,8 @@ double effective_modulus(const Material& m, const AsPrinted& p) {
 }
 
 double point_contact_deflection(double R, double E, double force) {
-  return std::copysign(std::pow(std::abs(force) / (E * std::sqrt(8 * R / 9)), 2.0 / 3), force);
+  const double root = std::cbrt(std::abs(force) / (E * std::sqrt(8 * R / 9)));
+  return std::copysign(root * root, force);
 }
 
 double point_contact_compliance(double R, double E, double force) {

@@ -12,18 +12,18 @@ namespace deflect::analytic {
 namespace {
 
 constexpr double dependent = 1e-9;  // of twists, as in complement()
-constexpr std::size_t most_passive = 12;
 
 /// The wrenches that do no work on the twists, as many columns as come out: Gauss and Jordan with full pivoting on the
 /// rows twistᵀ, rotations weighed by the length.
-template <class Columns>
-void carried_by(const std::array<Vector6, most_passive>& twists, std::size_t count, double length, Columns& N) {
-  double row[most_passive][6];
+template <class Twists, class Columns>
+void carried_by(const Twists& twists, double length, Columns& N) {
+  const std::size_t count = as_size(twists.cols());
+  double row[Twists::MaxColsAtCompileTime][6];
   std::array<Eigen::Index, 6> freedom = {0, 1, 2, 3, 4, 5};  // by column
   double largest = 0;
   for (std::size_t i = 0; i < count; ++i)
     for (Eigen::Index k = 0; k < 6; ++k) {
-      row[i][k] = twists[i](k) * (k < 3 ? 1 : length);
+      row[i][k] = twists(k, as_index(i)) * (k < 3 ? 1 : length);
       largest = std::max(largest, std::abs(row[i][k]));
     }
   std::size_t rank = 0;
@@ -95,10 +95,12 @@ PoseSweep::PoseSweep(const Configuration& c) {
 
 /// What the leg carries, and the part of its compliance that no force changes.
 void PoseSweep::carry(Leg& leg, const PlacedLeg& placed, const Vector3& p_WT, double length) {
-  std::array<Vector6, most_passive> twists;
-  for (std::size_t k = 0; k < leg.passive.size(); ++k)
-    twists[k] = freedom_twist(std::get<PlacedJoint>(placed.parts[leg.passive[k].first]), leg.passive[k].second, p_WT);
-  carried_by(twists, leg.passive.size(), length, leg.N);
+  leg.twists.resize(6, std::ssize(leg.passive));
+  for (Eigen::Index k = 0; k < leg.twists.cols(); ++k) {
+    const auto& [part, index] = nth(leg.passive, k);
+    leg.twists.col(k) = freedom_twist(std::get<PlacedJoint>(placed.parts[part]), index, p_WT);
+  }
+  carried_by(leg.twists, length, leg.N);
   const Eigen::Index n = leg.N.cols();
   leg.members_A.setZero(n, n);
   leg.expansion.setZero();
@@ -263,15 +265,6 @@ double PoseSweep::energy() const {
     for (const Freedom& f : leg.springs) sum += stored_energy(f.spring, f.force);
   }
   return sum;
-}
-
-Matrix6X PoseSweep::passive_twists(const Configuration& c, std::size_t leg) const {
-  const Leg& l = legs_[leg];
-  Matrix6X out(6, std::ssize(l.passive));
-  for (std::size_t k = 0; k < l.passive.size(); ++k)
-    out.col(as_index(k)) =
-        freedom_twist(std::get<PlacedJoint>(c.legs[leg].parts[l.passive[k].first]), l.passive[k].second, c.pose.p_WT);
-  return out;
 }
 
 const std::vector<Matrix6>& PoseSweep::derivatives() {

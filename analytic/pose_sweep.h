@@ -49,7 +49,7 @@ class PoseSweep {
   Matrix6 leg_stiffness(std::size_t leg) const;
   double energy() const;
   /// Twists at T of a leg's passive joints (columns).
-  Matrix6X passive_twists(const Configuration&, std::size_t leg) const;
+  void find_passive_twists(std::size_t leg, Matrix6X& out) const { out = legs_[leg].twists; }
 
   struct Part {
     std::size_t leg;  ///< from 0
@@ -64,6 +64,7 @@ class PoseSweep {
   const std::vector<Matrix6>& derivatives();
 
  private:
+  static constexpr std::size_t most_passive = 12;  // joints of a leg
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
   using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
@@ -83,7 +84,8 @@ class PoseSweep {
     std::vector<Flexible> members;
     std::vector<Freedom> springs;
     std::vector<std::pair<std::size_t, std::size_t>> passive;
-    Vector3 expansion = Vector3::Zero();  // per kelvin, of the end against the start
+    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, most_passive> twists;  // of the passive joints, at T
+    Vector3 expansion = Vector3::Zero();                        // per kelvin, of the end against the start
     Columns N;
     Small members_A, A, inverse;  // of the members; of all
     Numbers lambda;

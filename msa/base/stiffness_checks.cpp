@@ -55,16 +55,19 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
   const std::string negative = negative_eigenvalue((K + K.transpose()) / 2, tolerance);
   out.positive = negative.empty();
   out.failure += negative;
+  const Vector6 per_length = weights(length).cwiseInverse();
   for (const LegStiffness& leg : legs) {
-    const Matrix6 K_c = weighed(leg.K, length);
-    const double leg_scale = K_c.cwiseAbs().maxCoeff();
     for (Eigen::Index j = 0; j < leg.passive_twists.cols(); ++j) {
       const Vector6 twist = weights(length).cwiseProduct(leg.passive_twists.col(j));
-      const double resisted = (K_c * twist).cwiseAbs().maxCoeff();
-      if (resisted <= tolerance * std::max(leg_scale, scale) * twist.norm()) continue;
+      const Vector6 resists = per_length.cwiseProduct(leg.K * leg.passive_twists.col(j));
+      const double bound = tolerance * scale, size = twist.norm();
+      if (resists.squaredNorm() <= bound * bound * twist.squaredNorm()) continue;
+      const double resisted = resists.cwiseAbs().maxCoeff();
+      const double leg_scale = weighed(leg.K, length).cwiseAbs().maxCoeff();
+      if (resisted <= tolerance * std::max(leg_scale, scale) * size) continue;
       if (out.passive_joints_free)
         out.failure += fmt::format("K_c J_q = 0 fails: {} resists passive freedom {} with {:.3g} of its stiffness; ",
-                                   leg.name, j + 1, resisted / (leg_scale * twist.norm()));
+                                   leg.name, j + 1, resisted / (leg_scale * size));
       out.passive_joints_free = false;
     }
   }

@@ -88,6 +88,18 @@ TEST_P(EverySpring, StartingTangentIsTheOneAtThatForce) {
   EXPECT_NEAR(tangent_at_force(GetParam(), f), tangent(GetParam(), d), 1e-12 * tangent(GetParam(), d));
 }
 
+TEST_P(EverySpring, YieldingIsElongationAndTangentBesideAnyPreload) {
+  if (jumps(GetParam())) GTEST_SKIP() << "at a jump the force is known, not the elongation";
+  for (const double P : {0.0, 7.0, -3.0}) {
+    const SpringLaw law = preloaded(GetParam(), P);
+    for (const double f : {-40.0, 1.0, 90.0}) {
+      const Yielding y = yielding(law, f);
+      EXPECT_EQ(y.elongation, elongation(law, f));
+      EXPECT_NEAR(y.stiffness, tangent(law, y.elongation), 1e-12 * y.stiffness);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Family, EverySpring,
                          ::testing::Values(SpringLaw{LinearSpring{3e5}}, SpringLaw{PowerSpring{1e9, 1.5}},
                                            SpringLaw{PowerSpring{1e8, 1.1}},

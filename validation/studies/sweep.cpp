@@ -63,10 +63,10 @@ theories::Answer Sweep::answer(std::size_t theory, const Vector6& F_T_W) {
 void solve_many(const Mechanism& m, const ManyPoses& in, const theories::Theories& theories,
                 std::span<const ManyAnswers> out, const parallel::Work& work) {
   require_rows(in);
-  const std::size_t n = in.poses_mm_deg.size() / 6, chunk = std::clamp<std::size_t>(n / 64, 4, 1024);
+  const std::size_t n = in.poses_mm_deg.size() / 6, chunk = std::clamp<std::size_t>(n / 64, 16, 1024);
   const bool one_load = in.loads_N_Nmm.size() == 6;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto one = [&](Sweep& sweep, std::size_t i) {
+  const auto one = [&](Sweep& sweep, std::vector<theories::Answer>& answers, std::size_t i) {
     const auto stands = outcome_of<ModelError>([&] { return &sweep.at(row_of(in.poses_mm_deg, i)); });
     if (!stands) {
       if (!in.keep_unreachable) throw ModelError(fmt::format("pose {}: {}", i, stands.why), stands.cause);
@@ -74,7 +74,7 @@ void solve_many(const Mechanism& m, const ManyPoses& in, const theories::Theorie
       return;
     }
     const Vector6 load = wrench_from_mm(row_of(in.loads_N_Nmm, one_load ? 0 : i));
-    std::vector<theories::Answer> answers;
+    answers.clear();
     for (std::size_t t = 0; t < theories.size(); ++t) answers.push_back(sweep.answer(t, load));
     theories::require_agreement(theories, answers, load, **stands, m.name);
     for (std::size_t t = 0; t < theories.size(); ++t)
@@ -86,7 +86,9 @@ void solve_many(const Mechanism& m, const ManyPoses& in, const theories::Theorie
   parallel::for_each_case((n + chunk - 1) / chunk, 1, work.threads,
                           [&](std::size_t k) {
                             Sweep sweep(m, theories);
-                            for (std::size_t i = k * chunk; i < std::min(n, (k + 1) * chunk); ++i) one(sweep, i);
+                            std::vector<theories::Answer> answers;
+                            for (std::size_t i = k * chunk; i < std::min(n, (k + 1) * chunk); ++i)
+                              one(sweep, answers, i);
                           },
                           work.progress ? std::function<void(std::size_t)>(told) : nullptr);
 }

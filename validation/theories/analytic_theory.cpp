@@ -61,7 +61,7 @@ analytic::PoseSweep* AnalyticAt::sweep() {
   if (!sweep_) return nullptr;
   if (std::exchange(sweep_here_, true)) return &*sweep_;
   sweep_->at(c);
-  for (std::size_t i = 0; i < legs_.size(); ++i) legs_[i].passive_twists = sweep_->passive_twists(c, i);
+  for (std::size_t i = 0; i < legs_.size(); ++i) sweep_->find_passive_twists(i, legs_[i].passive_twists);
   return &*sweep_;
 }
 

@@ -63,7 +63,7 @@ frame::MsaSweep* MsaAt::sweep() {
   if (!sweep_) return nullptr;
   if (std::exchange(sweep_here_, true)) return &*sweep_;
   sweep_->at(c);
-  for (std::size_t i = 0; i < legs_.size(); ++i) legs_[i].passive_twists = sweep_->passive_twists(c, i);
+  for (std::size_t i = 0; i < legs_.size(); ++i) sweep_->find_passive_twists(c, i, legs_[i].passive_twists);
   return &*sweep_;
 }
 

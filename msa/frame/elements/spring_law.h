@@ -27,7 +27,8 @@ struct PowerSpring {
   double force(double d) const { return std::copysign(k * std::pow(std::abs(d) / unit, n), d); }
   double tangent(double d) const { return n * k / unit * std::pow(std::abs(d) / unit, n - 1); }
   double energy(double d) const { return k * unit * std::pow(std::abs(d) / unit, n + 1) / (n + 1); }
-  double at_force(double f) const { return tangent(elongation(f)); }
+  double at_force(double f) const { return at_force(f, elongation(f)); }
+  double at_force(double f, double d) const { return d == 0 ? tangent(0) : n * f / d; }
   double elongation(double f) const { return std::copysign(unit * std::pow(std::abs(f) / k, 1 / n), f); }
 };
 
@@ -39,6 +40,7 @@ struct HardeningSpring {
   double tangent(double d) const { return k * (1 + 3 * square(d)); }
   double energy(double d) const { return k * d * d / 2 * (1 + square(d) / 2); }
   double at_force(double f) const { return tangent(elongation(f)); }
+  double at_force(double, double d) const { return tangent(d); }
   double elongation(double f) const {
     // Both starts lie beyond the root of a function that is convex there: Newton comes down on it.
     const double size = std::abs(f);
@@ -120,6 +122,21 @@ inline double tangent_at_force(const SpringLaw& law, double f) {
 /// δ when the force f is added to the preload.
 inline double elongation(const SpringLaw& law, double f) {
   return std::visit([&](const auto& l) { return l.elongation(f + law.preload) - law.at_rest; }, law);
+}
+/// The same with the tangent stiffness there. A law that finds the stiffness from δ has at_force(f, δ).
+struct Yielding {
+  double elongation, stiffness;
+};
+inline Yielding yielding(const SpringLaw& law, double f) {
+  return std::visit(
+      [&](const auto& l) -> Yielding {
+        const double whole = f + law.preload, d = l.elongation(whole);
+        if constexpr (requires { l.at_force(whole, d); })
+          return {d - law.at_rest, l.at_force(whole, d)};
+        else
+          return {d - law.at_rest, l.at_force(whole)};
+      },
+      law);
 }
 /// Whether the stiffness does not depend on the load.
 inline bool is_linear(const SpringLaw& law) {

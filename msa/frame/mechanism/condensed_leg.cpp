@@ -36,13 +36,15 @@ void move_to(const Vector3& point, Vector3& at, Matrix6& K, Columns& G) {
   G.template bottomRows<3>() += B.transpose().lazyProduct(G.template topRows<3>());
 }
 
+/// Of a symmetric K.
 Matrix6 turned(const Matrix3& R, const Matrix6& K) {
   Matrix6 out;
-  for (Eigen::Index j = 0; j < 6; j += 3)
-    for (Eigen::Index i = 0; i < 6; i += 3) {
-      const Matrix3 once = R.lazyProduct(K.block<3, 3>(i, j));
-      out.block<3, 3>(i, j) = once.lazyProduct(R.transpose());
-    }
+  const auto turn = [&](Eigen::Index i, Eigen::Index j) {
+    const Matrix3 once = R.lazyProduct(K.block<3, 3>(i, j));
+    out.block<3, 3>(i, j) = once.lazyProduct(R.transpose());
+  };
+  turn(0, 0), turn(3, 0), turn(3, 3);
+  out.topRightCorner<3, 3>() = out.bottomLeftCorner<3, 3>().transpose();
   return out;
 }
 
@@ -55,12 +57,53 @@ Columns turned(const Matrix3& R, const Columns& w) {
   return out;
 }
 
-/// H⁻¹ w column by column: several columns at once Eigen packs as for large matrices.
-template <class Matrix, class Columns>
-Columns solved(const Eigen::LLT<Matrix>& H, Columns w) {
-  for (Eigen::Index i = 0; i < w.cols(); ++i) w.col(i) = H.solve(w.col(i));
-  return w;
-}
+/// H = L D Lᵀ of a positive definite H, without pivots, for columns that are solved side by side: Eigen packs several
+/// columns as it does for large matrices, and divides in each.
+class Factored {
+ public:
+  explicit Factored(const Matrix6& H) {
+    for (Eigen::Index j = 0; j < 6; ++j) {
+      double along[6], pivot = H(j, j);
+      for (Eigen::Index k = 0; k < j; ++k) {
+        along[k] = L_(j, k) * D_[k];
+        pivot -= along[k] * L_(j, k);
+      }
+      positive_ = positive_ && pivot > 0;
+      D_[j] = pivot;
+      inverse_[j] = 1 / pivot;
+      for (Eigen::Index i = j + 1; i < 6; ++i) {
+        double rest = H(i, j);
+        for (Eigen::Index k = 0; k < j; ++k) rest -= L_(i, k) * along[k];
+        L_(i, j) = rest * inverse_[j];
+      }
+    }
+  }
+  bool positive() const { return positive_; }
+
+  /// H⁻¹ w.
+  Matrix6 solve(const Matrix6& w) const { return solved(Eigen::Matrix<double, 6, 6, Eigen::RowMajor>(w)); }
+  template <class Columns>
+  Columns solve_each(Columns w) const {
+    for (Eigen::Index i = 0; i < w.cols(); ++i) w.col(i) = solved(Vector6(w.col(i)));
+    return w;
+  }
+
+ private:
+  template <class Rows>
+  Rows solved(Rows w) const {
+    for (Eigen::Index i = 1; i < 6; ++i)
+      for (Eigen::Index j = 0; j < i; ++j) w.row(i) -= L_(i, j) * w.row(j);
+    for (Eigen::Index i = 6; i-- > 0;) {
+      w.row(i) *= inverse_[i];
+      for (Eigen::Index j = i + 1; j < 6; ++j) w.row(i) -= L_(j, i) * w.row(j);
+    }
+    return w;
+  }
+
+  bool positive_ = true;
+  Matrix6 L_;  // below its diagonal
+  double D_[6], inverse_[6];
+};
 
 }  // namespace
 
@@ -155,10 +198,10 @@ bool CondensedLeg::pass(Member& member, Behind& now, bool first) const {
     K = k.bottomRightCorner<6, 6>() + k.bottomLeftCorner<6, 6>().lazyProduct(member.back);
   } else {
     const Matrix6 behind = turned(member.R_WM.transpose(), now.K);
-    const Eigen::LLT<Matrix6> llt(k.topLeftCorner<6, 6>() + behind);
-    if (llt.info() != Eigen::Success) return false;
-    member.back = -solved(llt, Matrix6(k.topRightCorner<6, 6>()));
-    member.back_springs = -solved(llt, G);
+    const Factored M(k.topLeftCorner<6, 6>() + behind);
+    if (!M.positive()) return false;
+    member.back = -M.solve(k.topRightCorner<6, 6>());
+    member.back_springs = -M.solve_each(G);
     Matrix6 pulls = behind.lazyProduct(member.back);
     const double length = (member.p_W_end - member.p_W_start).norm();
     pulls.row(4) += length * pulls.row(2);
@@ -312,15 +355,19 @@ CondensedLeg::LegForces CondensedLeg::follow(const Vector6& d_T) const {
   return out;
 }
 
-Matrix6X CondensedLeg::passive_twists(const PlacedLeg& placed, const Vector3& p_WT) const {
-  Matrix6X out(6, 0);
-  for (const Step& step : steps_)
-    for (const Freedom& f : step.freedoms)
-      if (f.kept < 0 && f.k == 0) {
-        out.conservativeResize(6, out.cols() + 1);
-        out.rightCols<1>() = motion(std::get<PlacedJoint>(placed.parts[step.part]), f.index, p_WT);
-      }
-  return out;
+void CondensedLeg::find_passive_twists(const PlacedLeg& placed, const Vector3& p_WT, Matrix6X& out) const {
+  Eigen::Index count = 0;
+  const auto for_each_passive = [&](const auto& f) {
+    for (const Step& step : steps_)
+      for (const Freedom& freedom : step.freedoms)
+        if (freedom.kept < 0 && freedom.k == 0) f(step.part, freedom.index);
+  };
+  for_each_passive([&](std::size_t, std::size_t) { ++count; });
+  out.resize(6, count);
+  count = 0;
+  for_each_passive([&](std::size_t part, std::size_t index) {
+    out.col(count++) = motion(std::get<PlacedJoint>(placed.parts[part]), index, p_WT);
+  });
 }
 
 }  // namespace deflect::frame

@@ -64,7 +64,7 @@ class CondensedLeg {
   LegForces follow(const Vector6& d) const;
 
   /// Twists at T of the leg's passive joints (columns).
-  Matrix6X passive_twists(const PlacedLeg&, const Vector3& p_WT) const;
+  void find_passive_twists(const PlacedLeg&, const Vector3& p_WT, Matrix6X& out) const;
 
  private:
   static constexpr int most = 12;

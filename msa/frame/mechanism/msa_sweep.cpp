@@ -133,8 +133,8 @@ double MsaSweep::settle() {
   double change = 0;
   for (CondensedLeg& leg : legs_)
     for (CondensedLeg::Spring& spring : leg.springs()) {
-      const double at = frame::elongation(spring.law, spring.force);
-      spring.k = std::visit([&](const auto& l) { return l.at_force(spring.force + spring.law.preload); }, spring.law);
+      const auto [at, stiffness] = yielding(spring.law, spring.force);
+      spring.k = stiffness;
       if (!(spring.k > 0) || !std::isfinite(spring.k)) return INFINITY;
       spring.s = spring.force - spring.k * at;
       change = std::max(change, spring.k * std::abs(spring.elongation - at));
@@ -142,8 +142,8 @@ double MsaSweep::settle() {
   return change;
 }
 
-Matrix6X MsaSweep::passive_twists(const Configuration& c, std::size_t leg) const {
-  return legs_[leg].passive_twists(c.legs[leg], c.pose.p_WT);
+void MsaSweep::find_passive_twists(const Configuration& c, std::size_t leg, Matrix6X& out) const {
+  legs_[leg].find_passive_twists(c.legs[leg], c.pose.p_WT, out);
 }
 
 }  // namespace deflect::frame

@@ -37,7 +37,7 @@ class MsaSweep {
   const Vector6& reaction() const { return reaction_; }
   double energy() const { return energy_; }
   /// Twists at T of a leg's passive joints (columns).
-  Matrix6X passive_twists(const Configuration&, std::size_t leg) const;
+  void find_passive_twists(const Configuration&, std::size_t leg, Matrix6X& out) const;
   int iterations() const { return iterations_; }  ///< of the last solve; 1 where all springs are linear
 
  private:
