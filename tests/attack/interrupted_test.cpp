@@ -106,21 +106,27 @@ TEST_P(Interrupted, AFullDiskIsToldAndLeavesNothing) {
   }
 }
 
-// Killed again and again, a map that keeps a journal goes on where it stood and ends with the same bytes.
-TEST(InterruptedMap, GoesOnWhereItStood) {
-  const test::Folder folder;
-  const auto map = [&](const char* before, const char* options) {
-    return test::command(fmt::format("cd '{}' && {} '{}' map tripteron --n 17 --threads 1 {}", (folder / ".").string(),
-                                     before, test::program(), options));
+/// Work that keeps a journal with --resume; most of its time goes into what it keeps.
+constexpr Work long_works[] = {
+    {"map", "map tripteron --n 17 --threads 1", "out.json"},
+    {"diagnose", "diagnose 3-rrr data.csv --bootstrap 400000 --threads 1", "out.json"},
+};
+
+using InterruptedLong = Interrupted;
+
+// Killed again and again, work that keeps a journal goes on where it stood and ends with the same bytes.
+TEST_P(InterruptedLong, GoesOnWhereItStood) {
+  const auto work = [&](const std::string& before, const char* options) {
+    return run(fmt::format("{} '{}' {} {}", before, test::program(), GetParam().arguments, options));
   };
-  const test::Run whole = map("", "--json whole.json");
+  const test::Run whole = work("", "--json whole.json");
   ASSERT_EQ(whole.code, 0) << whole.out;
   const auto start = std::chrono::steady_clock::now();
-  map("", "--resume journal --json kept.json");
+  work("", "--resume journal --json kept.json");
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_EQ(test::contents(folder / "kept.json"), test::contents(folder / "whole.json"));
   Dice dice(21);
-  const std::filesystem::path journal = folder / "journal", out = folder / "out.json";
+  const std::filesystem::path journal = folder / "journal", out = folder / GetParam().file;
   const unsigned moments = std::max(usual_moments, count_on_demand());
   unsigned went_on = 0;
   for (unsigned i = 0; i < moments; ++i) {
@@ -134,15 +140,15 @@ TEST(InterruptedMap, GoesOnWhereItStood) {
       // Early at first, so that it takes several runs however busy the computer is.
       const double at = seconds * (dice.real(0.1, 0.5) + 0.02 * tries);
       const std::string timeout = fmt::format("timeout -s {} {:.3f}", dice.chance(0.5) ? "KILL" : "INT", at);
-      said = map(timeout.c_str(), "--resume journal --json out.json").out;
+      said = work(timeout, "--resume journal --json out.json").out;
     }
     ASSERT_TRUE(std::filesystem::exists(out)) << said;
     EXPECT_EQ(test::contents(out), test::contents(folder / "whole.json"));
-    map("", "--resume journal --json out.json");  // where it was killed behind its last file
+    work("", "--resume journal --json out.json");  // where it was killed behind its last file
     EXPECT_FALSE(std::filesystem::exists(journal));
     std::filesystem::remove(out);
   }
-  EXPECT_GT(went_on, 0u) << "no run was interrupted twice between its first and its last pose";
+  EXPECT_GT(went_on, 0u) << "no run was interrupted twice between its first and its last case";
 }
 
 TEST(InterruptedMap, IsNotContinuedByAnother) {
@@ -164,8 +170,9 @@ TEST(InterruptedMap, IsNotContinuedByAnother) {
   EXPECT_FALSE(std::filesystem::exists(folder / "journal"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Work, Interrupted, ::testing::ValuesIn(works),
-                         [](const auto& each) { return std::string(each.param.name); });
+const auto name_of = [](const auto& each) { return std::string(each.param.name); };
+INSTANTIATE_TEST_SUITE_P(Work, Interrupted, ::testing::ValuesIn(works), name_of);
+INSTANTIATE_TEST_SUITE_P(Work, InterruptedLong, ::testing::ValuesIn(long_works), name_of);
 
 }  // namespace
 }  // namespace deflect::attack

@@ -7,8 +7,8 @@
 
 #include "msa/base/index.h"
 #include "validation/measurement/random.h"
+#include "validation/parallel/journal.h"
 #include "validation/parallel/pack.h"
-#include "validation/parallel/shared_cases.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -68,7 +68,8 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int sets
   blocks.result = [&](std::size_t k) { return parallel::pack(as_good[k]); };
   blocks.take = [&](std::size_t k, const std::string& bytes) { as_good[k] = parallel::unpack<int>(bytes); };
   const auto told = [&](std::size_t done) { counted(done, as_good.size()); };
-  parallel::for_each_case(blocks, work.ranks, work.threads, counted ? std::function<void(std::size_t)>(told) : nullptr);
+  parallel::for_each_case(blocks, work.journal, 0, work.ranks, work.threads,
+                          counted ? std::function<void(std::size_t)>(told) : nullptr);
   double chance = (std::accumulate(as_good.begin(), as_good.end(), 0.0) + 1) / (sets_drawn + 1.0);
   if (work.ranks) chance = parallel::unpack<double>(work.ranks->meet("", parallel::pack(chance)).said);
   return chance;

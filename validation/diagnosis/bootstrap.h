@@ -15,7 +15,8 @@ using Counted = std::function<void(std::size_t done, std::size_t all)>;
 
 /// Probability that, with nothing missing, some effect reaches a p-value of at most `least_p`, from `sets` simulated
 /// data sets. The whitened residual is then r ~ N(0, 1), and only its components along the signatures matter, z = Bᵀr ~
-/// N(0, BᵀB). The result does not depend on the number of threads and ranks. Its resolution and least value are 1/(sets
+/// N(0, BᵀB). The result does not depend on the number of threads and ranks, nor on which of the sets a journal held.
+/// Its resolution and least value are 1/(sets
 /// + 1).
 double chance_of_any(const std::vector<Signature>&, double least_p, int sets, const parallel::Work&,
                      const Counted& = {});

@@ -5,17 +5,19 @@
 
 namespace deflect::parallel {
 
+class Journal;
 class Ranks;
 
 struct Work {
   int threads = 0;         ///< 0: as many as the machine has
   Ranks* ranks = nullptr;  ///< processes that share it; none: this one alone
   Told progress = {};
+  Journal* journal = nullptr;  ///< where finished cases are kept for the next run; none: nowhere
 
   /// The same for a part of it, from … to of the whole.
-  Work part(double from, double to) const { return {threads, ranks, part_of(progress, from, to)}; }
+  Work part(double from, double to) const { return {threads, ranks, part_of(progress, from, to), journal}; }
   /// The same without a word.
-  Work quiet() const { return {threads, ranks, {}}; }
+  Work quiet() const { return {threads, ranks, {}, journal}; }
 };
 
 /// In this thread alone, without a word: of work that is done beside other work.

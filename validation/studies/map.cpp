@@ -12,6 +12,7 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "msa/mechanism/configuration.h"
+#include "validation/parallel/journal.h"
 #include "validation/parallel/pack.h"
 #include "validation/studies/sweep.h"
 #include "validation/theories/agreement.h"
@@ -218,8 +219,7 @@ SlideWords slide_words(const Mechanism& m) {
   return slides ? SlideWords{"slide", "slide position"} : SlideWords();
 }
 
-StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options, const parallel::Work& work,
-                           parallel::Journal* journal) {
+StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options, const parallel::Work& work) {
   check(options);
   if (work.threads < 0) throw InputError(fmt::format("{} threads: 0 (all) or more are wanted", work.threads));
   StiffnessMap map{m.name, slide_words(m), options, std::vector<MapPose>(options.grid.size())};
@@ -244,7 +244,7 @@ StiffnessMap map_stiffness(const Mechanism& m, const MapOptions& options, const 
   chunks.take = [&](std::size_t k, const std::string& bytes) {
     std::ranges::move(parallel::unpack<std::vector<MapPose>>(bytes), of_chunk(k).begin());
   };
-  parallel::for_each_case(chunks, journal, 0, work.ranks, work.threads,
+  parallel::for_each_case(chunks, work.journal, 0, work.ranks, work.threads,
                           work.progress ? std::function<void(std::size_t)>(progress) : nullptr);
   return map;
 }

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "msa/mechanism/description.h"
-#include "validation/parallel/journal.h"
 #include "validation/parallel/work.h"
 #include "validation/studies/workspace.h"
 #include "validation/theories/theory.h"
@@ -91,11 +90,9 @@ double weighing_length_mm(const Mechanism&);
 
 /// Members are one element each, which is exact at its nodes. At every pose, under every load and by each theory asked
 /// for the checks of answer.h apply. The result has the same bits for any number of threads and ranks; of these the
-/// first has it whole, the others their own poses. A pose that the
+/// first has it whole, the others their own poses, nor on which of the poses a journal held. A pose that the
 /// kinematics refuse is kept with the reason; every other failure ends the map with the error of the first pose in the
-/// grid's order that has one: ModelError, NumericalError. InputError on options that no map can have. `journal`: poses
-/// that it holds are taken from it, the others are kept there as they are finished.
-StiffnessMap map_stiffness(const Mechanism&, const MapOptions&, const parallel::Work& = {},
-                           parallel::Journal* journal = nullptr);
+/// grid's order that has one: ModelError, NumericalError. InputError on options that no map can have.
+StiffnessMap map_stiffness(const Mechanism&, const MapOptions&, const parallel::Work& = {});
 
 }  // namespace deflect::studies

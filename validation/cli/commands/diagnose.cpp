@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "msa/base/error.h"
 #include "validation/cli/command.h"
 #include "validation/cli/commands/effects.h"
@@ -8,6 +10,7 @@
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/parallel/journal.h"
 #include "validation/report/diagnosis_results.h"
 
 namespace deflect::cli {
@@ -16,7 +19,7 @@ namespace {
 struct DiagnoseArguments {
   std::string device, json, report;
   std::vector<std::string> data, files;
-  std::string sigma_mm, sigma_rad;
+  std::string sigma_mm, sigma_rad, resume;
   bool as_recorded = false;
   double bootstrap = 1999, threads = 0;
 };
@@ -33,8 +36,10 @@ void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   o.comparison.as_recorded = a.as_recorded;
   o.bootstrap_sets = whole("--bootstrap", a.bootstrap, 99, 1e9);
   const int threads = parse_threads(a.threads, ranks);
+  std::optional<parallel::Journal> journal;
+  if (!a.resume.empty()) journal.emplace(a.resume, identity_of_run(), ranks);
   const diagnosis::Diagnosis d = timed_with_progress("diagnose: fit and weigh every effect", [&](const auto& told) {
-    return diagnosis::diagnose(m, data, effects, o, {threads, ranks, told});
+    return diagnosis::diagnose(m, data, effects, o, {threads, ranks, told, journal ? &*journal : nullptr});
   });
   if (ranks && !ranks->first()) return;
   for (const effects::PlacedEffect& found : d.missing) tell("found: {}", diagnosis::name_of(found));
@@ -43,6 +48,7 @@ void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   if (!a.report.empty())
     write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, threads,
                               {{"diagnose", report::diagnosis_json(d)}});
+  if (journal) journal->remove();
 }
 
 }  // namespace
@@ -70,6 +76,10 @@ Command diagnose_command() {
         "least 99)",
         &a->bootstrap},
        {"--threads", "N", "threads per process (default 0: all cores); they do not change the result", &a->threads},
+       {"--resume", "FILE",
+        "keep finished sets of --bootstrap in FILE: the same command goes on there after Ctrl-C or a crash; removed at "
+        "the end",
+        &a->resume},
        {"--json", "FILE", "write the result", &a->json},
        report_option(&a->report)},
       [a](parallel::Ranks* ranks) { run(*a, ranks); }};

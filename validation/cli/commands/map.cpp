@@ -116,7 +116,7 @@ void run(const MapArguments& a, parallel::Ranks* ranks) {
     const Step step(fmt::format("map: {} poses, {}", poses, theories::titles_of(o.theories)));
     parallel::Progress progress(poses, "poses", progress_stream());
     const auto told = [&](double share) { progress.update(as_size(std::lround(share * static_cast<double>(poses)))); };
-    map = studies::map_stiffness(m, o, {threads, ranks, told}, journal ? &*journal : nullptr);
+    map = studies::map_stiffness(m, o, {threads, ranks, told, journal ? &*journal : nullptr});
   }
   if (ranks && !ranks->first()) return;
   require_reached(map);
