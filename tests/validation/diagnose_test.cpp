@@ -94,9 +94,12 @@ TEST(Diagnose, NamesTheEffectWithItsValueAndTheErrorFallsToTheNoise) {
 }
 
 TEST(Diagnose, FindsNothingInAHealthyMachine) {
-  const Diagnosis d = diagnose(ideal(), measured(ideal(), 12), test::all_effects());
+  const Measurements data = measured(ideal(), 12);
+  const Diagnosis d = diagnose(ideal(), data, test::all_effects());
   EXPECT_EQ(d.verdict, Verdict::nothing_missing);
   EXPECT_TRUE(d.missing.empty());
+  // What is left in the one's sentence is what is left in the other's: both know the deformed shape.
+  EXPECT_NEAR(d.baseline.rmse, compare::compare(ideal(), data).kept_rmse, 1e-9 * d.baseline.rmse);
   EXPECT_GT(d.probability_nothing, 2 * d.candidates.front().probability);
   EXPECT_NEAR(total(d), 1, 1e-12);
 }

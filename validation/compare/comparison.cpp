@@ -155,7 +155,7 @@ class Comparing {
     c.set_aside.clear();
     for (std::size_t i = 0; i < aside_.size(); ++i)
       if (aside_[i]) c.set_aside.push_back(s.data->readings[i].line);
-    c.kept_rmse = rms_of_kept(s.values, c.residual, aside_);
+    c.kept_rmse = rms_of_kept(s.values, left_, aside_);
     const double chi2 = uncertainty_->inner(c.residual, c.residual)(0, 0);
     const auto freedoms = static_cast<double>(uncertainty_->count());
     c.chi2_per_dof = chi2 / freedoms;
