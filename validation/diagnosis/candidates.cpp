@@ -10,6 +10,7 @@
 
 #include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/diagnosis/fit_problem.h"
 #include "validation/diagnosis/pairs.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
@@ -72,28 +73,26 @@ constexpr double far_behind = 6;
 /// threads, so that the answer does not.
 constexpr std::size_t at_once = 8;
 
-/// A candidate to be fitted, and the most that ln of its class's odds can become by it.
-struct Promise {
-  std::size_t signature;
-  double most;
-};
 constexpr double certain = 1e9;
 
-/// Fits those that can still come near the best, which promise the most first. `fit_one`, given the signature and the
-/// number of threads within, returns ln of the odds found. Returns the bar that further ones must exceed.
-template <class FitOne>
-double fit_in_turn(std::vector<Promise> all, double bar, int threads, const FitOne& fit_one) {
-  std::stable_sort(all.begin(), all.end(), [](const Promise& a, const Promise& b) { return a.most > b.most; });
-  std::size_t count = 0;
-  for (std::size_t from = 0; from < all.size() && all[from].most > bar; from += count) {
-    count = std::min({std::max<std::size_t>(1, 2 * count), at_once, all.size() - from});
+/// Fits those signatures that can still come near the best, which promise the most first. `promise` returns the most
+/// that ln of the odds of a signature's class can become by its fit; it may learn from the fits so far, of which
+/// `fitted` is told. `fit_one`, given the signature and the number of threads within, returns ln of the odds found.
+/// Returns the bar that further ones must exceed.
+template <class Promise, class FitOne, class Fitted>
+double fit_in_turn(std::vector<std::size_t> all, double bar, int threads, const Promise& promise, const FitOne& fit_one,
+                   const Fitted& fitted) {
+  for (std::size_t count = 0; !all.empty();) {
+    std::map<std::size_t, double> most;
+    for (const std::size_t i : all) most[i] = promise(i);
+    std::erase_if(all, [&](std::size_t i) { return !(most[i] > bar); });
+    std::stable_sort(all.begin(), all.end(), [&](std::size_t a, std::size_t b) { return most[a] > most[b]; });
+    count = std::min({std::max<std::size_t>(1, 2 * count), at_once, all.size()});
     // Where few are fitted, one with many starts would keep one thread busy long after the others.
     const int within = count < at_once ? threads : 1;
-    std::vector<double> found(count, out_of_question);
-    parallel::for_each_case(count, 1, threads, [&](std::size_t k) {
-      if (all[from + k].most > bar) found[k] = fit_one(all[from + k].signature, within);
-    });
-    bar = std::max(bar, *std::max_element(found.begin(), found.end()) - far_behind);
+    parallel::for_each_case(count, 1, threads, [&](std::size_t k) { fit_one(all[k], within); });
+    for (std::size_t k = 0; k < count; ++k) bar = std::max(bar, fitted(all[k]) - far_behind);
+    all.erase(all.begin(), all.begin() + as_index(count));
   }
   return bar;
 }
@@ -103,9 +102,12 @@ bool wrong_way(const Signature& s, const VectorX& residual) {
   return !s.shaped && s.one_sided && s.start_along(residual) > 0;
 }
 
-/// What a fit may gain where the signature says `gain`: little more where one law at a place is nearly proportional.
-double can_gain(const Signature& s, double gain) {
-  return s.effect.effect->place && !s.shaped ? 1.1 * gain + 3 : 1.2 * gain + bent;
+constexpr double small_share = 0.05;  // of the best gain, from which a signature may hide a large effect
+
+/// Of one parameter with a value at which it vanishes: its signature is that of a small size.
+bool has_one_size(const Signature& s) {
+  const std::vector<effects::EffectParameter>& all = s.effect.effect->parameters;
+  return !s.shaped && all.size() == 1 && all.front().vanishes;
 }
 
 Fit better(Fit a, Fit b) { return b.found && (!a.found || b.chi2 < a.chi2) ? b : a; }
@@ -137,6 +139,12 @@ Candidates::Candidates(const std::vector<Signature>& all, int threads,
       priors_(shared_priors(all, classes_)),
       class_priors_(summed(priors_, classes_)) {}
 
+Candidates Candidates::in_larger_sizes() const {
+  Candidates out = *this;
+  out.larger_sizes_ = true;
+  return out;
+}
+
 double Candidates::log_odds(std::size_t i, double gain, double prior) const {
   const Signature& s = signatures_[i];
   // Of the shapes tried one in three, or so, does what the best does.
@@ -160,63 +168,151 @@ void Candidates::add_up_classes(std::vector<Candidate>& all) const {
     all[i].class_log_odds = all[i].fit.found ? most[classes_[i]] + std::log(sum[classes_[i]]) : out_of_question;
 }
 
+/// Each effect added to those that are fitted so far.
+class Candidates::Round {
+ public:
+  Round(const Candidates& all, const Observations& o, const Hypothesis& before, const Fit& so_far,
+        const std::optional<effects::EffectInstance>& known)
+      : all_(all), observations_(o), so_far_(so_far), known_(known), out_(all.signatures_.size()) {
+    const MatrixX fitted = statistics::orthonormal(so_far.signature);
+    const MatrixX proportional = statistics::orthonormal(columns_of_unshaped(before, so_far.signature));
+    for (std::size_t i = 0; i < out_.size(); ++i) {
+      const Signature& s = signature(i);
+      out_[i].hypothesis = before;
+      out_[i].hypothesis.push_back(s.effect);
+      const bool there = std::any_of(before.begin(), before.end(), [&](const auto& p) { return same(p, s.effect); });
+      allowed_.push_back(!there && own_share(s, proportional) > of_its_own);
+      said_.push_back(
+          !allowed_[i] || wrong_way(s, so_far.residual)
+              ? 0
+              : std::max(most_gain(s, so_far.residual, fitted), most_gain(s, so_far.residual, proportional)));
+      out_[i].gain = said_[i];
+      out_[i].log_odds = allowed_[i] ? all_.log_odds(i, said_[i], all_.priors_[i]) : out_of_question;
+    }
+    if (!said_.empty()) most_ = *std::max_element(said_.begin(), said_.end());
+  }
+
+  /// Fits those that can come near the best and whose odds can exceed `least`. Entries first: of the many laws at
+  /// places only those are fitted that can come near them.
+  void fit_promising(double least) {
+    std::array<std::vector<std::size_t>, 2> parts;
+    for (std::size_t i = 0; i < out_.size(); ++i)
+      if (allowed_[i] && said_[i] >= enough(signature(i)))
+        parts[signature(i).effect.effect->place ? 1 : 0].push_back(i);
+    const std::size_t count = parts[0].size() + parts[1].size();
+    std::atomic<std::size_t> done = 0;
+    const auto fit_one = [&](std::size_t i, int within) {
+      fit_from(i, guess(signature(i), so_far_.residual), within);
+      if (all_.progress_) all_.progress_(++done, count);
+    };
+    CanGain can_gain;
+    bar_ = least;
+    for (std::vector<std::size_t>& part : parts)
+      bar_ = fit_in_turn(
+          std::move(part), bar_, all_.threads_,
+          [&](std::size_t i) {
+            return is_known(i) ? certain : all_.log_odds(i, can_gain(signature(i), said_[i]), all_.class_priors_[i]);
+          },
+          fit_one,
+          [&](std::size_t i) {
+            can_gain.note(signature(i), said_[i], out_[i].gain);
+            return odds(i);
+          });
+    if (all_.progress_) all_.progress_(1, 1);
+  }
+
+  /// Fits anew, from a larger size, those that explain more in it than as they were fitted, if at all. A signature is
+  /// that of a small size: play as wide as the motion, or a support that yields until it is gone, moves the readings in
+  /// another direction than a little of it.
+  void fit_larger() {
+    std::vector<std::optional<SizedEffect>> large(out_.size());
+    parallel::for_each_case(out_.size(), 1, all_.threads_, [&](std::size_t i) {
+      if (!allowed_[i] || !has_one_size(signature(i)) || said_[i] < std::max(near_nothing, small_share * most_)) return;
+      const std::optional<VectorX> small = guess(signature(i), so_far_.residual);
+      if (small) large[i] = best_size(observations_, out_[i].hypothesis, so_far_.values, *small);
+      if (large[i] && !(large[i]->chi2 < (out_[i].fit.found ? out_[i].fit : so_far_).chi2)) large[i].reset();
+    });
+    std::vector<std::size_t> promising;
+    for (std::size_t i = 0; i < large.size(); ++i)
+      if (large[i]) promising.push_back(i);
+    fit_in_turn(
+        std::move(promising), bar_, all_.threads_,
+        [&](std::size_t i) {
+          return all_.log_odds(i, 1.5 * (so_far_.chi2 - large[i]->chi2) + bent, all_.class_priors_[i]);
+        },
+        [&](std::size_t i, int within) { fit_from(i, large[i]->value, within); },
+        [&](std::size_t i) { return odds(i); });
+  }
+
+  std::vector<Candidate>&& result() {
+    for (Candidate& c : out_) c.chi2_per_dof = (so_far_.chi2 - c.gain) / static_cast<double>(observations_.numbers());
+    all_.add_up_classes(out_);
+    return std::move(out_);
+  }
+
+ private:
+  /// What a fit may gain where the signature says so much: little more where one law at a place is nearly proportional.
+  /// A few shapes of a law that bends say less, and how much less is alike at all places of that law: once it is fitted
+  /// at one place, as much more is expected of the others.
+  class CanGain {
+   public:
+    double operator()(const Signature& s, double said) const {
+      if (!s.shaped) return s.effect.effect->place ? 1.1 * said + 3 : 1.2 * said + bent;
+      const auto of_law = times_.find(law_of(s));
+      return (of_law == times_.end() ? usual : std::max(usual, of_law->second)) * said + bent;
+    }
+
+    void note(const Signature& s, double said, double gained) {
+      if (!s.shaped || said < near_nothing) return;
+      double& most = times_[law_of(s)];
+      most = std::max(most, (gained - bent) / said);
+    }
+
+   private:
+    static constexpr double usual = 1.2;
+    static std::string law_of(const Signature& s) {
+      const std::string& name = s.effect.effect->name;
+      return name.substr(0, name.find('@'));
+    }
+    std::map<std::string, double> times_;
+  };
+
+  const Signature& signature(std::size_t i) const { return all_.signatures_[i]; }
+  bool is_known(std::size_t i) const { return known_ && same(*known_, signature(i).effect); }
+  double odds(std::size_t i) const { return out_[i].fit.found ? out_[i].log_odds : out_of_question; }
+
+  /// What a signature must say that could be gained. A few directions say less of an effect that parameters shape than
+  /// of one that is proportional to its size.
+  double enough(const Signature& s) const { return std::max(near_nothing, (s.shaped ? 0.1 : 0.5) * most_ - hopeless); }
+
+  void fit_from(std::size_t i, const std::optional<VectorX>& start, int within) {
+    Candidate& c = out_[i];
+    Fit now = fit(observations_, c.hypothesis, so_far_.values, start, within);
+    c.fit = c.fit.found ? better(std::move(c.fit), std::move(now)) : std::move(now);
+    if (is_known(i)) c.fit = better(std::move(c.fit), fit(observations_, c.hypothesis, so_far_.values, known_->values));
+    if (signature(i).effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))
+      c.fit = not_found(fmt::format("its {} runs to the end of what it can be, {:g}",
+                                    c.added().effect->parameters.front().name, c.fit.values.tail<1>()(0)));
+    c.gain = c.fit.found ? std::max(0.0, so_far_.chi2 - c.fit.chi2) : 0;
+    c.log_odds = all_.log_odds(i, c.gain, all_.priors_[i]);
+  }
+
+  const Candidates& all_;
+  const Observations& observations_;
+  const Fit& so_far_;
+  const std::optional<effects::EffectInstance>& known_;
+  std::vector<Candidate> out_;
+  std::vector<char> allowed_;
+  std::vector<double> said_;  // gains in χ² that the signatures promise
+  double most_ = 0, bar_ = 0;
+};
+
 std::vector<Candidate> Candidates::beside(const Observations& observations, const Hypothesis& before, const Fit& so_far,
                                           double least, const std::optional<effects::EffectInstance>& known) const {
-  std::vector<Candidate> out(signatures_.size());
-  std::vector<char> allowed(out.size(), 1);
-  const MatrixX fitted = statistics::orthonormal(so_far.signature);
-  const MatrixX proportional = statistics::orthonormal(columns_of_unshaped(before, so_far.signature));
-  double best = 0;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const Signature& s = signatures_[i];
-    Candidate& c = out[i];
-    c.hypothesis = before;
-    c.hypothesis.push_back(s.effect);
-    const bool there = std::any_of(before.begin(), before.end(), [&](const auto& p) { return same(p, s.effect); });
-    allowed[i] = !there && own_share(s, proportional) > of_its_own;
-    if (allowed[i] && !wrong_way(s, so_far.residual))
-      c.gain = std::max(most_gain(s, so_far.residual, fitted), most_gain(s, so_far.residual, proportional));
-    best = std::max(best, c.gain);
-  }
-  // A few directions say less of an effect that parameters shape than of one that is proportional to its size.
-  const auto enough = [best](const Signature& s) {
-    return std::max(near_nothing, (s.shaped ? 0.1 : 0.5) * best - hopeless);
-  };
-  const auto fit_one = [&](std::size_t i, int within) {
-    Candidate& c = out[i];
-    const Signature& s = signatures_[i];
-    c.fit = fit(observations, c.hypothesis, so_far.values, guess(s, so_far.residual), within);
-    if (known && same(*known, s.effect))
-      c.fit = better(std::move(c.fit), fit(observations, c.hypothesis, so_far.values, known->values));
-    if (s.effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))
-      c.fit = not_found(fmt::format("its {} runs to the end of what it can be, {:g}",
-                                    s.effect.effect->parameters.front().name, c.fit.values.tail<1>()(0)));
-    c.gain = c.fit.found ? std::max(0.0, so_far.chi2 - c.fit.chi2) : 0;
-    c.log_odds = log_odds(i, c.gain, priors_[i]);
-  };
-  // Entries first: of the many laws at places only those are fitted that can come near them.
-  std::array<std::vector<Promise>, 2> parts;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const Signature& s = signatures_[i];
-    out[i].log_odds = allowed[i] ? log_odds(i, out[i].gain, priors_[i]) : out_of_question;
-    if (!allowed[i] || out[i].gain < enough(s)) continue;
-    const bool asked_again = known && same(*known, s.effect);
-    parts[s.effect.effect->place ? 1 : 0].push_back(
-        {i, asked_again ? certain : log_odds(i, can_gain(s, out[i].gain), class_priors_[i])});
-  }
-  const std::size_t all = parts[0].size() + parts[1].size();
-  std::atomic<std::size_t> done = 0;
-  double bar = least;
-  for (std::vector<Promise>& part : parts)
-    bar = fit_in_turn(std::move(part), bar, threads_, [&](std::size_t i, int within) {
-      fit_one(i, within);
-      if (progress_) progress_(++done, all);
-      return out[i].fit.found ? out[i].log_odds : out_of_question;
-    });
-  for (Candidate& c : out) c.chi2_per_dof = (so_far.chi2 - c.gain) / static_cast<double>(observations.numbers());
-  if (progress_) progress_(1, 1);
-  add_up_classes(out);
-  return out;
+  Round round(*this, observations, before, so_far, known);
+  round.fit_promising(least);
+  if (larger_sizes_) round.fit_larger();
+  return round.result();
 }
 
 std::optional<TwoCandidates> Candidates::two_beside(const Observations& o, const Hypothesis& before, const Fit& so_far,

@@ -52,11 +52,15 @@ class Candidates {
   std::optional<TwoCandidates> two_beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                           double each) const;
 
+  /// The same, each effect also fitted from larger sizes than the one that its signature shows.
+  Candidates in_larger_sizes() const;
+
   int threads() const { return threads_; }
 
   static constexpr double prior_missing = 0.8, prior_unknown = 0.1;  ///< prior_unknown: as a share of prior_missing
 
  private:
+  class Round;
   double log_odds(std::size_t i, double gain, double prior) const;
   void add_up_classes(std::vector<Candidate>&) const;
 
@@ -67,6 +71,7 @@ class Candidates {
   std::vector<std::size_t> classes_;  ///< for each signature, the first that these data cannot distinguish from it
   /// The places of an entry share the entry's prior; the effects of one class have one share together.
   std::vector<double> priors_, class_priors_;
+  bool larger_sizes_ = false;
 };
 
 /// Adds those that could not be fitted beside what was there, and why: each once.

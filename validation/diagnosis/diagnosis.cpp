@@ -22,7 +22,8 @@ namespace {
 constexpr double alarm = 0.02;  // chance above which nothing is called missing
 constexpr double sure = 0.7;    // probability from which something unknown is there
 constexpr std::size_t quality_of = 5;
-constexpr double worth_limits = 0.01;  // probability of a candidate
+constexpr double worth_limits = 0.01;   // probability of a candidate
+constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked into
 
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
@@ -180,6 +181,37 @@ Diagnosis before_any_effect(const Observations& o, const measurement::Measuremen
   return d;
 }
 
+/// The effects that explain the data best, and what they leave.
+struct Explained {
+  Selection found;
+  std::shared_ptr<const WhitenedFamilies> patterns;  // whitened with what the effects have changed
+  LeftOver left;
+};
+
+Explained explained(const Observations& o, const std::shared_ptr<const WhitenedFamilies>& patterns,
+                    const std::vector<Signature>& all, const Candidates& candidates,
+                    const std::vector<Candidate>& first) {
+  Explained out{select(o, candidates, first), patterns, {}};
+  if (!out.found.effects.empty()) out.patterns = out.found.observations.whitened_patterns();
+  out.left = left_over(out.patterns, all, out.found.fit, candidates.threads());
+  return out;
+}
+
+/// Where effects leave something unknown that were looked for from small sizes, those that large ones explain, if these
+/// leave nothing. Exchanges the candidates for the first effect.
+void look_for_large_ones(Explained& e, Diagnosis& d, const Observations& o,
+                         const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,
+                         const Candidates& candidates, const Fit& null) {
+  if (!e.left.significant()) return;
+  const Candidates large = candidates.in_larger_sizes();
+  std::vector<Candidate> first = large.beside(o, {}, null, even_hopeless);
+  Explained again = explained(o, patterns, all, large, first);
+  if (again.left.significant()) return;
+  e = std::move(again);
+  d.candidates = std::move(first);
+  sort_candidates(d, o);
+}
+
 Verdict verdict_of(const Diagnosis& d) {
   if (d.unexplained) return Verdict::unknown_effect;
   if (d.missing.empty()) return Verdict::nothing_missing;
@@ -202,8 +234,8 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   d.detectable = detectable_sizes(all);
   const Fit null = fit_of_all(o, {}, VectorX(0));
   d.baseline = quality(o, {}, null);
-  d.candidates = candidates.beside(o, {}, null, -1e6);
-  std::shared_ptr<const WhitenedFamilies> patterns = o.whitened_patterns();
+  d.candidates = candidates.beside(o, {}, null, even_hopeless);
+  const std::shared_ptr<const WhitenedFamilies> patterns = o.whitened_patterns();
   const Discrepancy discrepancy(patterns);
   constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
   const LargerTolerances larger = larger_tolerances(o);
@@ -223,16 +255,19 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   const std::vector<Candidate> first = d.candidates;
   sort_candidates(d, o);
 
-  Selection found = missing ? select(o, candidates, first) : Selection{o, {}, null, {}, {}};
+  Explained e{{o, {}, null, {}, {}}, patterns, {}};
+  if (missing) {
+    e = explained(o, patterns, all, candidates, first);
+    look_for_large_ones(e, d, o, patterns, all, candidates, null);
+  }
+  Selection found = std::move(e.found);
   const Observations& seen = found.observations;
-  if (!found.effects.empty()) patterns = seen.whitened_patterns();
-  const LeftOver left = left_over(patterns, all, found.fit, work.threads);
-  d.unexplained = missing && left.significant();
+  d.unexplained = e.left.significant();
   if (!found.effects.empty())
     weigh(d, larger,
-          probability_of_unknown(left.log_evidence, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
+          probability_of_unknown(e.left.log_evidence, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
   if (d.unexplained) {
-    found = named_beside_unknown(patterns, all, candidates, std::move(found));
+    found = named_beside_unknown(e.patterns, all, candidates, std::move(found));
     describe_left_over(d, all, found, work.threads);
   }
   d.missing = found.effects;

@@ -20,6 +20,15 @@ double value_at(const effects::EffectParameter& p, double x) {
 
 namespace {
 
+constexpr int doublings = 7;
+
+/// So many times as far from where it vanishes; a factor on a logarithmic scale runs towards 0 or up by its logarithm.
+double times_as_large(const effects::EffectParameter& p, double small, double times) {
+  if (std::isinf(*p.vanishes)) return small / times;
+  if (p.log && *p.vanishes > 0) return *p.vanishes * std::pow(small / *p.vanishes, times);
+  return *p.vanishes + times * (small - *p.vanishes);
+}
+
 VectorX all_values(const std::vector<const effects::EffectParameter*>& parameters, const VectorX& x) {
   VectorX out(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) out(i) = value_at(*nth(parameters, i), x(i));
@@ -114,6 +123,29 @@ VectorX minimised(const FreeResidual& f, VectorX x, int evaluations) {
   search.parameters.xtol = 1e-5;
   search.minimize(x);
   return x;
+}
+
+std::optional<SizedEffect> best_size(const Observations& o, const Hypothesis& h, const VectorX& from,
+                                     const VectorX& small) {
+  const effects::EffectParameter& p = h.back().effect->parameters.front();
+  const auto best = outcome_of([&] {
+    const FitProblem problem(o, h);
+    std::optional<SizedEffect> out;
+    double last = NAN;
+    for (int k = 0; k <= doublings; ++k) {
+      const double value = std::clamp(times_as_large(p, small(0), std::exp2(k)), p.low, p.high);
+      if (value == last) break;  // at the bound
+      last = value;
+      VectorX values(from.size() + 1);
+      values << from, value;
+      const std::optional<VectorX> r = problem.residual(problem.coordinates(values));
+      if (!r) continue;
+      if (out && out->chi2 <= r->squaredNorm()) break;
+      out = SizedEffect{VectorX::Constant(1, value), r->squaredNorm()};
+    }
+    return out;
+  });
+  return best ? *best.value : std::nullopt;  // the effects may not go together in this subject
 }
 
 }  // namespace deflect::diagnosis
