@@ -85,7 +85,7 @@ class PoseSweep {
     std::vector<Freedom> springs;
     std::vector<std::pair<std::size_t, std::size_t>> passive;
     Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, most_passive> twists;  // of the passive joints, at T
-    Vector3 expansion = Vector3::Zero();                        // per kelvin, of the end against the start
+    Vector3 expansion = Vector3::Zero();                                  // per kelvin, of the end against the start
     Columns N;
     Small members_A, A, inverse;  // of the members; of all
     Numbers lambda;

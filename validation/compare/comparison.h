@@ -33,9 +33,9 @@ struct Comparison {
   std::optional<measurement::NoiseEstimate> pure_error;
   Errors all;
   std::vector<Errors> by_axis, by_pose, by_direction, by_magnitude, by_heading;
-  double kept_rmse = 0;  ///< of the readings not set aside, beside equilibrium in the deformed shape, m or rad
-  double chi2_per_dof = 0;                                   ///< given noise and tolerances
-  double p_value = 1;                                        ///< probability of so large a χ² by chance
+  double kept_rmse = 0;     ///< of the readings not set aside, beside equilibrium in the deformed shape, m or rad
+  double chi2_per_dof = 0;  ///< given noise and tolerances
+  double p_value = 1;       ///< probability of so large a χ² by chance
   double noise_and_tolerances = 0;                           ///< m: root mean square expected where nothing is missing
   double held_out = 0;                                       ///< m: rmse in cross-validation (held_out.h)
   double deformed_shape = 0;                                 ///< m: root mean square of ResidualStudy::deformed_shape
