@@ -61,6 +61,7 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
       const Vector6 twist = weights(length).cwiseProduct(leg.passive_twists.col(j));
       const Vector6 resists = per_length.cwiseProduct(leg.K * leg.passive_twists.col(j));
       const double bound = tolerance * scale, size = twist.norm();
+      // Nearly always: no entry is larger than the root of the sum of squares.
       if (resists.squaredNorm() <= bound * bound * twist.squaredNorm()) continue;
       const double resisted = resists.cwiseAbs().maxCoeff();
       const double leg_scale = weighed(leg.K, length).cwiseAbs().maxCoeff();

@@ -167,6 +167,7 @@ SETS = {
         ("pull@support.r4.uz", None, (1e-11, 1e-4), []),
         ("linear@support.l4.uz", None, (1e11, 1e5), []),
         ("clearance@support.r0.uz", None, (1e-7, 5e-3), []),
+        ("clearance@support.l0.uz", 2e-3, None, []),  # as wide as the motion
         ("factor@lfall1", None, (0.999, 0.02), []),
         ("factor@rrise0", 0.02, None, []),
         ("stiction@slide_x", None, (1e-7, 1e-3), []),

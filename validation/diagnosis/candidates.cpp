@@ -223,8 +223,9 @@ class Candidates::Round {
 
   /// Fits anew, from a larger size, those that explain more in it than as they were fitted, if at all. A signature is
   /// that of a small size: play as wide as the motion, or a support that yields until it is gone, moves the readings in
-  /// another direction than a little of it.
-  void fit_larger() {
+  /// another direction than a little of it. Returns whether one of these is the likeliest then.
+  bool fit_larger() {
+    const double before = likeliest();
     std::vector<std::optional<SizedEffect>> large(out_.size());
     parallel::for_each_case(out_.size(), 1, all_.threads_, [&](std::size_t i) {
       if (!allowed_[i] || !has_one_size(signature(i)) || said_[i] < std::max(near_nothing, small_share * most_)) return;
@@ -242,6 +243,13 @@ class Candidates::Round {
         },
         [&](std::size_t i, int within) { fit_from(i, large[i]->value, within); },
         [&](std::size_t i) { return odds(i); });
+    return likeliest() > before;
+  }
+
+  /// What was fitted before, in place of fit_promising().
+  void take(const std::vector<Candidate>& fitted) {
+    out_ = fitted;
+    bar_ = likeliest() - far_behind;
   }
 
   std::vector<Candidate>&& result() {
@@ -280,6 +288,11 @@ class Candidates::Round {
   const Signature& signature(std::size_t i) const { return all_.signatures_[i]; }
   bool is_known(std::size_t i) const { return known_ && same(*known_, signature(i).effect); }
   double odds(std::size_t i) const { return out_[i].fit.found ? out_[i].log_odds : out_of_question; }
+  double likeliest() const {
+    double most = out_of_question;
+    for (std::size_t i = 0; i < out_.size(); ++i) most = std::max(most, odds(i));
+    return most;
+  }
 
   /// What a signature must say that could be gained. A few directions say less of an effect that parameters shape than
   /// of one that is proportional to its size.
@@ -300,7 +313,7 @@ class Candidates::Round {
   const Candidates& all_;
   const Observations& observations_;
   const Fit& so_far_;
-  const std::optional<effects::EffectInstance>& known_;
+  std::optional<effects::EffectInstance> known_;
   std::vector<Candidate> out_;
   std::vector<char> allowed_;
   std::vector<double> said_;  // gains in χ² that the signatures promise
@@ -312,6 +325,15 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   Round round(*this, observations, before, so_far, known);
   round.fit_promising(least);
   if (larger_sizes_) round.fit_larger();
+  return round.result();
+}
+
+std::optional<std::vector<Candidate>> Candidates::likelier_if_larger(const Observations& observations,
+                                                                     const Hypothesis& before, const Fit& so_far,
+                                                                     const std::vector<Candidate>& fitted) const {
+  Round round(*this, observations, before, so_far, {});
+  round.take(fitted);
+  if (!round.fit_larger()) return std::nullopt;
   return round.result();
 }
 

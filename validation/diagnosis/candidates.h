@@ -52,7 +52,11 @@ class Candidates {
   std::optional<TwoCandidates> two_beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                           double each) const;
 
-  /// The same, each effect also fitted from larger sizes than the one that its signature shows.
+  /// The candidates of beside() again, those fitted anew that explain more from a larger size than the one that their
+  /// signatures show. Nullopt where none of these becomes the likeliest.
+  std::optional<std::vector<Candidate>> likelier_if_larger(const Observations&, const Hypothesis&, const Fit&,
+                                                           const std::vector<Candidate>&) const;
+  /// The same effects; beside() then tries larger sizes too.
   Candidates in_larger_sizes() const;
 
   int threads() const { return threads_; }

@@ -23,6 +23,7 @@ constexpr double alarm = 0.02;  // chance above which nothing is called missing
 constexpr double sure = 0.7;    // probability from which something unknown is there
 constexpr std::size_t quality_of = 5;
 constexpr double worth_limits = 0.01;   // probability of a candidate
+constexpr double half_of_it = 0.5;      // of what others leave: an effect that leaves more explains too little
 constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked into
 
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
@@ -197,18 +198,24 @@ Explained explained(const Observations& o, const std::shared_ptr<const WhitenedF
   return out;
 }
 
-/// Where effects leave something unknown that were looked for from small sizes, those that large ones explain, if these
-/// leave nothing. Exchanges the candidates for the first effect.
+/// Where effects leave something unknown that were looked for from small sizes, and a large one alone leaves less than
+/// half as much beyond noise: what is found from there, if it leaves nothing. Exchanges the candidates for the first
+/// effect.
 void look_for_large_ones(Explained& e, Diagnosis& d, const Observations& o,
                          const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,
-                         const Candidates& candidates, const Fit& null) {
+                         const Candidates& candidates, const Fit& null, const std::vector<Candidate>& first) {
   if (!e.left.significant()) return;
-  const Candidates large = candidates.in_larger_sizes();
-  std::vector<Candidate> first = large.beside(o, {}, null, even_hopeless);
-  Explained again = explained(o, patterns, all, large, first);
+  std::optional<std::vector<Candidate>> large = candidates.likelier_if_larger(o, {}, null, first);
+  if (!large) return;
+  const auto best = std::max_element(large->begin(), large->end(), [](const Candidate& a, const Candidate& b) {
+    return a.class_log_odds < b.class_log_odds;
+  });
+  const auto beyond_noise = [&](const Fit& f) { return f.chi2 - static_cast<double>(o.numbers()); };
+  if (beyond_noise(best->fit) > half_of_it * beyond_noise(e.found.fit)) return;
+  Explained again = explained(o, patterns, all, candidates.in_larger_sizes(), *large);
   if (again.left.significant()) return;
   e = std::move(again);
-  d.candidates = std::move(first);
+  d.candidates = std::move(*large);
   sort_candidates(d, o);
 }
 
@@ -258,7 +265,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   Explained e{{o, {}, null, {}, {}}, patterns, {}};
   if (missing) {
     e = explained(o, patterns, all, candidates, first);
-    look_for_large_ones(e, d, o, patterns, all, candidates, null);
+    look_for_large_ones(e, d, o, patterns, all, candidates, null, first);
   }
   Selection found = std::move(e.found);
   const Observations& seen = found.observations;

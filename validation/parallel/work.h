@@ -12,7 +12,7 @@ struct Work {
   int threads = 0;         ///< 0: as many as the machine has
   Ranks* ranks = nullptr;  ///< processes that share it; none: this one alone
   Told progress = {};
-  Journal* journal = nullptr;  ///< where finished cases are kept for the next run; none: nowhere
+  Journal* journal = nullptr;  ///< keeps finished cases of one loop for the next run; none: nothing is kept
 
   /// The same for a part of it, from … to of the whole.
   Work part(double from, double to) const { return {threads, ranks, part_of(progress, from, to), journal}; }
