@@ -104,6 +104,28 @@ TEST(PlanDesign, DeterminantAndTraceAreThoseOfTheCovariance) {
   }
 }
 
+// A block is taken off again as if it had never been there, whenever it was taken.
+TEST(PlanDesign, WhatIsDroppedWasNeverThere) {
+  std::mt19937 random(9);
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Drawn d = drawn(seed, 12, 3, 5);
+    const MatrixX V = random_matrix(random, 4, 5);
+    Design design = empty(d);
+    for (const WhiteRows& b : d.blocks) design.take(b);
+    for (const std::size_t gone : {std::size_t{7}, std::size_t{0}, std::size_t{4}}) {
+      const WhiteRows b = d.blocks[gone];
+      const MatrixX foreseen = design.without(b), before = design.covariance();
+      const double more = design.trace_increase(b, V);
+      design.drop(b);
+      EXPECT_LT((foreseen - design.Q()).norm(), 1e-9 * (1 + design.Q().norm()));
+      EXPECT_NEAR(more, (V * (design.covariance() - before) * V.transpose()).trace(), 1e-8);
+      d.blocks.erase(d.blocks.begin() + static_cast<std::ptrdiff_t>(gone));
+    }
+    const MatrixX Q = by_definition(d);
+    EXPECT_LT((design.Q() - Q).norm(), 1e-8 * Q.norm()) << seed;
+  }
+}
+
 TEST(PlanDesign, ATargetWithinWhatIsFittedAddsNothing) {
   Drawn d = drawn(11, 8, 1, 3);
   d.prior *= 1e8;  // all but free
@@ -121,6 +143,10 @@ class Sum final : public Aim {
   double value() const override { return value_; }
   double with(std::size_t block) const override { return value_ + (taken_.count(block) ? 0.1 : 1) * gains_[block]; }
   void take(std::size_t block) override { value_ = with(block), taken_.insert(block); }
+  void drop(std::size_t block) override {
+    taken_.erase(taken_.find(block));
+    value_ -= (taken_.count(block) ? 0.1 : 1) * gains_[block];
+  }
   std::unique_ptr<Aim> copy() const override { return std::make_unique<Sum>(*this); }
 
  private:
@@ -160,6 +186,45 @@ TEST(PlanChoice, KeepsToTheNumberOfPoses) {
     EXPECT_EQ(poses.size(), 2u);
     EXPECT_EQ(c.readings.back(), readings);
   }
+}
+
+/// What is given is exchanged for what is best: one by one where readings and blocks are few, else several at a time,
+/// which leaves what brings less than one part in ten thousand.
+TEST(PlanChoice, ExchangesWhatItBeginsWith) {
+  for (const std::size_t n : {std::size_t{30}, std::size_t{1200}}) {
+    std::vector<Block> blocks;
+    std::vector<double> gains;
+    ChoiceOptions o;
+    o.readings = n / 3;
+    for (std::size_t i = 0; i < n; ++i) {
+      blocks.push_back({i, 1, i % 7});
+      gains.push_back(static_cast<double>((i * 7) % n + 1));
+      if (i < o.readings) o.begin.push_back(i);
+    }
+    double best = 0;
+    for (std::size_t i = 0; i < o.readings; ++i) best += static_cast<double>(n - i);
+    const Choice c = choose(Sum(gains), blocks, o, {1});
+    EXPECT_EQ(c.readings.back(), o.readings);
+    EXPECT_GE(c.values.back(), (n == 30 ? 1 : 0.999) * best);
+    o.exchange = false;
+    Choice as_given = choose(Sum(gains), blocks, o, {1});
+    std::sort(as_given.blocks.begin(), as_given.blocks.end());
+    EXPECT_EQ(as_given.blocks, o.begin);
+  }
+}
+
+/// No single exchange leaves the only pose that is allowed: all of it moves to a better one.
+TEST(PlanChoice, MovesToABetterPose) {
+  std::vector<Block> blocks;
+  std::vector<double> gains;
+  for (std::size_t i = 0; i < 60; ++i) {
+    blocks.push_back({i, 1, i % 6});
+    gains.push_back(static_cast<double>(1 + i % 6));
+  }
+  ChoiceOptions o{5, 1, true, {0, 6, 12, 18, 24}};
+  const Choice c = choose(Sum(gains), blocks, o, {1});
+  ASSERT_EQ(c.blocks.size(), 5u);
+  for (const std::size_t b : c.blocks) EXPECT_EQ(blocks[b].pose, 5u);
 }
 
 TEST(PlanObservability, IndicesOfKnownSingularValues) {

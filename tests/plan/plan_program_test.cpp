@@ -108,10 +108,31 @@ TEST_F(PlanProgram, BeforeAnyMeasurement) {
   ASSERT_EQ(j.at("given").at("cosines").size(), effects);
   EXPECT_NEAR(j.at("given").at("cosines")[2][2], 1, 1e-9);
   EXPECT_TRUE(std::filesystem::exists(path("before/foresight.svg")));
+  EXPECT_EQ(j.at("better_found"), true);
+  EXPECT_EQ(j.at("better").at("gain").size(), 27u);
+  EXPECT_NEAR(j.at("better").at("gain").back().at("value").get<double>(),
+              j.at("better").at("error_after_um").get<double>(),
+              0.02 * j.at("better").at("error_after_um").get<double>());
+  const test::Run page = test::deflect("report " + path("foresight.json") + " -o " + path("foresight.html"));
+  const bool without_pages = page.code == 2 && page.out.find("built without pages") != std::string::npos;
+  EXPECT_TRUE(page.code == 0 || without_pages) << page.out;
   // The better campaign is itself a campaign.
   const test::Run used =
       test::deflect("simulate " + device + " --campaign " + path("better.csv") + " -o " + path("x.csv"));
   EXPECT_EQ(used.code, 0) << used.out;
+}
+
+// The page of a plan: of a machine with its poses, of a frame under its loads.
+TEST_F(PlanProgram, WritesAPage) {
+  const test::Run machine = test::deflect("plan " + device + " --before paper --report " + path("machine.html"));
+  if (machine.out.find("built without pages") != std::string::npos) GTEST_SKIP() << machine.out;
+  ASSERT_EQ(machine.code, 0) << machine.out;
+  const std::string page = test::contents(path("machine.html"));
+  for (const char* held : {"\"kind\":\"foresight\"", "\"better_found\"", "\"stands\"", "\"pose_mm_deg\""})
+    EXPECT_NE(page.find(held), std::string::npos) << held;
+  const test::Run frame = test::deflect("plan portal-semi-rigid --before paper --report " + path("frame.html"));
+  EXPECT_EQ(frame.code, 0) << frame.out;
+  EXPECT_TRUE(std::filesystem::exists(path("frame.html")));
 }
 
 TEST_F(PlanProgram, WhatIsWrongIsSaid) {

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "msa/frame/file/frame_file.h"
+#include "tests/support/cantilever.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "validation/diagnosis/fit_problem.h"
 #include "validation/measurement/joined.h"
 #include "validation/plan/foresight.h"
 #include "validation/prediction/campaign.h"
+#include "validation/report/plan/foresight_results.h"
 #include "validation/statistics/columns.h"
 
 namespace deflect::plan {
@@ -188,6 +191,26 @@ TEST(Plan, TheBetterCampaignTakesTheWrongEffectMoreSeldom) {
   EXPECT_LT(mean(f.better.separations), 0.7 * mean(f.given.separations));
 }
 
+/// 280 readings at 20 poses: too many for every reading to be looked at every time.
+TEST(Plan, ALongCampaignIsExchangedToo) {
+  std::vector<effects::Effect> some;
+  for (const char* name : {"actuator_compliance", "platform_flexibility", "joint_compliance", "tool_compliance"})
+    some.push_back(effect(name));
+  ForesightOptions o;
+  o.limits.moment = 1;
+  const Foresight f = foresight(machine(), prediction::campaign("random", machine(), 50, 1), some, o, {1});
+  EXPECT_TRUE(f.found);
+  EXPECT_EQ(f.better.readings.readings.size(), 280u);
+  EXPECT_LE(f.better.readings.poses.size(), 20u);
+  const Confusion here = confusion(f.given, f.given), there = confusion(f.better, f.given);
+  EXPECT_GE(there.told, here.told);
+  EXPECT_LT(there.mean, here.mean);
+  // Both curves begin at ½, where nothing is known, and fall to what the whole campaign tells.
+  ASSERT_EQ(f.better.gain.size(), 280u);
+  EXPECT_LE(f.better.gain.front().value, 0.5);
+  EXPECT_LT(f.better.gain.back().value, f.given.gain.back().value);
+}
+
 /// A force beside the tool point: with a moment about an axis across it.
 TEST(Plan, ForcesActBesideTheToolPointToo) {
   const Possible all = possible_readings(machine(), paper(), {}, false, 1);
@@ -198,12 +221,51 @@ TEST(Plan, ForcesActBesideTheToolPointToo) {
     EXPECT_NEAR(load.head<3>().dot(load.tail<3>()), 0, 0);  // what a force on a lever gives
     ++beside;
   }
-  EXPECT_EQ(beside % 24, 0u);
+  EXPECT_EQ(beside % 48, 0u);
   EXPECT_GT(beside, 0u);
   Limits forces;
   forces.forces_only = true;
   const Possible without = possible_readings(machine(), paper(), forces, false, 1);
   for (const measurement::Reading& r : without.all.readings) EXPECT_TRUE(r.load.tail<3>().isZero(0));
+}
+
+/// A campaign stands among what could be read instead of it, reading by reading, and shares its approaches.
+TEST(Plan, TheCampaignGivenIsOneOfThePossibleOnes) {
+  const Possible all = possible_campaign(machine(), paper(), {}, 1);
+  ASSERT_EQ(all.given.size(), paper().readings.size());
+  for (std::size_t i = 0; i < all.given.size(); ++i) {
+    const Block& block = all.blocks[all.given[i]];
+    const measurement::Reading &r = all.all.readings[block.first], &given = paper().readings[i];
+    EXPECT_EQ(r.load, given.load);
+    EXPECT_EQ(all.all.poses[block.pose].pose_mm_deg, paper().poses[given.pose].pose_mm_deg);
+    EXPECT_GT(all.all.poses[block.pose].readings.size(), 3u);
+  }
+  for (const Block& b : all.blocks) EXPECT_EQ(all.all.readings[b.first].pose, b.pose);
+  Limits less;
+  less.force = 49;  // under the 50 N of the paper
+  const Possible without = possible_campaign(machine(), paper(), less, 1);
+  EXPECT_TRUE(without.given.empty());
+  for (const measurement::Reading& r : without.all.readings) EXPECT_LE(r.load.head<3>().cwiseAbs().maxCoeff(), 49);
+}
+
+/// The tip's full load tells most of the modulus, and it is the only load case: nothing is better than to repeat it.
+TEST(Plan, WhereNoCampaignIsBetterNoneIsNamed) {
+  const subject::Subject beam = frame::parse_frame(
+      test::cantilever::file("sensors: {z: {node: B, direction: uz, sigma: 10 um}}\ntolerances: {modulus: 1 %}\n"),
+      "frame.yaml");
+  ForesightOptions o;
+  o.toward = Toward::precision;
+  const auto better = [&](const char* rows) {
+    const Measurements given = beam.placed(measurement::parse_measurements(rows, "plan.csv", beam.instruments()));
+    const Foresight f = foresight(beam, given, {}, o, {1});
+    EXPECT_EQ(f.better.readings.readings.size(), 2u);
+    EXPECT_EQ(report::foresight_report(f).find("No better campaign of 2 readings was found") != std::string::npos,
+              !f.found);
+    return f.found;
+  };
+  EXPECT_FALSE(better("load.tip,z_mm\n1,0\n1,0\n"));
+  // Of half the load the error is as if its noise were twice as large.
+  EXPECT_TRUE(better("load.tip,z_mm\n1,0\n0.5,0\n"));
 }
 
 TEST(Plan, IsAFileWithEmptyCellsThatReadsBack) {

@@ -23,6 +23,7 @@ EffectsAim::EffectsAim(const Prospect& p, MatrixX targets)
   for (Eigen::Index i = 0; i < most.cols(); ++i)
     for (Eigen::Index k = 0; k < most.cols(); ++k)
       if (i != k && left_of(most, i, k) > nothing_tells) pairs_.emplace_back(i, k);
+  update();
 }
 
 double EffectsAim::soft_least(const MatrixX& Q) const {
@@ -33,11 +34,42 @@ double EffectsAim::soft_least(const MatrixX& Q) const {
   return least - 8 * std::log(sum / static_cast<double>(pairs_.size()));
 }
 
-double EffectsAim::with(std::size_t block) const {
-  return soft_least(design_.with(prospect_->rows(block, *targets_, none(*prospect_))));
+WhiteRows EffectsAim::rows(std::size_t block) const { return prospect_->rows(block, *targets_, none(*prospect_)); }
+
+/// With w of a block the left of i beside k grows by (w_i − c w_k)², c = Q_ik/Q_kk, and the value by the mean of it
+/// over pairs, weighed by exp(−λ²/8).
+void EffectsAim::update() {
+  const MatrixX& Q = design_.Q();
+  value_ = soft_least(Q);
+  slope_ = MatrixX::Zero(Q.rows(), Q.cols());
+  double least = INFINITY, sum = 0;
+  for (const auto& [i, k] : pairs_) least = std::min(least, left_of(Q, i, k));
+  for (const auto& [i, k] : pairs_) {
+    const double weight = std::exp((least - left_of(Q, i, k)) / 8), c = Q(k, k) > 0 ? Q(i, k) / Q(k, k) : 0;
+    slope_(i, i) += weight;
+    slope_(k, k) += weight * c * c;
+    slope_(i, k) -= weight * c, slope_(k, i) -= weight * c;
+    sum += weight;
+  }
+  if (sum > 0) slope_ /= sum;
 }
 
-void EffectsAim::take(std::size_t block) { design_.take(prospect_->rows(block, *targets_, none(*prospect_))); }
+double EffectsAim::estimated(std::size_t block, bool taken) const {
+  const MatrixX w = design_.innovations(rows(block), taken);
+  return (w * slope_).cwiseProduct(w).sum();
+}
+
+double EffectsAim::with(std::size_t block) const { return soft_least(design_.with(rows(block))); }
+
+void EffectsAim::take(std::size_t block) {
+  design_.take(rows(block));
+  update();
+}
+
+void EffectsAim::drop(std::size_t block) {
+  design_.drop(rows(block));
+  update();
+}
 
 PrecisionAim::PrecisionAim(const Prospect& p, MatrixX V)
     : prospect_(&p),
@@ -57,6 +89,15 @@ double PrecisionAim::with(std::size_t block) const {
 void PrecisionAim::take(std::size_t block) {
   value_ = with(block);
   design_.take(rows(block));
+}
+
+double PrecisionAim::loss(std::size_t block) const {
+  return design_.trace_increase(rows(block), *V_) / static_cast<double>(V_->rows());
+}
+
+void PrecisionAim::drop(std::size_t block) {
+  value_ -= loss(block);
+  design_.drop(rows(block));
 }
 
 }  // namespace deflect::plan

@@ -13,7 +13,7 @@ Eigen::Index Design::position_of(std::size_t pose) const {
   return -1;
 }
 
-Design::Innovation Design::innovation(const WhiteRows& r, bool all) const {
+Design::Innovation Design::innovation(const WhiteRows& r, bool all, bool taken) const {
   const Eigen::Index at = position_of(r.pose), own = r.own.cols();
   Innovation out;
   const auto of_shared = P_.leftCols(shared_);
@@ -33,14 +33,24 @@ Design::Innovation Design::innovation(const WhiteRows& r, bool all) const {
   } else {
     out.S += r.own * r.own.transpose();
   }
+  if (taken) out.S = -out.S;
   out.S.diagonal().array() += 1;
   return out;
 }
 
+MatrixX Design::innovations(const WhiteRows& r, bool taken) const {
+  const Innovation i = innovation(r, false, taken);
+  return Eigen::LLT<MatrixX>(i.S).matrixL().solve(i.e);
+}
+
 MatrixX Design::with(const WhiteRows& r) const {
-  const Innovation i = innovation(r, false);
-  const MatrixX white = Eigen::LLT<MatrixX>(i.S).matrixL().solve(i.e);
+  const MatrixX white = innovations(r, false);
   return Q_ + white.transpose() * white;
+}
+
+MatrixX Design::without(const WhiteRows& r) const {
+  const MatrixX white = innovations(r, true);
+  return Q_ - white.transpose() * white;
 }
 
 double Design::log_determinant(const WhiteRows& r) const {
@@ -48,10 +58,13 @@ double Design::log_determinant(const WhiteRows& r) const {
   return 2 * factor.matrixLLT().diagonal().array().log().sum();
 }
 
-double Design::trace_decrease(const WhiteRows& r, const MatrixX& V) const {
-  const Innovation i = innovation(r, false);
+double Design::trace_change(const WhiteRows& r, const MatrixX& V, bool taken) const {
+  const Innovation i = innovation(r, false, taken);
   return Eigen::LLT<MatrixX>(i.S).matrixL().solve((V * i.PX).transpose()).squaredNorm();
 }
+
+double Design::trace_decrease(const WhiteRows& r, const MatrixX& V) const { return trace_change(r, V, false); }
+double Design::trace_increase(const WhiteRows& r, const MatrixX& V) const { return trace_change(r, V, true); }
 
 void Design::take(const WhiteRows& r) {
   if (r.own.cols() > 0 && position_of(r.pose) < 0) {
@@ -64,12 +77,17 @@ void Design::take(const WhiteRows& r) {
     alpha_.conservativeResize(before + own, Eigen::NoChange);
     alpha_.bottomRows(own).setZero();
   }
-  const Innovation i = innovation(r, true);
+  update(innovation(r, true), 1);
+}
+
+void Design::drop(const WhiteRows& r) { update(innovation(r, true, true), -1); }
+
+void Design::update(const Innovation& i, double sense) {
   const Eigen::LLT<MatrixX> factor(i.S);
   const MatrixX e = factor.matrixL().solve(i.e), gain = factor.matrixL().solve(i.PX.transpose());
-  Q_ += e.transpose() * e;
-  alpha_ += gain.transpose() * e;
-  P_ -= gain.transpose() * gain;
+  Q_ += sense * e.transpose() * e;
+  alpha_ += sense * gain.transpose() * e;
+  P_ -= sense * gain.transpose() * gain;
 }
 
 }  // namespace deflect::plan

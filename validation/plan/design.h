@@ -7,7 +7,8 @@
 // by which χ² is expected to fall when the change that is there is described. For one more block of readings,
 //   e = t − X α,  S = 1 + X P Xᵀ,  λ² += eᵀ S⁻¹ e,  α += P Xᵀ S⁻¹ e,  P −= P Xᵀ S⁻¹ X P,
 // with P the covariance of η and α the η that best absorbs t, given the readings before (Kalman, 1960): the gain of a
-// block is its innovation. For two targets, Q = Tᵀ (1 + X Π Xᵀ)⁻¹ T.
+// block is its innovation. For two targets, Q = Tᵀ (1 + X Π Xᵀ)⁻¹ T. A block is taken off again by the same formulae
+// with all signs of S⁻¹ turned and S = 1 − X P Xᵀ, which is the S⁻¹ of its being taken last.
 #pragma once
 
 #include <vector>
@@ -32,23 +33,32 @@ class Design {
   /// readings that were taken elsewhere.
   Design(MatrixX P, MatrixX alpha, MatrixX Q);
 
-  /// What Q becomes with a block, without taking it.
+  /// What Q becomes with a block, without taking it, and without one that was taken.
   MatrixX with(const WhiteRows&) const;
+  MatrixX without(const WhiteRows&) const;
   void take(const WhiteRows&);
+  /// A block that was taken.
+  void drop(const WhiteRows&);
+  /// e of a block by targets, whitened by S: with() is Q + wᵀ w, without() of a block that was `taken` Q − wᵀ w.
+  MatrixX innovations(const WhiteRows&, bool taken) const;
 
   const MatrixX& Q() const { return Q_; }
   /// Covariance of the shared nuisances.
   MatrixX covariance() const { return P_.topLeftCorner(shared_, shared_); }
   /// ln |S| of a block: by how much it raises ln of the determinant of the nuisances' information.
   double log_determinant(const WhiteRows&) const;
-  /// By how much a block lowers the trace of V P Vᵀ, V columns over the shared nuisances.
+  /// By how much a block lowers the trace of V P Vᵀ, V columns over the shared nuisances, and by how much it grows
+  /// without a block that was taken.
   double trace_decrease(const WhiteRows&, const MatrixX& V) const;
+  double trace_increase(const WhiteRows&, const MatrixX& V) const;
 
  private:
   struct Innovation {
     MatrixX e, S, PX;  // PX: all nuisances × numbers
   };
-  Innovation innovation(const WhiteRows&, bool all) const;
+  Innovation innovation(const WhiteRows&, bool all, bool taken = false) const;
+  void update(const Innovation&, double sense);
+  double trace_change(const WhiteRows&, const MatrixX& V, bool taken) const;
   Eigen::Index position_of(std::size_t pose) const;  // of its own errors, or −1
 
   Eigen::Index shared_;

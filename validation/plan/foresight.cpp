@@ -24,8 +24,9 @@ using measurement::Measurements;
 using measurement::Reading;
 
 constexpr int test_poses = 12;
-constexpr double seen = 1e-3;   // λ at the start, below which a campaign shows nothing of an effect
-constexpr double as_large = 8;  // λ of an effect in the given campaign
+constexpr double seen = 1e-3;                // λ at the start, below which a campaign shows nothing of an effect
+constexpr double as_large = 8;               // λ of an effect in the given campaign
+constexpr std::size_t short_campaign = 100;  // readings, up to which one is chosen from nothing too
 
 /// Where the machine will be used, if nobody says: the largest force of the campaign at poses of its workspace, or at
 /// its own poses.
@@ -161,9 +162,50 @@ MatrixX changes(const Prospect& prospect, const subject::Subject& s, const Insig
   return prospect.white(out);
 }
 
+/// What is exchanged of the given campaign, or chosen from nothing where that is quick and better.
+Choice better_choice(const Aim& aim, const Possible& possible, ChoiceOptions o, const parallel::Work& work) {
+  o.begin = possible.given;
+  const Choice exchanged = choose(aim, possible.blocks, o, work.part(0, 0.5));
+  if (o.readings > short_campaign || exchanged.blocks.empty()) return exchanged;
+  o.begin.clear();
+  const Choice fresh = choose(aim, possible.blocks, o, work.part(0.5, 1));
+  const bool as_long = fresh.readings.back() == exchanged.readings.back();
+  return as_long && fresh.values.back() > exchanged.values.back() ? fresh : exchanged;
+}
+
+std::vector<Gain> gains_of(const Choice& c, Toward toward) {
+  std::vector<Gain> out;
+  for (std::size_t i = 0; i < c.values.size(); ++i)
+    out.push_back({c.readings[i], toward == Toward::effects ? std::exp(-c.values[i] / 8) / 2
+                                                            : std::sqrt(std::max(0.0, -c.values[i]))});
+  return out;
+}
+
+bool is_better(const Foresight& f) {
+  constexpr double less = 1 - 1e-6;  // more than rounding
+  if (f.toward == Toward::precision) return f.better.error_after < less * f.given.error_after;
+  const Confusion here = confusion(f.given, f.given), there = confusion(f.better, f.given);
+  return there.told >= here.told && there.mean < less * here.mean;
+}
+
 }  // namespace
 
 double chance_of_confusion(double separation) { return std::erfc(std::sqrt(std::max(0.0, separation) / 8)) / 2; }
+
+Confusion confusion(const Insight& i, const Insight& given) {
+  Confusion out;
+  const MatrixX& s = i.separations;
+  for (Eigen::Index a = 0; a < s.rows(); ++a)
+    for (Eigen::Index b = a + 1; b < s.rows(); ++b) {
+      if (nth(given.detectable, a).effect.effect == nth(given.detectable, b).effect.effect) continue;
+      const double one = chance_of_confusion(s(a, b)), other = chance_of_confusion(s(b, a));
+      ++out.pairs;
+      out.told += std::max(one, other) < 0.05 ? 1 : 0;
+      out.mean += (one + other) / 2;
+    }
+  if (out.pairs > 0) out.mean /= static_cast<double>(out.pairs);
+  return out;
+}
 
 Measurements filled_in(const subject::Subject& s, Measurements plan, const ForesightOptions& o, bool linear) {
   const measurement::Instruments known = s.instruments();
@@ -220,9 +262,8 @@ Foresight foresight(const subject::Subject& s, const Measurements& plan, const s
   const Measurements data = filled_in(s, plan, o, true);
   for (const Reading& r : data.readings)
     for (std::size_t i = 0; i < 6; ++i) out.read[i] = out.read[i] || r.displacement[i];
-  Possible possible = without_data(possible_readings(s, data, o.limits, false, o.seed));
-  const Measurements filled = filled_in(s, possible.all, o, true);
-  possible.all.readings = filled.readings;
+  Possible possible = possible_campaign(s, data, o.limits, o.seed);
+  possible.all.readings = filled_in(s, possible.all, o, true).readings;
   const Prospect prospect(s, std::move(possible), {o.sigma_u, o.sigma_th}, work.part(0.4, 0.5));
   std::unique_ptr<Aim> aim;
   if (o.toward == Toward::effects) {
@@ -237,12 +278,17 @@ Foresight foresight(const subject::Subject& s, const Measurements& plan, const s
     aim = std::make_unique<PrecisionAim>(prospect, std::move(V));
   }
   const std::size_t poses = o.most_poses > 0 ? o.most_poses : plan.poses.size();
-  const Choice choice =
-      choose(*aim, prospect.possible().blocks, {plan.readings.size(), s.frame() ? 0 : poses}, work.part(0.5, 0.7));
+  const Choice choice = better_choice(*aim, prospect.possible(),
+                                      {plan.readings.size(), s.frame() ? 0 : poses, true, {}}, work.part(0.5, 0.7));
+  const ChoiceOptions as_given{plan.readings.size(), 0, false, prospect.possible().given};
+  out.given.gain = gains_of(choose(*aim, prospect.possible().blocks, as_given, work.quiet()), o.toward);
   Measurements better = as_plan(prospect.possible(), choice.blocks);
   better.origin = "better campaign";
   out.better = seeing.insight(s.placed(better), work.part(0.7, 1));
   out.better.separations = separations(out.better, out.given);
+  out.better.gain = gains_of(choice, o.toward);
+  out.found = is_better(out);
+  if (!out.found) out.better = out.given;
   return out;
 }
 

@@ -4,11 +4,14 @@
 // say how large each must be to be seen and what it looks like. The identification Jacobian is that of the subject's
 // tolerances, which are the parameters that a calibration would fit.
 //
-// A better campaign is chosen among possible_readings() from nothing, for one of two aims:
+// A better campaign is what exchanges of single readings and of whole poses make of the given one among
+// possible_campaign() and, where readings are few, of one that is chosen from nothing; for one of two aims:
 //   effects    each effect as large as λ = 8 in the given campaign; −8 ln ⟨exp(−λ²_ij/8)⟩ over pairs, λ²_ij what is
 //              left of i beside tolerances and j; without effects that remember the loads before them and without
 //              pairs that no reading separates;
 //   precision  the test-pose criterion (observability.h).
+// It counts as better where it tells at least as many effects apart and takes the wrong one more seldom (Confusion),
+// all effects counted, or errs less in use.
 #pragma once
 
 #include <optional>
@@ -36,6 +39,13 @@ struct ForesightOptions {
   std::uint64_t seed = 1;
 };
 
+/// What the first so many readings bring toward the aim.
+struct Gain {
+  std::size_t readings = 0;
+  double value = 0;  ///< effects: bound on the mean chance of taking the wrong one of two, ½ ⟨exp(−λ²/8)⟩ (A.
+                     ///< Bhattacharyya 1943); precision: error in use, m or rad
+};
+
 /// Of one campaign.
 struct Insight {
   measurement::Measurements readings;             ///< the plan, not filled in
@@ -47,6 +57,7 @@ struct Insight {
   std::size_t parameters = 0, numbers = 0;
   double error_before = 0, error_after = 0;  ///< m or rad: test-pose criterion by the tolerances, and once they are
                                              ///< fitted
+  std::vector<Gain> gain;                    ///< readings in the order in which they bring most, of many in their own
   MatrixX separations;  ///< λ² of what is left of one effect (row) beside tolerances and another (column), each as
                         ///< large as λ = 8 in the given campaign
 };
@@ -54,10 +65,18 @@ struct Insight {
 /// Chance of taking the wrong one of two effects, one of which is there: Φ(−λ/2), λ² their separation.
 double chance_of_confusion(double separation);
 
+/// How two different effects of the given campaign, each as large as λ = 8 there, are told apart by a campaign.
+struct Confusion {
+  std::size_t pairs = 0, told = 0;  ///< told: the wrong one is taken in less than one case of twenty
+  double mean = 0;                  ///< chance of taking the wrong one, over the pairs and both as the true one
+};
+Confusion confusion(const Insight&, const Insight& given);
+
 struct Foresight {
   std::string subject, campaign;
   std::array<bool, 6> read = {};  ///< components of the displacement
   Insight given, better;
+  bool found = true;  ///< whether any better campaign was found; else `better` is the given one
   Toward toward = Toward::effects;
 };
 

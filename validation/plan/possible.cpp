@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "msa/base/error.h"
@@ -23,8 +24,12 @@ using measurement::Measurements;
 using measurement::PoseGroup;
 using measurement::Reading;
 
-constexpr std::size_t most_measured = 9, most_in_sequences = 8;
-constexpr int drawn = 12, drawn_in_sequences = 3;
+/// Poses to choose from.
+struct Poses {
+  std::size_t measured;  ///< at most
+  int drawn;
+};
+constexpr Poses usual = {9, 24}, in_sequences = {5, 3}, of_campaign = {16, 24};
 constexpr double sizes[] = {1, 0.5, 0.2};
 /// What follows a load that has gone on: shares of it.
 const std::vector<std::vector<double>> sequences_of_loads = {{1}, {1, 0.5}, {1, 0}, {1, -1}};
@@ -67,17 +72,21 @@ std::vector<Load> loads_of_machine(const subject::LargestLoads& most, bool force
       }
   if (!together || forces_only || most.force == 0 || most.moment == 0) return out;
   for (Eigen::Index i = 0; i < 3; ++i)  // beside the tool point
-    for (Eigen::Index k = 0; k < 3; ++k)
-      for (const double force : {1.0, -1.0})
-        for (const double moment : {1.0, -1.0}) {
-          if (i == k) continue;
-          Load load;
-          load.at_T(i) = settable(force * most.force);
-          load.at_T(3 + k) = settable(moment * most.moment);
-          load.words = fmt::format("{}{} {}{}", sign_of(force), nth(names, i), sign_of(moment), nth(names, 3 + k));
-          load.in_full = true;
-          out.push_back(load);
+    for (const double force : {1.0, -1.0})
+      for (int turn = 0; turn < 8; ++turn) {
+        const double angle = turn * std::numbers::pi / 4;
+        Load load;
+        load.at_T(i) = settable(force * most.force);
+        load.words = fmt::format("{}{}", sign_of(force), nth(names, i));
+        for (const auto& [k, share] :
+             {std::pair{(i + 1) % 3, std::cos(angle)}, std::pair{(i + 2) % 3, std::sin(angle)}}) {
+          if (std::abs(share) < 1e-9) continue;
+          load.at_T(3 + k) = settable(share * most.moment);
+          load.words += fmt::format(" {}{}", sign_of(share), nth(names, 3 + k));
         }
+        load.in_full = true;
+        out.push_back(load);
+      }
   return out;
 }
 
@@ -104,14 +113,42 @@ std::vector<Load> loads_of_frame(const subject::Subject& s, const Measurements& 
   return out;
 }
 
+/// Within the limits; `together`: several components, or load cases, at once too.
+std::vector<Load> loads_of(const subject::Subject& s, const Measurements& data, const Limits& limits, bool together) {
+  std::vector<Load> out;
+  if (s.frame()) {
+    out = loads_of_frame(s, data, together);
+  } else {
+    subject::LargestLoads most = subject::largest_loads(s, data);
+    if (limits.force) most.force = *limits.force;
+    if (limits.moment)
+      most.moment = *limits.moment;
+    else if (most.moment == 0)
+      most.moment = prediction::lever * most.force;
+    out = loads_of_machine(most, limits.forces_only, together);
+  }
+  if (out.empty())
+    throw InputError(fmt::format("{}: no load is allowed: give --max-force or --max-moment above zero", s.name()));
+  return out;
+}
+
+bool is_same(const PoseGroup& p, const PoseGroup& q) {
+  return q.pose_mm_deg == p.pose_mm_deg && q.joints.size() == p.joints.size() && q.joints == p.joints;
+}
+
+bool is_within(const Limits& limits, const Reading& r) {
+  const auto within = [](const Vector3& load, const std::optional<double>& most) {
+    return !most || load.cwiseAbs().maxCoeff() <= *most * (1 + 1e-9);
+  };
+  return within(r.load.head<3>(), limits.force) && within(r.load.tail<3>(), limits.moment) &&
+         !(limits.forces_only && !r.load.tail<3>().isZero(0));
+}
+
 /// Poses that differ from each other, of a file.
 std::vector<PoseGroup> distinct(const std::vector<PoseGroup>& all, std::size_t most) {
   std::vector<PoseGroup> out;
   for (const PoseGroup& p : all) {
-    const bool known = std::any_of(out.begin(), out.end(), [&](const PoseGroup& q) {
-      return q.pose_mm_deg == p.pose_mm_deg && q.joints.size() == p.joints.size() && q.joints == p.joints;
-    });
-    if (known) continue;
+    if (std::any_of(out.begin(), out.end(), [&](const PoseGroup& q) { return is_same(p, q); })) continue;
     out.push_back(p);
     out.back().readings.clear();
   }
@@ -121,14 +158,13 @@ std::vector<PoseGroup> distinct(const std::vector<PoseGroup>& all, std::size_t m
   return some;
 }
 
-std::vector<PoseGroup> poses_of(const subject::Subject& s, const Measurements& data, const Limits& limits,
-                                bool sequences, std::uint64_t seed) {
+std::vector<PoseGroup> poses_of(const subject::Subject& s, const Measurements& data, const Limits& limits, Poses most,
+                                std::uint64_t seed) {
   if (limits.poses) return distinct(limits.poses->poses, limits.poses->poses.size());
-  std::vector<PoseGroup> out = distinct(data.poses, sequences ? most_in_sequences - drawn_in_sequences : most_measured);
+  std::vector<PoseGroup> out = distinct(data.poses, most.measured);
   if (!s.machine() || data.by_joints() || limits.where == Where::as_measured) return out;
   measurement::Random random(seed);
-  const auto more = outcome_of(
-      [&] { return prediction::tilted_poses(*s.machine(), sequences ? drawn_in_sequences : drawn, random); });
+  const auto more = outcome_of([&] { return prediction::tilted_poses(*s.machine(), most.drawn, random); });
   if (!more) return out;  // a device without a workspace
   for (const Vector6& at : *more) out.push_back({"", at, {}, {}});
   return out;
@@ -164,16 +200,40 @@ class Rows {
 
   void load_cases(const std::vector<std::string>& names) { m_.instruments.load_cases = names; }
 
+  /// A pose that is approached anew.
+  void approach(PoseGroup pose) {
+    pose.label = fmt::format("plan {}", m_.poses.size() + 1);
+    pose.readings.clear();
+    m_.poses.push_back(std::move(pose));
+  }
+
+  /// A reading at the pose approached last; `known`: its load cases.
+  void take_over(Reading r, const std::vector<std::string>& known) {
+    const std::vector<double> factors = std::exchange(r.factors, {});
+    r.factors.assign(m_.instruments.load_cases.size(), 0);
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      const std::vector<std::string>& all = m_.instruments.load_cases;
+      r.factors[as_size(std::find(all.begin(), all.end(), known[k]) - all.begin())] = factors[k];
+    }
+    r.notes = {"as in the campaign given"};
+    blocks_.push_back({m_.readings.size(), 1, m_.poses.size() - 1});
+    put(std::move(r));
+  }
+
+  /// Each load alone at the pose approached last.
+  void each(const std::vector<Load>& loads) {
+    for (const Load& load : loads)
+      for (const double size : sizes) {
+        if (size < 1 && load.in_full) continue;
+        blocks_.push_back({m_.readings.size(), 1, m_.poses.size() - 1});
+        reading(load, size, "");
+      }
+  }
+
   void add(const PoseGroup& pose, const std::vector<Load>& loads) {
     if (!sequences_) {
       approach(pose);
-      for (const Load& load : loads)
-        for (const double size : sizes) {
-          if (size < 1 && load.in_full) continue;
-          blocks_.push_back({m_.readings.size(), 1, m_.poses.size() - 1});
-          reading(load, size, "");
-        }
-      return;
+      return each(loads);
     }
     for (const Load& load : loads)
       for (const std::vector<double>& shares : sequences_of_loads) {
@@ -189,17 +249,11 @@ class Rows {
   }
 
   Measurements take() { return std::move(m_); }
-  std::vector<Block> blocks() { return std::move(blocks_); }
+  const std::vector<Block>& blocks() const { return blocks_; }
 
  private:
-  void approach(PoseGroup pose) {
-    pose.label = fmt::format("plan {}", m_.poses.size() + 1);
-    m_.poses.push_back(std::move(pose));
-  }
-
   void reading(const Load& load, double share, const std::string& how) {
     Reading r = blank_;
-    r.pose = m_.poses.size() - 1;
     r.load = share * load.at_T + Vector6::Zero();  // no −0
     if (!m_.instruments.load_points.empty()) {
       r.at_tool = r.load;
@@ -207,9 +261,14 @@ class Rows {
     }
     for (const double factor : load.factors) r.factors.push_back(share * factor + 0.0);
     if (load.factors.empty()) r.factors.assign(m_.instruments.load_cases.size(), 0);
+    r.notes = {how.empty() ? load.words : fmt::format("{}: {}", load.words, how)};
+    put(std::move(r));
+  }
+
+  void put(Reading r) {
+    r.pose = m_.poses.size() - 1;
     r.sequence = static_cast<double>(m_.readings.size() + 1);
     r.line = m_.readings.size() + 2;
-    r.notes = {how.empty() ? load.words : fmt::format("{}: {}", load.words, how)};
     m_.poses.back().readings.push_back(m_.readings.size());
     m_.readings.push_back(std::move(r));
   }
@@ -231,23 +290,10 @@ Measurements Possible::data() const {
 
 Possible possible_readings(const subject::Subject& s, const Measurements& data, const Limits& limits, bool sequences,
                            std::uint64_t seed) {
-  std::vector<Load> loads;
   Rows rows(data, sequences);
-  if (s.frame()) {
-    loads = loads_of_frame(s, data, !sequences);
-    rows.load_cases(s.instruments().load_cases);
-  } else {
-    subject::LargestLoads most = subject::largest_loads(s, data);
-    if (limits.force) most.force = *limits.force;
-    if (limits.moment)
-      most.moment = *limits.moment;
-    else if (most.moment == 0)
-      most.moment = prediction::lever * most.force;
-    loads = loads_of_machine(most, limits.forces_only, !sequences);
-  }
-  if (loads.empty())
-    throw InputError(fmt::format("{}: no load is allowed: give --max-force or --max-moment above zero", s.name()));
-  for (const PoseGroup& pose : poses_of(s, data, limits, sequences, seed)) rows.add(pose, loads);
+  if (s.frame()) rows.load_cases(s.instruments().load_cases);
+  const std::vector<Load> loads = loads_of(s, data, limits, !sequences);
+  for (const PoseGroup& pose : poses_of(s, data, limits, sequences ? in_sequences : usual, seed)) rows.add(pose, loads);
   Possible out;
   out.taken = data.readings.size();
   out.sequences = sequences;
@@ -255,6 +301,35 @@ Possible possible_readings(const subject::Subject& s, const Measurements& data, 
   out.all = s.placed(measurement::joined({data, rows.take()}));
   out.blocks = rows.blocks();
   for (Block& b : out.blocks) b.first += out.taken, b.pose += poses;
+  return out;
+}
+
+Possible possible_campaign(const subject::Subject& s, const Measurements& given, const Limits& limits,
+                           std::uint64_t seed) {
+  Rows rows(given, false);
+  if (s.frame()) rows.load_cases(s.instruments().load_cases);
+  const std::vector<Load> loads = loads_of(s, given, limits, true);
+  std::vector<PoseGroup> poses = poses_of(s, given, limits, of_campaign, seed);
+  Possible out;
+  for (const PoseGroup& pose : given.poses) {
+    const auto here = std::find_if(poses.begin(), poses.end(), [&](const PoseGroup& p) { return is_same(p, pose); });
+    if (here == poses.end() && limits.poses) continue;
+    std::vector<std::size_t> kept;
+    for (const std::size_t i : pose.readings)
+      if (is_within(limits, given.readings[i])) kept.push_back(i);
+    if (kept.empty()) continue;
+    rows.approach(pose);
+    for (const std::size_t i : kept) {
+      out.given.push_back(rows.blocks().size());
+      rows.take_over(given.readings[i], given.instruments.load_cases);
+    }
+    if (here == poses.end()) continue;  // the loads stand at an earlier approach, or at enough other poses
+    rows.each(loads);
+    poses.erase(here);
+  }
+  for (const PoseGroup& pose : poses) rows.add(pose, loads);
+  out.blocks = rows.blocks();
+  out.all = s.placed(rows.take());
   return out;
 }
 

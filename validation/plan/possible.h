@@ -2,9 +2,9 @@
 //
 // Of a machine: at each pose forces along ±x, ±y, ±z and moments about ±x, ±y, ±z, each in full, half and a fifth; in
 // full, forces along the diagonals of their octants and forces that act beside the tool point, along an axis with a
-// moment about another. Of a frame: each load case with both senses and the same sizes, and each two of them together.
-// Where some rival remembers the loads before it, a reading is a step of a sequence that begins at a new approach of
-// the pose, unloaded: a load goes on; goes on and comes half off, all off, or turns to its opposite.
+// moment about one or both of the others. Of a frame: each load case with both senses and the same sizes, and each two
+// of them together. Where some rival remembers the loads before it, a reading is a step of a sequence that begins at a
+// new approach of the pose, unloaded: a load goes on; goes on and comes half off, all off, or turns to its opposite.
 #pragma once
 
 #include <optional>
@@ -34,10 +34,11 @@ struct Block {
 };
 
 struct Possible {
-  measurement::Measurements all;  ///< those that were taken, then those that could be
-  std::size_t taken = 0;          ///< number of the former
-  std::vector<Block> blocks;      ///< of the latter
-  bool sequences = false;         ///< each block begins at an approach of its own
+  measurement::Measurements all;        ///< those that were taken, then those that could be
+  std::size_t taken = 0;                ///< number of the former
+  std::vector<Block> blocks;            ///< of the latter
+  std::vector<std::size_t> given = {};  ///< blocks of these that are the readings of a campaign given
+  bool sequences = false;               ///< each block begins at an approach of its own
 
   /// The readings taken, alone.
   measurement::Measurements data() const;
@@ -50,6 +51,11 @@ Possible possible_readings(const subject::Subject&, const measurement::Measureme
 
 /// The possible ones alone, as if nothing had been taken.
 Possible without_data(Possible);
+
+/// What could be read instead of a campaign, of which nothing is taken yet: its own readings, as far as the limits
+/// allow them, and all loads at its poses and others; what is read at one of its poses shares its approach.
+Possible possible_campaign(const subject::Subject&, const measurement::Measurements& given, const Limits&,
+                           std::uint64_t seed);
 
 /// The blocks in the order of their poses as a file to be filled in: cells of readings are empty, a column "note" says
 /// how each load is reached. Labels of poses begin with "plan".

@@ -248,6 +248,13 @@ void RivalryAim::take(std::size_t block) {
   }
 }
 
+void RivalryAim::drop(std::size_t block) {
+  for (std::size_t b = 0; b < designs_.size(); ++b) {
+    designs_[b].drop(rows(block, b));
+    gain_[b] = designs_[b].Q() - before_[b];
+  }
+}
+
 WhiteRows RivalryAim::rows(std::size_t block, std::size_t fitted) const {
   return rivalry_->prospect_.rows(block, rivalry_->targets_[fitted], rivalry_->beside_[fitted]);
 }

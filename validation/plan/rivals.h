@@ -79,6 +79,7 @@ class RivalryAim final : public Aim {
   double value() const override { return soft_least(gain_); }
   double with(std::size_t block) const override;
   void take(std::size_t block) override;
+  void drop(std::size_t block) override;
   std::unique_ptr<Aim> copy() const override { return std::make_unique<RivalryAim>(*this); }
   bool reached() const override { return rivalry_->probability(gain_) >= wanted_; }
 

@@ -1,8 +1,10 @@
-// benchmark_plans [--truths N] [--threads N] [--pair SUBJECT,FIRST,SECOND[,LAMBDA[,MOMENT]]]… [--precision DEVICE]
+// benchmark_plans [--truths N] [--threads N] [--pair SUBJECT,FIRST,SECOND[,LAMBDA[,MOMENT]]]…
+//   [--precision DEVICE [--moment NM]]
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -48,15 +50,17 @@ int main(int argc, char** argv) {
   int threads = 1;
   std::vector<Tied> pairs;
   std::string precision;
+  std::optional<double> moment;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i], value = argv[i + 1];
     if (option == "--truths") truths = static_cast<std::size_t>(std::atoi(value.c_str()));
     if (option == "--threads") threads = std::atoi(value.c_str());
     if (option == "--pair") pairs.push_back(pair_of(value));
     if (option == "--precision") precision = value;
+    if (option == "--moment") moment = std::atof(value.c_str());
   }
   if (!precision.empty()) {
-    fmt::print("{}", deflect::benchmark::precision_table(precision, 50, threads));
+    fmt::print("{}", deflect::benchmark::precision_table(precision, 50, moment, threads));
     return 0;
   }
   if (pairs.empty()) pairs = usual;

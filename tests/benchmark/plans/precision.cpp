@@ -54,6 +54,10 @@ class IndexAim final : public plan::Aim {
     value_ = with(block);
     design_.take(rows(block));
   }
+  void drop(std::size_t block) override {
+    design_.drop(rows(block));
+    value_ = index_ == 0 ? value_ - design_.log_determinant(rows(block)) : of(design_);
+  }
   std::unique_ptr<Aim> copy() const override { return std::make_unique<IndexAim>(*this); }
 
  private:
@@ -76,14 +80,15 @@ plan::Possible as_taken(const Measurements& data) {
 
 }  // namespace
 
-std::string precision_table(const std::string& device, double force, int threads) {
+std::string precision_table(const std::string& device, double force, std::optional<double> moment, int threads) {
   const subject::Subject s = read_mechanism(test::source_dir() + "/validation/devices/" + device + ".yaml");
   const Measurements paper = prediction::campaign("paper", *s.machine(), force, 1);
   plan::ForesightOptions o;
+  o.limits.moment = moment;
   const parallel::Work work{threads};
   Measurements use = prediction::campaign("random", *s.machine(), force, 77);
   const Measurements data = plan::filled_in(s, paper, o, true);
-  plan::Possible possible = plan::without_data(plan::possible_readings(s, data, o.limits, false, 1));
+  plan::Possible possible = plan::possible_campaign(s, data, o.limits, 1);
   possible.all.readings = plan::filled_in(s, possible.all, o, true).readings;
   plan::Possible fewer = possible;
   fewer.blocks = some_of(std::move(fewer.blocks), looked_at);
@@ -95,7 +100,7 @@ std::string precision_table(const std::string& device, double force, int threads
     const MatrixX nothing(taken.numbers(), 0);
     const MatrixX P = taken.design(nothing, nothing, VectorX(0)).covariance();
     const plan::Observability index = indices(P);
-    std::string out = fmt::format("| {} | {} | {} | {:.3f} |", name, readings.readings.size(), readings.poses.size(),
+    std::string out = fmt::format("| {} | {} | {} | {:.4f} |", name, readings.readings.size(), readings.poses.size(),
                                   1e6 * plan::test_pose_error(P, V));
     for (const double each : index.O) out += fmt::format(" {:.3g} |", each);
     return out + fmt::format(" {:.1f} |\n", index.D_gain);
@@ -107,7 +112,7 @@ std::string precision_table(const std::string& device, double force, int threads
   out += row("the paper's nine points", paper);
   const auto chosen = [&](const std::string& name, const plan::Prospect& among, const plan::Aim& aim) {
     const std::vector<plan::Block>& blocks = among.possible().blocks;
-    const plan::Choice choice = plan::choose(aim, blocks, {paper.readings.size(), paper.poses.size()}, work);
+    const plan::Choice choice = plan::choose(aim, blocks, {paper.readings.size(), paper.poses.size(), true, {}}, work);
     out += row(fmt::format("{}, of {} readings", name, blocks.size()), plan::as_plan(among.possible(), choice.blocks));
     fmt::print(stderr, "{}", out.substr(out.rfind('\n', out.size() - 2) + 1));
   };

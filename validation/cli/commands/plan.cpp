@@ -5,19 +5,24 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/frame/file/frame_analysis.h"
+#include "msa/mechanism/stand.h"
 #include "validation/cli/command.h"
 #include "validation/cli/commands/effects.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/figures.h"
 #include "validation/cli/made_by.h"
+#include "validation/cli/report.h"
 #include "validation/cli/talk.h"
 #include "validation/diagnosis/found_effects.h"
 #include "validation/figures/plan_figures.h"
+#include "validation/measurement/configure_all.h"
 #include "validation/plan/foresight.h"
 #include "validation/plan/next_readings.h"
 #include "validation/prediction/campaign.h"
 #include "validation/report/plan/foresight_results.h"
 #include "validation/report/plan/plan_results.h"
+#include "validation/scene/frame_scene.h"
 #include "validation/subject/simulate_frame.h"
 
 namespace deflect::cli {
@@ -27,6 +32,7 @@ constexpr double most_readings = 1e5;
 
 struct PlanArguments {
   std::string device, diagnosis, before, output, json, out, poses = "workspace", aim = "effects", use;
+  std::string report;
   std::string force, moment, sigma_mm, sigma_rad;
   std::vector<std::string> data, files;
   bool forces_only = false;
@@ -119,6 +125,31 @@ measurement::Measurements campaign_before(const PlanArguments& a, const subject:
   return read_plan(a.before, s);
 }
 
+constexpr std::size_t most_drawn = 40;  // poses
+
+/// Of a machine with commanded poses the 3D view where the readings are taken, under the largest of each component of
+/// their loads; of a frame the frame.
+void write_plan_report(const PlanArguments& a, const subject::Subject& s, const measurement::Measurements& plan,
+                       page::PageResult result) {
+  if (a.report.empty()) return;
+  if (s.frame()) {
+    write_report_of_file(a.report, subject_file(a.device), std::move(result),
+                         scene::frame_scene_json(*s.frame(), frame::analyse(*s.frame())));
+    return;
+  }
+  std::vector<scene::SceneStand> stands;
+  const std::vector<Configuration> machines = measurement::configure_all(*s.machine(), plan);
+  for (std::size_t i = 0; i < std::min(most_drawn, machines.size()); ++i)
+    stands.push_back({plan.poses[i].label, mm_deg_from(machines[i].pose), machines[i]});
+  Vector6 most = Vector6::Zero();
+  for (const measurement::Reading& r : plan.readings) most = most.cwiseMax(r.load.cwiseAbs());
+  std::vector<Vector6> loads;
+  for (Eigen::Index i = 0; i < 6; ++i)
+    if (most(i) > 0) loads.push_back((i < 3 ? 1 : 1e3) * most(i) * Vector6::Unit(i));
+  if (stands.empty()) return write_report_of_results(a.report, {std::move(result)});
+  write_report_of_stands(a.report, a.device, *s.machine(), stands, loads, std::move(result), s.machine()->geometry);
+}
+
 /// Before any reading: what a campaign will tell.
 void run_before(const PlanArguments& a, const figures::FigureStyle& style) {
   if (!a.diagnosis.empty())
@@ -153,11 +184,13 @@ void run_before(const PlanArguments& a, const figures::FigureStyle& style) {
     write_table(std::filesystem::path(a.out) / "foresight.csv", report::foresight_csv(f));
   }
   fmt::print("{}", report::foresight_report(f));
-  if (!a.output.empty()) fmt::print("\n{}: the better campaign, to be filled in\n", a.output);
+  write_plan_report(a, s, f.better.readings, {"plan", report::foresight_json(f)});
+  if (!a.output.empty()) fmt::print("\n{}: the {} campaign, to be filled in\n", a.output, f.found ? "better" : "given");
   if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(a.out).string());
 }
 
 void run(const PlanArguments& a) {
+  require_pages(a.report);
   const figures::FigureStyle style = figure_style(a.figures, a.out);
   if (!a.before.empty()) return run_before(a, style);
   if (a.diagnosis.empty())
@@ -191,6 +224,7 @@ void run(const PlanArguments& a) {
     write_table(std::filesystem::path(a.out) / "plan.csv", report::plan_csv(p));
   }
   fmt::print("{}", report::plan_report(p));
+  write_plan_report(a, s, p.readings, {"plan", report::plan_json(p)});
   if (!a.output.empty() && any)
     fmt::print("\n{0}: fill in the empty cells, then: deflect diagnose {1} {2} {0}\n", a.output, a.device,
                fmt::join(session_files(p.data), " "));
@@ -253,6 +287,7 @@ Command plan_command() {
            {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
            {"-o,--output", "FILE", "write the plan: a measurement file to be filled in", &a->output},
            {"--json", "FILE", "write the result", &a->json},
+           report_option(&a->report),
            {"--out", "DIR", "write the figure (SVG, PDF, PNG) with its caption, and its table", &a->out}},
           &a->figures),
       [a] { run(*a); }};

@@ -75,14 +75,15 @@ def plan(p: Any, figure: Any = None) -> Any:
 
 
 def _cosines(c: dict, figure: Any) -> Any:
-    given, better = c["given"], c["better"]
+    given, better, found = c["given"], c["better"], c["better_found"]
     names = [d["effect"] for d in given["detectable"]]
     sheet = Sheet("How alike effects look: |cosine| of their signatures",
                   [f"{c['subject']}, {c['campaign']}: {given['pairs_told_apart']} of {given['pairs']} pairs told apart; "
-                   f"the better plan: {better['pairs_told_apart']}"], figure=figure)
+                   + (f"the better plan: {better['pairs_told_apart']}" if found else "no better plan was found")],
+                  figure=figure)
     side, height = 48.0, max(30.0, 2.7 * len(names))  # so that every name can be read
     image = None
-    for k, (title, one) in enumerate((("given", given), ("better", better))):
+    for k, (title, one) in enumerate((("given", given), ("better", better))[:2 if found else 1]):
         axes = sheet.panel(40 + k * (side + 4), sheet.y + 2 * LINE, side, height)
         axes.grid(False)
         image = axes.imshow(np.abs(np.array(one["cosines"], dtype=float)), vmin=0, vmax=1, cmap="viridis", aspect="auto")
@@ -91,7 +92,7 @@ def _cosines(c: dict, figure: Any) -> Any:
         axes.set_yticks(range(len(names)) if k == 0 else [], [clip(n, 30) for n in names] if k == 0 else [],
                         fontsize=6)
         axes.tick_params(length=0)
-    bar = sheet.panel(40 + 2 * (side + 4), sheet.y + 2 * LINE, 3, height)
+    bar = sheet.panel(40 + (2 if found else 1) * (side + 4), sheet.y + 2 * LINE, 3, height)
     sheet.figure.colorbar(image, cax=bar, label="|cosine|")
     sheet.y += 2 * LINE + height
     return sheet.done(LINE)

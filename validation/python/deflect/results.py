@@ -317,6 +317,7 @@ class Foresight(Result):
     """Of plan(before=…): what the ``given`` campaign and a ``better`` one tell; rows: the effects by how large they must be
     to show in the given one.
 
+    ``better_found``  whether a better one was found; else ``better`` is the given one
     ``measurements``  the better campaign as a file to be filled in
     """
 
@@ -324,8 +325,11 @@ class Foresight(Result):
     subject: str
     campaign: str
     toward: str
+    better_found: bool
+    gain_in: str
     given: schema_fitted.Insight
     better: schema_fitted.Insight
+    readings: List[schema_fitted.PlannedReading]
     provenance: Maybe[schema.Provenance]
 
     _drawn_by = "figures_more.plan"

@@ -327,9 +327,27 @@ class Foreseen(Record):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class Gain(Record):
+    """What the first so many readings bring: error in use (µm), or a bound on the chance of taking the wrong effect."""
+
+    readings: int
+    value: float
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class PlannedStand(Record):
+    """A pose of a campaign and the number of its readings."""
+
+    pose: str
+    pose_mm_deg: List[float]
+    readings: int
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Insight(Record):
-    """What a campaign can tell: pairs of effects, errors before and after (µm), indices O1 … O5 of observability, and
-    ``cosines`` (n, n) of the signatures."""
+    """What a campaign can tell: pairs of effects, errors before and after (µm), indices O1 … O5 of observability,
+    ``cosines`` (n, n) of the signatures, ``chances`` (n, n) of taking the effect of the column for that of the row,
+    ``gain`` by number of readings, and the poses."""
 
     readings: int
     poses: int
@@ -350,4 +368,7 @@ class Insight(Record):
     D_gain: float
     detectable: List[Foreseen]
     cosines: Array
+    chances: Array
+    gain: List[Gain]
+    stands: List[PlannedStand]
     left_out: List[LeftOut]

@@ -4,6 +4,7 @@
 
 #include "msa/base/index.h"
 #include "validation/json/json_text.h"
+#include "validation/report/plan/plan_results.h"
 #include "validation/report/short_lists.h"
 #include "validation/report/text.h"
 
@@ -27,27 +28,6 @@ std::size_t pairs_alike(const plan::Insight& i) {
   return out;
 }
 
-/// How two different effects of the given campaign, each as large as λ = 8 there, are told apart.
-struct Confusion {
-  std::size_t pairs = 0, told = 0;  ///< told: the wrong one is taken in less than one case of twenty
-  double mean = 0;                  ///< chance of taking the wrong one, over the pairs and both as the true one
-};
-
-Confusion confusion(const plan::Insight& i, const plan::Insight& given) {
-  Confusion out;
-  const MatrixX& s = i.separations;
-  for (Eigen::Index a = 0; a < s.rows(); ++a)
-    for (Eigen::Index b = a + 1; b < s.rows(); ++b) {
-      if (nth(given.detectable, a).effect.effect == nth(given.detectable, b).effect.effect) continue;
-      const double one = plan::chance_of_confusion(s(a, b)), other = plan::chance_of_confusion(s(b, a));
-      ++out.pairs;
-      out.told += std::max(one, other) < 0.05 ? 1 : 0;
-      out.mean += (one + other) / 2;
-    }
-  if (out.pairs > 0) out.mean /= static_cast<double>(out.pairs);
-  return out;
-}
-
 std::string indices_table(const plan::Foresight& f) {
   struct Row {
     std::string name;
@@ -56,7 +36,7 @@ std::string indices_table(const plan::Foresight& f) {
   };
   const plan::Observability &a = f.given.observability, &b = f.better.observability;
   const auto count = [](std::size_t n) { return static_cast<double>(n); };
-  const Confusion here = confusion(f.given, f.given), there = confusion(f.better, f.given);
+  const plan::Confusion here = plan::confusion(f.given, f.given), there = plan::confusion(f.better, f.given);
   std::vector<Row> all = {
       {"readings", count(f.given.readings.readings.size()), count(f.better.readings.readings.size()), "{:.0f}"},
       {"poses", count(f.given.readings.poses.size()), count(f.better.readings.poses.size()), "{:.0f}"},
@@ -78,13 +58,40 @@ std::string indices_table(const plan::Foresight& f) {
   for (const Row& r : all)
     rows.push_back(
         {"  " + r.name, fmt::format(fmt::runtime(r.form), r.given), fmt::format(fmt::runtime(r.form), r.better)});
+  if (!f.found)
+    for (std::vector<std::string>& row : rows) row.pop_back();
   std::string out = aligned(rows);
   if (a.O[0] == 0 || b.O[0] == 0)
     out += "  O1 to O5 are 0 where some tolerance, or several together, leave no trace in the readings\n";
   return out;
 }
 
-Json insight_json(const plan::Insight& i, const plan::Insight& given) {
+/// As many as a curve needs, the last among them.
+Json gain_json(const std::vector<plan::Gain>& gain, plan::Toward toward) {
+  constexpr std::size_t most = 60;
+  const std::size_t n = gain.size(), shown = std::min(n, most);
+  const double times = toward == plan::Toward::precision ? um : 1;
+  Json out = Json::array();
+  for (std::size_t i = 0; i < shown; ++i) {
+    const plan::Gain& g = gain[shown < n ? i * (n - 1) / (shown - 1) : i];
+    out.push_back({{"readings", g.readings}, {"value", json::json_number(times * g.value, "gain")}});
+  }
+  return out;
+}
+
+/// Where the readings are taken: of a machine.
+Json stands_json(const measurement::Measurements& m) {
+  Json out = Json::array();
+  for (const measurement::PoseGroup& pose : m.poses) {
+    if (m.instruments.stationary || m.by_joints()) break;
+    out.push_back({{"pose", pose.label},
+                   {"pose_mm_deg", std::vector<double>(pose.pose_mm_deg.begin(), pose.pose_mm_deg.end())},
+                   {"readings", pose.readings.size()}});
+  }
+  return out;
+}
+
+Json insight_json(const plan::Insight& i, const plan::Foresight& f) {
   Json j;
   j["readings"] = i.readings.readings.size();
   j["poses"] = i.readings.poses.size();
@@ -92,7 +99,7 @@ Json insight_json(const plan::Insight& i, const plan::Insight& given) {
   j["numbers"] = i.numbers;
   j["effects_that_show"] = that_show(i);
   j["pairs_alike"] = pairs_alike(i);
-  const Confusion c = confusion(i, given);
+  const plan::Confusion c = plan::confusion(i, f.given);
   j["pairs"] = c.pairs;
   j["pairs_told_apart"] = c.told;
   j["chance_of_confusion"] = json::json_number(c.mean, "chance of confusion");
@@ -114,16 +121,25 @@ Json insight_json(const plan::Insight& i, const plan::Insight& given) {
                                {"cosine", json::json_number(d.cosine, "cosine")}});
   }
   j["cosines"] = rows_json(i.cosines, "cosine");
+  j["chances"] = rows_json(i.separations.unaryExpr(&plan::chance_of_confusion), "chance of confusion");
+  j["gain"] = gain_json(i.gain, f.toward);
+  j["stands"] = stands_json(i.readings);
   j["left_out"] = left_out_json(i.left_out);
   return j;
 }
 
 }  // namespace
 
+std::string no_better_words(const plan::Foresight& f) {
+  return fmt::format("No better campaign of {} readings was found for {}.", f.given.readings.readings.size(),
+                     nth(plan::toward_names, f.toward));
+}
+
 std::string foresight_report(const plan::Foresight& f) {
   return fmt::format("{}: what {} will be able to tell (a calibration would fit {} tolerance{})\n\n", f.subject,
                      f.campaign, f.given.parameters, f.given.parameters == 1 ? "" : "s") +
-         indices_table(f) + "\n" + detectable_table(f.given.detectable) + left_out_words(f.given.left_out);
+         (f.found ? "" : no_better_words(f) + "\n\n") + indices_table(f) + "\n" + detectable_table(f.given.detectable) +
+         left_out_words(f.given.left_out);
 }
 
 std::string foresight_json(const plan::Foresight& f) {
@@ -132,8 +148,11 @@ std::string foresight_json(const plan::Foresight& f) {
   j["subject"] = f.subject;
   j["campaign"] = f.campaign;
   j["toward"] = nth(plan::toward_names, f.toward);
-  j["given"] = insight_json(f.given, f.given);
-  j["better"] = insight_json(f.better, f.given);
+  j["better_found"] = f.found;
+  j["gain_in"] = f.toward == plan::Toward::precision ? "um" : "chance";
+  j["given"] = insight_json(f.given, f);
+  j["better"] = insight_json(f.better, f);
+  j["readings"] = planned_readings_json(f.better.readings);
   return json::json_text(j);
 }
 

@@ -96,17 +96,17 @@ Json pairs_json(const plan::Plan& p, const std::vector<plan::Pair>& pairs) {
   return out;
 }
 
-Json readings_json(const measurement::Measurements& m) {
+}  // namespace
+
+Json planned_readings_json(const measurement::Measurements& m) {
   Json out = Json::array();
   for (const measurement::Reading& r : m.readings)
     out.push_back({{"pose", m.poses[r.pose].label},
                    {"at", pose_words(m, m.poses[r.pose])},
                    {"load", load_words(m, r)},
-                   {"how", r.notes.front()}});
+                   {"how", r.notes.empty() ? "" : r.notes.front()}});
   return out;
 }
-
-}  // namespace
 
 std::string plan_report(const plan::Plan& p) {
   std::string names;
@@ -145,7 +145,7 @@ std::string plan_json(const plan::Plan& p) {
       parameters.push_back({{"name", all[i]->name}, {"value", r.values(as_index(i))}});
     j["rivals"].push_back({{"effect", rival_words(r)}, {"probability", r.probability}, {"parameters", parameters}});
   }
-  j["readings"] = readings_json(p.readings);
+  j["readings"] = planned_readings_json(p.readings);
   j["probability"] = p.probability;
   j["separations"] = pairs_json(p, p.as_planned);
   j["at_random"] = p.at_random;

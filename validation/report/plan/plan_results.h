@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "validation/json/json_text.h"
 #include "validation/plan/next_readings.h"
 
 namespace deflect::report {
@@ -11,6 +12,8 @@ namespace deflect::report {
 std::string plan_report(const plan::Plan&);
 /// {"kind": "plan", "rivals": […], "readings": […], "steps": […], "inseparable": […], …}.
 std::string plan_json(const plan::Plan&);
+/// [{"pose", "at", "load", "how"}, …]: readings to be taken, in words.
+Json planned_readings_json(const measurement::Measurements&);
 /// Number of readings, expected probability, expected separations.
 std::string plan_csv(const plan::Plan&);
 
