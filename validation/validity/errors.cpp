@@ -52,7 +52,8 @@ Agreement agreement_of(double chi2, std::size_t numbers) {
 double ComparisonError::u_D() const { return std::hypot(noise, load); }
 double ComparisonError::u_val() const { return std::sqrt(num * num + input * input + u_D() * u_D()); }
 
-Errors::Errors(const compare::Comparison& c, const fit::PredictedPlan& plan) : comparison_(&c) {
+Errors::Errors(const compare::Comparison& c, const fit::PredictedPlan& plan, const std::vector<double>& numerical)
+    : comparison_(&c) {
   const std::vector<std::size_t> match = matched(c, plan);
   const std::set<std::size_t> lines(c.set_aside.begin(), c.set_aside.end());
   for (const measurement::Reading& r : c.study.data->readings) aside_.push_back(lines.contains(r.line));
@@ -60,8 +61,7 @@ Errors::Errors(const compare::Comparison& c, const fit::PredictedPlan& plan) : c
   for (std::size_t i = 0; i < match.size(); ++i) {
     const fit::PredictedNumber& n = plan.numbers[match[i]];
     ComparisonError e{n.value, c.study.values[i].value};
-    const auto [least, most] = std::minmax_element(n.by_theory.begin(), n.by_theory.end());
-    e.num = *most - *least;
+    e.num = numerical.empty() ? 0 : numerical[match[i]];
     e.input = std::hypot(n.deviation.parameters, n.deviation.tolerances);
     e.noise = c.sigma[i];
     e.load = n.deviation.load;

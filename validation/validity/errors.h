@@ -2,7 +2,7 @@
 // Verification and Validation in Computational Fluid Dynamics and Heat Transfer), section 1:
 //   E = S − D,   u_val² = u_num² + u_input² + u_D²,   the error of the model lies in E ± k u_val
 //   S        simulated value, D datum
-//   u_num    numerical: the difference of the two theories, which share no stiffness formula
+//   u_num    numerical: by a study of the mesh (numerical.h)
 //   u_input  inputs of the simulation: tolerances and, of a calibrated model, parameters as the calibration left them
 //   u_D      data: noise of a reading, and the load cell
 // Where |E| ≤ k u_val the error of the model cannot be told from zero; where |E| is far above, E is that error.
@@ -41,7 +41,8 @@ struct Agreement {
 class Errors {
  public:
   /// `plan`: predicted under the loads of the comparison's data, which must outlive this, as must the comparison.
-  Errors(const compare::Comparison&, const fit::PredictedPlan& plan);
+  /// `numerical`: u_num by its numbers; none: zero.
+  Errors(const compare::Comparison&, const fit::PredictedPlan& plan, const std::vector<double>& numerical);
 
   const std::vector<ComparisonError>& all() const { return errors_; }  ///< by measured number
   const compare::Comparison& comparison() const { return *comparison_; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "msa/base/error.h"
@@ -120,6 +121,19 @@ void require_apart(const Measurements& calibration, const Measurements& validati
                         calibration.origin, r.line, validation.origin, q.line));
 }
 
+double difference_of_theories(const fit::PredictedPlan& plan) {
+  std::map<measurement::Quantity, std::pair<double, double>> squares;  // differences, predictions
+  for (const fit::PredictedNumber& n : plan.numbers) {
+    const auto [least, most] = std::minmax_element(n.by_theory.begin(), n.by_theory.end());
+    squares[n.quantity].first += (*most - *least) * (*most - *least);
+    squares[n.quantity].second += n.by_theory.front() * n.by_theory.front();
+  }
+  double out = 0;
+  for (const auto& [quantity, sums] : squares)
+    if (sums.second > 0) out = std::max(out, std::sqrt(sums.first / sums.second));
+  return out;
+}
+
 fit::PredictedPlan predicted(const Subject& s, const Measurements& data, const ValidationOptions& o,
                              const std::vector<fit::Discrepancy>& discrepancies, bool tool_point,
                              const parallel::Work& work) {
@@ -137,7 +151,7 @@ Calibration calibration_of(const Subject& s, const Measurements& validation, con
   compare::ComparisonOptions as_recorded = o.comparison;
   as_recorded.as_recorded = true;
   const compare::Comparison c = compare::compare(s, data, as_recorded, work);
-  const Errors own(c, predicted(s, data, o, {}, true, work));
+  const Errors own(c, predicted(s, data, o, {}, true, work), {});
   const auto size = [](const Errors& e) {
     VectorX r = e.residual();
     return compare::rms_of_kept(e.comparison().study.values, r, e.aside());
@@ -192,8 +206,11 @@ ValidationStudy validate(const Subject& s, const Measurements& data, const Valid
   out.device = s.name();
   out.data = data.origin;
   out.comparison = compare::compare(fitted, data, o.comparison, work.part(0, 0.4));
-  const fit::PredictedPlan plan = predicted(s, data, o, {}, true, work.part(0.4, 0.7));
-  const Errors errors(out.comparison, plan);
+  const fit::PredictedPlan plan = predicted(s, data, o, {}, true, work.part(0.4, 0.5));
+  const NumericalStudy numerical = numerical_study(fitted, plan, work.part(0.5, 0.7));
+  out.mesh = numerical.orders;
+  out.theories_differ = difference_of_theories(plan);
+  const Errors errors(out.comparison, plan, numerical.u);
   out.calibrated = o.fit.has_value();
   out.theories = plan.theories.size();
   out.errors = errors.all();

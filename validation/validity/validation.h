@@ -9,6 +9,7 @@
 #include "validation/validity/domain.h"
 #include "validation/validity/maturity.h"
 #include "validation/validity/metrics.h"
+#include "validation/validity/numerical.h"
 #include "validation/validity/sensitivity.h"
 
 namespace deflect::validity {
@@ -45,7 +46,9 @@ struct ValidationStudy {
   compare::Comparison comparison;
   bool calibrated = false;  ///< u_input has parameters of a fit
   std::size_t theories = 0;
+  double theories_differ = 0;  ///< by how much, of the predictions of a quantity: root mean squares, the largest
   std::vector<ComparisonError> errors;  ///< by measured number
+  std::vector<MeshOrder> mesh;          ///< how u_num falls with the size of the elements
   Agreement agreement;
   std::vector<ChannelValidity> channels;
   std::vector<double> u;  ///< of all numbers, sorted

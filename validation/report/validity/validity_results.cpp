@@ -19,6 +19,7 @@ using validity::ValidationStudy;
 
 constexpr const char* formulas[] = {
     "E = S − D; u_val² = u_num² + u_input² + u_D²; the error of the model lies in E ± 2 u_val (ASME V&V 20-2009)",
+    "u_num: elements of the MSA halved and halved again, extrapolated with the observed order, 1.25 |S − f*| / 1.15",
     "χ² = Eᵀ V⁻¹ E with the correlations that tolerances make; p: chance of so large a χ² where the model is right",
     "area: ∫|F_n(u) − u| du of u = F(D), 0 to 1/2 (Ferson, Oberkampf, Ginzburg 2008)",
     "bias δ, scatter σ_M of ln(S/D): the true value is S/δ (1 ± σ_M) (FDS Validation Guide; McGrattan, Toman 2011)",
