@@ -89,11 +89,12 @@ export function foreseen(f) {
     ['error in use before fitting, µm rms', 'error_before_um'], ['error in use after fitting, µm rms', 'error_after_um'],
     ['O1 (Borm, Menq 1991)', 'O1'], ['O2 (Driels, Pathre 1990)', 'O2'], ['O3 (Nahvi, Hollerbach, Hayward 1994)', 'O3'], ['O4 (Nahvi, Hollerbach 1996)', 'O4'], ['O5 (Sun, Hollerbach 2008)', 'O5'], ['D-gain, nats (Lindley 1956)', 'D_gain']]
     .map(([words, key]) => [words, f.given[key], ...(found ? [f.better[key]] : [])]);
+  const zeros = f.given.O1 === 0 || f.better.O1 === 0 ? [el('p', {class: 'about'}, 'O1 to O5 are 0 where some tolerance, or several together, leave no trace in the readings.')] : [];
   const seen = f.given.detectable.map((d) => [d.effect, d.smallest.length ? d.smallest.map((x, i) => `${d.parameters[i]} ${num(x, 3)}`).join(', ') : 'none within bounds', d.mistaken_for || '–', d.mistaken_for ? num(d.cosine, 3) : '–']);
   const columns = ['effect', 'smallest size shown', 'would be mistaken for', 'cosine'];
   return [
     figure('foresight', 'What the campaign will tell', found ? `Beside a better campaign for ${f.toward}.` : `No better campaign of as many readings was found for ${f.toward}.`,
-      table(['', 'this campaign', ...(found ? ['better'] : [])], compared), numbers('foresight', () => ({columns: ['what', 'given', ...(found ? ['better'] : [])], rows: compared}))),
+      table(['', 'this campaign', ...(found ? ['better'] : [])], compared), ...zeros, numbers('foresight', () => ({columns: ['what', 'given', ...(found ? ['better'] : [])], rows: compared}))),
     confusions(f, found),
     gains(f, found),
     stands(f, found),
