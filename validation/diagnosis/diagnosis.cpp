@@ -200,23 +200,34 @@ Explained explained(const Observations& o, const std::shared_ptr<const WhitenedF
 
 /// Where effects leave something unknown that were looked for from small sizes, and a large one alone leaves less than
 /// half as much beyond noise: what is found from there, if it leaves nothing. Exchanges the candidates for the first
-/// effect.
-void look_for_large_ones(Explained& e, Diagnosis& d, const Observations& o,
+/// effect; whether it has.
+bool look_for_large_ones(Explained& e, Diagnosis& d, const Observations& o,
                          const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,
                          const Candidates& candidates, const Fit& null, const std::vector<Candidate>& first) {
-  if (!e.left.significant()) return;
+  if (!e.left.significant()) return false;
   std::optional<std::vector<Candidate>> large = candidates.likelier_if_larger(o, {}, null, first);
-  if (!large) return;
+  if (!large) return false;
   const auto best = std::max_element(large->begin(), large->end(), [](const Candidate& a, const Candidate& b) {
     return a.class_log_odds < b.class_log_odds;
   });
   const auto beyond_noise = [&](const Fit& f) { return f.chi2 - static_cast<double>(o.numbers()); };
-  if (beyond_noise(best->fit) > half_of_it * beyond_noise(e.found.fit)) return;
+  if (beyond_noise(best->fit) > half_of_it * beyond_noise(e.found.fit)) return false;
   Explained again = explained(o, patterns, all, candidates.in_larger_sizes(), *large);
-  if (again.left.significant()) return;
+  if (again.left.significant()) return false;
   e = std::move(again);
   d.candidates = std::move(*large);
   sort_candidates(d, o);
+  return true;
+}
+
+/// What is a gross outlier where nothing is missing may be none beside what was found. Then it counts for every
+/// candidate: the observations with which the candidates are told, which are fitted anew.
+Observations counted_again(const Observations& o, const Selection& found, const Candidates& candidates, Diagnosis& d) {
+  if (found.effects.empty() || found.observations.aside() == o.aside()) return o;
+  Observations out = o.keeping(found.observations.aside());
+  d.candidates = candidates.beside(out, {}, fit_of_all(out, {}, VectorX(0)), even_hopeless);
+  sort_candidates(d, out);
+  return out;
 }
 
 Verdict verdict_of(const Diagnosis& d) {
@@ -263,11 +274,13 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   sort_candidates(d, o);
 
   Explained e{{o, {}, null, {}, {}}, patterns, {}};
+  bool large = false;
   if (missing) {
     e = explained(o, patterns, all, candidates, first);
-    look_for_large_ones(e, d, o, patterns, all, candidates, null, first);
+    large = look_for_large_ones(e, d, o, patterns, all, candidates, null, first);
   }
   Selection found = std::move(e.found);
+  const Observations told = counted_again(o, found, large ? candidates.in_larger_sizes() : candidates, d);
   const Observations& seen = found.observations;
   d.unexplained = e.left.significant();
   if (!found.effects.empty())
@@ -282,7 +295,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   add_left_out(d.left_out, first);
   d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
   note_ties(d, found, data);
-  bound_ties(d, o, work.threads);
+  bound_ties(d, told, work.threads);
   d.verdict = verdict_of(d);
   d.final = quality(seen, d.missing, d.fit);
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));

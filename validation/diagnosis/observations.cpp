@@ -195,6 +195,12 @@ Observations Observations::about(const subject::Subject& subject) const {
   return out;
 }
 
+Observations Observations::keeping(const std::vector<bool>& aside) const {
+  Observations out = *this;
+  out.weigh(aside);
+  return out;
+}
+
 Observations Observations::exact_in(const std::vector<std::size_t>& tolerances) const {
   Observations out = *this;
   for (const std::size_t i : tolerances) out.A_.shared.col(as_index(i)).setZero();

@@ -62,6 +62,8 @@ class Observations {
   /// A copy whose hypotheses are about this subject: effects are added to it, it is subject() and null_residual() is
   /// its. Weights, tolerances and what is granted stay those of the subject of this one.
   Observations about(const subject::Subject&) const;
+  /// A copy in which these readings are set aside.
+  Observations keeping(const std::vector<bool>& aside) const;
   /// A copy in which these tolerances, by their index among those of the comparison, are exact.
   Observations exact_in(const std::vector<std::size_t>& tolerances) const;
 
