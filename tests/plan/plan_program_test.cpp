@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 
 namespace deflect {
@@ -58,6 +60,31 @@ TEST_F(PlanProgram, TheLoopFromATieToItsEnd) {
   ASSERT_FALSE(second.at("missing").empty());
   EXPECT_EQ(second.at("missing").front(), "actuator_compliance");
   EXPECT_EQ(second.at("data"), path("paper.csv") + " + " + path("filled.csv"));
+}
+
+// The instrument that a plan proposes, in the device: its readings name the effect.
+TEST_F(PlanProgram, AProposedInstrumentTells) {
+  const test::Run planned = test::deflect("plan " + device + " " + path("diagnosis.json") + " -o " + path("many.csv") +
+                                          " --json " + path("instruments.json"));
+  ASSERT_EQ(planned.code, 0) << planned.out;
+  const auto plan = nlohmann::json::parse(test::contents(path("instruments.json")));
+  ASSERT_FALSE(plan.at("new_sensors").empty());
+  const auto& gauge = plan.at("new_sensors").front();
+  EXPECT_NE(gauge.at("name").get<std::string>().find("_in_leg_"), std::string::npos) << "beside the actuator";
+  ASSERT_FALSE(gauge.at("enough").empty());
+  EXPECT_LT(gauge.at("enough").size(), plan.at("readings").size() / 4);
+  std::ofstream(path("gauged.yaml")) << test::contents(test::source_dir() + "/validation/devices/" + device + ".yaml")
+                                     << "sensors: {gauge: " << gauge.at("entry").get<std::string>() << "}\n";
+  const std::string with = " --with actuator_compliance,stiffness_N_per_mm=3000 --machine 3 ";
+  const test::Run read = test::deflect("simulate " + path("gauged.yaml") + with + "--campaign " + path("many.csv") +
+                                       " --seed 4 -o " + path("gauged.csv"));
+  ASSERT_EQ(read.code, 0) << read.out;
+  const test::Run again = test::deflect("diagnose " + path("gauged.yaml") + " " + path("paper.csv") + " " +
+                                        path("gauged.csv") + " --bootstrap 99 --json " + path("told.json"));
+  ASSERT_EQ(again.code, 0) << again.out;
+  const auto told = nlohmann::json::parse(test::contents(path("told.json")));
+  ASSERT_FALSE(told.at("missing").empty()) << again.out;
+  EXPECT_EQ(told.at("missing").front(), "actuator_compliance");
 }
 
 // A diagnosis of several sessions names all of them: a plan and a page find them again.

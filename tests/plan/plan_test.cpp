@@ -7,10 +7,12 @@
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "validation/diagnosis/fit_problem.h"
+#include "validation/effects/place_effects.h"
 #include "validation/measurement/joined.h"
 #include "validation/plan/foresight.h"
 #include "validation/prediction/campaign.h"
 #include "validation/report/plan/foresight_results.h"
+#include "validation/report/plan/plan_results.h"
 #include "validation/statistics/columns.h"
 
 namespace deflect::plan {
@@ -266,6 +268,40 @@ TEST(Plan, WhereNoCampaignIsBetterNoneIsNamed) {
   EXPECT_FALSE(better("load.tip,z_mm\n1,0\n1,0\n"));
   // Of half the load the error is as if its noise were twice as large.
   EXPECT_TRUE(better("load.tip,z_mm\n1,0\n0.5,0\n"));
+}
+
+/// Two springs in series, 1 N/µm each, read at the far end: 10 N move it by 30 µm, and the one or the other is half as
+/// stiff. No load tells which. The node between them moves by 20 or by 10 µm: with σ = 1 µm and the reading at the end
+/// taken again, the lower spring half as stiff leaves 10² where the upper one is fitted, which cannot move the node,
+/// and the upper one leaves the least of (10 + x)² + 2 x² where the lower one is, 66.7.
+TEST(Plan, NamesTheInstrumentThatWouldTell) {
+  const subject::Subject s = frame::parse_frame(R"(name: chain
+plane: xz
+nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
+supports: {A: [uz, ry], B: [uz, ry]}
+springs: {lower: {node: A, ux: 1 N/um}, upper: {node: B, to: A, ux: 1 N/um}}
+loads: {pull: {nodes: {B: {fx: 10 N}}}}
+sensors: {top: {node: B, direction: ux, sigma: 1 um}}
+)",
+                                                "chain.yaml");
+  const std::vector<effects::Effect> effects = effects::place_effects(s, {});
+  const auto softer = [&](const char* name) -> Rival {
+    return {{{&effects::find_effect(effects, name), {}}}, values({0.5}), 0.5};
+  };
+  const Measurements data =
+      s.placed(measurement::parse_measurements("load.pull,top_mm\n1,0.03\n", "data.csv", s.instruments()));
+  PlanOptions o;
+  o.draws = 1;
+  const Plan p = next_readings(s, data, {softer("factor@spring.lower.ux"), softer("factor@spring.upper.ux")}, o);
+  EXPECT_EQ(p.inseparable.size(), 1u);
+  EXPECT_TRUE(p.readings.readings.empty());
+  ASSERT_EQ(p.sensors.size(), 1u);
+  EXPECT_EQ(p.sensors.front().sensor.name, "ux of node A");
+  EXPECT_EQ(p.sensors.front().enough, std::vector<std::size_t>{0});
+  // A factor's logarithm has the prior deviation 3, x 60 µm.
+  EXPECT_NEAR(p.sensors.front().separation, (100 + 100 - 100 / (3 + 1 / 3600.0)) / 2, 1e-5);
+  const std::string report = report::plan_report(p);
+  EXPECT_NE(report.find("{node: A, direction: ux, sigma: 0.001 mm}"), std::string::npos) << report;
 }
 
 TEST(Plan, IsAFileWithEmptyCellsThatReadsBack) {

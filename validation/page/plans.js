@@ -15,6 +15,8 @@ const steps = (p) => chart('Expected probability by number of readings', 280, (t
 export function planned(p) {
   const readings = p.readings.map((r, i) => [i + 1, r.pose, r.at, r.load, r.how]);
   const columns = ['reading', 'pose', 'at (mm, deg; joints in rad or mm)', 'load', 'how'];
+  const instrument = ['a further instrument', 'readings enough', 'probability by all', 'its line in the description'];
+  const instruments = (p.new_sensors || []).map((n) => [n.name, n.enough.length ? `${n.enough.length}: ${n.enough.slice(0, 4).join(', ')}${n.enough.length > 4 ? ' …' : ''}` : 'more', num(n.probability, 3), n.entry]);
   return [
     figure('plan-rivals', 'Effects that are tied', '', table(['effect', 'probability'], p.rivals.map((r) => [r.effect, r.probability])),
       p.inseparable.map((i) => el('p', {}, `No reading within these limits tells ${i.between.join(' and ')} apart. What would: ${i.instead.join(' ')}`))),
@@ -22,6 +24,8 @@ export function planned(p) {
       numbers('plan', () => ({columns, rows: readings}))) : null,
     p.steps.length > 1 ? figure('plan-steps', 'What each further reading brings', 'Expected probability of the right effect after so many readings.', steps(p),
       numbers('plan-steps', () => ({columns: ['readings', 'probability'], rows: p.steps.map((s) => [s.readings, s.probability])}))) : null,
+    instruments.length ? figure('plan-instruments', 'Instruments that would help', `Beside the others in these readings${readings.length ? '' : ' (those of the data, taken again)'}: how many of them would be enough and which, and the expected probability by all of them.`,
+      table(instrument, instruments, {show: String}), numbers('plan-instruments', () => ({columns: instrument, rows: instruments}))) : null,
   ];
 }
 

@@ -107,8 +107,8 @@ Plan next_readings(const subject::Subject& s, const Measurements& data, std::vec
   out.subject = s.name();
   out.data = data.origin;
   out.taken = data.readings.size();
-  const Prospect prospect(s, possible_readings(s, data, o.limits, remembers(s, data, rivals), o.seed), o.noise,
-                          work.part(0, 0.2));
+  const bool sequences = remembers(s, data, rivals);
+  const Prospect prospect(s, possible_readings(s, data, o.limits, sequences, o.seed), o.noise, work.part(0, 0.2));
   const std::vector<Block>& blocks = prospect.possible().blocks;
   out.possible = prospect.readings().readings.size() - out.taken;
   const Rivalry rivalry(prospect, s, std::move(rivals), o.draws, o.seed, work.part(0.2, 0.5));
@@ -126,7 +126,14 @@ Plan next_readings(const subject::Subject& s, const Measurements& data, std::vec
   add_steps(out, rivalry, aim, blocks, choice.blocks);
   out.as_planned = out.steps.back().pairs;
   out.probability = out.steps.back().probability;
-  if (choice.blocks.empty()) return out;
+  const auto more_sensors = [&](const Measurements& added) {
+    const SensorOptions by{o.noise, o.probability, o.draws, o.seed, sequences};
+    out.sensors = new_sensors(s, data, added, out.rivals, by, {work.threads});
+  };
+  if (choice.blocks.empty()) {
+    more_sensors(data);
+    return out;
+  }
   out.readings = as_plan(prospect.possible(), choice.blocks);
   if (out.probability >= o.probability)
     std::tie(out.at_random, out.at_random_is_more) =
@@ -142,6 +149,7 @@ Plan next_readings(const subject::Subject& s, const Measurements& data, std::vec
   const Step whole = expected_of(s, data, as_taken, out.rivals, o, work.quiet());
   out.as_planned = whole.pairs;
   out.probability = whole.probability;
+  more_sensors(as_taken);
   if (work.progress) work.progress(1);
   return out;
 }

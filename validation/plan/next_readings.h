@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/plan/rivals.h"
+#include "validation/plan/new_sensors.h"
 
 namespace deflect::plan {
 
@@ -47,6 +47,9 @@ struct Plan {
   std::size_t at_random = 0;       ///< readings drawn from the same poses and loads for the same probability, median
   bool at_random_is_more = false;  ///< than that number, where the search ended
   std::vector<Inseparable> inseparable;
+  /// What would help more than readings: instruments that the subject does not have, in the readings planned, or, where
+  /// none is, in those of the data taken again.
+  std::vector<NewSensor> sensors;
 };
 
 /// Throws as possible_readings(), Prospect and Rivalry do. The result does not depend on the number of threads.

@@ -6,25 +6,13 @@
 #include <cmath>
 
 #include "msa/base/index.h"
-#include "msa/frame/file/frame_description.h"
+#include "validation/subject/possible_sensors.h"
 
 namespace deflect::subject {
 namespace {
 
 constexpr std::size_t most_poses = 9;
 constexpr const char* load_names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
-constexpr const char* freedoms[] = {"ux", "uy", "uz", "rx", "ry", "rz"};
-
-/// The least noise of the displacement sensors: of displacements, of rotations; 0 where none has any.
-std::pair<double, double> least_noise(const frame::FrameDescription& f) {
-  double length = 0, angle = 0;
-  for (const auto& [name, s] : f.sensors) {
-    if (s.reads != frame::FrameSensor::Reads::displacement || !(s.sigma > 0)) continue;
-    double& least = s.rotation ? angle : length;
-    least = least > 0 ? std::min(least, s.sigma) : s.sigma;
-  }
-  return {length, angle};
-}
 
 /// Rows of one load at a time.
 class Trials {
@@ -134,26 +122,10 @@ std::vector<double> largest_factors(const Subject& s, const measurement::Measure
 
 Subject instrumented(const Subject& s) {
   if (!s.frame()) return s;
-  frame::FrameDescription f = *s.frame();
-  auto [length, angle] = least_noise(f);
-  if (!(length > 0)) return s;
-  Vector3 low = f.nodes.front().second, high = low;
-  for (const auto& [name, at] : f.nodes) low = low.cwiseMin(at), high = high.cwiseMax(at);
-  if (!(angle > 0)) angle = length / (0.1 * (high - low).norm());
-  const int normal = frame::normal_axis(f.plane);
-  for (const auto& [node, at] : f.nodes)
-    for (int i = 0; i < 6; ++i) {
-      const bool rotation = i >= 3;
-      if (normal < 3 && rotation != (i % 3 == normal)) continue;  // a plane has two translations and a rotation
-      frame::FrameSensor sensor;
-      sensor.of = node;
-      sensor.direction = freedoms[i];
-      sensor.axis = Vector3::Unit(i % 3);
-      sensor.rotation = rotation;
-      sensor.sigma = rotation ? angle : length;
-      f.sensors.emplace_back(fmt::format("{} of node {}", freedoms[i], node), sensor);
-    }
-  return f;
+  std::vector<PossibleSensor> all = possible_sensors(s);
+  std::erase_if(all,
+                [](const PossibleSensor& p) { return !(p.sigma > 0) || p.quantity == measurement::Quantity::force; });
+  return with_sensors(s, all);
 }
 
 measurement::Measurements trial_readings(const Subject& s, const measurement::Measurements& data) {

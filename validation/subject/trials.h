@@ -6,8 +6,7 @@
 
 namespace deflect::subject {
 
-/// A frame with a sensor "uz of node M" for each freedom of every node, of the least noise that its sensors of that
-/// quantity have (of rotations, where it has none: that of displacements over a tenth of its size). None where no
+/// A frame with a sensor for each motion of every node that none of its own reads (possible_sensors.h). None where no
 /// sensor reads a displacement. A machine is read at its tool point: it comes back as it is.
 Subject instrumented(const Subject&);
 

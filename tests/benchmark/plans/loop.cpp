@@ -120,9 +120,7 @@ class Loop {
     out.planned = plan.readings.readings.size();
     const Measurements after = read_after(paper, plan.readings, built, machine);
     const Measurements all = subject_.placed(measurement::joined({before, after}));
-    plan::PlanOptions as_fitted = o;
-    as_fitted.draws = 1;
-    out.predicted = plan::expected_of(subject_, before, after, rivals, as_fitted, {threads_}).pairs.front().separation;
+    out.predicted = plan::expected_of(subject_, before, after, rivals, o, {threads_}).pairs.front().separation;
     fitted(all, out.found, index % 2);
     out.right = out.found > 0;
     out.found -= out.before;

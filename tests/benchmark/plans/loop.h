@@ -27,7 +27,7 @@ struct LoopResult {
   std::size_t planned = 0;         ///< readings
   std::size_t at_random = 0;       ///< of the campaign "random" for the same expected probability
   bool at_random_is_more = false;  ///< than that
-  double predicted = 0;            ///< λ² that the planned readings add
+  double predicted = 0;            ///< λ² that the planned readings add, mean over what the paper's plan leaves open
   double found = 0;                ///< χ² of the wrong one − χ² of the true one, by how much it has grown
   bool right = false;              ///< the true one fits better in the end
   double seconds = 0;              ///< of planning

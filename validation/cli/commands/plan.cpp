@@ -243,7 +243,8 @@ Command plan_command() {
       "reading, each effect is fitted again to what the other would read, with all tolerances free under their priors. "
       "The command "
       "says how probable the right effect will be after these readings, writes the file that the laboratory fills in, "
-      "and names pairs that no reading separates. With --before it says what a campaign will be able to tell before "
+      "names pairs that no reading separates, and the instruments that would help most beside those there are. With "
+      "--before it says what a campaign will be able to tell before "
       "it is measured, and writes a better one of the same length",
       "deflect plan haptic-6psu-ideal-joints diagnosis.json -o next.csv",
       with_figures(

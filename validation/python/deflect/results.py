@@ -305,6 +305,7 @@ class Plan(Result):
     at_random_is_more: bool
     steps: List[schema_fitted.PlanStep]
     inseparable: List[schema_fitted.Inseparable]
+    new_sensors: List[schema_fitted.NewSensor]
     provenance: Maybe[schema.Provenance]
 
     _table = "readings"

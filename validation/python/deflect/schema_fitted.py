@@ -315,6 +315,18 @@ class Inseparable(Record):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class NewSensor(Record):
+    """An instrument that would help: its ``entry`` in the description, the numbers (from 1) of the planned readings that are
+    then ``enough``, none where not even all are, and what all of them give."""
+
+    name: str
+    entry: str
+    enough: List[int]
+    probability: float
+    lambda_squared: float
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Foreseen(Record):
     """How large an effect must be to show in a campaign (NaN: never)."""
 

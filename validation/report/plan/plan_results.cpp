@@ -71,6 +71,15 @@ std::string steps_table(const plan::Plan& p) {
   return aligned(rows);
 }
 
+/// "{node: B, direction: uz, sigma: 0.02 mm}".
+std::string entry_of(const subject::PossibleSensor& s) {
+  const bool length = s.quantity == measurement::Quantity::length;
+  return fmt::format("{{{}, sigma: {:.3g} {}}}", s.entry, length ? mm * s.sigma : s.sigma,
+                     length                                       ? "mm"
+                     : s.quantity == measurement::Quantity::angle ? "rad"
+                                                                  : "N");
+}
+
 std::string inseparable_words(const plan::Plan& p) {
   std::string out;
   for (const plan::Inseparable& i : p.inseparable) {
@@ -83,6 +92,46 @@ std::string inseparable_words(const plan::Plan& p) {
     }
     out += "\n";
   }
+  return out;
+}
+
+/// "2: 27, 3": how many readings are enough, and which.
+std::string enough_words(const plan::NewSensor& n) {
+  if (n.enough.empty()) return "more";
+  constexpr std::size_t most = 4;
+  std::string out = fmt::format("{}: {}", n.enough.size(), n.enough.front() + 1);
+  for (std::size_t i = 1; i < std::min(most, n.enough.size()); ++i) out += fmt::format(", {}", n.enough[i] + 1);
+  return out + (n.enough.size() > most ? " …" : "");
+}
+
+std::string sensors_table(const plan::Plan& p) {
+  if (p.sensors.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {
+      {"a further instrument", "enough", "by all", "its line in the description"}};
+  for (const plan::NewSensor& n : p.sensors)
+    rows.push_back({"  " + n.sensor.name, enough_words(n), fmt::format("{:.3f}", n.probability), entry_of(n.sensor)});
+  const std::size_t all = p.readings.readings.empty() ? p.taken : p.readings.readings.size();
+  return fmt::format(
+             "\nInstruments that would help most, beside the others in these readings{}: how many of the {} would be "
+             "enough and which, and the expected probability by all of them\n\n",
+             p.readings.readings.empty() ? " (those of the data, taken again)" : "", all) +
+         aligned(rows);
+}
+
+Json numbers_from_1(const std::vector<std::size_t>& all) {
+  Json out = Json::array();
+  for (const std::size_t i : all) out.push_back(i + 1);
+  return out;
+}
+
+Json sensors_json(const plan::Plan& p) {
+  Json out = Json::array();
+  for (const plan::NewSensor& n : p.sensors)
+    out.push_back({{"name", n.sensor.name},
+                   {"entry", entry_of(n.sensor)},
+                   {"enough", numbers_from_1(n.enough)},
+                   {"probability", n.probability},
+                   {"lambda_squared", json::json_number(n.separation, "separation")}});
   return out;
 }
 
@@ -113,7 +162,7 @@ std::string plan_report(const plan::Plan& p) {
   for (const plan::Rival& r : p.rivals) names += (names.empty() ? "" : ", ") + rival_words(r);
   std::string out = fmt::format("{} after {} ({} readings): {} are tied\n\n", p.subject, p.data, p.taken, names);
   out += inseparable_words(p);
-  if (p.readings.readings.empty()) return out;
+  if (p.readings.readings.empty()) return out + sensors_table(p);
   out += fmt::format("{} readings at {} tell them apart with an expected probability of {:.3f} (before: {:.3f})",
                      p.readings.readings.size(),
                      p.readings.poses.size() == 1 ? "one pose" : fmt::format("{} poses", p.readings.poses.size()),
@@ -127,7 +176,7 @@ std::string plan_report(const plan::Plan& p) {
     out += fmt::format(" {}: λ² = {:.1f} ({:.1f} or more), ln Bayes factor {:.1f};", pair_words(p, pair),
                        pair.separation, pair.least, pair.separation / 2);
   out.back() = '\n';
-  return out;
+  return out + sensors_table(p);
 }
 
 std::string plan_json(const plan::Plan& p) {
@@ -159,6 +208,7 @@ std::string plan_json(const plan::Plan& p) {
     j["inseparable"].push_back({{"between", {rival_words(p.rivals[i.pair.a]), rival_words(p.rivals[i.pair.b])}},
                                 {"lambda_squared", json::json_number(i.pair.separation, "separation")},
                                 {"instead", i.instead}});
+  j["new_sensors"] = sensors_json(p);
   return json::json_text(j);
 }
 

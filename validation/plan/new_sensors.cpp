@@ -1,0 +1,170 @@
+#include "validation/plan/new_sensors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "msa/base/index.h"
+#include "validation/measurement/joined.h"
+#include "validation/parallel/cases.h"
+
+namespace deflect::plan {
+namespace {
+
+using measurement::Measurements;
+using measurement::Quantity;
+using measurement::Reading;
+using subject::PossibleSensor;
+
+constexpr std::size_t judged = 8, shown = 3;
+
+/// What the readings have of the tool point: its components, and σ.
+struct ToolPoint {
+  std::array<bool, 6> read = {};
+  double sigma_u = 0, sigma_th = 0;
+};
+
+ToolPoint tool_point(const Measurements& m, const Noise& noise) {
+  ToolPoint out{{}, noise.u.value_or(0), noise.th.value_or(0)};
+  for (const Reading& r : m.readings) {
+    for (std::size_t i = 0; i < 6; ++i) out.read[i] = out.read[i] || r.displacement[i];
+    if (r.sigma_u) out.sigma_u = *r.sigma_u;
+    if (r.sigma_th) out.sigma_th = *r.sigma_th;
+  }
+  return out;
+}
+
+/// Those of known σ; of the tool point those that the data do not read.
+std::vector<PossibleSensor> candidates(const subject::Subject& s, const Measurements& data, const Noise& noise) {
+  const ToolPoint tool = tool_point(data, noise);
+  std::vector<PossibleSensor> out = subject::possible_sensors(s);
+  if (s.machine()) {
+    // The first six are those of the tool point (possible_sensors.h), unless a sensor reads one of them.
+    std::erase_if(out, [&](const PossibleSensor& p) {
+      for (std::size_t i = 0; i < 6; ++i)
+        if (tool.read[i] && p.name == std::string(i < 3 ? "u" : "r") + "xyz"[i % 3] + "_of_tool_point") return true;
+      return false;
+    });
+  }
+  const double arm = 0.1 * s.stand(data)->size();
+  for (PossibleSensor& p : out) {
+    if (p.sigma > 0) continue;
+    if (p.quantity == Quantity::length) p.sigma = tool.sigma_u;
+    if (p.quantity == Quantity::angle) p.sigma = tool.sigma_th > 0 ? tool.sigma_th : tool.sigma_u / arm;
+  }
+  std::erase_if(out, [](const PossibleSensor& p) { return !(p.sigma > 0); });
+  return out;
+}
+
+/// The readings of a subject with more sensors; those behind the first `taken` read them.
+Measurements read_by(Measurements m, const std::vector<PossibleSensor>& more, std::size_t taken) {
+  for (const PossibleSensor& p : more) m.instruments.sensors.push_back({p.name, p.quantity, p.sigma});
+  for (std::size_t i = 0; i < m.readings.size(); ++i)
+    for (std::size_t k = 0; k < more.size(); ++k)
+      m.readings[i].sensors.push_back(i < taken ? std::nullopt : std::optional<double>(0));
+  return m;
+}
+
+/// By sensor (rows): what each two rivals make it read differently in the readings added, over σ.
+MatrixX differences(const subject::Subject& with, const Measurements& all, std::size_t taken,
+                    const std::vector<PossibleSensor>& sensors, const std::vector<Rival>& rivals) {
+  prediction::PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  const auto n = std::ssize(sensors), added = std::ssize(all.readings) - as_index(taken);
+  std::vector<MatrixX> read;
+  for (const Rival& r : rivals) {
+    const std::vector<VectorX> predicted =
+        subject_with(with, r, r.values).stand(all)->predict(all, linear, parallel::alone);
+    MatrixX& own = read.emplace_back(n, added);
+    for (Eigen::Index i = 0; i < added; ++i) own.col(i) = predicted[taken + as_size(i)].tail(n);
+    for (Eigen::Index k = 0; k < n; ++k) own.row(k) /= nth(sensors, k).sigma;
+  }
+  MatrixX out(n, 0);
+  for (std::size_t a = 0; a < read.size(); ++a)
+    for (std::size_t b = a + 1; b < read.size(); ++b) {
+      out.conservativeResize(Eigen::NoChange, out.cols() + added);
+      out.rightCols(added) = read[a] - read[b];
+    }
+  return out;
+}
+
+/// Those that differ most, each in another way than those before it.
+std::vector<std::size_t> most_different(const MatrixX& differences) {
+  constexpr double alike = 0.99;  // cosine
+  std::vector<std::pair<double, std::size_t>> order;
+  for (Eigen::Index k = 0; k < differences.rows(); ++k)
+    if (const double size = differences.row(k).squaredNorm(); size > nothing_tells)
+      order.emplace_back(-size, as_size(k));
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> out;
+  for (const auto& [size, k] : order) {
+    const VectorX own = differences.row(as_index(k)).normalized();
+    const bool is_new = std::none_of(out.begin(), out.end(), [&](std::size_t other) {
+      return std::abs(own.dot(differences.row(as_index(other)).normalized())) > alike;
+    });
+    if (is_new) out.push_back(k);
+    if (out.size() == judged) break;
+  }
+  return out;
+}
+
+/// Readings that are enough, in their order or the most telling first; none where not even all are.
+std::vector<std::size_t> enough(RivalryAim aim, std::size_t blocks, bool in_order) {
+  std::vector<std::size_t> left, out;
+  for (std::size_t i = 0; i < blocks; ++i) left.push_back(i);
+  while (!left.empty()) {
+    std::size_t next = 0;
+    double most = -INFINITY;
+    for (std::size_t i = 0; i < left.size() && !in_order; ++i)
+      if (const double value = aim.with(left[i]); value > most) most = value, next = i;
+    aim.take(left[next]);
+    out.push_back(left[next]);
+    left.erase(left.begin() + as_index(next));
+    if (aim.reached()) return out;
+  }
+  return {};
+}
+
+NewSensor judged_one(const subject::Subject& s, const PossibleSensor& sensor, const Measurements& all,
+                     std::size_t taken, const std::vector<Rival>& rivals, const SensorOptions& o) {
+  const subject::Subject with = subject::with_sensors(s, {sensor});
+  Possible possible;
+  possible.all = with.placed(read_by(all, {sensor}, taken));
+  possible.taken = taken;
+  for (std::size_t i = taken; i < all.readings.size(); ++i) possible.blocks.push_back({i, 1, all.readings[i].pose});
+  const Prospect prospect(with, std::move(possible), o.noise, parallel::alone);
+  const Rivalry rivalry(prospect, with, rivals, o.draws, o.seed, parallel::alone);
+  NewSensor out{sensor, 0, {}, 0};
+  const std::vector<MatrixX> gain = rivalry.gain_of_all();
+  out.probability = rivalry.probability(gain);
+  out.separation = INFINITY;
+  for (const Pair& p : rivalry.pairs(gain)) out.separation = std::min(out.separation, p.separation);
+  out.enough = enough(RivalryAim(rivalry, {}, o.probability), prospect.possible().blocks.size(), o.in_order);
+  return out;
+}
+
+}  // namespace
+
+std::vector<NewSensor> new_sensors(const subject::Subject& s, const Measurements& data, const Measurements& added,
+                                   const std::vector<Rival>& rivals, const SensorOptions& o,
+                                   const parallel::Work& work) {
+  std::vector<PossibleSensor> sensors = candidates(s, data, o.noise);
+  if (sensors.empty()) return {};
+  const Measurements all = s.placed(measurement::joined({data, added}));
+  const std::size_t taken = data.readings.size();
+  const subject::Subject with = subject::with_sensors(s, sensors);
+  const std::vector<std::size_t> order =
+      most_different(differences(with, with.placed(read_by(all, sensors, taken)), taken, sensors, rivals));
+  std::vector<NewSensor> out(order.size());
+  parallel::for_each_case(order.size(), 1, work.threads,
+                          [&](std::size_t i) { out[i] = judged_one(s, sensors[order[i]], all, taken, rivals, o); });
+  std::erase_if(out, [](const NewSensor& n) { return !(n.separation > nothing_tells); });
+  std::stable_sort(out.begin(), out.end(), [](const NewSensor& a, const NewSensor& b) {
+    const auto many = [](const NewSensor& n) { return n.enough.empty() ? std::size_t(-1) : n.enough.size(); };
+    return std::pair(many(a), -a.probability) < std::pair(many(b), -b.probability);
+  });
+  out.resize(std::min(out.size(), shown));
+  return out;
+}
+
+}  // namespace deflect::plan
