@@ -87,6 +87,26 @@ TEST_F(PlanProgram, AProposedInstrumentTells) {
   EXPECT_EQ(told.at("missing").front(), "actuator_compliance");
 }
 
+// One reading of a gauge on a carriage, 5 standard deviations from what the machine as drawn would read, and 2.5 from
+// what it reads with the effect. It counts for all candidates or for none: the probabilities are those of the verdict.
+TEST_F(PlanProgram, AReadingThatIsAnOutlierToNothingAloneCountsForAllCandidates) {
+  std::ofstream(path("carriage.yaml")) << test::contents(test::source_dir() + "/validation/devices/" + device + ".yaml")
+                                       << "sensors: {gauge: {body: leg.3.guideway, direction: uz, sigma: 2 um}}\n";
+  std::ofstream(path("gauge.csv"))
+      << "pose,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,fx_N,fy_N,fz_N,mx_Nmm,gauge_mm\n"
+         "A,-20.771166,-24.969602,155.606814,-4.034387,6.168938,1.146458,0,50,0,1051,-0.01073\n";
+  const test::Run run = test::deflect("diagnose " + path("carriage.yaml") + " " + path("paper.csv") + " " +
+                                      path("gauge.csv") + " --bootstrap 99 --json " + path("gauge.json"));
+  ASSERT_EQ(run.code, 0) << run.out;
+  const auto j = nlohmann::json::parse(test::contents(path("gauge.json")));
+  ASSERT_EQ(j.at("verdict"), "effect") << run.out;
+  EXPECT_EQ(j.at("missing").front(), "actuator_compliance");
+  for (const auto& c : j.at("candidates")) {
+    if (c.at("effect") != "platform_flexibility") continue;
+    EXPECT_LT(c.at("probability").get<double>(), 0.01) << run.out;
+  }
+}
+
 // A diagnosis of several sessions names all of them: a plan and a page find them again.
 TEST_F(PlanProgram, SeveralSessionsAreFoundAgain) {
   auto diagnosis = nlohmann::json::parse(test::contents(path("diagnosis.json")));
