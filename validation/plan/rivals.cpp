@@ -117,19 +117,32 @@ std::vector<AtFit> all_at_fit(const Prospect& prospect, const subject::Subject& 
   return out;
 }
 
+/// Standard normal coordinates (rows) of so many draws, the first of them zero. Each has the mean 0 and the mean square
+/// 1 over all draws, so that the mean of what is quadratic in one coordinate is exact; with two draws or one they are
+/// zero.
+MatrixX standardised(Eigen::Index coordinates, std::size_t draws, measurement::Random& random) {
+  MatrixX out = MatrixX::Zero(coordinates, as_index(draws));
+  for (Eigen::Index k = 1; k < out.cols(); ++k)
+    for (Eigen::Index i = 0; i < coordinates; ++i) out(i, k) = random.normal();
+  if (draws < 3) return MatrixX::Zero(coordinates, as_index(draws));
+  for (Eigen::Index i = 0; i < coordinates; ++i) {
+    auto drawn = out.row(i).tail(out.cols() - 1);
+    drawn.array() -= drawn.mean();
+    drawn *= std::sqrt(static_cast<double>(draws)) / drawn.norm();
+  }
+  return out;
+}
+
 /// By rival, its predictions with `draws` values of its parameters, the fit itself first; nothing where one fails.
 std::vector<std::vector<std::optional<VectorX>>> drawn_predictions(const Prospect& prospect, const subject::Subject& s,
                                                                    const std::vector<Rival>& rivals,
                                                                    const std::vector<AtFit>& fits, std::size_t draws,
                                                                    std::uint64_t seed, int threads) {
-  std::vector<VectorX> lots;
+  std::vector<MatrixX> lots;
   measurement::Random random(seed);
-  for (std::size_t i = 0; i < rivals.size() * draws; ++i) {
-    VectorX& lot = lots.emplace_back(rivals[i / draws].values.size());
-    for (double& x : lot) x = i % draws == 0 ? 0 : std::clamp(random.normal(), -2.0, 2.0);
-  }
+  for (const Rival& r : rivals) lots.push_back(standardised(r.values.size(), draws, random));
   std::vector<std::vector<std::optional<VectorX>>> out(rivals.size(), std::vector<std::optional<VectorX>>(draws));
-  parallel::for_each_case(lots.size(), 1, threads, [&](std::size_t i) {
+  parallel::for_each_case(rivals.size() * draws, 1, threads, [&](std::size_t i) {
     const std::size_t r = i / draws;
     std::optional<VectorX>& one = out[r][i % draws];
     if (i % draws == 0) {
@@ -137,7 +150,7 @@ std::vector<std::vector<std::optional<VectorX>>> drawn_predictions(const Prospec
       return;
     }
     const diagnosis::Hypothesis& h = rivals[r].hypothesis;
-    const VectorX x = diagnosis::coordinates_of(h, rivals[r].values) + fits[r].root * lots[i];
+    const VectorX x = diagnosis::coordinates_of(h, rivals[r].values) + fits[r].root * lots[r].col(as_index(i % draws));
     const VectorX values = diagnosis::values_at(h, x);
     auto predicted = outcome_of([&] { return prospect.predicted(subject_with(s, rivals[r], values)); });
     if (predicted && predicted->allFinite()) one = std::move(*predicted.value);
