@@ -18,39 +18,39 @@ using subject::PossibleSensor;
 
 constexpr std::size_t judged = 8, shown = 3;
 
-/// What the readings have of the tool point: its components, and σ.
-struct ToolPoint {
+/// What the readings have of the tool point, and σ of displacements and rotations; 0: not known.
+struct InData {
   std::array<bool, 6> read = {};
-  double sigma_u = 0, sigma_th = 0;
+  double length = 0, angle = 0;
 };
 
-ToolPoint tool_point(const Measurements& m, const Noise& noise) {
-  ToolPoint out{{}, noise.u.value_or(0), noise.th.value_or(0)};
+InData in_data(const Measurements& m, const Noise& noise) {
+  InData out{{}, noise.u.value_or(0), noise.th.value_or(0)};
+  for (const measurement::SensorChannel& s : m.instruments.sensors) {
+    if (s.quantity == Quantity::length) out.length = s.sigma.value_or(out.length);
+    if (s.quantity == Quantity::angle) out.angle = s.sigma.value_or(out.angle);
+  }
   for (const Reading& r : m.readings) {
     for (std::size_t i = 0; i < 6; ++i) out.read[i] = out.read[i] || r.displacement[i];
-    if (r.sigma_u) out.sigma_u = *r.sigma_u;
-    if (r.sigma_th) out.sigma_th = *r.sigma_th;
+    out.length = r.sigma_u.value_or(out.length);
+    out.angle = r.sigma_th.value_or(out.angle);
   }
   return out;
 }
 
 /// Those of known σ; of the tool point those that the data do not read.
 std::vector<PossibleSensor> candidates(const subject::Subject& s, const Measurements& data, const Noise& noise) {
-  const ToolPoint tool = tool_point(data, noise);
+  const InData known = in_data(data, noise);
   std::vector<PossibleSensor> out = subject::possible_sensors(s);
-  if (s.machine()) {
-    // The first six are those of the tool point (possible_sensors.h), unless a sensor reads one of them.
-    std::erase_if(out, [&](const PossibleSensor& p) {
-      for (std::size_t i = 0; i < 6; ++i)
-        if (tool.read[i] && p.name == std::string(i < 3 ? "u" : "r") + "xyz"[i % 3] + "_of_tool_point") return true;
-      return false;
-    });
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::string name = subject::name_at_tool_point(i);
+    if (known.read[i]) std::erase_if(out, [&](const PossibleSensor& p) { return p.name == name; });
   }
   const double arm = 0.1 * s.stand(data)->size();
   for (PossibleSensor& p : out) {
     if (p.sigma > 0) continue;
-    if (p.quantity == Quantity::length) p.sigma = tool.sigma_u;
-    if (p.quantity == Quantity::angle) p.sigma = tool.sigma_th > 0 ? tool.sigma_th : tool.sigma_u / arm;
+    if (p.quantity == Quantity::length) p.sigma = known.length;
+    if (p.quantity == Quantity::angle) p.sigma = known.angle > 0 ? known.angle : known.length / arm;
   }
   std::erase_if(out, [](const PossibleSensor& p) { return !(p.sigma > 0); });
   return out;

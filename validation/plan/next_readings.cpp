@@ -7,6 +7,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "validation/measurement/joined.h"
 #include "validation/measurement/random.h"
 #include "validation/parallel/cases.h"
@@ -128,7 +129,8 @@ Plan next_readings(const subject::Subject& s, const Measurements& data, std::vec
   out.probability = out.steps.back().probability;
   const auto more_sensors = [&](const Measurements& added) {
     const SensorOptions by{o.noise, o.probability, o.draws, o.seed, sequences};
-    out.sensors = new_sensors(s, data, added, out.rivals, by, {work.threads});
+    auto found = outcome_of([&] { return new_sensors(s, data, added, out.rivals, by, {work.threads}); });
+    if (found) out.sensors = std::move(*found.value);  // what cannot be predicted there is not proposed
   };
   if (choice.blocks.empty()) {
     more_sensors(data);

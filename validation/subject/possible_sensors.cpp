@@ -20,6 +20,8 @@ using measurement::Quantity;
 
 constexpr const char* motions[] = {"ux", "uy", "uz", "rx", "ry", "rz"};
 
+constexpr const char* tool_point = "tool_point";
+
 /// Each with what it is in a description.
 template <class Sensor>
 using Listed = std::vector<std::pair<PossibleSensor, Sensor>>;
@@ -31,6 +33,10 @@ Sensor of_motion(std::size_t i) {
   out.axis = Vector3::Unit(as_index(i % 3));
   out.rotation = i >= 3;
   return out;
+}
+
+std::string name_of(std::size_t motion, const std::string& body) {
+  return fmt::format("{}_of_{}", motions[motion], body);
 }
 
 Quantity quantity_of(std::size_t motion) { return motion < 3 ? Quantity::length : Quantity::angle; }
@@ -50,11 +56,10 @@ Listed<PointSensor> listed(const Mechanism& m, int legs) {
              s.second.point.isZero(0);
     };
     if (std::any_of(m.sensors.begin(), m.sensors.end(), reads_it)) return;
-    out.push_back({{fmt::format("{}_of_{}", motions[i], name), fmt::format("body: {}, direction: {}", body, motions[i]),
-                    quantity_of(i)},
-                   sensor});
+    out.push_back(
+        {{name_of(i, name), fmt::format("body: {}, direction: {}", body, motions[i]), quantity_of(i)}, sensor});
   };
-  for (std::size_t i = 0; i < 6; ++i) add("tool_point", "tool", i);
+  for (std::size_t i = 0; i < 6; ++i) add(tool_point, "tool", i);
   for (std::size_t leg = 0; leg < as_size(legs); ++leg)
     for (const auto& [name, part] : parts_of(m, leg))
       for (std::size_t i = 0; i < 3 && (std::holds_alternative<Joint>(part) || std::holds_alternative<Member>(part));
@@ -134,6 +139,8 @@ std::vector<PossibleSensor> names_of(const Listed<Sensor>& all) {
 }
 
 }  // namespace
+
+std::string name_at_tool_point(std::size_t component) { return name_of(component, tool_point); }
 
 std::vector<PossibleSensor> possible_sensors(const Subject& s) {
   return s.frame() ? names_of(listed(*s.frame())) : names_of(listed(*s.machine(), s.legs()));
