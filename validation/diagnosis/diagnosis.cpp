@@ -167,6 +167,15 @@ Diagnosis only_mistakes(Diagnosis d, const Observations& o) {
   return d;
 }
 
+/// Of the candidates in the order of their signatures, weighed.
+double least_p_value(const std::vector<Signature>& all, const std::vector<Candidate>& candidates) {
+  double out = 1;
+  const std::vector<double> weights = weights_of(all);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    out = std::min(out, single_p_value(all[i], candidates[i].gain) / weights[i]);
+  return out;
+}
+
 /// What is known before any effect is tried.
 Diagnosis before_any_effect(const Observations& o, const measurement::Measurements& data) {
   Diagnosis d;
@@ -261,10 +270,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   weigh(d, larger,
         probability_of_unknown(discrepancy.log_evidence(null.residual) - log_sum_exp(log_weights(d.candidates, larger)),
                                missing_odds * Candidates::prior_unknown));
-  double least_p = 1;
-  const std::vector<double> weights = weights_of(all);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    least_p = std::min(least_p, single_p_value(all[i], d.candidates[i].gain) / weights[i]);
+  const double least_p = least_p_value(all, d.candidates);
   d.bootstrap_sets = options.bootstrap_sets;
   d.chance = chance_of_any(all, least_p, options.bootstrap_sets, work,
                            [&](std::size_t done, std::size_t of) { rounds(done, of); });
