@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <set>
 
 #include "tests/support/devices.h"
 #include "validation/compare/residual_study.h"
@@ -12,6 +13,7 @@
 #include "validation/measurement/random.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/prediction.h"
+#include "validation/prediction/simulate.h"
 #include "validation/report/compare_results.h"
 #include "validation/subject/machine_sites.h"
 
@@ -266,6 +268,22 @@ TEST(Compare, ResultsDoNotDependOnThreads) {
   const Comparison a = compare::compare(m, data, {}, {1}), b = compare::compare(m, data, {}, {4});
   EXPECT_EQ(a.residual, b.residual);
   EXPECT_EQ(compare_json(a), compare_json(b));
+}
+
+/// The tool point of the arm lies on the axis of its last joint: forces there do not turn it, and moments do.
+TEST(Compare, AJointThatNoLoadTurnsHasNoCurve) {
+  const Mechanism arm = test::device("arm");
+  Measurements data = prediction::simulate(arm, prediction::campaign("random", arm, 50, 1), {});
+  const auto sites_of_curves = [&] {
+    std::set<std::string> out;
+    for (const ElongationCurve& curve : compare::compare(arm, data).curves) out.insert(curve.site);
+    return out;
+  };
+  EXPECT_EQ(sites_of_curves(),
+            (std::set<std::string>{"joint_1 rz", "joint_2 rz", "joint_3 rz", "joint_4 rz", "joint_5 rz"}));
+  for (const VectorX& f : residual_study(arm, data).force) EXPECT_EQ(f(5), 0);
+  for (Reading& r : data.readings) r.load(5) = 1;
+  EXPECT_EQ(sites_of_curves().count("joint_6 rz"), 1u);
 }
 
 TEST(Compare, TheDeformedShapeUnderOtherLoadsGoesWithTheirSquare) {

@@ -153,19 +153,23 @@ TEST(Validity, UncertaintiesAreThoseOfHand) {
 }
 
 /// A tip that moves by a tenth of the length: what one element leaves out is what 32 elements tell, to a tenth. Under a
-/// force at the tip the error falls with the fourth power of the length of elements, under a line load with the second.
+/// force at the tip the error falls with the fourth power of the length of elements, under a line load with the second,
+/// and also where the beam is twisted while it bends, in space.
 TEST(Validity, InTheDeformedShapeTheNumericalUncertaintyIsThatOfTheElements) {
   const auto with = [](const std::string& elements) {
     std::string text =
         test::cantilever::file("geometry: finite\nsensors: {z: {node: B, direction: uz, sigma: 10 um}}\n",
-                               "line: {members: {beam: {qz: -25 N/m, axes: base}}}");
+                               "line: {members: {beam: {qz: -25 N/m, axes: base}}}, "
+                               "twist: {nodes: {B: {fz: -10 N, mx: 2 Nm}}}");
+    text.erase(text.find("plane: xz"), 9);
     const std::string end = "y_axis: [0, 1, 0]";
     return Subject(frame::parse_frame(text.replace(text.find(end), end.size(), end + ", elements: " + elements), "f"));
   };
   const Subject coarse = with("1"), fine = with("32");
   using Case = std::tuple<std::string, int, std::string>;
   // The order is taken where differences are far above rounding and terms of higher order far below them.
-  for (const auto& [load, order, elements] : {Case{"load.tip", 4, "2"}, Case{"load.line", 2, "4"}}) {
+  for (const auto& [load, order, elements] :
+       {Case{"load.tip", 4, "2"}, Case{"load.line", 2, "4"}, Case{"load.twist", 2, "16"}}) {
     SCOPED_TRACE(load);
     const Measurements data = coarse.placed(
         measurement::parse_measurements(load + ",z_mm\n100,-118\n-100,118\n", "data.csv", coarse.instruments()));

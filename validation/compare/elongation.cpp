@@ -66,7 +66,7 @@ std::vector<ElongationCurve> elongation_curves(const ResidualStudy& s, const sta
       put_point(curve, weight(column), most(as_index(k)) * knot(j, knots), fit.amplitude(column),
                 fit.covariance(column, column));
     }
-    out.push_back(std::move(curve));
+    if (!curve.force.empty()) out.push_back(std::move(curve));
   }
   return out;
 }

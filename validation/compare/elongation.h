@@ -20,7 +20,7 @@ struct ElongationCurve {
 };
 
 /// One regression of the residual on all sites' knots at once (each site its own curve), by generalised least squares:
-/// the curves are determined where the readings load the sites independently. Empty without sites.
+/// the curves are determined where the readings load the sites independently. Sites that no reading loads have none.
 std::vector<ElongationCurve> elongation_curves(const ResidualStudy&, const statistics::Uncertainty&,
                                                const VectorX& residual, int knots = 10);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -11,6 +12,13 @@
 
 namespace deflect::compare {
 namespace {
+
+/// A load that does nothing at the site leaves rounding: a joint whose axis it meets.
+double force_at(const subject::Site& site, const Vector6& load) {
+  constexpr double rounding = 1e-12;
+  const double f = site.g.dot(load);
+  return std::abs(f) > rounding * site.g.norm() * load.norm() ? f : 0;
+}
 
 void add_forces(ResidualStudy& s) {
   const std::vector<measurement::Reading>& readings = s.data->readings;
@@ -25,7 +33,7 @@ void add_forces(ResidualStudy& s) {
     VectorX before = VectorX::Zero(sites), heading = VectorX::Zero(sites);
     for (const std::size_t i : order) {
       VectorX f(sites);
-      for (Eigen::Index k = 0; k < sites; ++k) f(k) = nth(s.sites[p], k).g.dot(readings[i].load);
+      for (Eigen::Index k = 0; k < sites; ++k) f(k) = force_at(nth(s.sites[p], k), readings[i].load);
       // Nothing is driven in a flexure or a load cell: there are no sites.
       const double small = sites > 0 ? 1e-9 * (f.cwiseAbs().maxCoeff() + before.cwiseAbs().maxCoeff()) : 0;
       for (Eigen::Index k = 0; k < sites; ++k)

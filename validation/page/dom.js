@@ -53,16 +53,18 @@ export function download(name, text, type = 'text/csv') {
  * rows and say so; the CSV has them all.
  */
 export function table(columns, rows, {shade = () => null, most = 200, show = (x) => num(x)} = {}) {
+  const isText = columns.map((_, j) => rows.some((row) => typeof row[j] === 'string' && row[j].length > 40));
   const body = rows.slice(0, most).map((row, i) =>
     el('tr', {}, row.map((value, j) => {
       const level = shade(i, j);
       const cell = el(j === 0 ? 'th' : 'td', j === 0 ? {scope: 'row'} : {}, show(value, i, j));
       if (typeof value === 'number') cell.title = String(value);
+      if (isText[j]) cell.classList.add('text');
       if (level !== null && level !== undefined) cell.style.setProperty('--level', String(Math.min(1, Math.max(0, level))));
       if (level !== null && level !== undefined) cell.classList.add('level');
       return cell;
     })));
-  const head = el('thead', {}, el('tr', {}, columns.map((name) => el('th', {scope: 'col'}, name))));
+  const head = el('thead', {}, el('tr', {}, columns.map((name, j) => el('th', isText[j] ? {scope: 'col', class: 'text'} : {scope: 'col'}, name))));
   const whole = el('div', {class: 'scroll'}, el('table', {}, head, el('tbody', {}, body)));
   if (rows.length <= most) return whole;
   return el('div', {}, whole, el('p', {class: 'quiet'}, `${rows.length - most} more rows are in the CSV.`));

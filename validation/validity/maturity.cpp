@@ -22,7 +22,7 @@ std::string verification(const ValidationStudy& s) {
   if (s.theories < 2)
     return "One theory (MSA), checked at every answer: symmetry, sign, equilibrium, energy. No second theory here.";
   return fmt::format(
-      "Two theories that share no stiffness formula differ by {} of what was measured at these readings at most; every "
+      "Two theories that share no stiffness formula differ by {} of what they predict at these readings at most; every "
       "answer is checked for symmetry, sign, equilibrium and energy.",
       digits_of(s.theories_differ, 2));
 }
@@ -43,10 +43,11 @@ std::string validated(const ValidationStudy& s) {
 }
 
 std::string uncertainty(const ValidationStudy& s) {
-  return fmt::format("Noise, load cell, {} tolerances{}{} are propagated; what the model lacks is {}.",
-                     s.comparison.tolerances.nuisances.size(), s.calibrated ? ", fitted parameters" : "",
-                     ", the size of the elements",
-                     agrees(s.agreement) ? "below what these data can show" : "estimated from these data");
+  return fmt::format(
+      "Noise, load cell, {} tolerance{}{}, the size of the elements are propagated; what the model lacks is {}.",
+      s.comparison.tolerances.nuisances.size(), s.comparison.tolerances.nuisances.size() == 1 ? "" : "s",
+      s.calibrated ? ", fitted parameters" : "",
+      agrees(s.agreement) ? "below what these data can show" : "estimated from these data");
 }
 
 std::string robustness(const ValidationStudy& s) {

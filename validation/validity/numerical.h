@@ -3,7 +3,8 @@
 //
 // The MSA predicts every reading with the elements that it has, f_0, with each halved, f_1, and halved again, f_2:
 //   p     observed order, 2^p = |f_0 − f_1| / |f_1 − f_2| as root mean squares over a quantity, kept within ½ … 4: in
-//         the deformed shape elements have the order 4 under loads at nodes, 2 under line loads (geometric_solver.h)
+//         the deformed shape elements have the order 4 under loads at nodes, and 2 under line loads
+//         (geometric_solver.h) and where a member is twisted as well as bent
 //   f*    = f_2 + (f_2 − f_1)/(2^p − 1), extrapolated to elements of no length
 //   u_num = F |S − f*| / k with F = 1.25, or 3 where the differences do not fall as elements are halved, and k = 1.15
 // S is the prediction that is compared with the data. Where another theory gives it, which has no elements and shares
