@@ -43,6 +43,8 @@ class Design {
   MatrixX innovations(const WhiteRows&, bool taken) const;
 
   const MatrixX& Q() const { return Q_; }
+  /// α: the shared nuisances that best absorb each target.
+  MatrixX absorbed() const { return alpha_.topRows(shared_); }
   /// Covariance of the shared nuisances.
   MatrixX covariance() const { return P_.topLeftCorner(shared_, shared_); }
   /// ln |S| of a block: by how much it raises ln of the determinant of the nuisances' information.

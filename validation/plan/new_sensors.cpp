@@ -133,12 +133,13 @@ NewSensor judged_one(const subject::Subject& s, const PossibleSensor& sensor, co
   possible.taken = taken;
   for (std::size_t i = taken; i < all.readings.size(); ++i) possible.blocks.push_back({i, 1, all.readings[i].pose});
   const Prospect prospect(with, std::move(possible), o.noise, parallel::alone);
-  const Rivalry rivalry(prospect, with, rivals, o.draws, o.seed, parallel::alone);
+  Rivalry rivalry(prospect, with, rivals, o.draws, o.seed, parallel::alone);
   NewSensor out{sensor, 0, {}, 0};
-  const std::vector<MatrixX> gain = rivalry.gain_of_all();
+  const auto [gain, at] = rivalry.refitted(parallel::alone);
   out.probability = rivalry.probability(gain);
   out.separation = INFINITY;
   for (const Pair& p : rivalry.pairs(gain)) out.separation = std::min(out.separation, p.separation);
+  rivalry = rivalry.about(at, parallel::alone);
   out.enough = enough(RivalryAim(rivalry, {}, o.probability), prospect.possible().blocks.size(), o.in_order);
   return out;
 }

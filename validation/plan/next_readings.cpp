@@ -75,31 +75,141 @@ std::pair<std::size_t, bool> at_random(const RivalryAim& start, const std::vecto
   return {needed[orders / 2], needed[orders / 2] >= most};
 }
 
-void add_steps(Plan& plan, const Rivalry& rivalry, RivalryAim aim, const std::vector<Block>& blocks,
-               const std::vector<std::size_t>& chosen) {
+/// Expected after each block in turn, from none on.
+std::vector<Step> steps_of(const Rivalry& rivalry, RivalryAim aim, const std::vector<Block>& blocks,
+                           const std::vector<std::size_t>& chosen) {
+  std::vector<Step> out;
   std::size_t readings = 0;
-  const auto add = [&] {
-    plan.steps.push_back({readings, rivalry.probability(aim.gain()), rivalry.pairs(aim.gain())});
-  };
+  const auto add = [&] { out.push_back({readings, rivalry.probability(aim.gain()), rivalry.pairs(aim.gain())}); };
   add();
   for (const std::size_t b : chosen) {
     aim.take(b);
     readings += blocks[b].count;
     add();
   }
+  return out;
 }
 
-}  // namespace
+/// What readings in their sequence add to the data, every rival fitted to the end, and where those fits ended.
+struct Judged {
+  Step step;
+  FitsToTruths at;
+};
 
-Step expected_of(const subject::Subject& s, const Measurements& data, const Measurements& added,
-                 const std::vector<Rival>& rivals, const PlanOptions& o, const parallel::Work& work) {
+Judged judge(const subject::Subject& s, const Measurements& data, const Measurements& added,
+              const std::vector<Rival>& rivals, const PlanOptions& o, const parallel::Work& work) {
   Possible whole;
   whole.all = s.placed(measurement::joined({data, added}));
   whole.taken = data.readings.size();
   const Prospect prospect(s, std::move(whole), o.noise, work);
   const Rivalry rivalry(prospect, s, rivals, o.draws, o.seed, work.quiet());
-  const std::vector<MatrixX> gain = rivalry.gain_of_all();
-  return {added.readings.size(), rivalry.probability(gain), rivalry.pairs(gain)};
+  Refits refits = rivalry.refitted(work.quiet());
+  return {{added.readings.size(), rivalry.probability(refits.gain), rivalry.pairs(refits.gain)}, std::move(refits.at)};
+}
+
+/// Pairs that all possible readings do not tell apart, not even where the rivals are fitted to the end.
+std::vector<Pair> hopeless_pairs(const Prospect& prospect, const subject::Subject& s, const Rivalry& rivalry,
+                                 const PlanOptions& o, int threads) {
+  std::vector<Pair> out;
+  for (const Pair& p : rivalry.pairs(rivalry.gain_of_all())) {
+    if (p.separation > nothing_tells) continue;
+    const Rivalry two(prospect, s, {rivalry.rivals()[p.a], rivalry.rivals()[p.b]}, 1, o.seed, {threads});
+    if (two.pairs(two.refitted({threads}).gain).front().separation <= nothing_tells) out.push_back(p);
+  }
+  return out;
+}
+
+/// A plan and what it is expected to say.
+struct Chosen {
+  Choice choice;
+  std::vector<Step> steps;
+  Measurements plan, as_taken;  // as_taken: with a number in each cell that is to be filled in
+  Judged judged;
+};
+
+/// Whether rivals fitted to the end say something else than the choice reckoned with.
+bool bends(const Chosen& c) {
+  constexpr double much = 0.1;  // of λ²
+  const std::vector<Pair>& reckoned = c.steps.back().pairs;
+  for (std::size_t i = 0; i < reckoned.size(); ++i)
+    if (std::abs(c.judged.step.pairs[i].separation - reckoned[i].separation) >
+        nothing_tells + much * reckoned[i].separation)
+      return true;
+  return false;
+}
+
+class Planning {
+ public:
+  Planning(const subject::Subject& s, const Measurements& data, const Prospect& prospect, const Rivalry& rivalry,
+           const PlanOptions& o, int threads)
+      : s_(s),
+        data_(data),
+        prospect_(prospect),
+        rivalry_(rivalry),
+        hopeless_(hopeless_pairs(prospect, s, rivalry, o, threads)),
+        o_(o) {}
+
+  const std::vector<Pair>& hopeless() const { return hopeless_; }
+  /// About which the best plan was chosen.
+  const Rivalry& rivalry() const { return rivalry_; }
+  RivalryAim aim() const { return {rivalry_, hopeless_, o_.probability}; }
+
+  /// Where laws bend, chosen again with the rivals linearised where the first plan would bring them.
+  Chosen best(const parallel::Work& work) {
+    const std::size_t rivals = rivalry_.rivals().size();
+    if (2 * hopeless_.size() == rivals * (rivals - 1)) return Chosen{{}, steps({}), {}, {}, {}};
+    Chosen out = chosen(work.part(0, 0.6));
+    if (out.choice.blocks.empty() || !bends(out)) return out;
+    rivalry_ = rivalry_.about(out.judged.at, work.quiet());
+    Chosen again = chosen(work.part(0.6, 1));
+    if (!again.choice.blocks.empty() && is_better(again, out))
+      out = std::move(again);
+    else
+      out.steps = steps(out.choice.blocks);
+    return out;
+  }
+
+ private:
+  const std::vector<Block>& blocks() const { return prospect_.possible().blocks; }
+  std::vector<Step> steps(const std::vector<std::size_t>& chosen) const {
+    return steps_of(rivalry_, aim(), blocks(), chosen);
+  }
+
+  Chosen chosen(const parallel::Work& work) const {
+    Chosen out;
+    out.choice = choose(aim(), blocks(), {o_.readings, o_.most_poses}, work);
+    out.steps = steps(out.choice.blocks);
+    if (out.choice.blocks.empty()) return out;
+    out.plan = out.as_taken = as_plan(prospect_.possible(), out.choice.blocks);
+    const measurement::Reading& like = prospect_.readings().readings[blocks().front().first];
+    for (measurement::Reading& r : out.as_taken.readings) {
+      r.displacement = like.displacement;
+      r.sensors = like.sensors;
+    }
+    out.judged = judge(s_, data_, out.as_taken, rivalry_.rivals(), o_, work.quiet());
+    return out;
+  }
+
+  /// Reaches what is wanted with fewer readings, or comes nearer to it.
+  bool is_better(const Chosen& a, const Chosen& than) const {
+    const double p = a.judged.step.probability, q = than.judged.step.probability;
+    if (p < o_.probability || q < o_.probability) return p > q;
+    return a.plan.readings.size() < than.plan.readings.size();
+  }
+
+  const subject::Subject& s_;
+  const Measurements& data_;
+  const Prospect& prospect_;
+  Rivalry rivalry_;
+  std::vector<Pair> hopeless_;
+  const PlanOptions& o_;
+};
+
+}  // namespace
+
+Step expected_of(const subject::Subject& s, const Measurements& data, const Measurements& added,
+                 const std::vector<Rival>& rivals, const PlanOptions& o, const parallel::Work& work) {
+  return judge(s, data, added, rivals, o, work).step;
 }
 
 Plan next_readings(const subject::Subject& s, const Measurements& data, std::vector<Rival> rivals, const PlanOptions& o,
@@ -108,50 +218,31 @@ Plan next_readings(const subject::Subject& s, const Measurements& data, std::vec
   out.subject = s.name();
   out.data = data.origin;
   out.taken = data.readings.size();
-  const bool sequences = remembers(s, data, rivals);
-  const Prospect prospect(s, possible_readings(s, data, o.limits, sequences, o.seed), o.noise, work.part(0, 0.2));
-  const std::vector<Block>& blocks = prospect.possible().blocks;
-  out.possible = prospect.readings().readings.size() - out.taken;
-  const Rivalry rivalry(prospect, s, std::move(rivals), o.draws, o.seed, work.part(0.2, 0.5));
-  out.rivals = rivalry.rivals();
-  std::vector<Pair> hopeless;
-  const std::vector<Pair> at_most = rivalry.pairs(rivalry.gain_of_all());
-  for (const Pair& p : at_most) {
-    if (p.separation > nothing_tells) continue;
-    hopeless.push_back(p);
-    out.inseparable.push_back({p, instead_of_readings({&out.rivals[p.a].own(), &out.rivals[p.b].own()})});
-  }
-  const RivalryAim aim(rivalry, hopeless, o.probability);
-  Choice choice;
-  if (hopeless.size() < at_most.size()) choice = choose(aim, blocks, {o.readings, o.most_poses}, work.part(0.5, 0.9));
-  add_steps(out, rivalry, aim, blocks, choice.blocks);
-  out.as_planned = out.steps.back().pairs;
-  out.probability = out.steps.back().probability;
-  const auto more_sensors = [&](const Measurements& added) {
-    const SensorOptions by{o.noise, o.probability, o.draws, o.seed, sequences};
-    auto found = outcome_of([&] { return new_sensors(s, data, added, out.rivals, by, {work.threads}); });
-    if (found) out.sensors = std::move(*found.value);  // what cannot be predicted there is not proposed
-  };
-  if (choice.blocks.empty()) {
-    more_sensors(data);
-    return out;
-  }
-  out.readings = as_plan(prospect.possible(), choice.blocks);
-  if (out.probability >= o.probability)
-    std::tie(out.at_random, out.at_random_is_more) =
-        at_random(aim, blocks, longest * std::max<std::size_t>(10, choice.readings.back()), o.seed, work.threads);
   for (const measurement::Reading& r : data.readings)
     for (std::size_t i = 0; i < 6; ++i) out.read[i] = out.read[i] || r.displacement[i];
-  Measurements as_taken = out.readings;
-  for (measurement::Reading& r : as_taken.readings) {
-    const measurement::Reading& like = prospect.readings().readings[blocks.front().first];
-    r.displacement = like.displacement;
-    r.sensors = like.sensors;
-  }
-  const Step whole = expected_of(s, data, as_taken, out.rivals, o, work.quiet());
-  out.as_planned = whole.pairs;
-  out.probability = whole.probability;
-  more_sensors(as_taken);
+  const bool sequences = remembers(s, data, rivals);
+  const Prospect prospect(s, possible_readings(s, data, o.limits, sequences, o.seed), o.noise, work.part(0, 0.2));
+  out.possible = prospect.readings().readings.size() - out.taken;
+  Planning planning(s, data, prospect, Rivalry(prospect, s, std::move(rivals), o.draws, o.seed, work.part(0.2, 0.4)), o,
+                    work.threads);
+  out.rivals = planning.rivalry().rivals();
+  for (const Pair& p : planning.hopeless())
+    out.inseparable.push_back({p, instead_of_readings({&out.rivals[p.a].own(), &out.rivals[p.b].own()})});
+  Chosen best = planning.best(work.part(0.4, 0.9));
+  const bool any = !best.choice.blocks.empty();
+  const Step& end = any ? best.judged.step : best.steps.back();
+  out.as_planned = end.pairs;
+  out.probability = end.probability;
+  const SensorOptions by{o.noise, o.probability, o.draws, o.seed, sequences};
+  auto sensors =
+      outcome_of([&] { return new_sensors(s, data, any ? best.as_taken : data, out.rivals, by, {work.threads}); });
+  if (sensors) out.sensors = std::move(*sensors.value);  // what cannot be predicted there is not proposed
+  if (any && out.probability >= o.probability)
+    std::tie(out.at_random, out.at_random_is_more) =
+        at_random(planning.aim(), prospect.possible().blocks,
+                  longest * std::max<std::size_t>(10, best.choice.readings.back()), o.seed, work.threads);
+  out.steps = std::move(best.steps);
+  out.readings = std::move(best.plan);
   if (work.progress) work.progress(1);
   return out;
 }

@@ -5,20 +5,17 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
-#include "validation/diagnosis/fit_problem.h"
-#include "validation/effects/effect_file.h"
 #include "validation/measurement/random.h"
 #include "validation/parallel/cases.h"
 
 namespace deflect::plan {
 namespace {
 
-constexpr double wide = 3, half_range = 1;  // prior deviation of a coordinate: of a logarithm, e³; of a linear one
-constexpr double step = 1e-5;               // of derivatives
 constexpr int quadrature = 121;
 constexpr double tails = 6;
 
@@ -36,73 +33,12 @@ double expected_probability(const std::vector<std::pair<double, double>>& compet
   return sum / weights;
 }
 
-}  // namespace
-
-std::vector<Rival> rivals_of(const diagnosis::FoundTie& tie, const std::vector<effects::Effect>& all) {
-  std::vector<Rival> out;
-  double sum = 0;
-  for (const diagnosis::FoundTie::Rival& found : tie.rivals) {
-    Rival& rival = out.emplace_back();
-    rival.probability = found.probability;
-    sum += found.probability;
-    for (const diagnosis::FoundEffect& each : found.effects) {
-      const effects::EffectInstance instance = diagnosis::instance(effects::find_effect(all, each.effect), each);
-      const Eigen::Index before = rival.values.size(), own = instance.values.size();
-      rival.values.conservativeResize(before + own);
-      rival.values.tail(own) = instance.values;
-      rival.hypothesis.push_back(instance);
-    }
-  }
-  for (Rival& r : out) r.probability = sum > 0 ? r.probability / sum : 1 / static_cast<double>(out.size());
-  return out;
-}
-
-subject::Subject subject_with(const subject::Subject& s, const Rival& r, const VectorX& values) {
-  return effects::PreparedEffects(s, r.hypothesis)(values);
-}
-
-namespace {
-
-/// What the plan asks of a rival at its fit.
-struct AtFit {
-  VectorX predicted, prior;  // prior variances of its coordinates
-  MatrixX beside;            // derivatives of the prediction with respect to them, whitened
-  MatrixX root;              // of the covariance of its coordinates, given the readings taken
-};
-
-AtFit at_fit(const Prospect& prospect, const subject::Subject& s, const Rival& rival) {
-  AtFit out;
-  const effects::PreparedEffects prepared(s, rival.hypothesis);
-  const VectorX x = diagnosis::coordinates_of(rival.hypothesis, rival.values);
-  const auto parameters = diagnosis::parameters_of(rival.hypothesis);
-  out.prior.resize(x.size());
-  out.predicted = prospect.predicted(prepared(rival.values));
-  MatrixX J = MatrixX::Zero(out.predicted.size(), x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double deviation = nth(parameters, i)->log ? wide : half_range;
-    out.prior(i) = deviation * deviation;
-    for (const double by : {step, -step}) {
-      VectorX moved = x;
-      moved(i) += by;
-      const VectorX values = diagnosis::values_at(rival.hypothesis, moved);
-      if (values(i) == rival.values(i)) continue;  // at a bound
-      J.col(i) = (prospect.predicted(prepared(values)) - out.predicted) / by;
-      break;
-    }
-  }
-  out.beside = prospect.white(J);
-  const MatrixX P = prospect.design(MatrixX(out.predicted.size(), 0), out.beside, out.prior).covariance();
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(P.bottomRightCorner(x.size(), x.size()));
-  out.root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-  return out;
-}
-
-std::vector<AtFit> all_at_fit(const Prospect& prospect, const subject::Subject& s, const std::vector<Rival>& rivals,
-                              int threads) {
-  std::vector<AtFit> out(rivals.size());
-  std::vector<std::string> why(rivals.size());
-  parallel::for_each_case(rivals.size(), 1, threads, [&](std::size_t r) {
-    auto found = outcome_of([&] { return at_fit(prospect, s, rivals[r]); });
+std::vector<Linearised> all_at_fit(const std::vector<RivalModel>& models, const std::vector<Rival>& rivals,
+                                   int threads) {
+  std::vector<Linearised> out(models.size());
+  std::vector<std::string> why(models.size());
+  parallel::for_each_case(models.size(), 1, threads, [&](std::size_t r) {
+    auto found = outcome_of([&] { return models[r].at_fit(); });
     if (found)
       out[r] = std::move(*found.value);
     else
@@ -115,6 +51,15 @@ std::vector<AtFit> all_at_fit(const Prospect& prospect, const subject::Subject& 
                       "--max-moment, or choose poses with --poses",
                       diagnosis::name_of(rivals[r].own()), why[r]));
   return out;
+}
+
+/// A root of the covariance of the coordinates, given the readings taken.
+MatrixX root_of_covariance(const Prospect& prospect, const RivalModel& model, const Linearised& fit) {
+  const MatrixX none(fit.predicted.size(), 0);
+  const MatrixX P = prospect.design(none, fit.beside, model.prior()).covariance();
+  const Eigen::Index own = fit.at.size();
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(P.bottomRightCorner(own, own));
+  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 /// Standard normal coordinates (rows) of so many draws, the first of them zero. Each has the mean 0 and the mean square
@@ -134,25 +79,23 @@ MatrixX standardised(Eigen::Index coordinates, std::size_t draws, measurement::R
 }
 
 /// By rival, its predictions with `draws` values of its parameters, the fit itself first; nothing where one fails.
-std::vector<std::vector<std::optional<VectorX>>> drawn_predictions(const Prospect& prospect, const subject::Subject& s,
-                                                                   const std::vector<Rival>& rivals,
-                                                                   const std::vector<AtFit>& fits, std::size_t draws,
-                                                                   std::uint64_t seed, int threads) {
+std::vector<std::vector<std::optional<VectorX>>> drawn_predictions(const Prospect& prospect,
+                                                                   const std::vector<RivalModel>& models,
+                                                                   const std::vector<Linearised>& fits,
+                                                                   std::size_t draws, std::uint64_t seed, int threads) {
   std::vector<MatrixX> lots;
   measurement::Random random(seed);
-  for (const Rival& r : rivals) lots.push_back(standardised(r.values.size(), draws, random));
-  std::vector<std::vector<std::optional<VectorX>>> out(rivals.size(), std::vector<std::optional<VectorX>>(draws));
-  parallel::for_each_case(rivals.size() * draws, 1, threads, [&](std::size_t i) {
+  for (std::size_t r = 0; r < fits.size(); ++r)
+    lots.push_back(root_of_covariance(prospect, models[r], fits[r]) * standardised(fits[r].at.size(), draws, random));
+  std::vector<std::vector<std::optional<VectorX>>> out(fits.size(), std::vector<std::optional<VectorX>>(draws));
+  parallel::for_each_case(fits.size() * draws, 1, threads, [&](std::size_t i) {
     const std::size_t r = i / draws;
     std::optional<VectorX>& one = out[r][i % draws];
     if (i % draws == 0) {
       one = fits[r].predicted;
       return;
     }
-    const diagnosis::Hypothesis& h = rivals[r].hypothesis;
-    const VectorX x = diagnosis::coordinates_of(h, rivals[r].values) + fits[r].root * lots[r].col(as_index(i % draws));
-    const VectorX values = diagnosis::values_at(h, x);
-    auto predicted = outcome_of([&] { return prospect.predicted(subject_with(s, rivals[r], values)); });
+    auto predicted = outcome_of([&] { return models[r].predicted(fits[r].at + lots[r].col(as_index(i % draws))); });
     if (predicted && predicted->allFinite()) one = std::move(*predicted.value);
   });
   return out;
@@ -162,35 +105,79 @@ std::vector<std::vector<std::optional<VectorX>>> drawn_predictions(const Prospec
 
 Rivalry::Rivalry(const Prospect& prospect, const subject::Subject& s, std::vector<Rival> rivals, int draws,
                  std::uint64_t seed, const parallel::Work& work)
-    : prospect_(prospect), rivals_(std::move(rivals)) {
-  const std::vector<AtFit> fits = all_at_fit(prospect_, s, rivals_, work.threads);
+    : prospect_(&prospect), rivals_(std::move(rivals)) {
+  for (const Rival& r : rivals_) models_.emplace_back(*prospect_, s, r);
+  fits_ = all_at_fit(models_, rivals_, work.threads);
   if (work.progress) work.progress(0.3);
-  const auto drawn = drawn_predictions(prospect_, s, rivals_, fits, as_size(std::max(1, draws)), seed, work.threads);
-  for (std::size_t b = 0; b < rivals_.size(); ++b) {
-    beside_.push_back(fits[b].beside);
-    prior_.push_back(fits[b].prior);
-    std::vector<VectorX> columns;
-    std::vector<Target> origin;
-    for (std::size_t a = 0; a < rivals_.size(); ++a)
-      for (std::size_t k = 0; k < drawn[a].size(); ++k)
-        if (a != b && drawn[a][k]) {
-          columns.push_back(*drawn[a][k] - fits[b].predicted);
-          origin.push_back({a, k});
-        }
-    MatrixX targets(prospect_.numbers(), std::ssize(columns));
-    for (Eigen::Index i = 0; i < targets.cols(); ++i) targets.col(i) = nth(columns, i);
-    targets_.push_back(prospect_.white(targets));
-    origin_.push_back(std::move(origin));
-  }
+  predicted_ = drawn_predictions(*prospect_, models_, fits_, as_size(std::max(1, draws)), seed, work.threads);
+  for (std::size_t b = 0; b < rivals_.size(); ++b) linearised_.push_back(linearisation(b, fits_[b], others(b)));
 }
 
-Design Rivalry::design(std::size_t fitted, bool all) const {
-  return prospect_.design(targets_[fitted], beside_[fitted], prior_[fitted], all);
+std::vector<std::size_t> Rivalry::others(std::size_t fitted) const {
+  std::vector<std::size_t> out;
+  for (std::size_t a = 0; a < rivals_.size(); ++a)
+    if (a != fitted) out.push_back(a);
+  return out;
+}
+
+Rivalry::Linearisation Rivalry::linearisation(std::size_t fitted, const Linearised& about,
+                                              const std::vector<std::size_t>& truths) const {
+  Linearisation out{fitted, about.beside, {}, {}};
+  std::vector<VectorX> columns;
+  for (const std::size_t a : truths)
+    for (std::size_t k = 0; k < predicted_[a].size(); ++k)
+      if (predicted_[a][k]) {
+        columns.push_back(models_[fitted].target(*predicted_[a][k], about));
+        out.origin.push_back({a, k});
+      }
+  out.targets.resize(prospect_->numbers(), std::ssize(columns));
+  for (Eigen::Index i = 0; i < out.targets.cols(); ++i) out.targets.col(i) = nth(columns, i);
+  return out;
+}
+
+Rivalry Rivalry::about(const FitsToTruths& points, const parallel::Work& work) const {
+  Rivalry out = *this;
+  const std::size_t n = rivals_.size();
+  std::vector<std::optional<Linearisation>> all(n * n);
+  parallel::for_each_case(all.size(), 1, work.threads, [&](std::size_t i) {
+    const std::size_t b = i / n, a = i % n;
+    if (a == b) return;
+    const auto there = outcome_of([&] { return models_[b].at(points[b][a]); });
+    all[i] = linearisation(b, there ? *there : fits_[b], {a});
+  });
+  out.linearised_.clear();
+  for (std::optional<Linearisation>& each : all)
+    if (each) out.linearised_.push_back(std::move(*each));
+  return out;
+}
+
+Design Rivalry::design(const Linearisation& l, bool all) const {
+  return prospect_->design(l.targets, l.beside, models_[l.fitted].prior(), all);
 }
 
 std::vector<MatrixX> Rivalry::gain_of_all() const {
   std::vector<MatrixX> out;
-  for (std::size_t b = 0; b < rivals_.size(); ++b) out.push_back(design(b, true).Q() - design(b, false).Q());
+  for (const Linearisation& l : linearised_) out.push_back(design(l, true).Q() - design(l, false).Q());
+  return out;
+}
+
+Refits Rivalry::refitted(const parallel::Work& work) const {
+  Refits out{{}, FitsToTruths(rivals_.size(), std::vector<VectorX>(rivals_.size()))};
+  std::vector<std::pair<std::size_t, std::size_t>> all;  // linearisation, target
+  for (std::size_t l = 0; l < linearised_.size(); ++l) {
+    const std::size_t n = linearised_[l].origin.size();
+    out.gain.push_back(MatrixX::Zero(as_index(n), as_index(n)));
+    for (std::size_t t = 0; t < n; ++t) all.emplace_back(l, t);
+  }
+  parallel::for_each_case(all.size(), 1, work.threads, [&](std::size_t i) {
+    const auto [l, t] = all[i];
+    const auto [a, k] = linearised_[l].origin[t];
+    const std::size_t b = linearised_[l].fitted;
+    const VectorX& y = *predicted_[a][k];
+    Refitted to_all = models_[b].fitted_to(y, fits_[b], true);
+    out.gain[l](as_index(t), as_index(t)) = to_all.left - models_[b].fitted_to(y, fits_[b], false).left;
+    if (k == 0) out.at[b][a] = std::move(to_all.at);
+  });
   return out;
 }
 
@@ -200,13 +187,13 @@ std::vector<Pair> Rivalry::pairs(const std::vector<MatrixX>& gain) const {
     for (std::size_t b = a + 1; b < rivals_.size(); ++b) {
       Pair p{a, b, 0, INFINITY};
       double count = 0;
-      for (const auto& [fitted, truth] : {std::pair{a, b}, std::pair{b, a}})
-        for (std::size_t t = 0; t < origin_[fitted].size(); ++t)
-          if (origin_[fitted][t].truth == truth) {
-            const double here = std::max(0.0, gain[fitted](as_index(t), as_index(t)));
-            p.separation += here, count += 1;
-            p.least = std::min(p.least, here);
-          }
+      for (std::size_t l = 0; l < linearised_.size(); ++l)
+        for (std::size_t t = 0; t < linearised_[l].origin.size(); ++t) {
+          if (std::minmax(linearised_[l].fitted, linearised_[l].origin[t].truth) != std::minmax(a, b)) continue;
+          const double here = std::max(0.0, gain[l](as_index(t), as_index(t)));
+          p.separation += here, count += 1;
+          p.least = std::min(p.least, here);
+        }
       if (count > 0) p.separation /= count;
       out.push_back(p);
     }
@@ -214,70 +201,67 @@ std::vector<Pair> Rivalry::pairs(const std::vector<MatrixX>& gain) const {
 }
 
 double Rivalry::probability(const std::vector<MatrixX>& gain) const {
-  double sum = 0, weights = 0;
-  for (std::size_t a = 0; a < rivals_.size(); ++a) {
-    std::size_t draws = 0;
-    for (const std::vector<Target>& all : origin_)
-      for (const Target& t : all) draws = std::max(draws, t.draw + 1);
-    for (std::size_t d = 0; d < draws; ++d) {
-      std::vector<std::pair<double, double>> competitors;
-      for (std::size_t b = 0; b < rivals_.size(); ++b)
-        for (std::size_t t = 0; t < origin_[b].size(); ++t)
-          if (origin_[b][t].truth == a && origin_[b][t].draw == d)
-            competitors.emplace_back(rivals_[b].probability / std::max(1e-9, rivals_[a].probability),
-                                     std::max(0.0, gain[b](as_index(t), as_index(t))));
-      if (competitors.empty()) continue;  // a draw that failed
-      sum += rivals_[a].probability * expected_probability(competitors);
-      weights += rivals_[a].probability;
+  // Of each truth and draw: prior odds of the others and λ² to them.
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::pair<double, double>>> competitors;
+  for (std::size_t l = 0; l < linearised_.size(); ++l)
+    for (std::size_t t = 0; t < linearised_[l].origin.size(); ++t) {
+      const Target& truth = linearised_[l].origin[t];
+      const double odds = rivals_[linearised_[l].fitted].probability / std::max(1e-9, rivals_[truth.truth].probability);
+      competitors[{truth.truth, truth.draw}].emplace_back(odds, std::max(0.0, gain[l](as_index(t), as_index(t))));
     }
+  double sum = 0, weights = 0;
+  for (const auto& [truth, all] : competitors) {
+    sum += rivals_[truth.first].probability * expected_probability(all);
+    weights += rivals_[truth.first].probability;
   }
   return weights > 0 ? sum / weights : 0;
 }
 
 RivalryAim::RivalryAim(const Rivalry& r, const std::vector<Pair>& hopeless, double wanted)
     : rivalry_(&r), wanted_(wanted) {
-  for (std::size_t b = 0; b < r.rivals_.size(); ++b) {
-    designs_.push_back(r.design(b, false));
+  for (const Rivalry::Linearisation& l : r.linearised_) {
+    designs_.push_back(r.design(l, false));
     before_.push_back(designs_.back().Q());
     gain_.push_back(MatrixX::Zero(before_.back().rows(), before_.back().cols()));
     std::vector<bool>& counts = counts_.emplace_back();
-    for (const Rivalry::Target& t : r.origin_[b])
+    for (const Rivalry::Target& t : l.origin)
       counts.push_back(std::none_of(hopeless.begin(), hopeless.end(), [&](const Pair& p) {
-        return (p.a == t.truth && p.b == b) || (p.b == t.truth && p.a == b);
+        return std::minmax(p.a, p.b) == std::minmax(t.truth, l.fitted);
       }));
   }
 }
 
 double RivalryAim::with(std::size_t block) const {
   std::vector<MatrixX> gain;
-  for (std::size_t b = 0; b < designs_.size(); ++b) gain.push_back(designs_[b].with(rows(block, b)) - before_[b]);
+  for (std::size_t l = 0; l < designs_.size(); ++l) gain.push_back(designs_[l].with(rows(block, l)) - before_[l]);
   return soft_least(gain);
 }
 
 void RivalryAim::take(std::size_t block) {
-  for (std::size_t b = 0; b < designs_.size(); ++b) {
-    designs_[b].take(rows(block, b));
-    gain_[b] = designs_[b].Q() - before_[b];
+  for (std::size_t l = 0; l < designs_.size(); ++l) {
+    designs_[l].take(rows(block, l));
+    gain_[l] = designs_[l].Q() - before_[l];
   }
 }
 
 void RivalryAim::drop(std::size_t block) {
-  for (std::size_t b = 0; b < designs_.size(); ++b) {
-    designs_[b].drop(rows(block, b));
-    gain_[b] = designs_[b].Q() - before_[b];
+  for (std::size_t l = 0; l < designs_.size(); ++l) {
+    designs_[l].drop(rows(block, l));
+    gain_[l] = designs_[l].Q() - before_[l];
   }
 }
 
-WhiteRows RivalryAim::rows(std::size_t block, std::size_t fitted) const {
-  return rivalry_->prospect_.rows(block, rivalry_->targets_[fitted], rivalry_->beside_[fitted]);
+WhiteRows RivalryAim::rows(std::size_t block, std::size_t linearisation) const {
+  const Rivalry::Linearisation& l = rivalry_->linearised_[linearisation];
+  return rivalry_->prospect_->rows(block, l.targets, l.beside);
 }
 
 double RivalryAim::soft_least(const std::vector<MatrixX>& gain) const {
   double least = INFINITY, sum = 0, n = 0;
   const auto each = [&](const auto& look) {
-    for (std::size_t b = 0; b < gain.size(); ++b)
-      for (Eigen::Index t = 0; t < gain[b].cols(); ++t)
-        if (counts_[b][as_size(t)]) look(gain[b](t, t));
+    for (std::size_t l = 0; l < gain.size(); ++l)
+      for (Eigen::Index t = 0; t < gain[l].cols(); ++t)
+        if (counts_[l][as_size(t)]) look(gain[l](t, t));
   };
   each([&](double q) { least = std::min(least, q); });
   if (std::isinf(least)) return 0;

@@ -1,35 +1,21 @@
 // The effects of a tie as hypotheses, and how far readings would tell them apart.
 //
 // Truth a, rival b, each as it was fitted, with parameters drawn from what the readings taken say of them. b is fitted
-// again, to first order, to what a would read; tolerances bend as far as their priors and what was read allow. What is
-// then left, λ²_ab (design.h), is by how much 2 ln L of a is expected to exceed that of b (T-optimality: Atkinson,
-// Fedorov 1975). What the readings taken say is in the probabilities of the rivals already: all below is the increase
-// of λ² beyond theirs. The expected log Bayes factor is Δ = λ²/2, and 2 ln of the ratio of likelihoods ~ N(λ², 4 λ²).
+// again to what a would read; tolerances bend as far as their priors and what was read allow. What is then left, λ²_ab
+// (design.h), is by how much 2 ln L of a is expected to exceed that of b (T-optimality: Atkinson, Fedorov 1975). Where
+// readings are chosen, b is fitted to first order: about its fit to the data, or about its fits to what the truths
+// would read (about()), which matters where a law bends. refitted() fits it to the end. What the readings taken say is
+// in the probabilities of the rivals already: all below is the increase of λ² beyond theirs. The expected log Bayes
+// factor is Δ = λ²/2, and 2 ln of the ratio of likelihoods ~ N(λ², 4 λ²).
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
-#include "validation/diagnosis/found_effects.h"
-#include "validation/diagnosis/hypothesis.h"
 #include "validation/plan/choice.h"
-#include "validation/plan/prospect.h"
+#include "validation/plan/rival.h"
 
 namespace deflect::plan {
-
-struct Rival {
-  diagnosis::Hypothesis hypothesis;  ///< what was found beside it first; itself last
-  VectorX values;                    ///< as fitted together
-  double probability = 0;            ///< among the rivals
-
-  const effects::PlacedEffect& own() const { return hypothesis.back(); }
-};
-
-/// The rivals of a tie that a diagnosis found; their probabilities sum to 1. Throws InputError as
-/// diagnosis::instance() does. The effects must outlive them.
-std::vector<Rival> rivals_of(const diagnosis::FoundTie&, const std::vector<effects::Effect>&);
-
-subject::Subject subject_with(const subject::Subject&, const Rival&, const VectorX& values);
 
 /// Two of the rivals and λ² between them: mean over the draws and both as the truth.
 struct Pair {
@@ -38,17 +24,30 @@ struct Pair {
   double least = 0;  ///< smallest of the draws
 };
 
+/// Coordinates of each rival's parameters, fitted to what each truth would read: by rival and truth; none of its own.
+using FitsToTruths = std::vector<std::vector<VectorX>>;
+
+struct Refits {
+  std::vector<MatrixX> gain;
+  FitsToTruths at;  ///< to all readings, with the truth at its fit
+};
+
 /// All rivals against each other.
 class Rivalry {
  public:
-  /// `draws`: of each rival's parameters, the fit itself first. Rivals whose prediction fails are an InputError with
-  /// the reason; a draw that fails is left out.
+  /// `draws`: of each rival's parameters, the fit itself first, three at least or none is drawn; all together they have
+  /// the mean of the fit and the mean square of what the readings taken leave open. Rivals whose prediction fails are
+  /// an InputError with the reason; a draw that fails is left out.
   Rivalry(const Prospect&, const subject::Subject&, std::vector<Rival>, int draws, std::uint64_t seed,
           const parallel::Work&);
 
   const std::vector<Rival>& rivals() const { return rivals_; }
-  /// By how much all readings of the prospect raise Q (design.h) above those taken, by fitted rival.
+  /// By how much all readings of the prospect raise Q (design.h) above those taken, by linearisation.
   std::vector<MatrixX> gain_of_all() const;
+  /// The same with every rival fitted to the end, to the readings taken and to all (rival.h); only the diagonals.
+  Refits refitted(const parallel::Work&) const;
+  /// The same rivals, each linearised about its fits to what the truths would read; where that fails, as before.
+  Rivalry about(const FitsToTruths&, const parallel::Work&) const;
   /// What it says of each two.
   std::vector<Pair> pairs(const std::vector<MatrixX>& gain) const;
   /// Probability that is expected of the true one, mean over truths and draws.
@@ -59,14 +58,23 @@ class Rivalry {
   struct Target {
     std::size_t truth = 0, draw = 0;
   };
-  Design design(std::size_t fitted, bool all) const;
+  /// One rival about one point, and the truths that are compared with it there.
+  struct Linearisation {
+    std::size_t fitted = 0;
+    MatrixX beside;
+    MatrixX targets;             // whitened
+    std::vector<Target> origin;  // of each of their columns
+  };
+  Linearisation linearisation(std::size_t fitted, const Linearised&, const std::vector<std::size_t>& truths) const;
+  std::vector<std::size_t> others(std::size_t fitted) const;
+  Design design(const Linearisation&, bool all) const;
 
-  const Prospect& prospect_;
+  const Prospect* prospect_;
   std::vector<Rival> rivals_;
-  std::vector<MatrixX> beside_;              // by fitted rival: derivatives, whitened
-  std::vector<VectorX> prior_;               // variances of its coordinates
-  std::vector<MatrixX> targets_;             // by fitted rival
-  std::vector<std::vector<Target>> origin_;  // of each column of them
+  std::vector<RivalModel> models_;
+  std::vector<Linearised> fits_;                                // to the data
+  std::vector<std::vector<std::optional<VectorX>>> predicted_;  // by rival and draw; none where it failed
+  std::vector<Linearisation> linearised_;
 };
 
 /// The aim of a plan: −8 ln ⟨exp(−λ²/8)⟩ over the pairs that are not `hopeless`, their truths and draws: the bound of
@@ -87,14 +95,14 @@ class RivalryAim final : public Aim {
   const std::vector<MatrixX>& gain() const { return gain_; }
 
  private:
-  WhiteRows rows(std::size_t block, std::size_t fitted) const;
+  WhiteRows rows(std::size_t block, std::size_t linearisation) const;
   double soft_least(const std::vector<MatrixX>& gain) const;
 
   const Rivalry* rivalry_;
   double wanted_;
-  std::vector<Design> designs_;
+  std::vector<Design> designs_;            // by linearisation
   std::vector<MatrixX> before_, gain_;     // Q of the readings taken; what is added to it
-  std::vector<std::vector<bool>> counts_;  // by design and target
+  std::vector<std::vector<bool>> counts_;  // by linearisation and target
 };
 
 }  // namespace deflect::plan

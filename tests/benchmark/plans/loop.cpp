@@ -150,30 +150,35 @@ class Loop {
   }
 
   /// The fewest readings of the campaign "random", in its order, after those before that promise as much; whether even
-  /// all do not.
+  /// all do not. More readings promise more, but for draws.
   std::pair<std::size_t, bool> at_random(const Measurements& before, const std::vector<plan::Rival>& rivals,
                                          const plan::PlanOptions& o, double probability, std::uint64_t machine) const {
-    std::size_t readings = 0;
+    Measurements all;
+    const auto promise = [&](std::size_t readings) {
+      return plan::expected_of(subject_, before, first_of(all, readings), rivals, o, {threads_}).probability;
+    };
     for (const int campaigns : {1, most_campaigns}) {
-      std::vector<Measurements> all = {before};
+      std::vector<Measurements> random;
       for (int k = 0; k < campaigns; ++k)
-        all.push_back(
+        random.push_back(
             sequenced(as_if_read(campaign_of(subject_, "random", machine + static_cast<std::uint64_t>(k)), before)));
-      plan::Possible possible;
-      possible.all = subject_.placed(measurement::joined(all));
-      possible.taken = before.readings.size();
-      for (std::size_t i = possible.taken; i < possible.all.readings.size(); ++i)
-        possible.blocks.push_back({i, 1, possible.all.readings[i].pose});
-      readings = possible.blocks.size();
-      const plan::Prospect prospect(subject_, std::move(possible), o.noise, {threads_});
-      const plan::Rivalry rivalry(prospect, subject_, rivals, o.draws, o.seed, {threads_});
-      plan::RivalryAim aim(rivalry, {}, probability);
-      for (std::size_t used = 0; used < readings;) {
-        aim.take(used);
-        if (++used; aim.reached()) return {used, false};
+      all = measurement::joined(random);
+      std::size_t too_few = 0, enough = all.readings.size();
+      if (promise(enough) < probability) continue;
+      while (enough - too_few > 1) {
+        const std::size_t half = (too_few + enough) / 2;
+        (promise(half) < probability ? too_few : enough) = half;
       }
+      return {enough, false};
     }
-    return {readings, true};
+    return {all.readings.size(), true};
+  }
+
+  static Measurements first_of(Measurements m, std::size_t readings) {
+    m.readings.resize(readings);
+    for (measurement::PoseGroup& p : m.poses) std::erase_if(p.readings, [&](std::size_t i) { return i >= readings; });
+    while (m.poses.back().readings.empty()) m.poses.pop_back();  // a campaign goes from pose to pose
+    return m;
   }
 
   /// With a number in each cell that the data have, which a plan does not look at.

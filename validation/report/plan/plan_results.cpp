@@ -42,22 +42,31 @@ std::string pose_words(const measurement::Measurements& m, const measurement::Po
   return out;
 }
 
+/// Readings one after the other that are alike share a line: "1 … 24".
 std::string readings_table(const measurement::Measurements& m) {
   std::vector<std::vector<std::string>> rows = {
-      {"reading", "pose", m.by_joints() ? "joints" : "x y z mm, angles deg", "load", "how"}};
-  constexpr std::size_t shown = 24;
-  for (std::size_t i = 0; i < std::min(shown, m.readings.size()); ++i) {
+      {"readings", "pose", m.by_joints() ? "joints" : "x y z mm, angles deg", "load", "how"}};
+  constexpr std::size_t shown = 24;  // lines
+  std::size_t first = 0, told = 0;
+  for (std::size_t i = 0; i < m.readings.size(); ++i) {
     const measurement::Reading& r = m.readings[i];
-    rows.push_back({fmt::format("  {}", i + 1), m.poses[r.pose].label, pose_words(m, m.poses[r.pose]), load_words(m, r),
-                    r.notes.front()});
+    std::vector<std::string> row = {"", m.poses[r.pose].label, pose_words(m, m.poses[r.pose]), load_words(m, r),
+                                    r.notes.front()};
+    const bool again = rows.size() > 1 && std::equal(row.begin() + 1, row.end(), rows.back().begin() + 1);
+    if (!again && rows.size() > shown) break;
+    if (!again) rows.push_back(std::move(row)), first = i + 1;
+    rows.back().front() = first == i + 1 ? fmt::format("  {}", first) : fmt::format("  {} … {}", first, i + 1);
+    told = i + 1;
   }
   std::string out = aligned(rows);
-  if (m.readings.size() > shown) out += fmt::format("  … and {} more (in the file)\n", m.readings.size() - shown);
+  if (m.readings.size() > told) out += fmt::format("  … and {} more (in the file)\n", m.readings.size() - told);
   return out;
 }
 
 std::string steps_table(const plan::Plan& p) {
-  std::vector<std::vector<std::string>> rows = {{"readings", "probability", "least separation λ²", "of"}};
+  const bool several = p.rivals.size() > 2;
+  std::vector<std::vector<std::string>> rows = {
+      {"readings", "probability", several ? "least separation λ²" : "separation λ²", several ? "of" : ""}};
   const std::size_t every = std::max<std::size_t>(1, p.steps.size() / 12);
   for (std::size_t i = 0; i < p.steps.size(); ++i) {
     if (i % every != 0 && i + 1 != p.steps.size()) continue;
@@ -66,7 +75,7 @@ std::string steps_table(const plan::Plan& p) {
       return a.separation < b.separation;
     });
     rows.push_back({fmt::format("  {}", s.readings), fmt::format("{:.3f}", s.probability),
-                    fmt::format("{:.1f}", least->separation), pair_words(p, *least)});
+                    fmt::format("{:.1f}", least->separation), several ? pair_words(p, *least) : ""});
   }
   return aligned(rows);
 }

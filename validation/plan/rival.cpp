@@ -1,0 +1,112 @@
+#include "validation/plan/rival.h"
+
+#include "msa/base/index.h"
+#include "msa/base/outcome.h"
+#include "validation/diagnosis/fit_problem.h"
+#include "validation/effects/effect_file.h"
+
+namespace deflect::plan {
+namespace {
+
+constexpr double wide = 3, half_range = 1;  // prior deviation of a coordinate: of a logarithm, e³; of a linear one
+constexpr double step = 1e-5;               // of derivatives
+constexpr int most_steps = 10, halvings = 4;
+constexpr double near_enough = 0.01, share = 1e-3;  // of λ²: what a step left and what it promised
+
+}  // namespace
+
+std::vector<Rival> rivals_of(const diagnosis::FoundTie& tie, const std::vector<effects::Effect>& all) {
+  std::vector<Rival> out;
+  double sum = 0;
+  for (const diagnosis::FoundTie::Rival& found : tie.rivals) {
+    Rival& rival = out.emplace_back();
+    rival.probability = found.probability;
+    sum += found.probability;
+    for (const diagnosis::FoundEffect& each : found.effects) {
+      const effects::EffectInstance instance = diagnosis::instance(effects::find_effect(all, each.effect), each);
+      const Eigen::Index before = rival.values.size(), own = instance.values.size();
+      rival.values.conservativeResize(before + own);
+      rival.values.tail(own) = instance.values;
+      rival.hypothesis.push_back(instance);
+    }
+  }
+  for (Rival& r : out) r.probability = sum > 0 ? r.probability / sum : 1 / static_cast<double>(out.size());
+  return out;
+}
+
+subject::Subject subject_with(const subject::Subject& s, const Rival& r, const VectorX& values) {
+  return effects::PreparedEffects(s, r.hypothesis)(values);
+}
+
+RivalModel::RivalModel(const Prospect& prospect, const subject::Subject& s, Rival rival)
+    : prospect_(&prospect),
+      rival_(std::move(rival)),
+      prepared_(s, rival_.hypothesis),
+      fitted_(diagnosis::coordinates_of(rival_.hypothesis, rival_.values)),
+      prior_(fitted_.size()) {
+  const auto parameters = diagnosis::parameters_of(rival_.hypothesis);
+  for (Eigen::Index i = 0; i < prior_.size(); ++i) {
+    const double deviation = nth(parameters, i)->log ? wide : half_range;
+    prior_(i) = deviation * deviation;
+  }
+}
+
+VectorX RivalModel::within(const VectorX& coordinates) const {
+  return diagnosis::coordinates_of(rival_.hypothesis, diagnosis::values_at(rival_.hypothesis, coordinates));
+}
+
+VectorX RivalModel::predicted(const VectorX& x) const {
+  return prospect_->predicted(prepared_(diagnosis::values_at(rival_.hypothesis, x)));
+}
+
+Linearised RivalModel::at(const VectorX& x) const {
+  const VectorX values = diagnosis::values_at(rival_.hypothesis, x);
+  Linearised out{x, prospect_->predicted(prepared_(values)), {}};
+  MatrixX J = MatrixX::Zero(out.predicted.size(), x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    for (const double by : {step, -step}) {
+      VectorX moved = x;
+      moved(i) += by;
+      const VectorX there = diagnosis::values_at(rival_.hypothesis, moved);
+      if (there(i) == values(i)) continue;  // at a bound
+      J.col(i) = (prospect_->predicted(prepared_(there)) - out.predicted) / by;
+      break;
+    }
+  out.beside = prospect_->white(J);
+  return out;
+}
+
+VectorX RivalModel::target(const VectorX& y, const Linearised& here) const {
+  return prospect_->white(y - here.predicted) + here.beside * (here.at - fitted_);
+}
+
+Refitted RivalModel::fitted_to(const VectorX& y, const Linearised& from, bool all) const {
+  const MatrixX none(y.size(), 0);
+  const auto left_at = [&](const VectorX& x, const VectorX& predicted) {
+    const Design rest = prospect_->design(prospect_->white(y - predicted), none, VectorX(0), all);
+    return rest.Q()(0, 0) + (x - fitted_).cwiseAbs2().cwiseQuotient(prior_).sum();
+  };
+  Linearised here = from;
+  Refitted out{here.at, left_at(here.at, here.predicted)};
+  for (int steps = 0; steps < most_steps; ++steps) {
+    const Design design = prospect_->design(target(y, here), here.beside, prior_, all);
+    const double promised = design.Q()(0, 0), before = out.left;
+    const auto done = [&] { return out.left <= promised + near_enough + share * promised; };
+    if (done()) break;
+    const VectorX whole = fitted_ + design.absorbed().col(0).tail(fitted_.size()) - here.at;
+    double length = 1;
+    for (int tries = 0; tries < halvings && out.left == before; ++tries, length /= 2) {
+      const VectorX x = within(here.at + length * whole);
+      const auto there = outcome_of([&] { return predicted(x); });
+      if (!there || !there->allFinite()) continue;
+      if (const double left = left_at(x, *there); left < out.left) out = {x, left};
+    }
+    if (out.left == before || done()) break;
+    auto next = outcome_of([&] { return at(out.at); });
+    if (!next) break;
+    here = std::move(*next.value);
+  }
+  return out;
+}
+
+}  // namespace deflect::plan
