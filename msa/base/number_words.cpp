@@ -32,6 +32,8 @@ std::string interval_words(double value, double low, double high) {
   const double width = high - low;
   const double largest = std::max({std::abs(value), std::abs(low), std::abs(high)});
   int digits = 4;
+  if (std::isinf(high) && std::isfinite(low))
+    return fmt::format("{} (at least {})", digits_of(value, digits), digits_of(low, digits));
   if (width > 0 && std::isfinite(width) && largest > 0)
     digits = std::clamp(place_of(largest) - place_of(width) + 2, 4, 12);
   return fmt::format("{} ({} … {})", digits_of(value, digits), digits_of(low, digits), digits_of(high, digits));

@@ -11,7 +11,8 @@ std::string digits_of(double value, int significant);
 /// "123.456 ± 0.012": the deviation has two digits, and the value the same last digit, but at least three digits.
 std::string plus_minus_words(double value, double deviation);
 
-/// "200000 (199800 … 200200)": with two digits of the distance of the bounds.
+/// "200000 (199800 … 200200)": with two digits of the distance of the bounds; "0.612 (at least 0.605)" without an upper
+/// bound.
 std::string interval_words(double value, double low, double high);
 
 /// The number rounded to the decimals that a sentence prints, so that the sentence is true for the printed number.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace deflect {
 namespace {
 
@@ -21,6 +23,7 @@ TEST(NumberWords, AnIntervalHasTheDigitsThatTellItsBoundsApart) {
   EXPECT_EQ(interval_words(5e6, 4.9e6, 5.1e6), "5000000 (4900000 … 5100000)");
   EXPECT_EQ(interval_words(1.23456789, 1.23456, 1.23458), "1.234568 (1.234560 … 1.234580)");
   EXPECT_EQ(interval_words(1e8, 1e7, 1e8), "1e+08 (1e+07 … 1e+08)");
+  EXPECT_EQ(interval_words(0.6124, 0.6051, INFINITY), "0.6124 (at least 0.6051)");
   for (const double width : {1e-1, 1e-3, 1e-5, 1e-8}) {
     const std::string text = interval_words(2e5, 2e5 * (1 - width), 2e5 * (1 + width));
     const std::string low = text.substr(text.find('(') + 1, text.find(" …") - text.find('(') - 1);

@@ -44,11 +44,7 @@ def tolerance_moves(f):
 
     def add(table, key, field, size, relative):
         def move(g, times):
-            entry = g[table]
-            if field is not None:
-                entry, at = entry[key], field
-            else:
-                at = key
+            entry, at = (g[table], key) if field is None else (g[table][key], field)
             entry[at] = entry[at] + times * size * (entry[at] if relative else 1)
         moves.append(move)
 
@@ -140,6 +136,7 @@ SETS = {
     "truss-45": [
         ("linear@support.P0a.ux", None, (1e10, 1e5), []),
         ("clearance@support.P0c.ux", None, (1e-7, 2e-3), []),
+        ("clearance@support.P0a.ux", 1e-3, None, []),  # so wide that nothing touches
         ("pull@support.P0b.ux", None, (1e-11, 1e-5), []),
         ("factor@C1b", None, (0.999, 0.05), []),
         ("factor@D0bc", 0.02, None, []),
@@ -177,6 +174,8 @@ SETS = {
         ("factor@spring.pad2.uz", None, (0.999, 0.1), []),
         ("factor@spring.pad4.uz", 0.02, None, []),
         ("clearance@spring.pad3.uz", None, (1e-7, 5e-3), []),
+        ("clearance@spring.pad1.uz", 1e-3, None, []),  # so wide that nothing touches
+        ("clearance@spring.pad5.uz", 2e-3, None, []),  # that touches under the largest loads alone
         ("pull@spring.pad5.uz", None, (1e-11, 1e-5), []),
         ("linear@rail3.end.ry", None, (1e10, 1e4), ["linear@rail4.start.ry"]),
         ("friction@support.N0.uz", None, (1, 1e6), ["friction@spring.pad0.uz"]),

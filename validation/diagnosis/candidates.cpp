@@ -19,26 +19,9 @@ namespace deflect::diagnosis {
 namespace {
 
 constexpr double out_of_question = -1e9;           // ln of the odds of what is there already, or cannot be
-constexpr double alike = 0.999;                    // cosine from which signatures are one
 constexpr double near_nothing = 6, hopeless = 30;  // gains in χ² that are not looked into
 constexpr double bent = 8;                         // that a fit may gain beyond what the signature says, where small
 constexpr double of_its_own = 0.05;                // share of a signature that others must leave it
-
-/// Per signature the first one that does all but the same.
-std::vector<std::size_t> classes_of(const std::vector<Signature>& all, const MatrixX& inner_products) {
-  std::vector<std::size_t> out(all.size());
-  const MatrixX between = cosines(all, inner_products);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    out[i] = i;
-    for (std::size_t k = 0; k < i; ++k)
-      if (all[i].amplitudes() == all[k].amplitudes() && all[i].shaped == all[k].shaped &&
-          between(as_index(i), as_index(k)) > alike) {
-        out[i] = out[k];
-        break;
-      }
-  }
-  return out;
-}
 
 std::vector<double> summed(const std::vector<double>& x, const std::vector<std::size_t>& classes) {
   std::vector<double> sum(x.size(), 0), out;
@@ -103,6 +86,7 @@ bool wrong_way(const Signature& s, const VectorX& residual) {
 }
 
 constexpr double small_share = 0.05;  // of the best gain, from which a signature may hide a large effect
+constexpr double most_of_it = 0.5;    // of what a law at a place explains: the part gone may explain it instead
 
 /// Of one parameter with a value at which it vanishes: its signature is that of a small size.
 bool has_one_size(const Signature& s) {
@@ -136,6 +120,7 @@ Candidates::Candidates(const std::vector<Signature>& all, int threads,
       progress_(std::move(progress)),
       between_(inner_products(all)),
       classes_(classes_of(all, between_)),
+      lets_go_(those_that_let_go(all)),
       priors_(shared_priors(all, classes_)),
       class_priors_(summed(priors_, classes_)) {}
 
@@ -197,7 +182,7 @@ class Candidates::Round {
   void fit_promising(double least) {
     std::array<std::vector<std::size_t>, 2> parts;
     for (std::size_t i = 0; i < out_.size(); ++i)
-      if (allowed_[i] && said_[i] >= enough(signature(i)))
+      if (allowed_[i] && (is_known(i) || said_[i] >= enough(signature(i))))
         parts[signature(i).effect.effect->place ? 1 : 0].push_back(i);
     const std::size_t count = parts[0].size() + parts[1].size();
     std::atomic<std::size_t> done = 0;
@@ -226,24 +211,31 @@ class Candidates::Round {
   /// another direction than a little of it. Returns whether one of these is the likeliest then.
   bool fit_larger() {
     const double before = likeliest();
-    std::vector<std::optional<SizedEffect>> large(out_.size());
-    parallel::for_each_case(out_.size(), 1, all_.threads_, [&](std::size_t i) {
-      if (!allowed_[i] || !has_one_size(signature(i)) || said_[i] < std::max(near_nothing, small_share * most_)) return;
+    fit_from_sizes([&](std::size_t i) -> std::optional<SizedEffect> {
+      if (!allowed_[i] || !has_one_size(signature(i)) || said_[i] < std::max(near_nothing, small_share * most_))
+        return std::nullopt;
       const std::optional<VectorX> small = guess(signature(i), so_far_.residual);
-      if (small) large[i] = best_size(observations_, out_[i].hypothesis, so_far_.values, *small);
-      if (large[i] && !(large[i]->chi2 < (out_[i].fit.found ? out_[i].fit : so_far_).chi2)) large[i].reset();
+      return small ? best_size(observations_, out_[i].hypothesis, so_far_.values, *small) : std::nullopt;
     });
-    std::vector<std::size_t> promising;
-    for (std::size_t i = 0; i < large.size(); ++i)
-      if (large[i]) promising.push_back(i);
-    fit_in_turn(
-        std::move(promising), bar_, all_.threads_,
-        [&](std::size_t i) {
-          return all_.log_odds(i, 1.5 * (so_far_.chi2 - large[i]->chi2) + bent, all_.class_priors_[i]);
-        },
-        [&](std::size_t i, int within) { fit_from(i, large[i]->value, within); },
-        [&](std::size_t i) { return odds(i); });
     return likeliest() > before;
+  }
+
+  /// Where a part that lets go is among the likeliest, or was found before, fits all laws by which it can (lets_go())
+  /// at that place from the size that explains most. Play so wide that nothing touches says the same as a spring that
+  /// has run to nothing, but a fit that begins with a little play does not come there.
+  void fit_what_lets_go() {
+    std::vector<double> explained(out_.size(), 0);  // by the best of them at the place
+    for (std::size_t i = 0; i < out_.size(); ++i) {
+      if (!all_.lets_go_[i] || !(odds(i) > bar_ || (is_known(i) && out_[i].fit.found))) continue;
+      for (std::size_t k = 0; k < out_.size(); ++k)
+        if (all_.lets_go_[k] && allowed_[k] && at_one_place(signature(i).effect, signature(k).effect))
+          explained[k] = std::max(explained[k], out_[i].gain);
+    }
+    fit_from_sizes([&](std::size_t i) -> std::optional<SizedEffect> {
+      if (!(explained[i] > near_nothing)) return std::nullopt;
+      return best_size_of_what_lets_go(observations_, out_[i].hypothesis, so_far_.values,
+                                       so_far_.chi2 - most_of_it * explained[i]);
+    });
   }
 
   /// What was fitted before, in place of fit_promising().
@@ -298,6 +290,27 @@ class Candidates::Round {
   /// of one that is proportional to its size.
   double enough(const Signature& s) const { return std::max(near_nothing, (s.shaped ? 0.1 : 0.5) * most_ - hopeless); }
 
+  /// Fits anew, from the size that `size_of` tells of a signature, if any, those that explain more in it than as they
+  /// were fitted.
+  template <class SizeOf>
+  void fit_from_sizes(const SizeOf& size_of) {
+    std::vector<std::optional<SizedEffect>> sized(out_.size());
+    parallel::for_each_case(out_.size(), 1, all_.threads_, [&](std::size_t i) {
+      sized[i] = size_of(i);
+      if (sized[i] && !(sized[i]->chi2 < (out_[i].fit.found ? out_[i].fit : so_far_).chi2)) sized[i].reset();
+    });
+    std::vector<std::size_t> promising;
+    for (std::size_t i = 0; i < sized.size(); ++i)
+      if (sized[i]) promising.push_back(i);
+    fit_in_turn(
+        std::move(promising), bar_, all_.threads_,
+        [&](std::size_t i) {
+          return all_.log_odds(i, 1.5 * (so_far_.chi2 - sized[i]->chi2) + bent, all_.class_priors_[i]);
+        },
+        [&](std::size_t i, int within) { fit_from(i, sized[i]->value, within); },
+        [&](std::size_t i) { return odds(i); });
+  }
+
   void fit_from(std::size_t i, const std::optional<VectorX>& start, int within) {
     Candidate& c = out_[i];
     Fit now = fit(observations_, c.hypothesis, so_far_.values, start, within);
@@ -324,6 +337,7 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
                                           double least, const std::optional<effects::EffectInstance>& known) const {
   Round round(*this, observations, before, so_far, known);
   round.fit_promising(least);
+  round.fit_what_lets_go();
   if (larger_sizes_) round.fit_larger();
   return round.result();
 }

@@ -39,7 +39,8 @@ class Candidates {
   /// Every effect added to others that are fitted already, in the order of the signatures. Fits are made only where an
   /// effect can come near the best and its log_odds can reach `least`. An effect almost indistinguishable from one of
   /// the others is not added. `known`: an effect that was fitted together with the others before; its new fit also
-  /// starts from those values, so that it is no worse.
+  /// starts from those values, so that it is no worse. Where a part that lets go is among the likeliest, play so wide
+  /// that nothing touches, and what else says the same, is fitted beside it.
   std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                 const std::optional<effects::EffectInstance>& known = {}) const;
 
@@ -73,6 +74,7 @@ class Candidates {
   std::function<void(std::size_t, std::size_t)> progress_;
   MatrixX between_;                   ///< inner_products() of the signatures
   std::vector<std::size_t> classes_;  ///< for each signature, the first that these data cannot distinguish from it
+  std::vector<char> lets_go_;         ///< by signature: lets_go()
   /// The places of an entry share the entry's prior; the effects of one class have one share together.
   std::vector<double> priors_, class_priors_;
   bool larger_sizes_ = false;

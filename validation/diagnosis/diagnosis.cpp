@@ -138,8 +138,12 @@ void note_ties(Diagnosis& d, const Selection& found, const measurement::Measurem
   }
 }
 
-/// The limits of the values of those that tie.
-void bound_ties(Diagnosis& d, const Observations& o, int threads) {
+/// The limits of the values of those that tie; of their fits beside what else was found, where derivatives do not tell
+/// them.
+void bound_ties(Diagnosis& d, const Observations& o, const Observations& seen, int threads) {
+  for (Tie& tie : d.ties)
+    for (Candidate& c : tie.rivals)
+      if (says_nothing_of_last(c.fit)) c.fit = with_intervals(seen, c.hypothesis, std::move(c.fit), threads);
   for (Candidate& c : d.candidates)
     for (const std::vector<std::string>& group : d.indistinguishable)
       if (c.probability > worth_limits && c.fit.limits.empty() &&
@@ -301,7 +305,7 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   add_left_out(d.left_out, first);
   d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
   note_ties(d, found, data);
-  bound_ties(d, told, work.threads);
+  bound_ties(d, told, seen, work.threads);
   d.verdict = verdict_of(d);
   d.final = quality(seen, d.missing, d.fit);
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));

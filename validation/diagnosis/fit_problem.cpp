@@ -21,6 +21,8 @@ double value_at(const effects::EffectParameter& p, double x) {
 namespace {
 
 constexpr int doublings = 7;
+constexpr int halvings = 10, refinements = 3;  // of what lets go, in its size
+constexpr double no_more = 1e-3;               // of χ²: as good as nothing
 
 /// So many times as far from where it vanishes; a factor on a logarithmic scale runs towards 0 or up by its logarithm.
 double times_as_large(const effects::EffectParameter& p, double small, double times) {
@@ -146,6 +148,43 @@ std::optional<SizedEffect> best_size(const Observations& o, const Hypothesis& h,
     return out;
   });
   return best ? *best.value : std::nullopt;  // the effects may not go together in this subject
+}
+
+std::optional<SizedEffect> best_size_of_what_lets_go(const Observations& o, const Hypothesis& h, const VectorX& from,
+                                                     double most) {
+  const effects::EffectParameter& p = h.back().effect->parameters.front();
+  const bool upwards = *p.vanishes == 0;  // it lets go towards its upper bound
+  const double gone = upwards ? p.high : p.low, least = upwards ? p.low : std::min(p.high, *p.vanishes);
+  const auto best = outcome_of([&]() -> std::optional<SizedEffect> {
+    const FitProblem problem(o, h);
+    /// The effect so many times nearer to where it vanishes than at that value.
+    const auto nearer = [&](double value, double times) {
+      const double size = upwards ? value / times : value * times;
+      SizedEffect out{VectorX::Constant(1, size), INFINITY};
+      if (upwards ? size < least || size > gone : size > least || size < gone) return out;
+      VectorX values(from.size() + 1);
+      values << from, size;
+      if (const auto r = problem.residual(problem.coordinates(values))) out.chi2 = r->squaredNorm();
+      return out;
+    };
+    SizedEffect out = nearer(gone, 1);
+    if (!(out.chi2 < most)) return std::nullopt;
+    for (SizedEffect next = nearer(gone, 10); std::abs(next.chi2 - out.chi2) < no_more; next = nearer(out.value(0), 10))
+      out = next;
+    const double begins = out.value(0);
+    for (int k = 1; k <= halvings; ++k)
+      if (SizedEffect next = nearer(begins, std::exp2(k)); next.chi2 < out.chi2 + no_more) out = std::move(next);
+    double times = 2;
+    for (int k = 0; k < refinements; ++k) {
+      times = std::sqrt(times);
+      if (SizedEffect next = nearer(out.value(0), times); next.chi2 < out.chi2 + no_more)
+        out = std::move(next);
+      else if (next = nearer(out.value(0), 1 / times); next.chi2 < out.chi2 - no_more)
+        out = std::move(next);
+    }
+    return out;
+  });
+  return best ? *best.value : std::nullopt;
 }
 
 }  // namespace deflect::diagnosis

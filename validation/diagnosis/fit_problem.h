@@ -82,4 +82,13 @@ struct SizedEffect {
 /// before. Nullopt where none of them can be predicted.
 std::optional<SizedEffect> best_size(const Observations&, const Hypothesis&, const VectorX& from, const VectorX& small);
 
+/// The same of an effect by which a part can let go (lets_go(), signatures.h), from the other side: from the end of its
+/// range, where the part is gone, to the size at which it begins to carry, and down to a thousandth of that, past sizes
+/// that explain less. χ² over the width of play has several valleys: within one the play is closed in every reading,
+/// within another it is open in all but a few. Of sizes that explain the same, since the part carries nothing, the
+/// one nearest to where the effect vanishes. Nullopt where the part that is gone leaves more than `most` of χ², or
+/// nothing can be predicted without it.
+std::optional<SizedEffect> best_size_of_what_lets_go(const Observations&, const Hypothesis&, const VectorX& from,
+                                                     double most);
+
 }  // namespace deflect::diagnosis

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "msa/base/index.h"
 #include "validation/diagnosis/fit_problem.h"
+#include "validation/diagnosis/signatures.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 
@@ -93,6 +95,14 @@ class Profile {
   double sd_ = 0;
 };
 
+/// By parameter, whether at its upper bound the part has let go.
+std::vector<char> gone_above(const Hypothesis& h) {
+  std::vector<char> out;
+  for (const effects::PlacedEffect& e : h)
+    for (const effects::EffectParameter& p : e.effect->parameters) out.push_back(p.vanishes == 0 && lets_go(*e.effect));
+  return out;
+}
+
 }  // namespace
 
 Fit with_intervals(const Observations& o, const Hypothesis& h, Fit f, int threads) {
@@ -104,8 +114,18 @@ Fit with_intervals(const Observations& o, const Hypothesis& h, Fit f, int thread
     const auto i = as_index(k / 2);
     ends[k] = value_at(*nth(problem.parameters(), i), Profile(problem, f, i).limit(k % 2 == 0 ? -1 : 1));
   });
-  for (std::size_t k = 0; k < ends.size(); k += 2) f.limits.emplace_back(ends[k], ends[k + 1]);
+  const std::vector<char> gone = gone_above(h);
+  for (std::size_t k = 0; k < ends.size(); k += 2) {
+    const bool open = gone[k / 2] && ends[k + 1] > (1 - 1e-9) * nth(problem.parameters(), as_index(k / 2))->high;
+    f.limits.emplace_back(ends[k], open ? std::numeric_limits<double>::infinity() : ends[k + 1]);
+  }
   return f;
+}
+
+bool says_nothing_of_last(const Fit& f) {
+  constexpr double deviations = 10;  // a step of size 1 is a large one
+  const Eigen::Index last = f.values.size() - 1;
+  return f.found && last >= 0 && !(f.covariance(last, last) < deviations * deviations);
 }
 
 std::pair<double, double> interval95(const Hypothesis& h, const Fit& f, std::size_t i) {

@@ -8,6 +8,7 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/diagnosis/by_statics.h"
+#include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
@@ -249,6 +250,47 @@ MatrixX cosines(const std::vector<Signature>& all, const MatrixX& inner) {
     row += all[i].basis.cols();
   }
   return out;
+}
+
+std::vector<std::size_t> classes_of(const std::vector<Signature>& all, const MatrixX& inner_products) {
+  constexpr double alike = 0.999;  // cosine from which signatures are one
+  std::vector<std::size_t> out(all.size());
+  const MatrixX between = cosines(all, inner_products);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    out[i] = i;
+    for (std::size_t k = 0; k < i; ++k)
+      if (all[i].amplitudes() == all[k].amplitudes() && all[i].shaped == all[k].shaped &&
+          between(as_index(i), as_index(k)) > alike) {
+        out[i] = out[k];
+        break;
+      }
+  }
+  return out;
+}
+
+bool lets_go(const effects::Effect& e) {
+  if (!e.place || e.place->freedoms.size() != 1 || e.parameters.size() != 1) return false;
+  const effects::EffectParameter& p = e.parameters.front();
+  if (!p.log || !p.vanishes) return false;
+  if (e.place->one_stiffness && *p.vanishes == 1)
+    return std::all_of(e.edits.begin(), e.edits.end(), [](const effects::EffectEdit& edit) {
+      return edit.action == effects::EffectEdit::Action::multiply && edit.paths.front().ends_with(".stiffness");
+    });
+  const std::optional<Law> law = effects::law_in_series(e, effects::start_values(e));
+  return law && (std::holds_alternative<LinearLaw>(*law) || std::holds_alternative<ClearanceLaw>(*law) ||
+                 std::holds_alternative<OneSidedLaw>(*law));
+}
+
+std::vector<char> those_that_let_go(const std::vector<Signature>& all) {
+  std::vector<char> out;
+  for (const Signature& s : all) out.push_back(lets_go(*s.effect.effect));
+  return out;
+}
+
+bool at_one_place(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
+  const std::optional<subject::Place>&at = a.effect->place, &other = b.effect->place;
+  return at && other && a.leg == b.leg && a.effect->scope == b.effect->scope &&
+         subject::id_of(*at) == subject::id_of(*other);
 }
 
 double single_p_value(const Signature& s, double gain) { return tail(s.amplitudes(), s.one_sided, gain); }

@@ -62,6 +62,26 @@ double cosine(const Signature&, const Signature&);
 MatrixX cosines(const std::vector<Signature>&);
 MatrixX cosines(const std::vector<Signature>&, const MatrixX& inner_products);
 
+/// Per signature the first one that does all but the same (a cosine above 0.999).
+std::vector<std::size_t> classes_of(const std::vector<Signature>&, const MatrixX& inner_products);
+
+/// Whether the part at the effect's place can let go by it, so that it carries nothing.
+///
+/// Let a be the displacement that a reading's loads and the weight cause at the place where the part is gone, C > 0 the
+/// compliance of all the rest there, the part's own spring among it. The part carries the force f with a − C f = δ(f):
+///   a spring in series, δ = f/k      f = a/(C + 1/k), 0 as k falls to 0; a factor on the part's own stiffness alike
+///   play of ±g                       f = 0 wherever |a| ≤ g, else (a ∓ g)/C
+///   yielding in one sense, δ = y f   f = a/(C + y) in that sense and a/C in the other: 0 as y grows where no reading
+///                                    has an a of the other sign
+/// Readings depend on the law through f alone. So play that is at least as wide as the largest |a| of a campaign, and
+/// a part that is gone, are the same to it, exactly and for every such width. A Hertz contact is not among these: what
+/// touches is pressed together.
+bool lets_go(const effects::Effect&);
+std::vector<char> those_that_let_go(const std::vector<Signature>&);
+
+/// Of two laws at places.
+bool at_one_place(const effects::PlacedEffect&, const effects::PlacedEffect&);
+
 /// p-value of a gain in χ² as if this were the only effect tested.
 double single_p_value(const Signature&, double gain);
 

@@ -9,7 +9,9 @@
 namespace deflect::effects {
 
 std::optional<Law> law_in_series(const Effect& e, const VectorX& values) {
-  if (!e.place || e.place->hold == subject::Hold::free || e.parameters.size() != 1) return std::nullopt;
+  if (!e.place || e.place->freedoms.empty() || e.place->hold == subject::Hold::free || e.parameters.size() != 1 ||
+      e.edits.empty())
+    return std::nullopt;
   for (const EffectEdit& edit : e.edits)
     if (edit.action != EffectEdit::Action::append || edit.value != e.edits.front().value) return std::nullopt;
   const YamlNode node = filled_in(parse_yaml(e.edits.front().value, e.name), e, values);

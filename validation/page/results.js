@@ -10,6 +10,7 @@ export const siteName = (c) => (c.place && c.site === 'machine' ? c.effect : `${
 /** With so many digits that the bounds can be told from each other. */
 const intervalWords = (value, low, high) => {
   let digits = 4;
+  if (high === null) return `${num(value, digits)} (at least ${num(low, digits)})`;
   while (digits < 12 && low !== high && num(low, digits) === num(high, digits)) ++digits;
   return `${num(value, digits)} (${num(low, digits)} … ${num(high, digits)})`;
 };

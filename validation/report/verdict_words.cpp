@@ -89,6 +89,20 @@ std::string larger_tolerances_words(const diagnosis::Diagnosis& d) {
       d.larger_tolerances, d.probability_larger_tolerances);
 }
 
+/// Of those that tie and have no upper limit: what they say.
+std::string gone_words(const diagnosis::Diagnosis& d) {
+  std::string out;
+  for (const diagnosis::Tie& tie : d.ties)
+    for (const diagnosis::Candidate& c : tie.rivals) {
+      if (c.fit.limits.empty() || !std::isinf(c.fit.limits.back().second)) continue;
+      out += fmt::format(
+          " {} of at least {} {} is the same to these readings as a part that is gone: it carries nothing in them.",
+          diagnosis::name_of(c.added()), digits_of(c.fit.limits.back().first, 3),
+          c.added().effect->parameters.front().unit);
+    }
+  return out;
+}
+
 std::string nothing_missing_words(const diagnosis::Diagnosis& d) {
   const std::string left = residual_words(d.baseline.rmse, d.baseline.chi2_per_dof, d.quantity) + ".";
   if (d.probability_larger_tolerances > likely)
@@ -162,7 +176,7 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
       return outliers +
              fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}. {}", group, names,
                          fall_of_error(d)) +
-             larger_tolerances_words(d);
+             gone_words(d) + larger_tolerances_words(d);
     }
     case diagnosis::Verdict::unknown_effect:
       return outliers +
@@ -190,8 +204,10 @@ std::string headline_words(const diagnosis::Diagnosis& d) {
           either += (&id == &group.front() ? "" : " – or – ") + rival_words(id, d, titled_words);
         either += ".";
       }
-      return outliers + fmt::format("Something is missing, and these data cannot tell which of these: {} {}", either,
-                                    fall_of_error(d));
+      return outliers +
+             fmt::format("Something is missing, and these data cannot tell which of these: {} {}", either,
+                         fall_of_error(d)) +
+             gone_words(d);
     }
     case diagnosis::Verdict::unknown_effect:
       return outliers +
