@@ -14,7 +14,7 @@ const intervalWords = (value, low, high) => {
   while (digits < 12 && low !== high && num(low, digits) === num(high, digits)) ++digits;
   return `${num(value, digits)} (${num(low, digits)} … ${num(high, digits)})`;
 };
-const valueWords = (parameters) => parameters.map((p) => `${p.name} = ${intervalWords(p.value, p.low95, p.high95)}`).join(', ');
+const valueWords = (parameters) => parameters.map((p) => `${p.name} = ${intervalWords(p.value, p.low95, p.at_least ? null : p.high95)}`).join(', ');
 
 /** What was found in words, then by its ids with the values that were fitted. */
 export function diagnosisHeadline(d) {

@@ -52,7 +52,12 @@ Json parameters_json(const diagnosis::Hypothesis& h, const diagnosis::Fit& f, st
   const std::vector<const effects::EffectParameter*> all = diagnosis::parameters_of(h);
   for (std::size_t i = from; i < from + count && f.found; ++i) {
     const auto [low, high] = diagnosis::interval95(h, f, i);
-    out.push_back({{"name", all[i]->name}, {"value", f.values(as_index(i))}, {"low95", low}, {"high95", high}});
+    const bool open = std::isinf(high);
+    out.push_back({{"name", all[i]->name},
+                   {"value", f.values(as_index(i))},
+                   {"low95", low},
+                   {"high95", open ? all[i]->high : high}});
+    if (open) out.back()["at_least"] = true;
   }
   return out;
 }

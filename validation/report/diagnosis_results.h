@@ -11,9 +11,9 @@ namespace deflect::report {
 std::string diagnosis_report(const diagnosis::Diagnosis&, const std::string& device, const std::string& data);
 
 /// {"verdict", "missing", "candidates": [{"effect", "site", "leg" (where it is one), "probability", "parameters":
-/// [{"name", "value", "low95", "high95": null where there is no upper limit}], "rmse_mm", "held_out_rmse_mm",
-/// "chi2_per_dof"}], "indistinguishable", "baseline", "final", "noise_floor_mm", "unit" (of what ends with _mm: mrad
-/// where rotations alone were measured), "unexplained":
+/// [{"name", "value", "low95", "high95", "at_least": true where there is no upper limit, high95 then being the
+/// parameter's bound}], "rmse_mm", "held_out_rmse_mm", "chi2_per_dof"}], "indistinguishable", "baseline", "final",
+/// "noise_floor_mm", "unit" (of what ends with _mm: mrad where rotations alone were measured), "unexplained":
 /// {"significant", "share_of_misfit", "pattern"}, …}
 std::string diagnosis_json(const diagnosis::Diagnosis&);
 

@@ -103,6 +103,7 @@ const std::vector<ResultKind>& result_kinds() {
                                                 {"candidates[].parameters[].value", Type::number_or_null},
                                                 {"candidates[].parameters[].low95", Type::number_or_null},
                                                 {"candidates[].parameters[].high95", Type::number_or_null},
+                                                {"candidates[].parameters[].at_least?", Type::truth},
                                                 {"indistinguishable", Type::list},
                                                 {"indistinguishable[]", Type::list},
                                                 {"indistinguishable[][]", Type::text},

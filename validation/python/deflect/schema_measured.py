@@ -174,12 +174,14 @@ class Version(Record):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class FoundValue(Record):
-    """A parameter with its 95 % interval; None where that is open."""
+    """A parameter with its 95 % interval; None where that is open. ``at_least``: there is no upper limit, and ``high95``
+    is the parameter's bound."""
 
     name: str
     value: float
     low95: Optional[float]
     high95: Optional[float]
+    at_least: Maybe[bool]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -190,6 +192,7 @@ class TriedValue(Record):
     value: Optional[float]
     low95: Optional[float]
     high95: Optional[float]
+    at_least: Maybe[bool]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
