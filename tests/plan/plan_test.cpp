@@ -188,6 +188,26 @@ TEST(Plan, ForcesActBesideTheToolPointToo) {
   for (const measurement::Reading& r : without.all.readings) EXPECT_TRUE(r.load.tail<3>().isZero(0));
 }
 
+/// Three load cases: alone with both senses in three sizes, in twos and in threes with all senses.
+TEST(Plan, LoadCasesOfAFrameStandTogether) {
+  const subject::Subject beam = frame::parse_frame(
+      test::cantilever::file("sensors: {z: {node: B, direction: uz, sigma: 10 um}}\n",
+                             "line: {members: {beam: {qz: -25 N/m, axes: base}}}, half: {nodes: {B: {fz: -5 N}}}"),
+      "frame.yaml");
+  const Measurements data =
+      beam.placed(measurement::parse_measurements("load.tip,z_mm\n1,0\n", "data.csv", beam.instruments()));
+  ASSERT_EQ(beam.instruments().load_cases.size(), 3u);
+  for (const auto& [cases, readings] :
+       {std::pair{0u, 18u + 12 + 8}, std::pair{3u, 18u + 12 + 8}, std::pair{2u, 18u + 12}, std::pair{1u, 18u}}) {
+    Limits limits;
+    limits.cases = cases;
+    const Possible all = possible_readings(beam, data, limits, false, 1);
+    EXPECT_EQ(all.all.readings.size() - all.taken, readings) << cases;
+    for (std::size_t i = all.taken; i < all.all.readings.size(); ++i)
+      for (const double factor : all.all.readings[i].factors) EXPECT_LE(std::abs(factor), 1);
+  }
+}
+
 /// A campaign stands among what could be read instead of it, reading by reading, and shares its approaches.
 TEST(Plan, TheCampaignGivenIsOneOfThePossibleOnes) {
   const Possible all = possible_campaign(machine(), paper(), {}, 1);

@@ -82,7 +82,7 @@ class Explained(unittest.TestCase):
             function = getattr(deflect, name)
             for argument in inspect.signature(function).parameters:
                 if argument in ("model", "threads", "progress", "group", "readings", "probability", "max_force",
-                                "max_moment", "forces_only", "poses", "max_poses", "seed", "use", "aim", "theories",
+                                "max_moment", "forces_only", "max_cases", "poses", "max_poses", "seed", "use", "aim", "theories",
                                 "tolerances", "outliers", "geometry", "elements", "machine"):
                     continue  # as the options of the program
                 self.assertRegex(function.__doc__, rf"``{argument}|\b{argument}\b|as for compare", f"{name}({argument})")

@@ -90,34 +90,41 @@ std::vector<Load> loads_of_machine(const subject::LargestLoads& most, bool force
   return out;
 }
 
-std::vector<Load> loads_of_frame(const subject::Subject& s, const Measurements& data, bool pairs) {
-  const std::vector<double> most = subject::largest_factors(s, data);
-  const std::vector<std::string> names = s.instruments().load_cases;
-  std::vector<Load> out;
-  for (std::size_t k = 0; k < most.size(); ++k)
+/// A load of a frame, and all loads of that many further cases at most beside it, from the case `from` on.
+void add_with_further(std::vector<Load>& out, const Load& load, std::size_t from, std::size_t further,
+                      const std::vector<double>& most, const std::vector<std::string>& names) {
+  if (!load.words.empty()) out.push_back(load);
+  for (std::size_t k = from; k < most.size() && further > 0; ++k)
     for (const double sense : {1.0, -1.0}) {
-      Load load;
-      load.factors.assign(most.size(), 0);
-      load.factors[k] = sense * most[k];
-      load.words = fmt::format("{}load.{}", sign_of(sense), names[k]);
-      out.push_back(load);
-      for (std::size_t other = 0; other < k && pairs; ++other)
-        for (const double also : {1.0, -1.0}) {
-          Load both = load;
-          both.factors[other] = also * most[other];
-          both.words += fmt::format(" {}load.{}", sign_of(also), names[other]);
-          both.in_full = true;
-          out.push_back(both);
-        }
+      Load next = load;
+      next.in_full = !load.words.empty();
+      next.factors[k] = sense * most[k];
+      next.words += fmt::format("{}{}load.{}", load.words.empty() ? "" : " ", sign_of(sense), names[k]);
+      add_with_further(out, next, k + 1, further - 1, most, names);
     }
+}
+
+std::vector<Load> loads_of_frame(const subject::Subject& s, const Measurements& data, std::size_t cases) {
+  const std::vector<double> most = subject::largest_factors(s, data);
+  Load none;
+  none.factors.assign(most.size(), 0);
+  std::vector<Load> out;
+  add_with_further(out, none, 0, cases, most, s.instruments().load_cases);
   return out;
+}
+
+/// How many load cases stand together: all of a few, which are 3^n loads, else two.
+std::size_t cases_together(const subject::Subject& s, const Limits& limits) {
+  constexpr std::size_t few = 5;
+  const std::size_t all = s.instruments().load_cases.size(), at_most = all <= few ? all : 2;
+  return limits.cases == 0 ? at_most : std::min(at_most, limits.cases);
 }
 
 /// Within the limits; `together`: several components, or load cases, at once too.
 std::vector<Load> loads_of(const subject::Subject& s, const Measurements& data, const Limits& limits, bool together) {
   std::vector<Load> out;
   if (s.frame()) {
-    out = loads_of_frame(s, data, together);
+    out = loads_of_frame(s, data, together ? cases_together(s, limits) : 1);
   } else {
     subject::LargestLoads most = subject::largest_loads(s, data);
     if (limits.force) most.force = *limits.force;

@@ -36,7 +36,7 @@ struct PlanArguments {
   std::string force, moment, sigma_mm, sigma_rad;
   std::vector<std::string> data, files;
   bool forces_only = false;
-  double group = 1, readings = 30, probability = 0.95, most_poses = 0, seed = 1, threads = 0;
+  double group = 1, readings = 30, probability = 0.95, most_poses = 0, cases = 0, seed = 1, threads = 0;
   FigureArguments figures;
 };
 
@@ -53,6 +53,7 @@ plan::Limits limits_of(const PlanArguments& a, const subject::Subject& s) {
   out.force = largest("--max-force", a.force, "N", 1);
   out.moment = largest("--max-moment", a.moment, "Nmm", 1e3);
   out.forces_only = a.forces_only;
+  out.cases = as_size(whole("--max-cases", a.cases, 0, most_readings));
   if (a.poses == "measured")
     out.where = plan::Where::as_measured;
   else if (a.poses != "workspace")
@@ -241,11 +242,11 @@ Command plan_command() {
       "Plan which readings to take. For effects that a diagnosis could not tell apart, the command chooses the "
       "readings that separate them most: pose or load case, load, sense, size, loading or unloading. To judge a "
       "reading, each effect is fitted again to what the other would read, with all tolerances free under their priors. "
-      "The command "
-      "says how probable the right effect will be after these readings, writes the file that the laboratory fills in, "
-      "names pairs that no reading separates, and the instruments that would help most beside those there are. With "
-      "--before it says what a campaign will be able to tell before "
-      "it is measured, and writes a better one of the same length",
+      "The command says how probable the right effect will be after these readings, writes the file that the "
+      "laboratory "
+      "fills in, names pairs that no reading separates, and the instruments that would help most beside those there "
+      "are. With --before it says what a campaign will be able to tell before it is measured, and writes a better one "
+      "of the same length",
       "deflect plan haptic-6psu-ideal-joints diagnosis.json -o next.csv",
       with_figures(
           {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
@@ -273,6 +274,8 @@ Command plan_command() {
             "largest moment about an axis (default: that of the data; where they have none, the force times 20 mm)",
             &a->moment},
            {"--forces-only", "", "the rig cannot apply moments", &a->forces_only},
+           {"--max-cases", "N", "of a frame: load cases at once (default 0: any number of up to five, else two)",
+            &a->cases},
            {"--poses", "workspace|measured|FILE",
             "where: poses of the data and others in the workspace (default), those of the data, or those of a "
             "measurement file",

@@ -44,8 +44,8 @@ class CheckAsked:
                  reference_name: str) -> None: ...
 
 class PlanAsked:
-    def __init__(self, force: Optional[float], moment: Optional[float], forces_only: bool, as_measured: bool,
-                 poses: Optional[NamedText], most_poses: int, seed: int) -> None: ...
+    def __init__(self, force: Optional[float], moment: Optional[float], forces_only: bool, cases: int,
+                 as_measured: bool, poses: Optional[NamedText], most_poses: int, seed: int) -> None: ...
 
 class Subject:
     name: str
