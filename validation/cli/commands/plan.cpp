@@ -243,10 +243,9 @@ Command plan_command() {
       "readings that separate them most: pose or load case, load, sense, size, loading or unloading. To judge a "
       "reading, each effect is fitted again to what the other would read, with all tolerances free under their priors. "
       "The command says how probable the right effect will be after these readings, writes the file that the "
-      "laboratory "
-      "fills in, names pairs that no reading separates, and the instruments that would help most beside those there "
-      "are. With --before it says what a campaign will be able to tell before it is measured, and writes a better one "
-      "of the same length",
+      "laboratory fills in, names pairs that no reading separates, and the instruments that would help most beside "
+      "those there are. With --before it says what a campaign will be able to tell before it is measured, and writes a "
+      "better one of the same length",
       "deflect plan haptic-6psu-ideal-joints diagnosis.json -o next.csv",
       with_figures(
           {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
