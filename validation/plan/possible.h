@@ -23,7 +23,7 @@ struct Limits {
   /// N, Nm; absent: the largest of the data, of moments, where the data have none, the force · prediction::lever.
   std::optional<double> force, moment;
   bool forces_only = false;
-  std::size_t cases = 0;  ///< load cases of a frame at once; 0: any number
+  std::size_t cases = 0;                           ///< load cases of a frame at once; 0: any number
   Where where = Where::workspace;                  ///< or only the poses of the data
   std::optional<measurement::Measurements> poses;  ///< or those of another file
 };

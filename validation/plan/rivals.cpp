@@ -185,16 +185,21 @@ std::vector<Pair> Rivalry::pairs(const std::vector<MatrixX>& gain) const {
   std::vector<Pair> out;
   for (std::size_t a = 0; a < rivals_.size(); ++a)
     for (std::size_t b = a + 1; b < rivals_.size(); ++b) {
-      Pair p{a, b, 0, INFINITY};
-      double count = 0;
+      Pair p{a, b, 0, 0, 0, INFINITY};
+      double of_a = 0, of_b = 0;
       for (std::size_t l = 0; l < linearised_.size(); ++l)
         for (std::size_t t = 0; t < linearised_[l].origin.size(); ++t) {
           if (std::minmax(linearised_[l].fitted, linearised_[l].origin[t].truth) != std::minmax(a, b)) continue;
           const double here = std::max(0.0, gain[l](as_index(t), as_index(t)));
-          p.separation += here, count += 1;
+          if (linearised_[l].origin[t].truth == a)
+            p.if_a += here, of_a += 1;
+          else
+            p.if_b += here, of_b += 1;
           p.least = std::min(p.least, here);
         }
-      if (count > 0) p.separation /= count;
+      if (of_a > 0) p.if_a /= of_a;
+      if (of_b > 0) p.if_b /= of_b;
+      p.separation = (of_a * p.if_a + of_b * p.if_b) / std::max(1.0, of_a + of_b);
       out.push_back(p);
     }
   return out;

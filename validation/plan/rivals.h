@@ -21,7 +21,8 @@ namespace deflect::plan {
 struct Pair {
   std::size_t a = 0, b = 0;
   double separation = 0;
-  double least = 0;  ///< smallest of the draws
+  double if_a = 0, if_b = 0;  ///< where a, or b, is the truth
+  double least = 0;           ///< smallest of the draws
 };
 
 /// Coordinates of each rival's parameters, fitted to what each truth would read: by rival and truth; none of its own.

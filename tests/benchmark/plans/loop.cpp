@@ -120,7 +120,8 @@ class Loop {
     out.planned = plan.readings.readings.size();
     const Measurements after = read_after(paper, plan.readings, built, machine);
     const Measurements all = subject_.placed(measurement::joined({before, after}));
-    out.predicted = plan::expected_of(subject_, before, after, rivals, o, {threads_}).pairs.front().separation;
+    const plan::Pair expected = plan::expected_of(subject_, before, after, rivals, o, {threads_}).pairs.front();
+    out.predicted = index % 2 == 0 ? expected.if_a : expected.if_b;
     fitted(all, out.found, index % 2);
     out.right = out.found > 0;
     out.found -= out.before;
