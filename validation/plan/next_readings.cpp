@@ -97,7 +97,7 @@ struct Judged {
 };
 
 Judged judge(const subject::Subject& s, const Measurements& data, const Measurements& added,
-              const std::vector<Rival>& rivals, const PlanOptions& o, const parallel::Work& work) {
+             const std::vector<Rival>& rivals, const PlanOptions& o, const parallel::Work& work) {
   Possible whole;
   whole.all = s.placed(measurement::joined({data, added}));
   whole.taken = data.readings.size();
