@@ -1,5 +1,7 @@
 #include "validation/plan/rival.h"
 
+#include <cmath>
+
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/diagnosis/fit_problem.h"
@@ -11,7 +13,9 @@ namespace {
 constexpr double wide = 3, half_range = 1;  // prior deviation of a coordinate: of a logarithm, e³; of a linear one
 constexpr double step = 1e-5;               // of derivatives
 constexpr int most_steps = 10, halvings = 4;
-constexpr double near_enough = 0.01, share = 1e-3;  // of λ²: what a step left and what it promised
+constexpr double apart = 9;                          // λ² from which a fit is begun elsewhere too
+constexpr double far[] = {-6, -3, -1.5, 1.5, 3, 6};  // there: by so much of a coordinate
+constexpr double near_enough = 0.01, share = 1e-3;   // of λ²: what a step left and what it promised
 
 }  // namespace
 
@@ -80,14 +84,34 @@ VectorX RivalModel::target(const VectorX& y, const Linearised& here) const {
   return prospect_->white(y - here.predicted) + here.beside * (here.at - fitted_);
 }
 
-Refitted RivalModel::fitted_to(const VectorX& y, const Linearised& from, bool all) const {
+double RivalModel::left_at(const VectorX& y, const VectorX& x, const VectorX& predicted, bool all) const {
   const MatrixX none(y.size(), 0);
-  const auto left_at = [&](const VectorX& x, const VectorX& predicted) {
-    const Design rest = prospect_->design(prospect_->white(y - predicted), none, VectorX(0), all);
-    return rest.Q()(0, 0) + (x - fitted_).cwiseAbs2().cwiseQuotient(prior_).sum();
-  };
-  Linearised here = from;
-  Refitted out{here.at, left_at(here.at, here.predicted)};
+  const Design rest = prospect_->design(prospect_->white(y - predicted), none, VectorX(0), all);
+  return rest.Q()(0, 0) + (x - fitted_).cwiseAbs2().cwiseQuotient(prior_).sum();
+}
+
+Refitted RivalModel::fitted_to(const VectorX& y, const Linearised& from, bool all) const {
+  Refitted out = search(y, from, all);
+  if (out.left < apart) return out;
+  Refitted start{{}, INFINITY};
+  for (Eigen::Index i = 0; i < fitted_.size(); ++i)
+    for (const double by : far) {
+      VectorX x = fitted_;
+      x(i) += by;
+      x = within(x);
+      const auto there = outcome_of([&] { return predicted(x); });
+      if (!there || !there->allFinite()) continue;
+      if (const double left = left_at(y, x, *there, all); left < start.left) start = {x, left};
+    }
+  if (start.at.size() == 0) return out;
+  const auto begun = outcome_of([&] { return at(start.at); });
+  if (!begun) return out;
+  Refitted other = search(y, *begun, all);
+  return other.left < out.left ? other : out;
+}
+
+Refitted RivalModel::search(const VectorX& y, Linearised here, bool all) const {
+  Refitted out{here.at, left_at(y, here.at, here.predicted, all)};
   for (int steps = 0; steps < most_steps; ++steps) {
     const Design design = prospect_->design(target(y, here), here.beside, prior_, all);
     const double promised = design.Q()(0, 0), before = out.left;
@@ -99,7 +123,7 @@ Refitted RivalModel::fitted_to(const VectorX& y, const Linearised& from, bool al
       const VectorX x = within(here.at + length * whole);
       const auto there = outcome_of([&] { return predicted(x); });
       if (!there || !there->allFinite()) continue;
-      if (const double left = left_at(x, *there); left < out.left) out = {x, left};
+      if (const double left = left_at(y, x, *there, all); left < out.left) out = {x, left};
     }
     if (out.left == before || done()) break;
     auto next = outcome_of([&] { return at(out.at); });

@@ -6,7 +6,8 @@
 // prediction μ,
 //   λ² = min over z, η of |W (y − μ(x) + J d − J z − X η)|² + zᵀ Π_x⁻¹ z + ηᵀ Π⁻¹ η     (design.h)
 // gives z, the next d, and what it promises to leave; a step is halved until it leaves less than before. For a law that
-// is linear in its coordinates the first step is the last one.
+// is linear in its coordinates the first step is the last one. Where much is left, the fit begins once more far away,
+// where least is left: at x₀ a law may say too little for its derivatives to lead anywhere.
 #pragma once
 
 #include <vector>
@@ -66,6 +67,9 @@ class RivalModel {
 
  private:
   VectorX within(const VectorX& coordinates) const;
+  /// λ² of what tolerances leave at those coordinates, and their distance from the fit.
+  double left_at(const VectorX& y, const VectorX& coordinates, const VectorX& predicted, bool all) const;
+  Refitted search(const VectorX& y, Linearised from, bool all) const;
 
   const Prospect* prospect_;
   Rival rival_;
