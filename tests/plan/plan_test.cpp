@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "msa/frame/file/frame_file.h"
+#include "tests/plan/rivals_on_the_6psu.h"
 #include "tests/support/cantilever.h"
-#include "tests/support/devices.h"
-#include "tests/support/effects.h"
 #include "validation/effects/place_effects.h"
 #include "validation/measurement/joined.h"
 #include "validation/plan/foresight.h"
@@ -23,19 +22,12 @@ using measurement::Measurements;
 using test::effect;
 using test::values;
 
-const Mechanism& machine() {
-  static const Mechanism m = test::device("haptic-6psu-ideal-joints");
-  return m;
-}
-
 /// The paper's plan as the machine is predicted to read it.
 const Measurements& paper() {
   static const Measurements data =
       filled_in(machine(), prediction::campaign("paper", machine(), 50, 1), ForesightOptions(), true);
   return data;
 }
-
-Rival rival(const std::string& name, const VectorX& at) { return {{{&effect(name), {}}}, at, 0.5}; }
 
 Plan plan_of(std::vector<Rival> rivals, PlanOptions o = {}, int threads = 1) {
   o.draws = 3;

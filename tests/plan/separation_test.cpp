@@ -5,8 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "tests/support/devices.h"
-#include "tests/support/effects.h"
+#include "tests/plan/rivals_on_the_6psu.h"
 #include "validation/diagnosis/fit_problem.h"
 #include "validation/measurement/joined.h"
 #include "validation/plan/foresight.h"
@@ -18,19 +17,11 @@ namespace deflect::plan {
 namespace {
 
 using measurement::Measurements;
-using test::effect;
 using test::values;
-
-const Mechanism& machine() {
-  static const Mechanism m = test::device("haptic-6psu-ideal-joints");
-  return m;
-}
 
 Measurements as_predicted(const char* campaign) {
   return filled_in(machine(), prediction::campaign(campaign, machine(), 50, 3), ForesightOptions(), true);
 }
-
-Rival rival(const std::string& name, const VectorX& at) { return {{{&effect(name), {}}}, at, 0.5}; }
 
 /// What the machine with a rival is predicted to read, with all readings, their noise and all tolerances in one
 /// covariance.
@@ -139,6 +130,22 @@ TEST(PlanSeparation, WhereALawBendsTheRivalIsFittedToTheEnd) {
   EXPECT_NEAR(step.pairs.front().separation, (bent + back) / 2, 0.02 * (bent + back) / 2);
   const double linear = all.by_regression(play, hardening) - before.by_regression(play, hardening);
   EXPECT_GT(std::abs(linear / bent - 1), 0.1) << linear << ' ' << bent;  // else the test shows nothing
+}
+
+/// A platform that hardly yields has no derivatives that lead to one that yields as much as actuators do.
+TEST(PlanSeparation, ARivalFarFromItsFitIsFound) {
+  PlanOptions o;
+  o.draws = 1;
+  const Measurements paper = as_predicted("paper"), more = as_predicted("cycle");
+  const InOneCovariance all(measurement::joined({paper, more})), before(paper);
+  const Rival actuator = rival("actuator_compliance", values({500})),
+              platform = rival("platform_flexibility", values({3e5}));
+  const auto added = [&](const Rival& truth, const Rival& fitted) {
+    return all.by_steps(truth, fitted) - before.by_steps(truth, fitted);
+  };
+  const Pair found = expected_of(machine(), paper, more, {actuator, platform}, o).pairs.front();
+  EXPECT_NEAR(found.if_a, added(actuator, platform), 0.5 + 0.02 * found.if_a);
+  EXPECT_NEAR(found.if_b, added(platform, actuator), 0.5 + 0.02 * found.if_b);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "msa/frame/file/frame_file.h"
+#include "tests/support/bar.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "validation/effects/place_effects.h"
@@ -32,22 +32,7 @@ const Subject& machine() {
 // A bar between two posts, pushed to and fro: it rubs beside an elastic pad at its middle. σ is a hundredth of what it
 // reads, as coarse as makes the stiffness of the friction uncertain by a fifth or so.
 const Subject& rubbing_bar() {
-  static const Subject s = frame::parse_frame(R"(
-name: bar
-plane: xz
-materials: {steel: {E: 210 GPa, nu: 0.3}}
-sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
-nodes: {A: [0 m, 0 m, 0 m], B: [0.5 m, 0 m, 0 m], C: [1 m, 0 m, 0 m]}
-members:
-  left: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}
-  right: {from: B, to: C, section: bar, material: steel, y_axis: [0, 1, 0]}
-supports: {A: [ux, uz], C: [uz]}
-springs: {pad: {node: B, uz: 200 N/mm}}
-loads: {push: {nodes: {B: {fz: -400 N}}}}
-sensors: {z: {node: B, direction: uz, sigma: 6 um}, turn: {node: A, direction: ry, sigma: 0.02 mrad}}
-tolerances: {modulus: 1 %, load: 0.2 %, spring.uz.stiffness: 1 %}
-)",
-                                              "bar.yaml");
+  static const Subject s = test::bar_on_a_pad("modulus: 1 %, load: 0.2 %, spring.uz.stiffness: 1 %");
   return s;
 }
 

@@ -4,14 +4,17 @@
 
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
-#include "msa/frame/file/frame_file.h"
+#include "tests/support/bar.h"
 #include "tests/support/effects.h"
+#include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/fit_problem.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/diagnosis/signatures.h"
 #include "validation/effects/place_effects.h"
+#include "validation/report/diagnosis_results.h"
 #include "validation/subject/simulate_frame.h"
 
 namespace deflect {
@@ -25,24 +28,8 @@ using subject::Subject;
 constexpr double length = 1, load = 400, EI = 210e9 * 0.02 * 0.02 * 0.02 * 0.02 / 12;
 constexpr double way = 1e3 * load * length * length * length / (48 * EI);  // of the bar's middle without its pad, mm
 
-// A bar between two posts on an elastic pad at its middle.
 const Subject& bar() {
-  static const Subject s = frame::parse_frame(R"(
-name: bar
-plane: xz
-materials: {steel: {E: 210 GPa, nu: 0.3}}
-sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
-nodes: {A: [0 m, 0 m, 0 m], B: [0.5 m, 0 m, 0 m], C: [1 m, 0 m, 0 m]}
-members:
-  left: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}
-  right: {from: B, to: C, section: bar, material: steel, y_axis: [0, 1, 0]}
-supports: {A: [ux, uz], C: [uz]}
-springs: {pad: {node: B, uz: 200 N/mm}}
-loads: {push: {nodes: {B: {fz: -400 N}}}}
-sensors: {z: {node: B, direction: uz, sigma: 6 um}, turn: {node: A, direction: ry, sigma: 0.02 mrad}}
-tolerances: {modulus: 0.1 %, load: 0.1 %, spring.uz.stiffness: 1 %}
-)",
-                                              "bar.yaml");
+  static const Subject s = test::bar_on_a_pad("modulus: 0.1 %, load: 0.1 %, spring.uz.stiffness: 1 %");
   return s;
 }
 
@@ -120,6 +107,24 @@ TEST(LetsGo, TheIntervalOfWidePlayIsOpen) {
   EXPECT_EQ(f.limits.front().second, INFINITY);
   EXPECT_LT(f.limits.front().first, 1.001 * way);
   EXPECT_GT(f.limits.front().first, 0.97 * way);
+}
+
+// A number stands in the JSON where there is no upper limit, the parameter's bound.
+TEST(LetsGo, TheJsonSaysThatAnIntervalIsOpen) {
+  Candidate play;
+  play.hypothesis = {{&law("clearance@spring.pad.uz"), {}}};
+  play.fit.found = true;
+  play.fit.values = test::values({2 * way});
+  play.fit.limits = {{way, INFINITY}};
+  Diagnosis d;
+  d.candidates = {play};
+  const auto value = nlohmann::json::parse(report::diagnosis_json(d))["candidates"][0]["parameters"][0];
+  EXPECT_EQ(value["high95"], law("clearance@spring.pad.uz").parameters.front().high);
+  EXPECT_EQ(value["at_least"], true);
+  d.candidates.front().fit.limits = {{way, 3 * way}};
+  const auto closed = nlohmann::json::parse(report::diagnosis_json(d))["candidates"][0]["parameters"][0];
+  EXPECT_EQ(closed["high95"], 3 * way);
+  EXPECT_FALSE(closed.contains("at_least"));
 }
 
 }  // namespace
