@@ -291,7 +291,8 @@ class Rows {
 Measurements Possible::data() const {
   Measurements out = all;
   out.readings.resize(taken);
-  while (!out.poses.empty() && out.poses.back().readings.front() >= taken) out.poses.pop_back();
+  for (measurement::PoseGroup& p : out.poses) std::erase_if(p.readings, [&](std::size_t i) { return i >= taken; });
+  while (!out.poses.empty() && out.poses.back().readings.empty()) out.poses.pop_back();
   return out;
 }
 

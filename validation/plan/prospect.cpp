@@ -44,6 +44,8 @@ std::vector<double> sigma_of(const std::vector<MeasuredValue>& values, Eigen::In
   return out;
 }
 
+constexpr double gross = 6;  // standard deviations of noise and tolerances
+
 /// (1 + O Oᵀ)^(−1/2) = 1 − O less Oᵀ (whitening.h).
 MatrixX less_of(const MatrixX& O) {
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(O.transpose() * O);
@@ -69,17 +71,19 @@ Prospect::Prospect(const subject::Subject& s, Possible p, const Noise& noise, co
   uncertainty_.emplace(model.A, values_, sigma_of(values_, known_, all, noise),
                        standing_->predict(all, linear, work.quiet()), s.load_tolerance());
   tolerances_ = white(model.A.shared);
-  if (possible_.sequences) {
-    const auto alone = [&](Measurements m) {
-      std::shared_ptr<const subject::Standing> standing = s.stand(m);
-      return Alone{std::move(m), std::move(standing)};
-    };
-    data_ = alone(possible_.data());
+  const auto alone = [&](Measurements m) {
+    std::shared_ptr<const subject::Standing> standing = s.stand(m);
+    return Alone{std::move(m), std::move(standing)};
+  };
+  if (possible_.taken > 0) data_ = alone(possible_.data());
+  if (possible_.sequences)
     for (const Block& b : possible_.blocks) alone_.push_back(alone(measurement::one_pose(all, b.pose)));
-  }
   own_.resize(all.poses.size());
   for (statistics::GroupColumns& g : uncertainty_->whitening()->groups_by_noise())
     own_[all.readings[nth(values_, g.rows.front()).reading].pose] = std::move(g);
+  taken_ = tolerances_.topRows(known_);
+  eliminate_errors_of_poses(taken_);
+  information_.compute(MatrixX::Identity(taken_.cols(), taken_.cols()) + taken_.transpose() * taken_);
 }
 
 VectorX Prospect::predicted(const subject::Subject& s) const {
@@ -95,20 +99,65 @@ VectorX Prospect::predicted(const subject::Subject& s) const {
         s.stand(each.readings, each.standing.get())->predict(each.readings, o, parallel::alone);
     out.insert(out.end(), read.begin(), read.end());
   };
-  add(*data_);  // the blocks follow it in the order of their readings
+  add(data_);  // the blocks follow it in the order of their readings
   for (const Alone& block : alone_) add(block);
   return statistics::rows_of(values_, out);
+}
+
+VectorX Prospect::predicted_of_taken(const subject::Subject& s) const {
+  if (known_ == 0) return {};
+  prediction::PredictionOptions o;
+  o.geometry = Geometry::linear;
+  const std::shared_ptr<const subject::Standing> standing = s.stand(data_.readings, data_.standing.get());
+  const std::vector<MeasuredValue> values(values_.begin(), values_.begin() + known_);
+  return statistics::rows_of(values, standing->predict(data_.readings, o, parallel::alone));
+}
+
+void Prospect::eliminate_errors_of_poses(MatrixX& X) const {
+  for (const statistics::GroupColumns& g : own_) {
+    if (g.rows.empty() || g.rows.back() >= X.rows() || g.columns.cols() == 0) continue;
+    const MatrixX part = X(g.rows, Eigen::all);
+    X(g.rows, Eigen::all) = part - g.columns * (less_of(g.columns) * (g.columns.transpose() * part));
+  }
+}
+
+VectorX Prospect::white_of_taken(const VectorX& change) const {
+  VectorX whole = VectorX::Zero(numbers());
+  whole.head(known_) = change;
+  return white(whole).col(0).head(known_);
+}
+
+VectorX Prospect::off_taken(const subject::Subject& s) const {
+  if (known_ == 0) return {};
+  prediction::PredictionOptions o;
+  o.geometry = s.true_geometry();
+  const std::vector<VectorX> read =
+      s.stand(data_.readings, data_.standing.get())->predict(data_.readings, o, parallel::alone);
+  const std::vector<MeasuredValue> values(values_.begin(), values_.begin() + known_);
+  VectorX y(known_);
+  for (Eigen::Index i = 0; i < known_; ++i) y(i) = nth(values, i).value;
+  VectorX out = white_of_taken(y - statistics::rows_of(values, read));
+  Eigen::ArrayXd variance = 1 + tolerances_.topRows(known_).rowwise().squaredNorm().array();
+  for (const statistics::GroupColumns& g : own_)
+    for (std::size_t k = 0; k < g.rows.size() && g.columns.cols() > 0; ++k)
+      if (g.rows[k] < known_) variance(g.rows[k]) += g.columns.row(as_index(k)).squaredNorm();
+  return (out.array().square() > gross * gross * variance).select(0, out);
+}
+
+VectorX Prospect::left_of_taken(const VectorX& white) const {
+  MatrixX e = white;
+  eliminate_errors_of_poses(e);
+  const VectorX eta = information_.solve(taken_.transpose() * e);
+  VectorX out(known_ + eta.size());
+  out << e - taken_ * eta, eta;
+  return out;
 }
 
 Design Prospect::design(const MatrixX& targets, const MatrixX& beside, const VectorX& prior, bool all) const {
   const Eigen::Index k = tolerances_.cols() + beside.cols(), n = all ? numbers() : known_;
   MatrixX X(n, k + targets.cols());
   X << tolerances_.topRows(n), beside.topRows(n), targets.topRows(n);
-  for (const statistics::GroupColumns& g : own_) {  // errors of each pose are eliminated
-    if (g.rows.empty() || g.rows.back() >= n || g.columns.cols() == 0) continue;
-    const MatrixX part = X(g.rows, Eigen::all);
-    X(g.rows, Eigen::all) = part - g.columns * (less_of(g.columns) * (g.columns.transpose() * part));
-  }
+  eliminate_errors_of_poses(X);
   const MatrixX M = X.transpose() * X;
   MatrixX information = M.topLeftCorner(k, k);
   information.diagonal().head(tolerances_.cols()).array() += 1;

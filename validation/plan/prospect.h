@@ -1,6 +1,7 @@
 // The readings that were taken and those that could be, as rows over nuisances: what a plan is computed from.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <functional>
 #include <optional>
 
@@ -30,6 +31,8 @@ class Prospect {
   /// What a subject is predicted to read, in linear geometry, by measured number. In a plan of sequences every block is
   /// predicted from a machine at rest.
   VectorX predicted(const subject::Subject&) const;
+  /// The first known() of them.
+  VectorX predicted_of_taken(const subject::Subject&) const;
 
   /// X divided by the noise of readings, which includes the error of their loads.
   MatrixX white(const MatrixX& X) const { return uncertainty_->whitening()->by_noise(X); }
@@ -40,10 +43,19 @@ class Prospect {
   /// A design that has the readings taken, or every reading there is: targets and nuisances beside the tolerances
   /// (columns, whitened), `prior`: variances of these.
   Design design(const MatrixX& targets, const MatrixX& beside, const VectorX& prior, bool all = false) const;
+  /// A change of the readings taken (SI), whitened by noise; what they read beyond the prediction of a subject in the
+  /// geometry it really has, likewise, 0 where that is a gross error; and what tolerances leave of either with the
+  /// tolerances that are strained for it, the sum of whose squares is λ².
+  VectorX white_of_taken(const VectorX& change) const;
+  VectorX off_taken(const subject::Subject&) const;
+  VectorX left_of_taken(const VectorX& white) const;
   /// The rows of a block for such a design.
   WhiteRows rows(std::size_t block, const MatrixX& targets, const MatrixX& beside) const;
 
  private:
+  /// (1 + O Oᵀ)^(−1/2) of rows that hold those of whole poses, of the readings taken or of all.
+  void eliminate_errors_of_poses(MatrixX&) const;
+
   Possible possible_;
   std::shared_ptr<const subject::Standing> standing_;
   std::vector<measurement::MeasuredValue> values_;
@@ -57,8 +69,10 @@ class Prospect {
     measurement::Measurements readings;
     std::shared_ptr<const subject::Standing> standing;
   };
-  std::optional<Alone> data_;  // in a plan of sequences
-  std::vector<Alone> alone_;   // its blocks
+  Alone data_;
+  std::vector<Alone> alone_;  // the blocks of a plan of sequences
+  MatrixX taken_;             // tolerances in the readings taken, less the errors of each pose
+  Eigen::LLT<MatrixX> information_;
 };
 
 }  // namespace deflect::plan

@@ -10,6 +10,7 @@
 // where least is left: at x₀ a law may say too little for its derivatives to lead anywhere.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "validation/diagnosis/found_effects.h"
@@ -62,11 +63,19 @@ class RivalModel {
   /// The change of readings to `y` that it must absorb about `here`, whitened: W (y − μ(x)) + J d.
   VectorX target(const VectorX& y, const Linearised& here) const;
 
-  /// Variances of the coordinates before any reading.
+  /// Variances of the coordinates before any reading, and their covariance after those taken, by its derivatives.
   const VectorX& prior() const { return prior_; }
+  MatrixX covariance(const Linearised& fit) const;
+
+  /// The nearest coordinates within the bounds.
+  VectorX within(const VectorX& coordinates) const;
+  /// What the readings taken read beyond the fit (Prospect::off_taken()); throws what the prediction throws. And what
+  /// tolerances leave of them at other coordinates (Prospect::left_of_taken()): linear geometry and what the true one
+  /// adds at the fit. Nothing beyond a bound and where the prediction fails.
+  VectorX off_at_fit() const;
+  std::optional<VectorX> residual_of_taken(const VectorX& coordinates, const VectorX& off_at_fit) const;
 
  private:
-  VectorX within(const VectorX& coordinates) const;
   /// λ² of what tolerances leave at those coordinates, and their distance from the fit.
   double left_at(const VectorX& y, const VectorX& coordinates, const VectorX& predicted, bool all) const;
   Refitted search(const VectorX& y, Linearised from, bool all) const;
@@ -74,7 +83,7 @@ class RivalModel {
   const Prospect* prospect_;
   Rival rival_;
   effects::PreparedEffects prepared_;
-  VectorX fitted_, prior_;
+  VectorX fitted_, prior_, taken_at_fit_;
 };
 
 }  // namespace deflect::plan

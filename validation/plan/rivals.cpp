@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,6 +11,7 @@
 #include "msa/base/outcome.h"
 #include "validation/measurement/random.h"
 #include "validation/parallel/cases.h"
+#include "validation/plan/posterior.h"
 
 namespace deflect::plan {
 namespace {
@@ -53,49 +53,27 @@ std::vector<Linearised> all_at_fit(const std::vector<RivalModel>& models, const 
   return out;
 }
 
-/// A root of the covariance of the coordinates, given the readings taken.
-MatrixX root_of_covariance(const Prospect& prospect, const RivalModel& model, const Linearised& fit) {
-  const MatrixX none(fit.predicted.size(), 0);
-  const MatrixX P = prospect.design(none, fit.beside, model.prior()).covariance();
-  const Eigen::Index own = fit.at.size();
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(P.bottomRightCorner(own, own));
-  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-}
-
-/// Standard normal coordinates (rows) of so many draws, the first of them zero. Each has the mean 0 and the mean square
-/// 1 over all draws, so that the mean of what is quadratic in one coordinate is exact; with two draws or one they are
-/// zero.
-MatrixX standardised(Eigen::Index coordinates, std::size_t draws, measurement::Random& random) {
-  MatrixX out = MatrixX::Zero(coordinates, as_index(draws));
-  for (Eigen::Index k = 1; k < out.cols(); ++k)
-    for (Eigen::Index i = 0; i < coordinates; ++i) out(i, k) = random.normal();
-  if (draws < 3) return MatrixX::Zero(coordinates, as_index(draws));
-  for (Eigen::Index i = 0; i < coordinates; ++i) {
-    auto drawn = out.row(i).tail(out.cols() - 1);
-    drawn.array() -= drawn.mean();
-    drawn *= std::sqrt(static_cast<double>(draws)) / drawn.norm();
-  }
-  return out;
-}
-
-/// By rival, its predictions with `draws` values of its parameters, the fit itself first; nothing where one fails.
-std::vector<std::vector<std::optional<VectorX>>> drawn_predictions(const Prospect& prospect,
-                                                                   const std::vector<RivalModel>& models,
+/// By rival, its predictions with `draws` values of its parameters (draws_of(); fewer than three: the fit itself);
+/// nothing where one fails.
+std::vector<std::vector<std::optional<VectorX>>> drawn_predictions(const std::vector<RivalModel>& models,
                                                                    const std::vector<Linearised>& fits,
                                                                    std::size_t draws, std::uint64_t seed, int threads) {
-  std::vector<MatrixX> lots;
-  measurement::Random random(seed);
-  for (std::size_t r = 0; r < fits.size(); ++r)
-    lots.push_back(root_of_covariance(prospect, models[r], fits[r]) * standardised(fits[r].at.size(), draws, random));
+  std::vector<MatrixX> drawn(fits.size());
+  parallel::for_each_case(fits.size(), 1, threads, [&](std::size_t r) {
+    measurement::Random random(seed + r);
+    drawn[r] = draws < 3 ? MatrixX(fits[r].at.replicate(1, as_index(draws)))
+                         : draws_of(models[r], fits[r], as_index(draws), random);
+  });
   std::vector<std::vector<std::optional<VectorX>>> out(fits.size(), std::vector<std::optional<VectorX>>(draws));
   parallel::for_each_case(fits.size() * draws, 1, threads, [&](std::size_t i) {
     const std::size_t r = i / draws;
     std::optional<VectorX>& one = out[r][i % draws];
-    if (i % draws == 0) {
+    const VectorX x = drawn[r].col(as_index(i % draws));
+    if (x == fits[r].at) {
       one = fits[r].predicted;
       return;
     }
-    auto predicted = outcome_of([&] { return models[r].predicted(fits[r].at + lots[r].col(as_index(i % draws))); });
+    auto predicted = outcome_of([&] { return models[r].predicted(x); });
     if (predicted && predicted->allFinite()) one = std::move(*predicted.value);
   });
   return out;
@@ -109,7 +87,7 @@ Rivalry::Rivalry(const Prospect& prospect, const subject::Subject& s, std::vecto
   for (const Rival& r : rivals_) models_.emplace_back(*prospect_, s, r);
   fits_ = all_at_fit(models_, rivals_, work.threads);
   if (work.progress) work.progress(0.3);
-  predicted_ = drawn_predictions(*prospect_, models_, fits_, as_size(std::max(1, draws)), seed, work.threads);
+  predicted_ = drawn_predictions(models_, fits_, as_size(std::max(1, draws)), seed, work.threads);
   for (std::size_t b = 0; b < rivals_.size(); ++b) linearised_.push_back(linearisation(b, fits_[b], others(b)));
 }
 

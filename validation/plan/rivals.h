@@ -30,15 +30,14 @@ using FitsToTruths = std::vector<std::vector<VectorX>>;
 
 struct Refits {
   std::vector<MatrixX> gain;
-  FitsToTruths at;  ///< to all readings, with the truth at its fit
+  FitsToTruths at;  ///< to all readings, with the truth at its first draw
 };
 
 /// All rivals against each other.
 class Rivalry {
  public:
-  /// `draws`: of each rival's parameters, the fit itself first, three at least or none is drawn; all together they have
-  /// the mean of the fit and the mean square of what the readings taken leave open. Rivals whose prediction fails are
-  /// an InputError with the reason; a draw that fails is left out.
+  /// `draws`: of each rival's parameters (posterior.h), three at least or the fit itself. Rivals whose prediction fails
+  /// are an InputError with the reason; a draw that fails is left out.
   Rivalry(const Prospect&, const subject::Subject&, std::vector<Rival>, int draws, std::uint64_t seed,
           const parallel::Work&);
 

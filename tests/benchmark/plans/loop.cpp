@@ -16,6 +16,7 @@
 #include "validation/effects/effect_file.h"
 #include "validation/effects/place_effects.h"
 #include "validation/measurement/joined.h"
+#include "validation/measurement/random.h"
 #include "validation/plan/next_readings.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
@@ -54,12 +55,16 @@ Measurements read(const subject::Subject& s, const Measurements& plan, std::uint
   return prediction::simulate(*s.machine(), plan, o, parallel::alone);
 }
 
-/// Values at which the effect is `times` as large as at its start.
-VectorX values_at(const effects::Effect& e, double times) {
+/// Values at which the effect is `times` as large as at its start; parameters that do not say how large it is, as at
+/// which displacement a spring hardens, are drawn by lot within their bounds, as a plan takes them to be.
+VectorX values_at(const effects::Effect& e, double times, std::uint64_t seed) {
   VectorX out = effects::start_values(e);
+  measurement::Random random(seed);
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
     const effects::EffectParameter& p = e.parameters[i];
     double& value = out(as_index(i));
+    const double lot = random.uniform(0, 1);
+    if (!p.vanishes) value = p.log ? p.low * std::pow(p.high / p.low, lot) : p.low + lot * (p.high - p.low);
     if (p.vanishes) value = std::isinf(*p.vanishes) ? p.start / times : *p.vanishes + times * (p.start - *p.vanishes);
     value = std::clamp(value, p.low, p.high);
   }
@@ -67,15 +72,15 @@ VectorX values_at(const effects::Effect& e, double times) {
 }
 
 /// Values at which it is as large as λ on those readings.
-VectorX sized(const diagnosis::Observations& o, const effects::PlacedEffect& e, double lambda) {
+VectorX sized(const diagnosis::Observations& o, const effects::PlacedEffect& e, double lambda, std::uint64_t seed) {
   double x = 0;
   for (int tries = 0; tries < 30; ++tries) {
-    const subject::Subject with = effects::with_effect(o.subject(), {e, values_at(*e.effect, std::exp(x))});
+    const subject::Subject with = effects::with_effect(o.subject(), {e, values_at(*e.effect, std::exp(x), seed)});
     const double here = (o.whitened_residual(with) - o.null_residual()).norm();
     if (std::abs(here / lambda - 1) < 0.02) break;
     x += std::clamp(std::log(lambda / std::max(here, 1e-9)), -2.0, 2.0) * 0.8;
   }
-  return values_at(*e.effect, std::exp(x));
+  return values_at(*e.effect, std::exp(x), seed);
 }
 
 class Loop {
@@ -97,7 +102,8 @@ class Loop {
     recorded.as_recorded = true;
     const Measurements as_drawn = read(subject_, paper, machine, machine + 1);
     const diagnosis::Observations healthy(subject_, as_drawn, recorded, parallel::alone);
-    const subject::Subject built = effects::with_effect(subject_, {truth, sized(healthy, truth, tied_.lambda)});
+    const subject::Subject built =
+        effects::with_effect(subject_, {truth, sized(healthy, truth, tied_.lambda, machine)});
     const Measurements before = read(built, paper, machine, machine + 2);
     std::vector<plan::Rival> rivals = fitted(before, out.before, index % 2);
     if (rivals.size() < 2) {
