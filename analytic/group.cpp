@@ -268,8 +268,8 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   double least = load > 0 ? load : 1;
   double change = std::numeric_limits<double>::infinity(), size_of_forces = 0;
   double held = 0;  // what free deflections would bring, were the far body to stay
-  const bool straight = linear();
   const std::shared_ptr<const Straight> known = R.cols() > 0 ? factorised(c) : nullptr;
+  const bool straight = known || linear();
   while (!s.converged && s.iterations < 100) {
     ++s.iterations;
     const NewtonStep step = newton_step(F, s, least, c, known.get(), size_of_forces);
@@ -280,7 +280,7 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
     for (const Vector6& each : step.more) change = std::max(change, weighed(each, length).norm());
     // A contact that a misfit strains may be thrown to and fro across its rest, where it is soft: shorter steps end
     // that.
-    const double part = s.iterations > 5 ? share_of_step(s.wrenches, step.more, least, c) : 1;
+    const double part = s.iterations > 5 && !known ? share_of_step(s.wrenches, step.more, least, c) : 1;
     s.t += part * step.moved;
     for (std::size_t i = 0; i < branches.size(); ++i) {
       s.wrenches[i] += part * step.more[i];
