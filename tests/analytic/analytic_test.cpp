@@ -43,6 +43,20 @@ TEST(Member, AsPrintedDiffersWhereThePaperErrs) {
   EXPECT_NEAR(K(1, 5) / (-6e-3 * m.E * m.section.Iz / pow(L, 3)), 1, 1e-12);  // N/mm read as N
   EXPECT_NEAR(K(4, 4) / (6 * m.E * m.section.Iy / L), 1, 1e-12);
   EXPECT_GT(std::abs(K(1, 5) - K(5, 1)), 0.1 * std::abs(K(1, 5)));
+  // What the paper prints without error is left: (35), and (41) with the link along z.
+  const double E = m.E, EIy = E * m.section.Iy, EIz = E * m.section.Iz;
+  EXPECT_NEAR(K(5, 1) / (-6 * EIz / (L * L)), 1, 1e-12);
+  EXPECT_NEAR(K(2, 4) / (6 * EIy / (L * L)), 1, 1e-12);
+  EXPECT_NEAR(K(4, 2) / (6 * EIy / (L * L)), 1, 1e-12);
+  EXPECT_NEAR(K(2, 2) / (12 * EIy / pow(L, 3)), 1, 1e-12);
+  const Matrix6 link = tip_compliance_link_as_printed(m).inverse();
+  EXPECT_NEAR(link(0, 4) / (-6 * EIy / (L * L)), 1, 1e-12);
+  EXPECT_NEAR(link(4, 0) / (-6 * EIy / (L * L)), 1, 1e-12);
+  EXPECT_NEAR(link(1, 3) / (6 * EIy / (L * L)), 1, 1e-12);
+  EXPECT_NEAR(link(3, 1) / (6 * EIy / (L * L)), 1, 1e-12);
+  EXPECT_NEAR(link(2, 2) / (1e6 * m.section.A / L), 1, 1e-12);   // A/L of (41) in mm, read as N/mm
+  EXPECT_NEAR(link(3, 3) / (4e6 * m.section.Iy / L), 1, 1e-12);  // 4 I/L of (41) in mm, read as Nmm
+  EXPECT_NEAR(link(4, 4) / (4 * EIy / L), 1, 1e-12);
   PlacedMember vertical = m;
   vertical.p_W_end = vertical.p_W_start + Vector3(0, 0, 0.1);
   EXPECT_THROW(link_axes_as_printed(vertical), ModelError);
