@@ -1,0 +1,66 @@
+// Friction that still holds at the next pose what it held at the last one: from the readings alone, by the compliance
+// of the machine without friction and the geometry of its legs.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "analytic/model.h"
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+#include "validation/effects/with_effect.h"
+#include "validation/measurement/configure_all.h"
+#include "validation/prediction/prediction.h"
+
+namespace deflect {
+namespace {
+
+/// The machine without the frictions beside its legs.
+analytic::AnalyticModel without_friction(Configuration c) {
+  std::erase_if(c.legs, [](const PlacedLeg& leg) { return leg.beside; });
+  return analytic::AnalyticModel(c);
+}
+
+/// The wrench at T, by leg, of one newton of friction along it.
+Matrix6 along_the_legs(const Configuration& c) {
+  Matrix6 out;
+  Eigen::Index next = 0;
+  for (const PlacedLeg& leg : c.legs)
+    if (leg.beside)
+      for (const PlacedPart& part : leg.parts)
+        if (const auto* joint = std::get_if<PlacedJoint>(&part)) {
+          const Vector3 axis = joint->R_WJ.col(2);
+          out.col(next++) << axis, (joint->p_W - c.pose.p_WT).cross(axis);
+        }
+  EXPECT_EQ(next, 6);
+  return out;
+}
+
+TEST(KeptFriction, HoldsAtTheNextPoseItsShareOfWhatItHeld) {
+  for (const double kept : {1.0, 0.4, 0.0}) {
+    const Mechanism m = effects::with_effect(test::device("haptic-6psu-ideal-joints"),
+                                             {{&test::effect("joint_friction"), {}}, test::values({0.3, 1e4, kept})});
+    const measurement::Measurements data = measurement::parse_measurements(
+        "pose,sequence,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,fx_N,fy_N,fz_N,ux_mm,uy_mm,uz_mm\n"
+        "a,0,10,5,190,4,-3,6,20,-10,50,0,0,0\n"
+        "a,1,10,5,190,4,-3,6,0,0,0,0,0,0\n"
+        "b,2,-15,20,200,-2,5,1,0,0,0,0,0,0\n",
+        "data.csv");
+    const std::vector<Configuration> c = measurement::configure_all(m, data);
+    for (const char* theory : {"analytic", "msa"}) {
+      prediction::PredictionOptions o;
+      o.theory = &theories::theory(theory);
+      o.geometry = Geometry::linear;
+      const std::vector<VectorX> read = prediction::predict(m, c, data, o);
+      const analytic::AnalyticModel first = without_friction(c.front()), second = without_friction(c.back());
+      const Matrix6 C = first.compliance(first.solve(Vector6::Zero()));
+      const Vector6 held =
+          -along_the_legs(c.front()).fullPivLu().solve(C.fullPivLu().solve(Vector6(read[1].head<6>())));
+      EXPECT_GT(held.cwiseAbs().minCoeff(), 0.05) << "the test shows nothing";
+      const Vector6 expected = second.solve(-kept * along_the_legs(c.back()) * held).displacement;
+      EXPECT_LE((read[2].head<6>() - expected).norm(), 1e-8 * read[1].norm()) << theory << ", kept " << kept;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace deflect
