@@ -49,13 +49,11 @@ std::vector<double> shared_priors(const std::vector<Signature>& all, const std::
   return weight;
 }
 
-/// What is sure to be less likely than the best by this logarithm is not fitted.
-constexpr double far_behind = 6;
+constexpr double far_behind = 6;  // what is sure to be less likely than the best by this logarithm is not fitted
 /// Fits that are begun together: first one, then twice as many each time, up to this. The next ones are compared with
 /// the best of these, so that one that explains nearly all spares most others. The numbers do not depend on the
 /// threads, so that the answer does not.
 constexpr std::size_t at_once = 8;
-
 constexpr double certain = 1e9;
 
 /// Fits those signatures that can still come near the best, which promise the most first. `promise` returns the most
@@ -364,24 +362,28 @@ std::optional<TwoCandidates> Candidates::two_beside(const Observations& o, const
     h.push_back(signatures_[i].effect);
     return TwoCandidates{h, fit(o, h, fitted_so_far.values, guess(signatures_[i], fitted_so_far.residual))};
   };
-  std::vector<TwoCandidates> all(promising.size());
+  std::map<std::size_t, TwoCandidates> alone;  // the first ones of pairs, each fitted once
+  for (const PairOfSignatures& p : promising) alone[p.first];
+  parallel::for_each_case(alone.size(), 1, threads_, [&](std::size_t k) {
+    auto& [first, fitted_alone] = *std::next(alone.begin(), as_index(k));
+    fitted_alone = together(before, so_far, first);
+  });
+  std::vector<TwoCandidates> all(promising.size(), {{}, {}, out_of_question});
   parallel::for_each_case(promising.size(), 1, threads_, [&](std::size_t k) {
     const auto [first, second, gain_of_first, gain] = promising[k];
-    all[k].log_odds = out_of_question;
-    const TwoCandidates alone = together(before, so_far, first), other = together(before, so_far, second);
-    if (!alone.fit.found || !other.fit.found) return;
-    TwoCandidates both = together(alone.hypothesis, alone.fit, second);
+    const TwoCandidates& one = alone.at(first);
+    if (!one.fit.found) return;
+    TwoCandidates both = together(one.hypothesis, one.fit, second);
     if (!both.fit.found || wants_more_than_there_can_be(both.hypothesis, both.fit)) return;
-    const double chi2 = both.fit.chi2, of_second = of_class(second, std::max(0.0, alone.fit.chi2 - chi2)),
-                 of_first = of_class(first, std::max(0.0, other.fit.chi2 - chi2));
-    if (of_first < each || of_second < each) return;
-    both.log_odds = of_class(first, std::max(0.0, so_far.chi2 - alone.fit.chi2)) + of_second;
+    const double of_second = of_class(second, std::max(0.0, one.fit.chi2 - both.fit.chi2));
+    both.log_odds = of_class(first, std::max(0.0, so_far.chi2 - one.fit.chi2)) + of_second;
+    if (of_second < each || !(both.log_odds > least)) return;
+    const TwoCandidates other = together(before, so_far, second);
+    if (!other.fit.found || of_class(first, std::max(0.0, other.fit.chi2 - both.fit.chi2)) < each) return;
     all[k] = std::move(both);
   });
-  const auto best = std::max_element(
-      all.begin(), all.end(), [](const TwoCandidates& a, const TwoCandidates& b) { return a.log_odds < b.log_odds; });
-  if (best == all.end() || !(best->log_odds > least)) return std::nullopt;
-  return std::move(*best);
+  const auto best = std::ranges::max_element(all, {}, &TwoCandidates::log_odds);
+  return best == all.end() || best->log_odds <= least ? std::nullopt : std::optional(std::move(*best));
 }
 
 void add_left_out(std::vector<LeftOut>& noted, const std::vector<Candidate>& all) {
