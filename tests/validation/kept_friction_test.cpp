@@ -41,7 +41,7 @@ TEST(KeptFriction, HoldsAtTheNextPoseItsShareOfWhatItHeld) {
                                              {{&test::effect("joint_friction"), {}}, test::values({0.3, 1e4, kept})});
     const measurement::Measurements data = measurement::parse_measurements(
         "pose,sequence,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,fx_N,fy_N,fz_N,ux_mm,uy_mm,uz_mm\n"
-        "a,0,10,5,190,4,-3,6,20,-10,50,0,0,0\n"
+        "a,0,10,5,190,4,-3,6,2,-1,5,0,0,0\n"
         "a,1,10,5,190,4,-3,6,0,0,0,0,0,0\n"
         "b,2,-15,20,200,-2,5,1,0,0,0,0,0,0\n",
         "data.csv");
@@ -55,7 +55,8 @@ TEST(KeptFriction, HoldsAtTheNextPoseItsShareOfWhatItHeld) {
       const Matrix6 C = first.compliance(first.solve(Vector6::Zero()));
       const Vector6 held =
           -along_the_legs(c.front()).fullPivLu().solve(C.fullPivLu().solve(Vector6(read[1].head<6>())));
-      EXPECT_GT(held.cwiseAbs().minCoeff(), 0.05) << "the test shows nothing";
+      const Eigen::Array<double, 6, 1> size = held.cwiseAbs().array();
+      EXPECT_TRUE((size > 0.299).any() && ((size > 0.05) && (size < 0.29)).any()) << "slips here, sticks there";
       const Vector6 expected = second.solve(-kept * along_the_legs(c.back()) * held).displacement;
       EXPECT_LE((read[2].head<6>() - expected).norm(), 1e-8 * read[1].norm()) << theory << ", kept " << kept;
     }
