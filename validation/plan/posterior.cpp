@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 
 namespace deflect::plan {
 namespace {
@@ -45,13 +46,13 @@ struct Point {
 
 class Valley {
  public:
-  Valley(const RivalModel& model, const VectorX& fit)
-      : model_(model), off_(model.off_at_fit()), fit_(with_slope(fit)) {}
+  Valley(const RivalModel& model, const VectorX& fit, VectorX taken)
+      : model_(model), taken_(std::move(taken)), fit_(with_slope(fit)) {}
 
   const Point& fit() const { return fit_; }
 
   double left(const VectorX& x) const {
-    const std::optional<VectorX> r = model_.residual_of_taken(x, off_);
+    const std::optional<VectorX> r = model_.residual_of_taken(x, taken_);
     return r ? r->squaredNorm() : INFINITY;
   }
 
@@ -89,13 +90,13 @@ class Valley {
  private:
   Point with_slope(const VectorX& x) const {
     Point out{x, {}, INFINITY, {}};
-    const std::optional<VectorX> r = model_.residual_of_taken(x, off_);
+    const std::optional<VectorX> r = model_.residual_of_taken(x, taken_);
     if (!r) return out;
     out.r = *r, out.left = r->squaredNorm();
     out.J = MatrixX::Zero(r->size(), x.size());
     for (Eigen::Index i = 0; i < x.size(); ++i)
       for (const double by : {derivative, -derivative}) {
-        const auto moved = model_.residual_of_taken(x + by * VectorX::Unit(x.size(), i), off_);
+        const auto moved = model_.residual_of_taken(x + by * VectorX::Unit(x.size(), i), taken_);
         if (!moved) continue;
         out.J.col(i) = (*moved - *r) / by;
         break;
@@ -128,7 +129,7 @@ class Valley {
   }
 
   const RivalModel& model_;
-  VectorX off_;
+  VectorX taken_;
   Point fit_;
 };
 
@@ -202,9 +203,11 @@ MatrixX draws_of(const RivalModel& model, const Linearised& fit, Eigen::Index dr
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(P);
   const MatrixX root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
   MatrixX out = fit.at.replicate(1, draws);
-  const Valley valley(model, fit.at);
-  if (!std::isfinite(valley.fit().left) || valley.is_parabola(root))
-    return out + root * standardised(fit.at.size(), draws, random);
+  const auto normal = [&]() -> MatrixX { return out + root * standardised(fit.at.size(), draws, random); };
+  auto taken = outcome_of([&] { return model.taken_as_linear(); });
+  if (!taken) return normal();
+  const Valley valley(model, fit.at, std::move(*taken.value));
+  if (!std::isfinite(valley.fit().left) || valley.is_parabola(root)) return normal();
   std::vector<Point> points = {valley.fit()};
   for (Eigen::Index i = 0; i < fit.at.size(); ++i)
     for (const double sense : {1.0, -1.0})

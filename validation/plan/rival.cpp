@@ -47,8 +47,7 @@ RivalModel::RivalModel(const Prospect& prospect, const subject::Subject& s, Riva
       rival_(std::move(rival)),
       prepared_(s, rival_.hypothesis),
       fitted_(diagnosis::coordinates_of(rival_.hypothesis, rival_.values)),
-      prior_(fitted_.size()),
-      taken_at_fit_(prospect.predicted_of_taken(prepared_(rival_.values))) {
+      prior_(fitted_.size()) {
   const auto parameters = diagnosis::parameters_of(rival_.hypothesis);
   for (Eigen::Index i = 0; i < prior_.size(); ++i) {
     const double deviation = nth(parameters, i)->log ? wide : half_range;
@@ -86,15 +85,18 @@ MatrixX RivalModel::covariance(const Linearised& fit) const {
   return prospect_->design(none, fit.beside, prior_).covariance().bottomRightCorner(fit.at.size(), fit.at.size());
 }
 
-VectorX RivalModel::off_at_fit() const { return prospect_->off_taken(prepared_(rival_.values)); }
+VectorX RivalModel::taken_as_linear() const {
+  const subject::Subject fitted = prepared_(rival_.values);
+  return prospect_->off_taken(fitted) + prospect_->white_of_taken(prospect_->predicted_of_taken(fitted));
+}
 
-std::optional<VectorX> RivalModel::residual_of_taken(const VectorX& x, const VectorX& off_at_fit) const {
+std::optional<VectorX> RivalModel::residual_of_taken(const VectorX& x, const VectorX& taken_as_linear) const {
   constexpr double rounding = 1e-9;
   if ((within(x) - x).cwiseAbs().maxCoeff() > rounding) return std::nullopt;
   const auto there =
       outcome_of([&] { return prospect_->predicted_of_taken(prepared_(diagnosis::values_at(rival_.hypothesis, x))); });
   if (!there || !there->allFinite()) return std::nullopt;
-  return prospect_->left_of_taken(off_at_fit - prospect_->white_of_taken(*there - taken_at_fit_));
+  return prospect_->left_of_taken(taken_as_linear - prospect_->white_of_taken(*there));
 }
 
 VectorX RivalModel::target(const VectorX& y, const Linearised& here) const {

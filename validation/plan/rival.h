@@ -69,11 +69,11 @@ class RivalModel {
 
   /// The nearest coordinates within the bounds.
   VectorX within(const VectorX& coordinates) const;
-  /// What the readings taken read beyond the fit (Prospect::off_taken()); throws what the prediction throws. And what
-  /// tolerances leave of them at other coordinates (Prospect::left_of_taken()): linear geometry and what the true one
-  /// adds at the fit. Nothing beyond a bound and where the prediction fails.
-  VectorX off_at_fit() const;
-  std::optional<VectorX> residual_of_taken(const VectorX& coordinates, const VectorX& off_at_fit) const;
+  /// The readings taken without what their true geometry adds at the fit, and without gross errors
+  /// (Prospect::off_taken()), whitened; throws what the prediction throws. And what tolerances leave of these at some
+  /// coordinates (Prospect::left_of_taken()); nothing beyond a bound and where the prediction fails.
+  VectorX taken_as_linear() const;
+  std::optional<VectorX> residual_of_taken(const VectorX& coordinates, const VectorX& taken_as_linear) const;
 
  private:
   /// λ² of what tolerances leave at those coordinates, and their distance from the fit.
@@ -83,7 +83,7 @@ class RivalModel {
   const Prospect* prospect_;
   Rival rival_;
   effects::PreparedEffects prepared_;
-  VectorX fitted_, prior_, taken_at_fit_;
+  VectorX fitted_, prior_;
 };
 
 }  // namespace deflect::plan
