@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "tests/plan/in_one_covariance.h"
 #include "validation/plan/foresight.h"
@@ -17,9 +18,9 @@ using test::values;
 
 /// The paper's readings of a machine with that effect, without noise, so that its values are their fit.
 struct Taken {
-  explicit Taken(const Rival& r)
-      : readings(filled_in(subject_with(machine(), r, r.values), prediction::campaign("paper", machine(), 50, 3),
-                           ForesightOptions(), false)),
+  explicit Taken(const Rival& r, double force = 50, bool linear = false)
+      : readings(filled_in(subject_with(machine(), r, r.values), prediction::campaign("paper", machine(), force, 3),
+                           ForesightOptions(), linear)),
         prospect(machine(), {readings, readings.readings.size(), {}}, {}, parallel::alone),
         model(prospect, machine(), r) {}
 
@@ -43,6 +44,32 @@ TEST(PlanDraws, OfALinearLawHaveTheMeanAndTheSpreadOfItsDerivatives) {
       (one.predicted(actuator, diagnosis::values_at(actuator.hypothesis, moved)) - fit.predicted) / 1e-4;
   const double information = one.left(slope) + 1 / taken.model.prior()(0);
   EXPECT_NEAR((draws.array() - fit.at(0)).square().mean() * information, 1, 1e-3);
+}
+
+/// A gross error counts as if it had been read as predicted.
+TEST(PlanDraws, DoNotFollowAGrossError) {
+  const Rival hardening = rival("actuator_hardening", values({8000, 0.003}));
+  const Taken taken(hardening);
+  measurement::Measurements wrong = taken.readings;
+  *wrong.readings[5].displacement[2] += 1e-3;
+  const Prospect prospect(machine(), {wrong, wrong.readings.size(), {}}, {}, parallel::alone);
+  const RivalModel model(prospect, machine(), hardening);
+  measurement::Random first(1), second(1);
+  const MatrixX right = draws_of(taken.model, taken.model.at_fit(), 6, first),
+                beside_it = draws_of(model, model.at_fit(), 6, second);
+  EXPECT_LE((beside_it - right).norm(), 1e-6 * right.norm());
+}
+
+/// Loads that have no equilibrium in the true geometry do not stop a plan, which reckons in linear geometry.
+TEST(PlanDraws, WithoutAnEquilibriumInTheTrueGeometryAreNormal) {
+  const Rival hardening = rival("actuator_hardening", values({8000, 0.003}));
+  const Taken taken(hardening, 1e6, true);
+  EXPECT_THROW(taken.model.taken_as_linear(), std::exception) << "the test shows nothing";
+  const Linearised fit = taken.model.at_fit();
+  measurement::Random random(1);
+  const MatrixX draws = draws_of(taken.model, fit, 6, random);
+  EXPECT_LE((draws.rowwise().mean() - fit.at).norm(), 1e-9);
+  EXPECT_EQ(draws.col(0), fit.at);
 }
 
 /// The sum over a grid of exp(−λ²/2): at each displacement the stiffnesses about the one that leaves least.

@@ -1,6 +1,6 @@
 // Energies and stiffness in the deformed shape, on every built-in device: the energy stored is the work of the load,
 // ∫ F · du = F · u(1) − ∫ u(λ) · F dλ along the loads λ F, and stiffness and compliance are each other's inverse and
-// the slope of the displacement.
+// the slope of the displacement. In linear geometry: the energy of machines that are strained before the load.
 #include <gtest/gtest.h>
 
 #include <boost/math/quadrature/gauss.hpp>
@@ -101,7 +101,7 @@ TEST(DeformedEnergyOf, AJointThatTurnsFarAboutAllAxesIsTheWorkOfTheLoad) {
 
 /// Of machines with preloaded contacts whose legs do not fit, both theories tell what the load adds to the strained
 /// machine.
-TEST(DeformedEnergyOf, AStrainedMachineIsWhatTheLoadAdds) {
+TEST(StrainedMachine, HasTheEnergyThatTheLoadAdds) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Configuration c = test::random_mechanism(seed, true);
     std::mt19937 random(seed);
