@@ -48,11 +48,21 @@ bool other_alive(pid_t process) {
 /// True also where the file system knows no locks: then the process decides alone.
 bool lock(int descriptor) { return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK; }
 
+/// Whether the name still leads to the open file: it may have been renamed, or taken for one that was left.
+bool is_there(int descriptor, const fs::path& path) {
+  struct stat open {
+  }, named{};
+  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
+         open.st_dev == named.st_dev;
+}
+
 void remove_if_left(const fs::path& part) {
   const int descriptor = ::open(part.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
   struct stat status {};
-  if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && lock(descriptor)) ::unlink(part.c_str());
+  const bool left = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && lock(descriptor);
+  // A file that was renamed since it was opened is no longer locked, and its name may be that of a newer one.
+  if (left && is_there(descriptor, part)) ::unlink(part.c_str());
   ::close(descriptor);
 }
 
@@ -63,14 +73,6 @@ void remove_left_over(const fs::path& target) {
        !error && at != end; at.increment(error))
     if (const auto process = maker(at->path().filename().string(), name); process && !other_alive(*process))
       remove_if_left(at->path());
-}
-
-/// Whether the name still leads to the open file: another run may have taken it for one that was left.
-bool is_there(int descriptor, const fs::path& path) {
-  struct stat open {
-  }, named{};
-  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
-         open.st_dev == named.st_dev;
 }
 
 }  // namespace
