@@ -75,6 +75,55 @@ TEST(PoseSweep, ContactsWithoutLoadHaveNoStiffness) {
   for (const Matrix6& d : contacts.derivatives()) EXPECT_EQ(d, Matrix6(Matrix6::Zero()));
 }
 
+/// Six struts that carry one of the six directions of T each, on contacts at their ends: a force along x loads one
+/// alone.
+Configuration on_single_contacts() {
+  const Vector3 heads[] = {{0, 0, 0}, {0, 0, 0}, {0.2, 0, 0}, {0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0}};
+  std::vector<PlacedLeg> legs;
+  for (int i = 0; i < 6; ++i) {
+    const Vector3 head = heads[i], along = Vector3::Unit(i == 0 ? 0 : i < 3 ? 1 : 2);
+    legs.push_back(test::strut("strut", head - 0.25 * along, head, 2e6));
+    PlacedJoint contact = test::joint("contact", head, "rrrrrr", test::z_along(along));
+    contact.laws[2].push_back(HertzPointLaw{"", 0.004, {210e9, 0.3, {}}});
+    legs.back().parts.insert(legs.back().parts.begin() + 2, contact);
+  }
+  return test::configuration(Vector3::Zero(), legs, 0.5);
+}
+
+// The other contacts have no stiffness, and there is a load, however small: the sweep leaves it to the model.
+TEST(PoseSweep, ContactsWithoutForceBesideALoadAreLeftToTheModel) {
+  const Configuration c = on_single_contacts();
+  PoseSweep sweep(c);
+  ASSERT_TRUE(sweep.applies());
+  sweep.at(c);
+  EXPECT_TRUE(sweep.solve(Vector6::Zero()));
+  for (const double force : {1e-3, 0.5, 50.0}) EXPECT_FALSE(sweep.solve(force * Vector6::Unit(0))) << force;
+  Vector6 everywhere;
+  everywhere << 3, 2, 1, 0.1, 0.2, 0.3;
+  EXPECT_TRUE(sweep.solve(1e-3 * everywhere));
+}
+
+// The platform is held by its legs alone: their stiffnesses at T add up to the whole, and the wrenches to the load.
+TEST(PoseSweep, LegsShareStiffnessAndLoad) {
+  std::mt19937 random(5);
+  for (const char* name : {"haptic-6psu", "stewart-6ups", "tripteron"}) {
+    const Mechanism m = test::device(name);
+    const Configuration c = configure(m, home_pose(m));
+    PoseSweep sweep(c);
+    sweep.at(c);
+    const Vector6 F = test::random_wrench(random);
+    ASSERT_TRUE(sweep.solve(F)) << name;
+    Matrix6 stiffness = Matrix6::Zero();
+    Vector6 wrench = -F - (Vector6() << c.weight, Vector3::Zero()).finished();
+    for (std::size_t i = 0; i < c.legs.size(); ++i) {
+      stiffness += sweep.leg_stiffness(i);
+      wrench += sweep.leg_wrench(i);
+    }
+    EXPECT_LT(apart(stiffness, sweep.stiffness(), c.size), 1e-13) << name;
+    EXPECT_LT(wrench.norm(), 1e-11 * F.norm()) << name;
+  }
+}
+
 // Six struts are determinate, more are not; bars that bend carry several wrenches each.
 TEST(PoseSweep, StrutsAndBarsOfAnyNumberEqualTheModel) {
   for (unsigned seed = 1; seed <= 10; ++seed)
