@@ -179,6 +179,96 @@ TEST(Simulate, TheShareCarriedIsKnownToAHundredth) {
   EXPECT_FALSE(carries(1.0101 * share * force));
 }
 
+/// One reading at each of some poses.
+Measurements one_load_a_pose(const Mechanism& m, int poses) {
+  Measurements plan;
+  for (const Pose& pose : test::random_poses(m, poses)) {
+    Reading r;
+    r.pose = plan.poses.size();
+    r.load << 30, -40, 20, 0.5, -0.3, 0.4;
+    plan.poses.push_back({std::to_string(r.pose), mm_deg_from(pose), {}, {r.pose}});
+    plan.readings.push_back(r);
+  }
+  return plan;
+}
+
+SimulationOptions exact_but_for_tolerances() {
+  SimulationOptions o;
+  o.sigma_u = 0;
+  o.sigma_th = 0;
+  o.geometry = Geometry::linear;
+  return o;
+}
+
+// Each reading has six numbers and its pose six sliders, whose errors they tell to first order: 120 errors, whose mean
+// square scatters by √(2/120) of it.
+TEST(Simulate, SlidersStandOffByTheirRepeatability) {
+  Mechanism m = ideal();
+  m.tolerances = {};
+  constexpr double sigma = 1e-6, step = 1e-6;
+  m.tolerances.actuator_repeatability = sigma;
+  const Measurements plan = one_load_a_pose(m, 20), data = simulate(m, plan, exact_but_for_tolerances());
+  const std::vector<Configuration> drawn = configure_all(m, plan);
+  PredictionOptions p;
+  p.geometry = Geometry::linear;
+  const auto read = [&](std::size_t pose, const VectorX& errors) -> Vector6 {
+    std::vector<Configuration> machines = drawn;
+    machines[pose] = configure_as_built(m, {}, drawn[pose], errors);
+    return predict(m, machines, data, p)[pose].head<6>();
+  };
+  double squares = 0;
+  for (std::size_t pose = 0; pose < drawn.size(); ++pose) {
+    const Vector6 none = read(pose, Vector6::Zero());
+    Matrix6 slope;
+    Vector6 off;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      slope.col(i) = (read(pose, step * Vector6::Unit(i)) - read(pose, -step * Vector6::Unit(i))) / (2 * step);
+      off(i) = *data.readings[pose].displacement[static_cast<std::size_t>(i)] - none(i);
+    }
+    squares += slope.fullPivLu().solve(off).squaredNorm() / (sigma * sigma);
+  }
+  EXPECT_NEAR(squares / 120, 1, 5 * std::sqrt(2.0 / 120));
+}
+
+// By the tolerance of its gain; a sensor without one reads as the description says, 5 % off.
+TEST(Simulate, GainsOfSensorsAreDrawnWithinTheirTolerance) {
+  Mechanism m = test::with(ideal(), "sensors",
+                           "{doubtful: {direction: uz, gain: \"1 ± 2 %\"}, known: {direction: ux, gain: 1.05}}");
+  m.tolerances = {};
+  const Measurements plan = one_load_a_pose(m, 1);
+  Mechanism exact = m;
+  for (auto& [name, sensor] : exact.sensors) sensor.gain = 1, sensor.gain_sigma = 0;
+  SimulationOptions o = exact_but_for_tolerances();
+  const Measurements without = simulate(exact, plan, o);
+  double squares = 0;
+  constexpr int machines = 100;
+  for (std::uint64_t seed = 1; seed <= machines; ++seed) {
+    o.seed = seed;
+    const Measurements data = simulate(m, plan, o);
+    const auto gain = [&](std::size_t k) { return *data.readings[0].sensors[k] / *without.readings[0].sensors[k]; };
+    squares += std::pow((gain(0) - 1) / 0.02, 2);
+    EXPECT_NEAR(gain(1), 1.05, 1e-12);
+  }
+  EXPECT_NEAR(squares / machines, 1, 5 * std::sqrt(2.0 / machines));
+}
+
+// A slider that stands at an end of its range in the drawing goes a little beyond in half of the machines.
+TEST(AsBuilt, AMachineStandsWhereItsDrawingJustCan) {
+  Mechanism m = ideal();
+  const Pose pose = test::random_poses(m, 1)[0];
+  double low = 1, high = 0;
+  for (const Actuator& actuator : configure(m, pose).actuators)
+    low = std::min(low, actuator.value), high = std::max(high, actuator.value);
+  auto& k = std::get<SixPsu>(m.kinematics);
+  k.slider_min = low - 1e-9, k.slider_max = high + 1e-9;
+  const Configuration drawn = configure(m, pose);
+  for (const double error : {-1e-4, 1e-4}) {
+    EXPECT_THROW(configure_as_built(m, {}, drawn, VectorX::Constant(6, error)), ModelError);
+    const Configuration built = configure_as_built(with_geometry(m, {}), {}, drawn, VectorX::Constant(6, error));
+    EXPECT_NEAR(built.pose.p_WT.z() - drawn.pose.p_WT.z(), error, 1e-12);
+  }
+}
+
 TEST(AsBuilt, AMachineAsDrawnIsTheDrawing) {
   const Mechanism m = ideal();
   AsBuilt built;
