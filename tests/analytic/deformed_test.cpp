@@ -56,6 +56,14 @@ TEST(Deformed, PendulumFindsItsAngle) {
   EXPECT_NEAR(model.energies(s).front().second, k * angle * angle / 2, 1e-12 * k);
 }
 
+// The spring alone stores energy, whatever the push does on the way.
+TEST(Deformed, PendulumStoresWhatItsSpringHolds) {
+  const double N = -250, Q = 90, angle = Q * L / (k + N * L);
+  const AnalyticModel model = pendulum();
+  EXPECT_NEAR(model.energies(model.solve(force(N, Q), Geometry::second_order)).front().second, k * angle * angle / 2,
+              1e-12 * k);
+}
+
 TEST(Deformed, PendulumFallsAtItsCriticalLoad) {
   for (const Geometry geometry : both) {
     EXPECT_TRUE(pendulum().solve(force(-0.99 * k / L, 0), geometry).converged);
@@ -82,6 +90,70 @@ TEST(Deformed, TwoSpringsInARowLoseThePotentialOfThePush) {
     EXPECT_NEAR(C(1, 1), J.dot(K.inverse() * J), 1e-15);
     EXPECT_NEAR(C(5, 5), turn.dot(K.inverse() * turn), 1e-15);
     EXPECT_NEAR(C(1, 5), J.dot(K.inverse() * turn), 1e-15);
+  }
+}
+
+/// A hinge that turns about two axes and an arm, then a joint that turns about all three and another arm: in a row, or
+/// the latter as the only branch of a part of branches side by side.
+AnalyticModel two_arms(bool as_branch) {
+  const PlacedJoint lower = test::spring("lower", Vector3::Zero(), {{4, 300}, {5, 400}});
+  const PlacedJoint upper = test::spring("upper", {0.3, 0, 0.1}, {{3, 90}, {4, 250}, {5, 200}});
+  PlacedLeg leg{"leg 1", {lower, upper}};
+  if (as_branch) leg.parts[1] = PlacedParallel{"branches", {0.3, 0, 0.1}, {0.7, 0, 0}, {{"only", {upper}}}};
+  return AnalyticModel(test::configuration({0.7, 0, 0}, {leg}, 0.7));
+}
+
+// In second order the axes in which a branch is undeformed are those of the body that it stands on: the difference is
+// of the third order of the load, so that a quarter of it leaves a sixteenth, and the next order up to a fifth of that.
+TEST(Deformed, TheOnlyBranchOfAPartIsAsInARow) {
+  Vector6 F;
+  F << -150, 40, 60, 8, -5, 6;
+  const AnalyticModel row = two_arms(false), branch = two_arms(true);
+  const auto off = [&](const Vector6& load, Geometry geometry) {
+    const AnalyticSolution a = row.solve(load, geometry), b = branch.solve(load, geometry);
+    EXPECT_TRUE(a.converged && b.converged);
+    return (a.displacement - b.displacement).norm() / a.displacement.norm();
+  };
+  EXPECT_GT(row.solve(F, Geometry::finite).displacement.tail<3>().norm(), 0.1);
+  EXPECT_LE(off(F, Geometry::finite), 1e-10);
+  EXPECT_GE(off(F / 4, Geometry::second_order), 0.8 * 16 * off(F / 16, Geometry::second_order));
+  const AnalyticSolution a = row.solve(F, Geometry::finite), b = branch.solve(F, Geometry::finite);
+  const Matrix6 C = row.compliance(a);
+  EXPECT_LE((C - branch.compliance(b)).norm(), 1e-9 * C.norm());
+}
+
+// What a leg that is rigid along the load carries is the limit of what a stiff one does: the load in the axes of the
+// base, which turns on its spring, Q − N θ across.
+TEST(Deformed, ARigidLegOnASoftBaseCarriesWhatAStiffOneDoes) {
+  const double N = -250, Q = 90;
+  const auto on_base = [](std::vector<std::pair<std::size_t, double>> stiffness) {
+    Configuration c = test::configuration({L, 0, 0}, {{"leg 1", {test::spring("hinge", {0.2, 0, 0}, stiffness)}}}, L);
+    c.base = test::spring("base", Vector3::Zero(), {{5, k}});
+    return AnalyticModel(c);
+  };
+  const AnalyticModel rigid = on_base({{5, 400}}),
+                      stiff = on_base({{0, 1e12}, {1, 1e12}, {2, 1e12}, {3, 1e12}, {4, 1e12}, {5, 400}});
+  for (const Geometry geometry : both) {
+    const AnalyticSolution a = rigid.solve(force(N, Q), geometry), b = stiff.solve(force(N, Q), geometry);
+    ASSERT_TRUE(a.converged && b.converged) << a.message << b.message;
+    EXPECT_LE((a.displacement - b.displacement).norm(), 1e-8);  // 1e3 N on 1e12 N/m and Nm/rad
+    EXPECT_LE((a.leg_wrenches[0] - b.leg_wrenches[0]).norm(), 1e-8 * 1e3);
+  }
+}
+
+// Legs that all end off their seat by the same motion carry the platform there, in the deformed shape by a finite one.
+TEST(Deformed, LegsThatAllMissTheirSeatByOneMotionMoveThePlatformByIt) {
+  std::mt19937 random(9);
+  std::vector<PlacedLeg> legs;
+  for (const auto& [foot, head] : test::hexapod(random)) legs.push_back(test::strut("leg", foot, head, 1e7));
+  const Vector6 misfit = (Vector6() << 1e-3, 2e-3, -1e-3, 1e-2, 0, 2e-2).finished();
+  for (PlacedLeg& leg : legs) leg.misfit = misfit;
+  const AnalyticModel model(test::configuration(Vector3(0, 0, 0.42), legs, 0.5));
+  for (const Geometry geometry : both) {
+    const AnalyticSolution s = model.assembled(geometry);
+    ASSERT_TRUE(s.converged) << s.message;
+    EXPECT_LE((s.displacement - misfit).norm(), 1e-11 * misfit.norm());
+    for (const Vector6& w : s.leg_wrenches) EXPECT_LE(w.norm(), 1e-11 * 1e7 * misfit.norm());
   }
 }
 

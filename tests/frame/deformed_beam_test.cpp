@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "tests/support/finite_motion.h"
@@ -187,6 +190,23 @@ TEST_P(EveryDeformedBeam, PureBendingByAnyAngleIsAnArc) {
   EXPECT_NEAR(moment.dot(axis), e.rigidity.EIz * psi / L, 1.1 * e.rigidity.EA * strain * L * psi / 12);
   EXPECT_LE((at.forces.segment<3>(6) - e.rigidity.EA * strain * (rotation_by(psi / 2 * axis) * e.R_WM.col(0))).norm(),
             1e-14 * e.rigidity.EA);
+}
+
+// By the definition: a pull along and a force across, of whose end moments the larger counts.
+TEST_P(EveryDeformedBeam, LeavesOutByItsMomentsAndForces) {
+  const Beam e = beam();
+  const Vector3 along = e.R_WM.col(0), across = e.R_WM.col(1);
+  const double L = e.length, N = 0.06, Q = 0.03, M = 0.05;
+  Vector12 f = Vector12::Zero();
+  f.head<3>() = -N * along - Q * across, f.segment<3>(6) = N * along + Q * across;
+  f.segment<3>(3) = M * e.R_WM.col(2), f.tail<3>() = -0.4 * M * e.R_WM.col(2);
+  std::array<double, 3> k = {e.rigidity.GJ, e.rigidity.EIy, e.rigidity.EIz};
+  std::sort(k.begin(), k.end());
+  const double root = std::sqrt(k[0] * k[1]);
+  const double lambda = L * M / root + L * L * std::hypot(N, Q) / root, mu = L * L * Q / root;
+  const LeftOut left = left_out(e, f, along);
+  EXPECT_NEAR(left.relative, lambda * lambda / 12, 1e-14 * lambda * lambda);
+  EXPECT_NEAR(left.twist, lambda * mu / 12, 1e-14 * lambda * mu);
 }
 
 INSTANTIATE_TEST_SUITE_P(Family, EveryDeformedBeam,

@@ -91,6 +91,33 @@ TEST(InsideLegs, TurnWithTheMachine) {
   }
 }
 
+// Nothing but the tool yields: the platform stands still, and the drive carries all that acts beyond it.
+TEST(InsideLegs, OfARigidMachineWithASoftToolCarryTheLoad) {
+  const Mechanism m = parse_mechanism(R"(
+name: rigid
+kinematics: {family: chains}
+leg:
+  slide: {joint: prismatic}
+  arm: {offset: [200 mm, 0 mm, 0 mm]}
+tool: {tz: {law: linear, stiffness: 50 N/mm}}
+sensors:
+  F: {drive: leg.slide, force: true}
+  still: {body: platform, direction: uz}
+  tip: {body: tool, direction: uz}
+)",
+                                      "rigid.yaml");
+  const Measurements data = parse_measurements(
+      "pose,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg,fx_N,fy_N,fz_N,F_N,still_mm,tip_mm\n"
+      "A,200,0,0,0,0,0,3,5,10,0,0,0\n",
+      "data.csv", instruments_of(m));
+  for (const char* theory : {"analytic", "msa"}) {
+    const VectorX read = predicted(m, data, theory).front();
+    EXPECT_NEAR(read(6), 10, 1e-9) << theory;
+    EXPECT_NEAR(read(7), 0, 1e-15) << theory;
+    EXPECT_NEAR(read(8), 10 / 50e3, 1e-13) << theory;
+  }
+}
+
 void driven_in(const Named<Part>& parts, const std::string& path, std::vector<std::string>& out) {
   for (const auto& [name, part] : parts) {
     const std::string here = path + "." + name;

@@ -160,6 +160,17 @@ TEST(TableThatRemembers, LosesTheAreaOfItsLoop) {
   EXPECT_NEAR(area, 5600 * um, 1e-11 * 5600 * um);
 }
 
+// What push has left, 40 um, goes back under pull by 4 um/N and has gone at 10 N, while the rest yields by 1 um/N; from
+// 20 N on another 2 um/N and more come from loading.
+TEST(TableThatRemembers, YieldsMoreWhileItGivesBackWhatTheOtherSenseHasLeft) {
+  Slide slide("tz: " + loop);
+  slide(-50), slide(0);
+  for (const auto& [N, stiffness] : {std::pair{1.0, 0.2}, {4, 0.2}, {6, 0.2}, {9, 0.2}, {15, 1.0 / 3}, {25, 1.0 / 3}}) {
+    slide(N, false);
+    EXPECT_NEAR(slide.stiffness, stiffness / um, 1e-9 / um) << N;
+  }
+}
+
 TEST(TableThatRemembers, ClosesSmallLoopsAndForgetsThemUnderALargerLoad) {
   Slide slide("tz: " + loop), straight("tz: " + loop);
   straight(40);
