@@ -243,6 +243,8 @@ TEST(Errata, NamesAreReadAndMisreadOnesExplained) {
   EXPECT_TRUE(parse_errata("").empty());
   EXPECT_TRUE(parse_errata("none").empty());
   EXPECT_EQ(parse_errata("all").size(), errata().size());
+  EXPECT_EQ(parse_errata("tcp-transfer,link-frame,passive-joints"),
+            (std::set<Erratum>{Erratum::tcp_transfer, Erratum::link_frame, Erratum::passive_joints}));
   EXPECT_EQ(parse_errata("passive-joints,ujoint-parallel"),
             (std::set<Erratum>{Erratum::passive_joints, Erratum::ujoint_parallel}));
   try {

@@ -104,6 +104,24 @@ FrameDescription with(std::string text, const std::string& from, const std::stri
   return parse_frame(text, "tripod.yaml");
 }
 
+// A rack that drives a rotor through a pinion: the free motion keeps what couples them.
+TEST(Mobility, AFreeMotionKeepsEveryConstraint) {
+  Model m;
+  m.add_node("rack", {0.3, 0, 0});
+  m.add_node("end", {0.3, 0.4, 0});
+  m.add_beam(0, 1, Matrix3::Identity(), rod(1), "rack", "");
+  m.scalars = {"rotor", "fan"};
+  for (int i = 0; i < 5; ++i) m.constraints.push_back({{{i, 1}}, 0, "guide"});
+  m.constraints.push_back({{{6, 1}, {12, -0.05}}, 0, "pinion"});
+  m.constraints.push_back({{{12, 1}, {13, -7}}, 0, "gear"});
+  const Mobility mobility = mobility_of(m, {});
+  ASSERT_EQ(mobility.free.cols(), 1);
+  const VectorX u = mobility.free.col(0);
+  EXPECT_GT(std::abs(u(5)), 1e-3 * u.norm());
+  for (const Constraint& c : m.constraints) EXPECT_NEAR(evaluate(c.form, u), 0, 1e-12 * u.norm()) << c.name;
+  EXPECT_NEAR(u(6), -0.4 * u(5), 1e-12 * u.norm()) << "the rack turns about its lower end";
+}
+
 // A rotation is held by a condition that has the rounding of a force in it.
 TEST(Mobility, TheRoundingOfAForceIsNoLeverArm) {
   Model m;

@@ -223,6 +223,33 @@ TEST(Elimination, RefusesAContradictionByName) {
   }
 }
 
+// What is said twice with the same values stands, once as well as by its multiple; with other ones it is refused by
+// what the others imply.
+TEST(Elimination, AcceptsWhatIsImpliedWithItsValue) {
+  const auto jacked = [](double apart) {
+    Model m;
+    m.add_node("a", Vector3::Zero());
+    m.add_node("b", {1, 0, 0});
+    m.add_beam(0, 1, Matrix3::Identity(), {1, 1, 1, 1, none, none}, "", "");
+    for (int i = 1; i < 6; ++i) m.constraints.push_back({{{i, 1}}, 0, "guide"});
+    m.constraints.push_back({{{0, 1}}, 2e-3, "a"});
+    m.constraints.push_back({{{6, 2}}, 10e-3, "b"});
+    m.constraints.push_back({{{6, 1}, {0, -1}}, apart, "apart"});
+    return m;
+  };
+  const Model m = jacked(3e-3);
+  const Solution s = Solver(m).solve(VectorX::Zero(m.dofs()));
+  EXPECT_NEAR(s.u(0), 2e-3, 1e-17);
+  EXPECT_NEAR(s.u(6), 5e-3, 1e-17);
+  try {
+    Solver solver(jacked(4e-3));
+    ADD_FAILURE();
+  } catch (const ModelError& e) {
+    EXPECT_NE(std::string(e.what()).find("they imply the value 0.003, it asks for 0.004"), std::string::npos)
+        << e.what();
+  }
+}
+
 TEST(Elimination, ReducedFormKeepsEveryConstraint) {
   std::mt19937 random(7);
   Model m;
@@ -240,6 +267,20 @@ TEST(Elimination, ReducedFormKeepsEveryConstraint) {
   for (Eigen::Index i = 0; i < q.size(); ++i) q(i) = test::uniform(random, -1, 1);
   const VectorX u = e.expand(q, constraint_values(m));
   for (const Constraint& c : m.constraints) EXPECT_NEAR(evaluate(c.form, u), c.value, 1e-13);
+}
+
+// More beams than are reduced at a time, side by side: each adds its EA/L.
+TEST(Solver, ManyBeamsAddTheirStiffness) {
+  Model m;
+  m.add_node("a", Vector3::Zero());
+  m.add_node("b", {0.2, 0, 0});
+  constexpr int beams = 2500;
+  for (int i = 0; i < beams; ++i) m.add_beam(0, 1, Matrix3::Identity(), {1e6 + i, 1, 1, 1, none, none}, "", "");
+  m.fix(0, "wall");
+  VectorX load = VectorX::Zero(m.dofs());
+  load(6) = 1e6;
+  const double EA = beams * (1e6 + (beams - 1) / 2.0);
+  EXPECT_NEAR(Solver(m).solve(load).u(6), 1e6 * 0.2 / EA, 1e-12 * 1e6 * 0.2 / EA);
 }
 
 TEST(Solver, PrescribedDisplacementsAndReactions) {

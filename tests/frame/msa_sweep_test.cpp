@@ -231,6 +231,8 @@ TEST(MsaSweep, ContactsWithoutLoadHaveNoStiffness) {
   ASSERT_TRUE(contacts.solve(Vector6::Zero()));
   EXPECT_EQ(contacts.stiffness(), Matrix6(Matrix6::Zero()));
   EXPECT_EQ(contacts.displacement(), Vector6(Vector6::Zero()));
+  EXPECT_EQ(contacts.energy(), 0);
+  EXPECT_EQ(contacts.reaction(), Vector6(Vector6::Zero()));
   for (std::size_t i = 0; i < c.legs.size(); ++i) EXPECT_EQ(contacts.leg_stiffness(i), Matrix6(Matrix6::Zero()));
   expect_the_model(contacts, c, {}, 50 * Vector6::Unit(0), 1e-9);
 }

@@ -179,6 +179,19 @@ TEST(Stability, APlatformFreeToTurnIsRefusedWithItsThreeScrews) {
   }
 }
 
+TEST(Stability, OfManyBodiesThreeAreNamedAndTheOthersCounted) {
+  Model m;
+  FreeMotion motion;
+  for (int i = 0; i < 5; ++i) {
+    m.add_node("n", {0.1 * i, 0, 0});
+    motion.bodies.push_back({"rod " + std::to_string(i + 1), {i}, {true, Vector3::UnitX(), Vector3::Zero(), 0}});
+  }
+  const std::string text = describe(m, motion);
+  EXPECT_NE(text.find("rod 3"), text.npos) << text;
+  EXPECT_EQ(text.find("rod 4"), text.npos) << text;
+  EXPECT_NE(text.find("; and 2 more bodies"), text.npos) << text;
+}
+
 TEST(Stability, ScrewOfAMotion) {
   // Turning about the z axis through (1, 2, 0) with 0.3 m/rad, seen at the origin.
   const Vector3 w(0, 0, 2), c(1, 2, 0), v = w.cross(-c) + 0.3 * w;

@@ -42,6 +42,17 @@ TEST(Standing, SixSimpleSupportsHoldItWhereTheyAreIndependent) {
   EXPECT_NE(not_proved_standing(m), "");
 }
 
+// A body that turns about b, where its displacements are held, moves a across by its rotation times 1 m, whatever
+// turns: to couple these two holds nothing, to couple them the other way round holds the rotation.
+TEST(Standing, ALeverThatFollowsTheBodyDoesNotHoldIt) {
+  for (const double sign : {1.0, -1.0}) {
+    Model m = corner();
+    hold(m, 1, {0, 1, 2, 3, 4});
+    m.constraints.push_back({{{1, 1}, {6 + 5, -sign}}, 0, "lever"});
+    EXPECT_EQ(not_proved_standing(m).empty(), sign < 0) << sign;
+  }
+}
+
 TEST(Standing, EveryBodyNeedsItsOwn) {
   Model m = corner();
   m.fix(0, "wall");
