@@ -237,6 +237,20 @@ TEST(MsaSweep, ContactsWithoutLoadHaveNoStiffness) {
   expect_the_model(contacts, c, {}, 50 * Vector6::Unit(0), 1e-9);
 }
 
+// The second contact along a link does not move where the first one yields to everything: nothing is stored or carried.
+TEST(MsaSweep, TwoContactsInALineWithoutLoadStandStill) {
+  const Mechanism m = test::with(test::device("haptic-6psu"), "leg.universal_joint.tz",
+                                 "{law: power, deflection: 1 um, force: 10 N, exponent: 0.6667}", Edit::Action::append);
+  const Configuration c = configure(m, home_pose(m));
+  MsaSweep contacts(c);
+  contacts.at(c);
+  ASSERT_TRUE(contacts.solve(Vector6::Zero()));
+  EXPECT_EQ(contacts.energy(), 0);
+  EXPECT_EQ(contacts.reaction(), Vector6(Vector6::Zero()));
+  EXPECT_EQ(contacts.stiffness(), Matrix6(Matrix6::Zero()));
+  expect_the_model(contacts, c, {}, 50 * Vector6::Unit(0), 1e-9);
+}
+
 TEST(MsaSweep, LeavesToTheModelMembersSoStiffThatDigitsWouldBeLost) {
   const Mechanism m = test::device("haptic-6psu-ideal-joints");
   Configuration c = configure(m, home_pose(m));

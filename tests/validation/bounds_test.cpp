@@ -54,6 +54,10 @@ TEST(RunsToABound, WithinAThousandthOfTheRange) {
   EXPECT_TRUE(runs_to_a_bound(h, found({1, 3 - 4 * 0.0005, 100})));
   EXPECT_TRUE(runs_to_a_bound(h, found({1, 1, near})));
   EXPECT_TRUE(runs_to_a_bound(h, found({1, 1, 1e4 / near})));
+  const effects::Effect far =
+      with({parameter(-1, 3, false), parameter(10, 11, false)});  // of the range, not of its end
+  EXPECT_FALSE(runs_to_a_bound({{&far, {}}}, found({1, 10.0015})));
+  EXPECT_TRUE(runs_to_a_bound({{&far, {}}}, found({1, 10.0005})));
   EXPECT_FALSE(runs_to_a_bound({{&one, {}}}, found({-1})));
   Fit none = found({1, -1, 100});
   none.found = false;

@@ -93,6 +93,21 @@ TEST(Diagnose, NamesTheEffectWithItsValueAndTheErrorFallsToTheNoise) {
   EXPECT_LT(d.final.rmse, 1.5 * d.noise_floor);
 }
 
+// Of a catalogue of one entry the only candidate is the last one too: without tolerances it leaves the noise, whose
+// mean square over 294 numbers scatters by √(2/294).
+TEST(Diagnose, TellsOfTheOnlyCandidateHowWellItPredicts) {
+  const Mechanism truth = with("guide_root_compliance", {5e6});
+  Measurements plan = measured_briefly(ideal(), 13);
+  SimulationOptions o;
+  o.tolerances = 0;
+  o.sigma_u = 2e-6;
+  const Diagnosis d = diagnose(ideal(), simulate(truth, plan, o), {test::effect("guide_root_compliance")});
+  ASSERT_EQ(d.candidates.size(), 1u);
+  EXPECT_NEAR(std::pow(d.candidates.front().rmse / o.sigma_u, 2), 1, 5 * std::sqrt(2.0 / 294));
+  EXPECT_GE(d.candidates.front().held_out, d.candidates.front().rmse / 2);
+  EXPECT_LT(d.candidates.front().held_out, d.baseline.held_out);
+}
+
 TEST(Diagnose, FindsNothingInAHealthyMachine) {
   const Measurements data = measured(ideal(), 12);
   const Diagnosis d = diagnose(ideal(), data, test::all_effects());

@@ -96,6 +96,18 @@ TEST(LetsGo, TheSizeFromWhichItCarriesNothingIsFound) {
                                          0.5 * stiff.observations.null_residual().squaredNorm()));
 }
 
+// Nothing is searched for where the part that is gone leaves more than `most`.
+TEST(LetsGo, AsMuchAsIsAllowedMayBeLeft) {
+  const Seen s = seen("factor@spring.pad.uz", 0.8);
+  const Hypothesis h = {{&law("clearance@spring.pad.uz"), {}}};
+  const double high = h.back().effect->parameters.front().high;
+  const double gone =
+      s.observations.whitened_residual(with_effect(bar(), {h.back(), test::values({high})})).squaredNorm();
+  ASSERT_GT(gone, 100);
+  EXPECT_TRUE(best_size_of_what_lets_go(s.observations, h, VectorX(0), 1.001 * gone));
+  EXPECT_FALSE(best_size_of_what_lets_go(s.observations, h, VectorX(0), 0.999 * gone));
+}
+
 // The limit below is where the middle would begin to touch in the readings of the largest load; there is none above.
 TEST(LetsGo, TheIntervalOfWidePlayIsOpen) {
   const Seen s = seen("factor@spring.pad.uz", 1e-5);

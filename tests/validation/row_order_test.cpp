@@ -5,8 +5,12 @@
 #include <sstream>
 
 #include "tests/support/devices.h"
+#include "tests/support/effects.h"
 #include "validation/compare/comparison.h"
+#include "validation/effects/with_effect.h"
+#include "validation/measurement/configure_all.h"
 #include "validation/prediction/campaign.h"
+#include "validation/prediction/prediction.h"
 #include "validation/prediction/simulate.h"
 
 namespace deflect {
@@ -55,6 +59,24 @@ TEST(Compare, TheOrderOfRowsAndTheNamesOfPosesDoNotMatter) {
   }
   ASSERT_EQ(a.findings.size(), b.findings.size());
   for (std::size_t i = 0; i < a.findings.size(); ++i) EXPECT_EQ(a.findings[i].pattern, b.findings[i].pattern);
+}
+
+// Where friction remembers, the readings of a pose follow their sequence, whatever the order of their rows.
+TEST(Predict, FollowsTheSequenceAndNotTheRows) {
+  const Mechanism drawn = test::device("haptic-6psu-ideal-joints");
+  const Mechanism m = effects::with_effect(drawn, {{&test::effect("joint_friction"), {}}, test::values({5, 1e4, 1})});
+  const Measurements data = simulate(drawn, campaign("cycle", drawn, 50, 1), {});
+  const Measurements other = rearranged(data);
+  PredictionOptions o;
+  o.geometry = Geometry::linear;
+  const std::vector<VectorX> a = predict(m, configure_all(m, data), data, o),
+                             b = predict(m, configure_all(m, other), other, o);
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_GT((a[0] - a[6]).norm(), 0.01 * a[0].norm()) << "under the same load, before and after a larger one";
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const VectorX& same = a[static_cast<std::size_t>(*other.readings[i].sequence)];
+    EXPECT_LE((b[i] - same).norm(), 1e-12 * same.norm() + 1e-18) << *other.readings[i].sequence;
+  }
 }
 
 }  // namespace

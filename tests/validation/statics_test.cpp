@@ -6,10 +6,12 @@
 #include "msa/base/index.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "validation/diagnosis/by_statics.h"
 #include "validation/effects/law_of_effect.h"
 #include "validation/effects/place_effects.h"
 #include "validation/effects/with_effect.h"
 #include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
 
 namespace deflect {
 namespace {
@@ -62,6 +64,48 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, StaticsAtPlaces,
                          [](const auto& at) {
                            return std::regex_replace(std::string(at.param), std::regex("-"), "_");
                          });
+
+/// Whether a spring at the place moves a reading of the first pose by more than a nanometre.
+bool carries(const Mechanism& m, const PlacedEffect& e, const Measurements& first) {
+  PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  const std::vector<VectorX>
+      before = Subject(m).stand(first)->predict(first, linear, alone),
+      after = with_effect(Subject(m), {e, start_values(*e.effect)}).stand(first)->predict(first, linear, alone);
+  double most = 0;
+  for (std::size_t i = 0; i < after.size(); ++i)
+    most = std::max(most, (after[i] - before[i]).head<3>().cwiseAbs().maxCoeff());
+  return most > 1e-9;
+}
+
+// A diagnosis takes from statics what agrees with a prediction at the first pose, and by both the change of the
+// residual is the same. A spring as it is at the start is a thousand times one of which the prediction is of the first
+// order.
+TEST(ByStatics, TellsWhatASpringAtAPlaceChanges) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  SimulationOptions simulated;
+  simulated.geometry = Geometry::linear;
+  const Measurements data = simulate(m, campaign("paper", m, 50, 3), simulated), first = one_pose(data, 0);
+  const diagnosis::Observations o(m, data, {});
+  const std::vector<Effect> places = place_effects(Subject(m), test::all_effects());
+  std::vector<PlacedEffect> springs;
+  for (const Effect& e : places)
+    if (e.name.starts_with("linear@"))
+      springs.push_back({&e, e.scope == Scope::one_leg ? std::optional(2) : std::nullopt});
+  const diagnosis::ByStatics statics(o, springs, 1);
+  int looked_at = 0;
+  for (const PlacedEffect& e : springs) {
+    if (!carries(m, e, first)) continue;
+    const auto told = statics.change(e);
+    ASSERT_TRUE(told) << e.effect->name;
+    VectorX stiff = start_values(*e.effect);
+    stiff *= 1e3;
+    const VectorX predicted = 1e3 * (o.whitened_residual(with_effect(o.subject(), {e, stiff})) - o.null_residual());
+    EXPECT_LE((*told - predicted).norm(), 1e-2 * predicted.norm()) << e.effect->name;
+    ++looked_at;
+  }
+  EXPECT_GT(looked_at, 10);
+}
 
 }  // namespace
 }  // namespace deflect
