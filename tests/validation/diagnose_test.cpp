@@ -14,6 +14,7 @@
 #include "tests/support/effects.h"
 #include "tests/support/paths.h"
 #include "validation/diagnosis/interval.h"
+#include "validation/diagnosis/left_over.h"
 #include "validation/effects/place_effects.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
@@ -197,6 +198,33 @@ TEST(Diagnose, FindsAnEffectOfOnesOwnAndCallsItUnknownWithoutItsFile) {
   EXPECT_GT(high, 2e6);
 }
 
+// A turntable that yields in proportion to the load and stays as it is has neither play nor drift: where only these are
+// in the catalogue, nothing of it is named beside what is unknown.
+TEST(Diagnose, NamesNothingThatACommonPatternTakesBesideTheUnknown) {
+  const Effect own = parse_effect(own_effect, "own.yaml");
+  const Measurements data = measured_briefly(with_effect(ideal(), own, test::values({5e5})), 15);
+  for (const char* entry : {"joint_clearance", "sensor_drift"}) {
+    const Diagnosis d = diagnose(ideal(), data, {test::effect(entry)});
+    EXPECT_EQ(d.verdict, Verdict::unknown_effect) << entry;
+    EXPECT_TRUE(d.missing.empty()) << entry;
+  }
+}
+
+// Once an effect is found, p/(1 − p) of something unknown is the evidence for it times its prior odds of 0.1 to 0.9.
+// The diagnosis weighs by values of the fit before the last one, which differ by far less than their deviations.
+TEST(Diagnose, ProbabilityOfTheUnknownIsThatOfBayes) {
+  const std::vector<Effect> one = {test::effect("guide_root_compliance")};
+  const Measurements data = measured_briefly(with("guide_root_compliance", {5e6}), 23);
+  const Diagnosis d = diagnose(ideal(), data, one);
+  ASSERT_EQ(d.missing.size(), 1u);
+  const Observations o(ideal(), data, {}), seen = o.granted(subject_with(o, d.missing, d.fit.values));
+  const LeftOver left =
+      left_over(seen.whitened_patterns(), signatures(o, one, 1), fit_of_all(seen, d.missing, d.fit.values), 1);
+  const double odds = std::exp(left.log_evidence) * 0.1 / 0.9;
+  EXPECT_NEAR(d.probability_unknown / (1 - d.probability_unknown), odds, 1e-3 * odds);
+  EXPECT_NEAR(total(d), 1, 1e-12);
+}
+
 // Hundreds of laws at places do not outvote an entry, do not alarm where nothing is missing and do not change what an
 // entry's fit says.
 TEST(Diagnose, LawsAtPlacesStandBesideTheEntries) {
@@ -258,6 +286,19 @@ TEST(Diagnose, WhatActsTheWrongWayDoesNotHideOthers) {
     } else {
       EXPECT_EQ(c.gain, 0);
     }
+}
+
+// Guides may only be thinner in this entry, and are thicker: it comes as near as can be. Along it lie the misfit and
+// the noise of one number, which in every other draw is more than the misfit beyond all noise; a share is one at most.
+TEST(Diagnose, TheNearestEntryHasNoMoreThanAllOfTheMisfit) {
+  Effect thinner = test::effect("guide_diameter");
+  thinner.parameters[0].high = 1, thinner.parameters[0].start = 0.99;
+  for (const std::uint64_t seed : {4, 6, 7}) {
+    const Diagnosis d = diagnose(ideal(), measured_briefly(with("guide_diameter", {1.12}), seed), {thinner});
+    EXPECT_EQ(d.nearest, "guide_diameter");
+    EXPECT_GT(d.nearest_share, 0.9);
+    EXPECT_LE(d.nearest_share, 1);
+  }
 }
 
 TEST(Diagnose, DoesNotDependOnTheNumberOfThreads) {

@@ -1,0 +1,47 @@
+// Which effects stay named beside something unknown.
+#include "validation/diagnosis/left_over.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+#include "validation/effects/place_effects.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
+
+namespace deflect {
+namespace {
+
+using namespace diagnosis;
+using namespace effects;
+
+/// A machine that turns on its base.
+Mechanism on_a_turntable(const Mechanism& m) {
+  return test::with(m, "base.rz", "{law: linear, stiffness: 1e6 Nmm/rad}", Edit::Action::append);
+}
+
+// Springs in the cables explain part of what a base that turns does. Beside something unknown they stay named, as long
+// as nobody knows of a place where it may sit; a law at the base, which takes all that they take, leaves them none.
+TEST(NamedBesideUnknown, NotWhatALawAtAnotherPlaceExplains) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const measurement::Measurements data =
+      prediction::simulate(on_a_turntable(m), prediction::campaign("paper", m, 50, 15), {});
+  const Observations o(m, data, {});
+  const Hypothesis cables = {{&test::effect("cable_compliance"), {}}};
+  const Fit fitted = fit_of_all(o, cables, start_values(*cables[0].effect));
+  ASSERT_TRUE(fitted.found);
+  const std::vector<Effect> entry = {*cables[0].effect}, places = place_effects(subject::Subject(m), {});
+  std::vector<Effect> both = entry;
+  for (const Effect& e : places)
+    if (e.name.starts_with("linear@")) both.push_back(e);
+  for (const auto& [known, named] : {std::pair(&entry, 1u), std::pair(&both, 0u)}) {
+    const std::vector<Signature> all = signatures(o, *known, 1);
+    const Candidates candidates(all, 1);
+    const Selection left =
+        named_beside_unknown(o.whitened_patterns(), all, candidates, Selection{o, {all[0].effect}, fitted, {}, {}});
+    EXPECT_EQ(left.effects.size(), named) << known->size();
+  }
+}
+
+}  // namespace
+}  // namespace deflect
