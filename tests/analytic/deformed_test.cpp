@@ -122,8 +122,8 @@ TEST(Deformed, TheOnlyBranchOfAPartIsAsInARow) {
   EXPECT_LE((C - branch.compliance(b)).norm(), 1e-9 * C.norm());
 }
 
-// What a leg that is rigid along the load carries is the limit of what a stiff one does: the load in the axes of the
-// base, which turns on its spring, Q − N θ across.
+// On a base that turns on its spring, what a leg carries that is rigid along the load is the limit of what a stiff one
+// carries.
 TEST(Deformed, ARigidLegOnASoftBaseCarriesWhatAStiffOneDoes) {
   const double N = -250, Q = 90;
   const auto on_base = [](std::vector<std::pair<std::size_t, double>> stiffness) {
