@@ -53,38 +53,42 @@ SteppedForces AnalyticModel::held_under(const Between& b, const Vector6& F, cons
   return out;
 }
 
+std::vector<Step> AnalyticModel::held_at(const VectorX& offsets) const {
+  std::vector<Step> steps;
+  for (Eigen::Index i = 0; i < offsets.size(); ++i) steps.push_back({offsets(i), between_->known.c(i), false});
+  return steps;
+}
+
 /// Whether these are the forces with the laws at these offsets: that the rest of the mechanism is linear.
 bool AnalyticModel::agrees(const Vector6& F, double warmer, const VectorX& offsets, const SteppedForces& told) const {
   ChainConditions under;
   under.warmer = warmer;
-  std::vector<Step> steps;
-  for (Eigen::Index i = 0; i < offsets.size(); ++i) steps.push_back({offsets(i), between_->known.c(i), false});
-  const SteppedForces found = under_steps(F, under, steps, told.largest);
+  const SteppedForces found = under_steps(F, under, held_at(offsets), told.largest);
   constexpr double alike = 1e-8;
   return found.converged &&
          (found.forces - told.forces).norm() <= alike * std::max(found.largest, told.forces.norm()) &&
          (found.displacement - told.displacement).norm() <= alike * found.displacement.norm();
 }
 
-AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
-  const bool straight =
-      conditions.geometry == Geometry::linear && as_printed_.empty() && legs_.fits() && !stepped_.empty() && !lines_;
+/// The laws in balance under a load that includes the weight, by the linear response of the rest.
+std::optional<AnalyticModel::Quick> AnalyticModel::quick(const Vector6& F, const Conditions& conditions) const {
+  const bool straight = as_printed_.empty() && legs_.fits() && !stepped_.empty() && !lines_;
   if (!straight || (imposed_ && imposed_->S.size() == 0) ||
       (!conditions.slips.empty() && static_cast<int>(conditions.slips.size()) != frictions_))
-    return solve(F, conditions);
+    return std::nullopt;
   // A law that bends is found about the first load, by all its digits.
   const auto bends = [](const SteppedLaw& l) { return !is_linear(l.law) && row_of(l.law).curve != Curve::jumps; };
-  if (!imposed_ && std::any_of(stepped_.begin(), stepped_.end(), bends)) return solve(F, conditions);
-  refuse_motions(F + weight_);
+  if (!imposed_ && std::any_of(stepped_.begin(), stepped_.end(), bends)) return std::nullopt;
+  refuse_motions(F);
   const bool first = !between_;
   Between& b = linear_response();
-  SteppedForces at = held_under(b, F + weight_, conditions);
+  SteppedForces at = held_under(b, F, conditions);
   const SteppedForces held = at;
   const Imposed& known = b.known;
   // Of loads in a sequence the next one finds most laws as the last one left them.
   std::optional<BalancedSteps> same;
   if (frictions_ > 0) same = b.same.after(held.forces, conditions.slips);
-  const BalancedSteps found = same ? *std::move(same) : [&] {
+  BalancedSteps found = same ? *std::move(same) : [&] {
     BalancedSteps searched = balance(
         stepped_, conditions.slips,
         [&](const std::vector<Step>& steps) {
@@ -99,25 +103,39 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
     if (frictions_ > 0) b.same.remember(held.forces, conditions.slips, searched);
     return searched;
   }();
-  const VectorX offsets = found.offsets.size() > 0 ? found.offsets : VectorX::Zero(known.c.size());
-  const Vector6 displacement = held.displacement + known.T * offsets;
+  // Where nothing balances, any small offsets show whether the rest of the mechanism is linear.
+  if (found.offsets.size() == 0) found.offsets = 1e-3 * known.c.cwiseProduct(held.forces);
+  const Vector6 displacement = held.displacement + known.T * found.offsets;
   if (first) {
     SteppedForces told = held;
-    told.forces -= known.S * offsets;
+    told.forces -= known.S * found.offsets;
     told.displacement = displacement;
-    if (!found.converged || !agrees(F + weight_, conditions.warmer, offsets, told)) {
+    if (!agrees(F, conditions.warmer, found.offsets, told)) {
       imposed_ = std::make_shared<Imposed>();  // what offsets do depends on the load
       between_.reset();
-      return solve(F, conditions);
+      return std::nullopt;
     }
   }
+  return Quick{std::move(found), displacement};
+}
+
+AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
+  const bool in_part = conditions.geometry != Geometry::linear;
+  if (in_part && stepped_.empty()) return solve(F, conditions);
+  const std::optional<Quick> found = quick(F + weight_, conditions);
+  if (!found) return solve(F, conditions);
   AnalyticSolution s;
-  s.converged = found.converged;
-  s.message = found.reason;
-  s.slips = found.slips;
+  s.converged = found->laws.converged;
+  s.message = found->laws.reason;
+  s.slips = found->laws.slips;
   s.load = F;
-  s.displacement = displacement;
-  return s;
+  s.displacement = found->displacement;
+  if (!in_part || !s.converged) return s;
+  ChainConditions under;
+  under.warmer = conditions.warmer;
+  under.steps = held_at(found->laws.offsets);
+  s.leg_wrenches = equilibrium_under(F + weight_, under).leg_wrenches;
+  return with_shape(std::move(s), conditions.geometry);
 }
 
 }  // namespace deflect::analytic

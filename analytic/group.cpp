@@ -270,7 +270,9 @@ Group::State Group::solve(const Vector6& F, const ChainConditions& c) const {
   double held = 0;  // what free deflections would bring, were the far body to stay
   const std::shared_ptr<const Straight> known = R.cols() > 0 ? factorised(c) : nullptr;
   const bool straight = known || linear();
-  while (!s.converged && s.iterations < 100) {
+  // What is linear is as near after twelve steps as it will be; settle() allows most from the eleventh on.
+  const int most = known ? 12 : 100;
+  while (!s.converged && s.iterations < most) {
     ++s.iterations;
     const NewtonStep step = newton_step(F, s, least, c, known.get(), size_of_forces);
     held = std::max(held, step.held);

@@ -193,14 +193,17 @@ AnalyticSolution AnalyticModel::assembled(Geometry geometry) const {
   return equilibrium(Vector6::Zero(), as_printed_.empty() && stepped_.empty() ? geometry : Geometry::linear);
 }
 
-/// The deformed shape's share is that of the mechanism without gaps, friction and heat.
 AnalyticSolution AnalyticModel::solve_in_part(const Vector6& F, const Conditions& conditions) const {
   Conditions linear = conditions;
   linear.geometry = Geometry::linear;
   AnalyticSolution s = solve(F, linear);
-  if (!s.converged) return s;
-  const AnalyticModel smooth(without_steps(configuration_, s.leg_wrenches, F + weight_));
-  const AnalyticSolution deformed = smooth.solve(F, conditions.geometry), straight = smooth.solve(F);
+  return s.converged ? with_shape(std::move(s), conditions.geometry) : s;
+}
+
+/// The deformed shape's share is that of the mechanism without gaps, friction and heat.
+AnalyticSolution AnalyticModel::with_shape(AnalyticSolution s, Geometry geometry) const {
+  const AnalyticModel smooth(without_steps(configuration_, s.leg_wrenches, s.load + weight_));
+  const AnalyticSolution deformed = smooth.solve(s.load, geometry), straight = smooth.solve(s.load);
   s.shape = deformed.displacement - straight.displacement;
   s.displacement += s.shape;
   s.discretisation = deformed.discretisation;

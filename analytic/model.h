@@ -68,9 +68,9 @@ class AnalyticModel {
   /// temperature are then added as in linear geometry, and with such laws the stiffness is the linear one.
   AnalyticSolution solve(const Vector6& F_T_W, const Conditions& = {}) const;
 
-  /// Only displacement, slips, convergence and message of solve(): for fits, which need many loads. Where laws jump in
-  /// linear geometry, the linear rest of the mechanism is solved once for six loads and a temperature, so that each
-  /// further load solves only the laws.
+  /// Only displacement, slips, convergence and message of solve(): for fits, which need many loads. Where laws jump,
+  /// the linear rest of the mechanism is solved once for six loads and a temperature, so that each further load solves
+  /// only the laws.
   AnalyticSolution displaced(const Vector6& F_T_W, const Conditions& = {}) const;
 
   /// The assembled state: displacement of T from the drawing, and the legs' wrenches by misfits.
@@ -108,6 +108,7 @@ class AnalyticModel {
   AnalyticSolution solution(const Group::State&, const Vector6& F, const ChainConditions&) const;
   AnalyticSolution deformed_equilibrium(const Vector6& F, Geometry) const;
   AnalyticSolution solve_in_part(const Vector6& F, const Conditions&) const;
+  AnalyticSolution with_shape(AnalyticSolution, Geometry) const;
   Flexibility flexibility(const AnalyticSolution&) const;
   Vector6 inside_linear(const Inside&, const AnalyticSolution&) const;
 
@@ -134,6 +135,13 @@ class AnalyticModel {
   Between between(const Imposed&) const;
   Between& linear_response() const;
   SteppedForces held_under(const Between&, const Vector6& F, const Conditions&) const;
+  struct Quick {
+    BalancedSteps laws;
+    Vector6 displacement;
+  };
+  std::optional<Quick> quick(const Vector6& F, const Conditions&) const;
+  /// The laws at these offsets, each with the compliance that `between_` has in its place.
+  std::vector<Step> held_at(const VectorX& offsets) const;
   bool agrees(const Vector6& driving, double warmer, const VectorX& offsets, const SteppedForces&) const;
   /// Where heat or misfits are all that drives it, forces that should vanish are the rounding of this force.
   double held_without_load(const Conditions& c) const {

@@ -152,8 +152,8 @@ class Balance {
     if (imposed_.S.size() == 0) linearise(VectorX::Zero(n_), at, 1e3);
     VectorX o = VectorX::Zero(n_), p;
     SetValuedSolution found;
-    double before = infinite;
-    for (int round = 0; round < 200; ++round) {
+    double before = infinite, least = infinite;
+    for (int round = 0, nearest = 0; round < 200 && round < nearest + 25; ++round) {
       const VectorX f0 = at.forces + imposed_.S * o;
       const MatrixX P = MatrixX::Identity(n_, n_) - MatrixX(imposed_.c.asDiagonal() * imposed_.S);
       sizes_ = VectorX::Constant(n_, at.largest);
@@ -185,6 +185,7 @@ class Balance {
       // Where all other laws are linear, S is right but for rounding, of which small offsets would give it far more.
       const bool told_by_S = lacking < 1e-3 * std::min(before, 1.0);
       before = lacking;
+      if (lacking < 0.9 * least) least = lacking, nearest = round;
       if (told_by_S) continue;
       own_ = imposed_;
       linearise(o, at, 1e-7);
