@@ -129,6 +129,23 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
   return false;
 }
 
+/// Turns the wrenches of the legs into base axes. In second order the legs' displacements y, φ on a base that turned by
+/// θ move T by (1 + [θ]×) y and turn it by (1 + ½[θ]×) φ, so that what they carry in their own axes is (1 − [θ]×) f and
+/// (1 − ½[θ]×) m.
+Matrix6 to_base_axes(const VirtualChain& whole, Geometry geometry) {
+  const std::size_t legs = legs_step(whole);
+  if (geometry == Geometry::finite) return rotate_twist(whole.motion_before(legs, geometry).R());
+  Vector3 theta = Vector3::Zero();
+  for (std::size_t i = 0; i < legs; ++i) {
+    const VirtualJoint& base = std::get<VirtualJoint>(whole.steps[i]);
+    theta += base.joint.R_WJ * Eigen::Map<const Vector3>(base.x.data() + 3);
+  }
+  Matrix6 out = Matrix6::Zero();
+  out.topLeftCorner<3, 3>() = (Matrix3::Identity() - skew(theta)).inverse();
+  out.bottomRightCorner<3, 3>() = (Matrix3::Identity() - 0.5 * skew(theta)).inverse();
+  return out;
+}
+
 /// Reads off the state what is asked of it; false where it is not stable.
 bool conclude(Deformed& d, std::optional<LastStep> last) {
   const Geometry geometry = d.conditions.geometry;
@@ -146,7 +163,7 @@ bool conclude(Deformed& d, std::optional<LastStep> last) {
   } else {
     d.rotation_vector = l.J.bottomRows<3>() * l.x + turn;
   }
-  const Matrix6 axes = rotate_twist(d.whole.motion_before(legs_step(d.whole), geometry).R());
+  const Matrix6 axes = to_base_axes(d.whole, geometry);
   d.leg_wrenches.clear();
   for (const VirtualChain& leg : legs_of(d.whole).branches) d.leg_wrenches.push_back(axes * leg.F);
   const Vector3 moment = d.whole.F.tail<3>();
