@@ -9,6 +9,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/files.h"
+#include "msa/base/memory.h"
 #include "msa/base/units.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/benchmark/scores.h"
@@ -187,6 +188,7 @@ void run_all(const Arguments& a, Ranks* ranks) {
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 int main(int argc, char** argv) {
+  deflect::keep_freed_memory();
   using namespace deflect;
   using namespace deflect::benchmark;
   if (openblas_set_num_threads) openblas_set_num_threads(1);

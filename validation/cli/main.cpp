@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "msa/base/error.h"
+#include "msa/base/memory.h"
 #include "validation/cli/command.h"
 #include "validation/cli/completion.h"
 #include "validation/cli/made_by.h"
@@ -77,6 +78,7 @@ void run(const Command& command, Ranks* ranks) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  deflect::keep_freed_memory();
   if (openblas_set_num_threads) openblas_set_num_threads(1);
   CLI::App app("deflect: how far a mechanism's tool point moves under load, by two independent theories", "deflect");
   app.set_version_flag("--version", DEFLECT_VERSION);

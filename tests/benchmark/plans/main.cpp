@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "msa/base/memory.h"
 #include "tests/benchmark/plans/loop.h"
 #include "tests/benchmark/plans/precision.h"
 
@@ -46,6 +47,7 @@ Tied pair_of(const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  deflect::keep_freed_memory();
   std::size_t truths = 10;
   int threads = 1;
   std::vector<Tied> pairs;
