@@ -71,6 +71,18 @@ INSTANTIATE_TEST_SUITE_P(
         Shown{"truss-45", "F_C0a", [](frame::FrameSensor& s) { s.of = "C0b"; }, "F_C0a_shows_axial of member C0b"},
         Shown{"lattice-girder", "mid_l", [](frame::FrameSensor& s) { s.of = "l3"; }, "mid_l_shows_uz of node l3"}));
 
+// In the deformed shape the load of every other node is tried by linear geometry first.
+TEST(FrameRecording, ALoadAtAnotherNodeIsFoundInTheDeformedShape) {
+  frame::FrameDescription f = built_in("portal-semi-rigid");
+  f.geometry = Geometry::finite;
+  frame::FrameDescription truth = f;
+  for (auto& [name, load] : truth.loads)
+    if (name == "above") load.nodes.front().first = "C";
+  const Measurements data = subject::simulate_frame(truth, subject::frame_campaign("rich", f, 1), {});
+  const std::vector<std::string> ids = mistake_in(f, data);
+  EXPECT_TRUE(holds(ids, "load.above_at_C")) << (ids.empty() ? "none" : ids.front());
+}
+
 // What is there in a healthy frame, or missing in one member, is no mistake of a channel.
 TEST(FrameRecording, AChannelIsNotSaidToShowAnotherWhereItDoesNot) {
   frame::FrameDescription f = built_in("portal-semi-rigid");

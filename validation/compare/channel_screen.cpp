@@ -17,6 +17,12 @@ constexpr double share_of_predicted = 0.01, part_taken_away = 0.4, worse_by = 5;
 constexpr double beyond_chance = 30, largest_factor = 2;
 constexpr double most_of_misfit = 0.8, far_less = 1.0 / 36;
 
+prediction::PredictionOptions in_linear_geometry() {
+  prediction::PredictionOptions o;
+  o.geometry = Geometry::linear;
+  return o;
+}
+
 bool has_free_zero(const subject::Subject& subject, const std::string& sensor) {
   const frame::FrameSensor* found = subject.frame() ? find(subject.frame()->sensors, sensor) : nullptr;
   return found && found->free_zero;
@@ -65,8 +71,13 @@ ChannelScreen::ChannelScreen(const subject::Subject& subject, const Comparison& 
     if (const double s = scale_[study_->values[i].channel]; s > 0)
       noise += std::log1p(std::pow(deviation_(as_index(i)) / s, 2));
   const auto n = static_cast<double>(std::max<std::size_t>(1, study_->values.size()));
-  const double as_recorded = loss(*study_->data, study_->predicted);
-  promising_ = as_recorded - part_taken_away * std::max(0.0, as_recorded - noise / n);
+  as_recorded_ = loss(*study_->data, study_->predicted);
+  if (subject_.geometry() != Geometry::linear) {
+    const auto linear =
+        outcome_of([&] { return study_->standing->predict(*study_->data, in_linear_geometry(), {threads_}); });
+    for (std::size_t i = 0; linear && i < linear->size(); ++i) shape_.push_back(study_->predicted[i] - (*linear)[i]);
+  }
+  promising_ = as_recorded_ - part_taken_away * std::max(0.0, as_recorded_ - noise / n);
   equal_within_ = worse_by / n;
 }
 
@@ -142,14 +153,27 @@ std::vector<std::pair<recording::Correction, double>> ChannelScreen::other_quant
   return out;
 }
 
+bool ChannelScreen::has_other_loads(const measurement::Measurements& data) const {
+  return data.instruments.load_points != study_->data->instruments.load_points ||
+         measurement::loads_of(data) != study_->loads;
+}
+
 double ChannelScreen::loss(const recording::Correction& c) const {
   const measurement::Measurements data = recording::corrected(*study_->data, c);
-  const bool other_loads = data.instruments.load_points != study_->data->instruments.load_points ||
-                           measurement::loads_of(data) != study_->loads;
-  if (!other_loads) return loss(data, study_->predicted);
+  if (!has_other_loads(data)) return loss(data, study_->predicted);
   const auto predicted =
       outcome_of([&] { return subject_.stand(data, study_->standing.get())->predict(data, {}, {threads_}); });
   return predicted ? loss(data, *predicted) : std::numeric_limits<double>::infinity();
+}
+
+std::optional<double> ChannelScreen::estimated_loss(const recording::Correction& c) const {
+  const measurement::Measurements data = recording::corrected(*study_->data, c);
+  if (shape_.empty() || !has_other_loads(data)) return std::nullopt;
+  auto predicted = outcome_of(
+      [&] { return subject_.stand(data, study_->standing.get())->predict(data, in_linear_geometry(), {threads_}); });
+  if (!predicted) return std::nullopt;
+  for (std::size_t i = 0; i < shape_.size(); ++i) (*predicted)[i] += shape_[i];
+  return loss(data, *predicted);
 }
 
 }  // namespace deflect::compare

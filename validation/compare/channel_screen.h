@@ -1,6 +1,9 @@
 // Corrections of recorded channels and loads (channel_mistakes.h), tried on the prediction before a whole comparison.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "validation/compare/comparison.h"
 #include "validation/recording/recorded.h"
 
@@ -14,6 +17,9 @@ class ChannelScreen {
   ChannelScreen(const subject::Subject&, const Comparison&, int threads);
 
   double loss(const recording::Correction&) const;
+  /// The same by linear geometry, with what the true one adds under the loads as recorded: far quicker. Nothing where
+  /// it is no estimate: where loads stay, or the subject is linear.
+  std::optional<double> estimated_loss(const recording::Correction&) const;
   /// Whether each channel that the correction scales follows its prediction then: with corrected z, predicted p and
   /// expected deviations e,
   ///   Σ (p² − (z − p)²)/e² > 30, and Σ z p/e² / Σ z²/e², the factor that would fit best, from 1/2 to 2;
@@ -27,19 +33,23 @@ class ChannelScreen {
   std::vector<std::pair<recording::Correction, double>> other_quantities(const Comparison&) const;
   /// A correction is promising with a loss below this: it takes away 40 % of what is beyond noise and tolerances.
   double promising() const { return promising_; }
+  /// It may be promising where its estimate is below this: half of that.
+  double estimated_promising() const { return (as_recorded_ + promising_) / 2; }
   /// Losses that differ by less are alike.
   double equal_within() const { return equal_within_; }
 
  private:
   bool follows(std::size_t channel, double factor) const;
+  bool has_other_loads(const measurement::Measurements&) const;
   double loss(const measurement::Measurements&, const std::vector<VectorX>& predicted) const;
 
   const subject::Subject& subject_;
   const ResidualStudy* study_;
   int threads_;
-  std::vector<double> scale_;  // by channel
-  VectorX deviation_;          // expected, by measured number
-  double promising_ = 0, equal_within_ = 0;
+  std::vector<double> scale_;   // by channel
+  VectorX deviation_;           // expected, by measured number
+  std::vector<VectorX> shape_;  // what the true geometry adds, by reading; empty where the subject is linear
+  double as_recorded_ = 0, promising_ = 0, equal_within_ = 0;  // as_recorded_: loss
 };
 
 }  // namespace deflect::compare

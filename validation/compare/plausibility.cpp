@@ -25,10 +25,11 @@ constexpr double excess_cured = 1.0 / 9, excess_far_less = 1.0 / 36, gross_misfi
 constexpr double misfit_cured = 1.0 / 3, misfit_far_less = 1.0 / 6, all_of_misfit = 1.0 / 20;  // of the share
 constexpr double deviations_of_right = 5;                                                      // of χ²
 constexpr double hardly_more = 1.05;                                                           // of shares, by noise
-constexpr double hardly_worse = 20;     // of χ²: tolerances come into it
-constexpr double clearly = 30;          // of χ², by which corrected data are easier to explain
-constexpr double cost_of_reading = 25;  // χ² that setting one aside is worth
-constexpr std::size_t most_tried = 4;   // on all readings
+constexpr double hardly_worse = 20;            // of χ²: tolerances come into it
+constexpr double clearly = 30;                 // of χ², by which corrected data are easier to explain
+constexpr double cost_of_reading = 25;         // χ² that setting one aside is worth
+constexpr std::size_t most_tried = 4;          // on all readings
+constexpr std::size_t looked_at_exactly = 12;  // where losses can be estimated
 
 bool fits_badly(const Comparison& c, const MisfitAccount& account) {
   return c.p_value < chance_of_bad_fit ||
@@ -128,10 +129,21 @@ std::vector<Tried> promising_poses(const Comparison& c, const CorrectionScreen& 
   return std::move(out).sorted();
 }
 
+/// Where losses can be estimated, the best of them are looked at exactly.
 std::vector<Tried> promising_channels(const ChannelScreen& screen, const std::vector<recording::Correction>& all) {
   Promising out(screen.promising());
-  for (const recording::Correction& correction : all)
-    if (screen.follows(correction)) out.add(correction, screen.loss(correction));
+  std::vector<Tried> estimated;
+  for (const recording::Correction& correction : all) {
+    if (!screen.follows(correction)) continue;
+    const std::optional<double> loss = screen.estimated_loss(correction);
+    if (!loss)
+      out.add(correction, screen.loss(correction));
+    else if (*loss < screen.estimated_promising())
+      estimated.push_back({correction, *loss});
+  }
+  std::stable_sort(estimated.begin(), estimated.end(), [](const Tried& a, const Tried& b) { return a.loss < b.loss; });
+  for (std::size_t i = 0; i < std::min(looked_at_exactly, estimated.size()); ++i)
+    out.add(estimated[i].correction, screen.loss(estimated[i].correction));
   return std::move(out).sorted();
 }
 
