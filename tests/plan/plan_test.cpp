@@ -277,6 +277,42 @@ sensors: {top: {node: B, direction: ux, sigma: 1 um}}
   EXPECT_NE(report.find("{node: A, direction: ux, sigma: 0.001 mm}"), std::string::npos) << report;
 }
 
+/// The same two springs, where the node between them is read next. How much softer the upper one may be is known from
+/// elsewhere, 0.6 ± 10 %: fitted to what the lower one would read it stands at 0.5 exp(u), reads 20 (exp(−u) − 1) µm
+/// more at the end, as often as that is read, and pays ((u + ln 0.5/0.6)/0.1)² for it.
+TEST(Plan, KnowsWhatAParameterIsBefore) {
+  const subject::Subject s = frame::parse_frame(R"(name: chain
+plane: xz
+nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
+supports: {A: [uz, ry], B: [uz, ry]}
+springs: {lower: {node: A, ux: 1 N/um}, upper: {node: B, to: A, ux: 1 N/um}}
+loads: {pull: {nodes: {B: {fx: 10 N}}}}
+sensors: {top: {node: B, direction: ux, sigma: 1 um}, mid: {node: A, direction: ux, sigma: 1 um}}
+)",
+                                                "chain.yaml");
+  const std::vector<effects::Effect> effects = effects::place_effects(s, {});
+  effects::Effect upper = effects::find_effect(effects, "factor@spring.upper.ux");
+  upper.parameters.front().prior = effects::ParameterPrior{0.6, 0.06};
+  const auto half = [](const effects::Effect& e) -> Rival { return {{{&e, {}}}, values({0.5}), 0.5}; };
+  const auto read = [&](const char* rows) {
+    return s.placed(measurement::parse_measurements(rows, "data.csv", s.instruments()));
+  };
+  PlanOptions o;
+  o.draws = 1;
+  const Pair p = expected_of(s, read("load.pull,top_mm\n1,0.03\n"), read("load.pull,top_mm,mid_mm\n1,0.03,0.02\n"),
+                             {half(effects::find_effect(effects, "factor@spring.lower.ux")), half(upper)}, o)
+                     .pairs.front();
+  const auto least = [](double ends) {
+    double out = INFINITY;
+    for (double u = -1; u < 1; u += 1e-5) {
+      const double off = 20 * (std::exp(-u) - 1), known = (u + std::log(0.5 / 0.6)) / 0.1;
+      out = std::min(out, ends * off * off + known * known);
+    }
+    return out;
+  };
+  EXPECT_NEAR(p.if_a, 100 + least(2) - least(1), 0.01);
+}
+
 TEST(Plan, IsAFileWithEmptyCellsThatReadsBack) {
   const Plan p = plan_of({rival("actuator_compliance", values({4000})), rival("platform_flexibility", values({2500}))});
   const std::string text = measurement::measurements_text(p.readings, {true, true, true, true, false, false});

@@ -18,6 +18,12 @@ double value_at(const effects::EffectParameter& p, double x) {
   return std::clamp(value, p.low, p.high);
 }
 
+std::optional<effects::ParameterPrior> prior_of_coordinate(const effects::EffectParameter& p) {
+  if (!p.prior) return std::nullopt;
+  const double unit = p.log ? p.prior->mean : 0.5 * (p.high - p.low);
+  return effects::ParameterPrior{coordinate(p, p.prior->mean), p.prior->deviation / unit};
+}
+
 namespace {
 
 constexpr int doublings = 7;
@@ -47,11 +53,6 @@ Eigen::Index priors_of(const std::vector<const effects::EffectParameter*>& all) 
   return std::count_if(all.begin(), all.end(), [](const auto* p) { return p->prior.has_value(); });
 }
 
-double prior_deviations(const effects::EffectParameter& p, double x) {
-  const double mean = p.prior->mean, deviation = p.prior->deviation;
-  return p.log ? (x - std::log(mean)) * mean / deviation : (value_at(p, x) - mean) / deviation;
-}
-
 }  // namespace
 
 FitProblem::FitProblem(const Observations& o, const Hypothesis& h)
@@ -74,7 +75,8 @@ std::optional<VectorX> FitProblem::residual(const VectorX& x, std::string* why) 
     Eigen::Index row = r.size();
     r.conservativeResize(rows());
     for (Eigen::Index i = 0; i < x.size(); ++i)
-      if (const effects::EffectParameter& p = *nth(parameters_, i); p.prior) r(row++) = prior_deviations(p, x(i));
+      if (const auto prior = prior_of_coordinate(*nth(parameters_, i)))
+        r(row++) = (x(i) - prior->mean) / prior->deviation;
     return r;
   }
   if (why) *why = predicted ? "the prediction is no number" : predicted.why;

@@ -16,6 +16,8 @@ namespace deflect::diagnosis {
 double coordinate(const effects::EffectParameter&, double value);
 /// The value there, within the parameter's bounds.
 double value_at(const effects::EffectParameter&, double x);
+/// What is known of the coordinate before, where the parameter has a prior; of a logarithm, with deviation over mean.
+std::optional<effects::ParameterPrior> prior_of_coordinate(const effects::EffectParameter&);
 
 /// Of all parameters.
 VectorX coordinates_of(const Hypothesis&, const VectorX& values);

@@ -85,7 +85,7 @@ void Design::drop(const WhiteRows& r) { update(innovation(r, true, true), -1); }
 void Design::update(const Innovation& i, double sense) {
   const Eigen::LLT<MatrixX> factor(i.S);
   const MatrixX e = factor.matrixL().solve(i.e), gain = factor.matrixL().solve(i.PX.transpose());
-  Q_ += sense * e.transpose() * e;
+  if (Q_.size() > 0) Q_ += sense * e.transpose() * e;
   alpha_ += sense * gain.transpose() * e;
   P_ -= sense * gain.transpose() * gain;
 }

@@ -30,7 +30,7 @@ struct WhiteRows {
 class Design {
  public:
   /// Before any reading of these poses: `P` covariance of the shared nuisances, `alpha` and `Q` as above of the
-  /// readings that were taken elsewhere.
+  /// readings that were taken elsewhere. Without Q (0 × 0) innovations() alone tells of the targets.
   Design(MatrixX P, MatrixX alpha, MatrixX Q);
 
   /// What Q becomes with a block, without taking it, and without one that was taken.

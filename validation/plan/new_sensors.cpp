@@ -16,7 +16,7 @@ using measurement::Quantity;
 using measurement::Reading;
 using subject::PossibleSensor;
 
-constexpr std::size_t judged = 8, shown = 3;
+constexpr std::size_t most_looked_at = 8, judged = 4, shown = 3;
 
 /// What the readings have of the tool point, and σ of displacements and rotations; 0: not known.
 struct InData {
@@ -103,7 +103,7 @@ std::vector<std::size_t> most_different(const MatrixX& differences) {
       return std::abs(own.dot(differences.row(as_index(other)).normalized())) > alike;
     });
     if (is_new) out.push_back(k);
-    if (out.size() == judged) break;
+    if (out.size() == most_looked_at) break;
   }
   return out;
 }
@@ -125,24 +125,49 @@ std::vector<std::size_t> enough(RivalryAim aim, std::size_t blocks, bool in_orde
   return {};
 }
 
-NewSensor judged_one(const subject::Subject& s, const PossibleSensor& sensor, const Measurements& all,
-                     std::size_t taken, const std::vector<Rival>& rivals, const SensorOptions& o) {
-  const subject::Subject with = subject::with_sensors(s, {sensor});
-  Possible possible;
-  possible.all = with.placed(read_by(all, {sensor}, taken));
-  possible.taken = taken;
-  for (std::size_t i = taken; i < all.readings.size(); ++i) possible.blocks.push_back({i, 1, all.readings[i].pose});
-  const Prospect prospect(with, std::move(possible), o.noise, parallel::alone);
-  Rivalry rivalry(prospect, with, rivals, o.draws, o.seed, parallel::alone);
-  NewSensor out{sensor, 0, {}, 0};
-  const auto [gain, at] = rivalry.refitted(parallel::alone);
-  out.probability = rivalry.probability(gain);
-  out.separation = INFINITY;
-  for (const Pair& p : rivalry.pairs(gain)) out.separation = std::min(out.separation, p.separation);
-  rivalry = rivalry.about(at, parallel::alone);
-  out.enough = enough(RivalryAim(rivalry, {}, o.probability), prospect.possible().blocks.size(), o.in_order);
-  return out;
-}
+/// The readings added, read by one more sensor.
+class ReadBy {
+ public:
+  ReadBy(const subject::Subject& s, PossibleSensor sensor, const Measurements& all, std::size_t taken,
+         const SensorOptions& o)
+      : sensor_(std::move(sensor)),
+        with_(subject::with_sensors(s, {sensor_})),
+        prospect_(with_, possible(with_.placed(read_by(all, {sensor_}, taken)), taken), o.noise, parallel::alone),
+        o_(o) {}
+
+  /// Probability expected of the true rival to first order, with the rivals as fitted.
+  double promise(const std::vector<Rival>& rivals) const {
+    const Rivalry rivalry(prospect_, with_, rivals, 1, o_.seed, parallel::alone);
+    return rivalry.probability(rivalry.gain_of_all());
+  }
+
+  NewSensor judged(const std::vector<Rival>& rivals) const {
+    Rivalry rivalry(prospect_, with_, rivals, o_.draws, o_.seed, parallel::alone);
+    NewSensor out{sensor_, 0, {}, 0};
+    const auto [gain, at] = rivalry.refitted(parallel::alone);
+    out.probability = rivalry.probability(gain);
+    out.separation = INFINITY;
+    for (const Pair& p : rivalry.pairs(gain)) out.separation = std::min(out.separation, p.separation);
+    rivalry = rivalry.about(at, parallel::alone);
+    out.enough = enough(RivalryAim(rivalry, {}, o_.probability), prospect_.possible().blocks.size(), o_.in_order);
+    return out;
+  }
+
+ private:
+  static Possible possible(Measurements all, std::size_t taken) {
+    Possible out;
+    out.all = std::move(all);
+    out.taken = taken;
+    for (std::size_t i = taken; i < out.all.readings.size(); ++i)
+      out.blocks.push_back({i, 1, out.all.readings[i].pose});
+    return out;
+  }
+
+  PossibleSensor sensor_;
+  subject::Subject with_;
+  Prospect prospect_;
+  const SensorOptions& o_;
+};
 
 }  // namespace
 
@@ -156,9 +181,16 @@ std::vector<NewSensor> new_sensors(const subject::Subject& s, const Measurements
   const subject::Subject with = subject::with_sensors(s, sensors);
   const std::vector<std::size_t> order =
       most_different(differences(with, with.placed(read_by(all, sensors, taken)), taken, sensors, rivals));
-  std::vector<NewSensor> out(order.size());
-  parallel::for_each_case(order.size(), 1, work.threads,
-                          [&](std::size_t i) { out[i] = judged_one(s, sensors[order[i]], all, taken, rivals, o); });
+  std::vector<std::pair<double, std::size_t>> promising(order.size());
+  parallel::for_each_case(order.size(), 1, work.threads, [&](std::size_t i) {
+    promising[i] = {-ReadBy(s, sensors[order[i]], all, taken, o).promise(rivals), order[i]};
+  });
+  std::stable_sort(promising.begin(), promising.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  promising.resize(std::min(promising.size(), judged));
+  std::vector<NewSensor> out(promising.size());
+  parallel::for_each_case(out.size(), 1, work.threads, [&](std::size_t i) {
+    out[i] = ReadBy(s, sensors[promising[i].second], all, taken, o).judged(rivals);
+  });
   std::erase_if(out, [](const NewSensor& n) { return !(n.separation > nothing_tells); });
   std::stable_sort(out.begin(), out.end(), [](const NewSensor& a, const NewSensor& b) {
     const auto many = [](const NewSensor& n) { return n.enough.empty() ? std::size_t(-1) : n.enough.size(); };

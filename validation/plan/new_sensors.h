@@ -25,10 +25,11 @@ struct SensorOptions {
 };
 
 /// The most useful ones among subject::possible_sensors(), best first, at most three. All are compared by what the
-/// rivals, as fitted, make them read differently, over σ; those that differ most, each in its own way, are judged as
-/// readings are (rivals.h). σ, where nothing tells it: that of displacements in the data, of rotations theirs,
-/// or that of displacements over a tenth of the subject's size. One of unknown σ is left out, and so is one that tells
-/// nothing (λ² below nothing_tells). `added`: with the cells filled that the data have.
+/// rivals, as fitted, make them read differently, over σ; of those that differ most, each in its own way, the ones that
+/// promise most to first order are judged as readings are (rivals.h). σ, where nothing tells it: that of displacements
+/// in the data, of rotations theirs, or that of displacements over a tenth of the subject's size. One of unknown σ is
+/// left out, and so is one that tells nothing (λ² below nothing_tells). `added`: with the cells filled that the data
+/// have.
 std::vector<NewSensor> new_sensors(const subject::Subject&, const measurement::Measurements& data,
                                    const measurement::Measurements& added, const std::vector<Rival>&,
                                    const SensorOptions&, const parallel::Work& = {});

@@ -169,9 +169,14 @@ Design Prospect::design(const MatrixX& targets, const MatrixX& beside, const Vec
   return {factor.solve(MatrixX::Identity(k, k)), alpha, std::move(Q)};
 }
 
+std::pair<Eigen::Index, Eigen::Index> Prospect::numbers_of(std::size_t block) const {
+  const Block& b = possible_.blocks[block];
+  return {first_[b.first], first_[b.first + b.count] - first_[b.first]};
+}
+
 WhiteRows Prospect::rows(std::size_t block, const MatrixX& targets, const MatrixX& beside) const {
   const Block& b = possible_.blocks[block];
-  const Eigen::Index first = first_[b.first], n = first_[b.first + b.count] - first;
+  const auto [first, n] = numbers_of(block);
   WhiteRows out;
   out.pose = b.pose;
   out.targets = targets.middleRows(first, n);

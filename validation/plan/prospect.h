@@ -49,6 +49,8 @@ class Prospect {
   VectorX white_of_taken(const VectorX& change) const;
   VectorX off_taken(const subject::Subject&) const;
   VectorX left_of_taken(const VectorX& white) const;
+  /// First number of a block, and how many it has.
+  std::pair<Eigen::Index, Eigen::Index> numbers_of(std::size_t block) const;
   /// The rows of a block for such a design.
   WhiteRows rows(std::size_t block, const MatrixX& targets, const MatrixX& beside) const;
 

@@ -47,10 +47,15 @@ RivalModel::RivalModel(const Prospect& prospect, const subject::Subject& s, Riva
       rival_(std::move(rival)),
       prepared_(s, rival_.hypothesis),
       fitted_(diagnosis::coordinates_of(rival_.hypothesis, rival_.values)),
+      mean_(fitted_),
       prior_(fitted_.size()) {
   const auto parameters = diagnosis::parameters_of(rival_.hypothesis);
   for (Eigen::Index i = 0; i < prior_.size(); ++i) {
-    const double deviation = nth(parameters, i)->log ? wide : half_range;
+    double deviation = nth(parameters, i)->log ? wide : half_range;
+    if (const auto own = diagnosis::prior_of_coordinate(*nth(parameters, i))) {
+      mean_(i) = own->mean, deviation = own->deviation;
+      known_.push_back(i);
+    }
     prior_(i) = deviation * deviation;
   }
 }
@@ -96,17 +101,21 @@ std::optional<VectorX> RivalModel::residual_of_taken(const VectorX& x, const Vec
   const auto there =
       outcome_of([&] { return prospect_->predicted_of_taken(prepared_(diagnosis::values_at(rival_.hypothesis, x))); });
   if (!there || !there->allFinite()) return std::nullopt;
-  return prospect_->left_of_taken(taken_as_linear - prospect_->white_of_taken(*there));
+  VectorX out = prospect_->left_of_taken(taken_as_linear - prospect_->white_of_taken(*there));
+  out.conservativeResize(out.size() + std::ssize(known_));
+  const VectorX off = (x - mean_).cwiseQuotient(prior_.cwiseSqrt());
+  out.tail(std::ssize(known_)) = off(known_);
+  return out;
 }
 
 VectorX RivalModel::target(const VectorX& y, const Linearised& here) const {
-  return prospect_->white(y - here.predicted) + here.beside * (here.at - fitted_);
+  return prospect_->white(y - here.predicted) + here.beside * (here.at - mean_);
 }
 
 double RivalModel::left_at(const VectorX& y, const VectorX& x, const VectorX& predicted, bool all) const {
   const MatrixX none(y.size(), 0);
   const Design rest = prospect_->design(prospect_->white(y - predicted), none, VectorX(0), all);
-  return rest.Q()(0, 0) + (x - fitted_).cwiseAbs2().cwiseQuotient(prior_).sum();
+  return rest.Q()(0, 0) + (x - mean_).cwiseAbs2().cwiseQuotient(prior_).sum();
 }
 
 Refitted RivalModel::fitted_to(const VectorX& y, const Linearised& from, bool all) const {
@@ -136,7 +145,7 @@ Refitted RivalModel::search(const VectorX& y, Linearised here, bool all) const {
     const double promised = design.Q()(0, 0), before = out.left;
     const auto done = [&] { return out.left <= promised + near_enough + share * promised; };
     if (done()) break;
-    const VectorX whole = fitted_ + design.absorbed().col(0).tail(fitted_.size()) - here.at;
+    const VectorX whole = mean_ + design.absorbed().col(0).tail(mean_.size()) - here.at;
     double length = 1;
     for (int tries = 0; tries < halvings && out.left == before; ++tries, length /= 2) {
       const VectorX x = within(here.at + length * whole);

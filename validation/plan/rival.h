@@ -2,12 +2,12 @@
 // readings.
 //
 // Coordinates of its parameters are those of fit_problem.h. The rival is fitted to readings y by Gauss–Newton steps: at
-// the coordinates x, with d their distance from x₀, those that were fitted to the data, and J the derivatives of the
-// prediction μ,
+// the coordinates x, with d their distance from x₀, the means of their priors (without one, those that were fitted to
+// the data), and J the derivatives of the prediction μ,
 //   λ² = min over z, η of |W (y − μ(x) + J d − J z − X η)|² + zᵀ Π_x⁻¹ z + ηᵀ Π⁻¹ η     (design.h)
 // gives z, the next d, and what it promises to leave; a step is halved until it leaves less than before. For a law that
 // is linear in its coordinates the first step is the last one. Where much is left, the fit begins once more far away,
-// where least is left: at x₀ a law may say too little for its derivatives to lead anywhere.
+// where least is left: at the fit to the data a law may say too little for its derivatives to lead anywhere.
 #pragma once
 
 #include <optional>
@@ -63,7 +63,8 @@ class RivalModel {
   /// The change of readings to `y` that it must absorb about `here`, whitened: W (y − μ(x)) + J d.
   VectorX target(const VectorX& y, const Linearised& here) const;
 
-  /// Variances of the coordinates before any reading, and their covariance after those taken, by its derivatives.
+  /// Variances of the coordinates before any reading, of a parameter's own prior or wide ones, and their covariance
+  /// after those taken, by its derivatives.
   const VectorX& prior() const { return prior_; }
   MatrixX covariance(const Linearised& fit) const;
 
@@ -71,19 +72,21 @@ class RivalModel {
   VectorX within(const VectorX& coordinates) const;
   /// The readings taken without what their true geometry adds at the fit, and without gross errors
   /// (Prospect::off_taken()), whitened; throws what the prediction throws. And what tolerances leave of these at some
-  /// coordinates (Prospect::left_of_taken()); nothing beyond a bound and where the prediction fails.
+  /// coordinates (Prospect::left_of_taken()), with a row for each prior of a parameter's own; nothing beyond a bound
+  /// and where the prediction fails.
   VectorX taken_as_linear() const;
   std::optional<VectorX> residual_of_taken(const VectorX& coordinates, const VectorX& taken_as_linear) const;
 
  private:
-  /// λ² of what tolerances leave at those coordinates, and their distance from the fit.
+  /// λ² of what tolerances leave at those coordinates, and of their distance from the means of the priors.
   double left_at(const VectorX& y, const VectorX& coordinates, const VectorX& predicted, bool all) const;
   Refitted search(const VectorX& y, Linearised from, bool all) const;
 
   const Prospect* prospect_;
   Rival rival_;
   effects::PreparedEffects prepared_;
-  VectorX fitted_, prior_;
+  VectorX fitted_, mean_, prior_;
+  std::vector<Eigen::Index> known_;  // coordinates with a prior of their own
 };
 
 }  // namespace deflect::plan

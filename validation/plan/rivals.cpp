@@ -133,9 +133,10 @@ Design Rivalry::design(const Linearisation& l, bool all) const {
   return prospect_->design(l.targets, l.beside, models_[l.fitted].prior(), all);
 }
 
-std::vector<MatrixX> Rivalry::gain_of_all() const {
-  std::vector<MatrixX> out;
-  for (const Linearisation& l : linearised_) out.push_back(design(l, true).Q() - design(l, false).Q());
+Gains Rivalry::gain_of_all() const {
+  Gains out;
+  for (const Linearisation& l : linearised_)
+    out.emplace_back(design(l, true).Q().diagonal() - design(l, false).Q().diagonal());
   return out;
 }
 
@@ -144,7 +145,7 @@ Refits Rivalry::refitted(const parallel::Work& work) const {
   std::vector<std::pair<std::size_t, std::size_t>> all;  // linearisation, target
   for (std::size_t l = 0; l < linearised_.size(); ++l) {
     const std::size_t n = linearised_[l].origin.size();
-    out.gain.push_back(MatrixX::Zero(as_index(n), as_index(n)));
+    out.gain.push_back(VectorX::Zero(as_index(n)));
     for (std::size_t t = 0; t < n; ++t) all.emplace_back(l, t);
   }
   parallel::for_each_case(all.size(), 1, work.threads, [&](std::size_t i) {
@@ -153,13 +154,13 @@ Refits Rivalry::refitted(const parallel::Work& work) const {
     const std::size_t b = linearised_[l].fitted;
     const VectorX& y = *predicted_[a][k];
     Refitted to_all = models_[b].fitted_to(y, fits_[b], true);
-    out.gain[l](as_index(t), as_index(t)) = to_all.left - models_[b].fitted_to(y, fits_[b], false).left;
+    out.gain[l](as_index(t)) = to_all.left - models_[b].fitted_to(y, fits_[b], false).left;
     if (k == 0) out.at[b][a] = std::move(to_all.at);
   });
   return out;
 }
 
-std::vector<Pair> Rivalry::pairs(const std::vector<MatrixX>& gain) const {
+std::vector<Pair> Rivalry::pairs(const Gains& gain) const {
   std::vector<Pair> out;
   for (std::size_t a = 0; a < rivals_.size(); ++a)
     for (std::size_t b = a + 1; b < rivals_.size(); ++b) {
@@ -168,7 +169,7 @@ std::vector<Pair> Rivalry::pairs(const std::vector<MatrixX>& gain) const {
       for (std::size_t l = 0; l < linearised_.size(); ++l)
         for (std::size_t t = 0; t < linearised_[l].origin.size(); ++t) {
           if (std::minmax(linearised_[l].fitted, linearised_[l].origin[t].truth) != std::minmax(a, b)) continue;
-          const double here = std::max(0.0, gain[l](as_index(t), as_index(t)));
+          const double here = std::max(0.0, gain[l](as_index(t)));
           if (linearised_[l].origin[t].truth == a)
             p.if_a += here, of_a += 1;
           else
@@ -183,14 +184,14 @@ std::vector<Pair> Rivalry::pairs(const std::vector<MatrixX>& gain) const {
   return out;
 }
 
-double Rivalry::probability(const std::vector<MatrixX>& gain) const {
+double Rivalry::probability(const Gains& gain) const {
   // Of each truth and draw: prior odds of the others and λ² to them.
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::pair<double, double>>> competitors;
   for (std::size_t l = 0; l < linearised_.size(); ++l)
     for (std::size_t t = 0; t < linearised_[l].origin.size(); ++t) {
       const Target& truth = linearised_[l].origin[t];
       const double odds = rivals_[linearised_[l].fitted].probability / std::max(1e-9, rivals_[truth.truth].probability);
-      competitors[{truth.truth, truth.draw}].emplace_back(odds, std::max(0.0, gain[l](as_index(t), as_index(t))));
+      competitors[{truth.truth, truth.draw}].emplace_back(odds, std::max(0.0, gain[l](as_index(t))));
     }
   double sum = 0, weights = 0;
   for (const auto& [truth, all] : competitors) {
@@ -200,51 +201,92 @@ double Rivalry::probability(const std::vector<MatrixX>& gain) const {
   return weights > 0 ? sum / weights : 0;
 }
 
+VectorX RivalryAim::Said::separations() const {
+  if (bb.size() == 0) return tt;
+  const MatrixX white = Eigen::LLT<MatrixX>(bb).matrixL().solve(bt);
+  return tt - white.colwise().squaredNorm().transpose();
+}
+
+void RivalryAim::Said::add(const MatrixX& white, double sense) {
+  const auto t = white.middleCols(first, tt.size()), b = white.middleCols(first + tt.size(), bb.cols());
+  tt += sense * t.colwise().squaredNorm().transpose();
+  bt += sense * b.transpose() * t;
+  bb += sense * b.transpose() * b;
+}
+
 RivalryAim::RivalryAim(const Rivalry& r, const std::vector<Pair>& hopeless, double wanted)
-    : rivalry_(&r), wanted_(wanted) {
+    : rivalry_(&r), wanted_(wanted), design_({}, {}, {}) {
+  const MatrixX none(r.prospect_->numbers(), 0);
+  std::vector<MatrixX> absorbed;
+  Eigen::Index columns = 0;
   for (const Rivalry::Linearisation& l : r.linearised_) {
-    designs_.push_back(r.design(l, false));
-    before_.push_back(designs_.back().Q());
-    gain_.push_back(MatrixX::Zero(before_.back().rows(), before_.back().cols()));
+    const Eigen::Index t = l.targets.cols(), b = l.beside.cols();
+    MatrixX both(none.rows(), t + b);
+    both << l.targets, l.beside;
+    const Design alone = r.prospect_->design(both, none, VectorX(0));
+    const MatrixX& Q = alone.Q();
+    said_.push_back({columns, Q.diagonal().head(t), Q.bottomLeftCorner(b, t), Q.bottomRightCorner(b, b)});
+    said_.back().bb.diagonal() += r.models_[l.fitted].prior().cwiseInverse();
+    absorbed.push_back(alone.absorbed());
+    design_ = Design(alone.covariance(), {}, {});
+    columns += t + b;
+    before_.push_back(said_.back().separations());
+    gain_.push_back(VectorX::Zero(t));
     std::vector<bool>& counts = counts_.emplace_back();
-    for (const Rivalry::Target& t : l.origin)
+    for (const Rivalry::Target& target : l.origin)
       counts.push_back(std::none_of(hopeless.begin(), hopeless.end(), [&](const Pair& p) {
-        return std::minmax(p.a, p.b) == std::minmax(t.truth, l.fitted);
+        return std::minmax(p.a, p.b) == std::minmax(target.truth, l.fitted);
       }));
   }
+  MatrixX alpha(design_.covariance().rows(), columns);
+  for (std::size_t l = 0; l < said_.size(); ++l) alpha.middleCols(said_[l].first, absorbed[l].cols()) = absorbed[l];
+  design_ = Design(design_.covariance(), std::move(alpha), {});
 }
 
 double RivalryAim::with(std::size_t block) const {
-  std::vector<MatrixX> gain;
-  for (std::size_t l = 0; l < designs_.size(); ++l) gain.push_back(designs_[l].with(rows(block, l)) - before_[l]);
+  const MatrixX white = design_.innovations(rows(block), false);
+  Gains gain;
+  for (std::size_t l = 0; l < said_.size(); ++l) {
+    Said there = said_[l];
+    there.add(white, 1);
+    gain.emplace_back(there.separations() - before_[l]);
+  }
   return soft_least(gain);
 }
 
-void RivalryAim::take(std::size_t block) {
-  for (std::size_t l = 0; l < designs_.size(); ++l) {
-    designs_[l].take(rows(block, l));
-    gain_[l] = designs_[l].Q() - before_[l];
+void RivalryAim::update(std::size_t block, bool taken) {
+  const WhiteRows read = rows(block);
+  const MatrixX white = design_.innovations(read, taken);
+  if (taken)
+    design_.drop(read);
+  else
+    design_.take(read);
+  for (std::size_t l = 0; l < said_.size(); ++l) {
+    said_[l].add(white, taken ? -1 : 1);
+    gain_[l] = said_[l].separations() - before_[l];
   }
 }
 
-void RivalryAim::drop(std::size_t block) {
-  for (std::size_t l = 0; l < designs_.size(); ++l) {
-    designs_[l].drop(rows(block, l));
-    gain_[l] = designs_[l].Q() - before_[l];
+WhiteRows RivalryAim::rows(std::size_t block) const {
+  const Prospect& p = *rivalry_->prospect_;
+  const MatrixX none(p.numbers(), 0);
+  WhiteRows out = p.rows(block, none, none);
+  const auto [first, n] = p.numbers_of(block);
+  out.targets.resize(n, design_.absorbed().cols());
+  for (std::size_t l = 0; l < said_.size(); ++l) {
+    const Rivalry::Linearisation& of = rivalry_->linearised_[l];
+    out.targets.middleCols(said_[l].first, of.targets.cols()) = of.targets.middleRows(first, n);
+    out.targets.middleCols(said_[l].first + of.targets.cols(), of.beside.cols()) = of.beside.middleRows(first, n);
   }
+  return out;
 }
 
-WhiteRows RivalryAim::rows(std::size_t block, std::size_t linearisation) const {
-  const Rivalry::Linearisation& l = rivalry_->linearised_[linearisation];
-  return rivalry_->prospect_->rows(block, l.targets, l.beside);
-}
-
-double RivalryAim::soft_least(const std::vector<MatrixX>& gain) const {
+double RivalryAim::soft_least(const Gains& gain) const {
   double least = INFINITY, sum = 0, n = 0;
   const auto each = [&](const auto& look) {
     for (std::size_t l = 0; l < gain.size(); ++l)
-      for (Eigen::Index t = 0; t < gain[l].cols(); ++t)
-        if (counts_[l][as_size(t)]) look(gain[l](t, t));
+      for (Eigen::Index t = 0; t < gain[l].size(); ++t)
+        if (counts_[l][as_size(t)]) look(gain[l](t));
   };
   each([&](double q) { least = std::min(least, q); });
   if (std::isinf(least)) return 0;

@@ -28,8 +28,11 @@ struct Pair {
 /// Coordinates of each rival's parameters, fitted to what each truth would read: by rival and truth; none of its own.
 using FitsToTruths = std::vector<std::vector<VectorX>>;
 
+/// By how much readings raise λ² (design.h) above those taken: by linearisation of a rivalry and target.
+using Gains = std::vector<VectorX>;
+
 struct Refits {
-  std::vector<MatrixX> gain;
+  Gains gain;
   FitsToTruths at;  ///< to all readings, with the truth at its first draw
 };
 
@@ -42,16 +45,16 @@ class Rivalry {
           const parallel::Work&);
 
   const std::vector<Rival>& rivals() const { return rivals_; }
-  /// By how much all readings of the prospect raise Q (design.h) above those taken, by linearisation.
-  std::vector<MatrixX> gain_of_all() const;
-  /// The same with every rival fitted to the end, to the readings taken and to all (rival.h); only the diagonals.
+  /// Of all readings of the prospect.
+  Gains gain_of_all() const;
+  /// The same with every rival fitted to the end, to the readings taken and to all (rival.h).
   Refits refitted(const parallel::Work&) const;
   /// The same rivals, each linearised about its fits to what the truths would read; where that fails, as before.
   Rivalry about(const FitsToTruths&, const parallel::Work&) const;
   /// What it says of each two.
-  std::vector<Pair> pairs(const std::vector<MatrixX>& gain) const;
+  std::vector<Pair> pairs(const Gains&) const;
   /// Probability that is expected of the true one, mean over truths and draws.
-  double probability(const std::vector<MatrixX>& gain) const;
+  double probability(const Gains&) const;
 
  private:
   friend class RivalryAim;
@@ -80,28 +83,42 @@ class Rivalry {
 /// The aim of a plan: −8 ln ⟨exp(−λ²/8)⟩ over the pairs that are not `hopeless`, their truths and draws: the bound of
 /// Bhattacharyya on the probability of taking the wrong one. Reached once the expected probability of the true one is
 /// `wanted`. The rivalry must outlive it.
+///
+/// One design has the tolerances as nuisances and, as targets, what all linearisations compare and what they fit. With
+/// Q of it, t a target and b what is fitted beside it, of prior variance V:
+///   λ²_t = Q_tt − Q_tb (Q_bb + V⁻¹)⁻¹ Q_bt.
 class RivalryAim final : public Aim {
  public:
   RivalryAim(const Rivalry&, const std::vector<Pair>& hopeless, double wanted);
 
   double value() const override { return soft_least(gain_); }
   double with(std::size_t block) const override;
-  void take(std::size_t block) override;
-  void drop(std::size_t block) override;
+  void take(std::size_t block) override { update(block, false); }
+  void drop(std::size_t block) override { update(block, true); }
   std::unique_ptr<Aim> copy() const override { return std::make_unique<RivalryAim>(*this); }
   bool reached() const override { return rivalry_->probability(gain_) >= wanted_; }
 
-  /// By how much the blocks taken raise Q.
-  const std::vector<MatrixX>& gain() const { return gain_; }
+  /// Of the blocks taken.
+  const Gains& gain() const { return gain_; }
 
  private:
-  WhiteRows rows(std::size_t block, std::size_t linearisation) const;
-  double soft_least(const std::vector<MatrixX>& gain) const;
+  /// What the readings say of one linearisation, whose columns of the design stand from `first` on.
+  struct Said {
+    Eigen::Index first = 0;
+    VectorX tt;      // diagonal of Q
+    MatrixX bt, bb;  // bb with V⁻¹
+    VectorX separations() const;
+    void add(const MatrixX& white, double sense);  // innovations of all columns
+  };
+  WhiteRows rows(std::size_t block) const;
+  void update(std::size_t block, bool taken);
+  double soft_least(const Gains&) const;
 
   const Rivalry* rivalry_;
   double wanted_;
-  std::vector<Design> designs_;            // by linearisation
-  std::vector<MatrixX> before_, gain_;     // Q of the readings taken; what is added to it
+  std::vector<Said> said_;  // by linearisation
+  Design design_;
+  Gains before_, gain_;                    // λ² of the readings taken; what is added to it
   std::vector<std::vector<bool>> counts_;  // by linearisation and target
 };
 
