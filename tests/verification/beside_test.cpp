@@ -225,31 +225,34 @@ TEST(SideBySide, IsKeptByTheFile) {
   EXPECT_EQ(std::get<FrictionLaw>(drive->beside[5].at(0)).force, 3);
 }
 
-// For fits a load costs the laws that jump alone, at any temperature: the same displacement and slips as with
-// everything solved.
+// For fits a load costs the laws that jump alone, at any temperature and in every geometry: the same displacement and
+// slips as with everything solved.
 TEST(Displaced, IsWhatSolveSays) {
   const Mechanism haptic = with(test::device("haptic-6psu-ideal-joints"), "leg.ball_joint.tz",
                                 "[{law: clearance, gap: 0.02 mm}, {law: linear, stiffness: 2000 N/mm}]");
+  const Mechanism two_sided = with(test::device("haptic-6psu-ideal-joints"), "leg.ball_joint.tz",
+                                   "{law: one_sided, pull: 0.002 mm/N, push: 0.0005 mm/N}");
   const Mechanism rubbing = with(test::device("tripteron"), "leg.slide.beside.tz",
                                  "{law: friction, force: 5 N, stiffness: 300 N/mm}", append);
-  for (const Mechanism& m : {haptic, rubbing}) {
-    const Configuration c = configure(m, home_pose(m));
-    const analytic::AnalyticModel model(c), whole(c);
-    std::mt19937 random(4);
-    Conditions quick, slow;
-    for (int i = 0; i < 12; ++i) {
-      const Vector6 F = test::random_wrench(random);
-      quick.warmer = slow.warmer = i < 6 ? 0 : 7 * i - 60;
-      const analytic::AnalyticSolution a = model.displaced(F, quick), b = whole.solve(F, slow);
-      ASSERT_TRUE(a.converged && b.converged) << a.message << b.message;
-      EXPECT_LE((a.displacement - b.displacement).norm(), 1e-9 * b.displacement.norm()) << m.name << " " << i;
-      ASSERT_EQ(a.slips.size(), b.slips.size());
-      for (std::size_t k = 0; k < a.slips.size(); ++k)
-        EXPECT_NEAR(a.slips[k], b.slips[k], 1e-9 * b.displacement.norm());
-      quick.slips = a.slips;
-      slow.slips = b.slips;
+  for (const Mechanism& m : {haptic, two_sided, rubbing})
+    for (const Geometry geometry : {Geometry::linear, Geometry::second_order, Geometry::finite}) {
+      const Configuration c = configure(m, home_pose(m));
+      const analytic::AnalyticModel model(c), whole(c);
+      std::mt19937 random(4);
+      Conditions quick(geometry), slow(geometry);
+      for (int i = 0; i < 12; ++i) {
+        const Vector6 F = test::random_wrench(random);
+        quick.warmer = slow.warmer = i < 6 ? 0 : 7 * i - 60;
+        const analytic::AnalyticSolution a = model.displaced(F, quick), b = whole.solve(F, slow);
+        ASSERT_TRUE(a.converged && b.converged) << a.message << b.message;
+        EXPECT_LE((a.displacement - b.displacement).norm(), 1e-9 * b.displacement.norm()) << m.name << " " << i;
+        ASSERT_EQ(a.slips.size(), b.slips.size());
+        for (std::size_t k = 0; k < a.slips.size(); ++k)
+          EXPECT_NEAR(a.slips[k], b.slips[k], 1e-9 * b.displacement.norm());
+        quick.slips = a.slips;
+        slow.slips = b.slips;
+      }
     }
-  }
 }
 
 // From load to load along loops and in jumps: every law in every phase, with a preload and without. What is tried
