@@ -138,6 +138,30 @@ VectorX beyond_catalogue(const Plan& plan, const VectorX& change, const effects:
   return qr.householderQ() * along;
 }
 
+namespace {
+
+/// The same with two laws at one place, which together may be a third one: a spring is what yields to pull and what
+/// yields to push as much.
+double beyond_two_at_a_place(const Plan& plan, const VectorX& change, const std::vector<std::string>& left_out) {
+  std::vector<const Signature*> single;
+  for (const Signature& s : plan.signatures)
+    if (s.effect.effect->place && !s.shaped && s.basis.cols() == 1 &&
+        std::find(left_out.begin(), left_out.end(), s.effect.effect->name) == left_out.end())
+      single.push_back(&s);
+  const auto at = [](const Signature& s) { return std::pair(subject::id_of(*s.effect.effect->place), s.effect.leg); };
+  double least = change.norm();
+  for (std::size_t i = 0; i < single.size(); ++i)
+    for (std::size_t k = i + 1; k < single.size(); ++k) {
+      if (at(*single[i]) != at(*single[k])) continue;
+      const MatrixX both =
+          statistics::orthonormal(statistics::side_by_side({single[i]->basis, single[k]->basis}, change.size()), 1e-6);
+      least = std::min(least, (change - both * (both.transpose() * change)).norm());
+    }
+  return least;
+}
+
+}  // namespace
+
 double beyond_others(const Plan& plan, const VectorX& change, const std::vector<std::string>& left_out) {
   constexpr int most = 4;
   constexpr double least_own = 1e-6;  // of a unit column: less is rounding
@@ -164,7 +188,7 @@ double beyond_others(const Plan& plan, const VectorX& change, const std::vector<
     taken = statistics::side_by_side({taken, best}, change.size());
     left = change - taken * (taken.transpose() * change);
   }
-  return left.norm();
+  return std::min(left.norm(), beyond_two_at_a_place(plan, change, left_out));
 }
 
 }  // namespace deflect::benchmark

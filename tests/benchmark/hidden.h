@@ -40,7 +40,7 @@ Nearest nearest_entry(const Plan&, const Hidden&);
 double cosine(const Hidden&, const Hidden&);
 
 /// Length of what is left of a whitened change once the four effects, none of those named, that take most of it off,
-/// one after the other, are taken out of it.
+/// one after the other, are taken out of it, or the two at one place that do.
 double beyond_others(const Plan&, const VectorX& change, const std::vector<std::string>& left_out);
 
 /// What is left of a whitened change once the signatures of all effects, one left out, are taken out of it.
