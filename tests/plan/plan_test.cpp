@@ -239,20 +239,25 @@ TEST(Plan, WhereNoCampaignIsBetterNoneIsNamed) {
   EXPECT_TRUE(better("load.tip,z_mm\n1,0\n0.5,0\n"));
 }
 
-/// Two springs in series, 1 N/µm each, read at the far end: 10 N move it by 30 µm, and the one or the other is half as
-/// stiff. No load tells which. The node between them moves by 20 or by 10 µm: with σ = 1 µm and the reading at the end
-/// taken again, the lower spring half as stiff leaves 10² where the upper one is fitted, which cannot move the node,
-/// and the upper one leaves the least of (10 + x)² + 2 x² where the lower one is, 66.7.
-TEST(Plan, NamesTheInstrumentThatWouldTell) {
-  const subject::Subject s = frame::parse_frame(R"(name: chain
+/// Two springs in series, 1 N/µm each, with a sensor at the far end and more of them.
+subject::Subject two_springs(const std::string& more_sensors) {
+  return frame::parse_frame(R"(name: chain
 plane: xz
 nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
 supports: {A: [uz, ry], B: [uz, ry]}
 springs: {lower: {node: A, ux: 1 N/um}, upper: {node: B, to: A, ux: 1 N/um}}
 loads: {pull: {nodes: {B: {fx: 10 N}}}}
-sensors: {top: {node: B, direction: ux, sigma: 1 um}}
-)",
-                                                "chain.yaml");
+sensors: {top: {node: B, direction: ux, sigma: 1 um})" +
+                                more_sensors + "}\n",
+                            "chain.yaml");
+}
+
+/// Read at the far end alone: 10 N move it by 30 µm, and the one or the other is half as stiff. No load tells which.
+/// The node between them moves by 20 or by 10 µm: with σ = 1 µm and the reading at the end taken again, the lower
+/// spring half as stiff leaves 10² where the upper one is fitted, which cannot move the node, and the upper one leaves
+/// the least of (10 + x)² + 2 x² where the lower one is, 66.7.
+TEST(Plan, NamesTheInstrumentThatWouldTell) {
+  const subject::Subject s = two_springs("");
   const std::vector<effects::Effect> effects = effects::place_effects(s, {});
   const auto softer = [&](const char* name) -> Rival {
     return {{{&effects::find_effect(effects, name), {}}}, values({0.5}), 0.5};
@@ -281,15 +286,7 @@ sensors: {top: {node: B, direction: ux, sigma: 1 um}}
 /// elsewhere, 0.6 ± 10 %: fitted to what the lower one would read it stands at 0.5 exp(u), reads 20 (exp(−u) − 1) µm
 /// more at the end, as often as that is read, and pays ((u + ln 0.5/0.6)/0.1)² for it.
 TEST(Plan, KnowsWhatAParameterIsBefore) {
-  const subject::Subject s = frame::parse_frame(R"(name: chain
-plane: xz
-nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
-supports: {A: [uz, ry], B: [uz, ry]}
-springs: {lower: {node: A, ux: 1 N/um}, upper: {node: B, to: A, ux: 1 N/um}}
-loads: {pull: {nodes: {B: {fx: 10 N}}}}
-sensors: {top: {node: B, direction: ux, sigma: 1 um}, mid: {node: A, direction: ux, sigma: 1 um}}
-)",
-                                                "chain.yaml");
+  const subject::Subject s = two_springs(", mid: {node: A, direction: ux, sigma: 1 um}");
   const std::vector<effects::Effect> effects = effects::place_effects(s, {});
   effects::Effect upper = effects::find_effect(effects, "factor@spring.upper.ux");
   upper.parameters.front().prior = effects::ParameterPrior{0.6, 0.06};
