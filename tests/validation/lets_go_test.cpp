@@ -2,6 +2,7 @@
 // end say the same, and are found from there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -106,6 +107,29 @@ TEST(LetsGo, AsMuchAsIsAllowedMayBeLeft) {
   ASSERT_GT(gone, 100);
   EXPECT_TRUE(best_size_of_what_lets_go(s.observations, h, VectorX(0), 1.001 * gone));
   EXPECT_FALSE(best_size_of_what_lets_go(s.observations, h, VectorX(0), 0.999 * gone));
+}
+
+// Play of 0.7 of the way, which is closed under the largest loads only. A pad that has run to nothing explains more
+// than half of what is seen, and no other fit does more: the play is found from there, as wide as it is.
+TEST(LetsGo, WidePlayIsFoundFromThePartThatIsGone) {
+  const Seen s = seen("clearance@spring.pad.uz", 0.7 * way);
+  std::vector<Effect> at_the_pad;
+  for (const Effect& e : laws())
+    if (lets_go(e) && e.place->path == "springs.pad") at_the_pad.push_back(e);
+  const std::vector<Signature> all = signatures(s.observations, at_the_pad, 1);
+  const Fit null = fit_of_all(s.observations, {}, VectorX(0));
+  const double gone =
+      s.observations.whitened_residual(with_effect(bar(), {{&law("factor@spring.pad.uz"), {}}, test::values({1e-6})}))
+          .squaredNorm();
+  ASSERT_LT(gone, 0.5 * null.chi2);
+  ASSERT_GT(gone, 0.1 * null.chi2);
+  const std::vector<Candidate> found = Candidates(all, 1).beside(s.observations, {}, null, -1e6);
+  const auto play = std::find_if(found.begin(), found.end(), [](const Candidate& c) {
+    return c.added().effect->name == "clearance@spring.pad.uz";
+  });
+  ASSERT_TRUE(play != found.end() && play->fit.found);
+  EXPECT_NEAR(play->fit.values(0), 0.7 * way, 0.01 * way);
+  EXPECT_LT(play->fit.chi2, 1e-3 * null.chi2);
 }
 
 // The limit below is where the middle would begin to touch in the readings of the largest load; there is none above.

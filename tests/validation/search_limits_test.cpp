@@ -6,6 +6,7 @@
 
 #include "tests/support/effects.h"
 #include "tests/support/springs_apart.h"
+#include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/left_over.h"
 #include "validation/diagnosis/selection.h"
 
@@ -165,6 +166,42 @@ TEST(SearchLimits, TwoOfFourEffectsAreExchanged) {
   std::set<std::string> names;
   for (const PlacedEffect& each : found.effects) names.insert(each.effect->name);
   EXPECT_EQ(names, (std::set<std::string>{"x", "y", "a", "b"}));
+}
+
+/// What a tilt of 20 and something unknown of 12 do, and the fifth reading of a joint.
+VectorX much() { return 20 * axis(8, 0) + 12 * axis(8, 2) + 5 * axis(8, 5); }
+
+/// A little of the joint moves one reading alone, much of it jumps to the above.
+const std::vector<Effect>& with_a_joint() {
+  static const std::vector<Effect> all = {
+      along("tilt", axis(8, 0)), along("play", axis(8, 1)),
+      effect("joint", {parameter("size", 1, -1000, 1000, 0.0)}, [](const VectorX& values) {
+        const double size = values(0);
+        return size < 6 ? VectorX(size * axis(8, 5)) : VectorX(size / 9 * much());
+      })};
+  return all;
+}
+
+/// What is found where the readings show the joint, at 9, and play. Alone the joint leaves the play, without it 12² is
+/// left: the play is such that it is this share of that beyond noise, which is the count of numbers.
+Diagnosis with_a_large_joint(double share) {
+  const double numbers = 16, play = std::sqrt(numbers + share * (12 * 12 - numbers));
+  const Seen s = seen(much() + play * axis(8, 1));
+  DiagnosisOptions o;
+  o.comparison.as_recorded = true;
+  o.bootstrap_sets = 199;
+  return diagnose(s.observations.subject(), *s.data, with_a_joint(), o);
+}
+
+// A large effect takes the place of others only where alone it leaves less than half of what these leave.
+TEST(SearchLimits, ALargeEffectMustLeaveLessThanHalf) {
+  const Diagnosis less = with_a_large_joint(0.45), more = with_a_large_joint(0.55);
+  EXPECT_EQ(less.verdict, Verdict::effect);
+  ASSERT_EQ(less.missing.size(), 2u);
+  EXPECT_EQ(less.missing[0].effect->name, "joint");
+  EXPECT_NEAR(less.fit.values(0), 9, 1e-2);
+  EXPECT_EQ(more.verdict, Verdict::unknown_effect);
+  EXPECT_EQ(more.candidates.front().added().effect->name, "tilt");
 }
 
 }  // namespace
