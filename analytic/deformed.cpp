@@ -129,9 +129,9 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
   return false;
 }
 
-/// Turns the wrenches of the legs into base axes. In second order the legs' displacements y, φ on a base that turned by
-/// θ move T by (1 + [θ]×) y and turn it by (1 + ½[θ]×) φ, so that what they carry in their own axes is (1 − [θ]×) f and
-/// (1 − ½[θ]×) m.
+/// Turns the wrenches of the legs into base axes, and its transpose motions of T into those of the legs. In second
+/// order the legs' displacements y, φ on a base that turned by θ move T by (1 + [θ]×) y and turn it by (1 + ½[θ]×) φ,
+/// so that what they carry in their own axes is (1 − [θ]×) f and (1 − ½[θ]×) m.
 Matrix6 to_base_axes(const VirtualChain& whole, Geometry geometry) {
   const std::size_t legs = legs_step(whole);
   if (geometry == Geometry::finite) return rotate_twist(whole.motion_before(legs, geometry).R());
@@ -343,7 +343,7 @@ Matrix6 compliance(const Deformed& d) {
 Matrix6 leg_stiffness(const Deformed& d, std::size_t leg) {
   VirtualChain whole = d.whole;
   whole.linearise(d.conditions);
-  const Matrix6 axes = rotate_twist(d.whole.motion_before(legs_step(d.whole), d.conditions.geometry).R());
+  const Matrix6 axes = to_base_axes(d.whole, d.conditions.geometry);
   return axes * legs_of(whole).branches[leg].restraint().K * axes.transpose();
 }
 

@@ -54,7 +54,8 @@ Deformed deform(const Deformed& rest, const Configuration&, const Vector6& F_T_W
 /// K is infinite.
 Matrix6 stiffness(const Deformed&);
 Matrix6 compliance(const Deformed&);
-/// The contribution of one leg, base axes: K_c.
+/// The contribution of one leg, K_c, in base axes and with the base as it stands; in second order by the rotation
+/// vector of T, as the wrenches of legs.
 Matrix6 leg_stiffness(const Deformed&, std::size_t leg);
 
 }  // namespace deflect::analytic
