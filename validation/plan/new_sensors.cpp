@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "msa/base/index.h"
@@ -181,16 +182,17 @@ std::vector<NewSensor> new_sensors(const subject::Subject& s, const Measurements
   const subject::Subject with = subject::with_sensors(s, sensors);
   const std::vector<std::size_t> order =
       most_different(differences(with, with.placed(read_by(all, sensors, taken)), taken, sensors, rivals));
+  std::vector<std::optional<ReadBy>> read(order.size());
   std::vector<std::pair<double, std::size_t>> promising(order.size());
   parallel::for_each_case(order.size(), 1, work.threads, [&](std::size_t i) {
-    promising[i] = {-ReadBy(s, sensors[order[i]], all, taken, o).promise(rivals), order[i]};
+    read[i].emplace(s, sensors[order[i]], all, taken, o);
+    promising[i] = {-read[i]->promise(rivals), i};
   });
   std::stable_sort(promising.begin(), promising.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   promising.resize(std::min(promising.size(), judged));
   std::vector<NewSensor> out(promising.size());
-  parallel::for_each_case(out.size(), 1, work.threads, [&](std::size_t i) {
-    out[i] = ReadBy(s, sensors[promising[i].second], all, taken, o).judged(rivals);
-  });
+  parallel::for_each_case(out.size(), 1, work.threads,
+                          [&](std::size_t i) { out[i] = read[promising[i].second]->judged(rivals); });
   std::erase_if(out, [](const NewSensor& n) { return !(n.separation > nothing_tells); });
   std::stable_sort(out.begin(), out.end(), [](const NewSensor& a, const NewSensor& b) {
     const auto many = [](const NewSensor& n) { return n.enough.empty() ? std::size_t(-1) : n.enough.size(); };

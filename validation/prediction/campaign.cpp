@@ -26,10 +26,7 @@ class Plan {
  public:
   Plan(const Mechanism& m, std::uint64_t seed) : mechanism_(m), random_(seed) { plan_.origin = "campaign"; }
 
-  std::size_t pose(const std::string& label, const Vector6& mm_deg) {
-    plan_.poses.push_back({label, mm_deg, {}, {}});
-    return plan_.poses.size() - 1;
-  }
+  void pose(const std::string& label, const Vector6& mm_deg) { plan_.poses.push_back({label, mm_deg, {}, {}}); }
 
   void add_points() {
     for (const studies::ValidationPoint& point : studies::workspace_points(mechanism_)) {
