@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +18,8 @@
 
 namespace deflect::test::springs_apart {
 
-/// What a spring reads over the unit in which changes are given: each unit is one standard deviation of both readings
-/// together. So large that readings are as good as linear in changes, 1/(1 − 1e-5) − 1.
+/// What a spring reads over the unit in which changes are given: one standard deviation of both readings together. So
+/// large that the changes by several effects, which multiply the readings, add up.
 inline constexpr double reading_in_units = 1e5;
 
 /// Each of 1e6 N/m, pushed by 100 N: it reads 0.1 mm, twice, with σ = √2 nm.
