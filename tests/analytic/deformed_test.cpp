@@ -141,49 +141,6 @@ TEST(Deformed, ARigidLegOnASoftBaseCarriesWhatAStiffOneDoes) {
   }
 }
 
-// Whatever the base yields, the legs carry the load: [f; m] at T, in base axes.
-TEST(Deformed, TheLegsOnASoftBaseCarryTheLoad) {
-  std::mt19937 random(5);
-  std::vector<PlacedLeg> legs;
-  for (const auto& [foot, head] : test::hexapod(random)) legs.push_back(test::strut("leg", foot, head, 1e7));
-  Configuration c = test::configuration(Vector3(0, 0, 0.42), legs, 0.5);
-  c.base = test::spring("base", Vector3::Zero(), {{0, 1e6}, {2, 1e6}, {3, 2e3}, {4, 1e3}, {5, 3e3}});
-  const Vector6 F = (Vector6() << 60, -40, 90, 5, -8, 12).finished();
-  for (const Geometry geometry : both) {
-    const AnalyticSolution s = AnalyticModel(c).solve(F, geometry);
-    ASSERT_TRUE(s.converged) << s.message;
-    EXPECT_GT(s.displacement.tail<3>().norm(), 5e-3);  // else all axes are alike
-    Vector6 sum = Vector6::Zero();
-    for (const Vector6& w : s.leg_wrenches) sum += w;
-    EXPECT_LE((sum - F).norm(), 1e-9 * F.norm()) << static_cast<int>(geometry);
-  }
-}
-
-// Legs on a base that turned by θ turn with it. Second order counts rotations by the rotation vector, of which a spin
-// is J times the change, and has all this to the first order in θ: half the load leaves a quarter of the difference.
-TEST(Deformed, StiffnessesOfLegsTurnWithTheirBase) {
-  std::mt19937 random(5);
-  std::vector<PlacedLeg> legs;
-  for (const auto& [foot, head] : test::hexapod(random)) legs.push_back(test::strut("leg", foot, head, 1e9));
-  Configuration c = test::configuration(Vector3(0, 0, 0.42), legs, 0.5);
-  c.base = test::spring("base", Vector3::Zero(), {{3, 2e3}, {4, 3e3}});
-  const AnalyticModel model(c);
-  const auto difference = [&](double share, std::size_t leg) {
-    const AnalyticSolution second = model.solve(share * force(200, -240), Geometry::second_order),
-                           finite = model.solve(share * force(200, -240), Geometry::finite);
-    EXPECT_TRUE(second.converged && finite.converged);
-    EXPECT_GT(finite.displacement.tail<3>().norm(), share * 0.05);
-    Matrix6 counted = Matrix6::Identity();
-    counted.bottomRightCorner<3, 3>() = RotationChange(finite.displacement.tail<3>()).J;
-    const Matrix6 K = counted.transpose() * model.leg_stiffness(leg, finite) * counted;
-    return (model.leg_stiffness(leg, second) - K).norm() / K.norm();
-  };
-  for (std::size_t leg = 0; leg < legs.size(); ++leg) {
-    EXPECT_LT(difference(1, leg), 0.01) << leg;
-    EXPECT_GT(difference(1, leg), 3.5 * difference(0.5, leg)) << leg;
-  }
-}
-
 // Legs that all end off their seat by the same motion carry the platform there, in the deformed shape by a finite one.
 TEST(Deformed, LegsThatAllMissTheirSeatByOneMotionMoveThePlatformByIt) {
   std::mt19937 random(9);
