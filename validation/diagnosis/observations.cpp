@@ -26,16 +26,22 @@ std::shared_ptr<const statistics::Uncertainty> uncertainty_of(const compare::Com
                                                          c.study.subject->load_tolerance(), aside);
 }
 
+std::vector<VectorX> in_linear_geometry(const compare::ResidualStudy& s, const subject::Standing& standing,
+                                        const parallel::Work& work = {}) {
+  prediction::PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  return standing.predict(*s.data, linear, work);
+}
+
 /// What equilibrium in the deformed shape adds to a subject's readings; nothing where it does not stand in it.
 std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject) {
   const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
   if (subject.true_geometry() == Geometry::linear) return std::nullopt;
-  prediction::PredictionOptions linear, finite;
-  linear.geometry = Geometry::linear;
+  prediction::PredictionOptions finite;
   finite.geometry = subject.true_geometry();
   return outcome_of([&] {
            return VectorX(statistics::rows_of(s.values, standing->predict(*s.data, finite)) -
-                          statistics::rows_of(s.values, standing->predict(*s.data, linear)));
+                          statistics::rows_of(s.values, in_linear_geometry(s, *standing)));
          })
       .value;
 }
@@ -57,8 +63,9 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
   shape_ = VectorX::Zero(measured_.size());
   if (!s.deformed_shape.empty())
     shape_ = statistics::rows_of(s.values, s.deformed_shape);
-  else if (subject.geometry() != Geometry::linear)
-    shape_ = deformed_shape_of(s, subject).value_or(shape_);
+  else if (subject.geometry() != Geometry::linear)  // it is in what the comparison predicts
+    shape_ =
+        statistics::rows_of(s.values, s.predicted) - statistics::rows_of(s.values, in_linear_geometry(s, *s.standing));
   tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
@@ -112,10 +119,8 @@ std::size_t Observations::set_aside() const { return as_size(std::count(aside_.b
 
 VectorX Observations::residual(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
-  prediction::PredictionOptions o;
-  o.geometry = Geometry::linear;
   const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
-  return measured_ - shape_ - statistics::rows_of(s.values, standing->predict(*s.data, o, parallel::alone));
+  return measured_ - shape_ - statistics::rows_of(s.values, in_linear_geometry(s, *standing, parallel::alone));
 }
 
 bool Observations::has_history(const subject::Subject& subject) const {
@@ -177,10 +182,8 @@ Observations Observations::granted(const subject::Subject& subject) const {
 Observations Observations::weighed_for(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;
-  prediction::PredictionOptions linear;
-  linear.geometry = Geometry::linear;
   auto predicted =
-      outcome_of([&] { return subject.stand(*s.data, s.standing.get())->predict(*s.data, linear, parallel::alone); });
+      outcome_of([&] { return in_linear_geometry(s, *subject.stand(*s.data, s.standing.get()), parallel::alone); });
   if (!predicted) return out;
   out.predicted_ = std::move(*predicted);
   out.move_tolerances(subject);

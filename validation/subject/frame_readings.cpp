@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <map>
 #include <optional>
 
 #include "msa/base/error.h"
@@ -183,44 +183,60 @@ const char* law_with_history(const FrameDescription& f) {
   return any_law(f, [](const Law& law) { return deflect::has_history(law); }) ? "a table with 'unloading'" : nullptr;
 }
 
-std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Measurements& data) {
-  const Channels channels(f, data);
-  std::vector<std::size_t> order(data.readings.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  frame::FrameOptions options;
-  if (const char* what = law_with_history(f)) {
-    order = measurement::in_sequence(data, what);
-    options.in_sequence = true;
+/// The readings that are solved: all in their sequence where loads are remembered, else the first under each load.
+struct Solved {
+  bool in_sequence = false;
+  std::vector<std::size_t> order;
+  std::vector<std::size_t> place;  ///< by reading: where in `order` the one with its answer stands
+
+  Solved(const FrameDescription& f, const measurement::Measurements& data) : place(data.readings.size()) {
+    if (const char* const what = law_with_history(f)) {
+      in_sequence = true;
+      order = measurement::in_sequence(data, what);
+      for (std::size_t c = 0; c < order.size(); ++c) place[order[c]] = c;
+      return;
+    }
+    const MatrixX loads = measurement::loads_of(data);
+    std::map<std::vector<double>, std::size_t> known;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      const auto load = loads.col(as_index(i));
+      const auto [found, is_new] = known.try_emplace({load.begin(), load.end()}, order.size());
+      if (is_new) order.push_back(i);
+      place[i] = found->second;
+    }
   }
+
+  /// By reading what is recorded, from the true readings by sensor and place in `order`.
+  std::vector<VectorX> recorded(const Channels& channels, const MatrixX& read) const {
+    std::vector<VectorX> out;
+    for (const std::size_t c : place) out.push_back(channels.recorded(read.col(as_index(c))));
+    return out;
+  }
+};
+
+std::vector<VectorX> one_by_one(const FrameDescription& f, const measurement::Measurements& data) {
+  const Solved solved(f, data);
+  frame::FrameOptions options;
+  options.in_sequence = solved.in_sequence;
   Named<LoadCase> loads;
-  for (const std::size_t i : order)
+  for (const std::size_t i : solved.order)
     loads.emplace_back(fmt::format("line {}", data.readings[i].line), load_of(f, data, data.readings[i]));
   const frame::FrameResult result = analysed(f, std::move(loads), options);
   if (const std::string failed = frame::failed_check(result); !failed.empty())
     throw NumericalError(fmt::format("{}: {}: {}", data.origin, f.name, failed));
-  const MatrixX read = true_readings(channels.sensors, f, result);
-  std::vector<VectorX> out(data.readings.size());
-  for (std::size_t c = 0; c < order.size(); ++c) out[order[c]] = channels.recorded(read.col(as_index(c)));
-  return out;
+  const Channels channels(f, data);
+  return solved.recorded(channels, true_readings(channels.sensors, f, result));
 }
 
 /// By what is known of a frame near it; nullopt where it is too far away.
 std::optional<std::vector<VectorX>> by_known_frame(const FrameDescription& f, const measurement::Measurements& data,
                                                    const frame::KnownFrame& known) {
   const Named<LoadCase> loads = unit_loads(f, data);
-  std::vector<std::size_t> order(data.readings.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const char* const remembers = law_with_history(f);
-  if (remembers) order = measurement::in_sequence(data, remembers);
+  const Solved solved(f, data);
   const Channels channels(f, data);
-  const MatrixX all = true_factors(f, data);
-  MatrixX factors(all.rows(), all.cols());
-  for (std::size_t i = 0; i < order.size(); ++i) factors.col(as_index(i)) = all.col(as_index(order[i]));
-  const std::optional<MatrixX> read = known.readings(f, loads, channels.sensors, factors, remembers != nullptr);
-  if (!read) return std::nullopt;
-  std::vector<VectorX> out(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) out[order[i]] = channels.recorded(read->col(as_index(i)));
-  return out;
+  const MatrixX factors = true_factors(f, data)(Eigen::all, solved.order);
+  const std::optional<MatrixX> read = known.readings(f, loads, channels.sensors, factors, solved.in_sequence);
+  return read ? std::optional(solved.recorded(channels, *read)) : std::nullopt;
 }
 
 /// Sensors that stick follow what they read, in the order taken, only where they lag by more than their band. The first

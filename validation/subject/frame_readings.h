@@ -12,8 +12,8 @@
 namespace deflect::subject {
 
 /// By reading: six zeros, because a frame has no tool point, then what each sensor of the measurements records. In
-/// linear geometry with linear laws each load is solved once and readings are sums; else each reading has its own
-/// equilibrium, and friction keeps its state from reading to reading in the order of `sequence`. True loads are
+/// linear geometry with linear laws each load is solved once and readings are sums; else each load that readings have
+/// has its own equilibrium, or where friction keeps its state each reading, in the order of `sequence`. True loads are
 /// load_gain times the recorded ones. Throws NumericalError "file:line: …" where a reading has no equilibrium or a
 /// check of the analysis fails, InputError where the frame lacks a sensor, a node or a load case of the measurements.
 /// `near`: of a frame that may differ little; the result is the same, and sooner there in linear geometry.
