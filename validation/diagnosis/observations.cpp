@@ -179,6 +179,15 @@ Observations Observations::granted(const subject::Subject& subject) const {
   return out;
 }
 
+double Observations::change_of_shape(const subject::Subject& from, const subject::Subject& to) const {
+  constexpr double growth = 2;
+  if (shape_.isZero(0)) return 0;
+  const VectorX sigma = Eigen::Map<const VectorX>(comparison_->sigma.data(), shape_.size());
+  const VectorX left = residual(from), linear = measured_ - shape_ - left;
+  const auto norm = [&](const VectorX& v) { return v.cwiseQuotient(sigma).norm(); };
+  return growth * norm(shape_) * norm(left - residual(to)) / norm(linear);
+}
+
 Observations Observations::weighed_for(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;

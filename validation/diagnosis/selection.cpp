@@ -15,6 +15,8 @@ constexpr double own_part_of_many = 0.5;       // of χ²: what more effects tha
 constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; of those that tie
 constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
 constexpr double never = -1e6;
+constexpr int most_passes = 6;
+constexpr double known_shape = 0.1;  // σ of a value: by how much the deformed shape may be off
 
 class Search {
  public:
@@ -132,13 +134,19 @@ class Search {
     return std::pair(a.class_log_odds, a.log_odds) < std::pair(b.class_log_odds, b.log_odds);
   }
 
-  void grant(const Hypothesis& h, const VectorX& values) {
-    s_.observations = seen().granted(subject_with(seen(), h, values));
-    Fit again = fit_of_all(seen(), h, values);
-    if (!again.found) throw std::logic_error("a fit that was found is not found again");
-    again = searched_again(seen(), h, std::move(again), candidates_.threads());
-    s_.effects = h;
-    s_.fit = std::move(again);
+  /// These effects count as right, at the values with which the deformed shape is that of the subject they make.
+  void grant(const Hypothesis& h, VectorX values) {
+    for (int pass = 0; pass < most_passes; ++pass) {
+      const subject::Subject right = subject_with(seen(), h, values);
+      s_.observations = seen().granted(right);
+      Fit again = fit_of_all(seen(), h, values);
+      if (!again.found) throw std::logic_error("a fit that was found is not found again");
+      again = searched_again(seen(), h, std::move(again), candidates_.threads());
+      values = again.values;
+      s_.effects = h;
+      s_.fit = std::move(again);
+      if (!(seen().change_of_shape(right, subject_with(seen(), h, values)) > known_shape)) break;
+    }
   }
 
   /// Whether it is a simpler candidate under another name: it stands at a bound of its own, and one with fewer

@@ -1,0 +1,90 @@
+// Diagnosis of a frame that stands in equilibrium in its deformed shape: fits use linear geometry plus what the
+// deformed shape of the frame that was found adds.
+#include <gtest/gtest.h>
+
+#include "msa/base/index.h"
+#include "msa/frame/file/frame_file.h"
+#include "tests/support/effects.h"
+#include "validation/diagnosis/diagnosis.h"
+#include "validation/diagnosis/observations.h"
+#include "validation/effects/place_effects.h"
+#include "validation/subject/simulate_frame.h"
+
+namespace deflect {
+namespace {
+
+using subject::Subject;
+
+/// A slender column, clamped below, loaded on top by a sixth of what buckles it: P-delta adds a fifth.
+const frame::FrameDescription& column() {
+  static const frame::FrameDescription f = frame::parse_frame(R"(
+name: column
+geometry: finite
+plane: xz
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {post: {shape: box, width_y: 40 mm, height_z: 40 mm, wall: 3 mm}}
+nodes: {A: [0 m, 0 m, 0 m], B: [0 m, 0 m, 1.5 m], C: [0 m, 0 m, 3 m]}
+members:
+  low: {from: A, to: B, section: post, material: steel, start: {ry: {law: linear, stiffness: 100 kNm/rad}}}
+  high: {from: B, to: C, section: post, material: steel}
+supports: {A: clamped}
+loads:
+  push: {nodes: {C: {fx: 60 N, fz: -1 kN}}}
+  lean: {nodes: {C: {fx: -60 N, fz: -1 kN}}}
+  mid: {nodes: {B: {fx: 150 N}, C: {fz: -1 kN}}}
+sensors:
+  top_x: {node: C, direction: ux, sigma: 0.05 mm}
+  mid_x: {node: B, direction: ux, sigma: 0.02 mm}
+  turn_C: {node: C, direction: ry, sigma: 0.02 mrad}
+  S: {member: low, strain: {at: 0.1, y: 20 mm}, sigma: 2 um/m, gain: 1 ± 0.5 %}
+tolerances: {modulus: 0.5 %, load: 0.1 %}
+)",
+                                                              "column");
+  return f;
+}
+
+measurement::Measurements read_of(const Subject& s) {
+  const frame::FrameDescription& f = *s.frame();
+  prediction::SimulationOptions o;
+  o.tolerances = 0;
+  o.seed = 7;
+  return subject::simulate_frame(f, subject::frame_campaign("rich", f, 7), o);
+}
+
+std::vector<effects::Effect> effects_of_column() {
+  std::vector<effects::Effect> all = test::all_effects();
+  for (effects::Effect& e : effects::place_effects(Subject(column()), all)) all.push_back(std::move(e));
+  return all;
+}
+
+// A value that is fitted with the deformed shape of the frame as drawn would leave a structured misfit of some σ, which
+// is something unknown, or another effect that makes up for it.
+TEST(DeformedFrame, WhatIsFoundLeavesNothing) {
+  const std::vector<effects::Effect> all = effects_of_column();
+  for (const auto& [name, value] : {std::pair{"factor@low", 0.7}, {"modulus", 0.8}, {"linear@support.A.ry", 3e7}}) {
+    const effects::EffectInstance hidden{{&effects::find_effect(all, name), {}}, test::values({value})};
+    const diagnosis::Diagnosis d =
+        diagnosis::diagnose(column(), read_of(effects::with_effect(column(), hidden)), all, {{}, 199});
+    EXPECT_FALSE(d.unexplained) << name;
+    ASSERT_EQ(d.missing.size(), 1u) << name;
+    EXPECT_NEAR(d.final.chi2_per_dof, 1, 0.15) << name;
+    ASSERT_EQ(d.fit.limits.size(), 1u) << name;
+    EXPECT_LT(d.fit.limits[0].first, value) << name;
+    EXPECT_GT(d.fit.limits[0].second, value) << name;
+  }
+}
+
+// A column that amplifies what bends it by 1/(1 − λ) has a deformed shape of λ/(1 − λ) of its displacement d. λ and d
+// grow alike where it yields more: the shape by 1 + 1/(1 − λ) times their growth, which is 2.2 at λ = 1/6.
+TEST(DeformedFrame, ChangeOfShapeIsThatOfALoadOnWhatItDisplaces) {
+  const Subject drawn(column()), softer = drawn.edited({{"materials.steel.E", "0.98", Edit::Action::multiply}});
+  const diagnosis::Observations o(drawn, read_of(drawn), {{}, {}, true});
+  const diagnosis::Observations then = o.granted(softer);
+  const VectorX sigma = Eigen::Map<const VectorX>(o.comparison().sigma.data(), std::ssize(o.comparison().sigma));
+  const double changed = (o.residual(drawn) - then.residual(drawn)).cwiseQuotient(sigma).norm();
+  EXPECT_GT(changed, 10);
+  EXPECT_NEAR(o.change_of_shape(drawn, softer), changed, 0.15 * changed);
+}
+
+}  // namespace
+}  // namespace deflect
