@@ -15,7 +15,8 @@ namespace {
 
 using subject::Subject;
 
-/// A slender column, clamped below, loaded on top by a sixth of what buckles it: P-delta adds a fifth.
+/// A slender column, clamped below, loaded on top by a fifth of what buckles it, or two fifths where two cases stand
+/// together: 1/P = 4 L²/(π² EI) + L/k = 0.2 /kN.
 const frame::FrameDescription& column() {
   static const frame::FrameDescription f = frame::parse_frame(R"(
 name: column
@@ -61,10 +62,11 @@ std::vector<effects::Effect> effects_of_column() {
 // is something unknown, or another effect that makes up for it.
 TEST(DeformedFrame, WhatIsFoundLeavesNothing) {
   const std::vector<effects::Effect> all = effects_of_column();
-  for (const auto& [name, value] : {std::pair{"factor@low", 0.7}, {"modulus", 0.8}, {"linear@support.A.ry", 3e7}}) {
+  for (const auto& [name, value] :
+       {std::pair{"factor@low", 0.7}, {"linear@support.A.ry", 3e7}, {"clearance@support.A.ry", 2e-3}}) {
     const effects::EffectInstance hidden{{&effects::find_effect(all, name), {}}, test::values({value})};
-    const diagnosis::Diagnosis d =
-        diagnosis::diagnose(column(), read_of(effects::with_effect(column(), hidden)), all, {{}, 199});
+    const measurement::Measurements data = read_of(effects::with_effect(column(), hidden));
+    const diagnosis::Diagnosis d = diagnosis::diagnose(column(), data, all, {{}, 199});
     EXPECT_FALSE(d.unexplained) << name;
     ASSERT_EQ(d.missing.size(), 1u) << name;
     EXPECT_NEAR(d.final.chi2_per_dof, 1, 0.15) << name;
@@ -75,15 +77,19 @@ TEST(DeformedFrame, WhatIsFoundLeavesNothing) {
 }
 
 // A column that amplifies what bends it by 1/(1 − λ) has a deformed shape of λ/(1 − λ) of its displacement d. λ and d
-// grow alike where it yields more: the shape by 1 + 1/(1 − λ) times their growth, which is 2.2 at λ = 1/6.
+// grow alike where it yields more: the shape by 1 + 1/(1 − λ) times their growth. That is 2 for small λ, which is what
+// the estimate takes, and 2.67 at λ = 0.4, of the cases that have most of the shape.
 TEST(DeformedFrame, ChangeOfShapeIsThatOfALoadOnWhatItDisplaces) {
   const Subject drawn(column()), softer = drawn.edited({{"materials.steel.E", "0.98", Edit::Action::multiply}});
-  const diagnosis::Observations o(drawn, read_of(drawn), {{}, {}, true});
+  const measurement::Measurements data = read_of(drawn);
+  const diagnosis::Observations o(drawn, data, {{}, {}, true});
   const diagnosis::Observations then = o.granted(softer);
   const VectorX sigma = Eigen::Map<const VectorX>(o.comparison().sigma.data(), std::ssize(o.comparison().sigma));
   const double changed = (o.residual(drawn) - then.residual(drawn)).cwiseQuotient(sigma).norm();
-  EXPECT_GT(changed, 10);
-  EXPECT_NEAR(o.change_of_shape(drawn, softer), changed, 0.15 * changed);
+  const double estimated = o.change_of_shape(drawn, softer);
+  EXPECT_GT(estimated, 10);
+  EXPECT_GT(changed, estimated);
+  EXPECT_LT(changed, 2.67 / 2 * estimated);
 }
 
 }  // namespace
