@@ -175,7 +175,18 @@ class Examined {
     out.oracle_reported = best.reported;
   }
 
-  /// The places told, and those of the hidden effect's part or of an effect of its class.
+  /// Whether all parts of the place told are parts of the hidden one.
+  static bool within(const subject::Place& told, const subject::Place& hidden) {
+    if (hidden.kind == subject::PlaceKind::sensor) return subject::of_one_part(told, hidden);
+    const auto is_one = [&](const std::string& path) {
+      return path == hidden.path || std::any_of(hidden.others.begin(), hidden.others.end(),
+                                                [&](const subject::OtherPart& o) { return o.path == path; });
+    };
+    return is_one(told.path) && std::all_of(told.others.begin(), told.others.end(),
+                                            [&](const subject::OtherPart& o) { return is_one(o.path); });
+  }
+
+  /// The places told, and those among the hidden effect's parts or of an effect of its class.
   static void count_places(const Diagnosis& d, const Hidden& hidden, SubjectSet& out) {
     std::vector<const effects::Effect*> told;
     for (const effects::PlacedEffect& e : d.missing) told.push_back(e.effect);
@@ -183,8 +194,8 @@ class Examined {
       for (const Localised& l : d.localised) told.push_back(l.effect.effect);
     for (const effects::Effect* each : told) {
       out.told.push_back(each->name);
-      out.told_rightly += (each->place && each->place->path == hidden.effect.effect->place->path) ||
-                          holds(out.classes.front(), each->name);
+      out.told_rightly +=
+          (each->place && within(*each->place, *hidden.effect.effect->place)) || holds(out.classes.front(), each->name);
     }
   }
 

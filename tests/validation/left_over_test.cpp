@@ -1,10 +1,16 @@
 // Which effects stay named beside something unknown.
 #include "validation/diagnosis/left_over.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
 
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "tests/support/springs_apart.h"
+#include "validation/diagnosis/evidence.h"
 #include "validation/effects/place_effects.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
@@ -42,6 +48,42 @@ TEST(NamedBesideUnknown, NotWhatALawAtAnotherPlaceExplains) {
   };
   EXPECT_EQ(named(entry), 1u);
   EXPECT_EQ(named(both), 0u);
+}
+
+// What a law that is none of these does, a + b, is within the laws of one place. Three effects elsewhere add up to it
+// too. By the definition the place has ln B(1200, 2), and each of the three its prior odds and ln B(400, 1).
+TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
+  const auto axis = [](Eigen::Index i) { return VectorX::Unit(6, i); };
+  const double r = std::sqrt(0.5);
+  std::vector<Effect> known = {test::springs_apart::along("a", r * (axis(0) + axis(1))),
+                               test::springs_apart::along("b", axis(2))};
+  for (Effect& e : known) e.place.emplace().path = "part";
+  for (int i = 0; i < 3; ++i) known.push_back(test::springs_apart::along(fmt::format("e{}", i), axis(i)));
+  const test::springs_apart::Seen s = test::springs_apart::seen(20 * (axis(0) + axis(1) + axis(2)));
+  const std::vector<Signature> all = signatures(s.observations, known, 1);
+  ASSERT_EQ(all.size(), 5u);
+  const Candidates candidates(all, 1);
+  const auto found = [&](const std::vector<std::size_t>& which, const VectorX& values) {
+    Hypothesis h;
+    for (const std::size_t i : which) h.push_back({&known[i], {}});
+    return Selection{s.observations, h, fit_of_all(s.observations, h, values), {}, {}};
+  };
+  double more = log_evidence(1200, 2, false);
+  for (std::size_t i = 2; i < 5; ++i) more -= candidates.class_log_odds_of(all[i].effect, 400);
+  ASSERT_GT(more, 2);
+  const Selection three = found({2, 3, 4}, VectorX::Constant(3, 20));
+  ASSERT_LT(three.fit.chi2, 0.1);
+  EXPECT_FALSE(at_one_place(all, candidates, three, more + 0.1));
+  const std::optional<Selection> there = at_one_place(all, candidates, three, more - 0.1);
+  ASSERT_TRUE(there);
+  EXPECT_TRUE(there->effects.empty());
+  EXPECT_NEAR(there->fit.chi2, 1200, 1);
+  // An effect at the place itself stays.
+  const std::optional<Selection> named = at_one_place(all, candidates, found({0, 4}, test::values({28, 20})), 0);
+  ASSERT_TRUE(named);
+  ASSERT_EQ(named->effects.size(), 1u);
+  EXPECT_EQ(named->effects[0].effect->name, "a");
+  EXPECT_NEAR(named->fit.values(0), 20 / r, 0.1);
 }
 
 }  // namespace

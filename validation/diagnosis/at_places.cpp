@@ -21,14 +21,19 @@ struct LawsAtPlace {
   double prior = 1;
 };
 
-/// In the order of the signatures.
+std::string place_of(const effects::PlacedEffect& e) {
+  const std::string sensor = subject::sensor_of(*e.effect->place);
+  return sensor.empty() ? subject::id_of(*e.effect->place) : "sensors." + sensor;
+}
+
+/// In the order of the signatures. What can be wrong with a sensor's channel is at one place, whatever it is.
 std::vector<LawsAtPlace> laws_by_place(const std::vector<Signature>& all) {
   std::vector<LawsAtPlace> out;
   std::map<std::pair<std::string, int>, std::size_t> number;
   std::map<std::string, double> legs;
   for (const Signature& s : all) {
     if (!s.effect.effect->place) continue;
-    const std::string id = subject::id_of(*s.effect.effect->place);
+    const std::string id = place_of(s.effect);
     const auto [at, is_new] = number.emplace(std::pair(id, s.effect.leg.value_or(0)), out.size());
     if (is_new) out.emplace_back();
     if (is_new && s.effect.leg) legs[id] += 1;
@@ -37,7 +42,7 @@ std::vector<LawsAtPlace> laws_by_place(const std::vector<Signature>& all) {
   double total = 0;
   for (LawsAtPlace& p : out) {
     const effects::PlacedEffect& e = p.laws.front()->effect;
-    if (e.leg) p.prior = 1 / legs[subject::id_of(*e.effect->place)];
+    if (e.leg) p.prior = 1 / legs[place_of(e)];
     total += p.prior;
   }
   for (LawsAtPlace& p : out) p.prior /= total;
@@ -49,12 +54,16 @@ AtPlace explained_by(const LawsAtPlace& place, const VectorX& residual, const Ma
   out.prior = place.prior;
   double most = -1;
   std::vector<MatrixX> columns;
-  for (const Signature* s : place.laws) {
-    if (const double gain = most_gain(*s, residual, fitted); gain > most) most = gain, out.best = s;
-    const MatrixX beside = s->basis - fitted * (fitted.transpose() * s->basis);
+  const auto add = [&](const MatrixX& basis) {
+    const MatrixX beside = basis - fitted * (fitted.transpose() * basis);
     for (const auto column : beside.colwise())
       if (column.norm() > left_of_a_column) columns.emplace_back(column);
+  };
+  for (const Signature* s : place.laws) {
+    if (const double gain = most_gain(*s, residual, fitted); gain > most) most = gain, out.best = s;
+    add(s->basis);
   }
+  if (const auto& whatever = place.laws.front()->whatever_the_law) add(*whatever);
   out.other_way = out.best->one_sided && out.best->start_along(residual) > 0;
   if (columns.empty()) return out;
   const MatrixX span = statistics::orthonormal(statistics::side_by_side(columns, residual.size()), left_of_a_column);

@@ -208,6 +208,11 @@ Explained explained(const Observations& o, const std::shared_ptr<const WhitenedF
   Explained out{select(o, candidates, first), patterns, {}};
   if (!out.found.effects.empty()) out.patterns = out.found.observations.whitened_patterns();
   out.left = left_over(out.patterns, all, out.found.fit, candidates.threads());
+  const double more = out.left.significant() ? 0 : called_for - std::log(Candidates::prior_unknown);
+  if (std::optional<Selection> there = at_one_place(all, candidates, out.found, more)) {
+    out.found = std::move(*there);
+    out.left = left_over(out.patterns, all, out.found.fit, candidates.threads());
+  }
   return out;
 }
 

@@ -22,7 +22,7 @@ const AtPlace* likeliest(const std::vector<AtPlace>& places) {
 }
 
 bool at_the_same_part(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
-  return a.effect->place && b.effect->place && a.effect->place->path == b.effect->place->path;
+  return a.effect->place && b.effect->place && subject::of_one_part(*a.effect->place, *b.effect->place);
 }
 
 /// Whether an unknown law at another place takes what this effect explains: with the effect and a law at a place the
@@ -44,6 +44,35 @@ LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, cons
   const std::vector<AtPlace> places = at_places(all, fit, threads);
   return {log_mean_exp({common.log_evidence(fit.residual), log_evidence(places)}),
           std::min(1.0, 2 * std::min(common.p_value(fit.residual), p_value(places)))};
+}
+
+std::optional<Selection> at_one_place(const std::vector<Signature>& all, const Candidates& candidates,
+                                      const Selection& s, double more) {
+  if (s.effects.empty()) return std::nullopt;
+  const Fit null = fit_of_all(s.observations, {}, VectorX(0));
+  const std::vector<AtPlace> alone = at_places(all, null, candidates.threads()),
+                             beside = at_places(all, s.fit, candidates.threads());
+  const AtPlace *place = likeliest(alone), *further = likeliest(beside);
+  if (!place) return std::nullopt;
+  const double left = std::min(null.chi2 - place->gain, s.fit.chi2 - (further ? further->gain : 0));
+  const double noise = std::max(1.0, left / std::max(1.0, static_cast<double>(s.observations.numbers())));
+  const auto log_odds = [&](const AtPlace& p) {
+    return std::log(p.prior) + log_evidence(p.gain / noise, p.dimension, false);
+  };
+  const double each = std::max(0.0, null.chi2 - s.fit.chi2) / noise / static_cast<double>(s.effects.size());
+  double found = further ? std::max(0.0, log_odds(*further)) : 0;
+  Selection there = s;
+  for (std::size_t i = s.effects.size(); i-- > 0;) {
+    found += candidates.class_log_odds_of(s.effects[i], each);
+    if (at_the_same_part(s.effects[i], place->best->effect)) continue;
+    auto [others, values] = without(there.effects, there.fit.values, i);
+    there.effects = std::move(others);
+    there.fit.values = std::move(values);
+    if (i < there.ties.size()) there.ties.erase(there.ties.begin() + as_index(i));
+  }
+  if (there.effects.size() == s.effects.size() || log_odds(*place) < found + more) return std::nullopt;
+  there.fit = fit_of_all(s.observations, there.effects, there.fit.values);
+  return there.fit.found ? std::optional(std::move(there)) : std::nullopt;
 }
 
 Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns,

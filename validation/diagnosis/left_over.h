@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "validation/diagnosis/at_places.h"
 #include "validation/diagnosis/selection.h"
@@ -21,6 +22,12 @@ struct LeftOver {
 
 LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<Signature>&, const Fit&,
                    int threads);
+
+/// Several effects can add up to what one law does that none of them is. The effects that are of one place, fitted
+/// anew, where an unknown law there alone is likelier than all the effects and an unknown law beside them, by `more` in
+/// ln of the odds; nullopt where it is not, and where all effects are of that place. Noise counts as large as the
+/// better of the two leaves it.
+std::optional<Selection> at_one_place(const std::vector<Signature>&, const Candidates&, const Selection&, double more);
 
 /// Those of the effects that are called for even beside something unknown: where it takes what a common pattern can,
 /// and where it is a law at a place other than the effect's own.

@@ -60,9 +60,9 @@ class Observations {
   /// or more may be.
   Observations granted(const subject::Subject&) const;
   /// How far the contribution of the deformed shape may change where one subject counts as right instead of another
-  /// that is like it: the norm in σ of noise of the whole. No value moves by more than so many of its σ. Estimated in
-  /// linear geometry: a contribution that is even in the load, or a load on what it displaces, grows twice as fast as
-  /// the displacement.
+  /// that is like it: the norm in σ of noise of the whole. No value moves by more than about so many of its σ.
+  /// Estimated in linear geometry: a contribution that is even in the load, or a load on what it displaces, grows twice
+  /// as fast as the displacement.
   double change_of_shape(const subject::Subject&, const subject::Subject&) const;
   /// A copy whose hypotheses are about this subject: effects are added to it, it is subject() and null_residual() is
   /// its. Weights, tolerances and what is granted stay those of the subject of this one.

@@ -1,6 +1,7 @@
 // The signature of an effect: the directions in which it changes the whitened residual.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ struct Signature {
   VectorX start;           ///< change of the whitened residual at the start values is basis · start
   double lambda = 0;       ///< its norm
   bool one_sided = false;  ///< physics fixes the amplitude's sign (where shaped, that of the columns)
+  /// What else may happen at its place, whether or not a law describes it: unit columns. Of sensors (channel_shapes.h);
+  /// none elsewhere.
+  std::shared_ptr<const MatrixX> whatever_the_law = nullptr;
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
   /// Inner product of the change at the start values with a residual.

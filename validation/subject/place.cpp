@@ -28,11 +28,20 @@ std::string id_of(const Place& p) {
 
 std::string name_of(const Place& p) {
   const std::string motion = motion_of(p);
-  if (!p.other.empty()) return fmt::format("sensor {}", p.part.substr(0, p.part.size() - p.other.size() - 1));
+  if (!p.other.empty()) return "sensor " + sensor_of(p);
   const std::string where = p.kind == PlaceKind::sensor ? "sensor " : p.leg ? fmt::format("leg {} ", *p.leg) : "";
   std::string part = p.others.empty() ? p.part : "group of " + p.group_words;
   if (p.base_axes && p.others.empty()) std::replace(part.begin(), part.end(), '.', ' ');  // "support.B" of a frame
   return fmt::format("{}{}{}{}", where, part, motion.empty() ? "" : " ", motion);
+}
+
+std::string sensor_of(const Place& p) {
+  if (p.kind != PlaceKind::sensor) return "";
+  return p.other.empty() ? p.part : p.part.substr(0, p.part.size() - p.other.size() - 1);
+}
+
+bool of_one_part(const Place& a, const Place& b) {
+  return a.path == b.path || (a.kind == PlaceKind::sensor && sensor_of(a) == sensor_of(b));
 }
 
 }  // namespace deflect::subject

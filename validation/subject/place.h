@@ -87,5 +87,9 @@ std::string motion_of(const Place&);
 std::string id_of(const Place&);
 /// "elbow rz", "leg 3 elbow rz", "sensor probe", "group of revolute joints tilt".
 std::string name_of(const Place&);
+/// The sensor whose channel a place is about; empty for any other place.
+std::string sensor_of(const Place&);
+/// Whether two places are of one part; all that can be wrong with a channel is of its sensor.
+bool of_one_part(const Place&, const Place&);
 
 }  // namespace deflect::subject

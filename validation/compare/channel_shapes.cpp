@@ -1,0 +1,78 @@
+#include "validation/compare/channel_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "msa/base/index.h"
+#include "validation/statistics/columns.h"
+
+namespace deflect::compare {
+namespace {
+
+constexpr double lags[] = {1e-6, 0.1, 0.3};  // of the largest |p|; the first is next to none
+
+/// p less what an instrument shows that lags by up to `band`, by reading, which are given in the order taken. It is
+/// true at each pose's first reading.
+VectorX lag(const measurement::Measurements& data, const std::vector<std::size_t>& order, const VectorX& p,
+            double band) {
+  VectorX out(p.size());
+  std::optional<std::size_t> pose;
+  double shown = 0;
+  for (const std::size_t i : order) {
+    const double value = p(as_index(i));
+    if (data.readings[i].pose != pose) shown = value;
+    pose = data.readings[i].pose;
+    shown = std::clamp(shown, value - band, value + band);
+    out(as_index(i)) = value - shown;
+  }
+  return out;
+}
+
+/// By reading, from −1 to 1.
+VectorX time_of(const std::vector<std::size_t>& order) {
+  VectorX out(std::ssize(order));
+  const double last = std::max(1.0, static_cast<double>(order.size()) - 1);
+  for (std::size_t k = 0; k < order.size(); ++k) out(as_index(order[k])) = 2 * static_cast<double>(k) / last - 1;
+  return out;
+}
+
+/// By reading.
+MatrixX shapes_of(const ResidualStudy& s, std::size_t channel, const std::vector<std::size_t>& order) {
+  const std::vector<measurement::SensorChannel>& sensors = s.data->instruments.sensors;
+  const auto readings_of = [&](std::size_t c) {
+    VectorX p(std::ssize(s.predicted));
+    for (std::size_t i = 0; i < s.predicted.size(); ++i) p(as_index(i)) = s.predicted[i](as_index(6 + c));
+    return p;
+  };
+  const VectorX p = readings_of(channel);
+  std::vector<MatrixX> out = {VectorX::Ones(p.size()), p.cwiseAbs(), p};
+  for (std::size_t other = 0; other < sensors.size(); ++other)
+    if (other != channel && sensors[other].quantity == sensors[channel].quantity) out.push_back(readings_of(other));
+  if (!order.empty()) out.push_back(time_of(order));
+  for (const double share : lags)
+    if (!order.empty()) out.push_back(lag(*s.data, order, p, share * p.cwiseAbs().maxCoeff()));
+  return statistics::side_by_side(out, p.size());
+}
+
+}  // namespace
+
+std::map<std::string, MatrixX> channel_shapes(const ResidualStudy& s) {
+  std::vector<std::size_t> order;
+  if (s.sequence) order = measurement::in_sequence(*s.data, "the lag of a sensor");
+  std::map<std::string, MatrixX> out;
+  for (std::size_t c = 0; c < s.data->instruments.sensors.size(); ++c) {
+    const MatrixX all = shapes_of(s, c, order);
+    MatrixX rows = MatrixX::Zero(std::ssize(s.values), all.cols());
+    for (std::size_t i = 0; i < s.values.size(); ++i)
+      if (s.values[i].channel == 6 + c) rows.row(as_index(i)) = all.row(as_index(s.values[i].reading));
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index k = 0; k < rows.cols(); ++k)
+      if (!rows.col(k).isZero(0)) kept.push_back(k);
+    out[s.data->instruments.sensors[c].name] = rows(Eigen::all, kept);
+  }
+  return out;
+}
+
+}  // namespace deflect::compare

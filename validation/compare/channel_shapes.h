@@ -1,0 +1,21 @@
+// What can be wrong with a named sensor's channel, whatever the cause.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "validation/compare/residual_study.h"
+
+namespace deflect::compare {
+
+/// By the sensor's name; rows: the measured numbers (SI), zero in those of other channels. With p the prediction of the
+/// channel's readings, the columns are
+///   1, |p|               a zero, a scale that differs between the two senses,
+///   p                    a scale,
+///   p of the others      those of the same quantity: crosstalk,
+///   time                 from the first reading to the last,
+///   p less what it shows if it follows only where it lags by more than 0, a tenth and three tenths of its largest |p|.
+/// The last two only where the order of the readings is known. A column that is zero is left out.
+std::map<std::string, MatrixX> channel_shapes(const ResidualStudy&);
+
+}  // namespace deflect::compare
