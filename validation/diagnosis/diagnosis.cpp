@@ -7,7 +7,6 @@
 #include "msa/base/index.h"
 #include "validation/compare/findings.h"
 #include "validation/diagnosis/bootstrap.h"
-#include "validation/diagnosis/discrepancy.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/diagnosis/larger_tolerances.h"
@@ -272,19 +271,19 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   d.baseline = quality(o, {}, null);
   d.candidates = candidates.beside(o, {}, null, even_hopeless);
   const std::shared_ptr<const WhitenedFamilies> patterns = o.whitened_patterns();
-  const Discrepancy discrepancy(patterns);
+  const LeftOver at_first = left_over(patterns, all, null, work.threads);
   constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
   const LargerTolerances larger = larger_tolerances(o);
   d.larger_tolerances = larger.scale * o.tolerance_scale();
   weigh(d, larger,
-        probability_of_unknown(discrepancy.log_evidence(null.residual) - log_sum_exp(log_weights(d.candidates, larger)),
+        probability_of_unknown(at_first.log_evidence - log_sum_exp(log_weights(d.candidates, larger)),
                                missing_odds * Candidates::prior_unknown));
   const double least_p = least_p_value(all, d.candidates);
   d.bootstrap_sets = options.bootstrap_sets;
   d.chance = chance_of_any(all, least_p, options.bootstrap_sets, work,
                            [&](std::size_t done, std::size_t of) { rounds(done, of); });
   const bool missing = (d.chance < alarm && d.probability_nothing < 0.6) ||
-                       (d.probability_unknown > sure && discrepancy.p_value(null.residual) < LeftOver::least_p);
+                       (d.probability_unknown > sure && at_first.p_value < LeftOver::least_p);
   const std::vector<Candidate> first = d.candidates;
   sort_candidates(d, o);
 

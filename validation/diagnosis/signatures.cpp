@@ -108,21 +108,31 @@ std::vector<effects::PlacedEffect> every_leg(const effects::Effect& e, const sub
   return out;
 }
 
-/// By the sensor's name: what may be wrong with its channel, as unit columns. What tolerances hide, as a free zero does
-/// a constant, is left out.
-std::map<std::string, std::shared_ptr<const MatrixX>> of_channels(const Observations& o) {
-  constexpr double hidden = 1e-3;  // of the length that it has beside noise alone
-  const std::vector<double>& sigma = o.comparison().sigma;
-  const VectorX noise = Eigen::Map<const VectorX>(sigma.data(), std::ssize(sigma));
-  std::map<std::string, std::shared_ptr<const MatrixX>> out;
-  for (const auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study)) {
-    MatrixX columns = o.uncertainty().whitened(shapes);
-    for (Eigen::Index k = 0; k < columns.cols(); ++k)
-      if (columns.col(k).norm() < hidden * shapes.col(k).cwiseQuotient(noise).norm()) columns.col(k).setZero();
-    out[sensor] = std::make_shared<const MatrixX>(unit_columns(columns));
+/// What may be wrong with a sensor's channel, as unit columns. What tolerances hide, as a free zero does a constant, is
+/// left out.
+class ChannelFaults {
+ public:
+  explicit ChannelFaults(const Observations& o) {
+    constexpr double hidden = 1e-3;  // of the length that it has beside noise alone
+    const std::vector<double>& sigma = o.comparison().sigma;
+    const VectorX noise = Eigen::Map<const VectorX>(sigma.data(), std::ssize(sigma));
+    for (const auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study)) {
+      MatrixX columns = o.uncertainty().whitened(shapes);
+      for (Eigen::Index k = 0; k < columns.cols(); ++k)
+        if (columns.col(k).norm() < hidden * shapes.col(k).cwiseQuotient(noise).norm()) columns.col(k).setZero();
+      all_[sensor] = std::make_shared<const MatrixX>(unit_columns(columns));
+    }
   }
-  return out;
-}
+
+  /// Null for an effect that is not at a sensor.
+  std::shared_ptr<const MatrixX> at(const effects::PlacedEffect& e) const {
+    const auto found = e.effect->place ? all_.find(subject::sensor_of(*e.effect->place)) : all_.end();
+    return found == all_.end() ? nullptr : found->second;
+  }
+
+ private:
+  std::map<std::string, std::shared_ptr<const MatrixX>> all_;
+};
 
 }  // namespace
 
@@ -142,13 +152,11 @@ std::vector<Signature> signatures(const Observations& o, const std::vector<effec
   std::vector<Signature> all(places.size());
   std::vector<std::string> why(places.size());
   const ByStatics statics(o, places, threads);
-  const auto channels = of_channels(o);
+  const ChannelFaults channels(o);
   parallel::for_each_case(places.size(), 1, threads, [&](std::size_t i) {
     Signature& s = all[i];
     s.effect = places[i];
-    if (const auto& place = places[i].effect->place)
-      if (const auto channel = channels.find(subject::sensor_of(*place)); channel != channels.end())
-        s.whatever_the_law = channel->second;
+    s.whatever_the_law = channels.at(places[i]);
     const auto looked_at = outcome_of([&] {
       if (std::optional<VectorX> change = statics.change(places[i])) {
         s.one_sided = one_sided(places[i]);
