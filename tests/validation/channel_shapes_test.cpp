@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/place_effects.h"
 #include "validation/effects/with_effect.h"
+#include "validation/report/diagnosis_results.h"
 #include "validation/subject/simulate_frame.h"
 
 namespace deflect {
@@ -88,7 +90,8 @@ TEST(ChannelShapes, AFaultThatNoEntryDescribesIsToldAtItsSensor) {
   for (const Case& c : {Case{"beam-on-springs", "zero@z8", 0.04, "z8"},
                         {"truss-45", "stiction@tip_z", 0.05, "tip_z", "cycle"},
                         {"lattice-girder", "crosstalk@R_r4.R_l0", 0.04, "R_r4"},
-                        {"portal-semi-rigid", "gain@mid_z", 0.9, "mid_z"}}) {
+                        {"portal-semi-rigid", "gain@mid_z", 0.9, "mid_z"},
+                        {"portal-semi-rigid", "stiction@turn_C", 2e-5, "turn_C", "cycle"}}) {
     const Subject s = frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" /
                                         (std::string(c.frame) + ".yaml"));
     std::vector<effects::Effect> all = test::all_effects();
@@ -102,6 +105,10 @@ TEST(ChannelShapes, AFaultThatNoEntryDescribesIsToldAtItsSensor) {
     EXPECT_TRUE(d.unexplained) << c.effect;
     ASSERT_FALSE(d.localised.empty()) << c.effect;
     EXPECT_EQ(subject::sensor_of(*d.localised.front().effect.effect->place), c.sensor);
+    const auto told =
+        nlohmann::json::parse(report::diagnosis_json(d)).at("unexplained").at("localised").at(0).at("place");
+    EXPECT_EQ(told.at("part"), c.sensor);
+    EXPECT_EQ(told.at("path"), std::string("sensors.") + c.sensor);
     for (const effects::PlacedEffect& e : d.missing)
       EXPECT_TRUE(e.effect->place && subject::sensor_of(*e.effect->place) == c.sensor) << e.effect->name;
   }

@@ -84,6 +84,15 @@ Json candidates_json(const std::vector<diagnosis::Candidate>& candidates, double
   return out;
 }
 
+/// Of what a sensor reads of another: the sensor.
+subject::Place whole_place(subject::Place p) {
+  if (p.other.empty()) return p;
+  p.part = subject::sensor_of(p);
+  p.path = "sensors." + p.part;
+  p.other.clear();
+  return p;
+}
+
 /// What is left of the misfit, and where it acts.
 Json unexplained_json(const diagnosis::Diagnosis& d) {
   Json localised = Json::array();
@@ -92,7 +101,7 @@ Json unexplained_json(const diagnosis::Diagnosis& d) {
                          {"share", l.share},
                          {"probability", l.probability},
                          {"effect", l.effect.effect->name},
-                         {"place", place_json(*l.effect.effect->place, l.effect.leg)}});
+                         {"place", place_json(whole_place(*l.effect.effect->place), l.effect.leg)}});
   return {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained},
           {"pattern", d.pattern},         {"localised", localised},
           {"nearest", d.nearest},         {"nearest_share", d.nearest_share}};
