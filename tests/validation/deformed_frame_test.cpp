@@ -1,10 +1,15 @@
 // Diagnosis of a frame that stands in equilibrium in its deformed shape: fits use linear geometry plus what the
 // deformed shape of the frame that was found adds.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
 
 #include "msa/base/index.h"
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/observations.h"
 #include "validation/effects/place_effects.h"
@@ -90,6 +95,31 @@ TEST(DeformedFrame, ChangeOfShapeIsThatOfALoadOnWhatItDisplaces) {
   EXPECT_GT(estimated, 10);
   EXPECT_GT(changed, estimated);
   EXPECT_LT(changed, 2.67 / 2 * estimated);
+}
+
+// A portal off the drawing, so that its nodes have no round coordinates. Sums leave −1.1e-16 and 5.6e-17 of a factor of
+// none, which is what they mean: the deformed shape is solved in coordinates, whose rounding is more.
+TEST(DeformedFrame, AFactorThatASumLeavesOfNoneIsNone) {
+  frame::FrameDescription f =
+      frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames/portal-semi-rigid.yaml");
+  f.geometry = Geometry::finite;
+  for (auto& [name, at] : f.nodes) at += Vector3(3e-4 * std::sin(at.z() + 1), 0, 2e-4 * std::cos(at.x()));
+  const Subject s(f);
+  std::string csv = "load.side,load.above,load.twist,top_x_mm\n";
+  for (const char* factor : {"0", "-1.1102230246251565e-16", "5.551115123125783e-17"})
+    csv += fmt::format("0,0,{},0\n", factor);
+  const measurement::Measurements data =
+      s.placed(measurement::parse_measurements(csv, "readings.csv", s.instruments()));
+  prediction::PredictionOptions o;
+  o.geometry = Geometry::finite;
+  for (const VectorX& read : s.stand(data)->predict(data, o)) EXPECT_TRUE(read.isZero(1e-15)) << read.transpose();
+}
+
+// Where one case is drawn twice for a reading its factors add up, to hundredths as they are drawn.
+TEST(DeformedFrame, FactorsOfARandomCampaignAreHundredths) {
+  for (const std::uint64_t seed : {7, 8, 9})
+    for (const measurement::Reading& r : subject::frame_campaign("random", column(), seed).readings)
+      for (const double factor : r.factors) EXPECT_EQ(factor, std::round(factor * 100) / 100);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ class Plan {
   void add(const std::vector<std::pair<std::size_t, double>>& loads) {
     measurement::Reading r;
     r.factors.assign(cases(), 0);
-    for (const auto& [k, factor] : loads) r.factors[k] += factor;
+    for (const auto& [k, factor] : loads) r.factors[k] = std::round((r.factors[k] + factor) * 100) / 100 + 0.0;
     r.line = m_.readings.size() + 2;
     if (sequence_) r.sequence = static_cast<double>(m_.readings.size() + 1);
     m_.poses.front().readings.push_back(m_.readings.size());
