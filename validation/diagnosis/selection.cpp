@@ -138,11 +138,13 @@ class Search {
   void grant(const Hypothesis& h, VectorX values) {
     for (int pass = 0; pass < most_passes; ++pass) {
       const subject::Subject right = subject_with(seen(), h, values);
-      s_.observations = seen().granted(right);
-      Fit again = fit_of_all(seen(), h, values);
+      Observations next = seen().granted(right);
+      Fit again = fit_of_all(next, h, values);
+      if (!again.found && pass > 0) break;
       if (!again.found) throw std::logic_error("a fit that was found is not found again");
-      again = searched_again(seen(), h, std::move(again), candidates_.threads());
+      again = searched_again(next, h, std::move(again), candidates_.threads());
       values = again.values;
+      s_.observations = std::move(next);
       s_.effects = h;
       s_.fit = std::move(again);
       if (!(seen().change_of_shape(right, subject_with(seen(), h, values)) > known_shape)) break;
