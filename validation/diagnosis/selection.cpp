@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 
@@ -134,21 +136,29 @@ class Search {
     return std::pair(a.class_log_odds, a.log_odds) < std::pair(b.class_log_odds, b.log_odds);
   }
 
-  /// These effects count as right, at the values with which the deformed shape is that of the subject they make.
+  /// These effects count as right, at the values with which the deformed shape is that of the subject they make. Where
+  /// passes do not lead there, with the shape at the values given.
   void grant(const Hypothesis& h, VectorX values) {
+    std::optional<Selection> first;
+    double before = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_passes; ++pass) {
       const subject::Subject right = subject_with(seen(), h, values);
       Observations next = seen().granted(right);
       Fit again = fit_of_all(next, h, values);
-      if (!again.found && pass > 0) break;
+      if (!again.found && first) break;
       if (!again.found) throw std::logic_error("a fit that was found is not found again");
       again = searched_again(next, h, std::move(again), candidates_.threads());
       values = again.values;
       s_.observations = std::move(next);
       s_.effects = h;
       s_.fit = std::move(again);
-      if (!(seen().change_of_shape(right, subject_with(seen(), h, values)) > known_shape)) break;
+      const double change = seen().change_of_shape(right, subject_with(seen(), h, values));
+      if (!(change > known_shape)) return;
+      if (!first) first = s_;
+      if (!(change < before)) break;
+      before = change;
     }
+    s_ = std::move(*first);
   }
 
   /// Whether it is a simpler candidate under another name: it stands at a bound of its own, and one with fewer
