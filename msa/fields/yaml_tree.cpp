@@ -41,7 +41,9 @@ void attach(YamlNode& root, const Dependences& all) {
       const std::string_view segment = rest.substr(0, dot);
       rest.remove_prefix(std::min(dot + 1, rest.size()));
       if (node->kind == YamlNode::Kind::map) {
-        node = node->child(segment);
+        YamlNode* const child = node->child(segment);
+        if (!child && segment == "0") continue;  // a list of one entry may stand as that entry alone
+        node = child;
         continue;
       }
       std::size_t i = node->children.size();

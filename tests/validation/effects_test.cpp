@@ -3,11 +3,13 @@
 
 #include <map>
 
+#include "msa/base/outcome.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/numbers.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/same_mechanism.h"
+#include "validation/effects/place_effects.h"
 
 namespace deflect {
 namespace {
@@ -255,6 +257,41 @@ TEST(PreparedEffects, HoldSeveralEffectsAtOnce) {
     slow = with_effect(slow, *all[i].effect, x.segment(static_cast<Eigen::Index>(i), 1), all[i].leg);
   EXPECT_NEAR(slow.payload, 0.5, 1e-15);
   expect_equal(prepared.machine(x), resolved(slow), "five");
+}
+
+// A law of every leg at a joint, and beside it one of a leg alone at this joint and others: each number has its own
+// parameter.
+TEST(PreparedEffects, OfPlacesGiveTheSameNumbersAsEditsTwoByTwo) {
+  for (const char* name : {"tripteron", "haptic-6psu", "delta", "arm"}) {
+    const Mechanism m = device(name);
+    std::vector<Effect> all = all_effects();
+    for (Effect& e : place_effects(subject::Subject(m), all)) all.push_back(std::move(e));
+    std::erase_if(all, [&](const Effect& e) { return why_not(e, m) || e.parameters.empty(); });
+    const auto some = [&](std::size_t k) {
+      const Effect& e = all[k % all.size()];
+      return PlacedEffect{&e, e.scope == Scope::one_leg ? std::optional(1) : std::nullopt};
+    };
+    const auto beside_start = [](const Effect& e) {
+      VectorX x = start_values(e);
+      for (std::size_t i = 0; i < e.parameters.size(); ++i)
+        x(static_cast<Eigen::Index>(i)) += 0.1 * (e.parameters[i].high - e.parameters[i].start);
+      return x;
+    };
+    int compared = 0;
+    for (std::size_t k = 0; k < 80; ++k) {
+      const PlacedEffect first = some(37 * k), second = some(101 * k + 11);
+      const VectorX a = beside_start(*first.effect), b = beside_start(*second.effect);
+      const auto edited = outcome_of(
+          [&] { return with_effect(with_effect(m, *first.effect, a, first.leg), *second.effect, b, second.leg); });
+      if (!edited) continue;  // they do not go together
+      VectorX both(a.size() + b.size());
+      both << a, b;
+      expect_equal(PreparedEffects(m, {first, second}).machine(both), resolved(*edited),
+                   first.effect->name + " and " + second.effect->name);
+      ++compared;
+    }
+    EXPECT_GT(compared, 20) << name;
+  }
 }
 
 TEST(PreparedEffects, RefuseValuesThatTheDescriptionCannotHold) {
