@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "msa/base/error.h"
 #include "tests/support/frames.h"
@@ -75,6 +76,26 @@ TEST(FrameGeometry, ResultsStandInTheDeformedShape) {
   EXPECT_LT((s.reaction("a") - (Vector6() << 0, 0, weight, 0, 0, 0).finished()).norm(), 0.01 * couple);
   EXPECT_LT(s.result.cases[0].checks.equilibrium, 1e-9);
   EXPECT_GT(s.result.cases[0].path.steps, 3);
+}
+
+// A load of which the second order is far below the digits: as in linear geometry, however small, where nodes and ends
+// of members have no round coordinates.
+TEST(FrameGeometry, NextToNoLoadMovesAsInLinearGeometry) {
+  FrameDescription f =
+      read_frame(std::filesystem::path(test::source_dir()) / "validation/frames/portal-semi-rigid.yaml");
+  for (auto& [name, at] : f.nodes) at += Vector3(3e-4 * std::sin(at.z() + 1), 0, 2e-4 * std::cos(at.x()));
+  const Solved linear(f);
+  f.geometry = Geometry::finite;
+  for (const double factor : {1e-9, 1e-12, 1e-18}) {
+    FrameDescription g = f;
+    for (auto& [name, load] : g.loads) load.factor = factor;
+    const Solved finite(g);
+    ASSERT_EQ(failed_check(finite.result), "") << factor;
+    for (std::size_t c = 0; c < f.loads.size(); ++c)
+      for (const char* node : {"B", "M", "C"})
+        EXPECT_LT((finite.u(node, c) / factor - linear.u(node, c)).norm(), 1e-7 * linear.u(node, c).norm())
+            << node << " of case " << c << " times " << factor;
+  }
 }
 
 TEST(FrameGeometry, SpringsOfTheGroundActAlongBaseAxesAtAnyRotation) {

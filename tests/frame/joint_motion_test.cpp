@@ -104,6 +104,25 @@ TEST(JointMotion, IsTheOneThatWasMade) {
   EXPECT_LE((bodies.motion().components - wanted).cwiseAbs().maxCoeff(), 2e-15);
 }
 
+// Motions far below the rounding of positions and of axes have the components of the linear form to all digits.
+TEST(JointMotion, KeepsTheDigitsOfTheSmallestMotions) {
+  for (int seed = 1; seed <= 10; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    TwoBodies bodies(seed);
+    const Vector3 u_a = any_vector(random, 1), u_b = any_vector(random, 1), w_a = any_vector(random, 1),
+                  w_b = any_vector(random, 1);
+    const double tiny = 1e-18;
+    bodies.a = {tiny * u_a, rotation_by(tiny * w_a)};
+    bodies.b = {tiny * u_b, rotation_by(tiny * w_b)};
+    const JointMotion at = bodies.motion();
+    Vector6 linear;
+    linear << bodies.axes[0].transpose() *
+                  (u_b + w_b.cross(bodies.p - bodies.X_b) - u_a - w_a.cross(bodies.p - bodies.X_a)),
+        bodies.axes[1].transpose() * (w_b - w_a);
+    EXPECT_TRUE((at.components / tiny).isApprox(linear, 1e-13)) << (at.components / tiny - linear).transpose();
+  }
+}
+
 TEST(JointMotion, AtRestItIsTheLinearFormOfTheModel) {
   Model m;
   m.add_node("a", {0.3, -0.2, 0.1});

@@ -12,7 +12,6 @@
 #include "msa/frame/structure/relative.h"
 
 namespace deflect::frame {
-namespace {}  // namespace
 
 /// Springs that jump begin where the linear theory has them under this part of the load, and the shape with them.
 void GeometricSolver::begin_jumps(Work& work, double factor) const {

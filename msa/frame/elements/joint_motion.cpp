@@ -36,8 +36,12 @@ void rotation(const Vector3& g, const Matrix3& P, Vector12& gradient, Matrix12& 
   H.block<3, 3>(3, 9) = H.block<3, 3>(9, 3).transpose();
 }
 
-void rotations(const Matrix3& R_a, const Matrix3& R_b, JointMotion& out) {
-  const Matrix3 S = R_a.transpose() * R_b;  // Rx(α) Ry(β) Rz(γ)
+void rotations(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b, const Matrix3& axes, JointMotion& out) {
+  const Matrix3 R_a = a.toRotationMatrix() * axes;
+  // Rx(α) Ry(β) Rz(γ) = R_aᵀ R_b; small rotations keep their digits in the quaternion.
+  Eigen::Quaterniond relative = a.conjugate() * b;
+  relative.vec() = axes.transpose() * relative.vec();
+  const Matrix3 S = relative.toRotationMatrix();
   const double alpha = std::atan2(-S(1, 2), S(2, 2)), sine = S(0, 2), cosine = std::hypot(S(0, 0), S(0, 1));
   out.components.tail<3>() << alpha, std::atan2(sine, cosine), std::atan2(-S(0, 1), S(0, 0));
   const double ca = std::cos(alpha), sa = std::sin(alpha), tangent = sine / cosine;
@@ -64,8 +68,7 @@ JointMotion joint_motion(const Vector3& X_a, const BodyMotion& a, const Vector3&
       translation(R_a.col(i), v, arm_b, out.gradient[k], out.hessian[k]);
     }
   }
-  if (wanted[3] || wanted[4] || wanted[5])
-    rotations(a.Q.toRotationMatrix() * axes[1], b.Q.toRotationMatrix() * axes[1], out);
+  if (wanted[3] || wanted[4] || wanted[5]) rotations(a.Q, b.Q, axes[1], out);
   return out;
 }
 
