@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/frame_tolerances.h"
 #include "validation/subject/frame_groups.h"
@@ -20,7 +22,7 @@ namespace {
 using frame::FrameDescription;
 
 /// A frame does not move: it has one pose, whatever labels the measurements have.
-class FrameStanding final : public Standing {
+class FrameStanding : public Standing {
  public:
   /// `near`: of a frame that may differ little.
   FrameStanding(std::shared_ptr<const FrameDescription> f, const measurement::Measurements& data,
@@ -83,42 +85,110 @@ std::vector<FrameMove> frame_moves(const FrameDescription& f, const measurement:
   return out;
 }
 
+/// Of the readings those with the largest load of each channel.
+measurement::Measurements largest_loads(const measurement::Measurements& data) {
+  const MatrixX loads = measurement::loads_of(data).cwiseAbs();
+  std::set<std::size_t> largest;
+  for (const auto& channel : loads.rowwise())
+    largest.insert(as_size(std::max_element(channel.begin(), channel.end()) - channel.begin()));
+  measurement::Measurements out = data;
+  out.readings.clear();
+  out.poses.resize(1);
+  out.poses.front().readings.clear();
+  for (const std::size_t i : largest) {
+    out.poses.front().readings.push_back(out.readings.size());
+    out.readings.push_back(data.readings[i]);
+    out.readings.back().pose = 0;
+  }
+  return out;
+}
+
+/// Whether equilibrium in the deformed shape changes what tolerances do to some sensor by more than a hundredth: a
+/// column whose load adds a fifth to its deflection adds a fifth to that of being off plumb too. Asked of all
+/// tolerances at once, each off by a standard deviation this way or that.
+bool shape_changes_tolerances(const FrameDescription& f, const std::vector<FrameMove>& moves,
+                              const measurement::Measurements& data) {
+  constexpr double little = 0.01, nothing = 1e-3;
+  if (f.geometry == Geometry::linear) return false;
+  NumberMove all;
+  for (std::size_t k = 0; k < moves.size(); ++k)
+    for (const auto& [number, shift] : moves[k].number.shifts)
+      all.shifts.emplace_back(number, std::sin(1.0 + static_cast<double>(k)) > 0 ? shift : -shift);
+  if (all.shifts.empty()) return false;
+  const FrameDescription built = frame::moved(f, all);
+  const measurement::Measurements largest = largest_loads(data);
+  const auto read = [&](const FrameDescription& frame, Geometry geometry) {
+    const std::vector<VectorX> by_reading = predicted_readings(frame, largest, geometry);
+    MatrixX out(by_reading.front().size(), std::ssize(by_reading));
+    for (std::size_t i = 0; i < by_reading.size(); ++i) out.col(as_index(i)) = by_reading[i];
+    return out;
+  };
+  const auto changes = outcome_of([&] {
+    const MatrixX drawn = read(f, Geometry::linear), linear = read(built, Geometry::linear) - drawn;
+    const MatrixX shape = read(built, f.geometry) - read(f, f.geometry) - linear;
+    const VectorX of = linear.rowwise().norm().cwiseMax(nothing * drawn.rowwise().norm());
+    return (shape.rowwise().norm().array() > little * of.array()).any();
+  });
+  return changes.value.value_or(false);
+}
+
+/// A frame off by a tolerance. Where it does not stand in its deformed shape, for it bends more than what bears the
+/// load as drawn, the tolerance does what it does in linear geometry.
+class DeviatingFrame final : public FrameStanding {
+ public:
+  DeviatingFrame(FrameDescription built, const measurement::Measurements& data,
+                 std::shared_ptr<const FrameStanding> drawn)
+      : FrameStanding(std::make_shared<const FrameDescription>(std::move(built)), data, drawn->known()),
+        drawn_(std::move(drawn)) {}
+
+  std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
+                               const parallel::Work& work) const override {
+    auto read = outcome_of([&] { return FrameStanding::predict(data, o, work); });
+    if (read) return std::move(*read);
+    prediction::PredictionOptions linear = o;
+    linear.geometry = Geometry::linear;
+    std::vector<VectorX> out = FrameStanding::predict(data, linear, work);
+    const std::vector<VectorX> stands = drawn_->predict(data, o, work), drawn = drawn_->predict(data, linear, work);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += stands[i] - drawn[i];
+    return out;
+  }
+
+ private:
+  std::shared_ptr<const FrameStanding> drawn_;
+};
+
 class FrameDeviations final : public Deviations {
  public:
   /// `further`: of a frame that may differ little, null for none. It serves where the frame itself cannot be known.
-  FrameDeviations(std::shared_ptr<const FrameDescription> linear, const measurement::Measurements& data,
-                  std::shared_ptr<const FrameNearby> further)
-      : frame_(linear),
-        data_(data),
-        drawn_(linear, data, std::make_shared<const FrameNearby>(*linear, data, std::move(further))),
-        moves_(frame_moves(*frame_, data)) {
+  FrameDeviations(FrameDescription f, const measurement::Measurements& data, std::shared_ptr<const FrameNearby> further)
+      : data_(data), moves_(frame_moves(f, data)) {
+    if (!shape_changes_tolerances(f, moves_, data)) f.geometry = Geometry::linear, f.load_steps = 1;
+    frame_ = std::make_shared<const FrameDescription>(std::move(f));
+    drawn_ = std::make_shared<const FrameStanding>(
+        frame_, data, std::make_shared<const FrameNearby>(*frame_, data, std::move(further)));
     for (const FrameMove& move : moves_) tolerances_.push_back(move.tolerance);
   }
 
   const std::vector<Tolerance>& tolerances() const override { return tolerances_; }
-  const Standing& drawn() const override { return drawn_; }
+  const Standing& drawn() const override { return *drawn_; }
   std::unique_ptr<const Standing> with(std::size_t k) const override {
     const FrameMove& move = moves_[k];
     FrameDescription built = move.number.shifts.empty() ? *frame_ : frame::moved(*frame_, move.number);
     for (auto& [name, sensor] : built.sensors)
       if (name == move.sensor) sensor.gain += move.gain, sensor.zero += move.zero;
-    return std::make_unique<FrameStanding>(std::make_shared<const FrameDescription>(std::move(built)), data_,
-                                           drawn_.known());
+    return std::make_unique<DeviatingFrame>(std::move(built), data_, drawn_);
   }
 
  private:
-  std::shared_ptr<const FrameDescription> frame_;
   const measurement::Measurements& data_;
-  FrameStanding drawn_;
   std::vector<FrameMove> moves_;
   std::vector<Tolerance> tolerances_;
+  std::shared_ptr<const FrameDescription> frame_;
+  std::shared_ptr<const FrameStanding> drawn_;
 };
 
 std::unique_ptr<const Deviations> FrameStanding::deviations(const measurement::Measurements& data) const {
-  FrameDescription linear = *frame_;
-  linear.geometry = Geometry::linear;
-  linear.load_steps = 1;
-  return std::make_unique<FrameDeviations>(std::make_shared<const FrameDescription>(std::move(linear)), data, near_);
+  return std::make_unique<FrameDeviations>(*frame_, data, near_);
 }
 
 /// Of one reading, where the description gives it: scatter, and rounding to a step, which is as good as even over it.

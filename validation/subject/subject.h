@@ -123,8 +123,9 @@ class Standing {
   virtual std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const = 0;
 };
 
-/// A subject that deviates in one tolerance by one standard deviation. Linear geometry; without the sensor's drift,
-/// which no tolerance changes.
+/// A subject that deviates in one tolerance by one standard deviation. Linear geometry, but for a frame in which
+/// equilibrium in the deformed shape changes what tolerances do by more than a hundredth: there as the frame is
+/// described. Without the sensor's drift, which no tolerance changes.
 class Deviations {
  public:
   virtual ~Deviations() = default;
