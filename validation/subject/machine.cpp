@@ -8,6 +8,7 @@
 
 #include "analytic/model.h"
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/tolerances.h"
 #include "validation/measurement/configure_all.h"
@@ -166,9 +167,14 @@ class MachineStanding final : public Standing {
 
   Matrix6 compliance(std::size_t pose) const override {
     const analytic::AnalyticModel model(machines_[pose]);
-    Vector6 F = Vector6::Zero();
-    if (!model.linear()) F.head<3>().setConstant(1);
-    return model.compliance(model.solve(F));
+    const auto under = [&](double force, double moment) {
+      Vector6 F;
+      F << Vector3::Constant(force), Vector3::Constant(moment);
+      return outcome_of<ModelError>([&] { return model.compliance(model.solve(F)); });
+    };
+    if (model.linear()) return model.compliance(model.solve(Vector6::Zero()));
+    const auto pushed = under(1, 0);
+    return pushed ? *pushed : under(1, size()).value.value_or(Matrix6::Zero());
   }
 
   bool has_history() const override { return any_history(machines_.front()); }

@@ -99,7 +99,8 @@ class Standing {
   virtual BodyFrame tool(std::size_t) const { return {}; }
   virtual BodyFrame base(std::size_t) const { return {}; }
   /// Tangent compliance at T without load; where a law is nonlinear (contacts), under a force of 1 N along each of x, y
-  /// and z.
+  /// and z. Where play leaves a motion free under these, under moments of 1 N times size() about each as well; zero
+  /// where that leaves one free too.
   virtual Matrix6 compliance(std::size_t) const { return Matrix6::Zero(); }
   /// Empty where no force inside follows from statics.
   virtual std::vector<Site> sites(std::size_t) const { return {}; }
