@@ -212,9 +212,10 @@ class Candidates::Round {
   /// Of rivals that come near the best, fits each anew in the deformed shape of the subject that it makes, where that
   /// may be another than is expected.
   void fit_in_own_shapes() {
+    const double bar = std::max(bar_, likeliest() - far_behind);
     std::vector<std::size_t> rivals;
     for (std::size_t i = 0; i < out_.size(); ++i)
-      if (odds(i) > bar_ && odds(i) > likeliest() - far_behind) rivals.push_back(i);
+      if (odds(i) > bar) rivals.push_back(i);
     if (rivals.size() < 2) return;
     parallel::for_each_case(rivals.size(), 1, all_.threads_, [&](std::size_t k) {
       Candidate& c = out_[rivals[k]];

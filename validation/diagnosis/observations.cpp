@@ -86,6 +86,16 @@ VectorX DeformedShape::where_linear_is(const VectorX& linear) const {
   return out;
 }
 
+VectorX DeformedShape::changed_by(const VectorX& linear_change) const {
+  VectorX out = VectorX::Zero(added_.size());
+  for (const OfReading& r : readings_) {
+    if (!r.known) continue;
+    const double growth = along_.segment(r.first, r.count).dot(linear_change.segment(r.first, r.count));
+    out.segment(r.first, r.count) = growth * (2 - r.lambda) / (1 - r.lambda) * added_.segment(r.first, r.count);
+  }
+  return out;
+}
+
 Observations::Observations(const subject::Subject& subject, const measurement::Measurements& data,
                            const compare::ComparisonOptions& o, const parallel::Work& work)
     : subject_(subject),
@@ -182,6 +192,10 @@ bool Observations::has_history(const subject::Subject& subject) const {
 
 VectorX Observations::whitened_residual(const subject::Subject& subject) const {
   return uncertainty_->whitened(residual(subject));
+}
+
+VectorX Observations::whitened_change(const VectorX& linear_change) const {
+  return -uncertainty_->whitened(shape_ ? VectorX(linear_change + shape_->changed_by(linear_change)) : linear_change);
 }
 
 double Observations::rmse(const subject::Subject& subject) const {

@@ -25,6 +25,8 @@ class DeformedShape {
   const VectorX& added() const { return added_; }
   /// Of a subject that has these readings in linear geometry.
   VectorX where_linear_is(const VectorX& linear) const;
+  /// Its first-order change where these change a little: the derivative by r is (2 − λ)/(1 − λ) at r = 1.
+  VectorX changed_by(const VectorX& linear_change) const;
 
  private:
   struct OfReading {
@@ -60,6 +62,8 @@ class Observations {
   VectorX residual(const subject::Subject&) const;
   /// W times it, with WᵀW = Σ⁻¹ (whitening.h).
   VectorX whitened_residual(const subject::Subject&) const;
+  /// Its first-order change where the readings predicted in linear geometry change a little.
+  VectorX whitened_change(const VectorX& linear_change) const;
   /// The same for the subject as given, in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
   /// All patterns that a residual can have (discrepancy.h), whitened by the uncertainty. Computed anew at every call.
