@@ -103,9 +103,9 @@ measurement::Measurements largest_loads(const measurement::Measurements& data) {
   return out;
 }
 
-/// Whether equilibrium in the deformed shape changes what tolerances do to some sensor by more than a hundredth: a
-/// column whose load adds a fifth to its deflection adds a fifth to that of being off plumb too. Asked of all
-/// tolerances at once, each off by a standard deviation this way or that.
+/// Whether equilibrium in the deformed shape changes what tolerances do to some sensor by more than a hundredth, and by
+/// more than its σ: a column whose load adds a fifth to its deflection adds a fifth to that of being off plumb too.
+/// Asked of all tolerances at once, each off by a standard deviation this way or that.
 bool shape_changes_tolerances(const FrameDescription& f, const std::vector<FrameMove>& moves,
                               const measurement::Measurements& data) {
   constexpr double little = 0.01, nothing = 1e-3;
@@ -126,8 +126,13 @@ bool shape_changes_tolerances(const FrameDescription& f, const std::vector<Frame
   const auto changes = outcome_of([&] {
     const MatrixX drawn = read(f, Geometry::linear), linear = read(built, Geometry::linear) - drawn;
     const MatrixX shape = read(built, f.geometry) - read(f, f.geometry) - linear;
-    const VectorX of = linear.rowwise().norm().cwiseMax(nothing * drawn.rowwise().norm());
-    return (shape.rowwise().norm().array() > little * of.array()).any();
+    for (std::size_t k = 0; k < data.instruments.sensors.size(); ++k) {
+      const auto row = as_index(6 + k);
+      const double of = std::max(linear.row(row).norm(), nothing * drawn.row(row).norm());
+      const double seen = std::max(little * of, data.instruments.sensors[k].sigma.value_or(0));
+      if (shape.row(row).norm() > seen) return true;
+    }
+    return false;
   });
   return changes.value.value_or(false);
 }
