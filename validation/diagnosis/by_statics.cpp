@@ -72,7 +72,7 @@ std::optional<VectorX> ByStatics::change(const effects::PlacedEffect& e) const {
   const compare::ResidualStudy& study = observations_.comparison().study;
   const auto told = by_force(e, effects::start_values(*e.effect), *study.data);
   if (!told) return std::nullopt;
-  return observations_.whitened_change(statistics::rows_of(study.values, *told));
+  return VectorX(-observations_.uncertainty().whitened(statistics::rows_of(study.values, *told)));
 }
 
 }  // namespace deflect::diagnosis

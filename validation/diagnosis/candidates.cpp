@@ -10,7 +10,6 @@
 
 #include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
-#include "validation/diagnosis/fit_in_turn.h"
 #include "validation/diagnosis/fit_problem.h"
 #include "validation/diagnosis/pairs.h"
 #include "validation/parallel/cases.h"
@@ -19,7 +18,6 @@
 namespace deflect::diagnosis {
 namespace {
 
-constexpr double certain = 1e9;
 constexpr double out_of_question = -1e9;           // ln of the odds of what is there already, or cannot be
 constexpr double near_nothing = 6, hopeless = 30;  // gains in χ² that are not looked into
 constexpr double bent = 8;                         // that a fit may gain beyond what the signature says, where small
@@ -49,6 +47,35 @@ std::vector<double> shared_priors(const std::vector<Signature>& all, const std::
   }
   for (double& w : weight) w *= Candidates::prior_missing * (1 - Candidates::prior_unknown) / total;
   return weight;
+}
+
+constexpr double far_behind = 6;  // what is sure to be less likely than the best by this logarithm is not fitted
+/// Fits that are begun together: first one, then twice as many each time, up to this. The next ones are compared with
+/// the best of these, so that one that explains nearly all spares most others. The numbers do not depend on the
+/// threads, so that the answer does not.
+constexpr std::size_t at_once = 8;
+constexpr double certain = 1e9;
+
+/// Fits those signatures that can still come near the best, which promise the most first. `promise` returns the most
+/// that ln of the odds of a signature's class can become by its fit; it may learn from the fits so far, of which
+/// `fitted` is told. `fit_one`, given the signature and the number of threads within, returns ln of the odds found.
+/// Returns the bar that further ones must exceed.
+template <class Promise, class FitOne, class Fitted>
+double fit_in_turn(std::vector<std::size_t> all, double bar, int threads, const Promise& promise, const FitOne& fit_one,
+                   const Fitted& fitted) {
+  for (std::size_t count = 0; !all.empty();) {
+    std::map<std::size_t, double> most;
+    for (const std::size_t i : all) most[i] = promise(i);
+    std::erase_if(all, [&](std::size_t i) { return !(most[i] > bar); });
+    std::stable_sort(all.begin(), all.end(), [&](std::size_t a, std::size_t b) { return most[a] > most[b]; });
+    count = std::min({std::max<std::size_t>(1, 2 * count), at_once, all.size()});
+    // Where few are fitted, one with many starts would keep one thread busy long after the others.
+    const int within = count < at_once ? threads : 1;
+    parallel::for_each_case(count, 1, threads, [&](std::size_t k) { fit_one(all[k], within); });
+    for (std::size_t k = 0; k < count; ++k) bar = std::max(bar, fitted(all[k]) - far_behind);
+    all.erase(all.begin(), all.begin() + as_index(count));
+  }
+  return bar;
 }
 
 /// Physics lets it act to one side only, and the residual asks for the other.
@@ -209,22 +236,6 @@ class Candidates::Round {
     });
   }
 
-  /// Of rivals that come near the best, fits each anew in the deformed shape of the subject that it makes, where that
-  /// may be another than is expected.
-  void fit_in_own_shapes() {
-    const double bar = std::max(bar_, likeliest() - far_behind);
-    std::vector<std::size_t> rivals;
-    for (std::size_t i = 0; i < out_.size(); ++i)
-      if (odds(i) > bar) rivals.push_back(i);
-    if (rivals.size() < 2) return;
-    parallel::for_each_case(rivals.size(), 1, all_.threads_, [&](std::size_t k) {
-      Candidate& c = out_[rivals[k]];
-      const auto own = observations_.in_shape_of(subject_with(observations_, c.hypothesis, c.fit.values));
-      Fit again = own ? fit_of_all(*own, c.hypothesis, c.fit.values) : Fit();
-      if (again.found) judge(rivals[k], std::move(again));
-    });
-  }
-
   /// What was fitted before, in place of fit_promising().
   void take(const std::vector<Candidate>& fitted) {
     out_ = fitted;
@@ -306,12 +317,6 @@ class Candidates::Round {
     if (signature(i).effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))
       c.fit = not_found(fmt::format("its {} runs to the end of what it can be, {:g}",
                                     c.added().effect->parameters.front().name, c.fit.values.tail<1>()(0)));
-    judge(i, std::move(c.fit));
-  }
-
-  void judge(std::size_t i, Fit fit) {
-    Candidate& c = out_[i];
-    c.fit = std::move(fit);
     c.gain = c.fit.found ? std::max(0.0, so_far_.chi2 - c.fit.chi2) : 0;
     c.log_odds = all_.log_odds(i, c.gain, all_.priors_[i]);
   }
@@ -332,7 +337,6 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   round.fit_promising(least);
   round.fit_what_lets_go();
   if (larger_sizes_) round.fit_larger();
-  round.fit_in_own_shapes();
   return round.result();
 }
 

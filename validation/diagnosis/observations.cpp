@@ -34,67 +34,19 @@ std::vector<VectorX> in_linear_geometry(const compare::ResidualStudy& s, const s
 }
 
 /// What equilibrium in the deformed shape adds to a subject's readings; nothing where it does not stand in it.
-std::optional<DeformedShape> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject,
-                                               const VectorX& sigma) {
+std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject) {
   const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
   if (subject.true_geometry() == Geometry::linear) return std::nullopt;
   prediction::PredictionOptions finite;
   finite.geometry = subject.true_geometry();
   return outcome_of([&] {
-           const VectorX linear = statistics::rows_of(s.values, in_linear_geometry(s, *standing));
-           const VectorX added = statistics::rows_of(s.values, standing->predict(*s.data, finite)) - linear;
-           return DeformedShape(s.values, sigma, linear, added);
+           return VectorX(statistics::rows_of(s.values, standing->predict(*s.data, finite)) -
+                          statistics::rows_of(s.values, in_linear_geometry(s, *standing)));
          })
       .value;
 }
 
-/// Bounds for a subject that yields far more than the one whose shape is known: of its growth, and of what is left of
-/// 1 − λ.
-constexpr double most_growth = 3, least_left = 0.1;
-
 }  // namespace
-
-DeformedShape::DeformedShape(const std::vector<measurement::MeasuredValue>& values, const VectorX& sigma,
-                             const VectorX& linear, VectorX added)
-    : added_(std::move(added)), along_(linear.cwiseQuotient(sigma.cwiseAbs2())) {
-  const std::size_t readings = values.empty() ? 0 : values.back().reading + 1;
-  readings_.resize(readings);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto at = as_index(i);
-    OfReading& r = readings_[values[i].reading];
-    if (r.count++ == 0) r.first = at;
-  }
-  for (OfReading& r : readings_) {
-    auto along = along_.segment(r.first, r.count);
-    const auto of = linear.segment(r.first, r.count);
-    const double square = along.dot(of), shape = along.dot(added_.segment(r.first, r.count));
-    r.known = square > std::abs(shape);
-    if (!r.known) continue;
-    r.lambda = shape / (square + shape);
-    along /= square;
-  }
-}
-
-VectorX DeformedShape::where_linear_is(const VectorX& linear) const {
-  VectorX out = added_;
-  for (const OfReading& r : readings_) {
-    if (!r.known) continue;
-    const auto of = along_.segment(r.first, r.count), now = linear.segment(r.first, r.count);
-    const double growth = std::clamp(of.dot(now), 0.0, most_growth), left = 1 - r.lambda;
-    out.segment(r.first, r.count) *= growth * growth * left / std::max(1 - growth * r.lambda, least_left * left);
-  }
-  return out;
-}
-
-VectorX DeformedShape::changed_by(const VectorX& linear_change) const {
-  VectorX out = VectorX::Zero(added_.size());
-  for (const OfReading& r : readings_) {
-    if (!r.known) continue;
-    const double growth = along_.segment(r.first, r.count).dot(linear_change.segment(r.first, r.count));
-    out.segment(r.first, r.count) = growth * (2 - r.lambda) / (1 - r.lambda) * added_.segment(r.first, r.count);
-  }
-  return out;
-}
 
 Observations::Observations(const subject::Subject& subject, const measurement::Measurements& data,
                            const compare::ComparisonOptions& o, const parallel::Work& work)
@@ -108,13 +60,12 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
       uncertainty_(uncertainty_of(*comparison_, A_, predicted_, aside_)) {
   const compare::ResidualStudy& s = comparison_->study;
   measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
-  const VectorX predicted = statistics::rows_of(s.values, s.predicted);
-  if (!s.deformed_shape.empty()) {
-    shape_ = DeformedShape(s.values, sigma(), predicted, statistics::rows_of(s.values, s.deformed_shape));
-  } else if (subject.geometry() != Geometry::linear) {  // it is in what the comparison predicts
-    const VectorX linear = statistics::rows_of(s.values, in_linear_geometry(s, *s.standing));
-    shape_ = DeformedShape(s.values, sigma(), linear, predicted - linear);
-  }
+  shape_ = VectorX::Zero(measured_.size());
+  if (!s.deformed_shape.empty())
+    shape_ = statistics::rows_of(s.values, s.deformed_shape);
+  else if (subject.geometry() != Geometry::linear)  // it is in what the comparison predicts
+    shape_ =
+        statistics::rows_of(s.values, s.predicted) - statistics::rows_of(s.values, in_linear_geometry(s, *s.standing));
   tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
@@ -131,16 +82,7 @@ std::vector<double> Observations::log_likelihood_of_scales(const std::vector<dou
   return uncertainty_->log_likelihood_of_scales(residual(subject_), MatrixX(measured_.size(), 0), scales, free);
 }
 
-VectorX Observations::sigma() const {
-  return Eigen::Map<const VectorX>(comparison_->sigma.data(), std::ssize(comparison_->sigma));
-}
-
-void Observations::count_shape() {
-  if (shape_)
-    A_.shared.rightCols<1>() = shape_known_to * shape_->added();
-  else
-    A_.shared.rightCols<1>().setZero();
-}
+void Observations::count_shape() { A_.shared.rightCols<1>() = shape_known_to * shape_; }
 
 void Observations::move_tolerances(const subject::Subject& subject) {
   const compare::ResidualStudy& s = comparison_->study;
@@ -175,15 +117,10 @@ std::shared_ptr<const WhitenedFamilies> Observations::whitened_patterns() const 
 
 std::size_t Observations::set_aside() const { return as_size(std::count(aside_.begin(), aside_.end(), true)); }
 
-VectorX Observations::linear(const subject::Subject& subject) const {
+VectorX Observations::residual(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
   const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
-  return statistics::rows_of(s.values, in_linear_geometry(s, *standing, parallel::alone));
-}
-
-VectorX Observations::residual(const subject::Subject& subject) const {
-  const VectorX predicted = linear(subject), residual = measured_ - predicted;
-  return shape_ ? VectorX(residual - shape_->where_linear_is(predicted)) : residual;
+  return measured_ - shape_ - statistics::rows_of(s.values, in_linear_geometry(s, *standing, parallel::alone));
 }
 
 bool Observations::has_history(const subject::Subject& subject) const {
@@ -192,10 +129,6 @@ bool Observations::has_history(const subject::Subject& subject) const {
 
 VectorX Observations::whitened_residual(const subject::Subject& subject) const {
   return uncertainty_->whitened(residual(subject));
-}
-
-VectorX Observations::whitened_change(const VectorX& linear_change) const {
-  return -uncertainty_->whitened(shape_ ? VectorX(linear_change + shape_->changed_by(linear_change)) : linear_change);
 }
 
 double Observations::rmse(const subject::Subject& subject) const {
@@ -234,7 +167,7 @@ std::vector<std::pair<std::string, double>> Observations::strained(const subject
 Observations Observations::granted(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;
-  if (std::optional<DeformedShape> shape = deformed_shape_of(s, subject, sigma())) out.shape_ = std::move(shape);
+  if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) out.shape_ = *shape;
   out.count_shape();
   out.move_tolerances(subject);
   const std::vector<bool> aside =
@@ -247,22 +180,12 @@ Observations Observations::granted(const subject::Subject& subject) const {
 }
 
 double Observations::change_of_shape(const subject::Subject& from, const subject::Subject& to) const {
-  if (!shape_) return 0;
-  const VectorX change = shape_->where_linear_is(linear(to)) - shape_->where_linear_is(linear(from));
-  return change.cwiseQuotient(sigma()).norm();
-}
-
-std::optional<Observations> Observations::in_shape_of(const subject::Subject& subject) const {
-  constexpr double near = 3;
-  if (!shape_) return std::nullopt;
-  const VectorX change = shape_->where_linear_is(linear(subject)) - shape_->added();
-  if (!(change.cwiseQuotient(sigma()).norm() > near)) return std::nullopt;
-  std::optional<DeformedShape> own = deformed_shape_of(comparison_->study, subject, sigma());
-  if (!own) return std::nullopt;
-  Observations out = *this;
-  out.shape_ = std::move(own);
-  out.null_ = out.whitened_residual(subject_);
-  return out;
+  constexpr double growth = 2;
+  if (shape_.isZero(0)) return 0;
+  const VectorX sigma = Eigen::Map<const VectorX>(comparison_->sigma.data(), shape_.size());
+  const VectorX left = residual(from), linear = measured_ - shape_ - left;
+  const auto norm = [&](const VectorX& v) { return v.cwiseQuotient(sigma).norm(); };
+  return growth * norm(shape_) * norm(left - residual(to)) / norm(linear);
 }
 
 Observations Observations::weighed_for(const subject::Subject& subject) const {

@@ -13,31 +13,6 @@ namespace deflect::diagnosis {
 /// Standard deviation of what equilibrium in the deformed shape contributes, as a share of it.
 inline constexpr double shape_known_to = 0.2;
 
-/// What equilibrium in the deformed shape adds to readings, of one subject and of others that are like it. What adds a
-/// share λ to itself has d/(1 − λ) instead of d in linear geometry, of which the shape is d λ/(1 − λ). Where another
-/// subject yields r times as much, d and λ are r times as large, the shape is r² (1 − λ)/(1 − r λ) times; without such
-/// feedback (λ = 0) it is even in the displacement, r². By reading: λ and r of its numbers together, weighed by 1/σ².
-class DeformedShape {
- public:
-  /// `linear`: the readings in linear geometry; `added`: what the deformed shape adds; m, rad, by number.
-  DeformedShape(const std::vector<measurement::MeasuredValue>&, const VectorX& sigma, const VectorX& linear,
-                VectorX added);
-  const VectorX& added() const { return added_; }
-  /// Of a subject that has these readings in linear geometry.
-  VectorX where_linear_is(const VectorX& linear) const;
-  /// Its first-order change where these change a little: the derivative by r is (2 − λ)/(1 − λ) at r = 1.
-  VectorX changed_by(const VectorX& linear_change) const;
-
- private:
-  struct OfReading {
-    Eigen::Index first = 0, count = 0;
-    bool known = false;  ///< else the shape is nearly all there is, or there is no displacement
-    double lambda = 0;
-  };
-  VectorX added_, along_;  // r = along · linear
-  std::vector<OfReading> readings_;
-};
-
 /// Holds a comparison with its uncertainty and computes residuals for any edited subject. Where the data show
 /// tolerances larger than declared, these are scaled up (Uncertainty::scale_of_tolerances). The contribution of
 /// equilibrium in the deformed shape is known to shape_known_to; this uncertainty is one more nuisance parameter.
@@ -57,13 +32,11 @@ class Observations {
   std::size_t set_aside() const;                             ///< readings
   const std::vector<bool>& aside() const { return aside_; }  ///< by reading
 
-  /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus the contribution of
-  /// the deformed shape, as the one that counts as right (see granted()) tells of it.
+  /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus the fixed
+  /// contribution of the deformed shape (see granted()).
   VectorX residual(const subject::Subject&) const;
   /// W times it, with WᵀW = Σ⁻¹ (whitening.h).
   VectorX whitened_residual(const subject::Subject&) const;
-  /// Its first-order change where the readings predicted in linear geometry change a little.
-  VectorX whitened_change(const VectorX& linear_change) const;
   /// The same for the subject as given, in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
   /// All patterns that a residual can have (discrepancy.h), whitened by the uncertainty. Computed anew at every call.
@@ -86,13 +59,11 @@ class Observations {
   /// do), and readings that are gross outliers to it are set aside, unless they are more than one in twenty; one of ten
   /// or more may be.
   Observations granted(const subject::Subject&) const;
-  /// How far the contribution of the deformed shape differs between two subjects that are like the one that counts as
-  /// right: the norm in σ of noise of the whole. What DeformedShape does not know of that is less.
+  /// How far the contribution of the deformed shape may change where one subject counts as right instead of another
+  /// that is like it: the norm in σ of noise of the whole. No value moves by more than about so many of its σ.
+  /// Estimated in linear geometry: a contribution that is even in the load, or a load on what it displaces, grows twice
+  /// as fast as the displacement.
   double change_of_shape(const subject::Subject&, const subject::Subject&) const;
-  /// A copy in which the contribution of the deformed shape is the one of this subject; weights and what tolerances do
-  /// stay. Nullopt where it cannot be far from the one that is expected: by DeformedShape it changes by less than three
-  /// σ.
-  std::optional<Observations> in_shape_of(const subject::Subject&) const;
   /// A copy whose hypotheses are about this subject: effects are added to it, it is subject() and null_residual() is
   /// its. Weights, tolerances and what is granted stay those of the subject of this one.
   Observations about(const subject::Subject&) const;
@@ -109,8 +80,6 @@ class Observations {
  private:
   /// Subtracts the estimated zero of the readings where it is unknown.
   VectorX from_zero(VectorX residual) const;
-  VectorX sigma() const;  // of the numbers
-  VectorX linear(const subject::Subject&) const;
   void weigh(const std::vector<bool>& aside);
   void count_shape();
   void move_tolerances(const subject::Subject&);
@@ -126,8 +95,7 @@ class Observations {
   std::vector<VectorX> predicted_;  // what errors of loads are proportional to
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;
-  std::optional<DeformedShape> shape_;  // nothing: of linear geometry, or unknown
-  VectorX measured_, null_;
+  VectorX measured_, shape_, null_;
 };
 
 }  // namespace deflect::diagnosis

@@ -7,8 +7,6 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "msa/base/index.h"
-#include "msa/base/outcome.h"
 #include "validation/diagnosis/evidence.h"
 
 namespace deflect::diagnosis {
@@ -163,37 +161,16 @@ class Search {
     s_ = std::move(*first);
   }
 
-  /// Whether it is a simpler candidate under another name: it may as well stand at a bound of its own, and one with
-  /// fewer parameters does as well.
-  bool is_another(const Candidate& c, const std::vector<Candidate>& all) const {
+  /// Whether it is a simpler candidate under another name: it stands at a bound of its own, and one with fewer
+  /// parameters does as well.
+  static bool is_another(const Candidate& c, const std::vector<Candidate>& all) {
     const auto parameters = [](const Candidate& x) { return x.added().effect->parameters.size(); };
-    const auto simpler = [&](const Candidate& other) {
-      return other.fit.found && parameters(other) < parameters(c) && other.fit.chi2 < c.fit.chi2 + 1;
-    };
-    return std::any_of(all.begin(), all.end(), simpler) &&
-           (runs_to_a_bound(c.hypothesis, c.fit) || as_well_at_a_bound(c));
+    return runs_to_a_bound(c.hypothesis, c.fit) && std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
+             return other.fit.found && parameters(other) < parameters(c) && other.fit.chi2 < c.fit.chi2 + 1;
+           });
   }
 
-  /// Whether one of its own values may be at an end of its range and χ² is the same.
-  bool as_well_at_a_bound(const Candidate& c) const {
-    constexpr double same = 0.1;
-    const auto chi2 = [&](const VectorX& values) {
-      return seen().whitened_residual(subject_with(seen(), c.hypothesis, values)).squaredNorm();
-    };
-    const std::vector<effects::EffectParameter>& own = c.added().effect->parameters;
-    const Eigen::Index first = c.fit.values.size() - std::ssize(own);
-    const double here = chi2(c.fit.values);
-    for (std::size_t i = 0; i < own.size(); ++i)
-      for (const double bound : {own[i].low, own[i].high}) {
-        VectorX values = c.fit.values;
-        values(first + as_index(i)) = bound;
-        const auto there = outcome_of([&] { return chi2(values); });
-        if (there && *there < here + same) return true;
-      }
-    return false;
-  }
-
-  Tie tie(const std::vector<Candidate>& all) const {
+  static Tie tie(const std::vector<Candidate>& all) {
     std::vector<double> log_odds;
     for (const Candidate& c : all) log_odds.push_back(c.fit.found && !is_another(c, all) ? c.log_odds : never);
     const std::vector<double> among = normalised(log_odds);
