@@ -125,8 +125,8 @@ class Standing {
 };
 
 /// A subject that deviates in one tolerance by one standard deviation. Linear geometry, but for a frame in which
-/// equilibrium in the deformed shape changes what tolerances do by more than a hundredth: there as the frame is
-/// described. Without the sensor's drift, which no tolerance changes.
+/// equilibrium in the deformed shape changes what tolerances do by more than a hundredth and a sensor's σ: there as the
+/// frame is described. Without the sensor's drift, which no tolerance changes.
 class Deviations {
  public:
   virtual ~Deviations() = default;
