@@ -159,13 +159,14 @@ class Comparing {
     const double chi2 = uncertainty_->inner(c.residual, c.residual)(0, 0);
     const auto freedoms = static_cast<double>(uncertainty_->count());
     c.chi2_per_dof = chi2 / freedoms;
+    c.chi2_beside_shape = chi2_beside_shape() / freedoms;
     c.p_value = statistics::chi_squared_tail(freedoms, chi2);
     c.sigma_u = rms_of_errors(s.values, Eigen::Map<const VectorX>(c.sigma.data(), std::ssize(c.sigma)));
     c.noise_and_tolerances = expected_rmse(s, expected_variances(s, c.tolerances, c.sigma));
   }
 
-  /// By how much the χ² of what is left may change, up to chance, where the deformed shape is off by a fifth of itself.
-  double doubt_of_shape() const { return 2 * 0.2 * uncertainty_->whitened(shape_).norm(); }
+  /// By how much the χ² of what is left may change, up to chance, where the deformed shape is off by shape_known_to.
+  double doubt_of_shape() const { return 2 * shape_known_to * uncertainty_->whitened(shape_).norm(); }
 
   void find(bool in_words) {
     found_ = find_patterns(c.study, *uncertainty_, left_, patterns_, columns_, in_words);
@@ -220,6 +221,14 @@ class Comparing {
   }
 
  private:
+  /// χ² = rᵀr − (sᵀr)²/(1/known² + sᵀs) of what is left, r, and the deformed shape, s, both whitened.
+  double chi2_beside_shape() const {
+    const double left = uncertainty_->inner(left_, left_)(0, 0);
+    if (shape_.size() == 0) return left;
+    const double along = uncertainty_->inner(shape_, left_)(0, 0), own = uncertainty_->inner(shape_, shape_)(0, 0);
+    return left - along * along / (1 / (shape_known_to * shape_known_to) + own);
+  }
+
   /// Where nobody knows the zero of the readings they count from here on from where the model as it is puts it; how
   /// well it is known stays in the tolerances.
   void take_zero() {

@@ -24,6 +24,10 @@ struct PatternTest {
   double size = 0;  ///< m
 };
 
+/// Standard deviation of what equilibrium in the deformed shape contributes, as a share of it: a missing effect changes
+/// it.
+inline constexpr double shape_known_to = 0.2;
+
 struct Comparison {
   std::string device, data;
   std::size_t readings = 0, poses = 0, numbers = 0;
@@ -36,9 +40,10 @@ struct Comparison {
   double kept_rmse = 0;     ///< of the readings not set aside, beside equilibrium in the deformed shape, m or rad
   double chi2_per_dof = 0;  ///< given noise and tolerances
   double p_value = 1;       ///< probability of so large a χ² by chance
-  double noise_and_tolerances = 0;                           ///< m: root mean square expected where nothing is missing
-  double held_out = 0;                                       ///< m: rmse in cross-validation (held_out.h)
-  double deformed_shape = 0;                                 ///< m: root mean square of ResidualStudy::deformed_shape
+  double noise_and_tolerances = 0;  ///< m: root mean square expected where nothing is missing
+  double held_out = 0;              ///< m: rmse in cross-validation (held_out.h)
+  double deformed_shape = 0;        ///< m: root mean square of ResidualStudy::deformed_shape
+  double chi2_beside_shape = 0;     ///< chi2_per_dof of what the deformed shape leaves, known to shape_known_to
   std::optional<statistics::Regression> deformed_shape_fit;  ///< its amplitude fitted to the data, 1 expected
   std::vector<ContrastTest> contrasts;
   std::vector<PatternTest> patterns;

@@ -194,6 +194,56 @@ Diagnosis before_any_effect(const Observations& o, const measurement::Measuremen
   return d;
 }
 
+/// Every effect alone, and whether anything is missing at all.
+struct FirstStep {
+  FirstStep(const Observations& o, const std::vector<effects::Effect>& effects, int bootstrap_sets, Rounds& rounds,
+            const parallel::Work& work)
+      : observations(o),
+        all(signatures(o, effects, work.threads, &left_out)),
+        candidates(all, work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); }),
+        null(fit_of_all(o, {}, VectorX(0))),
+        each(candidates.beside(o, {}, null, even_hopeless)),
+        patterns(o.whitened_patterns()),
+        left(left_over(patterns, all, null, work.threads)),
+        larger(larger_tolerances(o)),
+        chance(chance_of_any(all, least_p_value(all, each), bootstrap_sets, work,
+                             [&](std::size_t done, std::size_t of) { rounds(done, of); })) {}
+  FirstStep(const FirstStep&) = delete;  // the candidates hold the signatures by reference
+
+  double probability_of_unknown_alone(const std::vector<Candidate>& alone) const {
+    constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
+    return probability_of_unknown(left.log_evidence - log_sum_exp(log_weights(alone, larger)),
+                                  missing_odds * Candidates::prior_unknown);
+  }
+
+  const Observations& observations;
+  std::vector<LeftOut> left_out;
+  std::vector<Signature> all;
+  Candidates candidates;
+  Fit null;
+  std::vector<Candidate> each;  // in the order of the signatures
+  std::shared_ptr<const WhitenedFamilies> patterns;
+  LeftOver left;
+  LargerTolerances larger;
+  double chance;
+};
+
+/// What the first step says of the effects, of "nothing" and of "unknown"; `alone`: its candidates, or larger ones.
+void tell(Diagnosis& d, const FirstStep& s, std::vector<Candidate> alone) {
+  d.left_out = s.left_out;
+  d.detectable = detectable_sizes(s.all);
+  d.baseline = quality(s.observations, {}, s.null);
+  d.larger_tolerances = s.larger.scale * s.observations.tolerance_scale();
+  d.chance = s.chance;
+  d.candidates = std::move(alone);
+  weigh(d, s.larger, s.probability_of_unknown_alone(d.candidates));
+}
+
+bool is_missing(const Diagnosis& d, const FirstStep& s) {
+  return (d.chance < alarm && d.probability_nothing < 0.6) ||
+         (d.probability_unknown > sure && s.left.p_value < LeftOver::least_p);
+}
+
 /// The effects that explain the data best, and what they leave.
 struct Explained {
   Selection found;
@@ -201,56 +251,69 @@ struct Explained {
   LeftOver left;
 };
 
-Explained explained(const Observations& o, const std::shared_ptr<const WhitenedFamilies>& patterns,
-                    const std::vector<Signature>& all, const Candidates& candidates,
-                    const std::vector<Candidate>& first) {
-  Explained out{select(o, candidates, first), patterns, {}};
+Explained nothing(const FirstStep& s) { return {{s.observations, {}, s.null, {}, {}}, s.patterns, {}}; }
+
+Explained explained(const FirstStep& s, const Candidates& candidates, const std::vector<Candidate>& first) {
+  Explained out{select(s.observations, candidates, first), s.patterns, {}};
   if (!out.found.effects.empty()) out.patterns = out.found.observations.whitened_patterns();
-  out.left = left_over(out.patterns, all, out.found.fit, candidates.threads());
+  out.left = left_over(out.patterns, s.all, out.found.fit, candidates.threads());
   const double more = out.left.significant() ? 0 : called_for - std::log(Candidates::prior_unknown);
-  if (std::optional<Selection> there = at_one_place(all, candidates, out.found, more)) {
+  if (std::optional<Selection> there = at_one_place(s.all, candidates, out.found, more)) {
     out.found = std::move(*there);
-    out.left = left_over(out.patterns, all, out.found.fit, candidates.threads());
+    out.left = left_over(out.patterns, s.all, out.found.fit, candidates.threads());
   }
   return out;
 }
 
 /// Where effects leave something unknown that were looked for from small sizes, and a large one alone leaves less than
-/// half as much beyond noise: what is found from there, if it leaves nothing. Exchanges the candidates for the first
-/// effect; whether it has.
-bool look_for_large_ones(Explained& e, Diagnosis& d, const Observations& o,
-                         const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,
-                         const Candidates& candidates, const Fit& null, const std::vector<Candidate>& first) {
-  if (!e.left.significant()) return false;
-  std::optional<std::vector<Candidate>> large = candidates.likelier_if_larger(o, {}, null, first);
-  if (!large) return false;
+/// half as much beyond noise: what is found from there, if it leaves nothing. Returns the candidates for the first
+/// effect then.
+std::optional<std::vector<Candidate>> look_for_large_ones(Explained& e, const FirstStep& s) {
+  if (!e.left.significant()) return std::nullopt;
+  const Observations& o = s.observations;
+  std::optional<std::vector<Candidate>> large = s.candidates.likelier_if_larger(o, {}, s.null, s.each);
+  if (!large) return std::nullopt;
   const auto best = std::max_element(large->begin(), large->end(), [](const Candidate& a, const Candidate& b) {
     return a.class_log_odds < b.class_log_odds;
   });
   const auto beyond_noise = [&](const Fit& f) { return f.chi2 - static_cast<double>(o.numbers()); };
-  if (beyond_noise(best->fit) > half_of_it * beyond_noise(e.found.fit)) return false;
-  Explained again = explained(o, patterns, all, candidates.in_larger_sizes(), *large);
-  if (again.left.significant()) return false;
+  if (beyond_noise(best->fit) > half_of_it * beyond_noise(e.found.fit)) return std::nullopt;
+  Explained again = explained(s, s.candidates.in_larger_sizes(), *large);
+  if (again.left.significant()) return std::nullopt;
   e = std::move(again);
-  d.candidates = std::move(*large);
-  sort_candidates(d, o);
-  return true;
-}
-
-/// What is a gross outlier where nothing is missing may be none beside what was found. Then it counts for every
-/// candidate: the observations with which the candidates are told, which are fitted anew.
-Observations counted_again(const Observations& o, const Selection& found, const Candidates& candidates, Diagnosis& d) {
-  if (found.effects.empty() || found.observations.aside() == o.aside()) return o;
-  Observations out = o.keeping(found.observations.aside());
-  d.candidates = candidates.beside(out, {}, fit_of_all(out, {}, VectorX(0)), even_hopeless);
-  sort_candidates(d, out);
-  return out;
+  return large;
 }
 
 Verdict verdict_of(const Diagnosis& d) {
   if (d.unexplained) return Verdict::unknown_effect;
   if (d.missing.empty()) return Verdict::nothing_missing;
   return d.indistinguishable.empty() ? Verdict::effect : Verdict::ambiguous;
+}
+
+/// What was found and what it leaves. `told`: the first step that the diagnosis tells of.
+void conclude(Diagnosis& d, Explained e, const FirstStep& told, const FirstStep& searched,
+              const measurement::Measurements& data, int threads) {
+  Selection found = std::move(e.found);
+  d.unexplained = e.left.significant();
+  if (!found.effects.empty())
+    weigh(d, told.larger,
+          probability_of_unknown(e.left.log_evidence, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
+  sort_candidates(d, told.observations);
+  if (d.unexplained) {
+    found = named_beside_unknown(e.patterns, searched.all, searched.candidates, std::move(found));
+    describe_left_over(d, searched.all, found, threads);
+  }
+  const Observations& seen = found.observations;
+  d.missing = found.effects;
+  d.fit = last_fit(seen, d.missing, found.fit, threads);
+  add_left_out(d.left_out, told.each);
+  d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
+  note_ties(d, found, data);
+  bound_ties(d, told.observations, seen, threads);
+  d.verdict = verdict_of(d);
+  d.final = quality(seen, d.missing, d.fit);
+  d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));
+  d.set_aside = seen.set_aside();
 }
 
 }  // namespace
@@ -263,57 +326,30 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   const Observations o(subject, data, options.comparison, work.part(0, 0.2));
   Diagnosis d = before_any_effect(o, data);
   if (is_mistaken(d)) return only_mistakes(std::move(d), o);
-  const std::vector<Signature> all = signatures(o, effects, work.threads, &d.left_out);
-  Rounds rounds(work.progress, 0.3);
-  const Candidates candidates(all, work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); });
-  d.detectable = detectable_sizes(all);
-  const Fit null = fit_of_all(o, {}, VectorX(0));
-  d.baseline = quality(o, {}, null);
-  d.candidates = candidates.beside(o, {}, null, even_hopeless);
-  const std::shared_ptr<const WhitenedFamilies> patterns = o.whitened_patterns();
-  const LeftOver at_first = left_over(patterns, all, null, work.threads);
-  constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
-  const LargerTolerances larger = larger_tolerances(o);
-  d.larger_tolerances = larger.scale * o.tolerance_scale();
-  weigh(d, larger,
-        probability_of_unknown(at_first.log_evidence - log_sum_exp(log_weights(d.candidates, larger)),
-                               missing_odds * Candidates::prior_unknown));
-  const double least_p = least_p_value(all, d.candidates);
   d.bootstrap_sets = options.bootstrap_sets;
-  d.chance = chance_of_any(all, least_p, options.bootstrap_sets, work,
-                           [&](std::size_t done, std::size_t of) { rounds(done, of); });
-  const bool missing = (d.chance < alarm && d.probability_nothing < 0.6) ||
-                       (d.probability_unknown > sure && at_first.p_value < LeftOver::least_p);
-  const std::vector<Candidate> first = d.candidates;
-  sort_candidates(d, o);
-
-  Explained e{{o, {}, null, {}, {}}, patterns, {}};
-  bool large = false;
-  if (missing) {
-    e = explained(o, patterns, all, candidates, first);
-    large = look_for_large_ones(e, d, o, patterns, all, candidates, null, first);
+  Rounds rounds(work.progress, 0.3);
+  const FirstStep first(o, effects, options.bootstrap_sets, rounds, work);
+  tell(d, first, first.each);
+  Explained e = nothing(first);
+  std::optional<std::vector<Candidate>> large;
+  if (is_missing(d, first)) {
+    e = explained(first, first.candidates, first.each);
+    large = look_for_large_ones(e, first);
+    if (large) tell(d, first, *large);
   }
-  Selection found = std::move(e.found);
-  const Observations told = counted_again(o, found, large ? candidates.in_larger_sizes() : candidates, d);
-  const Observations& seen = found.observations;
-  d.unexplained = e.left.significant();
-  if (!found.effects.empty())
-    weigh(d, larger,
-          probability_of_unknown(e.left.log_evidence, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
-  if (d.unexplained) {
-    found = named_beside_unknown(e.patterns, all, candidates, std::move(found));
-    describe_left_over(d, all, found, work.threads);
+  if (e.found.observations.aside() == o.aside()) {
+    conclude(d, std::move(e), first, first, data, work.threads);
+    return d;
   }
-  d.missing = found.effects;
-  d.fit = last_fit(seen, d.missing, found.fit, work.threads);
-  add_left_out(d.left_out, first);
-  d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
-  note_ties(d, found, data);
-  bound_ties(d, told, seen, work.threads);
-  d.verdict = verdict_of(d);
-  d.final = quality(seen, d.missing, d.fit);
-  d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));
-  d.set_aside = seen.set_aside();
+  // What is a gross outlier where nothing is missing may be none beside what was found, and the reverse. Then it counts
+  // for every candidate, and for whether anything is missing at all.
+  const Observations kept = o.keeping(e.found.observations.aside());
+  parallel::Work again = work;
+  again.journal = nullptr;  // it holds sets of the first
+  const FirstStep second(kept, effects, options.bootstrap_sets, rounds, again);
+  tell(d, second,
+       large ? second.candidates.in_larger_sizes().beside(kept, {}, second.null, even_hopeless) : second.each);
+  conclude(d, is_missing(d, second) ? std::move(e) : nothing(second), second, first, data, work.threads);
   return d;
 }
 

@@ -82,7 +82,7 @@ std::vector<double> Observations::log_likelihood_of_scales(const std::vector<dou
   return uncertainty_->log_likelihood_of_scales(residual(subject_), MatrixX(measured_.size(), 0), scales, free);
 }
 
-void Observations::count_shape() { A_.shared.rightCols<1>() = shape_known_to * shape_; }
+void Observations::count_shape() { A_.shared.rightCols<1>() = compare::shape_known_to * shape_; }
 
 void Observations::move_tolerances(const subject::Subject& subject) {
   const compare::ResidualStudy& s = comparison_->study;

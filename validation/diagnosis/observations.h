@@ -10,12 +10,10 @@
 
 namespace deflect::diagnosis {
 
-/// Standard deviation of what equilibrium in the deformed shape contributes, as a share of it.
-inline constexpr double shape_known_to = 0.2;
-
 /// Holds a comparison with its uncertainty and computes residuals for any edited subject. Where the data show
 /// tolerances larger than declared, these are scaled up (Uncertainty::scale_of_tolerances). The contribution of
-/// equilibrium in the deformed shape is known to shape_known_to; this uncertainty is one more nuisance parameter.
+/// equilibrium in the deformed shape is known to compare::shape_known_to; this uncertainty is one more nuisance
+/// parameter.
 class Observations {
  public:
   Observations(const subject::Subject&, const measurement::Measurements&, const compare::ComparisonOptions&,

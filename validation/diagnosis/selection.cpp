@@ -39,32 +39,44 @@ class Search {
 
   /// Each effect asked again beside the others; true when one was dropped or exchanged.
   bool reconsider() {
-    s_.ties.assign(s_.effects.size(), {});
     for (std::size_t i = 0; i < s_.effects.size(); ++i) {
-      const auto [others, values] = without(s_.effects, s_.fit.values, i);
-      const Fit rest = fit_of_all(seen(), others, values);
-      if (!rest.found) continue;  // the others need it
-      const std::vector<Candidate> all = beside(others, rest, never, present(i));
-      const auto own = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
-        return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
-      });
+      const std::optional<AskedAgain> asked = asked_again(i);
+      if (!asked) continue;
+      const auto& [others, rest, all, own] = *asked;
       const auto best = std::max_element(all.begin(), all.end(), less_likely);
       // Effects may go together in one order only: then the fit at hand tells what this one gains.
-      const double gained = std::max(0.0, rest.chi2 - s_.fit.chi2);
-      const double odds = own->fit.found ? own->class_log_odds : candidates_.class_log_odds_of(s_.effects[i], gained);
+      const double odds =
+          own.fit.found ? own.class_log_odds : candidates_.class_log_odds_of(s_.effects[i], gain(rest, s_.fit));
       if (!others.empty() && std::max(best->class_log_odds, odds) < called_for) {
         grant(others, rest.values);
         return true;
       }
       if (!best->fit.found) continue;
       const double more = best->class_log_odds - odds;
-      if (more > better || (more == 0 && best->log_odds > own->log_odds + better)) {
+      if (more > better || (more == 0 && best->log_odds > own.log_odds + better)) {
         grant(best->hypothesis, best->fit.values);
         return true;
       }
       s_.ties[i] = tie(all);
+      if (!s_.ties[i].names.empty() && !holds(s_.ties[i], own)) {
+        const Candidate instead = s_.ties[i].rivals.front();
+        grant(instead.hypothesis, instead.fit.values);
+        return true;
+      }
     }
     return false;
+  }
+
+  /// What ties with each effect as it is.
+  void note_ties() {
+    for (std::size_t i = 0; i < s_.effects.size(); ++i) {
+      const std::optional<AskedAgain> asked = asked_again(i);
+      s_.ties[i] = asked ? tie(asked->all) : Tie{};
+      if (!s_.ties[i].names.empty() && !holds(s_.ties[i], asked->own)) {
+        s_.ties[i].names.push_back(asked->own.added().effect->name);
+        s_.ties[i].rivals.push_back(asked->own);
+      }
+    }
   }
 
   /// A single effect, or two at once of a few, exchanged for two others that explain the data better together; true
@@ -87,6 +99,29 @@ class Search {
     std::vector<Candidate> all = candidates_.beside(seen(), others, so_far, least, known);
     add_left_out(s_.left_out, all);
     return all;
+  }
+
+  /// The candidates beside all effects but one, which is among them.
+  struct AskedAgain {
+    Hypothesis others;
+    Fit rest;
+    std::vector<Candidate> all;
+    Candidate own;
+  };
+  /// Nothing where the others need effect i.
+  std::optional<AskedAgain> asked_again(std::size_t i) {
+    auto [others, values] = without(s_.effects, s_.fit.values, i);
+    Fit rest = fit_of_all(seen(), others, values);
+    if (!rest.found) return std::nullopt;
+    std::vector<Candidate> all = beside(others, rest, never, present(i));
+    Candidate own = *std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
+      return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
+    });
+    return AskedAgain{std::move(others), std::move(rest), std::move(all), std::move(own)};
+  }
+
+  static bool holds(const Tie& t, const Candidate& c) {
+    return std::find(t.names.begin(), t.names.end(), c.added().effect->name) != t.names.end();
   }
 
   /// Effect i as it is fitted now.
@@ -152,6 +187,7 @@ class Search {
       s_.observations = std::move(next);
       s_.effects = h;
       s_.fit = std::move(again);
+      s_.ties.assign(h.size(), {});
       const double change = seen().change_of_shape(right, subject_with(seen(), h, values));
       if (!(change > known_shape)) return;
       if (!first) first = s_;
@@ -203,8 +239,9 @@ Selection select(const Observations& o, const Candidates& candidates, const std:
   if (!search.add(first, 0)) return search.result();
   for (std::size_t round = 0; round < most_rounds; ++round) {
     if (search.reconsider() || search.exchange_for_two()) continue;
-    if (search.size() == most_effects || !search.add(search.further(), called_for)) break;
+    if (search.size() == most_effects || !search.add(search.further(), called_for)) return search.result();
   }
+  search.note_ties();
   return search.result();
 }
 

@@ -76,7 +76,7 @@ Tolerances tolerances_of(const Subject& s, const subject::Standing& standing, co
     const bool counts = !model.nuisances[k].zero && std::find(replaced.begin(), replaced.end(), k) == replaced.end();
     if (counts) put(model.nuisances[k].name, scale * model.A.shared.col(as_index(k)));
   }
-  put("deformed shape", diagnosis::shape_known_to * shape);
+  put("deformed shape", compare::shape_known_to * shape);
   for (statistics::GroupColumns& group : out.groups) {
     group.columns *= scale;
     for (std::size_t i = 0; i < group.rows.size(); ++i)
