@@ -131,8 +131,10 @@ TEST_F(SimulateProgram, RefusesOptionsThatCannotBe) {
   expect_refused("--noise nan", "--noise nan");
   expect_refused("--noise -1", "--noise -1");
   expect_refused("--noise inf", "--noise inf");
+  expect_refused("--noise 1e-28", "--noise 1e-28");
   expect_refused("--noise-rotation nan", "--noise-rotation 'nan'");
   expect_refused("--noise-rotation=-5", "--noise-rotation -5");
+  expect_refused("--noise-rotation 1e-31", "--noise-rotation 1e-31");
   expect_refused("--tolerances inf", "--tolerances inf");
   expect_refused("--outliers 0.7", "a share from 0 to 0.5");
   expect_refused("--temperature 20,nan", "--temperature '20,nan'");

@@ -10,6 +10,7 @@
 
 #include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/diagnosis/fit_in_turn.h"
 #include "validation/diagnosis/fit_problem.h"
 #include "validation/diagnosis/pairs.h"
 #include "validation/parallel/cases.h"
@@ -18,79 +19,15 @@
 namespace deflect::diagnosis {
 namespace {
 
-constexpr double out_of_question = -1e9;           // ln of the odds of what is there already, or cannot be
-constexpr double near_nothing = 6, hopeless = 30;  // gains in χ² that are not looked into
-constexpr double bent = 8;                         // that a fit may gain beyond what the signature says, where small
-constexpr double of_its_own = 0.05;                // share of a signature that others must leave it
-
-std::vector<double> summed(const std::vector<double>& x, const std::vector<std::size_t>& classes) {
-  std::vector<double> sum(x.size(), 0), out;
-  for (std::size_t i = 0; i < x.size(); ++i) sum[classes[i]] += x[i];
-  for (const std::size_t c : classes) out.push_back(sum[c]);
-  return out;
-}
-
-std::vector<double> shared_priors(const std::vector<Signature>& all, const std::vector<std::size_t>& classes) {
-  std::map<std::string, double> places;
-  for (const Signature& s : all) places[s.effect.effect->name] += 1;
-  const std::vector<double> looks = weights_of(all);
-  std::vector<double> weight, largest(all.size(), 0);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    weight.push_back(looks[i] / places[all[i].effect.effect->name]);
-    largest[classes[i]] = std::max(largest[classes[i]], weight[i]);
-  }
-  const std::vector<double> together = summed(weight, classes);
-  double total = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    weight[i] *= largest[classes[i]] / together[i];
-    total += weight[i];
-  }
-  for (double& w : weight) w *= Candidates::prior_missing * (1 - Candidates::prior_unknown) / total;
-  return weight;
-}
-
-constexpr double far_behind = 6;  // what is sure to be less likely than the best by this logarithm is not fitted
-/// Fits that are begun together: first one, then twice as many each time, up to this. The next ones are compared with
-/// the best of these, so that one that explains nearly all spares most others. The numbers do not depend on the
-/// threads, so that the answer does not.
-constexpr std::size_t at_once = 8;
-constexpr double certain = 1e9;
-
-/// Fits those signatures that can still come near the best, which promise the most first. `promise` returns the most
-/// that ln of the odds of a signature's class can become by its fit; it may learn from the fits so far, of which
-/// `fitted` is told. `fit_one`, given the signature and the number of threads within, returns ln of the odds found.
-/// Returns the bar that further ones must exceed.
-template <class Promise, class FitOne, class Fitted>
-double fit_in_turn(std::vector<std::size_t> all, double bar, int threads, const Promise& promise, const FitOne& fit_one,
-                   const Fitted& fitted) {
-  for (std::size_t count = 0; !all.empty();) {
-    std::map<std::size_t, double> most;
-    for (const std::size_t i : all) most[i] = promise(i);
-    std::erase_if(all, [&](std::size_t i) { return !(most[i] > bar); });
-    std::stable_sort(all.begin(), all.end(), [&](std::size_t a, std::size_t b) { return most[a] > most[b]; });
-    count = std::min({std::max<std::size_t>(1, 2 * count), at_once, all.size()});
-    // Where few are fitted, one with many starts would keep one thread busy long after the others.
-    const int within = count < at_once ? threads : 1;
-    parallel::for_each_case(count, 1, threads, [&](std::size_t k) { fit_one(all[k], within); });
-    for (std::size_t k = 0; k < count; ++k) bar = std::max(bar, fitted(all[k]) - far_behind);
-    all.erase(all.begin(), all.begin() + as_index(count));
-  }
-  return bar;
-}
-
-/// Physics lets it act to one side only, and the residual asks for the other.
-bool wrong_way(const Signature& s, const VectorX& residual) {
-  return !s.shaped && s.one_sided && s.start_along(residual) > 0;
-}
+constexpr double out_of_question = -1e9;         // ln of the odds of what is there already, or cannot be
+constexpr double hopeless = 30;                  // gain in χ² that is not looked into
+constexpr double of_its_own = 0.05;              // share of a signature that others must leave it
+constexpr double behind_in_another_shape = 0.5;  // of the best odds: what may still be the best in its own shape
+constexpr std::size_t most_exact = 16;           // fits in true geometry
+constexpr double grows_faster = 2;               // the deformed shape, where it grows much, than for small changes
 
 constexpr double small_share = 0.05;  // of the best gain, from which a signature may hide a large effect
 constexpr double most_of_it = 0.5;    // of what a law at a place explains: the part gone may explain it instead
-
-/// Of one parameter with a value at which it vanishes: its signature is that of a small size.
-bool has_one_size(const Signature& s) {
-  const std::vector<effects::EffectParameter>& all = s.effect.effect->parameters;
-  return !s.shaped && all.size() == 1 && all.front().vanishes;
-}
 
 Fit better(Fit a, Fit b) { return b.found && (!a.found || b.chi2 < a.chi2) ? b : a; }
 
@@ -119,7 +56,7 @@ Candidates::Candidates(const std::vector<Signature>& all, int threads,
       between_(inner_products(all)),
       classes_(classes_of(all, between_)),
       lets_go_(those_that_let_go(all)),
-      priors_(shared_priors(all, classes_)),
+      priors_(shared_priors(all, classes_, prior_missing * (1 - prior_unknown))),
       class_priors_(summed(priors_, classes_)) {}
 
 Candidates Candidates::in_larger_sizes() const {
@@ -156,7 +93,13 @@ class Candidates::Round {
  public:
   Round(const Candidates& all, const Observations& o, const Hypothesis& before, const Fit& so_far,
         const std::optional<effects::EffectInstance>& known)
-      : all_(all), observations_(o), so_far_(so_far), known_(known), out_(all.signatures_.size()) {
+      : all_(all),
+        observations_(o),
+        before_(before),
+        so_far_(so_far),
+        chi2_before_(so_far.chi2),
+        known_(known),
+        out_(all.signatures_.size()) {
     const MatrixX fitted = statistics::orthonormal(so_far.signature);
     const MatrixX proportional = statistics::orthonormal(columns_of_unshaped(before, so_far.signature));
     for (std::size_t i = 0; i < out_.size(); ++i) {
@@ -172,6 +115,8 @@ class Candidates::Round {
       out_[i].gain = said_[i];
       out_[i].log_odds = allowed_[i] ? all_.log_odds(i, said_[i], all_.priors_[i]) : out_of_question;
     }
+    for (std::size_t i = 0; i < out_.size(); ++i)
+      if (is_known(i)) class_of_known_ = all_.classes_[i];
     if (!said_.empty()) most_ = *std::max_element(said_.begin(), said_.end());
   }
 
@@ -180,7 +125,7 @@ class Candidates::Round {
   void fit_promising(double least) {
     std::array<std::vector<std::size_t>, 2> parts;
     for (std::size_t i = 0; i < out_.size(); ++i)
-      if (allowed_[i] && (is_known(i) || said_[i] >= enough(signature(i))))
+      if (allowed_[i] && (is_like_known(i) || said_[i] >= enough(signature(i))))
         parts[signature(i).effect.effect->place ? 1 : 0].push_back(i);
     const std::size_t count = parts[0].size() + parts[1].size();
     std::atomic<std::size_t> done = 0;
@@ -190,17 +135,20 @@ class Candidates::Round {
     };
     CanGain can_gain;
     bar_ = least;
+    const double behind = observations_.is_slender() ? behind_in_another_shape : 0;
     for (std::vector<std::size_t>& part : parts)
       bar_ = fit_in_turn(
           std::move(part), bar_, all_.threads_,
           [&](std::size_t i) {
-            return is_known(i) ? certain : all_.log_odds(i, can_gain(signature(i), said_[i]), all_.class_priors_[i]);
+            return is_like_known(i) ? certain
+                                    : all_.log_odds(i, can_gain(signature(i), said_[i]), all_.class_priors_[i]);
           },
           fit_one,
           [&](std::size_t i) {
             can_gain.note(signature(i), said_[i], out_[i].gain);
             return odds(i);
-          });
+          },
+          behind);
     if (all_.progress_) all_.progress_(1, 1);
   }
 
@@ -236,6 +184,48 @@ class Candidates::Round {
     });
   }
 
+  /// Where the deformed shape does much, each effect has its own. Those that could come near the best in theirs are
+  /// fitted anew, each predicted in its true geometry.
+  void fit_in_true_geometry() {
+    if (!observations_.is_slender()) return;
+    const Observations exact = observations_.in_true_geometry();
+    if (const Fit before = fit_of_all(exact, before_, so_far_.values); before.found) chi2_before_ = before.chi2;
+    std::vector<std::optional<double>> promised(out_.size());
+    parallel::for_each_case(out_.size(), 1, all_.threads_,
+                            [&](std::size_t i) { promised[i] = promised_in_own_shape(i); });
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < out_.size(); ++i)
+      if (promised[i]) near.push_back(i);
+    std::stable_sort(near.begin(), near.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(promised[a], out_[a].log_odds) > std::pair(promised[b], out_[b].log_odds);
+    });
+    if (near.size() > most_exact) near.resize(most_exact);
+    std::map<std::size_t, double> of_class;  // what these data cannot distinguish does as well
+    fit_in_turn(
+        std::move(near), likeliest() - far_behind, all_.threads_,
+        [&](std::size_t i) {
+          const auto same = of_class.find(all_.classes_[i]);
+          return same == of_class.end() ? *promised[i] : std::max(*promised[i], same->second);
+        },
+        [&](std::size_t i, int) {
+          out_[i].fit = fit_of_all(exact, out_[i].hypothesis, out_[i].fit.values);
+          judge(i);
+        },
+        [&](std::size_t i) {
+          double& most = of_class.try_emplace(all_.classes_[i], out_of_question).first->second;
+          most = std::max(most, odds(i));
+          return odds(i);
+        });
+    if (!leaves_much()) return;
+    geometry_ = &exact;  // a large effect was not fitted at all where its size shows in the deformed shape alone
+    fit_from_sizes([&](std::size_t i) -> std::optional<SizedEffect> {
+      if (!allowed_[i] || out_[i].fit.found || !has_one_size(signature(i))) return std::nullopt;
+      const std::optional<VectorX> small = guess(signature(i), so_far_.residual);
+      return small ? best_size(exact, out_[i].hypothesis, so_far_.values, *small) : std::nullopt;
+    });
+    geometry_ = &observations_;
+  }
+
   /// What was fitted before, in place of fit_promising().
   void take(const std::vector<Candidate>& fitted) {
     out_ = fitted;
@@ -243,40 +233,39 @@ class Candidates::Round {
   }
 
   std::vector<Candidate>&& result() {
-    for (Candidate& c : out_) c.chi2_per_dof = (so_far_.chi2 - c.gain) / static_cast<double>(observations_.numbers());
+    for (Candidate& c : out_) c.chi2_per_dof = (chi2_before_ - c.gain) / static_cast<double>(observations_.numbers());
     all_.add_up_classes(out_);
     return std::move(out_);
   }
 
  private:
-  /// What a fit may gain where the signature says so much: little more where one law at a place is nearly proportional.
-  /// A few shapes of a law that bends say less, and how much less is alike at all places of that law: once it is fitted
-  /// at one place, as much more is expected of the others.
-  class CanGain {
-   public:
-    double operator()(const Signature& s, double said) const {
-      if (!s.shaped) return s.effect.effect->place ? 1.1 * said + 3 : 1.2 * said + bent;
-      const auto of_law = times_.find(law_of(s));
-      return (of_law == times_.end() ? usual : std::max(usual, of_law->second)) * said + bent;
-    }
-
-    void note(const Signature& s, double said, double gained) {
-      if (!s.shaped || said < near_nothing) return;
-      double& most = times_[law_of(s)];
-      most = std::max(most, (gained - bent) / said);
-    }
-
-   private:
-    static constexpr double usual = 1.2;
-    static std::string law_of(const Signature& s) {
-      const std::string& name = s.effect.effect->name;
-      return name.substr(0, name.find('@'));
-    }
-    std::map<std::string, double> times_;
-  };
+  /// The most that ln of the odds can become in its own deformed shape, where that is another one.
+  std::optional<double> promised_in_own_shape(std::size_t i) {
+    const Candidate& c = out_[i];
+    if (!c.fit.found) return std::nullopt;
+    judge(i);
+    const double shape = observations_.change_of_shape(subject_with(observations_, c.hypothesis, c.fit.values));
+    const double left = std::max(0.0, std::sqrt(c.fit.chi2) - grows_faster * shape);
+    return shape > known_shape
+               ? std::optional(all_.log_odds(i, std::max(0.0, chi2_before_ - left * left), all_.class_priors_[i]))
+               : std::nullopt;
+  }
 
   const Signature& signature(std::size_t i) const { return all_.signatures_[i]; }
   bool is_known(std::size_t i) const { return known_ && same(*known_, signature(i).effect); }
+  bool leaves_much() const {
+    double least = chi2_before_;
+    for (const Candidate& c : out_)
+      if (c.fit.found) least = std::min(least, c.fit.chi2);
+    return least > 2 * static_cast<double>(observations_.numbers());
+  }
+  /// What these data cannot distinguish from it may have the same values.
+  bool is_like_known(std::size_t i) const {
+    if (!known_ || all_.classes_[i] != class_of_known_) return false;
+    const auto &own = signature(i).effect.effect->parameters, &other = known_->effect->parameters;
+    return std::equal(own.begin(), own.end(), other.begin(), other.end(),
+                      [](const auto& a, const auto& b) { return a.name == b.name; });
+  }
   double odds(std::size_t i) const { return out_[i].fit.found ? out_[i].log_odds : out_of_question; }
   double likeliest() const {
     double most = out_of_question;
@@ -295,7 +284,7 @@ class Candidates::Round {
     std::vector<std::optional<SizedEffect>> sized(out_.size());
     parallel::for_each_case(out_.size(), 1, all_.threads_, [&](std::size_t i) {
       sized[i] = size_of(i);
-      if (sized[i] && !(sized[i]->chi2 < (out_[i].fit.found ? out_[i].fit : so_far_).chi2)) sized[i].reset();
+      if (sized[i] && !(sized[i]->chi2 < (out_[i].fit.found ? out_[i].fit.chi2 : chi2_before_))) sized[i].reset();
     });
     std::vector<std::size_t> promising;
     for (std::size_t i = 0; i < sized.size(); ++i)
@@ -303,7 +292,7 @@ class Candidates::Round {
     fit_in_turn(
         std::move(promising), bar_, all_.threads_,
         [&](std::size_t i) {
-          return all_.log_odds(i, 1.5 * (so_far_.chi2 - sized[i]->chi2) + bent, all_.class_priors_[i]);
+          return all_.log_odds(i, 1.5 * (chi2_before_ - sized[i]->chi2) + bent, all_.class_priors_[i]);
         },
         [&](std::size_t i, int within) { fit_from(i, sized[i]->value, within); },
         [&](std::size_t i) { return odds(i); });
@@ -311,20 +300,30 @@ class Candidates::Round {
 
   void fit_from(std::size_t i, const std::optional<VectorX>& start, int within) {
     Candidate& c = out_[i];
-    Fit now = fit(observations_, c.hypothesis, so_far_.values, start, within);
+    Fit now = fit(*geometry_, c.hypothesis, so_far_.values, start, within);
     c.fit = c.fit.found ? better(std::move(c.fit), std::move(now)) : std::move(now);
-    if (is_known(i)) c.fit = better(std::move(c.fit), fit(observations_, c.hypothesis, so_far_.values, known_->values));
+    if (is_like_known(i))
+      c.fit = better(std::move(c.fit), fit(*geometry_, c.hypothesis, so_far_.values, known_->values));
     if (signature(i).effect.effect->place && wants_more_than_there_can_be(c.hypothesis, c.fit))
       c.fit = not_found(fmt::format("its {} runs to the end of what it can be, {:g}",
                                     c.added().effect->parameters.front().name, c.fit.values.tail<1>()(0)));
-    c.gain = c.fit.found ? std::max(0.0, so_far_.chi2 - c.fit.chi2) : 0;
+    judge(i);
+  }
+
+  void judge(std::size_t i) {
+    Candidate& c = out_[i];
+    c.gain = c.fit.found ? std::max(0.0, chi2_before_ - c.fit.chi2) : 0;
     c.log_odds = all_.log_odds(i, c.gain, all_.priors_[i]);
   }
 
   const Candidates& all_;
   const Observations& observations_;
+  const Observations* geometry_ = &observations_;  // in which effects are fitted
+  const Hypothesis& before_;
   const Fit& so_far_;
+  double chi2_before_;  // of so_far_, in the geometry in which the candidates are compared
   std::optional<effects::EffectInstance> known_;
+  std::size_t class_of_known_ = 0;
   std::vector<Candidate> out_;
   std::vector<char> allowed_;
   std::vector<double> said_;  // gains in χ² that the signatures promise
@@ -337,6 +336,7 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   round.fit_promising(least);
   round.fit_what_lets_go();
   if (larger_sizes_) round.fit_larger();
+  round.fit_in_true_geometry();
   return round.result();
 }
 

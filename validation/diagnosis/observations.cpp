@@ -60,12 +60,15 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
       uncertainty_(uncertainty_of(*comparison_, A_, predicted_, aside_)) {
   const compare::ResidualStudy& s = comparison_->study;
   measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
+  in_linear_ = statistics::rows_of(s.values, s.predicted);
   shape_ = VectorX::Zero(measured_.size());
   if (!s.deformed_shape.empty())
     shape_ = statistics::rows_of(s.values, s.deformed_shape);
-  else if (subject.geometry() != Geometry::linear)  // it is in what the comparison predicts
-    shape_ =
-        statistics::rows_of(s.values, s.predicted) - statistics::rows_of(s.values, in_linear_geometry(s, *s.standing));
+  else if (subject.geometry() != Geometry::linear) {  // it is in what the comparison predicts
+    shape_ = in_linear_;
+    in_linear_ = statistics::rows_of(s.values, in_linear_geometry(s, *s.standing));
+    shape_ -= in_linear_;
+  }
   tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
@@ -117,10 +120,19 @@ std::shared_ptr<const WhitenedFamilies> Observations::whitened_patterns() const 
 
 std::size_t Observations::set_aside() const { return as_size(std::count(aside_.begin(), aside_.end(), true)); }
 
-VectorX Observations::residual(const subject::Subject& subject) const {
+VectorX Observations::linear(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
-  const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
-  return measured_ - shape_ - statistics::rows_of(s.values, in_linear_geometry(s, *standing, parallel::alone));
+  return statistics::rows_of(s.values,
+                             in_linear_geometry(s, *subject.stand(*s.data, s.standing.get()), parallel::alone));
+}
+
+VectorX Observations::residual(const subject::Subject& subject) const {
+  if (!true_geometry_) return measured_ - shape_ - linear(subject);
+  const compare::ResidualStudy& s = comparison_->study;
+  prediction::PredictionOptions finite;
+  finite.geometry = subject.true_geometry();
+  return measured_ - statistics::rows_of(
+                         s.values, subject.stand(*s.data, s.standing.get())->predict(*s.data, finite, parallel::alone));
 }
 
 bool Observations::has_history(const subject::Subject& subject) const {
@@ -167,7 +179,10 @@ std::vector<std::pair<std::string, double>> Observations::strained(const subject
 Observations Observations::granted(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;
-  if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) out.shape_ = *shape;
+  if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) {
+    out.shape_ = *shape;
+    out.in_linear_ = linear(subject);
+  }
   out.count_shape();
   out.move_tolerances(subject);
   const std::vector<bool> aside =
@@ -179,13 +194,26 @@ Observations Observations::granted(const subject::Subject& subject) const {
   return out;
 }
 
-double Observations::change_of_shape(const subject::Subject& from, const subject::Subject& to) const {
+double Observations::in_noise(const VectorX& values) const {
+  return values.cwiseQuotient(Eigen::Map<const VectorX>(comparison_->sigma.data(), values.size())).norm();
+}
+
+double Observations::change_of_shape(const subject::Subject& to) const {
   constexpr double growth = 2;
   if (shape_.isZero(0)) return 0;
-  const VectorX sigma = Eigen::Map<const VectorX>(comparison_->sigma.data(), shape_.size());
-  const VectorX left = residual(from), linear = measured_ - shape_ - left;
-  const auto norm = [&](const VectorX& v) { return v.cwiseQuotient(sigma).norm(); };
-  return growth * norm(shape_) * norm(left - residual(to)) / norm(linear);
+  return growth * in_noise(shape_) * in_noise(linear(to) - in_linear_) / in_noise(in_linear_);
+}
+
+bool Observations::is_slender() const {
+  constexpr double share = 0.05;
+  return in_noise(shape_) > share * in_noise(in_linear_);
+}
+
+Observations Observations::in_true_geometry() const {
+  Observations out = *this;
+  out.true_geometry_ = true;
+  if (auto null = outcome_of([&] { return out.whitened_residual(subject_); })) out.null_ = std::move(*null);
+  return out;
 }
 
 Observations Observations::weighed_for(const subject::Subject& subject) const {

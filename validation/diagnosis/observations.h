@@ -10,6 +10,9 @@
 
 namespace deflect::diagnosis {
 
+/// σ of a value: by how much the deformed shape may be off.
+inline constexpr double known_shape = 0.1;
+
 /// Holds a comparison with its uncertainty and computes residuals for any edited subject. Where the data show
 /// tolerances larger than declared, these are scaled up (Uncertainty::scale_of_tolerances). The contribution of
 /// equilibrium in the deformed shape is known to compare::shape_known_to; this uncertainty is one more nuisance
@@ -31,7 +34,7 @@ class Observations {
   const std::vector<bool>& aside() const { return aside_; }  ///< by reading
 
   /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus the fixed
-  /// contribution of the deformed shape (see granted()).
+  /// contribution of the deformed shape (see granted()), or that of in_true_geometry().
   VectorX residual(const subject::Subject&) const;
   /// W times it, with WᵀW = Σ⁻¹ (whitening.h).
   VectorX whitened_residual(const subject::Subject&) const;
@@ -57,11 +60,17 @@ class Observations {
   /// do), and readings that are gross outliers to it are set aside, unless they are more than one in twenty; one of ten
   /// or more may be.
   Observations granted(const subject::Subject&) const;
-  /// How far the contribution of the deformed shape may change where one subject counts as right instead of another
-  /// that is like it: the norm in σ of noise of the whole. No value moves by more than about so many of its σ.
-  /// Estimated in linear geometry: a contribution that is even in the load, or a load on what it displaces, grows twice
-  /// as fast as the displacement.
-  double change_of_shape(const subject::Subject&, const subject::Subject&) const;
+  /// How far the contribution of the deformed shape may change where this subject counts as right instead of the one
+  /// that does, and is like it: the norm in σ of noise of the whole. No value moves by more than about so many of its
+  /// σ. Estimated in linear geometry: a contribution that is even in the load, or a load on what it displaces, grows
+  /// twice as fast as the displacement.
+  double change_of_shape(const subject::Subject&) const;
+  /// Whether the deformed shape contributes more than a twentieth of what is predicted, as under a twentieth of what
+  /// buckles a frame: a fixed contribution does not do then.
+  bool is_slender() const;
+  /// A copy in which every subject is predicted in its true geometry, which takes far longer. Residuals of a subject
+  /// that does not stand in it throw (RangeError); null_residual() is then the one of this.
+  Observations in_true_geometry() const;
   /// A copy whose hypotheses are about this subject: effects are added to it, it is subject() and null_residual() is
   /// its. Weights, tolerances and what is granted stay those of the subject of this one.
   Observations about(const subject::Subject&) const;
@@ -76,6 +85,8 @@ class Observations {
   Observations weighed_for(const subject::Subject&) const;
 
  private:
+  VectorX linear(const subject::Subject&) const;  // in linear geometry
+  double in_noise(const VectorX& values) const;   // their norm in σ of noise
   /// Subtracts the estimated zero of the readings where it is unknown.
   VectorX from_zero(VectorX residual) const;
   void weigh(const std::vector<bool>& aside);
@@ -94,6 +105,8 @@ class Observations {
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;
   VectorX measured_, shape_, null_;
+  VectorX in_linear_;  // prediction in linear geometry of the subject whose deformed shape is granted
+  bool true_geometry_ = false;
 };
 
 }  // namespace deflect::diagnosis

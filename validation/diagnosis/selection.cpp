@@ -18,7 +18,6 @@ constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; o
 constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
 constexpr double never = -1e6;
 constexpr int most_passes = 6;
-constexpr double known_shape = 0.1;  // σ of a value: by how much the deformed shape may be off
 
 class Search {
  public:
@@ -188,7 +187,7 @@ class Search {
       s_.effects = h;
       s_.fit = std::move(again);
       s_.ties.assign(h.size(), {});
-      const double change = seen().change_of_shape(right, subject_with(seen(), h, values));
+      const double change = seen().change_of_shape(subject_with(seen(), h, values));
       if (!(change > known_shape)) return;
       if (!first) first = s_;
       if (!(change < before)) break;

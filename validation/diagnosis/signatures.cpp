@@ -330,4 +330,31 @@ double gain_at_p_value(const Signature& s, double p) {
   return own < 1 ? statistics::chi_squared_at_tail(s.amplitudes(), own) : 0;
 }
 
+std::vector<double> summed(const std::vector<double>& x, const std::vector<std::size_t>& classes) {
+  std::vector<double> sum(x.size(), 0), out;
+  for (std::size_t i = 0; i < x.size(); ++i) sum[classes[i]] += x[i];
+  for (const std::size_t c : classes) out.push_back(sum[c]);
+  return out;
+}
+
+std::vector<double> shared_priors(const std::vector<Signature>& all, const std::vector<std::size_t>& classes,
+                                  double all_together) {
+  std::map<std::string, double> places;
+  for (const Signature& s : all) places[s.effect.effect->name] += 1;
+  const std::vector<double> looks = weights_of(all);
+  std::vector<double> weight, largest(all.size(), 0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    weight.push_back(looks[i] / places[all[i].effect.effect->name]);
+    largest[classes[i]] = std::max(largest[classes[i]], weight[i]);
+  }
+  const std::vector<double> together = summed(weight, classes);
+  double total = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    weight[i] *= largest[classes[i]] / together[i];
+    total += weight[i];
+  }
+  for (double& w : weight) w *= all_together / total;
+  return weight;
+}
+
 }  // namespace deflect::diagnosis

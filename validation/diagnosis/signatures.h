@@ -92,4 +92,11 @@ double single_p_value(const Signature&, double gain);
 /// The gain with this p-value; 0 where every gain has a smaller p-value.
 double gain_at_p_value(const Signature&, double p);
 
+/// By signature: the sum over its class.
+std::vector<double> summed(const std::vector<double>&, const std::vector<std::size_t>& classes);
+
+/// Priors of `all_together` in sum. The places of an entry share its own, and effects of one class have one together.
+std::vector<double> shared_priors(const std::vector<Signature>&, const std::vector<std::size_t>& classes,
+                                  double all_together);
+
 }  // namespace deflect::diagnosis

@@ -21,6 +21,7 @@
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/measurement/number_limits.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
 #include "validation/report/effect_results.h"
@@ -30,6 +31,9 @@ namespace deflect::cli {
 namespace {
 
 constexpr double most_noise_mm = 1000, most_tolerances = 1000;
+
+/// A file with such a standard deviation could not be read.
+bool is_too_little(double sigma) { return sigma > 0 && sigma <= measurement::least_sigma; }
 
 struct SimulateArguments {
   std::string device, out, json, campaign = "rich", geometry = "finite", temperature, noise_rad, machine;
@@ -83,13 +87,15 @@ prediction::SimulationOptions options_of(const SimulateArguments& a) {
   if (!a.machine.empty())
     o.machine = static_cast<std::uint64_t>(
         whole("--machine", parse_list("--machine", a.machine, {1}, "a whole number")[0], 0, 1e9));
-  if (!(a.noise_mm >= 0 && a.noise_mm <= most_noise_mm))
-    throw InputError(fmt::format("--noise {}: give a value from 0 to {} mm", a.noise_mm, most_noise_mm));
+  if (!(a.noise_mm >= 0 && a.noise_mm <= most_noise_mm) || is_too_little(a.noise_mm / 1e3))
+    throw InputError(fmt::format("--noise {}: give 0, or a value from {} to {} mm", a.noise_mm,
+                                 1e3 * measurement::least_sigma, most_noise_mm));
   o.sigma_u = a.noise_mm / 1e3;
   if (!a.noise_rad.empty()) {
     o.sigma_th = parse_list("--noise-rotation", a.noise_rad, {1}, "rad")[0];
-    if (!(*o.sigma_th >= 0 && *o.sigma_th <= 1))
-      throw InputError(fmt::format("--noise-rotation {}: give a value from 0 to 1 rad", a.noise_rad));
+    if (!(*o.sigma_th >= 0 && *o.sigma_th <= 1) || is_too_little(*o.sigma_th))
+      throw InputError(fmt::format("--noise-rotation {}: give 0, or a value from {} to 1 rad", a.noise_rad,
+                                   measurement::least_sigma));
   }
   if (!(a.tolerances >= 0 && a.tolerances <= most_tolerances))
     throw InputError(fmt::format("--tolerances {}: give a factor from 0 to {}", a.tolerances, most_tolerances));
