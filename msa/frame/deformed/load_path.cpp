@@ -11,8 +11,9 @@
 namespace deflect::frame {
 namespace {
 
-constexpr double follows = 0.1;   // Newton's steps, each beside the one before: nothing else can be near
-constexpr double balance = 0.25;  // of work and energy in a step
+constexpr double follows = 0.1;        // Newton's steps, each beside the one before: nothing else can be near
+constexpr double balance = 0.25;       // of work and energy in a step
+constexpr int most_iterations = 5000;  // of all steps: a path of ever smaller ones leads nowhere in reasonable time
 
 /// N; moments over the length.
 double size_of_forces(const VectorX& loads, double length) {
@@ -219,7 +220,10 @@ void GeometricSolver::follow(Work& work, const GeometricOptions& options, Geomet
     work.jumping.o = offsets;
     work.set_offsets();
     step /= 2;
-    if (finite && ++halved <= options.halvings) continue;
+    if (state.iterations > most_iterations)
+      work.why = fmt::format("in {} iterations it came no further, by ever smaller steps", state.iterations);
+    else if (finite && ++halved <= options.halvings)
+      continue;
     const double reached = state.load_factor;
     if (finite && !work.jump && reached > 0) {
       work.strain(1);
