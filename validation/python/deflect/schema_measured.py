@@ -164,6 +164,10 @@ class Version(Record):
     placebo_rmse_mm: Optional[float]
     held_out_rmse_mm: float
     chi2_per_dof: float
+    deformed_shape_mm: Maybe[float]
+    kept_rmse_mm: Maybe[float]
+    chi2_beside_deformed_shape: Maybe[float]
+    set_aside_lines: Maybe[List[int]]
     noise_floor_mm: float
     failing_tests: List[str]
     patterns: List[str]
