@@ -70,7 +70,7 @@ class Search {
   void note_ties() {
     for (std::size_t i = 0; i < s_.effects.size(); ++i) {
       const std::optional<AskedAgain> asked = asked_again(i);
-      s_.ties[i] = asked ? tie(asked->all) : Tie{};
+      s_.ties[i] = asked && asked->own.fit.found ? tie(asked->all) : Tie{};
       if (!s_.ties[i].names.empty() && !holds(s_.ties[i], asked->own)) {
         s_.ties[i].names.push_back(asked->own.added().effect->name);
         s_.ties[i].rivals.push_back(asked->own);
