@@ -63,11 +63,14 @@ void check_verdict(Checks& c, const Json& d) {
   for (const Json& each : d["found"]) found.push_back(each["effect"]);
   c.require(d["missing"].get<std::vector<std::string>>() == found, "found", "{} found of {}", d["found"].dump(),
             d["missing"].dump());
-  if (found.size() == 1 && verdict != "unknown_effect")
+  if (found.size() == 1 && verdict != "unknown_effect") {
+    double most = 0;  // of its places
     for (const Json& each : d["candidates"])
-      if (each["effect"] == found.front())
-        c.require(each["probability"] >= d["probability_nothing"], "named, though nothing is likelier", "{} with {}",
-                  found.front(), each["probability"].dump());
+      if (each["effect"] == found.front()) most = std::max(most, each["probability"].get<double>());
+    const double nothing = d["probability_nothing"];
+    c.require(most >= nothing || nothing < 0.01, "named, though nothing is likelier", "{} with {}, nothing with {}",
+              found.front(), most, nothing);
+  }
   for (const Json& tie : ties) {
     const bool holds = std::any_of(found.begin(), found.end(), [&](const auto& name) {
       return std::find(tie.begin(), tie.end(), name) != tie.end();

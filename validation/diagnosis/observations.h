@@ -65,8 +65,8 @@ class Observations {
   /// σ. Estimated in linear geometry: a contribution that is even in the load, or a load on what it displaces, grows
   /// twice as fast as the displacement.
   double change_of_shape(const subject::Subject&) const;
-  /// Whether the deformed shape contributes more than a twentieth of what is predicted, as under a twentieth of what
-  /// buckles a frame: a fixed contribution does not do then.
+  /// Whether the deformed shape contributes more than a twentieth of what is predicted, as under more than a twentieth
+  /// of the load that buckles a frame: a fixed contribution does not do then.
   bool is_slender() const;
   /// A copy in which every subject is predicted in its true geometry, which takes far longer. Residuals of a subject
   /// that does not stand in it throw (RangeError); null_residual() is then the one of this.

@@ -126,15 +126,17 @@ std::string history_json(const compare::History& h) {
 std::string history_csv(const compare::History& h) {
   const std::vector<compare::Comparison>& all = h.versions;
   const double fine = error_unit(all.front()).fine;
-  std::string out =
-      fmt::format("device,rmse_{0},placebo_rmse_{0},held_out_rmse_{0},chi2_per_dof,noise_and_tolerances_{0},strained\n",
-                  error_unit(all.front()).column);
+  std::string out = fmt::format(
+      "device,rmse_{0},placebo_rmse_{0},held_out_rmse_{0},chi2_per_dof,noise_and_tolerances_{0},strained,"
+      "deformed_shape_{0},kept_rmse_{0},chi2_beside_deformed_shape,set_aside\n",
+      error_unit(all.front()).column);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const compare::Comparison& c = all[i];
     const std::optional<double> wrong = h.placebo[i];
-    out += fmt::format("{},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(c.device), fine * c.all.rmse,
-                       wrong ? fmt::format("{:.6g}", fine * *wrong) : "", fine * c.held_out, c.chi2_per_dof,
-                       fine * c.noise_and_tolerances, c.strained.size());
+    out += fmt::format("{},{:.6g},{},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(c.device),
+                       fine * c.all.rmse, wrong ? fmt::format("{:.6g}", fine * *wrong) : "", fine * c.held_out,
+                       c.chi2_per_dof, fine * c.noise_and_tolerances, c.strained.size(), fine * c.deformed_shape,
+                       fine * c.kept_rmse, c.chi2_beside_shape, c.set_aside.size());
   }
   return out;
 }
