@@ -271,20 +271,20 @@ SetValuedSolution solve(const LinearRelation& r, const std::vector<ScalarLaw>& l
   return Laws(r, laws, watched).solve();
 }
 
-double deflection_at_sum(const ScalarLaw& law, double c, double p) {
-  const auto lacks = [&](double d) { return p - d - c * law.force(d); };  // falls with d
+double deflection_at_sum(const ScalarLaw& law, double c, double p, double start) {
+  const auto lacks = [&](double d) { return p - d - c * law.force(d); };  // falls by more than d grows
   if (std::isfinite(law.low) && lacks(law.low) <= 0) return law.low;
   if (std::isfinite(law.high) && lacks(law.high) >= 0) return law.high;
-  double low = law.low, high = law.high;
-  for (double width = std::abs(p) + 1e-12; !std::isfinite(low) || !std::isfinite(high); width *= 4) {
-    if (!std::isfinite(low) && lacks(-width) > 0) low = -width;
-    if (!std::isfinite(high) && lacks(width) < 0) high = width;
+  double d = std::clamp(start, law.low, law.high), here = lacks(d);
+  double low = here > 0 ? d : std::max(law.low, d + here), high = here > 0 ? std::min(law.high, d + here) : d;
+  for (int i = 0; i < 200 && std::abs(here) > 4e-16 * std::max(std::abs(p), std::abs(d)); ++i) {
+    double next = d + here / (1 + c * law.tangent(d));
+    if (i % 4 == 3 || !(next >= low && next <= high)) next = low + (high - low) / 2;
+    if (std::abs(next - d) <= 1e-16 * std::abs(d)) return next;
+    d = next, here = lacks(d);
+    (here > 0 ? low : high) = d;
   }
-  for (int i = 0; i < 200 && high - low > 1e-16 * (std::abs(low) + std::abs(high)); ++i) {
-    const double middle = low + (high - low) / 2;
-    (lacks(middle) > 0 ? low : high) = middle;
-  }
-  return low + (high - low) / 2;
+  return d;
 }
 
 }  // namespace deflect

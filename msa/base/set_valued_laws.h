@@ -56,7 +56,7 @@ struct SetValuedSolution {
 /// `watched`: linear functions of d (rows) whose range over the polytope is needed.
 SetValuedSolution solve(const LinearRelation&, const std::vector<ScalarLaw>&, const MatrixX& watched);
 
-/// δ of a law where δ + c f = p, c ≥ 0.
-double deflection_at_sum(const ScalarLaw&, double c, double p);
+/// δ of a law where δ + c f = p, c ≥ 0, searched from `start`.
+double deflection_at_sum(const ScalarLaw&, double c, double p, double start = 0);
 
 }  // namespace deflect

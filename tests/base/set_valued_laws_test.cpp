@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "msa/base/normal_map.h"
+
 namespace deflect {
 namespace {
 
@@ -232,6 +234,34 @@ TEST(SetValuedLaws, TheOrderOfTheLawsAndTheSizeOfCDoNotMatter) {
   }
   EXPECT_LT(unclear, 50);
   EXPECT_LE(differ, 3);  // still open, of 500
+}
+
+// Two loads one after another, so that the second search begins at the end of the first.
+TEST(NormalMap, WhereItAnswersThatIsTheOnlySolution) {
+  std::mt19937 random(13);
+  int answered = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    SCOPED_TRACE(trial);
+    const Family f = random_family(random, trial % 2);
+    LinearRelation r = around(f.K, f.p, f.c);
+    NormalMap map(r.c, r.P);
+    for (const double load : {1.0, -0.6}) {
+      r.d0 = load * around(f.K, f.p, f.c).d0;
+      const std::optional<NormalMap::State> quick = map.solve(r.d0, r.size, f.laws);
+      if (!quick) continue;
+      ++answered;
+      const SetValuedSolution s = solve(r, f.laws, MatrixX(0, f.c.size()));
+      ASSERT_EQ(s.outcome, SetValuedSolution::Outcome::solved);
+      EXPECT_EQ(s.loose.cols(), 0);
+      EXPECT_EQ(s.end, quick->end);
+      const double force = std::max(largest(s.s), largest(f.p)), motion = largest(s.d) + largest(f.c) * force;
+      // Of laws 1e8 apart solve() itself is known to 1e-8; of what carries nothing to the rounding of d.
+      EXPECT_LE(largest(s.s - quick->s), 1e-8 * force + 1e-15 * motion / f.c.minCoeff());
+      EXPECT_LE(largest(s.d - quick->d), 1e-8 * motion);
+      if (HasFailure()) return;
+    }
+  }
+  EXPECT_GT(answered, 1500);
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "msa/base/index.h"
+#include "msa/base/normal_map.h"
 #include "msa/base/outcome.h"
+#include "msa/frame/elements/jumping_springs.h"
 #include "msa/frame/file/law_springs.h"
 #include "msa/frame/structure/solver.h"
 
@@ -124,22 +126,116 @@ std::optional<MatrixX> with_stiffnesses(MatrixX H, const VectorX& k, const Matri
   return y;
 }
 
-/// y as before, with any laws: the springs of `m`. Nullopt where an equilibrium is not found.
-std::optional<MatrixX> in_equilibrium(Model m, const std::vector<LinearForm>& y, const MatrixX& loads,
-                                      bool in_sequence) {
-  const int scalars = m.dofs();
-  Solver solver(std::move(m));
+/// The laws at the ports as springs, without the structure.
+struct Laws {
+  Model m;
+  std::vector<LinearForm> y;       // by port
+  std::vector<Eigen::Index> port;  // by spring
+};
+
+/// Whether earlier loads may have left something in it.
+bool has_a_number(const SpringLaw& law) {
+  return std::holds_alternative<FrictionSpring>(law) || std::holds_alternative<TableSpring>(law);
+}
+
+/// One load after another, in doubles: x of the scalars, y = Yᵀx, elongations d = Eᵀx. With a k of the structure's size
+/// beside each law, A = Y H Yᵀ + E k Eᵀ and o = d − s/k, x = A⁻¹(Y load + E k o).
+class InDoubles {
+ public:
+  /// Nullopt where that leaves too few digits.
+  static std::optional<InDoubles> of(const Laws&, const MatrixX& H);
+
+  /// y, and in `slips` what the load leaves; nullopt where more must be asked (normal_map.h).
+  std::optional<VectorX> solve(const VectorX& load, std::vector<double>& slips) {
+    VectorX size(std::ssize(laws_));
+    scalar_.resize(laws_.size());
+    for (std::size_t i = 0; i < laws_.size(); ++i) {
+      if (scalar_[i].force && !has_a_number(laws_[i])) continue;
+      begin(laws_[i], slips);
+      scalar_[i] = scalar_law(laws_[i]);
+    }
+    for (std::size_t i = 0; i < laws_.size(); ++i) size(as_index(i)) = std::abs(load(port_[i]));
+    const auto found = map_.solve(d_by_load_ * load, size, scalar_);
+    if (!found) return std::nullopt;
+    for (std::size_t i = 0; i < laws_.size(); ++i)
+      keep_slips(laws_[i], found->d(as_index(i)), found->s(as_index(i)), found->end[i], slips);
+    return VectorX(y_by_load_ * load + y_by_offset_ * (k_.cwiseProduct(found->d) - found->s));
+  }
+
+ private:
+  InDoubles(const Laws& laws, VectorX k, const MatrixX& E, const MatrixX& per_E, const MatrixX& Y, const MatrixX& per_Y)
+      : port_(laws.port),
+        k_(std::move(k)),
+        d_by_load_(E.transpose() * per_Y),
+        y_by_load_(Y.transpose() * per_Y),
+        y_by_offset_(Y.transpose() * per_E),
+        map_(k_.cwiseInverse(), E.transpose() * per_E * k_.asDiagonal()) {
+    for (const Spring& s : laws.m.springs) laws_.push_back(s.law);
+  }
+
+  std::vector<SpringLaw> laws_;
+  std::vector<ScalarLaw> scalar_;  // of the laws as the last load left them
+  std::vector<Eigen::Index> port_;
+  VectorX k_;
+  MatrixX d_by_load_, y_by_load_, y_by_offset_;
+  NormalMap map_;
+};
+
+MatrixX columns_of(const std::vector<LinearForm>& forms, Eigen::Index rows) {
+  MatrixX out = MatrixX::Zero(rows, std::ssize(forms));
+  for (std::size_t i = 0; i < forms.size(); ++i)
+    for (const Term& t : forms[i]) out(t.dof, as_index(i)) += t.coefficient;
+  return out;
+}
+
+std::optional<InDoubles> InDoubles::of(const Laws& laws, const MatrixX& H) {
+  std::vector<LinearForm> elongations;
+  VectorX k(std::ssize(laws.port));
+  for (std::size_t i = 0; i < laws.port.size(); ++i) {
+    const Spring& spring = laws.m.springs[i];
+    const auto* friction = std::get_if<FrictionSpring>(&spring.law);
+    if (friction && friction->share > 0 && friction->beside >= 0) return std::nullopt;  // a limit of its own
+    elongations.push_back(spring.elongation);
+    k(as_index(i)) = H(laws.port[i], laws.port[i]);
+  }
+  if (!(k.minCoeff() > 0) || !k.allFinite()) return std::nullopt;
+  const MatrixX Y = columns_of(laws.y, laws.m.dofs()), E = columns_of(elongations, laws.m.dofs());
+  const MatrixX A = Y * H * Y.transpose() + E * k.asDiagonal() * E.transpose();
+  const VectorX per_unit = A.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<MatrixX> llt(per_unit.asDiagonal() * A * per_unit.asDiagonal());
+  if (llt.info() != Eigen::Success || !(llt.rcond() > few_digits)) return std::nullopt;
+  const auto solved = [&](const MatrixX& right) {
+    return MatrixX(per_unit.asDiagonal() * llt.solve(MatrixX(per_unit.asDiagonal() * right)));
+  };
+  return InDoubles(laws, k, E, solved(E), Y, solved(Y));
+}
+
+/// y as before, with any laws. Nullopt where an equilibrium is not found.
+std::optional<MatrixX> in_equilibrium(const Laws& laws, const MatrixX& H, const MatrixX& loads, bool in_sequence) {
+  std::optional<InDoubles> doubles = InDoubles::of(laws, H);
+  std::optional<Solver> general;
   MatrixX out(loads.rows(), loads.cols());
-  std::vector<double> slips;
+  std::vector<double> left;
   for (Eigen::Index c = 0; c < loads.cols(); ++c) {
-    VectorX load = VectorX::Zero(scalars);
-    for (Eigen::Index p = 0; p < loads.rows(); ++p)
-      for (const Term& t : nth(y, p)) load(t.dof) = loads(p, c);
-    solver.begin_slips(slips);
-    const Solution s = solver.solve(load);
-    if (!s.converged) return std::nullopt;
-    if (in_sequence) slips = s.slips;
-    for (Eigen::Index p = 0; p < loads.rows(); ++p) out(p, c) = evaluate(nth(y, p), s.fine);
+    std::vector<double> slips = left;
+    if (const auto y = doubles ? doubles->solve(loads.col(c), slips) : std::nullopt) {
+      out.col(c) = *y;
+    } else {
+      if (!general) {
+        Model m = laws.m;
+        add_structure(m, H, laws.y);
+        general.emplace(std::move(m));
+      }
+      VectorX load = VectorX::Zero(laws.m.dofs());
+      for (Eigen::Index p = 0; p < loads.rows(); ++p)
+        for (const Term& t : nth(laws.y, p)) load(t.dof) = loads(p, c);
+      general->begin_slips(left);
+      const Solution s = general->solve(load);
+      if (!s.converged) return std::nullopt;
+      slips = s.slips;
+      for (Eigen::Index p = 0; p < loads.rows(); ++p) out(p, c) = evaluate(nth(laws.y, p), s.fine);
+    }
+    if (in_sequence) left = slips;
   }
   return out;
 }
@@ -160,14 +256,14 @@ std::optional<MatrixX> inputs_of_ports(const FrameDescription& f, const std::vec
     for (std::size_t p = 0; p < ports.size(); ++p) k(as_index(p)) = stiffness_of(springs, ports[p]);
     if (const std::optional<MatrixX> y = with_stiffnesses(structure->H, k, loads)) return answer(*y);
   }
-  Model m;
-  std::vector<LinearForm> y;
-  for (const TakenLaws& port : ports) {
-    y.push_back(add_chain(m, springs, port, port.chains.front(), {}));
-    for (std::size_t k = 1; k < port.chains.size(); ++k) add_chain(m, springs, port, port.chains[k], y.back());
+  Laws laws;
+  for (std::size_t p = 0; p < ports.size(); ++p) {
+    laws.y.push_back(add_chain(laws.m, springs, ports[p], ports[p].chains.front(), {}));
+    for (std::size_t k = 1; k < ports[p].chains.size(); ++k)
+      add_chain(laws.m, springs, ports[p], ports[p].chains[k], laws.y.back());
+    laws.port.resize(laws.m.springs.size(), as_index(p));
   }
-  add_structure(m, structure->H, y);
-  const auto found = outcome_of([&] { return in_equilibrium(std::move(m), y, loads, in_sequence); });
+  const auto found = outcome_of([&] { return in_equilibrium(laws, structure->H, loads, in_sequence); });
   if (!found || !*found) return std::nullopt;
   return answer(**found);
 }
