@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "tests/support/effects.h"
 #include "validation/effects/place_effects.h"
@@ -60,7 +61,12 @@ void check_verdict(Checks& c, const Json& d) {
   if (wanted == "effect" && !ties.empty()) wanted = "ambiguous";
   c.require(verdict == wanted, "verdict", "{}, where missing, ties and the rest say {}", verdict, wanted);
   std::vector<std::string> found;
-  for (const Json& each : d["found"]) found.push_back(each["effect"]);
+  std::set<std::pair<std::string, int>> once;
+  for (const Json& each : d["found"]) {
+    found.push_back(each["effect"]);
+    c.require(once.insert({found.back(), each.value("leg", 0)}).second, "named twice", "{} in {}", found.back(),
+              d["found"].dump());
+  }
   c.require(d["missing"].get<std::vector<std::string>>() == found, "found", "{} found of {}", d["found"].dump(),
             d["missing"].dump());
   if (found.size() == 1 && verdict != "unknown_effect") {

@@ -1,11 +1,26 @@
-// malloc of the C library, counted: operator new and Eigen both end there.
+// malloc, counted: operator new and Eigen both end there. The address sanitizer has a malloc of its own, and tells of
+// it.
 #include "tests/support/allocation_count.h"
 
 #include <atomic>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/allocator_interface.h>
+#endif
+
 namespace {
 std::atomic<std::size_t> count = 0;
 }
+
+#ifdef __SANITIZE_ADDRESS__
+
+namespace {
+const int counted = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, std::size_t) { count.fetch_add(1, std::memory_order_relaxed); },
+    [](const volatile void*) {});
+}
+
+#else
 
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -14,6 +29,8 @@ void* malloc(std::size_t size) {
   return __libc_malloc(size);
 }
 }
+
+#endif
 
 namespace deflect::test {
 

@@ -93,6 +93,20 @@ std::vector<Candidate> first_of(const Seen& s, const Candidates& all, double lea
   return all.beside(s.observations, {}, fit_of_all(s.observations, {}, VectorX(0)), least);
 }
 
+// An effect that has turned away from its signature leaves that to be explained. It is not taken a second time, with
+// another, where two are sought beside it.
+TEST(SearchLimits, AnEffectIsNotTakenTwice) {
+  const std::vector<Effect> effects = {turning("turns", 0.01, 0, M_PI / 2, 15), along("other", axis(4, 2))};
+  const Seen s = seen(15 * axis(4, 1) + 12 * axis(4, 0) + 12 * axis(4, 2));
+  const std::vector<Signature> all = signatures(s.observations, effects, 1);
+  const Candidates candidates(all, 1);
+  const Hypothesis before = {{&effects[0], {}}};
+  const Fit alone = fit(s.observations, before, {}, test::values({15}));
+  ASSERT_TRUE(alone.found);
+  EXPECT_TRUE(candidates.two_beside(s.observations, {}, fit_of_all(s.observations, {}, VectorX(0)), -1e6, -1e6));
+  EXPECT_FALSE(candidates.two_beside(s.observations, before, alone, -1e6, -1e6));
+}
+
 // The signature of a law at a place says 0.85 of what the law gains, 30 in χ²: more than a tenth less. It is fitted all
 // the same where its odds with all of the gain, but not with a tenth more than said, are called for.
 TEST(SearchLimits, ALawAtAPlaceThatGainsALittleMoreThanSaidIsFitted) {

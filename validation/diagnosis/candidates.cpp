@@ -42,10 +42,6 @@ MatrixX columns_of_unshaped(const Hypothesis& h, const MatrixX& signature) {
   return signature(Eigen::all, columns);
 }
 
-bool same(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
-  return a.effect == b.effect && a.leg == b.leg;
-}
-
 }  // namespace
 
 Candidates::Candidates(const std::vector<Signature>& all, int threads,
@@ -106,8 +102,7 @@ class Candidates::Round {
       const Signature& s = signature(i);
       out_[i].hypothesis = before;
       out_[i].hypothesis.push_back(s.effect);
-      const bool there = std::any_of(before.begin(), before.end(), [&](const auto& p) { return same(p, s.effect); });
-      allowed_.push_back(!there && own_share(s, proportional) > of_its_own);
+      allowed_.push_back(!is_among(before, s.effect) && own_share(s, proportional) > of_its_own);
       said_.push_back(
           !allowed_[i] || wrong_way(s, so_far.residual)
               ? 0
@@ -354,7 +349,9 @@ std::optional<TwoCandidates> Candidates::two_beside(const Observations& o, const
   constexpr std::size_t looked_at = 4;
   constexpr double signatures_may_miss = 4;  // of ln of the odds
   const MatrixX fitted = statistics::orthonormal(so_far.signature);
-  const auto of_class = [&](std::size_t i, double gain) { return log_odds(i, gain, class_priors_[i]); };
+  const auto of_class = [&](std::size_t i, double gain) {
+    return is_among(before, signatures_[i].effect) ? out_of_question : log_odds(i, gain, class_priors_[i]);
+  };
   const std::vector<PairOfSignatures> promising =
       best_pairs(signatures_, between_, so_far.residual, fitted, of_class, least - signatures_may_miss, looked_at);
   const auto together = [&](const Hypothesis& others, const Fit& fitted_so_far, std::size_t i) {
