@@ -131,6 +131,7 @@ struct Laws {
   Model m;
   std::vector<LinearForm> y;       // by port
   std::vector<Eigen::Index> port;  // by spring
+  std::vector<char> in_series;     // by spring
 };
 
 /// Whether earlier loads may have left something in it.
@@ -155,8 +156,13 @@ class InDoubles {
       scalar_[i] = scalar_law(laws_[i]);
     }
     for (std::size_t i = 0; i < laws_.size(); ++i) size(as_index(i)) = std::abs(load(port_[i]));
-    const auto found = map_.solve(d_by_load_ * load, size, scalar_);
+    const VectorX d0 = d_by_load_ * load;
+    const auto found = map_.solve(d0, size, scalar_);
     if (!found) return std::nullopt;
+    // In series a structure may resist by rounding alone, as where it is determinate. Then d is a small difference from
+    // a large d0.
+    for (Eigen::Index i = 0; i < d0.size(); ++i)
+      if (nth(in_series_, i) && std::abs(found->d(i)) < few_digits * std::abs(d0(i))) return std::nullopt;
     for (std::size_t i = 0; i < laws_.size(); ++i)
       keep_slips(laws_[i], found->d(as_index(i)), found->s(as_index(i)), found->end[i], slips);
     return VectorX(y_by_load_ * load + y_by_offset_ * (k_.cwiseProduct(found->d) - found->s));
@@ -165,6 +171,7 @@ class InDoubles {
  private:
   InDoubles(const Laws& laws, VectorX k, const MatrixX& E, const MatrixX& per_E, const MatrixX& Y, const MatrixX& per_Y)
       : port_(laws.port),
+        in_series_(laws.in_series),
         k_(std::move(k)),
         d_by_load_(E.transpose() * per_Y),
         y_by_load_(Y.transpose() * per_Y),
@@ -176,6 +183,7 @@ class InDoubles {
   std::vector<SpringLaw> laws_;
   std::vector<ScalarLaw> scalar_;  // of the laws as the last load left them
   std::vector<Eigen::Index> port_;
+  std::vector<char> in_series_;
   VectorX k_;
   MatrixX d_by_load_, y_by_load_, y_by_offset_;
   NormalMap map_;
@@ -262,6 +270,7 @@ std::optional<MatrixX> inputs_of_ports(const FrameDescription& f, const std::vec
     for (std::size_t k = 1; k < ports[p].chains.size(); ++k)
       add_chain(laws.m, springs, ports[p], ports[p].chains[k], laws.y.back());
     laws.port.resize(laws.m.springs.size(), as_index(p));
+    laws.in_series.resize(laws.m.springs.size(), ports[p].in_series ? 1 : 0);
   }
   const auto found = outcome_of([&] { return in_equilibrium(laws, structure->H, loads, in_sequence); });
   if (!found || !*found) return std::nullopt;
