@@ -199,6 +199,19 @@ INSTANTIATE_TEST_SUITE_P(
              true},
         Case{"beam-on-springs", {{"members.rail3.end.ry", "{law: linear, stiffness: 1e6 Nm/rad}"}}}));
 
+// Friction of any stiffness beside a spring, through loads in a sequence: stuck it may yield next to nothing.
+TEST(KnownFrame, FrictionOfAnyStiffness) {
+  const FrameDescription f = built_in("beam-on-springs");
+  const KnownFrame known(f, f.loads);
+  for (const double stiffness : {1e3, 1e5, 1e6, 1e7})
+    for (const double force : {5.0, 68.0, 500.0}) {
+      const std::string law = fmt::format("{{law: friction, force: {} N, stiffness: {} N/mm}}", force, stiffness);
+      const FrameDescription rubs = with(f, {{"springs.pad3.beside.uz", law}});
+      EXPECT_LT(off(known, rubs, true), rounding) << stiffness << " N/mm, " << force << " N";
+      EXPECT_GE(off(known, rubs, true), 0) << stiffness << " N/mm, " << force << " N";
+    }
+}
+
 // By hand: a bar EA/L = k_b behind a spring k_s; play g in series with the spring, then the bar's end moves by
 // F/k_s + F/k_b + g, of which the spring's law is known and the play is not.
 TEST(KnownFrame, PlayInSeriesByHand) {

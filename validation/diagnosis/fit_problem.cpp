@@ -27,8 +27,9 @@ std::optional<effects::ParameterPrior> prior_of_coordinate(const effects::Effect
 namespace {
 
 constexpr int doublings = 7;
-constexpr int halvings = 10, refinements = 3;  // of what lets go, in its size
-constexpr double no_more = 1e-3;               // of χ²: as good as nothing
+constexpr int halvings = 10, refinements = 3;    // of what lets go, in its size
+constexpr double no_more = 1e-3;                 // of χ²: as good as nothing
+constexpr double rounding_of_residuals = 1e-10;  // of a thousand readings of 1e4 σ
 
 /// So many times as far from where it vanishes; a factor on a logarithmic scale runs towards 0 or up by its logarithm.
 double times_as_large(const effects::EffectParameter& p, double small, double times) {
@@ -112,7 +113,8 @@ int FreeResidual::df(const VectorX& x, MatrixX& J) const {
       moved(k) += each;
       const std::optional<VectorX> there = problem->residual(moved);
       if (!there) continue;
-      J.col(i) = (*there - here) / each;
+      // Rounding is no slope: a search takes the parameter of a column that is next to nothing as far as it likes.
+      if (const VectorX change = *there - here; change.norm() > rounding_of_residuals) J.col(i) = change / each;
       break;
     }
   }
