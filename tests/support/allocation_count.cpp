@@ -4,8 +4,9 @@
 
 #include <atomic>
 
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/allocator_interface.h>
+#ifdef __SANITIZE_ADDRESS__  // Debian's g++ comes without <sanitizer/allocator_interface.h>
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*taken)(const volatile void*, std::size_t),
+                                                         void (*given_back)(const volatile void*));
 #endif
 
 namespace {
