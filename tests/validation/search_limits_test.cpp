@@ -7,6 +7,7 @@
 #include "tests/support/effects.h"
 #include "tests/support/springs_apart.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/diagnosis/fit_problem.h"
 #include "validation/diagnosis/left_over.h"
 #include "validation/diagnosis/selection.h"
 
@@ -45,6 +46,21 @@ TEST(SearchLimits, AFactorOfFewStartsIsFound) {
     ASSERT_TRUE(f.found) << f.why;
     EXPECT_NEAR(f.values(0), truth, 1e-3 * truth);
   }
+}
+
+// A shape that changes nothing but the last digits, as the stiffness of a friction that slips throughout, has no slope.
+TEST(SearchLimits, RoundingIsNoSlope) {
+  const Effect e = effect("slips", {parameter("size", 1, 0, 100, 0.0), parameter("shape", 0.5, 0, 1, {})},
+                          [](const VectorX& values) {
+                            return VectorX(values(0) * axis(4, 0) + 3e-11 * std::sin(1e7 * values(1)) * axis(4, 1));
+                          });
+  const Seen s = seen(20 * axis(4, 0));
+  const FitProblem problem(s.observations, {{&e, {}}});
+  const VectorX at = problem.coordinates(test::values({20, 0.5}));
+  MatrixX J;
+  FreeResidual{&problem, at, {0, 1}}.df(at, J);
+  EXPECT_GT(J.col(0).norm(), 1);
+  EXPECT_EQ(J.col(1).norm(), 0);
 }
 
 // The sign of a size that vanishes at 1 is open: its search begins there, and the true value, 1.3, is the next valley
