@@ -66,7 +66,7 @@ void add_joint(Chain& chain, const PlacedJoint& j, const Vector3& p_W, const AsP
     ElasticFreedom freedom{freedom_twist(j, i, p_W), {{}, j.preload[i]}, j.part, {}, i >= 3};
     for (const Law& law : j.laws[i])
       if (deflect::jumps(law))
-        freedom.stepped.push_back({law, j.preload[i], i >= 3, j.part});
+        freedom.stepped.push_back({law, j.preload[i], i >= 3, j.part, -1, i});
       else
         freedom.spring.laws.push_back(law);
     if (!p.count(Erratum::scalar_direction)) {

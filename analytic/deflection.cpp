@@ -7,6 +7,7 @@
 
 #include "analytic/table.h"
 #include "msa/base/spatial.h"
+#include "msa/mechanism/table.h"
 
 namespace deflect::analytic {
 namespace {
@@ -269,6 +270,47 @@ double stored_energy(const Spring& s, double force, const AsPrinted& p) {
   }
   return stored_energy(s.laws, force + s.preload, p) - stored_energy(s.laws, s.preload, p) -
          s.preload * deflection(s, force, p);
+}
+
+namespace {
+
+ScalarLaw bent(const Law& law, double P) {
+  const double rest = at_rest(law, P);
+  if (const auto* table = std::get_if<TableLaw>(&law)) return table_by_corners(*table, rest, P);
+  return {-HUGE_VAL, HUGE_VAL, [&law, P, rest](double d) { return force_of(law, d + rest) - P; },
+          [&law, rest](double d) { return 1 / analytic::compliance(law, force_of(law, d + rest)); }};
+}
+
+}  // namespace
+
+double compliance(const OneSidedLaw& l, double f) { return (f < 0 ? l.push : l.pull).value_or(0); }
+
+double at_rest(const Law& law, double P) { return P == 0 ? 0 : analytic::deflection(law, P); }
+
+ScalarLaw scalar_law(const Law& law, double P, double slip, double limit) {
+  const auto sign = [](double f) { return f > 0 ? 1.0 : f < 0 ? -1.0 : 0.0; };
+  if (const auto* l = std::get_if<ClearanceLaw>(&law)) {
+    const double rest = l->gap * sign(P);
+    return {-l->gap - rest, l->gap - rest, [P](double) { return -P; }, [](double) { return 0.0; }, -rest, l->gap};
+  }
+  if (const auto* l = std::get_if<FrictionLaw>(&law)) {
+    const double k = l->stiffness, F = limit;
+    return {-HUGE_VAL,
+            HUGE_VAL,
+            [=](double d) { return std::clamp(k * (d - slip) + P, -F, F) - P; },
+            [=](double d) { return std::abs(k * (d - slip) + P) > F ? 0.0 : k; },
+            slip - P / k,
+            std::max(F / k, 1e-15)};
+  }
+  if (!std::holds_alternative<OneSidedLaw>(law)) return bent(law, P);
+  const OneSidedLaw one = std::get<OneSidedLaw>(law);
+  const double rest = compliance(one, P) * P;
+  const auto slope = [one, rest](double d) {
+    const double c = compliance(one, d + rest);
+    return c > 0 ? 1 / c : 0;
+  };
+  return {compliance(one, -1) > 0 ? -HUGE_VAL : -rest, compliance(one, 1) > 0 ? HUGE_VAL : -rest,
+          [=](double d) { return slope(d) * (d + rest) - P; }, slope};
 }
 
 }  // namespace deflect::analytic

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analytic/erratum.h"
+#include "msa/base/set_valued_laws.h"
 #include "msa/mechanism/law.h"
 
 namespace deflect::analytic {
@@ -75,5 +76,15 @@ double deflection(const Spring&, double force, const AsPrinted& = {});
 /// finite.
 double compliance(const Spring&, double force, double least = 0, const AsPrinted& = {});
 double stored_energy(const Spring&, double force, const AsPrinted& = {});
+
+/// In the sense of the force f.
+double compliance(const OneSidedLaw&, double f);
+
+/// δ of a preloaded law before any load.
+double at_rest(const Law&, double P);
+
+/// The law as f by δ, both from the state preloaded by P; with laws that jump (set_valued_laws.h). A friction's slip
+/// counts from there too; `limit`: its own. It may refer to the law, which must outlive it.
+ScalarLaw scalar_law(const Law&, double P, double slip, double limit);
 
 }  // namespace deflect::analytic

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "analytic/beam_column.h"
 #include "analytic/flexibility.h"
@@ -245,13 +246,16 @@ double relative(const Eigen::Vector2d& e, const Deformed& d, double length) {
   return moved > 0 ? std::max(e(0), length * e(1)) / moved : 0;
 }
 
-Deformed unloaded(const Configuration& c, Geometry geometry, std::vector<int> pieces) {
+Deformed unloaded(const Configuration& c, const ShapeConditions& under, std::vector<int> pieces) {
   Deformed d;
   d.pieces = std::move(pieces);
   Pieces of_members{d.pieces};
   const PlacedParallel legs{"legs", Vector3::Zero(), c.pose.p_WT, c.legs};
   d.whole = virtual_chain_of({"the mechanism", {c.base, legs, c.tool}}, c.pose.p_WT, c.pose.p_WT, c.size, of_members);
-  d.conditions.geometry = geometry;
+  d.conditions.geometry = under.geometry;
+  d.conditions.steps = under.steps;
+  if (!under.steps.empty() && hold_laws(d.whole) != under.steps.size())
+    throw std::invalid_argument("not as many steps as laws");
   d.leg_wrenches.assign(c.legs.size(), Vector6::Zero());
   return d;
 }
@@ -265,7 +269,7 @@ Deformed loaded(Deformed d, const Configuration& c, const Vector6& F) {
 
 /// `coarser`: with fewer pieces, whose state is taken for the beginning where it is one.
 Deformed with_pieces(const Configuration& c, const Vector6& F, std::vector<int> pieces, const Deformed& coarser) {
-  Deformed d = unloaded(c, coarser.conditions.geometry, std::move(pieces));
+  Deformed d = unloaded(c, coarser.conditions, std::move(pieces));
   if (coarser.converged) {
     Deformed same = d;
     take_state(same.whole, coarser.whole);
@@ -276,19 +280,37 @@ Deformed with_pieces(const Configuration& c, const Vector6& F, std::vector<int> 
   return loaded(std::move(d), c, F);
 }
 
-}  // namespace
-
-Deformed at_rest(const Configuration& c, Geometry geometry, bool linear) {
+std::vector<int> whole_members(const Configuration& c) {
   std::size_t members = 0;
   for_each_part(c.legs, [&](const auto& part) {
     if constexpr (requires { part.section; }) ++members;
   });
-  Deformed d = unloaded(c, geometry, std::vector<int>(members, 1));
+  return std::vector<int>(members, 1);
+}
+
+}  // namespace
+
+Deformed at_rest(const Configuration& c, Geometry geometry, bool linear) {
+  Deformed d = unloaded(c, {geometry}, whole_members(c));
   if (linear && all_fit(c.legs)) {
     auto& legs = std::get<VirtualGroup>(d.whole.steps[legs_step(d.whole)]);
     legs.known = legs.restrain(d.conditions);
   }
   return d;
+}
+
+Deformed at_rest_in(const std::vector<Step>& steps, const Configuration& c, Geometry geometry) {
+  ShapeConditions under{geometry};
+  under.steps = steps;
+  return unloaded(c, under, whole_members(c));
+}
+
+Deformed in_other_steps(const Deformed& from, const std::vector<Step>& steps, const Configuration& c) {
+  Deformed d = from;
+  d.iterations = 0;
+  d.conditions.steps = steps;
+  if (settles(d, from.whole.F, 1)) return d;
+  return deform(at_rest_in(steps, c, from.conditions.geometry), c, from.whole.F);
 }
 
 Deformed deform(const Deformed& rest, const Configuration& c, const Vector6& F) {

@@ -45,9 +45,14 @@ struct Deformed {
 /// The start for any load: nothing has moved, every member is one piece. `linear`: no law's stiffness depends on its
 /// force, so that the first Newton step has the same legs for every load and can reuse them.
 Deformed at_rest(const Configuration&, Geometry, bool linear);
+/// The same with all laws that are not linear held in these steps (hold_laws), none of them released. Throws
+/// std::invalid_argument where there are not so many laws.
+Deformed at_rest_in(const std::vector<Step>&, const Configuration&, Geometry);
 
 /// The state under the wrench F at T, weight included. Where it does not converge, the last stable state found.
 Deformed deform(const Deformed& rest, const Configuration&, const Vector6& F_T_W);
+/// The state under the wrench that a state carries, with its laws held in other steps.
+Deformed in_other_steps(const Deformed&, const std::vector<Step>&, const Configuration&);
 
 /// Tangent of a state, [f; m] at T by [δ; spin], base axes: K = J⁻ᵀ(K − H)J⁻¹ − ½[m]× with K and H of the whole chain,
 /// symmetric where no outer moment m acts. Second order: K_E + K_G at the forces of the state. Throws ModelError where

@@ -1,9 +1,53 @@
 #include <algorithm>
 
+#include "analytic/deformed.h"
 #include "analytic/model.h"
 #include "msa/base/index.h"
 
 namespace deflect::analytic {
+namespace {
+
+/// Of the largest force. Forces of second order are about a strain times that, 1e-6 or more of it.
+constexpr double idle_force = 1e-7;
+
+/// The deformed shape under one load, asked again and again with its laws in other steps.
+class ShapeInSteps {
+ public:
+  ShapeInSteps(const Configuration& c, const Vector6& F, Geometry geometry, std::vector<Step> steps)
+      : configuration_(c), state_(deform(at_rest_in(steps, c, geometry), c, F)), steps_(std::move(steps)) {}
+
+  const Deformed& in(const std::vector<Step>& steps) {
+    const auto same = [](const Step& a, const Step& b) { return a.offset == b.offset && a.compliance == b.compliance; };
+    if (std::equal(steps.begin(), steps.end(), steps_.begin(), steps_.end(), same)) return state_;
+    state_ = in_other_steps(state_, steps, configuration_);
+    steps_ = steps;
+    return state_;
+  }
+
+  SteppedForces answer(const std::vector<Step>& steps, double length) {
+    const Deformed& d = in(steps);
+    const auto size = [length](const Vector6& w) { return std::max(w.head<3>().norm(), w.tail<3>().norm() / length); };
+    Vector6 moved;
+    moved << d.translation, d.rotation_vector;
+    SteppedForces out{forces_in_held(d.whole, d.conditions), moved, size(d.whole.F), length, d.converged};
+    for (const Vector6& w : d.leg_wrenches) out.largest = std::max(out.largest, size(w));
+    out.idle = idle_force * out.largest;
+    return out;
+  }
+
+ private:
+  const Configuration& configuration_;
+  Deformed state_;
+  std::vector<Step> steps_;
+};
+
+std::vector<Step> steps_at(const VectorX& offsets, const VectorX& compliances) {
+  std::vector<Step> steps;
+  for (Eigen::Index i = 0; i < offsets.size(); ++i) steps.push_back({offsets(i), compliances(i), false});
+  return steps;
+}
+
+}  // namespace
 
 /// Under unit loads and one kelvin, each law held by its compliance alone.
 AnalyticModel::Between AnalyticModel::between(const Imposed& imposed) const {
@@ -30,13 +74,15 @@ AnalyticModel::Between AnalyticModel::between(const Imposed& imposed) const {
   return out;
 }
 
+Imposed AnalyticModel::offsets_unloaded() const {
+  ChainConditions under;
+  return imposed_on(stepped_,
+                    [&](const std::vector<Step>& steps) { return under_steps(Vector6::Zero(), under, steps, 0); });
+}
+
 /// Made on first use.
 AnalyticModel::Between& AnalyticModel::linear_response() const {
-  if (!imposed_) {
-    ChainConditions under;
-    imposed_ = std::make_shared<Imposed>(imposed_on(
-        stepped_, [&](const std::vector<Step>& steps) { return under_steps(Vector6::Zero(), under, steps, 0); }));
-  }
+  if (!imposed_) imposed_ = std::make_shared<Imposed>(offsets_unloaded());
   if (!between_) between_ = std::make_shared<Between>(between(*imposed_));
   return *between_;
 }
@@ -122,12 +168,20 @@ std::optional<AnalyticModel::Quick> AnalyticModel::quick(const Vector6& F, const
 AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
   const bool in_part = conditions.geometry != Geometry::linear;
   if (in_part && stepped_.empty()) return solve(F, conditions);
+  AnalyticSolution s;
+  if (const auto in_shape = in_part ? jumps_in_shape(F + weight_, conditions) : std::nullopt) {
+    s.converged = true;
+    s.slips = in_shape->laws.slips;
+    s.load = F;
+    s.displacement = in_shape->displacement;
+    return s;
+  }
   const std::optional<Quick> found = quick(F + weight_, conditions);
   if (!found) return solve(F, conditions);
-  AnalyticSolution s;
   s.converged = found->laws.converged;
   s.message = found->laws.reason;
   s.slips = found->laws.slips;
+  s.loose = found->laws.loose;
   s.load = F;
   s.displacement = found->displacement;
   if (!in_part || !s.converged) return s;
@@ -136,6 +190,46 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
   under.steps = held_at(found->laws.offsets);
   s.leg_wrenches = equilibrium_under(F + weight_, under).leg_wrenches;
   return with_shape(std::move(s), conditions.geometry);
+}
+
+/// Nothing in the cases that solve() names, and where the laws are not found in balance.
+std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector6& F,
+                                                                    const Conditions& conditions) const {
+  const bool heated = conditions.warmer != 0 && heat_force_ > 0;
+  // A law of this model's own, which tells a friction the load beside it, is none of the configuration.
+  const bool watched =
+      std::any_of(stepped_.begin(), stepped_.end(), [](const SteppedLaw& law) { return law.load >= 0; });
+  if (!as_printed_.empty() || !legs_.fits() || stepped_.empty() || lines_ || heated || watched) return std::nullopt;
+  if (!imposed_) imposed_ = std::make_shared<Imposed>(offsets_unloaded());
+  Imposed imposed = imposed_->S.size() > 0 ? *imposed_ : offsets_unloaded();
+  const VectorX c = imposed.c;
+  const std::vector<Step> without_offsets = steps_at(VectorX::Zero(c.size()), c);
+  ShapeInSteps shape(configuration_, F, conditions.geometry, without_offsets);
+  if (!shape.in(without_offsets).converged) return std::nullopt;
+  BalancedSteps laws = balance(
+      stepped_, conditions.slips, [&](const std::vector<Step>& steps) { return shape.answer(steps, legs_.length); },
+      imposed, false);
+  if (!laws.converged) return std::nullopt;
+  // Members bend otherwise there than without offsets, for which they were divided.
+  const Deformed d =
+      deform(at_rest_in(steps_at(laws.offsets, c), configuration_, conditions.geometry), configuration_, F);
+  if (!d.converged) return std::nullopt;
+  InShape out{std::move(laws), Vector6::Zero(), d.discretisation};
+  out.displacement << d.translation, d.rotation_vector;
+  return out;
+}
+
+/// Puts what floats in linear geometry where the deformed shape has it.
+void AnalyticModel::put_play(const InShape& found, const Vector6& F, AnalyticSolution& s) const {
+  if (s.loose.empty()) return;
+  for (const std::size_t i : s.loose)
+    if (!found.laws.steps[i].released) s.under.steps[i] = found.laws.steps[i];
+  const AnalyticSolution there = equilibrium_under(F, s.under);
+  s.displacement = there.displacement;
+  s.leg_wrenches = there.leg_wrenches;
+  s.loose.clear();
+  s.free.resize(6, 0);
+  s.least = s.most = Vector6::Zero();
 }
 
 }  // namespace deflect::analytic

@@ -81,13 +81,22 @@ AnalyticModel::AnalyticModel(const Configuration& given, const AsPrinted& as_pri
   weight_ << c.weight, Vector3::Zero();
   const bool jumps = through_.has_steps() || std::any_of(legs_.branches.begin(), legs_.branches.end(),
                                                          [](const Chain& leg) { return leg.has_steps(); });
-  for (Chain& leg : legs_.branches) leg.number_steps(stepped_);
+  const auto number_legs = [this] {
+    stepped_.clear();
+    int number = 0;
+    for (Chain& leg : legs_.branches) {
+      const std::size_t first = stepped_.size();
+      leg.number_steps(stepped_);
+      for (std::size_t i = first; i < stepped_.size(); ++i) stepped_[i].leg = number;
+      ++number;
+    }
+  };
+  number_legs();
   if (!through_.has_steps() && as_printed.empty()) lines_ = Lines::of(legs_);
   if (jumps && !lines_ && as_printed.empty()) {
-    stepped_.clear();
     for (Chain& leg : legs_.branches) leg.bent_laws_to_steps();
     through_.bent_laws_to_steps();
-    for (Chain& leg : legs_.branches) leg.number_steps(stepped_);
+    number_legs();
   }
   through_.number_steps(stepped_);
   double stiffest = 0, beside = 0;
@@ -197,13 +206,23 @@ AnalyticSolution AnalyticModel::solve_in_part(const Vector6& F, const Conditions
   Conditions linear = conditions;
   linear.geometry = Geometry::linear;
   AnalyticSolution s = solve(F, linear);
-  return s.converged ? with_shape(std::move(s), conditions.geometry) : s;
+  if (!s.converged) return s;
+  if (const std::optional<InShape> found = jumps_in_shape(F + weight_, conditions)) {
+    put_play(*found, F + weight_, s);
+    s.shape = found->displacement - s.displacement;
+    s.displacement = found->displacement;
+    s.slips = found->laws.slips;
+    s.discretisation = found->discretisation;
+    return s;
+  }
+  return with_shape(std::move(s), conditions.geometry);
 }
 
 /// The deformed shape's share is that of the mechanism without gaps, friction and heat.
 AnalyticSolution AnalyticModel::with_shape(AnalyticSolution s, Geometry geometry) const {
   const AnalyticModel smooth(without_steps(configuration_, s.leg_wrenches, s.load + weight_));
   const AnalyticSolution deformed = smooth.solve(s.load, geometry), straight = smooth.solve(s.load);
+  s.apart = !stepped_.empty();
   s.shape = deformed.displacement - straight.displacement;
   s.displacement += s.shape;
   s.discretisation = deformed.discretisation;

@@ -34,9 +34,10 @@ struct AnalyticSolution {
   int iterations = 0;
   double misfit = 0;          ///< largest gap between legs' ends and platform, relative to the displacement
   std::vector<double> slips;  ///< after the load, as in Conditions
-  /// Unloaded play, in which the mechanism floats (steps.h): the parts that have it, and the twists by which T may move
-  /// (columns). Along each axis T may move by `least` to `most` from the displacement given, which is the middle.
-  std::vector<std::string> loose;
+  /// Unloaded play, in which the mechanism floats (steps.h): the laws that have it, by number, and the twists by which
+  /// T may move (columns). Along each axis T may move by `least` to `most` from the displacement given, which is the
+  /// middle.
+  std::vector<std::size_t> loose;
   Matrix6X free = Matrix6X(6, 0);
   Vector6 least = Vector6::Zero(), most = Vector6::Zero();
   ChainConditions under;  ///< temperature, and the phases of laws that jump (steps.h)
@@ -46,6 +47,7 @@ struct AnalyticSolution {
   /// Where laws jump in the deformed shape: the contribution of the shape to the displacement. All else is of linear
   /// geometry.
   Vector6 shape = Vector6::Zero();
+  bool apart = false;  ///< they were not balanced in that shape: one of the cases that solve() names
 };
 
 /// A mechanism at one pose.
@@ -60,17 +62,22 @@ class AnalyticModel {
 
   /// Whether some law jumps: clearance, friction, one-sided.
   bool jumps() const { return !stepped_.empty(); }
+  /// The laws in steps, by number.
+  const std::vector<SteppedLaw>& in_steps() const { return stepped_; }
 
   /// Legs' forces and the displacement of T in equilibrium, contacts at their load, by Newton's method in the legs'
   /// forces. Throws ModelError with the motion where something is free to move, even under a load that does not move
   /// it; also where rigid legs cannot be assembled. For nonlinear geometries see deformed.h. Linear geometry is used
-  /// instead where there are no forces, and always for equations as printed. The effects of laws that jump and of
-  /// temperature are then added as in linear geometry, and with such laws the stiffness is the linear one.
+  /// instead where there are no forces, and always for equations as printed. Laws that jump are then balanced in the
+  /// deformed shape too, which decides where unloaded play stands; all but the displacement is that of linear geometry
+  /// with the play there. Not so in three cases, in which the displacement is the linear one plus what the shape adds
+  /// to the mechanism without such laws: beside misfits, beside a change of temperature, and where only frictions
+  /// beside the legs jump.
   AnalyticSolution solve(const Vector6& F_T_W, const Conditions& = {}) const;
 
-  /// Only displacement, slips, convergence and message of solve(): for fits, which need many loads. Where laws jump,
-  /// the linear rest of the mechanism is solved once for six loads and a temperature, so that each further load solves
-  /// only the laws.
+  /// Only displacement, slips, unloaded play's laws, convergence and message of solve(): for fits, which need many
+  /// loads. Where laws jump, the linear rest of the mechanism is solved once for six loads and a temperature, so that
+  /// each further load solves only the laws.
   AnalyticSolution displaced(const Vector6& F_T_W, const Conditions& = {}) const;
 
   /// The assembled state: displacement of T from the drawing, and the legs' wrenches by misfits.
@@ -108,6 +115,15 @@ class AnalyticModel {
   AnalyticSolution solution(const Group::State&, const Vector6& F, const ChainConditions&) const;
   AnalyticSolution deformed_equilibrium(const Vector6& F, Geometry) const;
   AnalyticSolution solve_in_part(const Vector6& F, const Conditions&) const;
+  /// Laws in balance in the deformed shape, and what that adds up to.
+  struct InShape {
+    BalancedSteps laws;
+    Vector6 displacement;
+    Eigen::Vector2d discretisation;
+  };
+  Imposed offsets_unloaded() const;  ///< what offsets of the laws do in linear geometry
+  std::optional<InShape> jumps_in_shape(const Vector6& F, const Conditions&) const;
+  void put_play(const InShape&, const Vector6& F, AnalyticSolution&) const;
   AnalyticSolution with_shape(AnalyticSolution, Geometry) const;
   Flexibility flexibility(const AnalyticSolution&) const;
   Vector6 inside_linear(const Inside&, const AnalyticSolution&) const;

@@ -20,12 +20,10 @@ namespace {
 enum class Phase { start, plus, minus, open, sticks, bends };  // of one-sided laws, plus pulls and minus pushes
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double no_force = 1e-11;  // of the largest
+constexpr double no_force = 1e-11;   // of the largest
+constexpr double idle_share = 1e-9;  // of LinearRelation::size
 
 double sign(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
-
-/// δ of a preloaded law before any load.
-double at_rest(const Law& law, double P) { return P == 0 ? 0 : analytic::deflection(law, P); }
 
 /// A law in a phase.
 struct Member {
@@ -67,40 +65,6 @@ bool lets_go(const Member& m, double no_load) {
   return std::abs(own) <= no_load && !std::isfinite(analytic::compliance(m.law(), 0));
 }
 
-ScalarLaw bent(const Law& law, double P) {
-  const double rest = at_rest(law, P);
-  if (const auto* table = std::get_if<TableLaw>(&law)) return table_by_corners(*table, rest, P);
-  return {-infinite, infinite, [&law, P, rest](double d) { return force_of(law, d + rest) - P; },
-          [&law, rest](double d) { return 1 / analytic::compliance(law, force_of(law, d + rest)); }};
-}
-
-/// f by δ, both from the preloaded state. A friction's slip counts from there too; `limit`: its own.
-ScalarLaw scalar_law(const SteppedLaw& stepped, double slip, double limit) {
-  const double P = stepped.preload;
-  if (const auto* l = std::get_if<ClearanceLaw>(&stepped.law)) {
-    const double rest = l->gap * sign(P);
-    return {-l->gap - rest, l->gap - rest, [P](double) { return -P; }, [](double) { return 0.0; }, -rest, l->gap};
-  }
-  if (const auto* l = std::get_if<FrictionLaw>(&stepped.law)) {
-    const double k = l->stiffness, F = limit;
-    return {-infinite,
-            infinite,
-            [=](double d) { return std::clamp(k * (d - slip) + P, -F, F) - P; },
-            [=](double d) { return std::abs(k * (d - slip) + P) > F ? 0.0 : k; },
-            slip - P / k,
-            std::max(F / k, 1e-15)};
-  }
-  if (!std::holds_alternative<OneSidedLaw>(stepped.law)) return bent(stepped.law, P);
-  const OneSidedLaw one = std::get<OneSidedLaw>(stepped.law);
-  const double rest = compliance(one, P) * P;
-  const auto slope = [one, rest](double d) {
-    const double c = compliance(one, d + rest);
-    return c > 0 ? 1 / c : 0;
-  };
-  return {compliance(one, -1) > 0 ? -infinite : -rest, compliance(one, 1) > 0 ? infinite : -rest,
-          [=](double d) { return slope(d) * (d + rest) - P; }, slope};
-}
-
 /// Whether it bends: its force follows from its deflection.
 bool bends(const Law& law) { return !deflect::jumps(law) || remembers(law); }
 
@@ -127,7 +91,7 @@ class Balance {
         members_.back().limit = friction->force;
         if (friction->share > 0 && l.load >= 0) growing_.push_back(std::ssize(members_) - 1);
       }
-      laws_.push_back(scalar_law(l, members_.back().slip, members_.back().limit));
+      laws_.push_back(scalar_law(l.law, l.preload, members_.back().slip, members_.back().limit));
     }
   }
 
@@ -148,7 +112,7 @@ class Balance {
     const bool floats = extent_ && std::any_of(members_.begin(), members_.end(), [](const Member& m) {
                           return std::holds_alternative<ClearanceLaw>(m.law()) && m.stepped->preload == 0;
                         });
-    if (relaxed && at.forces.isZero(0) && at.largest == 0 && !floats) return at_rest();
+    if (relaxed && at.forces.isZero(0) && at.largest == 0 && !floats) return unloaded();
     if (imposed_.S.size() == 0) linearise(VectorX::Zero(n_), at, 1e3);
     VectorX o = VectorX::Zero(n_), p;
     SetValuedSolution found;
@@ -156,7 +120,7 @@ class Balance {
     for (int round = 0, nearest = 0; round < 200 && round < nearest + 25; ++round) {
       const VectorX f0 = at.forces + imposed_.S * o;
       const MatrixX P = MatrixX::Identity(n_, n_) - MatrixX(imposed_.c.asDiagonal() * imposed_.S);
-      sizes_ = VectorX::Constant(n_, at.largest);
+      sizes_ = VectorX::Constant(n_, std::max(at.largest, at.idle / idle_share));
       for (Eigen::Index i = 0; i < n_; ++i)
         if (nth(members_, i).stepped->rotation) sizes_(i) *= at.length;
       found = settled({imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_});
@@ -213,7 +177,7 @@ class Balance {
       for (Eigen::Index i = 0; i < tried.size(); ++i) {
         Member& m = nth(members_, nth(growing_, i));
         m.limit = tried(i);
-        nth(laws_, nth(growing_, i)) = scalar_law(*m.stepped, m.slip, m.limit);
+        nth(laws_, nth(growing_, i)) = scalar_law(m.law(), m.stepped->preload, m.slip, m.limit);
       }
       found = solve(relation, laws_, watched());
       if (found.outcome != SetValuedSolution::Outcome::solved) return std::nullopt;
@@ -257,6 +221,11 @@ class Balance {
     imposed_.S.resize(0, 0);
   }
 
+  /// Play that so far moved by nothing but forces of second order, which small offsets would not show.
+  bool floats_freely(Eigen::Index i) const {
+    return imposed_.S.size() > 0 && std::isfinite(nth(laws_, i).low) && imposed_.S(i, i) * imposed_.c(i) <= 1e-12;
+  }
+
   /// S and T by offsets that change forces by so much of the largest.
   void linearise(const VectorX& o, const SteppedForces& at, double change) {
     MatrixX S(n_, n_);
@@ -265,7 +234,8 @@ class Balance {
     for (Eigen::Index i = 0; i < n_; ++i) {
       const bool rotation = nth(members_, i).stepped->rotation;
       VectorX moved = o;
-      const double h = change * force * (rotation ? at.length : 1) * imposed_.c(i);
+      double h = change * force * (rotation ? at.length : 1) * imposed_.c(i);
+      if (floats_freely(i)) h = std::max(h, 0.01 * nth(laws_, i).half);
       moved(i) += h;
       const SteppedForces next = answer(moved);
       S.col(i) = (at.forces - next.forces) / h;
@@ -274,7 +244,7 @@ class Balance {
     imposed_.S = S;
   }
 
-  BalancedSteps at_rest() {
+  BalancedSteps unloaded() {
     for (Member& m : members_) m.phase = phase_at_rest(m.law());
     for (Member& m : members_)
       if (std::holds_alternative<ClearanceLaw>(m.law()) && m.stepped->preload == 0) m.phase = Phase::open;
@@ -300,9 +270,9 @@ class Balance {
     }
     BalancedSteps out = conclude();
     out.offsets = found.o;
+    for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)
+      if (found.loose.row(i).cwiseAbs().maxCoeff() > 0) out.loose.push_back(as_size(i));
     if (extent_) {
-      for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)
-        if (found.loose.row(i).cwiseAbs().maxCoeff() > 0) out.loose.push_back(nth(members_, i).stepped->part);
       out.twists = imposed_.T * found.loose;
       out.least = found.least, out.most = found.most;
     }
@@ -361,8 +331,6 @@ class Balance {
 };
 
 }  // namespace
-
-double compliance(const OneSidedLaw& l, double f) { return (f < 0 ? l.push : l.pull).value_or(0); }
 
 Step SteppedLaw::at_force(double f) const {
   Member m{this};

@@ -36,7 +36,9 @@ struct SteppedLaw {
   bool rotation = false;
   std::string part;
   int number = -1;
-  int load = -1;  ///< of a friction with a share: the number of a law whose force is the load beside it
+  std::size_t freedom = 0;  ///< of the joint, tx … rz
+  int leg = -1;             ///< by index; −1: base and tool
+  int load = -1;            ///< of a friction with a share: the number of a law whose force is the load beside it
 
   /// The phase by the force alone; friction sticks with zero slip.
   Step at_force(double f) const;
@@ -44,15 +46,13 @@ struct SteppedLaw {
   double stored_energy(double f, const Step&) const;
 };
 
-/// Compliance in the sense of the force f.
-double compliance(const OneSidedLaw&, double f);
-
 /// Response of a mechanism to given steps: the force in each law, the displacement of T, and the largest force.
 struct SteppedForces {
   VectorX forces;
   Vector6 displacement;
   double largest = 0, length = 1;
   bool converged = true;
+  double idle = 0;  ///< N: a smaller force is none, where it decides where play stands; at least 1e-9 of the largest
 };
 using AskSteps = std::function<SteppedForces(const std::vector<Step>&)>;
 
@@ -70,9 +70,9 @@ struct BalancedSteps {
                               ///< converged
   bool converged = false;
   std::string reason;  ///< why there is no equilibrium, or why none was found
-  /// Parts with unloaded play. The steps are at the middle of the play (set_valued_laws.h). In it T can move by
-  /// `twists` (columns), along each axis by `least` to `most`.
-  std::vector<std::string> loose;
+  /// The laws with unloaded play, by number. The steps are at the middle of the play (set_valued_laws.h). In it T can
+  /// move by `twists` (columns), along each axis by `least` to `most`.
+  std::vector<std::size_t> loose;
   Matrix6X twists = Matrix6X(6, 0);
   Vector6 least = Vector6::Zero(), most = Vector6::Zero();
 };
@@ -80,7 +80,7 @@ struct BalancedSteps {
 /// Finds the steps in which every law is consistent with its force. The forces decrease with the offsets, so that
 /// forces and deflections of the laws minimise a convex function (set_valued_laws.h). Nonlinear laws that are not steps
 /// are linearised about the last offsets until everything agrees. `slips`: before the load. `imposed`: of this
-/// mechanism; computed where it is empty. `extent`: whether loose, twists, least and most are asked for.
+/// mechanism; computed where it is empty. `extent`: whether twists, least and most are asked for.
 BalancedSteps balance(const std::vector<SteppedLaw>&, const std::vector<double>& slips, const AskSteps&,
                       Imposed& imposed, bool extent = true);
 

@@ -124,7 +124,7 @@ void add_laws(const VirtualJoint& v, const ShapeConditions& c, Eigen::Ref<Vector
   for (std::size_t k = 0; k < v.freedoms.size(); ++k) {
     const auto at = as_index(k);
     const std::size_t i = v.freedoms[k];
-    kept.push_back(!v.joint.elastic(i));
+    kept.push_back(!v.elastic(i));
     if (kept.back()) continue;
     if (v.joint.stiffness) {
       for (std::size_t j = 0; j < 6; ++j) {
@@ -133,9 +133,9 @@ void add_laws(const VirtualJoint& v, const ShapeConditions& c, Eigen::Ref<Vector
       }
       continue;
     }
-    const Spring spring{v.joint.laws[i], v.joint.preload[i]};
-    K(at, at) = 1 / compliance(spring, static_force(at), c.least);
-    s(at) = static_force(at) + K(at, at) * (v.x[i] - deflection(spring, static_force(at)));
+    const Step laws = v.deflected(i, static_force(at), c);
+    K(at, at) = 1 / laws.compliance;
+    s(at) = static_force(at) + K(at, at) * (v.x[i] - laws.offset);
   }
 }
 

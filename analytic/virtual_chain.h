@@ -36,6 +36,7 @@
 
 #include "analytic/deflection.h"
 #include "analytic/rotation_vector.h"
+#include "analytic/steps.h"
 #include "msa/base/geometry.h"
 #include "msa/mechanism/configuration.h"
 
@@ -68,9 +69,10 @@ struct Tip {
 /// Conditions under which a shape is linearised.
 struct ShapeConditions {
   Geometry geometry = Geometry::finite;
-  double least = 0;     ///< N, Nm: smaller forces count as this in the compliance of contacts
-  double misfit = 1;    ///< share of the misfits that is applied
-  bool judged = false;  ///< whether to test the stability of the state
+  double least = 0;              ///< N, Nm: smaller forces count as this in the compliance of contacts
+  double misfit = 1;             ///< share of the misfits that is applied
+  bool judged = false;           ///< whether to test the stability of the state
+  std::vector<Step> steps = {};  ///< of the laws that are held in steps, by number (hold_laws); none released
 };
 
 /// The restraint on a body, linearised about the state: F = F0 + K t + B μ with Bᵀt = b, where t = [δ; ψ] is its
@@ -95,6 +97,11 @@ struct VirtualJoint {
   PlacedJoint joint;
   std::vector<std::size_t> freedoms;  ///< those that move
   std::array<double, 6> x{};
+  std::array<std::vector<std::size_t>, 6> held{};  ///< by freedom, the numbers of its laws that are held in steps
+
+  bool elastic(std::size_t i) const { return joint.elastic(i) || !held[i].empty(); }
+  /// The deflection of the laws of freedom i under the force f, and their compliance.
+  Step deflected(std::size_t i, double f, const ShapeConditions&) const;
 };
 
 struct VirtualMember {
@@ -175,6 +182,16 @@ struct Pieces {
 
 /// The chain of a leg whose end is the point p_E, misfits given at p_W. Axes: those of the configuration.
 VirtualChain virtual_chain_of(const PlacedLeg&, const Vector3& p_E, const Vector3& p_WT, double length, Pieces&);
+
+/// In the deformed shape a law that is held in the step {o, c} (steps.h) deflects by o + c f, whatever it is. So the
+/// shape answers as balance() asks.
+///
+/// Takes all laws that are not linear out of the joints of a mechanism (Deformed::whole) and numbers them as
+/// AnalyticModel does: leg by leg, in each the joints before the groups, then base and tool. Returns their number.
+std::size_t hold_laws(VirtualChain& whole);
+
+/// The forces in these laws in an equilibrium, by number.
+VectorX forces_in_held(const VirtualChain& whole, const ShapeConditions&);
 
 /// Initialises a chain with the state of one whose members have fewer pieces; each coarser piece is taken to be bent as
 /// evenly as its ends allow.

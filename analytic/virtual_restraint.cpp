@@ -1,7 +1,8 @@
-// What a chain of virtual joints does to a body that holds its end, and branches side by side.
+// What a chain of virtual joints does to a body that holds its end, and branches side by side; its laws in steps.
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "analytic/flexibility.h"
@@ -83,6 +84,43 @@ Elimination elimination_of(const ByFreeMotions& by_z, const std::vector<bool>& k
   out.A_EE_EQ = solved.middleCols(6, stay);
   out.A_EE_r = solved.col(6 + stay);
   return out;
+}
+
+void hold_laws_of_joints(VirtualChain& chain, std::size_t& next) {
+  for (VirtualStep& step : chain.steps)
+    if (auto* v = std::get_if<VirtualJoint>(&step); v && !v->joint.stiffness)
+      for (const std::size_t i : v->freedoms) {
+        std::vector<Law>& laws = v->joint.laws[i];
+        const auto held = std::stable_partition(laws.begin(), laws.end(), is_linear);
+        for (auto law = held; law != laws.end(); ++law) v->held[i].push_back(next++);
+        laws.erase(held, laws.end());
+      }
+}
+
+void hold_laws_of_leg(VirtualChain& leg, std::size_t& next) {
+  hold_laws_of_joints(leg, next);
+  for (VirtualStep& step : leg.steps)
+    if (auto* group = std::get_if<VirtualGroup>(&step))
+      for (VirtualChain& branch : group->branches) hold_laws_of_leg(branch, next);
+}
+
+void add_forces(const VirtualChain& chain, const ShapeConditions& c, VectorX& forces) {
+  VirtualChain copy = chain;
+  const Linearised l = copy.linearise(c);
+  const VectorX s = l.J.transpose() * chain.F + l.turned;
+  Eigen::Index next = 0;
+  for (const VirtualStep& step : chain.steps) {
+    const auto* v = std::get_if<VirtualJoint>(&step);
+    if (v)
+      for (const std::size_t i : v->freedoms) {
+        for (const std::size_t number : v->held[i]) forces(as_index(number)) = s(next);
+        ++next;
+      }
+    else
+      next += 6;
+    if (const auto* group = std::get_if<VirtualGroup>(&step))
+      for (const VirtualChain& branch : group->branches) add_forces(branch, c, forces);
+  }
 }
 
 }  // namespace
@@ -197,6 +235,31 @@ Progress VirtualGroup::follow(const Vector6& t, const Vector6& F, const ShapeCon
     next += own;
   }
   return progress;
+}
+
+Step VirtualJoint::deflected(std::size_t i, double f, const ShapeConditions& c) const {
+  const Spring spring{joint.laws[i], joint.preload[i]};
+  Step out{deflection(spring, f), compliance(spring, f, c.least), false};
+  for (const std::size_t number : held[i]) {
+    out.offset += c.steps[number].offset + c.steps[number].compliance * f;
+    out.compliance += c.steps[number].compliance;
+  }
+  return out;
+}
+
+std::size_t hold_laws(VirtualChain& whole) {
+  std::size_t next = 0;
+  for (VirtualStep& step : whole.steps)
+    if (auto* legs = std::get_if<VirtualGroup>(&step))
+      for (VirtualChain& leg : legs->branches) hold_laws_of_leg(leg, next);
+  hold_laws_of_joints(whole, next);
+  return next;
+}
+
+VectorX forces_in_held(const VirtualChain& whole, const ShapeConditions& c) {
+  VectorX forces = VectorX::Zero(std::ssize(c.steps));
+  add_forces(whole, c, forces);
+  return forces;
 }
 
 }  // namespace deflect::analytic

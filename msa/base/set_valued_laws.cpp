@@ -267,6 +267,18 @@ class Laws {
 
 }  // namespace
 
+LinearRelation monotone(LinearRelation r, const VectorX& o) {
+  const VectorX unit = r.c.cwiseSqrt();
+  const MatrixX P = unit.cwiseInverse().asDiagonal() * r.P * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(MatrixX((P + P.transpose()) / 2));
+  const VectorX beyond = eigen.eigenvalues() - eigen.eigenvalues().cwiseMax(0).cwiseMin(1);
+  const MatrixX excess = eigen.eigenvectors() * beyond.asDiagonal() * eigen.eigenvectors().transpose();
+  const MatrixX change = unit.asDiagonal() * excess * unit.cwiseInverse().asDiagonal();
+  r.P -= change;
+  r.d0 += change * o;
+  return r;
+}
+
 SetValuedSolution solve(const LinearRelation& r, const std::vector<ScalarLaw>& laws, const MatrixX& watched) {
   return Laws(r, laws, watched).solve();
 }

@@ -38,6 +38,11 @@ struct LinearRelation {
   VectorX size;  ///< by law: scale of s; below 1e-9 of it slack counts as unloaded
 };
 
+/// The same at o, with the eigenvalues of P brought between 0 and 1: of a relation that is linearised about a deformed
+/// shape, whose geometric stiffness may make d fall where s grows. A search that asks again at each o it finds ends on
+/// the given relation.
+LinearRelation monotone(LinearRelation, const VectorX& o);
+
 struct SetValuedSolution {
   enum class Outcome { solved, no_fit, overcome, undecided };
   /// no_fit: no d of the relation satisfies all bounds; overcome: the laws cannot supply the s that d0 requires.

@@ -122,9 +122,8 @@ void for_each_law(Placed& c, const F& f) {
   of(c.tool);
 }
 
-/// Whether no law's stiffness depends on its force; whether any law jumps; whether any has a history (law.h).
+/// Whether no law's stiffness depends on its force; whether any has a history (law.h).
 bool all_linear(const Configuration&);
-bool any_jumps(const Configuration&);
 bool any_history(const Configuration&);
 
 /// Numbers what laws with a history keep (Conditions::slips) in the order of for_each_law: one number of a friction,

@@ -84,12 +84,6 @@ bool all_linear(const Configuration& c) {
   return all;
 }
 
-bool any_jumps(const Configuration& c) {
-  bool any = false;
-  for_each_law(c, [&](const Law& law) { any = any || jumps(law); });
-  return any;
-}
-
 bool any_history(const Configuration& c) {
   bool any = false;
   for_each_law(c, [&](const Law& law) { any = any || has_history(law); });

@@ -91,6 +91,27 @@ TEST(SetValuedLaws, ASmallForceClosesALargeGap) {
     }
 }
 
+// A structure whose geometric stiffness is −2 N/m pushes with 3 N: a spring of 10 N/m holds it where 10 d = 3 + 2 d.
+TEST(SetValuedLaws, AsksAgainWhereAStructurePushesMoreAsItMoves) {
+  const LinearRelation r = around(MatrixX::Constant(1, 1, -2), VectorX::Constant(1, 3), VectorX::Constant(1, 0.1));
+  const std::vector<ScalarLaw> spring = {
+      {-INFINITY, INFINITY, [](double d) { return 10 * d; }, [](double) { return 10.0; }}};
+  VectorX o = VectorX::Zero(1), d;
+  for (int i = 0; i < 40; ++i) {
+    const SetValuedSolution s = solve(monotone(r, o), spring, MatrixX(0, 1));
+    ASSERT_EQ(s.outcome, SetValuedSolution::Outcome::solved);
+    o = s.o, d = s.d;
+  }
+  EXPECT_NEAR(d(0), 0.375, 1e-14);
+}
+
+TEST(SetValuedLaws, AMonotoneRelationIsLeftAsItIs) {
+  const LinearRelation r = around(MatrixX::Constant(1, 1, 2), VectorX::Constant(1, 3), VectorX::Constant(1, 0.1));
+  const LinearRelation same = monotone(r, VectorX::Constant(1, 0.7));
+  EXPECT_EQ(same.P, r.P);
+  EXPECT_EQ(same.d0, r.d0);
+}
+
 // Two slots hold a bar: one of ±1 and one of ±3, three apart in position, so that d_1 = d_2 + 3 wherever the bar is.
 // It floats where d_1 is within ±1 and d_2 within ±3, d_1 from 0 to 1. The middle has least d_1² + (d_2/3)²,
 // 10 d_1 = 3: d_1 = 0.3, d_2 = −2.7.

@@ -70,7 +70,10 @@ VectorX coordinates_of(const Hypothesis& h, const VectorX& values) { return all_
 VectorX values_at(const Hypothesis& h, const VectorX& x) { return all_values(parameters_of(h), x); }
 
 std::optional<VectorX> FitProblem::residual(const VectorX& x, std::string* why) const {
-  auto predicted = outcome_of([&] { return observations_.whitened_residual(prepared_(values(x))); });
+  auto predicted = outcome_of([&] {
+    const subject::Subject there = prepared_(values(x));
+    return shape_ ? observations_.whitened_residual(there, *shape_) : observations_.whitened_residual(there);
+  });
   if (predicted && predicted->allFinite()) {
     VectorX r = std::move(*predicted);
     Eigen::Index row = r.size();
@@ -82,6 +85,14 @@ std::optional<VectorX> FitProblem::residual(const VectorX& x, std::string* why) 
   }
   if (why) *why = predicted ? "the prediction is no number" : predicted.why;
   return std::nullopt;
+}
+
+double FitProblem::stand_at(const VectorX& x) {
+  auto shape = outcome_of([&] { return observations_.shape_for(prepared_(values(x))); });
+  if (!shape) return 0;
+  const double change = shape_ ? observations_.uncertainty().whitened(*shape - *shape_).norm() : 0;
+  shape_ = std::move(*shape);
+  return change;
 }
 
 bool FitProblem::has_history(const VectorX& x) const { return observations_.has_history(prepared_(values(x))); }

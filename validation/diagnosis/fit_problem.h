@@ -37,6 +37,10 @@ class FitProblem {
   /// Nothing where the subject cannot have these values or cannot be predicted with them; `why` then says it.
   std::optional<VectorX> residual(const VectorX& x, std::string* why = nullptr) const;
 
+  /// From now on the deformed shape contributes what it does there (Observations::shape_for), instead of what it does
+  /// at each x, which takes far longer where play floats. Returns by how much that changes the residual, in norm.
+  double stand_at(const VectorX& x);
+
   bool has_history(const VectorX& x) const;
 
   /// For a search: what cannot be predicted is far worse than anything that can.
@@ -49,6 +53,7 @@ class FitProblem {
   std::vector<const effects::EffectParameter*> parameters_;
   effects::PreparedEffects prepared_;
   VectorX wall_;
+  std::optional<VectorX> shape_;
 };
 
 /// The residual over some of the coordinates, the others held, as MINPACK's port in Eigen wants it.

@@ -166,7 +166,7 @@ void look_elsewhere(std::vector<Start>& begun, const FitProblem& problem, const 
 /// Beside friction, χ² has valleys besides the deepest one: a slip comes before or after a turn of the load.
 bool may_have_valleys(const effects::PlacedEffect& e) { return is_shaped(e) && e.effect->parameters.size() > 1; }
 constexpr std::size_t valleys = 5, followed = 2;
-constexpr int few_steps = 8, all_steps = 40;
+constexpr int few_steps = 8, all_steps = 40, most_shapes = 4;
 
 FreeResidual of_all(const FitProblem& problem, const VectorX& x) {
   std::vector<Eigen::Index> all(as_size(x.size()));
@@ -220,6 +220,16 @@ Fit deepest(const FitProblem& problem, std::vector<Start> begun, int threads) {
   return best;
 }
 
+/// The fit with the deformed shape that belongs to its values.
+Fit in_own_shape(FitProblem& problem, Fit found) {
+  for (int pass = 0; pass < most_shapes; ++pass) {
+    const VectorX x = problem.coordinates(found.values);
+    if (!(problem.stand_at(x) > known_shape)) break;
+    found = search_from(problem, {x, problem.residual_or_wall(x).squaredNorm()});
+  }
+  return found;
+}
+
 }  // namespace
 
 Fit not_found(std::string why) {
@@ -231,7 +241,10 @@ Fit not_found(std::string why) {
 Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const std::optional<VectorX>& guess,
         int threads) {
   const auto fitted = outcome_of([&] {
-    const FitProblem problem(o, h);
+    FitProblem problem(o, h);
+    VectorX first(from.size() + std::ssize(h.back().effect->parameters));
+    first << from, guess ? *guess : effects::start_values(*h.back().effect);
+    problem.stand_at(problem.coordinates(first));
     std::vector<Start> begun;
     std::string why;
     if (guess) begun = best_starts(problem, {*guess}, from, 1, why, 1);
@@ -240,13 +253,14 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
       look_elsewhere(begun, problem, h.back(), from.size(), threads);
       if (begun.size() > 1 && !(may_have_valleys(h.back()) && problem.has_history(begun.front().x))) begun.resize(1);
     }
-    return begun.empty() ? not_found(why) : deepest(problem, std::move(begun), threads);
+    return begun.empty() ? not_found(why) : in_own_shape(problem, deepest(problem, std::move(begun), threads));
   });
   return fitted ? *fitted : not_found(fitted.why);  // the effects may not go together in this subject
 }
 
 Fit searched_again(const Observations& o, const Hypothesis& h, Fit found, int threads) {
-  const FitProblem problem(o, h);
+  FitProblem problem(o, h);
+  problem.stand_at(problem.coordinates(found.values));
   Eigen::Index first = 0;
   for (const effects::PlacedEffect& e : h) {
     const auto own = std::ssize(e.effect->parameters);

@@ -108,7 +108,8 @@ std::vector<char> gone_above(const Hypothesis& h) {
 Fit with_intervals(const Observations& o, const Hypothesis& h, Fit f, int threads) {
   f.limits.clear();
   if (!f.found || h.empty()) return f;
-  const FitProblem problem(o, h);
+  FitProblem problem(o, h);
+  problem.stand_at(problem.coordinates(f.values));
   std::vector<double> ends(2 * as_size(f.values.size()));
   parallel::for_each_case(ends.size(), 1, threads, [&](std::size_t k) {
     const auto i = as_index(k / 2);

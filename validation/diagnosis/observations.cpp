@@ -69,6 +69,7 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
     in_linear_ = statistics::rows_of(s.values, in_linear_geometry(s, *s.standing));
     shape_ -= in_linear_;
   }
+  if (subject.true_geometry() != Geometry::linear) floating_ = s.standing->floating(*s.data);
   tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
@@ -120,27 +121,38 @@ std::shared_ptr<const WhitenedFamilies> Observations::whitened_patterns() const 
 
 std::size_t Observations::set_aside() const { return as_size(std::count(aside_.begin(), aside_.end(), true)); }
 
+std::shared_ptr<const subject::Standing> Observations::stand(const subject::Subject& subject) const {
+  return subject.stand(*comparison_->study.data, comparison_->study.standing.get());
+}
+
 VectorX Observations::linear(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
-  return statistics::rows_of(s.values,
-                             in_linear_geometry(s, *subject.stand(*s.data, s.standing.get()), parallel::alone));
+  return statistics::rows_of(s.values, in_linear_geometry(s, *stand(subject), parallel::alone));
 }
 
 VectorX Observations::residual(const subject::Subject& subject) const {
-  if (!true_geometry_) return measured_ - shape_ - linear(subject);
+  if (!true_geometry_) return measured_ - shape_for(subject) - linear(subject);
   const compare::ResidualStudy& s = comparison_->study;
   prediction::PredictionOptions finite;
   finite.geometry = subject.true_geometry();
-  return measured_ - statistics::rows_of(
-                         s.values, subject.stand(*s.data, s.standing.get())->predict(*s.data, finite, parallel::alone));
+  return measured_ - statistics::rows_of(s.values, stand(subject)->predict(*s.data, finite, parallel::alone));
 }
 
-bool Observations::has_history(const subject::Subject& subject) const {
-  return subject.stand(*comparison_->study.data, comparison_->study.standing.get())->has_history();
+VectorX Observations::shape_for(const subject::Subject& subject) const {
+  if (subject.true_geometry() == Geometry::linear || stand(subject)->floating(*comparison_->study.data) == floating_)
+    return shape_;
+  return deformed_shape_of(comparison_->study, subject).value_or(shape_);
 }
+
+bool Observations::has_history(const subject::Subject& subject) const { return stand(subject)->has_history(); }
 
 VectorX Observations::whitened_residual(const subject::Subject& subject) const {
   return uncertainty_->whitened(residual(subject));
+}
+
+VectorX Observations::whitened_residual(const subject::Subject& subject, const VectorX& shape) const {
+  if (true_geometry_) return whitened_residual(subject);
+  return uncertainty_->whitened(measured_ - shape - linear(subject));
 }
 
 double Observations::rmse(const subject::Subject& subject) const {
@@ -182,6 +194,7 @@ Observations Observations::granted(const subject::Subject& subject) const {
   if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) {
     out.shape_ = *shape;
     out.in_linear_ = linear(subject);
+    out.floating_ = stand(subject)->floating(*s.data);
   }
   out.count_shape();
   out.move_tolerances(subject);
@@ -213,6 +226,18 @@ Observations Observations::in_true_geometry() const {
   Observations out = *this;
   out.true_geometry_ = true;
   if (auto null = outcome_of([&] { return out.whitened_residual(subject_); })) out.null_ = std::move(*null);
+  return out;
+}
+
+Observations Observations::in_shape_of(const subject::Subject& subject) const {
+  Observations out = *this;
+  if (true_geometry_ || subject.true_geometry() == Geometry::linear) return out;
+  std::set<std::string> floating = stand(subject)->floating(*comparison_->study.data);
+  if (floating == floating_) return out;
+  out.shape_ = shape_for(subject);
+  out.floating_ = std::move(floating);
+  out.in_linear_ = linear(subject);
+  out.null_ = out.whitened_residual(subject_);
   return out;
 }
 

@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "validation/compare/comparison.h"
 #include "validation/compare/held_out.h"
@@ -33,11 +35,17 @@ class Observations {
   std::size_t set_aside() const;                             ///< readings
   const std::vector<bool>& aside() const { return aside_; }  ///< by reading
 
-  /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus the fixed
-  /// contribution of the deformed shape (see granted()), or that of in_true_geometry().
+  /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus shape_for() the
+  /// subject, or that of in_true_geometry().
   VectorX residual(const subject::Subject&) const;
   /// W times it, with WᵀW = Σ⁻¹ (whitening.h).
   VectorX whitened_residual(const subject::Subject&) const;
+  /// The same with a contribution of the deformed shape that shape_for() told of a subject like it.
+  VectorX whitened_residual(const subject::Subject&, const VectorX& shape) const;
+  /// The contribution of the deformed shape to a subject's readings, m and rad: the one that is granted (see
+  /// granted()), or, where other play floats than in the granted subject (Standing::floating), the subject's own, which
+  /// says where in the play it stands.
+  VectorX shape_for(const subject::Subject&) const;
   /// The same for the subject as given, in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
   /// All patterns that a residual can have (discrepancy.h), whitened by the uncertainty. Computed anew at every call.
@@ -71,6 +79,8 @@ class Observations {
   /// A copy in which every subject is predicted in its true geometry, which takes far longer. Residuals of a subject
   /// that does not stand in it throw (RangeError); null_residual() is then the one of this.
   Observations in_true_geometry() const;
+  /// A copy in which the contribution of the deformed shape is shape_for() this subject.
+  Observations in_shape_of(const subject::Subject&) const;
   /// A copy whose hypotheses are about this subject: effects are added to it, it is subject() and null_residual() is
   /// its. Weights, tolerances and what is granted stay those of the subject of this one.
   Observations about(const subject::Subject&) const;
@@ -85,6 +95,7 @@ class Observations {
   Observations weighed_for(const subject::Subject&) const;
 
  private:
+  std::shared_ptr<const subject::Standing> stand(const subject::Subject&) const;
   VectorX linear(const subject::Subject&) const;  // in linear geometry
   double in_noise(const VectorX& values) const;   // their norm in σ of noise
   /// Subtracts the estimated zero of the readings where it is unknown.
@@ -105,7 +116,8 @@ class Observations {
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;
   VectorX measured_, shape_, null_;
-  VectorX in_linear_;  // prediction in linear geometry of the subject whose deformed shape is granted
+  VectorX in_linear_;               // prediction in linear geometry of the subject whose deformed shape is granted
+  std::set<std::string> floating_;  // play in that subject
   bool true_geometry_ = false;
 };
 

@@ -34,7 +34,7 @@ class Search {
     return true;
   }
 
-  std::vector<Candidate> further() { return beside(s_.effects, s_.fit, called_for); }
+  std::vector<Candidate> further() { return beside(seen(), s_.effects, s_.fit, called_for); }
 
   /// Each effect asked again beside the others; true when one was dropped or exchanged.
   bool reconsider() {
@@ -93,9 +93,9 @@ class Search {
   std::size_t size() const { return s_.effects.size(); }
 
  private:
-  std::vector<Candidate> beside(const Hypothesis& others, const Fit& so_far, double least,
+  std::vector<Candidate> beside(const Observations& o, const Hypothesis& others, const Fit& so_far, double least,
                                 const std::optional<effects::EffectInstance>& known = {}) {
-    std::vector<Candidate> all = candidates_.beside(seen(), others, so_far, least, known);
+    std::vector<Candidate> all = candidates_.beside(o, others, so_far, least, known);
     add_left_out(s_.left_out, all);
     return all;
   }
@@ -112,7 +112,7 @@ class Search {
     auto [others, values] = without(s_.effects, s_.fit.values, i);
     Fit rest = fit_of_all(seen(), others, values);
     if (!rest.found) return std::nullopt;
-    std::vector<Candidate> all = beside(others, rest, never, present(i));
+    std::vector<Candidate> all = beside(in_shape_of(others, rest), others, rest, never, present(i));
     Candidate own = *std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
       return c.added().effect == s_.effects[i].effect && c.added().leg == s_.effects[i].leg;
     });
@@ -131,6 +131,10 @@ class Search {
   }
 
   const Observations& seen() const { return s_.observations; }
+  /// As seen where these effects alone are right: without the play that has gone with another.
+  Observations in_shape_of(const Hypothesis& h, const Fit& f) const {
+    return seen().in_shape_of(subject_with(seen(), h, f.values));
+  }
 
   /// Those effects, given in order, exchanged for two others whose odds are better by `more`.
   bool exchange(const std::vector<std::size_t>& given, double more) {
@@ -142,7 +146,8 @@ class Search {
     const double now = given.size() == 1
                            ? candidates_.class_log_odds_of(s_.effects[given[0]], gain(rest, s_.fit))
                            : std::max(odds_of_two(rest, given[0], given[1]), odds_of_two(rest, given[1], given[0]));
-    const std::optional<TwoCandidates> two = candidates_.two_beside(seen(), others, rest, now + more, called_for);
+    const std::optional<TwoCandidates> two =
+        candidates_.two_beside(in_shape_of(others, rest), others, rest, now + more, called_for);
     if (!two || !falls(two->hypothesis, two->fit.values)) return false;
     grant(two->hypothesis, two->fit.values);
     return true;

@@ -255,4 +255,26 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
   return out;
 }
 
+std::set<std::string> floating(const Mechanism& m, const std::vector<Configuration>& machines,
+                               const measurement::Measurements& data) {
+  std::set<std::string> out;
+  const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation));
+  const theories::Theory& theory = *PredictionOptions().theory;
+  for (std::size_t p = 0; p < machines.size(); ++p) {
+    bool play = false;
+    for_each_law(machines[p], [&](const Law& law) { play = play || std::holds_alternative<ClearanceLaw>(law); });
+    if (!play) continue;
+    const std::unique_ptr<theories::TheoryAt> machine = theory.at(machines[p], {m.name});
+    std::set<std::array<double, 6>> asked;
+    for (const std::size_t i : data.poses[p].readings) {
+      std::array<double, 6> load;
+      std::copy(data.readings[i].load.begin(), data.readings[i].load.end(), load.begin());
+      if (!asked.insert(load).second) continue;
+      for (std::string& law : machine->predict(cell * data.readings[i].load, Geometry::linear).floating)
+        out.insert(std::move(law));
+    }
+  }
+  return out;
+}
+
 }  // namespace deflect::prediction

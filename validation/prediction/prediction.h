@@ -9,6 +9,8 @@
 #pragma once
 
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "msa/base/geometry.h"
@@ -33,6 +35,10 @@ struct PredictionOptions {
 std::vector<VectorX> predict(const Mechanism&, const std::vector<Configuration>& machines,
                              const measurement::Measurements&, const PredictionOptions& = {},
                              const parallel::Work& = {});
+
+/// The play that some of these loads leave open in linear geometry (theories::Prediction::floating).
+std::set<std::string> floating(const Mechanism&, const std::vector<Configuration>& machines,
+                               const measurement::Measurements&);
 
 /// The true load from the recorded one; the recorded displacement, without drift, from the true one.
 Vector6 true_load(const LoadCell&, const Vector6& recorded);

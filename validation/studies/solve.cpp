@@ -106,11 +106,16 @@ SolveResult solve(const Mechanism& m, const Stand& stand, const Vector6& load, c
   for (const theories::Theory* theory : theories)
     at.push_back(theory->at(c, {m.name, linear ? division : refined(c, division)}));
   for (const auto& theory : at) {
-    std::optional<Vector6> undeformed;
-    if (!linear) undeformed = twist_in_mm(theory->answer(F).displacement);
+    std::optional<theories::Answer> undeformed;
+    if (!linear) undeformed = theory->answer(F);
     const theories::Answer& a = answers.emplace_back(theory->answer(F, geometry));
-    if (!linear)
-      deformed.from_linear.push_back(theories::relative_difference(twist_in_mm(a.displacement), *undeformed));
+    if (undeformed) {
+      deformed.from_linear.push_back(
+          theories::relative_difference(twist_in_mm(a.displacement), twist_in_mm(undeformed->displacement)));
+      const Vector6 room = undeformed->floating.most - undeformed->floating.least;
+      deformed.play = std::max(deformed.play, theories::relative_difference(twist_in_mm(a.displacement + room),
+                                                                            twist_in_mm(a.displacement)));
+    }
     // Of a device that is held rigidly but for some motions, displacements may be the rounding of coordinates.
     displacements.push_back(twist_in_mm(a.rigid > 0 ? above_rounding(a.displacement, c.size) : a.displacement));
     r.solutions.push_back(
@@ -122,7 +127,10 @@ SolveResult solve(const Mechanism& m, const Stand& stand, const Vector6& load, c
   } else {
     r.discretisation = deformed.discretisation =
         left_by_division(answers, twist_in_mm(answers[theories::reference_of(theories)].displacement));
-    theories::require_agreement_deformed(theories, deformed, c, m.name);
+    if (theories::require_agreement_deformed(theories, deformed, c, m.name))
+      r.notes.push_back(
+          "the load leaves play open that the deformed shape holds at either end: the theories stand at different "
+          "ends");
   }
   r.relative_difference = theories::largest_difference(displacements);
   tell(r, answers, at, c.size, turned);

@@ -179,6 +179,10 @@ class MachineStanding final : public Standing {
 
   bool has_history() const override { return any_history(machines_.front()); }
 
+  std::set<std::string> floating(const measurement::Measurements& data) const override {
+    return prediction::floating(*mechanism_, machines_, data);
+  }
+
   std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
                                const parallel::Work& work) const override {
     return prediction::predict(*mechanism_, machines_, data, o, work);

@@ -102,7 +102,9 @@ Answer AnalyticAt::linear_answer(const analytic::AnalyticSolution& s, const Vect
   if (r.rigid.cols() == 6) (void)m.stiffness(s);  // throws: nothing yields at all
   Answer answer{s.displacement, r.K, m.energies(s), check_stiffness(r.K, legs), s.slips};
   answer.discretisation = s.discretisation;
-  answer.floating = {s.loose, s.least, s.most};
+  for (const std::size_t law : s.loose) answer.floating.loose.push_back(m.in_steps()[law].part);
+  answer.floating.least = s.least, answer.floating.most = s.most;
+  answer.apart = s.apart;
   answer.rigid = static_cast<int>(r.rigid.cols());
   if (answer.rigid > 0) answer.rigid_motions = analytic::motions_resisted_by(r.rigid, configuration_->size);
   enforce_stiffness(answer.checks, asked());
@@ -181,6 +183,16 @@ std::vector<Vector6> AnalyticAt::inside_affine(const Vector6& F, double warmer) 
   return out;
 }
 
+/// By leg, part and freedom.
+std::vector<std::string> AnalyticAt::floating(const analytic::AnalyticSolution& s) {
+  std::vector<std::string> out;
+  for (const std::size_t law : s.loose) {
+    const analytic::SteppedLaw& l = model().in_steps()[law];
+    out.push_back(fmt::format("{} {} {}", l.leg, l.part, l.freedom));
+  }
+  return out;
+}
+
 Prediction AnalyticAt::predict(const Vector6& F, const Conditions& conditions) {
   if (conditions.geometry == Geometry::linear) {
     if (affine_)
@@ -194,12 +206,12 @@ Prediction AnalyticAt::predict(const Vector6& F, const Conditions& conditions) {
   }
   if (!options_.inside.empty()) {
     const analytic::AnalyticSolution s = model().solve(F, conditions);
-    Prediction out{s.displacement, s.converged, s.slips, s.message};
+    Prediction out{s.displacement, s.converged, s.slips, s.message, {}, floating(s)};
     if (s.converged) out.inside = model().inside(options_.inside, s);
     return out;
   }
   const analytic::AnalyticSolution s = model().displaced(F, conditions);
-  return {s.displacement, s.converged, s.slips, s.message};
+  return {s.displacement, s.converged, s.slips, s.message, {}, floating(s)};
 }
 
 Assembled AnalyticAt::assembled() {

@@ -39,6 +39,7 @@ class AnalyticAt final : public TheoryAt {
   double energy_at_rest();
   double energy_by_turning(const Vector6& F_T_W, double energy, const Conditions&) const;
   Asked asked() const;
+  std::vector<std::string> floating(const analytic::AnalyticSolution&);
   Answer linear_answer(const analytic::AnalyticSolution&, const Vector6& load, const Conditions&);
 
   const Configuration* configuration_;

@@ -34,6 +34,7 @@ struct Answer {
   int rigid = 0;
   std::vector<std::string> rigid_motions = {};  ///< in words, where the theory knows them
   double rounding = 0;                          ///< estimated relative rounding error, where the theory knows it
+  bool apart = false;  ///< in the deformed shape: laws that jump are taken as in linear geometry
 };
 
 /// Only a displacement, not checked: for fits, which need many thousands of them and compare them with readings.
@@ -44,6 +45,9 @@ struct Prediction {
   std::string reason = {};  ///< why it did not converge, where known
   /// By TheoryOptions::inside: [δ; θ] of a body, or in its first component the force of a drive (inside.h).
   std::vector<Vector6> inside = {};
+  /// Play that the load leaves open, in whose middle the displacement is: a name for each law, the same for the same
+  /// law under other loads. Where the theory knows it.
+  std::vector<std::string> floating = {};
 };
 
 /// Relative bound of an answer's checks, unless rounding makes a wider one necessary.

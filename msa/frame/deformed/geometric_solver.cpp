@@ -48,7 +48,13 @@ void GeometricSolver::take_jumps(Work& work) const {
     if (!jumps(law)) continue;
     work.jumping.springs.push_back(i);
     work.jumping.laws.push_back(scalar_law(law));
-    k.push_back(contact * (law.rotation ? work.length * work.length : 1));
+    // Where the law itself yields, so much: what is stiffer turns the rounding of elongations into forces.
+    double least = contact * (law.rotation ? work.length * work.length : 1);
+    for (const double force : {1.0, -1.0}) {
+      const double own = std::visit([force](const auto& l) { return l.at_force(force); }, model_.springs[i].law);
+      if (own > 0) least = std::min(least, own);
+    }
+    k.push_back(least);
   }
   const auto n = std::ssize(k);
   work.jumping.k = Eigen::Map<const VectorX>(k.data(), n);

@@ -82,7 +82,7 @@ void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const Vecto
     relation.size(i) = driving * (model_.springs[spring].law.rotation ? work.length : 1);
   }
   relation.d0 -= relation.P * j.o;
-  const SetValuedSolution found = deflect::solve(relation, j.laws, MatrixX(0, n));
+  const SetValuedSolution found = deflect::solve(monotone(std::move(relation), j.o), j.laws, MatrixX(0, n));
   if (found.outcome != SetValuedSolution::Outcome::solved) {
     step.u.resize(0);
     return;

@@ -1,0 +1,135 @@
+// Laws that jump, in the deformed shape. A load may leave play open in linear geometry, which then says nothing about
+// where in it the machine stands; the forces of second order do.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic/model.h"
+#include "msa/frame/mechanism/msa.h"
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+#include "tests/support/mechanisms.h"
+#include "validation/studies/solve.h"
+#include "validation/studies/workspace.h"
+
+namespace deflect {
+namespace {
+
+using namespace studies;
+
+constexpr double L = 0.3;
+
+Vector6 by_closed_form(const Configuration& c, const Vector6& F) {
+  const analytic::AnalyticSolution s = analytic::AnalyticModel(c).solve(F, Geometry::finite);
+  EXPECT_TRUE(s.converged) << s.message;
+  EXPECT_FALSE(s.apart);
+  EXPECT_TRUE(s.loose.empty());
+  EXPECT_EQ(analytic::AnalyticModel(c).displaced(F, Geometry::finite).displacement, s.displacement);
+  return s.displacement;
+}
+
+Vector6 by_msa(const Configuration& c, const Vector6& F) {
+  frame::MsaModel model(c);
+  const frame::MsaSolution s = model.solve(F, Geometry::finite);
+  EXPECT_TRUE(s.state.converged) << s.state.message;
+  return s.displacement;
+}
+
+// A hinge that yields about y carries a slide with play ±g along its arm, loaded across the arm. In linear geometry no
+// force acts along it. The hinge turns by θ, the load F then pulls along the arm by F sin θ > 0 whichever sign it has,
+// and the play stands at its outer end: k θ = F (L + g) cos θ.
+TEST(JumpsInShape, ALoadAcrossAnArmPullsItsPlayOutwards) {
+  constexpr double k = 100, g = 1e-3;
+  const PlacedJoint hinge = test::spring("hinge", Vector3::Zero(), {{4, k}});
+  PlacedJoint slide = test::joint("slide", {L, 0, 0}, "rrrrrr");
+  slide.laws[0] = {ClearanceLaw{g}};
+  const Configuration c = test::configuration({L, 0, 0}, {{"arm", {hinge, slide}}}, L);
+  for (const double F : {20.0, -20.0, 3.0}) {
+    double theta = 0;  // about −y
+    for (int i = 0; i < 100; ++i) theta = F * (L + g) * std::cos(theta) / k;
+    const Vector3 by_hand = {(L + g) * std::cos(theta) - L, 0, (L + g) * std::sin(theta)};
+    for (const Vector6& found : {by_closed_form(c, F * Vector6::Unit(2)), by_msa(c, F * Vector6::Unit(2))}) {
+      EXPECT_LE((found.head<3>() - by_hand).norm(), 1e-9 * by_hand.norm()) << F;
+      EXPECT_NEAR(found(4), -theta, 1e-9) << F;
+    }
+  }
+}
+
+// A pendulum whose hinge has play ±γ hangs along its load, which is within the play: it stands at neither end. Linear
+// geometry puts it to the end towards which the load has a moment.
+TEST(JumpsInShape, APendulumStandsWithinItsPlay) {
+  constexpr double gamma = 0.02;
+  PlacedJoint hinge = test::joint("hinge", Vector3::Zero(), "rrrrrr");
+  hinge.laws[4] = {ClearanceLaw{gamma}};
+  const PlacedJoint spring = test::spring("spring", {0, 0, -L}, {{3, 50}});
+  const Configuration c = test::configuration({0, 0, -L}, {{"arm", {hinge, spring}}}, L);
+  for (const double aside : {0.5, -0.2, 2.0}) {
+    const Vector6 F = aside * Vector6::Unit(0) - 50 * Vector6::Unit(2);
+    const double turn = -std::clamp(std::atan2(aside, 50), -gamma, gamma);
+    for (const Vector6& found : {by_closed_form(c, F), by_msa(c, F)}) {
+      EXPECT_NEAR(found(4), turn, 1e-8) << aside;
+      EXPECT_NEAR(found(0), -L * std::sin(turn), 1e-8 * L) << aside;
+    }
+  }
+}
+
+// A law that yields alike to both sides, and a friction that sticks, are springs under another name. The closed form
+// divides members until it estimates that 1e-6 is left.
+TEST(JumpsInShape, ALawThatDoesNotJumpIsASpring) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const auto hinged = [&](const char* law) {
+    return configure(test::with(m, "leg.actuator.ry", law),
+                     stand(m, workspace_points(m)[3].pose_mm_deg).configuration.pose);
+  };
+  const Configuration spring = hinged("{law: linear, stiffness: 1e5 Nmm/rad}");
+  const Configuration others[] = {hinged("{law: one_sided, pull: 0.01 rad/Nm, push: 0.01 rad/Nm}"),
+                                  hinged("{law: friction, moment: 1e6 Nmm, stiffness: 1e5 Nmm/rad}")};
+  Vector6 F;
+  F << 30, -20, 35, 0.4, 0.3, -0.5;
+  for (const double share : {1.0, 0.01})
+    for (const Geometry geometry : {Geometry::second_order, Geometry::finite})
+      for (const theories::Theory* theory : theories::all_theories()) {
+        const auto displaced = [&](const Configuration& c) {
+          return theory->at(c, {m.name, frame::equal_division(c, 4)})->predict(share * F, geometry).displacement;
+        };
+        const Vector6 by_spring = displaced(spring);
+        for (const Configuration& c : others)
+          EXPECT_LE((displaced(c) - by_spring).norm(), (theory->divides ? 1e-9 : 1e-6) * by_spring.norm())
+              << theory->name;
+      }
+}
+
+class PlayInDrives : public ::testing::TestWithParam<std::string> {};
+
+// Up to what dividing members leaves: 1e-6, as estimated by each.
+TEST_P(PlayInDrives, StandsWhereBothTheoriesSay) {
+  const effects::Effect& play = test::effect("actuator_backlash");
+  const Mechanism m = effects::with_effect(test::device(GetParam()), play, VectorX::Constant(1, 0.02));
+  for (const ValidationPoint& point : workspace_points(m)) {
+    const auto there = stand(m, point.pose_mm_deg);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      EXPECT_FALSE(analytic::AnalyticModel(there.configuration).solve(50 * Vector6::Unit(i), Geometry::finite).apart);
+      const SolveResult found = solve(m, there, 50 * Vector6::Unit(i), {}, Geometry::finite);
+      EXPECT_LE(found.relative_difference, 1e-6 + 10 * found.discretisation) << point.label << " along " << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, PlayInDrives,
+                         ::testing::Values("tripteron", "haptic-6psu", "stewart-6ups", "scara", "gantry", "3-upu"));
+
+// Loaded along y, a slide of the hybrid's head is pushed outwards from the middle of its play, to whichever end: by
+// symmetry both are equilibria.
+TEST(JumpsInShape, PlayThatStandsAtEitherEndIsNoDisagreement) {
+  const Mechanism m =
+      effects::with_effect(test::device("hybrid"), test::effect("actuator_backlash"), VectorX::Constant(1, 0.02));
+  const auto home = stand(m, workspace_points(m).front().pose_mm_deg);
+  const SolveResult found = solve(m, home, 50 * Vector6::Unit(1), {}, Geometry::finite);
+  const Vector6 &a = found.solutions[0].displacement_mm_rad, &b = found.solutions[1].displacement_mm_rad;
+  EXPECT_NEAR(std::abs(a(0)), std::abs(b(0)), 1e-6);
+  EXPECT_NEAR(std::abs(a(4)), std::abs(b(4)), 1e-8);
+  EXPECT_GT(std::abs(a(0)), 0.02);
+}
+
+}  // namespace
+}  // namespace deflect
