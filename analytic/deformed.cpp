@@ -302,7 +302,12 @@ Deformed at_rest(const Configuration& c, Geometry geometry, bool linear) {
 Deformed at_rest_in(const std::vector<Step>& steps, const Configuration& c, Geometry geometry) {
   ShapeConditions under{geometry};
   under.steps = steps;
-  return unloaded(c, under, whole_members(c));
+  Deformed d = unloaded(c, under, whole_members(c));
+  if (all_fit(c.legs) && std::all_of(steps.begin(), steps.end(), [](const Step& s) { return s.offset == 0; })) {
+    auto& legs = std::get<VirtualGroup>(d.whole.steps[legs_step(d.whole)]);
+    legs.known = legs.restrain(d.conditions);
+  }
+  return d;
 }
 
 Deformed in_other_steps(const Deformed& from, const std::vector<Step>& steps, const Configuration& c) {

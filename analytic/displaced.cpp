@@ -10,15 +10,19 @@ namespace {
 /// Of the largest force. Forces of second order are about a strain times that, 1e-6 or more of it.
 constexpr double idle_force = 1e-7;
 
+bool same_steps(const std::vector<Step>& all, const std::vector<Step>& others) {
+  const auto same = [](const Step& a, const Step& b) { return a.offset == b.offset && a.compliance == b.compliance; };
+  return std::equal(all.begin(), all.end(), others.begin(), others.end(), same);
+}
+
 /// The deformed shape under one load, asked again and again with its laws in other steps.
 class ShapeInSteps {
  public:
-  ShapeInSteps(const Configuration& c, const Vector6& F, Geometry geometry, std::vector<Step> steps)
-      : configuration_(c), state_(deform(at_rest_in(steps, c, geometry), c, F)), steps_(std::move(steps)) {}
+  ShapeInSteps(const Configuration& c, const Vector6& F, const Deformed& rest)
+      : configuration_(c), state_(deform(rest, c, F)), steps_(rest.conditions.steps) {}
 
   const Deformed& in(const std::vector<Step>& steps) {
-    const auto same = [](const Step& a, const Step& b) { return a.offset == b.offset && a.compliance == b.compliance; };
-    if (std::equal(steps.begin(), steps.end(), steps_.begin(), steps_.end(), same)) return state_;
+    if (same_steps(steps, steps_)) return state_;
     state_ = in_other_steps(state_, steps, configuration_);
     steps_ = steps;
     return state_;
@@ -168,23 +172,22 @@ std::optional<AnalyticModel::Quick> AnalyticModel::quick(const Vector6& F, const
 AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
   const bool in_part = conditions.geometry != Geometry::linear;
   if (in_part && stepped_.empty()) return solve(F, conditions);
-  AnalyticSolution s;
-  if (const auto in_shape = in_part ? jumps_in_shape(F + weight_, conditions) : std::nullopt) {
-    s.converged = true;
-    s.slips = in_shape->laws.slips;
-    s.load = F;
-    s.displacement = in_shape->displacement;
-    return s;
-  }
   const std::optional<Quick> found = quick(F + weight_, conditions);
   if (!found) return solve(F, conditions);
+  AnalyticSolution s;
   s.converged = found->laws.converged;
   s.message = found->laws.reason;
   s.slips = found->laws.slips;
-  s.loose = found->laws.loose;
+  if (found->laws.moves) s.loose = found->laws.loose;
   s.load = F;
   s.displacement = found->displacement;
   if (!in_part || !s.converged) return s;
+  if (const auto in_shape = found->laws.moves ? jumps_in_shape(F + weight_, conditions, false) : std::nullopt) {
+    s.loose.clear();
+    s.slips = in_shape->laws.slips;
+    s.displacement = in_shape->displacement;
+    return s;
+  }
   ChainConditions under;
   under.warmer = conditions.warmer;
   under.steps = held_at(found->laws.offsets);
@@ -193,8 +196,8 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
 }
 
 /// Nothing in the cases that solve() names, and where the laws are not found in balance.
-std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector6& F,
-                                                                    const Conditions& conditions) const {
+std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector6& F, const Conditions& conditions,
+                                                                    bool divided_anew) const {
   const bool heated = conditions.warmer != 0 && heat_force_ > 0;
   // A law of this model's own, which tells a friction the load beside it, is none of the configuration.
   const bool watched =
@@ -204,15 +207,19 @@ std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector
   Imposed imposed = imposed_->S.size() > 0 ? *imposed_ : offsets_unloaded();
   const VectorX c = imposed.c;
   const std::vector<Step> without_offsets = steps_at(VectorX::Zero(c.size()), c);
-  ShapeInSteps shape(configuration_, F, conditions.geometry, without_offsets);
+  if (!rest_in_steps_ || rest_in_steps_->conditions.geometry != conditions.geometry ||
+      !same_steps(rest_in_steps_->conditions.steps, without_offsets))
+    rest_in_steps_ = std::make_shared<const Deformed>(at_rest_in(without_offsets, configuration_, conditions.geometry));
+  ShapeInSteps shape(configuration_, F, *rest_in_steps_);
   if (!shape.in(without_offsets).converged) return std::nullopt;
   BalancedSteps laws = balance(
       stepped_, conditions.slips, [&](const std::vector<Step>& steps) { return shape.answer(steps, legs_.length); },
       imposed, false);
   if (!laws.converged) return std::nullopt;
+  const std::vector<Step> balanced = steps_at(laws.offsets, c);
   // Members bend otherwise there than without offsets, for which they were divided.
-  const Deformed d =
-      deform(at_rest_in(steps_at(laws.offsets, c), configuration_, conditions.geometry), configuration_, F);
+  const Deformed d = divided_anew ? deform(at_rest_in(balanced, configuration_, conditions.geometry), configuration_, F)
+                                  : shape.in(balanced);
   if (!d.converged) return std::nullopt;
   InShape out{std::move(laws), Vector6::Zero(), d.discretisation};
   out.displacement << d.translation, d.rotation_vector;

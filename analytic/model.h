@@ -75,9 +75,10 @@ class AnalyticModel {
   /// beside the legs jump.
   AnalyticSolution solve(const Vector6& F_T_W, const Conditions& = {}) const;
 
-  /// Only displacement, slips, unloaded play's laws, convergence and message of solve(): for fits, which need many
-  /// loads. Where laws jump, the linear rest of the mechanism is solved once for six loads and a temperature, so that
-  /// each further load solves only the laws.
+  /// Only displacement, slips, convergence and message of solve(), and the laws of unloaded play that T moves in: for
+  /// fits, which need many loads. Where laws jump, the linear rest of the mechanism is solved once for six loads and a
+  /// temperature, so that each further load solves only the laws. In the deformed shape these are balanced there
+  /// where they leave play open in linear geometry; elsewhere the displacement is that of the three cases above.
   AnalyticSolution displaced(const Vector6& F_T_W, const Conditions& = {}) const;
 
   /// The assembled state: displacement of T from the drawing, and the legs' wrenches by misfits.
@@ -122,7 +123,7 @@ class AnalyticModel {
     Eigen::Vector2d discretisation;
   };
   Imposed offsets_unloaded() const;  ///< what offsets of the laws do in linear geometry
-  std::optional<InShape> jumps_in_shape(const Vector6& F, const Conditions&) const;
+  std::optional<InShape> jumps_in_shape(const Vector6& F, const Conditions&, bool divided_anew) const;
   void put_play(const InShape&, const Vector6& F, AnalyticSolution&) const;
   AnalyticSolution with_shape(AnalyticSolution, Geometry) const;
   Flexibility flexibility(const AnalyticSolution&) const;
@@ -167,7 +168,7 @@ class AnalyticModel {
   // Made on first use: a model may be used by one thread at a time.
   mutable std::shared_ptr<Between> between_;
   mutable std::shared_ptr<Imposed> imposed_;
-  mutable std::shared_ptr<const Deformed> rest_;
+  mutable std::shared_ptr<const Deformed> rest_, rest_in_steps_;
 };
 
 }  // namespace deflect::analytic

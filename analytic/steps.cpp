@@ -136,7 +136,8 @@ class Balance {
         const double off = largest(at.forces - s);
         lacking = size > 0 ? off / size : 0;
         const double rounding = 1e-15 * largest(VectorX(o.cwiseQuotient(imposed_.c)));  // of s = (d − o)/c
-        if (lacking <= 1e-11 || off <= rounding || (lacking <= 1e-8 && lacking > 0.5 * before)) return result(found);
+        if (lacking <= (at.idle > 0 ? 1e-9 : 1e-11) || off <= rounding || (lacking <= 1e-8 && lacking > 0.5 * before))
+          return result(found);
         if ((at.converged && lacking < (1 - 1e-4 * part) * before) || part < 1e-4 || p.size() == 0) break;
         for (Eigen::Index i = 0; i < n_; ++i) {
           const double c = imposed_.c(i), here = p(i) + part / 2 * (target(i) - p(i));
@@ -146,8 +147,9 @@ class Balance {
         }
       }
       p = o + 2 * imposed_.c.cwiseProduct(s);
-      // Where all other laws are linear, S is right but for rounding, of which small offsets would give it far more.
-      const bool told_by_S = lacking < 1e-3 * std::min(before, 1.0);
+      // Where all other laws are linear, S is right but for rounding, of which small offsets would give it far more. In
+      // the deformed shape it is right but for what the shape changes, and every answer is dear.
+      const bool told_by_S = lacking < (at.idle > 0 ? 0.2 : 1e-3) * std::min(before, 1.0);
       before = lacking;
       if (lacking < 0.9 * least) least = lacking, nearest = round;
       if (told_by_S) continue;
@@ -272,6 +274,8 @@ class Balance {
     out.offsets = found.o;
     for (Eigen::Index i = 0; i < n_ && found.loose.cols() > 0; ++i)
       if (found.loose.row(i).cwiseAbs().maxCoeff() > 0) out.loose.push_back(as_size(i));
+    out.moves = found.loose.cols() > 0 &&
+                (imposed_.T * found.loose).cwiseAbs().maxCoeff() > 1e-6 * found.loose.cwiseAbs().maxCoeff();
     if (extent_) {
       out.twists = imposed_.T * found.loose;
       out.least = found.least, out.most = found.most;

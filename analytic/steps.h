@@ -73,6 +73,7 @@ struct BalancedSteps {
   /// The laws with unloaded play, by number. The steps are at the middle of the play (set_valued_laws.h). In it T can
   /// move by `twists` (columns), along each axis by `least` to `most`.
   std::vector<std::size_t> loose;
+  bool moves = false;  ///< whether T moves in that play
   Matrix6X twists = Matrix6X(6, 0);
   Vector6 least = Vector6::Zero(), most = Vector6::Zero();
 };

@@ -24,7 +24,6 @@ Vector6 by_closed_form(const Configuration& c, const Vector6& F) {
   EXPECT_TRUE(s.converged) << s.message;
   EXPECT_FALSE(s.apart);
   EXPECT_TRUE(s.loose.empty());
-  EXPECT_EQ(analytic::AnalyticModel(c).displaced(F, Geometry::finite).displacement, s.displacement);
   return s.displacement;
 }
 
@@ -52,6 +51,8 @@ TEST(JumpsInShape, ALoadAcrossAnArmPullsItsPlayOutwards) {
       EXPECT_LE((found.head<3>() - by_hand).norm(), 1e-9 * by_hand.norm()) << F;
       EXPECT_NEAR(found(4), -theta, 1e-9) << F;
     }
+    const Vector6 for_fits = analytic::AnalyticModel(c).displaced(F * Vector6::Unit(2), Geometry::finite).displacement;
+    EXPECT_LE((for_fits.head<3>() - by_hand).norm(), 1e-9 * by_hand.norm()) << F;
   }
 }
 

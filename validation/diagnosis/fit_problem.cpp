@@ -95,6 +95,8 @@ double FitProblem::stand_at(const VectorX& x) {
   return change;
 }
 
+void FitProblem::stand_as_granted() { shape_ = observations_.granted_shape(); }
+
 bool FitProblem::has_history(const VectorX& x) const { return observations_.has_history(prepared_(values(x))); }
 
 VectorX FitProblem::residual_or_wall(const VectorX& x) const { return residual(x).value_or(wall_); }
@@ -146,7 +148,8 @@ std::optional<SizedEffect> best_size(const Observations& o, const Hypothesis& h,
                                      const VectorX& small) {
   const effects::EffectParameter& p = h.back().effect->parameters.front();
   const auto best = outcome_of([&] {
-    const FitProblem problem(o, h);
+    FitProblem problem(o, h);
+    problem.stand_as_granted();
     std::optional<SizedEffect> out;
     double last = NAN;
     for (int k = 0; k <= doublings; ++k) {
@@ -171,7 +174,8 @@ std::optional<SizedEffect> best_size_of_what_lets_go(const Observations& o, cons
   const bool upwards = *p.vanishes == 0;  // it lets go towards its upper bound
   const double gone = upwards ? p.high : p.low, least = upwards ? p.low : std::min(p.high, *p.vanishes);
   const auto best = outcome_of([&]() -> std::optional<SizedEffect> {
-    const FitProblem problem(o, h);
+    FitProblem problem(o, h);
+    problem.stand_as_granted();
     /// The effect so many times nearer to where it vanishes than at that value.
     const auto nearer = [&](double value, double times) {
       const double size = upwards ? value / times : value * times;

@@ -40,6 +40,8 @@ class FitProblem {
   /// From now on the deformed shape contributes what it does there (Observations::shape_for), instead of what it does
   /// at each x, which takes far longer where play floats. Returns by how much that changes the residual, in norm.
   double stand_at(const VectorX& x);
+  /// The same with what it does to the granted subject: for a first look at many sizes.
+  void stand_as_granted();
 
   bool has_history(const VectorX& x) const;
 

@@ -46,6 +46,7 @@ class Observations {
   /// granted()), or, where other play floats than in the granted subject (Standing::floating), the subject's own, which
   /// says where in the play it stands.
   VectorX shape_for(const subject::Subject&) const;
+  const VectorX& granted_shape() const { return shape_; }
   /// The same for the subject as given, in which nothing is missing.
   const VectorX& null_residual() const { return null_; }
   /// All patterns that a residual can have (discrepancy.h), whitened by the uncertainty. Computed anew at every call.
