@@ -172,9 +172,16 @@ std::optional<AnalyticModel::Quick> AnalyticModel::quick(const Vector6& F, const
 AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
   const bool in_part = conditions.geometry != Geometry::linear;
   if (in_part && stepped_.empty()) return solve(F, conditions);
+  AnalyticSolution s;
+  if (const auto in_shape = in_part ? jumps_in_shape(F + weight_, conditions) : std::nullopt) {
+    s.converged = true;
+    s.slips = in_shape->laws.slips;
+    s.load = F;
+    s.displacement = in_shape->displacement;
+    return s;
+  }
   const std::optional<Quick> found = quick(F + weight_, conditions);
   if (!found) return solve(F, conditions);
-  AnalyticSolution s;
   s.converged = found->laws.converged;
   s.message = found->laws.reason;
   s.slips = found->laws.slips;
@@ -182,12 +189,6 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
   s.load = F;
   s.displacement = found->displacement;
   if (!in_part || !s.converged) return s;
-  if (const auto in_shape = found->laws.moves ? jumps_in_shape(F + weight_, conditions, false) : std::nullopt) {
-    s.loose.clear();
-    s.slips = in_shape->laws.slips;
-    s.displacement = in_shape->displacement;
-    return s;
-  }
   ChainConditions under;
   under.warmer = conditions.warmer;
   under.steps = held_at(found->laws.offsets);
@@ -196,8 +197,8 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
 }
 
 /// Nothing in the cases that solve() names, and where the laws are not found in balance.
-std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector6& F, const Conditions& conditions,
-                                                                    bool divided_anew) const {
+std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector6& F,
+                                                                    const Conditions& conditions) const {
   const bool heated = conditions.warmer != 0 && heat_force_ > 0;
   // A law of this model's own, which tells a friction the load beside it, is none of the configuration.
   const bool watched =
@@ -216,10 +217,9 @@ std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector
       stepped_, conditions.slips, [&](const std::vector<Step>& steps) { return shape.answer(steps, legs_.length); },
       imposed, false);
   if (!laws.converged) return std::nullopt;
-  const std::vector<Step> balanced = steps_at(laws.offsets, c);
   // Members bend otherwise there than without offsets, for which they were divided.
-  const Deformed d = divided_anew ? deform(at_rest_in(balanced, configuration_, conditions.geometry), configuration_, F)
-                                  : shape.in(balanced);
+  const Deformed d =
+      deform(at_rest_in(steps_at(laws.offsets, c), configuration_, conditions.geometry), configuration_, F);
   if (!d.converged) return std::nullopt;
   InShape out{std::move(laws), Vector6::Zero(), d.discretisation};
   out.displacement << d.translation, d.rotation_vector;

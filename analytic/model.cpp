@@ -207,7 +207,7 @@ AnalyticSolution AnalyticModel::solve_in_part(const Vector6& F, const Conditions
   linear.geometry = Geometry::linear;
   AnalyticSolution s = solve(F, linear);
   if (!s.converged) return s;
-  if (const std::optional<InShape> found = jumps_in_shape(F + weight_, conditions, true)) {
+  if (const std::optional<InShape> found = jumps_in_shape(F + weight_, conditions)) {
     put_play(*found, F + weight_, s);
     s.shape = found->displacement - s.displacement;
     s.displacement = found->displacement;

@@ -77,8 +77,7 @@ class AnalyticModel {
 
   /// Only displacement, slips, convergence and message of solve(), and the laws of unloaded play that T moves in: for
   /// fits, which need many loads. Where laws jump, the linear rest of the mechanism is solved once for six loads and a
-  /// temperature, so that each further load solves only the laws. In the deformed shape these are balanced there
-  /// where they leave play open in linear geometry; elsewhere the displacement is that of the three cases above.
+  /// temperature, so that each further load solves only the laws.
   AnalyticSolution displaced(const Vector6& F_T_W, const Conditions& = {}) const;
 
   /// The assembled state: displacement of T from the drawing, and the legs' wrenches by misfits.
@@ -123,7 +122,7 @@ class AnalyticModel {
     Eigen::Vector2d discretisation;
   };
   Imposed offsets_unloaded() const;  ///< what offsets of the laws do in linear geometry
-  std::optional<InShape> jumps_in_shape(const Vector6& F, const Conditions&, bool divided_anew) const;
+  std::optional<InShape> jumps_in_shape(const Vector6& F, const Conditions&) const;
   void put_play(const InShape&, const Vector6& F, AnalyticSolution&) const;
   AnalyticSolution with_shape(AnalyticSolution, Geometry) const;
   Flexibility flexibility(const AnalyticSolution&) const;
