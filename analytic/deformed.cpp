@@ -101,8 +101,14 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
   // Contacts have no stiffness at rest: where nothing is strained yet they are taken as under the whole load.
   const bool at_rest = largest_wrench(std::get<VirtualGroup>(whole.steps[legs_step(whole)])) == 0;
   c.least = !at_rest ? 1e-9 * largest : largest > 0 ? largest : 1;
+  LawsAtRest laws;
   for (int i = 0; i < 50; ++i) {
     ++d.iterations;
+    if (d.move_steps && i > 0)
+      if (!laws.go_on(d.move_steps(forces_in_held(whole, c), largest, c.steps))) {
+        d.undecided = true;
+        return false;
+      }
     ShapeConditions here = c;
     here.judged = i > 0 && d.residual <= nearly;
     Linearised l = whole.linearise(here);
@@ -118,15 +124,18 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
     // Shapes are known to rounding, 1e-16 of their size, at best.
     d.residual = progress.step / (progress.reach + 1e-3 * whole.length);
     // A first step from rest takes contacts for what they will be.
-    if (finite && i > (at_rest ? 1 : 0) && d.residual > 1e-7 && progress.step > follows * step) return false;
+    if (finite && i > (at_rest ? 1 : 0) && d.residual > 1e-7 && progress.step > follows * step &&
+        !laws.explain(progress.step))
+      return false;
     step = progress.step;
     if (here.judged && d.residual <= settled) {
       const Vector6 moves = l.J * delta;
       last = LastStep{std::move(l), moves};
     }
-    if (d.residual <= settled || (d.residual <= 1e-9 && d.residual > 0.3 * previous)) return true;
+    if (laws.rest() && (d.residual <= settled || (d.residual <= 1e-9 && d.residual > 0.3 * previous))) return true;
     previous = d.residual;
   }
+  d.undecided = d.move_steps != nullptr;
   return false;
 }
 
@@ -203,8 +212,12 @@ void approach(Deformed& d, const Vector6& F, bool fitting) {
     }
     d.residual = next.residual;
     step /= 2;
-    if (step > least_step) continue;
+    if (step > least_step && !next.undecided) continue;
     d.converged = false;
+    if (next.undecided) {
+      d.undecided = true;
+      return;
+    }
     d.message = fmt::format(
         "it gives way at {:.4g} of the {}, a buckling or limit load: that is what the last stable "
         "equilibrium on the way carries",
@@ -246,8 +259,10 @@ double relative(const Eigen::Vector2d& e, const Deformed& d, double length) {
   return moved > 0 ? std::max(e(0), length * e(1)) / moved : 0;
 }
 
-Deformed unloaded(const Configuration& c, const ShapeConditions& under, std::vector<int> pieces) {
+Deformed unloaded(const Configuration& c, const ShapeConditions& under, std::vector<int> pieces,
+                  MoveSteps move_steps = nullptr) {
   Deformed d;
+  d.move_steps = std::move(move_steps);
   d.pieces = std::move(pieces);
   Pieces of_members{d.pieces};
   const PlacedParallel legs{"legs", Vector3::Zero(), c.pose.p_WT, c.legs};
@@ -269,7 +284,7 @@ Deformed loaded(Deformed d, const Configuration& c, const Vector6& F) {
 
 /// `coarser`: with fewer pieces, whose state is taken for the beginning where it is one.
 Deformed with_pieces(const Configuration& c, const Vector6& F, std::vector<int> pieces, const Deformed& coarser) {
-  Deformed d = unloaded(c, coarser.conditions, std::move(pieces));
+  Deformed d = unloaded(c, coarser.conditions, std::move(pieces), coarser.move_steps);
   if (coarser.converged) {
     Deformed same = d;
     take_state(same.whole, coarser.whole);
@@ -325,7 +340,7 @@ Deformed deform(const Deformed& rest, const Configuration& c, const Vector6& F) 
   d.discretisation = {most * d.translation.norm(), most * d.rotation_vector.norm()};
   if (most <= small_error || d.conditions.geometry != Geometry::finite)
     return d;  // what one piece leaves is known by its order
-  for (double left = 1; left > small_error;) {
+  for (double left = 1; left > small_error && !d.undecided;) {
     std::vector<int> pieces = divided(d.pieces, bends, d.converged);
     if (pieces == d.pieces) {
       if (!d.converged || left <= 1e-4) break;

@@ -17,23 +17,31 @@
 // piece or faster (beam_column.h).
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "analytic/laws_at_rest.h"
 #include "analytic/virtual_chain.h"
 #include "msa/base/geometry.h"
 
 namespace deflect::analytic {
 
+/// Moves the steps of laws that are held (ShapeConditions::steps) to where the laws agree with these forces in them,
+/// beside the largest force in the mechanism, N.
+using MoveSteps = std::function<StepsMoved(const VectorX& forces, double largest, std::vector<Step>&)>;
+
 struct Deformed {
   VirtualChain whole;  ///< base joint, legs, tool joint; F is the outer wrench
   ShapeConditions conditions;
-  Vector3 translation = Vector3::Zero();      ///< of T from the drawing
-  Matrix3 turning = Matrix3::Zero();          ///< finite: rotation of T, R − I
+  MoveSteps move_steps = nullptr;         ///< asked before each step of Newton's method but the first; empty: they stay
+  Vector3 translation = Vector3::Zero();  ///< of T from the drawing
+  Matrix3 turning = Matrix3::Zero();      ///< finite: rotation of T, R − I
   Vector3 rotation_vector = Vector3::Zero();  ///< second order: small rotation of T
   std::vector<Vector6> leg_wrenches;          ///< about the platform's T, base axes
   bool converged = false;
+  bool undecided = false;  ///< the steps did not come to rest
   double load_factor = 0;  ///< share of the load that the state carries
   int iterations = 0;
   double residual = 0;                                       ///< relative change by the last step

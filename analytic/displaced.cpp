@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "analytic/deformed.h"
 #include "analytic/model.h"
@@ -196,9 +197,41 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
   return with_shape(std::move(s), conditions.geometry);
 }
 
+/// The laws and the shape in turn, round by round of Newton's method; nothing where the laws do not come to rest. From
+/// rest_in_steps_. `far`: laws give way by more than the length of the mechanism, so that no shape is near.
+std::optional<AnalyticModel::InShape> AnalyticModel::balanced_on_the_way(const Vector6& F, const Conditions& conditions,
+                                                                         Imposed& imposed, bool& far) const {
+  if (F.isZero(0)) return std::nullopt;
+  InShape out;
+  const auto size_of = [this](VectorX o) {  // rotations times length
+    for (Eigen::Index i = 0; i < o.size(); ++i)
+      if (nth(stepped_, i).rotation) o(i) *= legs_.length;
+    return largest(o);
+  };
+  Deformed rest = *rest_in_steps_;
+  rest.move_steps = [&](const VectorX& forces, double largest, std::vector<Step>& steps) {
+    const SteppedForces at{forces, Vector6::Zero(), largest, legs_.length, true, idle_force * largest};
+    VectorX offsets(std::ssize(steps));
+    for (std::size_t i = 0; i < steps.size(); ++i) offsets(as_index(i)) = steps[i].offset;
+    StepsMoved moved;
+    out.laws = balance_about(offsets, at, stepped_, conditions.slips, imposed, moved.lacking);
+    far = out.laws.converged && size_of(out.laws.offsets) > legs_.length;
+    if (!out.laws.converged || far) return StepsMoved{};
+    moved.by = size_of(out.laws.offsets - offsets);
+    steps = steps_at(out.laws.offsets, imposed.c);
+    return moved;
+  };
+  const Deformed d = deform(rest, configuration_, F);
+  if (!d.converged) return std::nullopt;
+  out.displacement << d.translation, d.rotation_vector;
+  out.discretisation = d.discretisation;
+  return out;
+}
+
 /// Nothing in the cases that solve() names, and where the laws are not found in balance.
 std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector6& F,
                                                                     const Conditions& conditions) const {
+  if (apart_) return std::nullopt;
   const bool heated = conditions.warmer != 0 && heat_force_ > 0;
   // A law of this model's own, which tells a friction the load beside it, is none of the configuration.
   const bool watched =
@@ -211,6 +244,9 @@ std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector
   if (!rest_in_steps_ || rest_in_steps_->conditions.geometry != conditions.geometry ||
       !same_steps(rest_in_steps_->conditions.steps, without_offsets))
     rest_in_steps_ = std::make_shared<const Deformed>(at_rest_in(without_offsets, configuration_, conditions.geometry));
+  bool far = false;
+  if (auto found = balanced_on_the_way(F, conditions, imposed, far)) return found;
+  if (far) return std::nullopt;
   ShapeInSteps shape(configuration_, F, *rest_in_steps_);
   if (!shape.in(without_offsets).converged) return std::nullopt;
   BalancedSteps laws = balance(

@@ -72,8 +72,8 @@ Configuration without_steps(Configuration c, const std::vector<Vector6>& wrenche
 
 }  // namespace
 
-AnalyticModel::AnalyticModel(const Configuration& given, const AsPrinted& as_printed)
-    : configuration_(given), as_printed_(as_printed) {
+AnalyticModel::AnalyticModel(const Configuration& given, const AsPrinted& as_printed, bool apart)
+    : configuration_(given), as_printed_(as_printed), apart_(apart) {
   Configuration& c = configuration_;
   frictions_ = number_slips(c);
   legs_ = legs_of(c, as_printed);

@@ -53,7 +53,8 @@ struct AnalyticSolution {
 /// A mechanism at one pose.
 class AnalyticModel {
  public:
-  explicit AnalyticModel(const Configuration&, const AsPrinted& = {});
+  /// `apart`: in the deformed shape laws that jump are taken as in linear geometry (see solve()).
+  explicit AnalyticModel(const Configuration&, const AsPrinted& = {}, bool apart = false);
 
   const std::vector<Chain>& chains() const { return legs_.branches; }
 
@@ -70,9 +71,9 @@ class AnalyticModel {
   /// it; also where rigid legs cannot be assembled. For nonlinear geometries see deformed.h. Linear geometry is used
   /// instead where there are no forces, and always for equations as printed. Laws that jump are then balanced in the
   /// deformed shape too, which decides where unloaded play stands; all but the displacement is that of linear geometry
-  /// with the play there. Not so in three cases, in which the displacement is the linear one plus what the shape adds
-  /// to the mechanism without such laws: beside misfits, beside a change of temperature, and where only frictions
-  /// beside the legs jump.
+  /// with the play there. Not so where they are to be taken apart, and in three cases, in which the displacement is the
+  /// linear one plus what the shape adds to the mechanism without such laws: beside misfits, beside a change of
+  /// temperature, and where only frictions beside the legs jump.
   AnalyticSolution solve(const Vector6& F_T_W, const Conditions& = {}) const;
 
   /// Only displacement, slips, convergence and message of solve(), and the laws of unloaded play that T moves in: for
@@ -118,11 +119,12 @@ class AnalyticModel {
   /// Laws in balance in the deformed shape, and what that adds up to.
   struct InShape {
     BalancedSteps laws;
-    Vector6 displacement;
-    Eigen::Vector2d discretisation;
+    Vector6 displacement = Vector6::Zero();
+    Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();
   };
   Imposed offsets_unloaded() const;  ///< what offsets of the laws do in linear geometry
   std::optional<InShape> jumps_in_shape(const Vector6& F, const Conditions&) const;
+  std::optional<InShape> balanced_on_the_way(const Vector6& F, const Conditions&, Imposed&, bool& far) const;
   void put_play(const InShape&, const Vector6& F, AnalyticSolution&) const;
   AnalyticSolution with_shape(AnalyticSolution, Geometry) const;
   Flexibility flexibility(const AnalyticSolution&) const;
@@ -130,6 +132,7 @@ class AnalyticModel {
 
   Configuration configuration_;
   AsPrinted as_printed_;
+  bool apart_;
   Group legs_;
   Chain through_;                             ///< base and tool joints, each carries the whole load
   Vector6 weight_;                            ///< at T

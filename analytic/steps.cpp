@@ -118,12 +118,7 @@ class Balance {
     SetValuedSolution found;
     double before = infinite, least = infinite;
     for (int round = 0, nearest = 0; round < 200 && round < nearest + 25; ++round) {
-      const VectorX f0 = at.forces + imposed_.S * o;
-      const MatrixX P = MatrixX::Identity(n_, n_) - MatrixX(imposed_.c.asDiagonal() * imposed_.S);
-      sizes_ = VectorX::Constant(n_, std::max(at.largest, at.idle / idle_share));
-      for (Eigen::Index i = 0; i < n_; ++i)
-        if (nth(members_, i).stepped->rotation) sizes_(i) *= at.length;
-      found = settled({imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_});
+      found = settled_about(o, at);
       if (found.outcome != SetValuedSolution::Outcome::solved) return failed(found);
       // Where other laws bend, no further than brings the forces nearer, along p = δ + c f, of which every law has one.
       const VectorX target = found.d + imposed_.c.cwiseProduct(found.s);
@@ -162,7 +157,25 @@ class Balance {
     return out;
   }
 
+  /// One round of search(): the laws where they agree with what S makes of these forces at the offsets o.
+  BalancedSteps round(const VectorX& o, const SteppedForces& at, double& lacking) {
+    const SetValuedSolution found = settled_about(o, at);
+    if (found.outcome != SetValuedSolution::Outcome::solved) return failed(found);
+    const double size = std::max({largest(at.forces), largest(found.s), at.largest});
+    lacking = size > 0 ? largest(at.forces - found.s) / size : 0;
+    return result(found);
+  }
+
  private:
+  SetValuedSolution settled_about(const VectorX& o, const SteppedForces& at) {
+    const VectorX f0 = at.forces + imposed_.S * o;
+    const MatrixX P = MatrixX::Identity(n_, n_) - MatrixX(imposed_.c.asDiagonal() * imposed_.S);
+    sizes_ = VectorX::Constant(n_, std::max(at.largest, at.idle / idle_share));
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (nth(members_, i).stepped->rotation) sizes_(i) *= at.length;
+    return settled({imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_});
+  }
+
   /// The laws in equilibrium, with limits of frictions that are those of the loads beside them.
   SetValuedSolution settled(const LinearRelation& relation) {
     if (growing_.empty()) return solve(relation, laws_, watched());
@@ -367,6 +380,12 @@ Imposed imposed_on(const std::vector<SteppedLaw>& laws, const AskSteps& ask) {
 BalancedSteps balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask,
                       Imposed& imposed, bool extent) {
   return Balance(laws, slips, ask, imposed, extent).search();
+}
+
+BalancedSteps balance_about(const VectorX& offsets, const SteppedForces& at, const std::vector<SteppedLaw>& laws,
+                            const std::vector<double>& slips, Imposed& imposed, double& lacking) {
+  const AskSteps nobody;
+  return Balance(laws, slips, nobody, imposed, false).round(offsets, at, lacking);
 }
 
 }  // namespace deflect::analytic

@@ -85,6 +85,12 @@ struct BalancedSteps {
 BalancedSteps balance(const std::vector<SteppedLaw>&, const std::vector<double>& slips, const AskSteps&,
                       Imposed& imposed, bool extent = true);
 
+/// One round of balance(), for a mechanism that is itself solved round by round: the laws where they agree with what
+/// `imposed` makes of the forces `at` at these offsets. `lacking`: by how much those forces are not theirs, of the
+/// largest force.
+BalancedSteps balance_about(const VectorX& offsets, const SteppedForces& at, const std::vector<SteppedLaw>&,
+                            const std::vector<double>& slips, Imposed& imposed, double& lacking);
+
 /// What balance() computes where `imposed` is empty: compliances and the response to offsets, of a mechanism without
 /// load. Right for all loads where all that does not jump is linear.
 Imposed imposed_on(const std::vector<SteppedLaw>&, const AskSteps&);

@@ -190,7 +190,7 @@ VirtualChain virtual_chain_of(const PlacedLeg&, const Vector3& p_E, const Vector
 /// AnalyticModel does: leg by leg, in each the joints before the groups, then base and tool. Returns their number.
 std::size_t hold_laws(VirtualChain& whole);
 
-/// The forces in these laws in an equilibrium, by number.
+/// The forces with which these laws resist the motions of the state, by number.
 VectorX forces_in_held(const VirtualChain& whole, const ShapeConditions&);
 
 /// Initialises a chain with the state of one whose members have fewer pieces; each coarser piece is taken to be bent as

@@ -105,22 +105,17 @@ void hold_laws_of_leg(VirtualChain& leg, std::size_t& next) {
 }
 
 void add_forces(const VirtualChain& chain, const ShapeConditions& c, VectorX& forces) {
-  VirtualChain copy = chain;
-  const Linearised l = copy.linearise(c);
-  const VectorX s = l.J.transpose() * chain.F + l.turned;
-  Eigen::Index next = 0;
-  for (const VirtualStep& step : chain.steps) {
-    const auto* v = std::get_if<VirtualJoint>(&step);
-    if (v)
+  for (const VirtualStep& step : chain.steps)
+    if (const auto* v = std::get_if<VirtualJoint>(&step)) {
       for (const std::size_t i : v->freedoms) {
-        for (const std::size_t number : v->held[i]) forces(as_index(number)) = s(next);
-        ++next;
+        if (v->held[i].empty()) continue;
+        const Step laws = v->deflected(i, 0, c);  // all that are left are linear
+        for (const std::size_t number : v->held[i])
+          forces(as_index(number)) = (v->x[i] - laws.offset) / laws.compliance;
       }
-    else
-      next += 6;
-    if (const auto* group = std::get_if<VirtualGroup>(&step))
+    } else if (const auto* group = std::get_if<VirtualGroup>(&step)) {
       for (const VirtualChain& branch : group->branches) add_forces(branch, c, forces);
-  }
+    }
 }
 
 }  // namespace

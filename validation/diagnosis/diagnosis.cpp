@@ -314,6 +314,7 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const FirstStep&
   d.final = quality(seen, d.missing, d.fit);
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));
   d.set_aside = seen.set_aside();
+  d.set_aside_in_play = seen.set_aside_in_play();
 }
 
 }  // namespace

@@ -33,17 +33,32 @@ std::vector<VectorX> in_linear_geometry(const compare::ResidualStudy& s, const s
   return standing.predict(*s.data, linear, work);
 }
 
-/// What equilibrium in the deformed shape adds to a subject's readings; nothing where it does not stand in it.
-std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject) {
+/// What equilibrium in the deformed shape adds to a subject's readings; nothing where it does not stand in it. `apart`:
+/// without what it moves play that linear geometry leaves open.
+std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject,
+                                         bool apart = false) {
   const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
   if (subject.true_geometry() == Geometry::linear) return std::nullopt;
   prediction::PredictionOptions finite;
   finite.geometry = subject.true_geometry();
+  finite.apart = apart;
   return outcome_of([&] {
            return VectorX(statistics::rows_of(s.values, standing->predict(*s.data, finite)) -
                           statistics::rows_of(s.values, in_linear_geometry(s, *standing)));
          })
       .value;
+}
+
+/// Whether so many readings may be set aside as gross outliers: one in twenty, but of a few readings one as well. Where
+/// a load leaves play open, tolerances too small to be seen otherwise say where it stands: a third of these may be.
+bool are_few(const std::vector<bool>& aside, const std::vector<bool>& open) {
+  std::size_t surprising = 0, floating = 0, in_play = 0;
+  for (std::size_t i = 0; i < aside.size(); ++i) {
+    const bool floats = !open.empty() && open[i];
+    floating += floats ? 1 : 0;
+    if (aside[i]) ++(floats ? in_play : surprising);
+  }
+  return 3 * in_play <= floating && (20 * surprising <= aside.size() || (surprising == 1 && aside.size() >= 10));
 }
 
 }  // namespace
@@ -69,7 +84,8 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
     in_linear_ = statistics::rows_of(s.values, in_linear_geometry(s, *s.standing));
     shape_ -= in_linear_;
   }
-  if (subject.true_geometry() != Geometry::linear) floating_ = s.standing->floating(*s.data);
+  if (subject.true_geometry() != Geometry::linear) floating_ = s.standing->floating(*s.data).laws;
+  bent_ = bent_of(subject);
   tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
@@ -86,7 +102,13 @@ std::vector<double> Observations::log_likelihood_of_scales(const std::vector<dou
   return uncertainty_->log_likelihood_of_scales(residual(subject_), MatrixX(measured_.size(), 0), scales, free);
 }
 
-void Observations::count_shape() { A_.shared.rightCols<1>() = compare::shape_known_to * shape_; }
+VectorX Observations::bent_of(const subject::Subject& subject) const {
+  if (floating_.empty()) return shape_;
+  return deformed_shape_of(comparison_->study, subject, true).value_or(shape_);
+}
+
+/// Where play stands in the deformed shape is a yes or no that a fifth of the shape does not change.
+void Observations::count_shape() { A_.shared.rightCols<1>() = compare::shape_known_to * bent_; }
 
 void Observations::move_tolerances(const subject::Subject& subject) {
   const compare::ResidualStudy& s = comparison_->study;
@@ -121,6 +143,12 @@ std::shared_ptr<const WhitenedFamilies> Observations::whitened_patterns() const 
 
 std::size_t Observations::set_aside() const { return as_size(std::count(aside_.begin(), aside_.end(), true)); }
 
+std::size_t Observations::set_aside_in_play() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < at_play_.size(); ++i) count += aside_[i] && at_play_[i] ? 1 : 0;
+  return count;
+}
+
 std::shared_ptr<const subject::Standing> Observations::stand(const subject::Subject& subject) const {
   return subject.stand(*comparison_->study.data, comparison_->study.standing.get());
 }
@@ -139,7 +167,8 @@ VectorX Observations::residual(const subject::Subject& subject) const {
 }
 
 VectorX Observations::shape_for(const subject::Subject& subject) const {
-  if (subject.true_geometry() == Geometry::linear || stand(subject)->floating(*comparison_->study.data) == floating_)
+  if (subject.true_geometry() == Geometry::linear ||
+      stand(subject)->floating(*comparison_->study.data).laws == floating_)
     return shape_;
   return deformed_shape_of(comparison_->study, subject).value_or(shape_);
 }
@@ -191,19 +220,20 @@ std::vector<std::pair<std::string, double>> Observations::strained(const subject
 Observations Observations::granted(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;
+  out.at_play_.clear();
   if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) {
+    prediction::Floating floating = stand(subject)->floating(*s.data);
     out.shape_ = *shape;
     out.in_linear_ = linear(subject);
-    out.floating_ = stand(subject)->floating(*s.data);
+    out.floating_ = std::move(floating.laws);
+    out.bent_ = out.bent_of(subject);
+    out.at_play_ = std::move(floating.at_readings);
   }
   out.count_shape();
   out.move_tolerances(subject);
   const std::vector<bool> aside =
       compare::gross_outliers(s, out.A_, comparison_->sigma, out.residual(subject), {}).aside;
-  const auto count = as_size(std::count(aside.begin(), aside.end(), true));
-  // One in twenty, but of a few readings one as well.
-  const bool few = 20 * count <= aside.size() || (count == 1 && aside.size() >= 10);
-  out.weigh(few ? aside : aside_);
+  out.weigh(are_few(aside, out.at_play_) ? aside : aside_);
   return out;
 }
 
@@ -219,7 +249,7 @@ double Observations::change_of_shape(const subject::Subject& to) const {
 
 bool Observations::is_slender() const {
   constexpr double share = 0.05;
-  return in_noise(shape_) > share * in_noise(in_linear_);
+  return in_noise(bent_) > share * in_noise(in_linear_);
 }
 
 Observations Observations::in_true_geometry() const {
@@ -232,10 +262,11 @@ Observations Observations::in_true_geometry() const {
 Observations Observations::in_shape_of(const subject::Subject& subject) const {
   Observations out = *this;
   if (true_geometry_ || subject.true_geometry() == Geometry::linear) return out;
-  std::set<std::string> floating = stand(subject)->floating(*comparison_->study.data);
+  std::set<std::string> floating = stand(subject)->floating(*comparison_->study.data).laws;
   if (floating == floating_) return out;
   out.shape_ = shape_for(subject);
   out.floating_ = std::move(floating);
+  out.bent_ = out.bent_of(subject);
   out.in_linear_ = linear(subject);
   out.null_ = out.whitened_residual(subject_);
   return out;

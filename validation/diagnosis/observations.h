@@ -32,7 +32,8 @@ class Observations {
   /// ln of the likelihood of null_residual() under tolerances s times as large as they count here, for each s, up to
   /// one constant. Zeros of readings and the size of the deformed shape's contribution are fitted.
   std::vector<double> log_likelihood_of_scales(const std::vector<double>& scales) const;
-  std::size_t set_aside() const;                             ///< readings
+  std::size_t set_aside() const;          ///< readings
+  std::size_t set_aside_in_play() const;  ///< of these, where the load leaves play of the granted subject open
   const std::vector<bool>& aside() const { return aside_; }  ///< by reading
 
   /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus shape_for() the
@@ -67,7 +68,7 @@ class Observations {
   /// A copy for which this subject counts as right: what its tolerances do and the contribution of the deformed shape
   /// are computed for it (a missing member changes what its neighbours' tolerances do, a payload what those of drives
   /// do), and readings that are gross outliers to it are set aside, unless they are more than one in twenty; one of ten
-  /// or more may be.
+  /// or more may be, and a third of those whose load leaves play open.
   Observations granted(const subject::Subject&) const;
   /// How far the contribution of the deformed shape may change where this subject counts as right instead of the one
   /// that does, and is like it: the norm in σ of noise of the whole. No value moves by more than about so many of its
@@ -75,7 +76,8 @@ class Observations {
   /// twice as fast as the displacement.
   double change_of_shape(const subject::Subject&) const;
   /// Whether the deformed shape contributes more than a twentieth of what is predicted, as under more than a twentieth
-  /// of the load that buckles a frame: a fixed contribution does not do then.
+  /// of the load that buckles a frame: a fixed contribution does not do then. Where it puts floating play does not
+  /// count: shape_for() follows that.
   bool is_slender() const;
   /// A copy in which every subject is predicted in its true geometry, which takes far longer. Residuals of a subject
   /// that does not stand in it throw (RangeError); null_residual() is then the one of this.
@@ -116,9 +118,14 @@ class Observations {
   std::vector<VectorX> predicted_;  // what errors of loads are proportional to
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;
+  /// What the deformed shape of `subject`, whose floating play is floating_, adds where it does not move that play.
+  VectorX bent_of(const subject::Subject&) const;
+
   VectorX measured_, shape_, null_;
+  VectorX bent_;                    // shape_ without where it puts floating play
   VectorX in_linear_;               // prediction in linear geometry of the subject whose deformed shape is granted
   std::set<std::string> floating_;  // play in that subject
+  std::vector<bool> at_play_;       // by reading, in the last granted subject; empty: nowhere
   bool true_geometry_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -214,7 +215,8 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
   const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation)),
                 sensor = rotate_twist(rotation_from_vector(m.sensor.rotation));
   const auto at_pose = [&](std::size_t p) {
-    const theories::TheoryOptions options{m.name, o.division};
+    theories::TheoryOptions options{m.name, o.division};
+    options.apart = o.apart;
     LoadedMachine machine(*o.theory, options, machines[p], instruments, cell);
     Conditions conditions(o.geometry.value_or(m.geometry));
     if (conditions.geometry == Geometry::linear) expect(machine.theory(), data.poses[p], data);
@@ -255,23 +257,28 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
   return out;
 }
 
-std::set<std::string> floating(const Mechanism& m, const std::vector<Configuration>& machines,
-                               const measurement::Measurements& data) {
-  std::set<std::string> out;
+Floating floating(const Mechanism& m, const std::vector<Configuration>& machines,
+                  const measurement::Measurements& data) {
+  Floating out;
   const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation));
   const theories::Theory& theory = *PredictionOptions().theory;
   for (std::size_t p = 0; p < machines.size(); ++p) {
     bool play = false;
     for_each_law(machines[p], [&](const Law& law) { play = play || std::holds_alternative<ClearanceLaw>(law); });
     if (!play) continue;
+    out.at_readings.resize(data.readings.size());
     const std::unique_ptr<theories::TheoryAt> machine = theory.at(machines[p], {m.name});
-    std::set<std::array<double, 6>> asked;
+    std::map<std::array<double, 6>, bool> asked;
     for (const std::size_t i : data.poses[p].readings) {
       std::array<double, 6> load;
       std::copy(data.readings[i].load.begin(), data.readings[i].load.end(), load.begin());
-      if (!asked.insert(load).second) continue;
-      for (std::string& law : machine->predict(cell * data.readings[i].load, Geometry::linear).floating)
-        out.insert(std::move(law));
+      const auto [known, is_new] = asked.try_emplace(load);
+      if (is_new) {
+        std::vector<std::string> laws = machine->predict(cell * data.readings[i].load, Geometry::linear).floating;
+        known->second = !laws.empty();
+        std::move(laws.begin(), laws.end(), std::inserter(out.laws, out.laws.end()));
+      }
+      out.at_readings[i] = known->second;
     }
   }
   return out;

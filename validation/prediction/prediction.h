@@ -26,6 +26,7 @@ struct PredictionOptions {
   const theories::Theory* theory = theories::all_theories().front();
   std::optional<Geometry> geometry;  ///< absent: the device's
   frame::MemberDivision division;    ///< of members, in the MSA
+  bool apart = false;                ///< laws that jump, in the closed form (theories::TheoryOptions::apart)
 };
 
 /// By reading, what every channel records (MeasuredValue): d_T_W, all six components, then the sensors; m, rad.
@@ -36,9 +37,12 @@ std::vector<VectorX> predict(const Mechanism&, const std::vector<Configuration>&
                              const measurement::Measurements&, const PredictionOptions& = {},
                              const parallel::Work& = {});
 
-/// The play that some of these loads leave open in linear geometry (theories::Prediction::floating).
-std::set<std::string> floating(const Mechanism&, const std::vector<Configuration>& machines,
-                               const measurement::Measurements&);
+/// Play that loads leave open in linear geometry (theories::Prediction::floating).
+struct Floating {
+  std::set<std::string> laws;     ///< by name: the same law has the same one in every edited copy
+  std::vector<bool> at_readings;  ///< by reading, whether there is any; empty: nowhere
+};
+Floating floating(const Mechanism&, const std::vector<Configuration>& machines, const measurement::Measurements&);
 
 /// The true load from the recorded one; the recorded displacement, without drift, from the true one.
 Vector6 true_load(const LoadCell&, const Vector6& recorded);

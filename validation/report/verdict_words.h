@@ -17,7 +17,8 @@ std::string verdict_words(const diagnosis::Diagnosis&);
 std::string headline_words(const diagnosis::Diagnosis&);
 
 /// "37 of 720 readings (5.1 %) are gross outliers …" where they are more than one in twenty; empty otherwise.
-std::string outlier_words(std::size_t set_aside, std::size_t readings);
+/// `in_play`: as Diagnosis::set_aside_in_play.
+std::string outlier_words(std::size_t set_aside, std::size_t readings, std::size_t in_play = 0);
 
 /// "how the file was read: …" with a line for each; empty without any.
 std::string how_read_text(const std::vector<std::string>&);

@@ -113,8 +113,9 @@ SolveResult solve(const Mechanism& m, const Stand& stand, const Vector6& load, c
       deformed.from_linear.push_back(
           theories::relative_difference(twist_in_mm(a.displacement), twist_in_mm(undeformed->displacement)));
       const Vector6 room = undeformed->floating.most - undeformed->floating.least;
-      deformed.play = std::max(deformed.play, theories::relative_difference(twist_in_mm(a.displacement + room),
-                                                                            twist_in_mm(a.displacement)));
+      if (room.allFinite())  // a motion without end has no end at which theories may stand
+        deformed.play = std::max(deformed.play, theories::relative_difference(twist_in_mm(a.displacement + room),
+                                                                              twist_in_mm(a.displacement)));
     }
     // Of a device that is held rigidly but for some motions, displacements may be the rounding of coordinates.
     displacements.push_back(twist_in_mm(a.rigid > 0 ? above_rounding(a.displacement, c.size) : a.displacement));

@@ -179,7 +179,7 @@ class MachineStanding final : public Standing {
 
   bool has_history() const override { return any_history(machines_.front()); }
 
-  std::set<std::string> floating(const measurement::Measurements& data) const override {
+  prediction::Floating floating(const measurement::Measurements& data) const override {
     return prediction::floating(*mechanism_, machines_, data);
   }
 

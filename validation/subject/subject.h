@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -111,9 +110,9 @@ class Standing {
   /// Whether a reading depends on the loads before it: friction. Then the order of the readings matters.
   virtual bool has_history() const { return false; }
 
-  /// Names of the play that some of these loads leave open in linear geometry: there only equilibrium in the deformed
-  /// shape says where in it the subject stands. The same law has the same name in every edited copy.
-  virtual std::set<std::string> floating(const measurement::Measurements&) const { return {}; }
+  /// The play that these loads leave open in linear geometry: there only equilibrium in the deformed shape says where
+  /// in it the subject stands.
+  virtual prediction::Floating floating(const measurement::Measurements&) const { return {}; }
 
   /// Predicts the readings of these measurements, which must have the same poses (prediction.h).
   virtual std::vector<VectorX> predict(const measurement::Measurements&, const prediction::PredictionOptions& = {},

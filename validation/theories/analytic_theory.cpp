@@ -46,7 +46,7 @@ void AnalyticAt::move_to(const Configuration& c) {
 }
 
 const analytic::AnalyticModel& AnalyticAt::model() {
-  if (!model_) model_.emplace(*configuration_);
+  if (!model_) model_.emplace(*configuration_, analytic::AsPrinted{}, options_.apart);
   return *model_;
 }
 

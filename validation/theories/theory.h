@@ -23,6 +23,8 @@ struct TheoryOptions {
   /// for all poses.
   bool condense = false;
   std::vector<Inside> inside = {};  ///< what predictions shall tell of the insides of legs
+  /// In the deformed shape laws that jump are to be taken as in linear geometry (Answer::apart), by a theory that can.
+  bool apart = false;
 };
 
 /// The mechanism assembled with its misfits, without load and weight.
