@@ -205,11 +205,16 @@ double force_of(const Law& law, double deflection) {
     return std::copysign(std::pow(size / analytic::deflection(law, 1), 1.5), deflection);
   double low = 0, high = 1;
   while (analytic::deflection(law, high) < size) low = high, high *= 4;
+  double force = low > 0 ? low : high;  // Newton's method between the two
   for (int i = 0; i < 200 && high - low > 1e-16 * high; ++i) {
-    const double middle = low + (high - low) / 2;
-    (analytic::deflection(law, middle) < size ? low : high) = middle;
+    const double lacking = size - analytic::deflection(law, force);
+    (lacking > 0 ? low : high) = force;
+    double next = force + lacking / analytic::compliance(law, force);
+    if (!(next >= low && next <= high)) next = low + (high - low) / 2;
+    if (std::abs(next - force) <= 1e-16 * force) break;
+    force = next;
   }
-  return std::copysign(low + (high - low) / 2, deflection);
+  return std::copysign(force, deflection);
 }
 
 double stored_energy(const Law& law, double force, const AsPrinted& p) {
@@ -277,6 +282,12 @@ namespace {
 ScalarLaw bent(const Law& law, double P) {
   const double rest = at_rest(law, P);
   if (const auto* table = std::get_if<TableLaw>(&law)) return table_by_corners(*table, rest, P);
+  if (std::holds_alternative<HertzPointLaw>(law)) {  // d = unit · f²ᐟ³
+    const double unit = analytic::deflection(law, 1);
+    const auto root = [=](double d) { return std::sqrt(std::abs(d + rest) / unit); };
+    return {-HUGE_VAL, HUGE_VAL, [=](double d) { return std::copysign(root(d) * root(d) * root(d), d + rest) - P; },
+            [=](double d) { return 1.5 * root(d) / unit; }};
+  }
   return {-HUGE_VAL, HUGE_VAL, [&law, P, rest](double d) { return force_of(law, d + rest) - P; },
           [&law, rest](double d) { return 1 / analytic::compliance(law, force_of(law, d + rest)); }};
 }
