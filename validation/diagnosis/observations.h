@@ -104,6 +104,8 @@ class Observations {
   /// Subtracts the estimated zero of the readings where it is unknown.
   VectorX from_zero(VectorX residual) const;
   void weigh(const std::vector<bool>& aside);
+  /// What the deformed shape of `subject`, whose floating play is floating_, adds where it does not move that play.
+  VectorX bent_of(const subject::Subject&) const;
   void count_shape();
   void move_tolerances(const subject::Subject&);
 
@@ -118,9 +120,6 @@ class Observations {
   std::vector<VectorX> predicted_;  // what errors of loads are proportional to
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;
-  /// What the deformed shape of `subject`, whose floating play is floating_, adds where it does not move that play.
-  VectorX bent_of(const subject::Subject&) const;
-
   VectorX measured_, shape_, null_;
   VectorX bent_;                    // shape_ without where it puts floating play
   VectorX in_linear_;               // prediction in linear geometry of the subject whose deformed shape is granted
