@@ -1,6 +1,7 @@
 #include "msa/base/convex_search.h"
 #include "msa/base/index.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
@@ -11,13 +12,17 @@ namespace {
 
 // Relative: slopes that are rounding, curvatures of a matrix with entries of 1 that are, rates at which a row stays.
 constexpr double no_slope = 1e-13, no_curvature = 1e-13, no_rate = 1e-10;
+// Above these nothing is lost in rounding: curvatures for Cholesky's method, the rate by which a direction is left out.
+constexpr double sure_curvature = 1e-6, sure_rate = 1e-3;
 
 class Search {
  public:
-  Search(const ConvexProblem& problem, const VectorX& from) : p_(problem), rows_(problem.B.rows()) {
+  Search(const ConvexProblem& problem, const VectorX& from, const std::vector<int>& side_at_start)
+      : p_(problem), rows_(problem.B.rows()), norms_(problem.B.rowwise().norm()), slopes_(rows_), curvatures_(rows_) {
     out_.x = from;
     out_.push = VectorX::Zero(rows_);
-    out_.side.assign(as_size(rows_), 0);
+    out_.side = side_at_start;
+    out_.side.resize(as_size(rows_), 0);
     for (Eigen::Index i = 0; i < rows_; ++i)
       if (row(i).low == row(i).high) side(i) = 1;
   }
@@ -46,44 +51,72 @@ class Search {
 
   /// y, the gradient of f, and the size of what it is summed from.
   void evaluate() {
-    out_.y = p_.e + p_.B * out_.x;
-    VectorX slopes(rows_);
+    out_.y = p_.e;
+    out_.y.noalias() += p_.B * out_.x;
     for (Eigen::Index i = 0; i < rows_; ++i) {
       out_.y(i) = std::clamp(out_.y(i), row(i).low, row(i).high);
-      slopes(i) = row(i).slope(out_.y(i));
+      slopes_(i) = row(i).slope(out_.y(i));
     }
-    const VectorX quadratic = p_.a.cwiseProduct(out_.x);
-    gradient_ = quadratic - p_.b + p_.B.transpose() * slopes;
+    gradient_ = p_.a.cwiseProduct(out_.x) - p_.b;
+    gradient_.noalias() += p_.B.transpose() * slopes_;
     size_ = 0;
-    if (p_.b.size() > 0) size_ = std::max(p_.b.cwiseAbs().maxCoeff(), quadratic.cwiseAbs().maxCoeff());
-    for (Eigen::Index i = 0; i < rows_; ++i) size_ = std::max(size_, std::abs(slopes(i)) * p_.B.row(i).norm());
+    if (p_.b.size() > 0) size_ = std::max(p_.b.cwiseAbs().maxCoeff(), p_.a.cwiseProduct(out_.x).cwiseAbs().maxCoeff());
+    for (Eigen::Index i = 0; i < rows_; ++i) size_ = std::max(size_, std::abs(slopes_(i)) * norms_(i));
   }
 
   /// A basis of the directions along the active bounds; gradient and curvature there.
   void restrict() {
+    if (!along_active_) find_directions();
+    slope_.noalias() = Z_.transpose() * gradient_;
+    noise_ = p_.rounding;
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      curvatures_(i) = side(i) == 0 ? row(i).curvature(out_.y(i)) : 0;
+      noise_ = std::max(noise_, 1e-15 * curvatures_(i) * std::abs(out_.y(i)) * norms_(i));
+    }
+    scaled_ = p_.a.asDiagonal() * Z_;
+    H_.noalias() = Z_.transpose() * scaled_;
+    scaled_ = curvatures_.asDiagonal() * BZ_;
+    H_.noalias() += BZ_.transpose() * scaled_;
+  }
+
+  void find_directions() {
+    const MatrixX normals = normals_of_active();
+    Z_ = MatrixX::Identity(p_.a.size(), p_.a.size());
+    if (normals.size() > 0) {
+      Eigen::ColPivHouseholderQR<MatrixX> qr;
+      qr.setThreshold(no_rate);
+      qr.compute(normals);
+      Z_ = evaluated(qr.householderQ()).rightCols(p_.a.size() - qr.rank());
+    }
+    BZ_.noalias() = p_.B * Z_;
+    along_active_ = true;
+  }
+
+  /// Columns of Bᵀ.
+  MatrixX normals_of_active() {
     active_.clear();
     for (Eigen::Index i = 0; i < rows_; ++i)
       if (side(i) != 0) active_.push_back(i);
-    const auto k = std::ssize(active_);
-    normals_.resize(p_.a.size(), k);
-    for (Eigen::Index j = 0; j < k; ++j) normals_.col(j) = p_.B.row(nth(active_, j)).transpose();
-    Z_ = MatrixX::Identity(p_.a.size(), p_.a.size());
-    if (k > 0 && p_.a.size() > 0) {
-      Eigen::ColPivHouseholderQR<MatrixX> qr;
-      qr.setThreshold(no_rate);
-      qr.compute(normals_);
-      Z_ = evaluated(qr.householderQ()).rightCols(p_.a.size() - qr.rank());
+    MatrixX out(p_.a.size(), std::ssize(active_));
+    for (Eigen::Index j = 0; j < out.cols(); ++j) out.col(j) = p_.B.row(nth(active_, j)).transpose();
+    return out;
+  }
+
+  /// The basis turns until only its last direction changes y_i, which is left out.
+  void activate(Eigen::Index i, int at_side) {
+    side(i) = at_side;
+    VectorX u = BZ_.row(i);
+    const double rate = u.norm();
+    along_active_ = rate > sure_rate * norms_(i);
+    if (!along_active_) return;
+    const Eigen::Index last = u.size() - 1;
+    u(last) += u(last) < 0 ? -rate : rate;
+    u /= u.norm();
+    for (MatrixX* of : {&Z_, &BZ_}) {
+      moved_.noalias() = *of * u;
+      of->noalias() -= 2 * moved_ * u.transpose();
+      of->conservativeResize(Eigen::NoChange, last);
     }
-    slope_ = Z_.transpose() * gradient_;
-    VectorX curvatures(rows_);
-    noise_ = p_.rounding;
-    for (Eigen::Index i = 0; i < rows_; ++i) {
-      curvatures(i) = side(i) == 0 ? row(i).curvature(out_.y(i)) : 0;
-      noise_ = std::max(noise_, 1e-15 * curvatures(i) * std::abs(out_.y(i)) * p_.B.row(i).norm());
-    }
-    const MatrixX along = p_.B * Z_;
-    MatrixX H = Z_.transpose() * p_.a.asDiagonal() * Z_ + along.transpose() * curvatures.asDiagonal() * along;
-    if (H.rows() > 0) curvature_.compute(MatrixX((H + H.transpose()) / 2));
   }
 
   bool at_rest() {
@@ -101,18 +134,19 @@ class Search {
   bool let_go() {
     best_ = infinite;
     out_.push.setZero();
-    if (active_.empty() || p_.a.size() == 0) return false;
+    const MatrixX normals = normals_of_active();
+    if (normals.size() == 0) return false;
     Eigen::CompleteOrthogonalDecomposition<MatrixX> solver;
     solver.setThreshold(no_rate);
-    solver.compute(normals_);
+    solver.compute(normals);
     const VectorX push = solver.solve(-gradient_);
     Eigen::Index worst = -1;
     double wrong = 0;
     for (std::size_t j = 0; j < active_.size(); ++j) {
       const Eigen::Index i = active_[j];
       out_.push(i) = push(as_index(j));
-      if (row(i).low == row(i).high) continue;
-      const double here = -side(i) * out_.push(i) * p_.B.row(i).norm();
+      if (row(i).low == row(i).high || i == rounding_let_go_) continue;
+      const double here = -side(i) * out_.push(i) * norms_(i);
       if (here > 1e-12 * size_ + noise_ && here > wrong) {
         worst = i;
         if (still_ > rows_) break;  // Bland
@@ -121,11 +155,19 @@ class Search {
     }
     if (worst < 0) return false;
     side(worst) = 0;
+    last_let_go_ = worst;
+    along_active_ = false;
     return true;
   }
 
   /// Towards where the slope is zero; straight down where there is a slope and no curvature.
-  VectorX direction() const {
+  VectorX direction() {
+    if (H_.size() == 0) return VectorX::Zero(p_.a.size());
+    cholesky_.compute(H_);
+    const auto pivots = cholesky_.matrixLLT().diagonal().array().square();
+    if (cholesky_.info() == Eigen::Success && pivots.minCoeff() > sure_curvature * std::max(1.0, pivots.maxCoeff()))
+      return -Z_ * cholesky_.solve(slope_);
+    curvature_.compute(MatrixX((H_ + H_.transpose()) / 2));
     const MatrixX& U = curvature_.eigenvectors();
     const VectorX& l = curvature_.eigenvalues();
     const double least = std::max(no_curvature, 1e-15 * static_cast<double>(l.size()) * l(l.size() - 1));
@@ -156,7 +198,7 @@ class Search {
     double end = infinite;
     Eigen::Index first = -1;
     for (Eigen::Index i = 0; i < rows_; ++i) {
-      if (side(i) != 0 || std::abs(rates(i)) <= no_rate * p_.B.row(i).norm() * d.norm()) {
+      if (side(i) != 0 || std::abs(rates(i)) <= no_rate * norms_(i) * d.norm()) {
         if (side(i) != 0) rates(i) = 0;
         continue;
       }
@@ -167,9 +209,11 @@ class Search {
     const double falls = rate(d, rates, 0);
     if (first >= 0 && rate(d, rates, end) <= 0) {
       still_ = end == 0 ? still_ + 1 : 0;
+      // But for rounding the way from a bound that is let go leads inwards.
+      rounding_let_go_ = end == 0 && first == last_let_go_ && still_ > rows_ ? first : end == 0 ? rounding_let_go_ : -1;
       best_ = infinite;
       out_.x += end * d;
-      side(first) = rates(first) > 0 ? 1 : -1;
+      activate(first, rates(first) > 0 ? 1 : -1);
       return true;
     }
     const double length = lowest(d, rates, falls, end);
@@ -178,6 +222,7 @@ class Search {
       return false;
     }
     still_ = 0;
+    rounding_let_go_ = -1;
     out_.x += length * d;
     return true;
   }
@@ -215,18 +260,27 @@ class Search {
 
   const ConvexProblem& p_;
   Eigen::Index rows_;
+  VectorX norms_;  // of the rows of B
   ConvexAnswer out_;
   VectorX gradient_, slope_;                       // of f, and along Z
+  VectorX slopes_, curvatures_;                    // of the φ
   double size_ = 0, noise_ = 0, best_ = infinite;  // best of the slopes with the same bounds
   std::vector<Eigen::Index> active_;
-  MatrixX normals_, Z_;
+  MatrixX Z_, BZ_;             // directions along the active bounds, and what they do to y
+  bool along_active_ = false;  // whether they are those of the present bounds
+  MatrixX H_, scaled_;         // the curvature along Z
+  VectorX moved_;
+  Eigen::LLT<MatrixX> cholesky_;
   Eigen::SelfAdjointEigenSolver<MatrixX> curvature_;
   int stalled_ = 0;
   Eigen::Index still_ = 0;  // rounds of length zero
+  Eigen::Index last_let_go_ = -1, rounding_let_go_ = -1;
 };
 
 }  // namespace
 
-ConvexAnswer least(const ConvexProblem& p, const VectorX& x) { return Search(p, x).run(); }
+ConvexAnswer least(const ConvexProblem& p, const VectorX& x, const std::vector<int>& sides) {
+  return Search(p, x, sides).run();
+}
 
 }  // namespace deflect

@@ -42,7 +42,7 @@ struct ConvexAnswer {
   VectorX along;          ///< unbounded: change of y along the direction in which f decreases without end
 };
 
-/// Starts at a point x within the bounds.
-ConvexAnswer least(const ConvexProblem&, const VectorX& x);
+/// Starts at a point x within the bounds, on those that `sides` (by row, as in ConvexAnswer) names.
+ConvexAnswer least(const ConvexProblem&, const VectorX& x, const std::vector<int>& sides = {});
 
 }  // namespace deflect

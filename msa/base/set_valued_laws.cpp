@@ -56,7 +56,7 @@ class Laws {
 
   SetValuedSolution solve() {
     if (!feasible()) return {Outcome::no_fit, {}, {}, {}, {}, {}, {}, {}, {}};
-    const ConvexAnswer found = least(problem_, start_);
+    const ConvexAnswer found = least(problem_, start_, likely_ends());
     SetValuedSolution out;
     out.end.assign(at(n_), 0);
     if (found.outcome == ConvexAnswer::Outcome::unbounded) {
@@ -115,11 +115,7 @@ class Laws {
 
   /// Moves the start to where d is within all bounds; false where there is no such place.
   bool feasible() {
-    const VectorX y = problem_.e + problem_.B * start_;
-    double outside = 0;
-    const double size = std::max(problem_.e.norm(), relation_.size.cwiseProduct(unit_).norm());
-    for (Eigen::Index i = 0; i < n_; ++i) outside = std::max(outside, beyond(i, y(i)));
-    if (outside <= 1e-13 * size) return true;
+    if (within_bounds(start_, 1e-13)) return true;
     ConvexProblem to = problem_;
     to.a.setZero();
     to.b.setZero();
@@ -129,11 +125,45 @@ class Laws {
       row.curvature = [low, high](double d) { return d < low || d > high ? 1.0 : 0.0; };
       row.low = -infinite, row.high = infinite;
     }
-    const ConvexAnswer near = least(to, start_);
-    start_ = near.x;
-    outside = 0;
-    for (Eigen::Index i = 0; i < n_; ++i) outside = std::max(outside, beyond(i, near.y(i)));
-    return outside <= 1e-9 * size;
+    start_ = least(to, start_).x;
+    return within_bounds(start_, 1e-9);
+  }
+
+  /// The ends at which laws with slack would push if no law moved, which most of them do in the end: the start moves
+  /// there. None where they do not fit together.
+  std::vector<int> likely_ends() {
+    std::vector<int> sides(at(n_), 0);
+    std::vector<Eigen::Index> pushed;
+    std::vector<double> ends;
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      const ConvexRow& row = problem_.rows[at(i)];
+      if (!(laws_[at(i)].half > 0) || endless(laws_[at(i)]) || !std::isfinite(row.low)) continue;
+      const double push = problem_.e(i) - row.slope((row.low + row.high) / 2);
+      if (push == 0) continue;
+      sides[at(i)] = push > 0 ? 1 : -1;
+      pushed.push_back(i);
+      ends.push_back((push > 0 ? row.high : row.low) - problem_.e(i));
+    }
+    if (pushed.empty()) return {};
+    const MatrixX B = problem_.B(pushed, Eigen::all);
+    Eigen::CompleteOrthogonalDecomposition<MatrixX> solver;
+    solver.setThreshold(rounding);
+    solver.compute(B);
+    if (solver.rank() < B.rows()) return {};
+    const VectorX lacking = Eigen::Map<const VectorX>(ends.data(), B.rows()) - B * start_;
+    const VectorX x = start_ + solver.solve(lacking);
+    if (!within_bounds(x, 1e-13)) return {};
+    start_ = x;
+    return sides;
+  }
+
+  /// But for so much of the size of d.
+  bool within_bounds(const VectorX& x, double rounding_of_d) const {
+    const VectorX y = problem_.e + problem_.B * x;
+    const double size = std::max(problem_.e.norm(), relation_.size.cwiseProduct(unit_).norm());
+    double outside = 0;
+    for (Eigen::Index i = 0; i < n_; ++i) outside = std::max(outside, beyond(i, y(i)));
+    return outside <= rounding_of_d * size;
   }
 
   double beyond(Eigen::Index i, double d) const {
