@@ -48,6 +48,22 @@ TEST(FloatingPlay, OfATripteronsDrivesIsNamed) {
   }
 }
 
+// A force along one axis loads one drive; one along the diagonal, all three.
+TEST(FloatingPlay, IsToldByReading) {
+  const Mechanism drawn = test::device("tripteron");
+  measurement::Measurements data = measured(drawn, 0.02, {});
+  data.readings[1].load << 30, 30, 30, 0, 0, 0;
+  const subject::Subject loose(
+      effects::with_effect(drawn, test::effect("actuator_backlash"), VectorX::Constant(1, 0.02)));
+  PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  const Predicted predicted = loose.stand(data)->predicted(data, linear);
+  EXPECT_EQ(predicted.floating.laws.size(), 3u);
+  ASSERT_EQ(predicted.floating.at_readings.size(), data.readings.size());
+  for (std::size_t i = 0; i < data.readings.size(); ++i) EXPECT_EQ(predicted.floating.at_readings[i], i != 1) << i;
+  EXPECT_TRUE(subject::Subject(drawn).stand(data)->predicted(data, linear).floating.laws.empty());
+}
+
 // A moment alone puts no force on any drive as drawn: what the deformed shape makes is 1e-6 of it, a tolerance of a
 // joint's axis more. So tolerances decide where the play stands in these 180 of the 720 readings.
 TEST(FloatingPlay, WhereTolerancesDecideIsSetAside) {

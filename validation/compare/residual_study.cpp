@@ -59,7 +59,9 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
     throw InputError(fmt::format("{}: no reading holds a number: fill in what was measured", data.origin));
   s.sequence = std::all_of(data.readings.begin(), data.readings.end(),
                            [](const measurement::Reading& r) { return r.sequence.has_value(); });
-  s.predicted = s.standing->predict(data, {}, work);
+  prediction::Predicted predicted = s.standing->predicted(data, {}, work);
+  s.predicted = std::move(predicted.readings);
+  s.floating = std::move(predicted.floating);
   const std::size_t poses = s.standing->poses();
   s.sites.resize(poses);
   s.compliance.resize(poses);

@@ -18,6 +18,7 @@ struct ResidualStudy {
   std::vector<measurement::MeasuredValue> values;     ///< the measured numbers
   MatrixX loads;                                      ///< by load channel and reading (loads_of)
   std::vector<VectorX> predicted;                     ///< of all channels (Standing::predict)
+  prediction::Floating floating;                      ///< with `predicted`
   std::vector<VectorX> deformed_shape;                ///< finite − linear geometry; empty: in `predicted`, or unknown
   std::vector<std::vector<subject::Site>> sites;      ///< by pose
   subject::InnerSites inner;                          ///< of a subject without tool point

@@ -26,25 +26,25 @@ std::shared_ptr<const statistics::Uncertainty> uncertainty_of(const compare::Com
                                                          c.study.subject->load_tolerance(), aside);
 }
 
-std::vector<VectorX> in_linear_geometry(const compare::ResidualStudy& s, const subject::Standing& standing,
-                                        const parallel::Work& work = {}) {
+prediction::Predicted in_linear_geometry(const compare::ResidualStudy& s, const subject::Standing& standing,
+                                         const parallel::Work& work = {}) {
   prediction::PredictionOptions linear;
   linear.geometry = Geometry::linear;
-  return standing.predict(*s.data, linear, work);
+  return standing.predicted(*s.data, linear, work);
 }
 
-/// What equilibrium in the deformed shape adds to a subject's readings; nothing where it does not stand in it. `apart`:
-/// without what it moves play that linear geometry leaves open.
+/// What equilibrium in the deformed shape adds to what `linear` predicts of a subject's readings; nothing where it does
+/// not stand in it. `apart`: without what it moves play that linear geometry leaves open.
 std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject,
-                                         bool apart = false) {
-  const std::shared_ptr<const subject::Standing> standing = subject.stand(*s.data, s.standing.get());
+                                         const VectorX& linear, bool apart = false) {
   if (subject.true_geometry() == Geometry::linear) return std::nullopt;
   prediction::PredictionOptions finite;
   finite.geometry = subject.true_geometry();
   finite.apart = apart;
   return outcome_of([&] {
-           return VectorX(statistics::rows_of(s.values, standing->predict(*s.data, finite)) -
-                          statistics::rows_of(s.values, in_linear_geometry(s, *standing)));
+           return VectorX(
+               statistics::rows_of(s.values, subject.stand(*s.data, s.standing.get())->predict(*s.data, finite)) -
+               linear);
          })
       .value;
 }
@@ -77,14 +77,15 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
   measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
   in_linear_ = statistics::rows_of(s.values, s.predicted);
   shape_ = VectorX::Zero(measured_.size());
-  if (!s.deformed_shape.empty())
-    shape_ = statistics::rows_of(s.values, s.deformed_shape);
-  else if (subject.geometry() != Geometry::linear) {  // it is in what the comparison predicts
+  floating_ = s.floating.laws;
+  if (!s.deformed_shape.empty()) shape_ = statistics::rows_of(s.values, s.deformed_shape);
+  if (subject.geometry() != Geometry::linear) {  // the shape is in what the comparison predicts
     shape_ = in_linear_;
-    in_linear_ = statistics::rows_of(s.values, in_linear_geometry(s, *s.standing));
+    Linear own = linear(subject);
+    floating_ = std::move(own.floating.laws);
+    in_linear_ = std::move(own.values);
     shape_ -= in_linear_;
   }
-  if (subject.true_geometry() != Geometry::linear) floating_ = s.standing->floating(*s.data).laws;
   bent_ = bent_of(subject);
   tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
@@ -104,7 +105,7 @@ std::vector<double> Observations::log_likelihood_of_scales(const std::vector<dou
 
 VectorX Observations::bent_of(const subject::Subject& subject) const {
   if (floating_.empty()) return shape_;
-  return deformed_shape_of(comparison_->study, subject, true).value_or(shape_);
+  return deformed_shape_of(comparison_->study, subject, in_linear_, true).value_or(shape_);
 }
 
 /// Where play stands in the deformed shape is a yes or no that a fifth of the shape does not change.
@@ -153,13 +154,17 @@ std::shared_ptr<const subject::Standing> Observations::stand(const subject::Subj
   return subject.stand(*comparison_->study.data, comparison_->study.standing.get());
 }
 
-VectorX Observations::linear(const subject::Subject& subject) const {
+Observations::Linear Observations::linear(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
-  return statistics::rows_of(s.values, in_linear_geometry(s, *stand(subject), parallel::alone));
+  prediction::Predicted found = in_linear_geometry(s, *stand(subject), parallel::alone);
+  return {statistics::rows_of(s.values, found.readings), std::move(found.floating)};
 }
 
 VectorX Observations::residual(const subject::Subject& subject) const {
-  if (!true_geometry_) return measured_ - shape_for(subject) - linear(subject);
+  if (!true_geometry_) {
+    const Linear l = linear(subject);
+    return measured_ - shape_beside(l, subject) - l.values;
+  }
   const compare::ResidualStudy& s = comparison_->study;
   prediction::PredictionOptions finite;
   finite.geometry = subject.true_geometry();
@@ -167,10 +172,12 @@ VectorX Observations::residual(const subject::Subject& subject) const {
 }
 
 VectorX Observations::shape_for(const subject::Subject& subject) const {
-  if (subject.true_geometry() == Geometry::linear ||
-      stand(subject)->floating(*comparison_->study.data).laws == floating_)
-    return shape_;
-  return deformed_shape_of(comparison_->study, subject).value_or(shape_);
+  return subject.true_geometry() == Geometry::linear ? shape_ : shape_beside(linear(subject), subject);
+}
+
+VectorX Observations::shape_beside(const Linear& l, const subject::Subject& subject) const {
+  if (l.floating.laws == floating_) return shape_;
+  return deformed_shape_of(comparison_->study, subject, l.values).value_or(shape_);
 }
 
 bool Observations::has_history(const subject::Subject& subject) const { return stand(subject)->has_history(); }
@@ -181,7 +188,7 @@ VectorX Observations::whitened_residual(const subject::Subject& subject) const {
 
 VectorX Observations::whitened_residual(const subject::Subject& subject, const VectorX& shape) const {
   if (true_geometry_) return whitened_residual(subject);
-  return uncertainty_->whitened(measured_ - shape - linear(subject));
+  return uncertainty_->whitened(measured_ - shape - linear(subject).values);
 }
 
 double Observations::rmse(const subject::Subject& subject) const {
@@ -221,13 +228,13 @@ Observations Observations::granted(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;
   out.at_play_.clear();
-  if (const std::optional<VectorX> shape = deformed_shape_of(s, subject)) {
-    prediction::Floating floating = stand(subject)->floating(*s.data);
-    out.shape_ = *shape;
-    out.in_linear_ = linear(subject);
-    out.floating_ = std::move(floating.laws);
+  Linear own = linear(subject);
+  if (std::optional<VectorX> shape = deformed_shape_of(s, subject, own.values)) {
+    out.shape_ = std::move(*shape);
+    out.in_linear_ = std::move(own.values);
+    out.floating_ = std::move(own.floating.laws);
     out.bent_ = out.bent_of(subject);
-    out.at_play_ = std::move(floating.at_readings);
+    out.at_play_ = std::move(own.floating.at_readings);
   }
   out.count_shape();
   out.move_tolerances(subject);
@@ -244,7 +251,7 @@ double Observations::in_noise(const VectorX& values) const {
 double Observations::change_of_shape(const subject::Subject& to) const {
   constexpr double growth = 2;
   if (shape_.isZero(0)) return 0;
-  return growth * in_noise(shape_) * in_noise(linear(to) - in_linear_) / in_noise(in_linear_);
+  return growth * in_noise(shape_) * in_noise(linear(to).values - in_linear_) / in_noise(in_linear_);
 }
 
 bool Observations::is_slender() const {
@@ -262,12 +269,12 @@ Observations Observations::in_true_geometry() const {
 Observations Observations::in_shape_of(const subject::Subject& subject) const {
   Observations out = *this;
   if (true_geometry_ || subject.true_geometry() == Geometry::linear) return out;
-  std::set<std::string> floating = stand(subject)->floating(*comparison_->study.data).laws;
-  if (floating == floating_) return out;
-  out.shape_ = shape_for(subject);
-  out.floating_ = std::move(floating);
+  Linear own = linear(subject);
+  if (own.floating.laws == floating_) return out;
+  out.shape_ = shape_beside(own, subject);
+  out.floating_ = std::move(own.floating.laws);
+  out.in_linear_ = std::move(own.values);
   out.bent_ = out.bent_of(subject);
-  out.in_linear_ = linear(subject);
   out.null_ = out.whitened_residual(subject_);
   return out;
 }
@@ -278,7 +285,7 @@ Observations Observations::weighed_for(const subject::Subject& subject) const {
   auto predicted =
       outcome_of([&] { return in_linear_geometry(s, *subject.stand(*s.data, s.standing.get()), parallel::alone); });
   if (!predicted) return out;
-  out.predicted_ = std::move(*predicted);
+  out.predicted_ = std::move(predicted->readings);
   out.move_tolerances(subject);
   out.weigh(aside_);
   return out;

@@ -44,8 +44,8 @@ class Observations {
   /// The same with a contribution of the deformed shape that shape_for() told of a subject like it.
   VectorX whitened_residual(const subject::Subject&, const VectorX& shape) const;
   /// The contribution of the deformed shape to a subject's readings, m and rad: the one that is granted (see
-  /// granted()), or, where other play floats than in the granted subject (Standing::floating), the subject's own, which
-  /// says where in the play it stands.
+  /// granted()), or, where other play floats than in the granted subject (prediction::Floating), the subject's own,
+  /// which says where in the play it stands.
   VectorX shape_for(const subject::Subject&) const;
   const VectorX& granted_shape() const { return shape_; }
   /// The same for the subject as given, in which nothing is missing.
@@ -99,12 +99,18 @@ class Observations {
 
  private:
   std::shared_ptr<const subject::Standing> stand(const subject::Subject&) const;
-  VectorX linear(const subject::Subject&) const;  // in linear geometry
-  double in_noise(const VectorX& values) const;   // their norm in σ of noise
+  struct Linear {
+    VectorX values;
+    prediction::Floating floating;
+  };
+  Linear linear(const subject::Subject&) const;                        // what is predicted in linear geometry
+  VectorX shape_beside(const Linear&, const subject::Subject&) const;  // shape_for() a subject of which that is
+  double in_noise(const VectorX& values) const;                        // their norm in σ of noise
   /// Subtracts the estimated zero of the readings where it is unknown.
   VectorX from_zero(VectorX residual) const;
   void weigh(const std::vector<bool>& aside);
-  /// What the deformed shape of `subject`, whose floating play is floating_, adds where it does not move that play.
+  /// What the deformed shape of `subject`, for which in_linear_ and floating_ stand, adds where it does not move that
+  /// play.
   VectorX bent_of(const subject::Subject&) const;
   void count_shape();
   void move_tolerances(const subject::Subject&);

@@ -160,8 +160,8 @@ theories::Prediction LoadedMachine::predict(theories::TheoryAt& machine, const m
 Motion LoadedMachine::move(const measurement::Reading& r, const Conditions& conditions) {
   theories::Prediction moved{Vector6::Zero(), true};  // a platform that is held rigidly
   if (locked_ || !rigid_tool_) moved = predict(locked_ ? *locked_ : *machine_, r, conditions);
-  Motion out{moved.displacement,     moved.displacement,      moved.converged,
-             std::move(moved.slips), std::move(moved.reason), std::move(moved.inside)};
+  Motion out{moved.displacement,      moved.displacement,      moved.converged,          std::move(moved.slips),
+             std::move(moved.reason), std::move(moved.inside), std::move(moved.floating)};
   if (!rigid_tool_) return out;
   Conditions undeformed = conditions;
   if (instruments_.any_load()) undeformed = Conditions(Geometry::linear);
@@ -171,6 +171,7 @@ Motion LoadedMachine::move(const measurement::Reading& r, const Conditions& cond
   const theories::Prediction rigid =
       locked_ ? locked_->predict(F, undeformed) : theories::Prediction{Vector6::Zero(), true};
   out.tool += whole.displacement - rigid.displacement;
+  out.floating.insert(out.floating.end(), whole.floating.begin(), whole.floating.end());
   if (!whole.converged || !rigid.converged) out.converged = false, out.reason = whole.reason + rigid.reason;
   return out;
 }

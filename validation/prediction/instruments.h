@@ -28,8 +28,9 @@ struct Motion {
   Vector6 tool = Vector6::Zero(), platform = Vector6::Zero();
   bool converged = true;
   std::vector<double> slips = {};
-  std::string reason = {};           ///< why it did not converge, where known
-  std::vector<Vector6> inside = {};  ///< by Instruments::inside()
+  std::string reason = {};                 ///< why it did not converge, where known
+  std::vector<Vector6> inside = {};        ///< by Instruments::inside()
+  std::vector<std::string> floating = {};  ///< play that the load leaves open (theories::Prediction)
 };
 
 /// The sensors and points of load that a file has columns for, in its order.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -185,6 +184,18 @@ void at_every_pose(const measurement::Measurements& data, bool in_time, const pa
                           work.progress ? std::function<void(std::size_t)>(told) : nullptr);
 }
 
+/// By reading, the play that its load leaves open.
+Floating all_of(const std::vector<std::vector<std::string>>& open) {
+  Floating out;
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    if (open[i].empty()) continue;
+    out.at_readings.resize(open.size());
+    out.at_readings[i] = true;
+    out.laws.insert(open[i].begin(), open[i].end());
+  }
+  return out;
+}
+
 void require_equilibrium(const Motion& r, const theories::Theory& theory, const measurement::Measurements& data,
                          const measurement::Reading& reading) {
   if (r.converged) return;
@@ -202,10 +213,10 @@ Vector6 recorded_displacement(const Sensor& sensor, const Vector6& d) {
   return rotate_twist(rotation_from_vector(sensor.rotation)) * d;
 }
 
-std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration>& machines,
-                             const measurement::Measurements& data, const PredictionOptions& o,
-                             const parallel::Work& work) {
+Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machines,
+                    const measurement::Measurements& data, const PredictionOptions& o, const parallel::Work& work) {
   std::vector<VectorX> out(data.readings.size());
+  std::vector<std::vector<std::string>> open(data.readings.size());
   const Instruments instruments(m, data);
   const std::string history = machines.empty() ? "" : remembering(machines.front());
   const bool beside = !machines.empty() && only_beside_legs(machines.front());
@@ -247,6 +258,7 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
       require_equilibrium(r, *o.theory, data, reading);
       if (beside) carried.leave_with(r.platform, r.slips);
       conditions.slips = r.slips;
+      open[i] = r.floating;
       const Motion seen = without(r, unloaded);
       out[i].resize(6 + std::ssize(data.instruments.sensors));
       out[i] << m.sensor.zero + sensor * seen.tool, instruments.readings(machines[p], seen, conditions.geometry);
@@ -254,34 +266,13 @@ std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration
   };
   at_every_pose(data, beside, work, at_pose);
   if (!m.sensor.drift.isZero(0)) add_drift(out, m.sensor, data);
-  return out;
+  return {std::move(out), all_of(open)};
 }
 
-Floating floating(const Mechanism& m, const std::vector<Configuration>& machines,
-                  const measurement::Measurements& data) {
-  Floating out;
-  const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation));
-  const theories::Theory& theory = *PredictionOptions().theory;
-  for (std::size_t p = 0; p < machines.size(); ++p) {
-    bool play = false;
-    for_each_law(machines[p], [&](const Law& law) { play = play || std::holds_alternative<ClearanceLaw>(law); });
-    if (!play) continue;
-    out.at_readings.resize(data.readings.size());
-    const std::unique_ptr<theories::TheoryAt> machine = theory.at(machines[p], {m.name});
-    std::map<std::array<double, 6>, bool> asked;
-    for (const std::size_t i : data.poses[p].readings) {
-      std::array<double, 6> load;
-      std::copy(data.readings[i].load.begin(), data.readings[i].load.end(), load.begin());
-      const auto [known, is_new] = asked.try_emplace(load);
-      if (is_new) {
-        std::vector<std::string> laws = machine->predict(cell * data.readings[i].load, Geometry::linear).floating;
-        known->second = !laws.empty();
-        std::move(laws.begin(), laws.end(), std::inserter(out.laws, out.laws.end()));
-      }
-      out.at_readings[i] = known->second;
-    }
-  }
-  return out;
+std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration>& machines,
+                             const measurement::Measurements& data, const PredictionOptions& o,
+                             const parallel::Work& work) {
+  return predicted(m, machines, data, o, work).readings;
 }
 
 }  // namespace deflect::prediction

@@ -29,20 +29,28 @@ struct PredictionOptions {
   bool apart = false;                ///< laws that jump, in the closed form (theories::TheoryOptions::apart)
 };
 
-/// By reading, what every channel records (MeasuredValue): d_T_W, all six components, then the sensors; m, rad.
-/// `machines`: the configurations of the device, one
-/// per pose of the measurements (configure_all, configure_as_built). Throws NumericalError "file:line: …" where the
-/// theory finds no equilibrium, InputError where the device needs a sequence that the file does not have.
-std::vector<VectorX> predict(const Mechanism&, const std::vector<Configuration>& machines,
-                             const measurement::Measurements&, const PredictionOptions& = {},
-                             const parallel::Work& = {});
-
-/// Play that loads leave open in linear geometry (theories::Prediction::floating).
+/// Play that loads leave open (theories::Prediction::floating). In linear geometry only equilibrium in the deformed
+/// shape says where in it the mechanism stands.
 struct Floating {
   std::set<std::string> laws;     ///< by name: the same law has the same one in every edited copy
   std::vector<bool> at_readings;  ///< by reading, whether there is any; empty: nowhere
 };
-Floating floating(const Mechanism&, const std::vector<Configuration>& machines, const measurement::Measurements&);
+
+struct Predicted {
+  /// By reading, what every channel records (MeasuredValue): d_T_W, all six components, then the sensors; m, rad.
+  std::vector<VectorX> readings;
+  Floating floating = {};
+};
+
+/// `machines`: the configurations of the device, one per pose of the measurements (configure_all, configure_as_built).
+/// Throws NumericalError "file:line: …" where the theory finds no equilibrium, InputError where the device needs a
+/// sequence that the file does not have.
+Predicted predicted(const Mechanism&, const std::vector<Configuration>& machines, const measurement::Measurements&,
+                    const PredictionOptions& = {}, const parallel::Work& = {});
+/// The readings alone.
+std::vector<VectorX> predict(const Mechanism&, const std::vector<Configuration>& machines,
+                             const measurement::Measurements&, const PredictionOptions& = {},
+                             const parallel::Work& = {});
 
 /// The true load from the recorded one; the recorded displacement, without drift, from the true one.
 Vector6 true_load(const LoadCell&, const Vector6& recorded);

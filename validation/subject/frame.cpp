@@ -38,9 +38,9 @@ class FrameStanding : public Standing {
   bool has_history() const override { return subject::has_history(*frame_); }
 
   /// By the MSA, which alone knows frames.
-  std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
-                               const parallel::Work&) const override {
-    return predicted_readings(*frame_, data, o.geometry.value_or(frame_->geometry), near_.get());
+  prediction::Predicted predicted(const measurement::Measurements& data, const prediction::PredictionOptions& o,
+                                  const parallel::Work&) const override {
+    return {predicted_readings(*frame_, data, o.geometry.value_or(frame_->geometry), near_.get())};
   }
 
   InnerSites inner_sites(const measurement::Measurements& data) const override {
@@ -146,15 +146,15 @@ class DeviatingFrame final : public FrameStanding {
       : FrameStanding(std::make_shared<const FrameDescription>(std::move(built)), data, drawn->known()),
         drawn_(std::move(drawn)) {}
 
-  std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
-                               const parallel::Work& work) const override {
-    auto read = outcome_of([&] { return FrameStanding::predict(data, o, work); });
+  prediction::Predicted predicted(const measurement::Measurements& data, const prediction::PredictionOptions& o,
+                                  const parallel::Work& work) const override {
+    auto read = outcome_of([&] { return FrameStanding::predicted(data, o, work); });
     if (read) return std::move(*read);
     prediction::PredictionOptions linear = o;
     linear.geometry = Geometry::linear;
-    std::vector<VectorX> out = FrameStanding::predict(data, linear, work);
+    prediction::Predicted out = FrameStanding::predicted(data, linear, work);
     const std::vector<VectorX> stands = drawn_->predict(data, o, work), drawn = drawn_->predict(data, linear, work);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] += stands[i] - drawn[i];
+    for (std::size_t i = 0; i < stands.size(); ++i) out.readings[i] += stands[i] - drawn[i];
     return out;
   }
 

@@ -179,13 +179,9 @@ class MachineStanding final : public Standing {
 
   bool has_history() const override { return any_history(machines_.front()); }
 
-  prediction::Floating floating(const measurement::Measurements& data) const override {
-    return prediction::floating(*mechanism_, machines_, data);
-  }
-
-  std::vector<VectorX> predict(const measurement::Measurements& data, const prediction::PredictionOptions& o,
-                               const parallel::Work& work) const override {
-    return prediction::predict(*mechanism_, machines_, data, o, work);
+  prediction::Predicted predicted(const measurement::Measurements& data, const prediction::PredictionOptions& o,
+                                  const parallel::Work& work) const override {
+    return prediction::predicted(*mechanism_, machines_, data, o, work);
   }
 
   measurement::SensorForm sensor_forms(const measurement::Measurements& data) const override {

@@ -110,13 +110,15 @@ class Standing {
   /// Whether a reading depends on the loads before it: friction. Then the order of the readings matters.
   virtual bool has_history() const { return false; }
 
-  /// The play that these loads leave open in linear geometry: there only equilibrium in the deformed shape says where
-  /// in it the subject stands.
-  virtual prediction::Floating floating(const measurement::Measurements&) const { return {}; }
-
-  /// Predicts the readings of these measurements, which must have the same poses (prediction.h).
-  virtual std::vector<VectorX> predict(const measurement::Measurements&, const prediction::PredictionOptions& = {},
-                                       const parallel::Work& = {}) const = 0;
+  /// Predicts the readings of these measurements, which must have the same poses (prediction.h). Of a frame no play is
+  /// told that floats.
+  virtual prediction::Predicted predicted(const measurement::Measurements&, const prediction::PredictionOptions& = {},
+                                          const parallel::Work& = {}) const = 0;
+  /// The readings alone.
+  std::vector<VectorX> predict(const measurement::Measurements& m, const prediction::PredictionOptions& o = {},
+                               const parallel::Work& work = {}) const {
+    return predicted(m, o, work).readings;
+  }
 
   /// What the named sensors of these measurements read of a small displacement of the measured point (MeasuredValue).
   virtual measurement::SensorForm sensor_forms(const measurement::Measurements&) const { return nullptr; }
