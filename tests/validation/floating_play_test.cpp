@@ -58,10 +58,16 @@ TEST(FloatingPlay, IsToldByReading) {
   PredictionOptions linear;
   linear.geometry = Geometry::linear;
   const Predicted predicted = loose.stand(data)->predicted(data, linear);
-  EXPECT_EQ(predicted.floating.laws.size(), 3u);
   ASSERT_EQ(predicted.floating.at_readings.size(), data.readings.size());
-  for (std::size_t i = 0; i < data.readings.size(); ++i) EXPECT_EQ(predicted.floating.at_readings[i], i != 1) << i;
-  EXPECT_TRUE(subject::Subject(drawn).stand(data)->predicted(data, linear).floating.laws.empty());
+  for (std::size_t i = 0; i < data.readings.size(); ++i)
+    EXPECT_EQ(predicted.floating.at_readings[i].size(), i == 1 ? 0u : 2u) << i;
+  EXPECT_TRUE(subject::Subject(drawn).stand(data)->predicted(data, linear).floating.at_readings.empty());
+  linear.only.assign(data.readings.size(), false);
+  linear.only[2] = true;
+  const Predicted one = loose.stand(data)->predicted(data, linear);
+  EXPECT_EQ(one.readings[2], predicted.readings[2]);
+  EXPECT_EQ(one.floating.at_readings[2], predicted.floating.at_readings[2]);
+  EXPECT_TRUE(one.readings[0].isZero(0));
 }
 
 // A moment alone puts no force on any drive as drawn: what the deformed shape makes is 1e-6 of it, a tolerance of a

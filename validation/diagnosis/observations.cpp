@@ -34,13 +34,11 @@ prediction::Predicted in_linear_geometry(const compare::ResidualStudy& s, const 
 }
 
 /// What equilibrium in the deformed shape adds to what `linear` predicts of a subject's readings; nothing where it does
-/// not stand in it. `apart`: without what it moves play that linear geometry leaves open.
+/// not stand in it.
 std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const subject::Subject& subject,
-                                         const VectorX& linear, bool apart = false) {
+                                         const VectorX& linear, prediction::PredictionOptions finite = {}) {
   if (subject.true_geometry() == Geometry::linear) return std::nullopt;
-  prediction::PredictionOptions finite;
   finite.geometry = subject.true_geometry();
-  finite.apart = apart;
   return outcome_of([&] {
            return VectorX(
                statistics::rows_of(s.values, subject.stand(*s.data, s.standing.get())->predict(*s.data, finite)) -
@@ -77,12 +75,12 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
   measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
   in_linear_ = statistics::rows_of(s.values, s.predicted);
   shape_ = VectorX::Zero(measured_.size());
-  floating_ = s.floating.laws;
+  floating_ = s.floating;
   if (!s.deformed_shape.empty()) shape_ = statistics::rows_of(s.values, s.deformed_shape);
   if (subject.geometry() != Geometry::linear) {  // the shape is in what the comparison predicts
     shape_ = in_linear_;
     Linear own = linear(subject);
-    floating_ = std::move(own.floating.laws);
+    floating_ = std::move(own.floating);
     in_linear_ = std::move(own.values);
     shape_ -= in_linear_;
   }
@@ -104,8 +102,10 @@ std::vector<double> Observations::log_likelihood_of_scales(const std::vector<dou
 }
 
 VectorX Observations::bent_of(const subject::Subject& subject) const {
-  if (floating_.empty()) return shape_;
-  return deformed_shape_of(comparison_->study, subject, in_linear_, true).value_or(shape_);
+  if (floating_.at_readings.empty()) return shape_;
+  prediction::PredictionOptions apart;
+  apart.apart = true;
+  return deformed_shape_of(comparison_->study, subject, in_linear_, apart).value_or(shape_);
 }
 
 /// Where play stands in the deformed shape is a yes or no that a fifth of the shape does not change.
@@ -176,8 +176,18 @@ VectorX Observations::shape_for(const subject::Subject& subject) const {
 }
 
 VectorX Observations::shape_beside(const Linear& l, const subject::Subject& subject) const {
-  if (l.floating.laws == floating_) return shape_;
-  return deformed_shape_of(comparison_->study, subject, l.values).value_or(shape_);
+  if (l.floating.at_readings == floating_.at_readings) return shape_;
+  const compare::ResidualStudy& s = comparison_->study;
+  static const std::set<std::string> none;
+  const auto open = [](const prediction::Floating& f, std::size_t i) { return f.at(i) ? f.at_readings[i] : none; };
+  prediction::PredictionOptions finite;
+  for (std::size_t i = 0; i < s.data->readings.size(); ++i)
+    finite.only.push_back(open(l.floating, i) != open(floating_, i));
+  VectorX out = shape_;
+  if (const auto own = deformed_shape_of(s, subject, l.values, finite))
+    for (std::size_t k = 0; k < s.values.size(); ++k)
+      if (finite.only[s.values[k].reading]) out(as_index(k)) = (*own)(as_index(k));
+  return out;
 }
 
 bool Observations::has_history(const subject::Subject& subject) const { return stand(subject)->has_history(); }
@@ -232,9 +242,9 @@ Observations Observations::granted(const subject::Subject& subject) const {
   if (std::optional<VectorX> shape = deformed_shape_of(s, subject, own.values)) {
     out.shape_ = std::move(*shape);
     out.in_linear_ = std::move(own.values);
-    out.floating_ = std::move(own.floating.laws);
+    out.floating_ = std::move(own.floating);
     out.bent_ = out.bent_of(subject);
-    out.at_play_ = std::move(own.floating.at_readings);
+    for (std::size_t i = 0; i < s.data->readings.size(); ++i) out.at_play_.push_back(out.floating_.at(i));
   }
   out.count_shape();
   out.move_tolerances(subject);
@@ -270,9 +280,9 @@ Observations Observations::in_shape_of(const subject::Subject& subject) const {
   Observations out = *this;
   if (true_geometry_ || subject.true_geometry() == Geometry::linear) return out;
   Linear own = linear(subject);
-  if (own.floating.laws == floating_) return out;
+  if (own.floating.at_readings == floating_.at_readings) return out;
   out.shape_ = shape_beside(own, subject);
-  out.floating_ = std::move(own.floating.laws);
+  out.floating_ = std::move(own.floating);
   out.in_linear_ = std::move(own.values);
   out.bent_ = out.bent_of(subject);
   out.null_ = out.whitened_residual(subject_);

@@ -44,8 +44,8 @@ class Observations {
   /// The same with a contribution of the deformed shape that shape_for() told of a subject like it.
   VectorX whitened_residual(const subject::Subject&, const VectorX& shape) const;
   /// The contribution of the deformed shape to a subject's readings, m and rad: the one that is granted (see
-  /// granted()), or, where other play floats than in the granted subject (prediction::Floating), the subject's own,
-  /// which says where in the play it stands.
+  /// granted()), or, at readings where other play floats than in the granted subject (prediction::Floating), the
+  /// subject's own, which says where in the play it stands.
   VectorX shape_for(const subject::Subject&) const;
   const VectorX& granted_shape() const { return shape_; }
   /// The same for the subject as given, in which nothing is missing.
@@ -127,10 +127,10 @@ class Observations {
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;
   VectorX measured_, shape_, null_;
-  VectorX bent_;                    // shape_ without where it puts floating play
-  VectorX in_linear_;               // prediction in linear geometry of the subject whose deformed shape is granted
-  std::set<std::string> floating_;  // play in that subject
-  std::vector<bool> at_play_;       // by reading, in the last granted subject; empty: nowhere
+  VectorX bent_;                   // shape_ without where it puts floating play
+  VectorX in_linear_;              // prediction in linear geometry of the subject whose deformed shape is granted
+  prediction::Floating floating_;  // play in that subject
+  std::vector<bool> at_play_;      // by reading, in the last granted subject; empty: nowhere
   bool true_geometry_ = false;
 };
 

@@ -184,16 +184,10 @@ void at_every_pose(const measurement::Measurements& data, bool in_time, const pa
                           work.progress ? std::function<void(std::size_t)>(told) : nullptr);
 }
 
-/// By reading, the play that its load leaves open.
-Floating all_of(const std::vector<std::vector<std::string>>& open) {
-  Floating out;
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    if (open[i].empty()) continue;
-    out.at_readings.resize(open.size());
-    out.at_readings[i] = true;
-    out.laws.insert(open[i].begin(), open[i].end());
-  }
-  return out;
+Floating somewhere(Floating open) {
+  const bool nowhere = std::all_of(open.at_readings.begin(), open.at_readings.end(),
+                                   [](const std::set<std::string>& laws) { return laws.empty(); });
+  return nowhere ? Floating() : open;
 }
 
 void require_equilibrium(const Motion& r, const theories::Theory& theory, const measurement::Measurements& data,
@@ -215,8 +209,8 @@ Vector6 recorded_displacement(const Sensor& sensor, const Vector6& d) {
 
 Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machines,
                     const measurement::Measurements& data, const PredictionOptions& o, const parallel::Work& work) {
-  std::vector<VectorX> out(data.readings.size());
-  std::vector<std::vector<std::string>> open(data.readings.size());
+  std::vector<VectorX> out(data.readings.size(), VectorX::Zero(6 + std::ssize(data.instruments.sensors)));
+  Floating open{std::vector<std::set<std::string>>(data.readings.size())};
   const Instruments instruments(m, data);
   const std::string history = machines.empty() ? "" : remembering(machines.front());
   const bool beside = !machines.empty() && only_beside_legs(machines.front());
@@ -225,7 +219,10 @@ Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machin
   Carried carried;
   const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation)),
                 sensor = rotate_twist(rotation_from_vector(m.sensor.rotation));
+  const auto passed_over = [&](std::size_t i) { return history.empty() && !o.only.empty() && !o.only[i]; };
   const auto at_pose = [&](std::size_t p) {
+    const std::vector<std::size_t>& here = data.poses[p].readings;
+    if (std::all_of(here.begin(), here.end(), passed_over)) return;
     theories::TheoryOptions options{m.name, o.division};
     options.apart = o.apart;
     LoadedMachine machine(*o.theory, options, machines[p], instruments, cell);
@@ -253,20 +250,20 @@ Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machin
       return found->second;
     };
     for (const std::size_t i : ordered(data.poses[p], data)) {
+      if (passed_over(i)) continue;
       const measurement::Reading& reading = data.readings[i];
       const Motion& r = answer(reading);
       require_equilibrium(r, *o.theory, data, reading);
       if (beside) carried.leave_with(r.platform, r.slips);
       conditions.slips = r.slips;
-      open[i] = r.floating;
+      open.at_readings[i].insert(r.floating.begin(), r.floating.end());
       const Motion seen = without(r, unloaded);
-      out[i].resize(6 + std::ssize(data.instruments.sensors));
       out[i] << m.sensor.zero + sensor * seen.tool, instruments.readings(machines[p], seen, conditions.geometry);
     }
   };
   at_every_pose(data, beside, work, at_pose);
   if (!m.sensor.drift.isZero(0)) add_drift(out, m.sensor, data);
-  return {std::move(out), all_of(open)};
+  return {std::move(out), somewhere(std::move(open))};
 }
 
 std::vector<VectorX> predict(const Mechanism& m, const std::vector<Configuration>& machines,

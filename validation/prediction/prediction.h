@@ -27,13 +27,16 @@ struct PredictionOptions {
   std::optional<Geometry> geometry;  ///< absent: the device's
   frame::MemberDivision division;    ///< of members, in the MSA
   bool apart = false;                ///< laws that jump, in the closed form (theories::TheoryOptions::apart)
+  /// By reading of a machine, which are asked for: the numbers of the others mean nothing. Empty: all.
+  std::vector<bool> only = {};
 };
 
 /// Play that loads leave open (theories::Prediction::floating). In linear geometry only equilibrium in the deformed
 /// shape says where in it the mechanism stands.
 struct Floating {
-  std::set<std::string> laws;     ///< by name: the same law has the same one in every edited copy
-  std::vector<bool> at_readings;  ///< by reading, whether there is any; empty: nowhere
+  /// By reading, the laws by name: the same law has the same one in every edited copy. Empty: nowhere.
+  std::vector<std::set<std::string>> at_readings;
+  bool at(std::size_t reading) const { return !at_readings.empty() && !at_readings[reading].empty(); }
 };
 
 struct Predicted {
