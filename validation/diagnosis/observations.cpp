@@ -26,11 +26,10 @@ std::shared_ptr<const statistics::Uncertainty> uncertainty_of(const compare::Com
                                                          c.study.subject->load_tolerance(), aside);
 }
 
-prediction::Predicted in_linear_geometry(const compare::ResidualStudy& s, const subject::Standing& standing,
-                                         const parallel::Work& work = {}) {
+prediction::Predicted in_linear_geometry(const compare::ResidualStudy& s, const subject::Standing& standing) {
   prediction::PredictionOptions linear;
   linear.geometry = Geometry::linear;
-  return standing.predicted(*s.data, linear, work);
+  return standing.predicted(*s.data, linear, parallel::alone);
 }
 
 /// What equilibrium in the deformed shape adds to what `linear` predicts of a subject's readings; nothing where it does
@@ -156,7 +155,7 @@ std::shared_ptr<const subject::Standing> Observations::stand(const subject::Subj
 
 Observations::Linear Observations::linear(const subject::Subject& subject) const {
   const compare::ResidualStudy& s = comparison_->study;
-  prediction::Predicted found = in_linear_geometry(s, *stand(subject), parallel::alone);
+  prediction::Predicted found = in_linear_geometry(s, *stand(subject));
   return {statistics::rows_of(s.values, found.readings), std::move(found.floating)};
 }
 
@@ -178,8 +177,9 @@ VectorX Observations::shape_for(const subject::Subject& subject) const {
 VectorX Observations::shape_beside(const Linear& l, const subject::Subject& subject) const {
   if (l.floating.at_readings == floating_.at_readings) return shape_;
   const compare::ResidualStudy& s = comparison_->study;
-  static const std::set<std::string> none;
-  const auto open = [](const prediction::Floating& f, std::size_t i) { return f.at(i) ? f.at_readings[i] : none; };
+  const auto open = [](const prediction::Floating& f, std::size_t i) {
+    return f.at(i) ? f.at_readings[i] : std::set<std::string>();
+  };
   prediction::PredictionOptions finite;
   for (std::size_t i = 0; i < s.data->readings.size(); ++i)
     finite.only.push_back(open(l.floating, i) != open(floating_, i));
@@ -292,8 +292,7 @@ Observations Observations::in_shape_of(const subject::Subject& subject) const {
 Observations Observations::weighed_for(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;
-  auto predicted =
-      outcome_of([&] { return in_linear_geometry(s, *subject.stand(*s.data, s.standing.get()), parallel::alone); });
+  auto predicted = outcome_of([&] { return in_linear_geometry(s, *stand(subject)); });
   if (!predicted) return out;
   out.predicted_ = std::move(predicted->readings);
   out.move_tolerances(subject);
