@@ -160,9 +160,34 @@ double beyond_two_at_a_place(const Plan& plan, const VectorX& change, const std:
   return least;
 }
 
+/// "yields" of "yields@elbow.rz".
+std::string law_of(const effects::Effect& e) { return e.name.substr(0, e.name.find('@')); }
+
+/// Whether a place of one part is a part of the group.
+bool is_part(const subject::Place& one, const subject::Place& group) {
+  if (!one.others.empty()) return false;
+  if (one.path == group.path) return one.freedoms == group.freedoms;
+  return std::any_of(group.others.begin(), group.others.end(),
+                     [&](const subject::OtherPart& o) { return o.path == one.path && o.freedoms == one.freedoms; });
+}
+
+/// The same with the law of a group, which is that law at all of its parts together.
+double beyond_its_parts(const Plan& plan, const Hidden& hidden, const std::vector<std::string>& left_out) {
+  const effects::Effect& e = *hidden.effect.effect;
+  if (!e.place || e.place->others.empty()) return hidden.lambda();
+  std::vector<MatrixX> parts;
+  for (const Signature& s : plan.signatures)
+    if (s.effect.effect->place && is_part(*s.effect.effect->place, *e.place) && law_of(*s.effect.effect) == law_of(e) &&
+        std::find(left_out.begin(), left_out.end(), s.effect.effect->name) == left_out.end())
+      parts.push_back(s.basis);
+  const MatrixX all = statistics::orthonormal(statistics::side_by_side(parts, hidden.change.size()), 1e-6);
+  return (hidden.change - all * (all.transpose() * hidden.change)).norm();
+}
+
 }  // namespace
 
-double beyond_others(const Plan& plan, const VectorX& change, const std::vector<std::string>& left_out) {
+double beyond_others(const Plan& plan, const Hidden& hidden, const std::vector<std::string>& left_out) {
+  const VectorX& change = hidden.change;
   constexpr int most = 4;
   constexpr double least_own = 1e-6;  // of a unit column: less is rounding
   VectorX left = change;
@@ -188,7 +213,8 @@ double beyond_others(const Plan& plan, const VectorX& change, const std::vector<
     taken = statistics::side_by_side({taken, best}, change.size());
     left = change - taken * (taken.transpose() * change);
   }
-  return std::min(left.norm(), beyond_two_at_a_place(plan, change, left_out));
+  return std::min(
+      {left.norm(), beyond_two_at_a_place(plan, change, left_out), beyond_its_parts(plan, hidden, left_out)});
 }
 
 }  // namespace deflect::benchmark

@@ -39,9 +39,10 @@ Nearest nearest_entry(const Plan&, const Hidden&);
 /// |cosine| of two changes.
 double cosine(const Hidden&, const Hidden&);
 
-/// Length of what is left of a whitened change once the four effects, none of those named, that take most of it off,
-/// one after the other, are taken out of it, or the two at one place that do.
-double beyond_others(const Plan&, const VectorX& change, const std::vector<std::string>& left_out);
+/// Length of what is left of what an effect changes, whitened, once other effects, none of those named, are taken out
+/// of it: the least of three ways. The four that take most of it off, one after the other; the two at one place that
+/// do; of the law of a group, the same law at each of its parts.
+double beyond_others(const Plan&, const Hidden&, const std::vector<std::string>& left_out);
 
 /// What is left of a whitened change once the signatures of all effects, one left out, are taken out of it.
 VectorX beyond_catalogue(const Plan&, const VectorX& change, const effects::Effect* left_out = nullptr);

@@ -131,7 +131,7 @@ class Examined {
     if (is_open(order.kind)) {
       gone = taken_out(plan, order.kind, hidden.front());
       out.lambda = hidden.front().lambda();
-      out.lambda_res = beyond_others(plan, hidden.front().change, gone);
+      out.lambda_res = beyond_others(plan, hidden.front(), gone);
     }
     diagnose_with(gone, *data, plan, hidden, truth, out);
     if (order.kind != SetKind::stress && !is_open(order.kind)) ask(oracles_[which], plan, *data, out);
@@ -280,7 +280,7 @@ class Examined {
       random = lots;  // the same law with the same signs
       std::optional<Hidden> h = drawn_one(plan, order.place, lambda, random);
       if (!h) return std::nullopt;
-      const double left = beyond_others(plan, h->change, taken_out(plan, order.kind, *h));
+      const double left = beyond_others(plan, *h, taken_out(plan, order.kind, *h));
       if (std::abs(left / order.lambda - 1) < accuracy) return h;
       if (left < least_left * h->lambda()) return std::nullopt;
       lambda *= order.lambda / left;
