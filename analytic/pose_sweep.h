@@ -106,7 +106,9 @@ class PoseSweep {
   Vector3 weight_ = Vector3::Zero();
   double size_ = 0;
   Eigen::PartialPivLU<Matrix6> statics_;  // of determinate legs
-  Eigen::LDLT<Matrix6> factor_;           // of the stiffness, for other legs; rotations weighed by size_
+  // Of the stiffness, for other legs; rotations weighed by size_. One that has factorised nothing must not be copied:
+  // Eigen leaves its info() uninitialised.
+  Eigen::LDLT<Matrix6> factor_{Matrix6::Identity()};
   Vector6 displacement_ = Vector6::Zero();
   Matrix6 stiffness_ = Matrix6::Zero();
 };

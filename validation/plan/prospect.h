@@ -72,9 +72,9 @@ class Prospect {
     std::shared_ptr<const subject::Standing> standing;
   };
   Alone data_;
-  std::vector<Alone> alone_;  // the blocks of a plan of sequences
-  MatrixX taken_;             // tolerances in the readings taken, less the errors of each pose
-  Eigen::LLT<MatrixX> information_;
+  std::vector<Alone> alone_;                    // the blocks of a plan of sequences
+  MatrixX taken_;                               // tolerances in the readings taken, less the errors of each pose
+  Eigen::LLT<MatrixX> information_{MatrixX()};  // factorised at once: Eigen leaves info() uninitialised before
 };
 
 }  // namespace deflect::plan

@@ -30,7 +30,7 @@ class ScaledGroups {
   struct Scaled {
     VectorX weight;  // 1/(1 + g w)
     double root_p = 1, log_det = 0;
-    Eigen::LLT<MatrixX> H;
+    Eigen::LLT<MatrixX> H{MatrixX()};  // factorised at once: Eigen leaves info() uninitialised before
   };
   Scaled at(double g, double p) const;
   double chi2(const Scaled&, const Seen&) const;

@@ -53,7 +53,8 @@ class MsaSweep {
   std::vector<CondensedLeg> legs_;
   Vector3 weight_ = Vector3::Zero();
   double size_ = 0;
-  Eigen::LLT<Matrix6> factor_;  // of the stiffness, rotations weighed by the size
+  // Of the stiffness, rotations weighed by the size. Factorised at once: Eigen leaves info() uninitialised before.
+  Eigen::LLT<Matrix6> factor_{Matrix6::Identity()};
   Vector6 displacement_ = Vector6::Zero(), reaction_ = Vector6::Zero();
   Matrix6 stiffness_ = Matrix6::Zero();
   double energy_ = 0;
