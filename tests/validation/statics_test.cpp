@@ -48,8 +48,8 @@ TEST_P(StaticsAtPlaces, AgreesWithThePredictionOfASmallSpring) {
     const std::vector<VectorX> with = Subject(with_effect(m, e, stiff, leg)).stand(data)->predict(data, {}, alone);
     double off = 0, size = 0, rounding = 0;
     for (std::size_t i = 0; i < with.size(); ++i) {
-      off += (with[i] - drawn[i] - VectorX((*told)[i])).squaredNorm();
-      size += (*told)[i].squaredNorm();
+      off += (with[i] - drawn[i] - VectorX(told->readings[i])).squaredNorm();
+      size += told->readings[i].squaredNorm();
       rounding += drawn[i].squaredNorm();
     }
     EXPECT_LE(std::sqrt(off), 1e-2 * std::sqrt(size) + 1e-9 * std::sqrt(rounding)) << e.name;

@@ -1,5 +1,6 @@
 #include "validation/diagnosis/by_statics.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "msa/base/index.h"
@@ -23,7 +24,9 @@ VectorX small_values(const effects::Effect& e) {
 }  // namespace
 
 ByStatics::ByStatics(const Observations& o, const std::vector<effects::PlacedEffect>& effects, int threads)
-    : observations_(o), transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()) {
+    : observations_(o),
+      null_(o.residual(o.subject())),
+      transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()) {
   if (!transmissions_) return;
   std::vector<const effects::PlacedEffect*> first;
   for (const effects::PlacedEffect& e : effects)
@@ -35,8 +38,8 @@ ByStatics::ByStatics(const Observations& o, const std::vector<effects::PlacedEff
   for (std::size_t i = 0; i < first.size(); ++i) known_.at(subject::id_of(*first[i]->effect->place)) = agree[i];
 }
 
-std::optional<std::vector<Vector6>> ByStatics::by_force(const effects::PlacedEffect& e, const VectorX& values,
-                                                        const measurement::Measurements& data) const {
+std::optional<subject::Transmissions::Change> ByStatics::by_force(const effects::PlacedEffect& e, const VectorX& values,
+                                                                  const measurement::Measurements& data) const {
   const std::optional<Law> law = effects::law_in_series(*e.effect, values);
   if (!law) return std::nullopt;
   return transmissions_->change(*e.effect->place, e.leg, *law, data);
@@ -52,7 +55,7 @@ bool ByStatics::agrees(const effects::PlacedEffect& e) const {
   linear.geometry = Geometry::linear;
   const subject::Standing* drawn = study.standing.get();
   const std::vector<measurement::MeasuredValue> read = measurement::measured_values(some, drawn->sensor_forms(some));
-  const VectorX by_statics = statistics::rows_of(read, *told);
+  const VectorX by_statics = statistics::rows_of(read, told->readings);
   const auto off = outcome_of([&] {
     const auto predicted = [&](const subject::Subject& s) {
       return s.stand(some, drawn)->predict(some, linear, parallel::alone);
@@ -70,9 +73,19 @@ std::optional<VectorX> ByStatics::change(const effects::PlacedEffect& e) const {
   const auto known = known_.find(subject::id_of(*e.effect->place));
   if (known == known_.end() || !known->second) return std::nullopt;
   const compare::ResidualStudy& study = observations_.comparison().study;
-  const auto told = by_force(e, effects::start_values(*e.effect), *study.data);
+  const VectorX start = effects::start_values(*e.effect);
+  const auto told = by_force(e, start, *study.data);
   if (!told) return std::nullopt;
-  return VectorX(-observations_.uncertainty().whitened(statistics::rows_of(study.values, *told)));
+  VectorX change = -statistics::rows_of(study.values, told->readings);
+  if (std::find(told->floats.begin(), told->floats.end(), true) != told->floats.end()) {
+    const auto residual = outcome_of([&] {
+      const subject::Subject with = effects::with_effect(observations_.subject(), {e, start});
+      return observations_.residual_in_shape(with, told->floats);
+    });
+    for (std::size_t k = 0; residual && k < study.values.size(); ++k)
+      if (told->floats[study.values[k].reading]) change(as_index(k)) = (*residual)(as_index(k)) - null_(as_index(k));
+  }
+  return VectorX(observations_.uncertainty().whitened(change));
 }
 
 }  // namespace deflect::diagnosis

@@ -1,5 +1,5 @@
 // Laws in series at places: their small effect on the readings follows from the forces at the place by statics
-// (Transmissions), without a prediction for each law.
+// (Transmissions), without a prediction for each law. Readings whose load leaves play open are predicted.
 #pragma once
 
 #include <map>
@@ -22,11 +22,12 @@ class ByStatics {
   std::optional<VectorX> change(const effects::PlacedEffect&) const;
 
  private:
-  std::optional<std::vector<Vector6>> by_force(const effects::PlacedEffect&, const VectorX& values,
-                                               const measurement::Measurements&) const;
+  std::optional<subject::Transmissions::Change> by_force(const effects::PlacedEffect&, const VectorX& values,
+                                                         const measurement::Measurements&) const;
   bool agrees(const effects::PlacedEffect&) const;
 
   const Observations& observations_;
+  VectorX null_;  ///< Observations::residual() of its subject
   std::unique_ptr<const subject::Transmissions> transmissions_;
   std::map<std::string, bool> known_;  ///< by place: whether statics agrees
 };

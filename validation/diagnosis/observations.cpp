@@ -164,9 +164,14 @@ VectorX Observations::residual(const subject::Subject& subject) const {
     const Linear l = linear(subject);
     return measured_ - shape_beside(l, subject) - l.values;
   }
+  return residual_in_shape(subject, {});
+}
+
+VectorX Observations::residual_in_shape(const subject::Subject& subject, const std::vector<bool>& only) const {
   const compare::ResidualStudy& s = comparison_->study;
   prediction::PredictionOptions finite;
   finite.geometry = subject.true_geometry();
+  finite.only = only;
   return measured_ - statistics::rows_of(s.values, stand(subject)->predict(*s.data, finite, parallel::alone));
 }
 

@@ -39,7 +39,10 @@ class Observations {
   /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus shape_for() the
   /// subject, or that of in_true_geometry().
   VectorX residual(const subject::Subject&) const;
-  /// W times it, with WᵀW = Σ⁻¹ (whitening.h).
+  /// The same in the subject's true geometry, at these readings of a machine only: the numbers of others mean nothing.
+  /// Empty: at all. Throws NumericalError where it does not stand in it.
+  VectorX residual_in_shape(const subject::Subject&, const std::vector<bool>& only) const;
+  /// W times residual(), with WᵀW = Σ⁻¹ (whitening.h).
   VectorX whitened_residual(const subject::Subject&) const;
   /// The same with a contribution of the deformed shape that shape_for() told of a subject like it.
   VectorX whitened_residual(const subject::Subject&, const VectorX& shape) const;

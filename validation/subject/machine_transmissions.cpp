@@ -123,6 +123,15 @@ ByPart forces_at(const Configuration& drawn, const Configuration& yielding) {
   return out;
 }
 
+/// Whether a load, though not zero, is no load of a freedom: play there floats (analytic/steps.h). `size`: of the
+/// machine, m.
+bool floats(const Vector6& g, const Vector6& F, double size) {
+  constexpr double rounding = 1e-9;
+  const double largest =
+      (g.head<3>().norm() + size * g.tail<3>().norm()) * (F.head<3>().norm() + F.tail<3>().norm() / size);
+  return largest > 0 && std::abs(g.dot(F)) <= rounding * largest;
+}
+
 /// Of a law that starts at rest under no force.
 double deflection_of(const Law& law, double force) {
   if (const auto* play = std::get_if<ClearanceLaw>(&law)) return force > 0 ? play->gap : force < 0 ? -play->gap : 0;
@@ -133,39 +142,50 @@ double deflection_of(const Law& law, double force) {
 
 class MachineTransmissions final : public Transmissions {
  public:
-  MachineTransmissions(const Mechanism& m, std::vector<ByPart> by_pose)
-      : by_pose_(std::move(by_pose)), cell_(m.load_cell), sensor_(m.sensor) {}
+  MachineTransmissions(const Mechanism& m, std::vector<ByPart> by_pose, double size)
+      : by_pose_(std::move(by_pose)), cell_(m.load_cell), sensor_(m.sensor), size_(size) {}
 
-  std::optional<std::vector<Vector6>> change(const Place& place, std::optional<int> leg, const Law& law,
-                                             const measurement::Measurements& data) const override {
-    std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
+  std::optional<Change> change(const Place& place, std::optional<int> leg, const Law& law,
+                               const measurement::Measurements& data) const override {
+    const bool play = std::holds_alternative<ClearanceLaw>(law);
+    const std::size_t readings = data.readings.size();
+    Change out{std::vector<Vector6>(readings, Vector6::Zero()), std::vector<bool>(readings, false)};
     for (std::size_t p = 0; p < data.poses.size(); ++p) {
-      std::vector<Vector6> all;
-      const auto add = [&](const std::string& part, const std::vector<std::size_t>& freedoms) {
-        const auto [first, last] = by_pose_[p].equal_range(part);
-        for (auto at = first; at != last; ++at)
-          for (const std::size_t i : freedoms)
-            if (at->second.there[i] && (!leg || at->second.leg == *leg)) all.push_back(at->second.g[i]);
-      };
-      add(place.part, place.freedoms);
-      for (const OtherPart& other : place.others) add(other.part, other.freedoms);
+      const std::vector<Vector6> all = freedoms(p, place, leg);
       if (all.empty()) return std::nullopt;
       for (const std::size_t i : data.poses[p].readings) {
         const measurement::Reading& r = data.readings[i];
         const Vector6 through = place.kind == PlaceKind::tool ? Vector6(r.load - r.on_platform) : r.load;
         const Vector6 F = prediction::true_load(cell_, through);
         Vector6 d = Vector6::Zero();
-        for (const Vector6& g : all) d += g * deflection_of(law, g.dot(F));
-        out[i] = prediction::recorded_displacement(sensor_, d);
+        for (const Vector6& g : all) {
+          d += g * deflection_of(law, g.dot(F));
+          if (play && floats(g, F, size_)) out.floats[i] = true;
+        }
+        out.readings[i] = prediction::recorded_displacement(sensor_, d);
       }
     }
     return out;
   }
 
  private:
+  std::vector<Vector6> freedoms(std::size_t pose, const Place& place, std::optional<int> leg) const {
+    std::vector<Vector6> out;
+    const auto add = [&](const std::string& part, const std::vector<std::size_t>& freedoms) {
+      const auto [first, last] = by_pose_[pose].equal_range(part);
+      for (auto at = first; at != last; ++at)
+        for (const std::size_t i : freedoms)
+          if (at->second.there[i] && (!leg || at->second.leg == *leg)) out.push_back(at->second.g[i]);
+    };
+    add(place.part, place.freedoms);
+    for (const OtherPart& other : place.others) add(other.part, other.freedoms);
+    return out;
+  }
+
   std::vector<ByPart> by_pose_;
   LoadCell cell_;
   Sensor sensor_;
+  double size_;
 };
 
 bool is_proportional(const Configuration& c) {
@@ -186,7 +206,7 @@ std::unique_ptr<const Transmissions> transmissions_of(const Mechanism& m, const 
   for (Named<Part>& leg : yielding.legs) yield_everywhere(leg);
   std::vector<ByPart> by_pose;
   for (const Configuration& c : drawn) by_pose.push_back(forces_at(c, configure(yielding, c.pose)));
-  return std::make_unique<MachineTransmissions>(m, std::move(by_pose));
+  return std::make_unique<MachineTransmissions>(m, std::move(by_pose), drawn.front().size);
 }
 
 }  // namespace deflect::subject

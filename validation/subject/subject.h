@@ -76,10 +76,14 @@ struct BodyFrame {
 class Transmissions {
  public:
   virtual ~Transmissions() = default;
+  struct Change {
+    std::vector<Vector6> readings;
+    std::vector<bool> floats;  ///< by reading: play that its load leaves open; where it stands is not in `readings`
+  };
   /// The change of each reading when every freedom of the place yields by the law (materials resolved, no history)
   /// under the force that it carries; in one leg only where `leg` is given. Empty where the place is not known.
-  virtual std::optional<std::vector<Vector6>> change(const Place&, std::optional<int> leg, const Law&,
-                                                     const measurement::Measurements&) const = 0;
+  virtual std::optional<Change> change(const Place&, std::optional<int> leg, const Law&,
+                                       const measurement::Measurements&) const = 0;
 };
 
 class Deviations;
