@@ -1,4 +1,5 @@
 // Play that a load leaves open in linear geometry: the small forces of the deformed shape say where it stands.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "validation/diagnosis/diagnosis.h"
+#include "validation/diagnosis/signatures.h"
 #include "validation/effects/place_effects.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
@@ -46,6 +48,27 @@ TEST(FloatingPlay, OfATripteronsDrivesIsNamed) {
     EXPECT_NE(std::find(named.begin(), named.end(), "actuator_backlash"), named.end()) << seed << " " << named.front();
     EXPECT_NEAR(d.fit.values(0), 0.02, 0.004) << seed;
   }
+}
+
+// The three joints of a leg turn about lines along its drive, so play along one of them moves the tool as play in the
+// drive does, wherever a load leaves it.
+TEST(FloatingPlay, LooksAlikeInADriveAndAlongTheJointsBehindIt) {
+  const Mechanism drawn = test::device("tripteron");
+  SimulationOptions o;
+  o.seed = 3;
+  const measurement::Measurements data = measured(drawn, 0.02, o);
+  const std::vector<effects::Effect> all = effects_everywhere(drawn);
+  const std::vector<diagnosis::Signature> looked_at = diagnosis::signatures({drawn, data, {}}, all, 2);
+  const auto of = [&](const std::string& name) {
+    const auto found = std::find_if(looked_at.begin(), looked_at.end(), [&](const diagnosis::Signature& s) {
+      return s.effect.effect->name == name && !s.effect.leg;
+    });
+    EXPECT_NE(found, looked_at.end()) << name;
+    return *found;
+  };
+  const diagnosis::Signature drive = of("actuator_backlash");
+  for (const char* joint : {"shoulder", "elbow", "wrist"})
+    EXPECT_GT(diagnosis::cosine(drive, of(fmt::format("clearance@{}.tz", joint))), 1 - 1e-6) << joint;
 }
 
 // A force along one axis loads one drive; one along the diagonal, all three.

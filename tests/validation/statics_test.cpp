@@ -107,5 +107,28 @@ TEST(ByStatics, TellsWhatASpringAtAPlaceChanges) {
   EXPECT_GT(looked_at, 10);
 }
 
+// In a serial arm forces do not depend on what gives way, so play changes the readings by its gap where it is loaded,
+// exactly. Loads that leave it open put it where the deformed shape does, as in a hypothesis.
+TEST(ByStatics, TellsWhatPlayInAnArmChangesLoadedOrNot) {
+  const Mechanism m = test::device("arm");
+  const Measurements data = simulate(m, campaign("paper", m, 50, 3), {});
+  const diagnosis::Observations o(m, data, {});
+  const std::vector<Effect> places = place_effects(Subject(m), test::all_effects());
+  std::vector<PlacedEffect> play;
+  for (const Effect& e : places)
+    if (e.name.starts_with("clearance@")) play.push_back({&e, {}});
+  const diagnosis::ByStatics statics(o, play, 1);
+  int looked_at = 0;
+  for (const PlacedEffect& e : play) {
+    const auto told = statics.change(e);
+    if (!told) continue;
+    const VectorX predicted =
+        o.whitened_residual(with_effect(o.subject(), {e, start_values(*e.effect)})) - o.null_residual();
+    EXPECT_LE((*told - predicted).norm(), 1e-6 * predicted.norm() + 1e-9) << e.effect->name;
+    ++looked_at;
+  }
+  EXPECT_GT(looked_at, 10);
+}
+
 }  // namespace
 }  // namespace deflect
