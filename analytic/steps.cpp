@@ -173,7 +173,8 @@ class Balance {
     sizes_ = VectorX::Constant(n_, std::max(at.largest, at.idle / idle_share));
     for (Eigen::Index i = 0; i < n_; ++i)
       if (nth(members_, i).stepped->rotation) sizes_(i) *= at.length;
-    return settled({imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_});
+    const LinearRelation relation{imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_};
+    return settled(at.idle > 0 ? monotone(relation, o) : relation);  // a deformed shape pushes some play outwards
   }
 
   /// The laws in equilibrium, with limits of frictions that are those of the loads beside them.
@@ -236,9 +237,9 @@ class Balance {
     imposed_.S.resize(0, 0);
   }
 
-  /// Play that so far moved by nothing but forces of second order, which small offsets would not show.
+  /// Play that moves against forces of second order alone, which small offsets would not show.
   bool floats_freely(Eigen::Index i) const {
-    return imposed_.S.size() > 0 && std::isfinite(nth(laws_, i).low) && imposed_.S(i, i) * imposed_.c(i) <= 1e-12;
+    return imposed_.S.size() > 0 && std::isfinite(nth(laws_, i).low) && imposed_.S(i, i) * imposed_.c(i) <= 1e-3;
   }
 
   /// S and T by offsets that change forces by so much of the largest.

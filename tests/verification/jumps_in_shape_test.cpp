@@ -2,6 +2,7 @@
 // where in it the machine stands; the forces of second order do.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analytic/model.h"
@@ -9,6 +10,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/mechanisms.h"
+#include "validation/effects/place_effects.h"
 #include "validation/studies/solve.h"
 #include "validation/studies/workspace.h"
 
@@ -74,6 +76,29 @@ TEST(JumpsInShape, APendulumStandsWithinItsPlay) {
   }
 }
 
+// A post with play ±γ at its foot carries the load on a pendulum with play ±2γ at its head: z_T = L (2 cos α − cos(α +
+// β)). The load pushes the post to the end of its play to which it has a moment, and away from its middle; the pendulum
+// hangs along the load, within its play.
+TEST(JumpsInShape, APendulumOnAPostHangsWhereThePostStands) {
+  constexpr double gamma = 1e-4;
+  PlacedJoint foot = test::joint("foot", Vector3::Zero(), "rrrrrr");
+  foot.laws[4] = {ClearanceLaw{gamma}};
+  PlacedJoint head = test::joint("head", {0, 0, 2 * L}, "rrrrrr");
+  head.laws[4] = {ClearanceLaw{2 * gamma}};
+  const PlacedJoint spring = test::spring("spring", {0, 0, L}, {{3, 50}});
+  const Configuration c = test::configuration({0, 0, L}, {{"arm", {foot, head, spring}}}, L);
+  for (const double tilt : {1e-6, -1e-5, 4e-5}) {
+    const Vector6 F = 50 * (std::sin(tilt) * Vector6::Unit(0) - std::cos(tilt) * Vector6::Unit(2));
+    const double alpha = tilt > 0 ? gamma : -gamma, both = -tilt;  // about y
+    const double x = 2 * L * std::sin(alpha) - L * std::sin(both);
+    const Vector6 for_fits = analytic::AnalyticModel(c).displaced(F, Geometry::finite).displacement;
+    for (const Vector6& found : {by_closed_form(c, F), by_msa(c, F), for_fits}) {
+      EXPECT_NEAR(found(4), both, 1e-9) << tilt;
+      EXPECT_NEAR(found(0), x, 1e-9 * L) << tilt;
+    }
+  }
+}
+
 // A law that yields alike to both sides, and a friction that sticks, are springs under another name. The closed form
 // divides members until it estimates that 1e-6 is left.
 TEST(JumpsInShape, ALawThatDoesNotJumpIsASpring) {
@@ -118,6 +143,23 @@ TEST_P(PlayInDrives, StandsWhereBothTheoriesSay) {
 
 INSTANTIATE_TEST_SUITE_P(Devices, PlayInDrives,
                          ::testing::Values("tripteron", "haptic-6psu", "stewart-6ups", "scara", "gantry", "3-upu"));
+
+// Under a load that bends an arm some joints are pushed to an end of their play, others hang within it.
+TEST(JumpsInShape, PlayInAllJointsOfAnArmStandsWhereBothTheoriesSay) {
+  const Mechanism drawn = test::device("arm");
+  const std::vector<effects::Effect> all = effects::place_effects(subject::Subject(drawn), test::all_effects());
+  const auto play = std::find_if(all.begin(), all.end(), [](const auto& e) { return e.name == "clearance@drives.rz"; });
+  ASSERT_NE(play, all.end());
+  const Mechanism m = effects::with_effect(drawn, *play, VectorX::Constant(1, 4e-5));
+  for (const ValidationPoint& point : workspace_points(m)) {
+    const auto there = stand(m, point.pose_mm_deg);
+    Vector6 F;
+    F << 0.01, 0.02, -50, 0, 0, 0.01;
+    EXPECT_FALSE(analytic::AnalyticModel(there.configuration).solve(F, Geometry::finite).apart) << point.label;
+    const SolveResult found = solve(m, there, F, {}, Geometry::finite);
+    EXPECT_LE(found.relative_difference, 1e-6 + 10 * found.discretisation) << point.label;
+  }
+}
 
 // Loaded along y, a slide of the hybrid's head is pushed outwards from the middle of its play, to whichever end: by
 // symmetry both are equilibria.
