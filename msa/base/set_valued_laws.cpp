@@ -295,17 +295,43 @@ class Laws {
   VectorX start_, x_, d_, s_;
 };
 
+/// Whether law i is at an end and its s pushes it there wherever the others go between their bounds; of those whose o
+/// hardly changes then.
+bool stays_at_its_end(const LinearRelation& r, const VectorX& o, const std::vector<ScalarLaw>& laws, Eigen::Index i) {
+  const ScalarLaw& law = nth(laws, i);
+  if (!std::isfinite(law.low) || !std::isfinite(law.high)) return false;
+  const double d = r.d0(i) + r.P.row(i).dot(o), s = (d - o(i)) / r.c(i), end = s > 0 ? law.high : law.low;
+  if (std::abs(d - end) > 1e-3 * (law.high - law.low)) return false;
+  double most = std::abs(law.force(end));  // of what the others may add
+  for (Eigen::Index k = 0; k < o.size(); ++k) {
+    const double coupling = std::abs((k == i ? 1 : 0) - r.P(i, k));
+    if (coupling * std::sqrt(r.c(k) / r.c(i)) > 1e-3) return false;
+    if (coupling > 0) most += coupling / r.c(i) * (nth(laws, k).high - nth(laws, k).low);
+  }
+  return std::abs(s) > most;
+}
+
 }  // namespace
 
-LinearRelation monotone(LinearRelation r, const VectorX& o) {
+LinearRelation monotone(LinearRelation r, const VectorX& o, const std::vector<ScalarLaw>& laws) {
+  const auto change_to = [&](const MatrixX& P) {
+    r.d0 += (r.P - P) * o;
+    r.P = P;
+  };
+  MatrixX P = r.P;
+  for (Eigen::Index i = 0; i < o.size(); ++i)
+    if (stays_at_its_end(r, o, laws, i)) {
+      P.row(i).setZero();
+      P.col(i).setZero();
+      P(i, i) = 1;
+    }
+  change_to(P);
   const VectorX unit = r.c.cwiseSqrt();
-  const MatrixX P = unit.cwiseInverse().asDiagonal() * r.P * unit.asDiagonal();
+  P = unit.cwiseInverse().asDiagonal() * r.P * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(MatrixX((P + P.transpose()) / 2));
   const VectorX beyond = eigen.eigenvalues() - eigen.eigenvalues().cwiseMax(0).cwiseMin(1);
   const MatrixX excess = eigen.eigenvectors() * beyond.asDiagonal() * eigen.eigenvectors().transpose();
-  const MatrixX change = unit.asDiagonal() * excess * unit.cwiseInverse().asDiagonal();
-  r.P -= change;
-  r.d0 += change * o;
+  change_to(r.P - unit.asDiagonal() * excess * unit.cwiseInverse().asDiagonal());
   return r;
 }
 

@@ -39,9 +39,10 @@ struct LinearRelation {
 };
 
 /// The same at o, with the eigenvalues of P brought between 0 and 1: of a relation that is linearised about a deformed
-/// shape, whose geometric stiffness may make d fall where s grows. A search that asks again at each o it finds ends on
-/// the given relation.
-LinearRelation monotone(LinearRelation, const VectorX& o);
+/// shape, whose geometric stiffness may make d fall where s grows. Laws that stay at the end at which they are,
+/// whatever the others do, are taken out of it first: theirs change nothing. A search that asks again at each o it
+/// finds ends on the given relation.
+LinearRelation monotone(LinearRelation, const VectorX& o, const std::vector<ScalarLaw>&);
 
 struct SetValuedSolution {
   enum class Outcome { solved, no_fit, overcome, undecided };

@@ -82,7 +82,7 @@ void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const Vecto
     relation.size(i) = driving * (model_.springs[spring].law.rotation ? work.length : 1);
   }
   relation.d0 -= relation.P * j.o;
-  const SetValuedSolution found = deflect::solve(monotone(std::move(relation), j.o), j.laws, MatrixX(0, n));
+  const SetValuedSolution found = deflect::solve(monotone(std::move(relation), j.o, j.laws), j.laws, MatrixX(0, n));
   if (found.outcome != SetValuedSolution::Outcome::solved) {
     step.u.resize(0);
     return;
@@ -134,7 +134,9 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     work.shape.move(step.u);
     const double change = size_of(step.u, model_.nodes.size(), work.length);
     const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
-    const bool stalled = change < 1e-6 * size && change > 0.5 * previous;  // rounding is all that is left
+    // Rounding is all that is left; of play that floats against hardly any stiffness, that of positions.
+    const bool stalled =
+        change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && change > 0.5 * previous;
     // Second order takes the forces of constraints from the shape before: that too has to have settled.
     const bool settled = finite || previous <= options.tolerance * size;
     if ((change <= options.tolerance * size && settled) || stalled) {
