@@ -132,8 +132,8 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
       const Vector6 moves = l.J * delta;
       last = LastStep{std::move(l), moves};
     }
-    const bool asked = i > 0 || !d.move_steps;
-    if (asked && laws.rest() && (d.residual <= settled || (d.residual <= 1e-9 && d.residual > 0.3 * previous))) return true;
+    const bool rest = (i > 0 || !d.move_steps) && laws.rest();
+    if (rest && (d.residual <= settled || (d.residual <= 1e-9 && d.residual > 0.3 * previous))) return true;
     previous = d.residual;
   }
   d.undecided = d.move_steps != nullptr;

@@ -174,8 +174,8 @@ class Balance {
     for (Eigen::Index i = 0; i < n_; ++i)
       if (nth(members_, i).stepped->rotation) sizes_(i) *= at.length;
     const LinearRelation relation{imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_};
-    return settled(at.idle > 0 ? monotone(relation, o, laws_)
-                               : relation);  // a deformed shape pushes some play outwards
+    // A deformed shape pushes some play outwards.
+    return settled(at.idle > 0 ? monotone(relation, o, laws_) : relation);
   }
 
   /// The laws in equilibrium, with limits of frictions that are those of the loads beside them.

@@ -24,10 +24,9 @@ VectorX small_values(const effects::Effect& e) {
 }  // namespace
 
 ByStatics::ByStatics(const Observations& o, const std::vector<effects::PlacedEffect>& effects, int threads)
-    : observations_(o),
-      null_(o.residual(o.subject())),
-      transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()) {
+    : observations_(o), transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()) {
   if (!transmissions_) return;
+  null_ = o.residual(o.subject());
   std::vector<const effects::PlacedEffect*> first;
   for (const effects::PlacedEffect& e : effects)
     if (e.effect->place && effects::law_in_series(*e.effect, effects::start_values(*e.effect)) &&
