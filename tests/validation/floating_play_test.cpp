@@ -64,7 +64,7 @@ TEST(FloatingPlay, LooksAlikeInADriveAndAlongTheJointsBehindIt) {
       return s.effect.effect->name == name && !s.effect.leg;
     });
     EXPECT_NE(found, looked_at.end()) << name;
-    return *found;
+    return found == looked_at.end() ? diagnosis::Signature() : *found;
   };
   const diagnosis::Signature drive = of("actuator_backlash");
   for (const char* joint : {"shoulder", "elbow", "wrist"})
