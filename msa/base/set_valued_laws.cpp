@@ -295,8 +295,8 @@ class Laws {
   VectorX start_, x_, d_, s_;
 };
 
-/// Whether law i is at an end and its s pushes it there wherever the others go between their bounds; of those whose o
-/// hardly changes then.
+/// Whether law i is at an end and its s pushes it there wherever the others go between their bounds. Only of a law that
+/// is coupled to the others, and to itself, by less than a thousandth: its o hardly changes then.
 bool stays_at_its_end(const LinearRelation& r, const VectorX& o, const std::vector<ScalarLaw>& laws, Eigen::Index i) {
   const ScalarLaw& law = nth(laws, i);
   if (!std::isfinite(law.low) || !std::isfinite(law.high)) return false;

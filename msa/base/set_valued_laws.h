@@ -39,9 +39,9 @@ struct LinearRelation {
 };
 
 /// The same at o, with the eigenvalues of P brought between 0 and 1: of a relation that is linearised about a deformed
-/// shape, whose geometric stiffness may make d fall where s grows. Laws that stay at the end at which they are,
-/// whatever the others do, are taken out of it first: theirs change nothing. A search that asks again at each o it
-/// finds ends on the given relation.
+/// shape, whose geometric stiffness may make d fall where s grows. Before that the laws are decoupled that stay at the
+/// end at which they are wherever the others go: what they give to the others is then constant. A search that asks
+/// again at each o it finds ends on the given relation.
 LinearRelation monotone(LinearRelation, const VectorX& o, const std::vector<ScalarLaw>&);
 
 struct SetValuedSolution {
