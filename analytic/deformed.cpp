@@ -23,7 +23,8 @@ constexpr double known_to = 0.01;    // of the load at which it gives way
 constexpr double follows = 0.4;      // a step of Newton's method beside the one before, on the path of equilibria
 constexpr double least_step = 1e-6;  // of the load
 constexpr double settled = 1e-12;    // of the last step of Newton's method
-constexpr double nearly = 1e-6;      // from a step of which the next one is likely to be the last
+constexpr double nearly = 5e-3;      // from a step of which the next one may be the last
+constexpr double close = 1e-6;       // of a step, where Newton's method squares what is left
 
 std::size_t legs_step(const VirtualChain& whole) {
   return as_size(std::find_if(whole.steps.begin(), whole.steps.end(),
@@ -122,18 +123,24 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
     if (!std::isfinite(progress.step + largest)) return false;
     c.least = 1e-9 * (largest > 0 ? largest : 1);
     // Shapes are known to rounding, 1e-16 of their size, at best.
-    d.residual = progress.step / (progress.reach + 1e-3 * whole.length);
+    const double size = progress.reach + 1e-3 * whole.length;
+    d.residual = progress.step / size;
     // A first step from rest takes contacts for what they will be.
     if (finite && i > (at_rest ? 1 : 0) && d.residual > 1e-7 && progress.step > follows * step &&
         !laws.explain(progress.step))
       return false;
     step = progress.step;
-    if (here.judged && d.residual <= settled) {
+    // Newton's method squares what is left: the next step would be no step.
+    const double ratio = d.residual / previous;
+    const bool foretold =
+        d.residual <= close && ratio * ratio * d.residual <= settled && laws.stay_within(settled * size);
+    const bool there = d.residual <= settled || (here.judged && foretold);
+    if (here.judged && there) {
       const Vector6 moves = l.J * delta;
       last = LastStep{std::move(l), moves};
     }
     const bool rest = (i > 0 || !d.move_steps) && laws.rest();
-    if (rest && (d.residual <= settled || (d.residual <= 1e-9 && d.residual > 0.3 * previous))) return true;
+    if (rest && (there || (d.residual <= 1e-9 && d.residual > 0.3 * previous))) return true;
     previous = d.residual;
   }
   d.undecided = d.move_steps != nullptr;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -53,10 +54,20 @@ MatrixX reduced(MatrixX columns) {
   return columns;
 }
 
+/// Whether columns span all for certain: by the Cholesky factors of their Gram matrix, which know ratios down to 1e-5.
+bool plainly_span(const MatrixX& columns) {
+  if (columns.cols() < columns.rows()) return false;
+  const MatrixX gram = columns * columns.transpose();
+  const Eigen::LLT<MatrixX> llt(gram);
+  return llt.info() == Eigen::Success &&
+         llt.matrixLLT().diagonal().cwiseAbs2().minCoeff() > 1e-10 * gram.diagonal().maxCoeff();
+}
+
 }  // namespace
 
 MatrixX complement(const MatrixX& columns) {
   if (columns.cols() == 0) return MatrixX::Identity(columns.rows(), columns.rows());
+  if (plainly_span(columns)) return MatrixX(columns.rows(), 0);
   Eigen::ColPivHouseholderQR<MatrixX> qr;
   qr.setThreshold(1e-9);
   qr.compute(columns);

@@ -24,6 +24,8 @@ class LawsAtRest {
     return std::isfinite(last.lacking) && astray_ <= 4;
   }
   bool rest() const { return rests_; }
+  /// Whether they moved by no more than that in this round, m.
+  bool stay_within(double by) const { return before_.by <= by; }
   /// Whether a step of Newton's method, m, may be large because of where they moved in this round.
   bool explain(double step) const { return before_.by > 0.01 * step; }
 

@@ -1,4 +1,5 @@
 // What a chain of virtual joints does to a body that holds its end, and branches side by side; its laws in steps.
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -21,7 +22,7 @@ Vector6 weights(double rotation) {
 }
 
 int negatives(const MatrixX& symmetric, double zero) {
-  if (symmetric.rows() == 0 || symmetric.llt().info() == Eigen::Success) return 0;
+  if (symmetric.rows() == 0) return 0;
   const VectorX eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixX>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
   return static_cast<int>((eigenvalues.array() < -zero * eigenvalues.cwiseAbs().maxCoeff()).count());
 }
@@ -35,10 +36,23 @@ MatrixX equilibrated(const MatrixX& A) {
 /// Of a system that may be singular, but not contradictory.
 MatrixX smallest_solution(const MatrixX& A, const MatrixX& right) {
   if (A.size() == 0) return MatrixX::Zero(A.cols(), right.cols());
+  if (A.rows() == A.cols()) {
+    const Eigen::PartialPivLU<MatrixX> lu(A);
+    const VectorX pivots = lu.matrixLU().diagonal().cwiseAbs();
+    if (pivots.minCoeff() > 1e-8 * pivots.maxCoeff()) return lu.solve(right);  // not singular for certain
+  }
   Eigen::CompleteOrthogonalDecomposition<MatrixX> cod;
   cod.setThreshold(1e-14);
   cod.compute(A);
   return cod.solve(right);
+}
+
+/// Whether C and A + Jᵀ C⁻¹ J are positive definite, so that as many eigenvalues of [C J; Jᵀ −A] are positive as C has.
+bool plainly_splits(const MatrixX& C, const MatrixX& J, const MatrixX& A) {
+  const Eigen::LLT<MatrixX> yields(C);
+  if (yields.info() != Eigen::Success) return false;
+  const MatrixX half = yields.matrixL().solve(J);
+  return MatrixX(A + half.transpose() * half).llt().info() == Eigen::Success;
 }
 
 MatrixX pick(const MatrixX& A, const std::vector<Eigen::Index>& rows, const std::vector<Eigen::Index>& cols) {
@@ -64,6 +78,7 @@ struct Elimination {
   VectorX r_Q;
   MatrixX yields, A_EE_EQ;  // A_EE⁻¹ J_Eᵀ and A_EE⁻¹ A_EQ
   VectorX A_EE_r;           // A_EE⁻¹ r_E
+  bool positive = true;     // A_EE is, definitely
 };
 
 /// `kept`: the motions that stay.
@@ -79,7 +94,14 @@ Elimination elimination_of(const ByFreeMotions& by_z, const std::vector<bool>& k
   solved.leftCols(6) = out.J_E.transpose();
   solved.middleCols(6, stay) = out.A_EQ;
   solved.rightCols(1) = by_z.r(out.E);
-  if (!out.E.empty()) solved = Eigen::PartialPivLU<MatrixX>(out.A_EE).solve(solved).eval();
+  if (!out.E.empty()) {
+    const Eigen::LLT<MatrixX> llt(out.A_EE);
+    out.positive = llt.info() == Eigen::Success;
+    if (out.positive)
+      llt.solveInPlace(solved);
+    else
+      solved = Eigen::PartialPivLU<MatrixX>(out.A_EE).solve(solved).eval();
+  }
   out.yields = solved.leftCols(6);
   out.A_EE_EQ = solved.middleCols(6, stay);
   out.A_EE_r = solved.col(6 + stay);
@@ -139,7 +161,7 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
     c = end.x - conditions.misfit * misfit - l.J * l.x;
   if (!l.all) c -= l.J * l.offset;
   const ByFreeMotions by_z = by_free_motions(l);
-  const auto [E, Q, J_E, J_Q, A_EE, A_EQ, A_QQ, r_Q, yields, A_EE_EQ, A_EE_r] = elimination_of(by_z, l.kept);
+  const auto [E, Q, J_E, J_Q, A_EE, A_EQ, A_QQ, r_Q, yields, A_EE_EQ, A_EE_r, positive] = elimination_of(by_z, l.kept);
   const VectorX scale = l.scale(Q);
   const Vector6 e = J_E * A_EE_r;
 
@@ -179,7 +201,8 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   held.b = -held.B.transpose() * c;
   held.stable = l.stable;
   if (conditions.judged && held.stable)
-    held.stable = negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
+    held.stable = (positive && plainly_splits(C / unit, J_hat, unit * A_hat)) ||
+                  negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
   return held;
 }
 
