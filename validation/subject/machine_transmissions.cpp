@@ -132,6 +132,13 @@ bool floats(const Vector6& g, const Vector6& F, double size) {
   return largest > 0 && std::abs(g.dot(F)) <= rounding * largest;
 }
 
+/// Translations of the base come before all that turns: in every shape they carry the load as it is, and play that it
+/// leaves open stays where it is.
+bool carries_the_load_itself(const Place& place) {
+  return place.kind == PlaceKind::base &&
+         std::all_of(place.freedoms.begin(), place.freedoms.end(), [](std::size_t i) { return i < 3; });
+}
+
 /// Of a law that starts at rest under no force.
 double deflection_of(const Law& law, double force) {
   if (const auto* play = std::get_if<ClearanceLaw>(&law)) return force > 0 ? play->gap : force < 0 ? -play->gap : 0;
@@ -147,7 +154,7 @@ class MachineTransmissions final : public Transmissions {
 
   std::optional<Change> change(const Place& place, std::optional<int> leg, const Law& law,
                                const measurement::Measurements& data) const override {
-    const bool play = std::holds_alternative<ClearanceLaw>(law);
+    const bool moved_by_shape = std::holds_alternative<ClearanceLaw>(law) && !carries_the_load_itself(place);
     const std::size_t readings = data.readings.size();
     Change out{std::vector<Vector6>(readings, Vector6::Zero()), std::vector<bool>(readings, false)};
     for (std::size_t p = 0; p < data.poses.size(); ++p) {
@@ -160,7 +167,7 @@ class MachineTransmissions final : public Transmissions {
         Vector6 d = Vector6::Zero();
         for (const Vector6& g : all) {
           d += g * deflection_of(law, g.dot(F));
-          if (play && floats(g, F, size_)) out.floats[i] = true;
+          if (moved_by_shape && floats(g, F, size_)) out.floats[i] = true;
         }
         out.readings[i] = prediction::recorded_displacement(sensor_, d);
       }
