@@ -10,6 +10,7 @@
 #include "analytic/deflection.h"
 #include "analytic/table.h"
 #include "msa/base/index.h"
+#include "msa/base/play_alone.h"
 #include "msa/base/set_valued_laws.h"
 #include "msa/base/settle.h"
 #include "msa/mechanism/table.h"
@@ -180,7 +181,7 @@ class Balance {
 
   /// The laws in equilibrium, with limits of frictions that are those of the loads beside them.
   SetValuedSolution settled(const LinearRelation& relation) {
-    if (growing_.empty()) return solve(relation, laws_, watched());
+    if (growing_.empty()) return solve_apart(relation, laws_, watched());
     SetValuedSolution found;
     VectorX limits(std::ssize(growing_));
     double rounding = 0;
@@ -196,7 +197,7 @@ class Balance {
         m.limit = tried(i);
         nth(laws_, nth(growing_, i)) = scalar_law(m.law(), m.stepped->preload, m.slip, m.limit);
       }
-      found = solve(relation, laws_, watched());
+      found = solve_apart(relation, laws_, watched());
       if (found.outcome != SetValuedSolution::Outcome::solved) return std::nullopt;
       for (Eigen::Index i = 0; i < tried.size(); ++i) {
         const SteppedLaw& law = *nth(members_, nth(growing_, i)).stepped;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "msa/base/normal_map.h"
+#include "msa/base/play_alone.h"
 
 namespace deflect {
 namespace {
@@ -135,6 +136,27 @@ TEST(SetValuedLaws, WhatStaysAtItsEndDoesNotBlurTheOthers) {
     EXPECT_EQ(d(0), 1);
     EXPECT_NEAR(d(1), std::min(push - 1, 1.5), 1e-9) << push;
   }
+}
+
+// Three slots of ±1, ±2 and ±3 that nothing couples: 5 N and −5 N hold two of them at their ends, under 1e-10 N,
+// which is none beside 5 N, the third one stands in its middle and can go 3 either way. A fourth law, a spring of 2
+// N/m, gives way by 2 beside them.
+TEST(SetValuedLaws, SlackThatNoOtherLawMovesIsWhereItsForceHasIt) {
+  MatrixX K = MatrixX::Zero(4, 4);
+  const std::vector<ScalarLaw> laws = {
+      gap(1), gap(2), gap(3), {-infinite, infinite, [](double d) { return 2 * d; }, [](double) { return 2.0; }}};
+  MatrixX watched(1, 4);
+  watched << 7, 7, -10, 7;
+  const SetValuedSolution s =
+      solve_apart(around(K, Eigen::Vector4d(5, -5, 1e-10, 4), Eigen::Vector4d(1e-9, 0.1, 1, 0.5)), laws, watched);
+  ASSERT_EQ(s.outcome, SetValuedSolution::Outcome::solved);
+  EXPECT_LE(largest(s.d - Eigen::Vector4d(1, -2, 0, 2)), 1e-14);
+  EXPECT_LE(largest(s.s - Eigen::Vector4d(5, -5, 0, 4)), 1e-14);
+  EXPECT_EQ(s.end, (std::vector<int>{1, -1, 0, 0}));
+  ASSERT_EQ(s.loose.cols(), 1);
+  EXPECT_EQ(s.loose.cwiseAbs(), Eigen::Vector4d(0, 0, 3, 0));
+  EXPECT_NEAR(s.most(0), 30, 1e-12);
+  EXPECT_NEAR(s.least(0), -30, 1e-12);
 }
 
 // Two slots hold a bar: one of ±1 and one of ±3, three apart in position, so that d_1 = d_2 + 3 wherever the bar is.
@@ -280,6 +302,39 @@ TEST(SetValuedLaws, TheOrderOfTheLawsAndTheSizeOfCDoNotMatter) {
   }
   EXPECT_LT(unclear, 50);
   EXPECT_LE(differ, 3);  // still open, of 500
+}
+
+TEST(SetValuedLaws, SlackThatNoOtherLawMovesLeavesTheOthersAsTheyAre) {
+  std::mt19937 random(17);
+  int solved = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    SCOPED_TRACE(trial);
+    const Family f = random_family(random, trial % 2);
+    const Eigen::Index n = f.c.size(), at = trial % (n + 1);
+    std::vector<Eigen::Index> others;
+    for (Eigen::Index i = 0; i <= n; ++i)
+      if (i != at) others.push_back(i);
+    const double push = (trial % 3 - 1) * largest(f.p), end = push > 0 ? 0.3 : push < 0 ? -0.3 : 0, c = 1e-9;
+    LinearRelation r{VectorX::Constant(n + 1, c), VectorX::Constant(n + 1, c * push), MatrixX::Identity(n + 1, n + 1),
+                     VectorX::Constant(n + 1, largest(f.p))};
+    const LinearRelation alone = around(f.K, f.p, f.c);
+    r.c(others) = alone.c, r.d0(others) = alone.d0, r.P(others, others) = alone.P;
+    std::vector<ScalarLaw> laws = f.laws;
+    laws.insert(laws.begin() + at, gap(0.3));
+    const SetValuedSolution s = solve_apart(r, laws, MatrixX::Identity(n + 1, n + 1));
+    const SetValuedSolution own = solve_apart(alone, f.laws, MatrixX::Identity(n, n));
+    ASSERT_EQ(s.outcome, own.outcome);
+    if (own.outcome != SetValuedSolution::Outcome::solved) continue;
+    ++solved;
+    EXPECT_EQ(s.d(at), end);
+    EXPECT_DOUBLE_EQ(s.s(at), push);
+    EXPECT_EQ(s.most(at) - s.least(at), push == 0 ? 0.6 : 0);
+    EXPECT_EQ(s.loose.cols(), own.loose.cols() + (push == 0 ? 1 : 0));
+    EXPECT_EQ(s.d(others), own.d);
+    EXPECT_EQ(s.s(others), own.s);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(solved, 300);
 }
 
 // Two loads one after another, so that the second search begins at the end of the first.
