@@ -89,11 +89,11 @@ SetValuedSolution PlayAlone::beside(const SetValuedSolution& others, const Matri
     const ScalarLaw& law = nth(laws_, i);
     const double s = relation_.d0(i) / relation_.c(i), over = s - law.force(law.low);
     const double most = std::max(largest / std::sqrt(relation_.c(i)), relation_.size(i));
+    // Also where it is no load: a search in a deformed shape compares it with the forces there.
     out.s(i) = std::abs(s) <= no_force * most ? 0 : s;
     if (std::abs(over) <= no_load * most) {
       open.push_back(i);
       out.d(i) = law.middle;
-      out.s(i) = law.force(law.middle);
     } else {
       nth(out.end, i) = over > 0 ? 1 : -1;
       out.d(i) = over > 0 ? law.high : law.low;
