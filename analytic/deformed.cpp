@@ -131,10 +131,10 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
       return false;
     step = progress.step;
     // Newton's method squares what is left: the next step would be no step.
-    const double ratio = d.residual / previous;
-    const bool foretold =
-        d.residual <= close && ratio * ratio * d.residual <= settled && laws.stay_within(settled * size);
+    const bool foretold = d.residual <= close && std::pow(d.residual, 3) <= settled * previous * previous &&
+                          laws.stay_within(settled * size);
     const bool there = d.residual <= settled || (here.judged && foretold);
+    last.reset();  // of the last step alone: laws may have moved since an earlier one was judged
     if (here.judged && there) {
       const Vector6 moves = l.J * delta;
       last = LastStep{std::move(l), moves};

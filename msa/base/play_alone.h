@@ -9,7 +9,9 @@
 
 namespace deflect {
 
-/// As solve(), which it calls for all laws that others move.
+/// As solve(), to which it leaves all other laws. Results are the same to rounding, except that a law which counts as
+/// unloaded keeps its s = d0/c. For the closed form, which asks thousands of times. The MSA asks solve(): its search
+/// has cases in which rounding decides whether it ends, and they end with that.
 SetValuedSolution solve_apart(const LinearRelation&, const std::vector<ScalarLaw>&, const MatrixX& watched);
 
 }  // namespace deflect
