@@ -103,6 +103,7 @@ TEST(Whitening, WeighsByTheInverseOfTheDenseCovariance) {
     expect_close(white.amplitudes(Y.col(0)), e.A.dense().transpose() * dense.solve(Y.col(0)));
     expect_close(white.undo_shared(white.of_shared(X)), X);
     expect_close(white.of_shared(white.within_groups(X)), white(X));
+    expect_close(white.undo(white(X)), X);
   }
 }
 
@@ -128,6 +129,9 @@ TEST(Whitening, NumbersWithoutACovarianceDoNotCount) {
   Random random(9);
   const MatrixX X = normal(random, e.rows(), 2), white = Whitening(e.blocks, e.A)(X);
   EXPECT_EQ(white.middleRows(out.first, out.size).norm(), 0);
+  const MatrixX back = Whitening(e.blocks, e.A).undo(white);
+  EXPECT_EQ(back.middleRows(out.first, out.size).norm(), 0);
+  expect_close(back(others, Eigen::all), X(others, Eigen::all));
   const MatrixX kept = X(others, Eigen::all), covariance = e.covariance()(others, others);
   expect_close(white.transpose() * white, kept.transpose() * covariance.llt().solve(kept));
 }

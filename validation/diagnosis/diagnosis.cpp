@@ -196,17 +196,17 @@ Diagnosis before_any_effect(const Observations& o, const measurement::Measuremen
 
 /// Every effect alone, and whether anything is missing at all.
 struct FirstStep {
-  FirstStep(const Observations& o, const std::vector<effects::Effect>& effects, int bootstrap_sets, Rounds& rounds,
+  FirstStep(const Observations& o, SignaturesAtPlaces signed_effects, int bootstrap_sets, Rounds& rounds,
             const parallel::Work& work)
       : observations(o),
-        all(signatures(o, effects, work.threads, &left_out)),
-        candidates(all, work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); }),
+        signatures(std::move(signed_effects)),
+        candidates(all(), work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); }),
         null(fit_of_all(o, {}, VectorX(0))),
         each(candidates.beside(o, {}, null, even_hopeless)),
         patterns(o.whitened_patterns()),
-        left(left_over(patterns, all, null, work.threads)),
+        left(left_over(patterns, all(), null, work.threads)),
         larger(larger_tolerances(o)),
-        chance(chance_of_any(all, least_p_value(all, each), bootstrap_sets, work,
+        chance(chance_of_any(all(), least_p_value(all(), each), bootstrap_sets, work,
                              [&](std::size_t done, std::size_t of) { rounds(done, of); })) {}
   FirstStep(const FirstStep&) = delete;  // the candidates hold the signatures by reference
 
@@ -216,9 +216,10 @@ struct FirstStep {
                                   missing_odds * Candidates::prior_unknown);
   }
 
+  const std::vector<Signature>& all() const { return signatures.all(); }
+
   const Observations& observations;
-  std::vector<LeftOut> left_out;
-  std::vector<Signature> all;
+  SignaturesAtPlaces signatures;
   Candidates candidates;
   Fit null;
   std::vector<Candidate> each;  // in the order of the signatures
@@ -230,8 +231,8 @@ struct FirstStep {
 
 /// What the first step says of the effects, of "nothing" and of "unknown"; `alone`: its candidates, or larger ones.
 void tell(Diagnosis& d, const FirstStep& s, std::vector<Candidate> alone) {
-  d.left_out = s.left_out;
-  d.detectable = detectable_sizes(s.all);
+  d.left_out = s.signatures.left_out();
+  d.detectable = detectable_sizes(s.all());
   d.baseline = quality(s.observations, {}, s.null);
   d.larger_tolerances = s.larger.scale * s.observations.tolerance_scale();
   d.chance = s.chance;
@@ -256,11 +257,11 @@ Explained nothing(const FirstStep& s) { return {{s.observations, {}, s.null, {},
 Explained explained(const FirstStep& s, const Candidates& candidates, const std::vector<Candidate>& first) {
   Explained out{select(s.observations, candidates, first), s.patterns, {}};
   if (!out.found.effects.empty()) out.patterns = out.found.observations.whitened_patterns();
-  out.left = left_over(out.patterns, s.all, out.found.fit, candidates.threads());
+  out.left = left_over(out.patterns, s.all(), out.found.fit, candidates.threads());
   const double more = out.left.significant() ? 0 : called_for - std::log(Candidates::prior_unknown);
-  if (std::optional<Selection> there = at_one_place(s.all, candidates, out.found, more)) {
+  if (std::optional<Selection> there = at_one_place(s.all(), candidates, out.found, more)) {
     out.found = std::move(*there);
-    out.left = left_over(out.patterns, s.all, out.found.fit, candidates.threads());
+    out.left = left_over(out.patterns, s.all(), out.found.fit, candidates.threads());
   }
   return out;
 }
@@ -291,8 +292,7 @@ Verdict verdict_of(const Diagnosis& d) {
 }
 
 /// What was found and what it leaves. `told`: the first step that the diagnosis tells of.
-void conclude(Diagnosis& d, Explained e, const FirstStep& told, const FirstStep& searched,
-              const measurement::Measurements& data, int threads) {
+void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measurement::Measurements& data, int threads) {
   Selection found = std::move(e.found);
   d.unexplained = e.left.significant();
   if (!found.effects.empty())
@@ -300,8 +300,8 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const FirstStep&
           probability_of_unknown(e.left.log_evidence, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
   sort_candidates(d, told.observations);
   if (d.unexplained) {
-    found = named_beside_unknown(e.patterns, searched.all, searched.candidates, std::move(found));
-    describe_left_over(d, searched.all, found, threads);
+    found = named_beside_unknown(e.patterns, told.all(), told.candidates, std::move(found));
+    describe_left_over(d, told.all(), found, threads);
   }
   const Observations& seen = found.observations;
   d.missing = found.effects;
@@ -329,17 +329,18 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   if (is_mistaken(d)) return only_mistakes(std::move(d), o);
   d.bootstrap_sets = options.bootstrap_sets;
   Rounds rounds(work.progress, 0.3);
-  const FirstStep first(o, effects, options.bootstrap_sets, rounds, work);
-  tell(d, first, first.each);
-  Explained e = nothing(first);
+  std::optional<FirstStep> step;
+  step.emplace(o, SignaturesAtPlaces(o, effects, work.threads), options.bootstrap_sets, rounds, work);
+  tell(d, *step, step->each);
+  Explained e = nothing(*step);
   std::optional<std::vector<Candidate>> large;
-  if (is_missing(d, first)) {
-    e = explained(first, first.candidates, first.each);
-    large = look_for_large_ones(e, first);
-    if (large) tell(d, first, *large);
+  if (is_missing(d, *step)) {
+    e = explained(*step, step->candidates, step->each);
+    large = look_for_large_ones(e, *step);
+    if (large) tell(d, *step, *large);
   }
   if (e.found.observations.aside() == o.aside()) {
-    conclude(d, std::move(e), first, first, data, work.threads);
+    conclude(d, std::move(e), *step, data, work.threads);
     return d;
   }
   // What is a gross outlier where nothing is missing may be none beside what was found, and the reverse. Then it counts
@@ -347,10 +348,11 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   const Observations kept = o.keeping(e.found.observations.aside());
   parallel::Work again = work;
   again.journal = nullptr;  // it holds sets of the first
-  const FirstStep second(kept, effects, options.bootstrap_sets, rounds, again);
-  tell(d, second,
-       large ? second.candidates.in_larger_sizes().beside(kept, {}, second.null, even_hopeless) : second.each);
-  conclude(d, is_missing(d, second) ? std::move(e) : nothing(second), second, first, data, work.threads);
+  SignaturesAtPlaces weighed = std::move(step->signatures);
+  weighed.weigh_for(kept, work.threads);
+  step.emplace(kept, std::move(weighed), options.bootstrap_sets, rounds, again);
+  tell(d, *step, large ? step->candidates.in_larger_sizes().beside(kept, {}, step->null, even_hopeless) : step->each);
+  conclude(d, is_missing(d, *step) ? std::move(e) : nothing(*step), *step, data, work.threads);
   return d;
 }
 

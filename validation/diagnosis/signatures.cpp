@@ -9,7 +9,7 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/compare/channel_shapes.h"
-#include "validation/diagnosis/by_statics.h"
+#include "validation/diagnosis/changes.h"
 #include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
@@ -20,62 +20,30 @@ namespace {
 
 constexpr double unseen = 1e-6;  // of a whitened change at the start: nothing that these data show
 
-/// Of amplitudes together: the start and each of them a hundredth to a hundred times, which spans what they can do.
-///
-/// Where parameters shape the effect: the start, and what shapes it a thirtieth and thirty times, from never slipping
-/// to slipping at once, from hardly bent to bent at every load; an amplitude that starts from nothing thirty times too,
-/// since friction as large as the loads is no multiple of a little.
-std::vector<VectorX> shapes(const std::vector<effects::EffectParameter>& all, const VectorX& start, bool shaped) {
-  std::vector<VectorX> out = {start};
-  if (all.size() == 1) return out;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const effects::EffectParameter& p = all[i];
-    std::vector<double> factors = {0.01, 0.1, 10, 100};
-    if (shaped) factors = !p.vanishes ? std::vector{1.0 / 30, 30.0} : std::vector{30.0};
-    if (!p.log || (shaped && p.vanishes && std::isinf(*p.vanishes))) continue;
-    for (const double times : factors) {
-      out.push_back(start);
-      double& value = out.back()(as_index(i));
-      value = std::clamp(times * value, p.low, p.high);
-    }
+/// Columns as basis · coordinates.
+struct Spanned {
+  MatrixX basis, coordinates;
+};
+
+/// Those that are not 0, at unit length.
+Spanned unit_columns(const MatrixX& X) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index i = 0; i < X.cols(); ++i)
+    if (X.col(i).norm() > unseen) seen.push_back(i);
+  Spanned out{X(Eigen::all, seen), MatrixX::Zero(std::ssize(seen), X.cols())};
+  for (Eigen::Index k = 0; k < out.basis.cols(); ++k) {
+    out.coordinates(k, nth(seen, k)) = out.basis.col(k).norm();
+    out.basis.col(k).normalize();
   }
   return out;
 }
 
-/// Parameter by parameter where each can vanish alone, else all at the start; parameters that only shape the effect
-/// are tried at several values.
-MatrixX directions(const Observations& o, const effects::PlacedEffect& e, const VectorX& start, bool& shaped) {
-  const effects::PreparedEffects prepared(o.subject(), {e});
-  const std::vector<effects::EffectParameter>& all = e.effect->parameters;
-  const auto change = [&](const VectorX& values) {
-    return VectorX(o.whitened_residual(prepared(values)) - o.null_residual());
-  };
-  std::vector<VectorX> columns;
-  shaped = is_shaped(e);
-  bool separate = all.size() > 1;
-  for (const effects::EffectParameter& p : all) separate = separate && p.vanishes && std::isfinite(*p.vanishes);
-  if (separate)
-    for (Eigen::Index i = 0; i < start.size(); ++i) {
-      VectorX values = start;
-      for (Eigen::Index k = 0; k < start.size(); ++k)
-        if (k != i) values(k) = *nth(all, k).vanishes;
-      columns.push_back(change(values));
-    }
-  else
-    for (const VectorX& values : shapes(all, start, shaped)) columns.push_back(change(values));
-  MatrixX out(o.null_residual().size(), std::ssize(columns));
-  for (std::size_t i = 0; i < columns.size(); ++i) out.col(as_index(i)) = columns[i];
-  return out;
-}
-
-/// Those that are not 0.
-MatrixX unit_columns(const MatrixX& X) {
-  MatrixX out(X.rows(), 0);
-  for (const auto column : X.colwise())
-    if (column.norm() > unseen) {
-      out.conservativeResize(Eigen::NoChange, out.cols() + 1);
-      out.rightCols<1>() = column.normalized();
-    }
+/// Nothing where all are 0.
+Spanned orthonormal(const MatrixX& X) {
+  if (X.norm() <= unseen) return {MatrixX(X.rows(), 0), MatrixX(0, X.cols())};
+  if (X.cols() == 1) return unit_columns(X);
+  Spanned out{statistics::orthonormal(X), {}};
+  out.coordinates = out.basis.transpose() * X;
   return out;
 }
 
@@ -120,7 +88,7 @@ class ChannelFaults {
       MatrixX columns = o.uncertainty().whitened(shapes);
       for (Eigen::Index k = 0; k < columns.cols(); ++k)
         if (columns.col(k).norm() < hidden * shapes.col(k).cwiseQuotient(noise).norm()) columns.col(k).setZero();
-      all_[sensor] = std::make_shared<const MatrixX>(unit_columns(columns));
+      all_[sensor] = std::make_shared<const MatrixX>(unit_columns(columns).basis);
     }
   }
 
@@ -136,64 +104,90 @@ class ChannelFaults {
 
 }  // namespace
 
-std::vector<Signature> signatures(const Observations& o, const std::vector<effects::Effect>& effects, int threads,
-                                  std::vector<LeftOut>* left_out) {
-  std::vector<effects::PlacedEffect> places;
+SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<effects::Effect>& effects,
+                                       int threads) {
+  std::vector<effects::PlacedEffect> placed;
   for (const effects::Effect& e : effects) {
     if (effects::is_geometry(e)) continue;
     const std::vector<effects::PlacedEffect> own =
         e.place ? every_leg(e, o.subject()) : effects::places_of(e, o.subject());
-    places.insert(places.end(), own.begin(), own.end());
-    if (left_out && own.empty()) {
+    placed.insert(placed.end(), own.begin(), own.end());
+    if (own.empty()) {
       const auto leg = e.scope == effects::Scope::one_leg ? std::optional(1) : std::nullopt;
-      left_out->push_back({e.name, effects::why_not(e, o.subject(), leg).value_or("")});
+      left_out_.push_back({e.name, effects::why_not(e, o.subject(), leg).value_or("")});
     }
   }
-  std::vector<Signature> all(places.size());
-  std::vector<std::string> why(places.size());
-  const ByStatics statics(o, places, threads);
-  const ChannelFaults channels(o);
-  parallel::for_each_case(places.size(), 1, threads, [&](std::size_t i) {
-    Signature& s = all[i];
-    s.effect = places[i];
-    s.whatever_the_law = channels.at(places[i]);
-    const auto looked_at = outcome_of([&] {
-      if (std::optional<VectorX> change = statics.change(places[i])) {
-        s.one_sided = one_sided(places[i]);
-        s.lambda = change->norm();
-        s.start = VectorX::Constant(1, s.lambda);
-        if (s.lambda > unseen)
-          s.basis = *change / s.lambda;
-        else
-          why[i] = "changes nothing that was measured";
-        return true;
-      }
-      const VectorX start = effects::start_values(*places[i].effect);
-      const MatrixX columns = directions(o, places[i], start, s.shaped);
-      const VectorX at_start =
-          !s.shaped && columns.cols() == start.size() ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0));
-      s.lambda = at_start.norm();
-      s.one_sided = s.shaped ? amplitude_from_nothing(*places[i].effect) : one_sided(places[i]);
-      if (!columns.allFinite())
-        why[i] = "the prediction with it is no number";
-      else if (columns.norm() > unseen)
-        s.basis = s.shaped ? unit_columns(columns) : statistics::orthonormal(columns);
-      else
-        why[i] = "changes nothing that was measured";
-      if (s.basis.cols() == 0) return true;
-      if (!s.shaped)
-        s.start = s.basis.transpose() * at_start;
-      else if (s.start = VectorX::Zero(s.basis.cols()); s.lambda > unseen)
-        s.start(0) = s.lambda;  // its first column
-      return true;
-    });
+  nowhere_ = left_out_.size();
+  for (const effects::PlacedEffect& e : placed) places_.push_back({e});
+  const Changes changes(o, placed, threads);
+  weigh(o, threads, [&](std::size_t i) {
+    Place& p = places_[i];
+    auto change = outcome_of([&] { return changes.by(p.effect); });
     // The subject cannot stand with it, or it wants what the file does not have: a sequence.
-    if (!looked_at) why[i] = looked_at.why;
+    if (!change) p.why = change.why;
+    if (change && !change->columns.allFinite()) p.why = "the prediction with it is no number";
+    return p.why.empty() ? std::move(change.value) : std::nullopt;
   });
-  for (std::size_t i = 0; left_out && i < all.size(); ++i)
-    if (all[i].basis.cols() == 0 && !places[i].effect->place) left_out->push_back({name_of(places[i]), why[i]});
-  std::erase_if(all, [](const Signature& s) { return s.basis.cols() == 0; });
-  return all;
+}
+
+void SignaturesAtPlaces::weigh_for(const Observations& o, int threads) {
+  std::vector<MatrixX> bases(places_.size());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    if (places_[i].coordinates.rows() > 0) bases[i] = std::move(all_[next++].basis);
+  const std::shared_ptr<const statistics::Whitening> before = std::move(whitening_);
+  const std::vector<Eigen::Index> aside = std::move(aside_);
+  left_out_.resize(nowhere_);
+  weigh(o, threads, [&](std::size_t i) -> std::optional<Change> {
+    const Place& p = places_[i];
+    if (!p.why.empty()) return std::nullopt;
+    Change change{MatrixX::Zero(before->rows(), p.aside.cols()), is_shaped(p.effect), p.summed};
+    if (bases[i].cols() > 0) change.columns = before->undo(bases[i]) * p.coordinates;
+    change.columns(aside, Eigen::all) = p.aside;
+    bases[i].resize(0, 0);
+    return change;
+  });
+}
+
+std::vector<Signature> signatures(const Observations& o, const std::vector<effects::Effect>& effects, int threads,
+                                  std::vector<LeftOut>* left_out) {
+  SignaturesAtPlaces out(o, effects, threads);
+  if (left_out) left_out->insert(left_out->end(), out.left_out().begin(), out.left_out().end());
+  return std::move(out).all();
+}
+
+template <class ChangeOf>
+void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeOf& change_of) {
+  whitening_ = o.uncertainty().whitening();
+  aside_.clear();
+  const std::vector<measurement::MeasuredValue>& values = o.comparison().study.values;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (o.aside()[values[k].reading]) aside_.push_back(as_index(k));
+  const ChannelFaults channels(o);
+  all_.assign(places_.size(), {});
+  parallel::for_each_case(places_.size(), 1, threads, [&](std::size_t i) {
+    Place& p = places_[i];
+    Signature& s = all_[i];
+    s.effect = p.effect;
+    const std::optional<Change> change = change_of(i);
+    if (!change) return;
+    const MatrixX white = (*whitening_)(change->columns);
+    Spanned spanned = change->shaped ? unit_columns(white) : orthonormal(white);
+    s.basis = std::move(spanned.basis);
+    s.shaped = change->shaped;
+    s.start = change->summed ? VectorX(spanned.coordinates.rowwise().sum()) : VectorX(spanned.coordinates.col(0));
+    s.lambda = s.start.norm();
+    s.one_sided = s.shaped ? amplitude_from_nothing(*p.effect.effect) : one_sided(p.effect);
+    s.whatever_the_law = channels.at(p.effect);
+    p.coordinates = std::move(spanned.coordinates);
+    p.aside = change->columns(aside_, Eigen::all);
+    p.summed = change->summed;
+  });
+  for (std::size_t i = 0; i < all_.size(); ++i)
+    if (all_[i].basis.cols() == 0 && !places_[i].effect.effect->place)
+      left_out_.push_back(
+          {name_of(places_[i].effect), places_[i].why.empty() ? "changes nothing that was measured" : places_[i].why});
+  std::erase_if(all_, [](const Signature& s) { return s.basis.cols() == 0; });
 }
 
 std::vector<double> weights_of(const std::vector<Signature>& all) {

@@ -34,9 +34,42 @@ struct LeftOut {
   std::string effect, why;
 };
 
-/// One signature for each effect at each of its places in the subject, as long as it changes what was measured. Entries
-/// without one are added to `left_out`. Equilibrium in the deformed shape is not tested as an effect: its size is
-/// known, and the prediction contains it. The effects must outlive the result.
+/// One signature for each effect at each of its places in the subject, as long as it changes what was measured.
+/// Equilibrium in the deformed shape is not tested as an effect: its size is known, and the prediction contains it. The
+/// effects must outlive the result.
+class SignaturesAtPlaces {
+ public:
+  SignaturesAtPlaces(const Observations&, const std::vector<effects::Effect>&, int threads);
+
+  /// Weighs the same changes as these observations do. They must be those of before but for the readings that are set
+  /// aside, so that nothing is predicted anew.
+  void weigh_for(const Observations&, int threads);
+
+  const std::vector<Signature>& all() const& { return all_; }
+  std::vector<Signature> all() && { return std::move(all_); }
+  /// Entries without a signature.
+  const std::vector<LeftOut>& left_out() const { return left_out_; }
+
+ private:
+  /// The change itself is W⁻¹ basis · coordinates at the numbers that count, and `aside` at those that are set aside.
+  struct Place {
+    effects::PlacedEffect effect;
+    MatrixX coordinates = {}, aside = {};
+    bool summed = false;
+    std::string why = {};  ///< where there is no change
+  };
+  template <class ChangeOf>
+  void weigh(const Observations&, int threads, const ChangeOf&);
+
+  std::vector<Place> places_;
+  std::vector<Signature> all_;  ///< in the order of the places
+  std::vector<LeftOut> left_out_;
+  std::size_t nowhere_ = 0;  ///< how many of left_out_ have no place in the subject
+  std::shared_ptr<const statistics::Whitening> whitening_;
+  std::vector<Eigen::Index> aside_;  ///< numbers
+};
+
+/// The signatures alone, for one weighing. Entries without one are added to `left_out`.
 std::vector<Signature> signatures(const Observations&, const std::vector<effects::Effect>&, int threads,
                                   std::vector<LeftOut>* left_out = nullptr);
 

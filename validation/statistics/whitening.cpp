@@ -52,7 +52,7 @@ Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns&
   }
   Eigen::Index widest = 0, first = errors.shared.cols();
   for (const GroupColumns& g : errors.groups) {
-    if (!g.rows.empty() && g.columns.cols() > 0) groups_.push_back({g.rows, g.columns, {}, first});
+    if (!g.rows.empty() && g.columns.cols() > 0) groups_.push_back({g.rows, g.columns, {}, {}, first});
     first += g.columns.cols();
     widest = std::max(widest, g.columns.cols());
   }
@@ -62,7 +62,9 @@ Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns&
     together = by_noise(together);
     for (Group& g : groups_) {
       g.O = together(g.rows, Eigen::seqN(0, g.O.cols())).eval();
-      g.less = root(g.O).less;
+      Root of_group = root(g.O);
+      g.less = std::move(of_group.less);
+      g.more = std::move(of_group.more);
     }
   }
   B_ = by_parts(errors.shared, threads_, [&](const MatrixX& part) { return within_groups(part); });
@@ -133,6 +135,34 @@ MatrixX Whitening::undo_shared(MatrixX X) const {
 
 MatrixX Whitening::operator()(const MatrixX& X) const {
   return by_parts(X, threads_, [&](const MatrixX& part) { return of_shared(within_groups(part)); });
+}
+
+/// By substitution: L⁻¹ is stored.
+void Whitening::undo_noise_in_place(MatrixX& X) const {
+  Eigen::Index next = 0;
+  for (const Factor& f : factors_) {
+    X.middleRows(next, f.first - next).setZero();
+    for (Eigen::Index c = 0; c < X.cols(); ++c) {
+      const double* entry = &entries_[f.at];
+      double* x = &X(f.first, c);
+      for (Eigen::Index i = 0; i < f.size; ++i) {
+        for (Eigen::Index k = 0; k < i; ++k) x[i] -= *entry++ * x[k];
+        x[i] /= *entry++;
+      }
+    }
+    next = f.first + f.size;
+  }
+  X.bottomRows(rows_ - next).setZero();
+}
+
+MatrixX Whitening::undo(const MatrixX& X) const {
+  return by_parts(X, threads_, [&](const MatrixX& part) {
+    MatrixX out = undo_shared(part);
+    change_groups(groups_, out,
+                  [](const Group& g, MatrixX& own) { own += g.O * (g.more * (g.O.transpose() * own)).eval(); });
+    undo_noise_in_place(out);
+    return out;
+  });
 }
 
 // Sᵀ Σ⁻¹ r = Bᵀ W_S W r and Oᵀ Σ⁻¹ r = Õᵀ W_O W_S W r.

@@ -36,6 +36,8 @@ class Whitening {
   /// W X: in least squares the rows are then independent with standard deviation 1. Columns are processed in chunks
   /// whose size does not depend on the threads, so that sums do not either.
   MatrixX operator()(const MatrixX& X) const;
+  /// W⁻¹ X. Rows that W sets to 0 are 0.
+  MatrixX undo(const MatrixX& X) const;
   /// W_N X and W_O W_N X.
   MatrixX by_noise(const MatrixX& X) const;
   MatrixX within_groups(const MatrixX& X) const;
@@ -67,10 +69,11 @@ class Whitening {
   };
   struct Group {
     std::vector<Eigen::Index> rows;
-    MatrixX O, less;     // Õ
-    Eigen::Index first;  // index of its first amplitude
+    MatrixX O, less, more;  // Õ
+    Eigen::Index first;     // index of its first amplitude
   };
   void within_groups_in_place(MatrixX&) const;
+  void undo_noise_in_place(MatrixX&) const;
   static Root root(const MatrixX& X);
 
   Eigen::Index rows_ = 0, amplitudes_ = 0;

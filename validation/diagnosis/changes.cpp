@@ -1,4 +1,4 @@
-#include "validation/diagnosis/by_statics.h"
+#include "validation/diagnosis/changes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,12 +21,35 @@ VectorX small_values(const effects::Effect& e) {
   return out;
 }
 
+/// Of amplitudes together: the start and each of them a hundredth to a hundred times, which spans what they can do.
+///
+/// Where parameters shape the effect: the start, and what shapes it a thirtieth and thirty times, from never slipping
+/// to slipping at once, from hardly bent to bent at every load; an amplitude that starts from nothing thirty times too,
+/// since friction as large as the loads is no multiple of a little.
+std::vector<VectorX> shapes(const std::vector<effects::EffectParameter>& all, const VectorX& start, bool shaped) {
+  std::vector<VectorX> out = {start};
+  if (all.size() == 1) return out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const effects::EffectParameter& p = all[i];
+    std::vector<double> factors = {0.01, 0.1, 10, 100};
+    if (shaped) factors = !p.vanishes ? std::vector{1.0 / 30, 30.0} : std::vector{30.0};
+    if (!p.log || (shaped && p.vanishes && std::isinf(*p.vanishes))) continue;
+    for (const double times : factors) {
+      out.push_back(start);
+      double& value = out.back()(as_index(i));
+      value = std::clamp(times * value, p.low, p.high);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
-ByStatics::ByStatics(const Observations& o, const std::vector<effects::PlacedEffect>& effects, int threads)
-    : observations_(o), transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()) {
+Changes::Changes(const Observations& o, const std::vector<effects::PlacedEffect>& effects, int threads)
+    : observations_(o),
+      null_(o.residual(o.subject())),
+      transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()) {
   if (!transmissions_) return;
-  null_ = o.residual(o.subject());
   std::vector<const effects::PlacedEffect*> first;
   for (const effects::PlacedEffect& e : effects)
     if (e.effect->place && effects::law_in_series(*e.effect, effects::start_values(*e.effect)) &&
@@ -37,14 +60,14 @@ ByStatics::ByStatics(const Observations& o, const std::vector<effects::PlacedEff
   for (std::size_t i = 0; i < first.size(); ++i) known_.at(subject::id_of(*first[i]->effect->place)) = agree[i];
 }
 
-std::optional<subject::Transmissions::Change> ByStatics::by_force(const effects::PlacedEffect& e, const VectorX& values,
-                                                                  const measurement::Measurements& data) const {
+std::optional<subject::Transmissions::Change> Changes::by_force(const effects::PlacedEffect& e, const VectorX& values,
+                                                                const measurement::Measurements& data) const {
   const std::optional<Law> law = effects::law_in_series(*e.effect, values);
   if (!law) return std::nullopt;
   return transmissions_->change(*e.effect->place, e.leg, *law, data);
 }
 
-bool ByStatics::agrees(const effects::PlacedEffect& e) const {
+bool Changes::agrees(const effects::PlacedEffect& e) const {
   const compare::ResidualStudy& study = observations_.comparison().study;
   const measurement::Measurements some = measurement::one_pose(*study.data, 0);
   const VectorX small = small_values(*e.effect);
@@ -67,7 +90,7 @@ bool ByStatics::agrees(const effects::PlacedEffect& e) const {
   return off && *off <= 0;
 }
 
-std::optional<VectorX> ByStatics::change(const effects::PlacedEffect& e) const {
+std::optional<VectorX> Changes::by_statics(const effects::PlacedEffect& e) const {
   if (!transmissions_ || !e.effect->place) return std::nullopt;
   const auto known = known_.find(subject::id_of(*e.effect->place));
   if (known == known_.end() || !known->second) return std::nullopt;
@@ -84,7 +107,39 @@ std::optional<VectorX> ByStatics::change(const effects::PlacedEffect& e) const {
     for (std::size_t k = 0; residual && k < study.values.size(); ++k)
       if (told->floats[study.values[k].reading]) change(as_index(k)) = (*residual)(as_index(k)) - null_(as_index(k));
   }
-  return VectorX(observations_.uncertainty().whitened(change));
+  return change;
+}
+
+/// Parameter by parameter where each can vanish alone, else all at the start; parameters that only shape the effect
+/// are tried at several values.
+Change Changes::predicted(const effects::PlacedEffect& e) const {
+  const effects::PreparedEffects prepared(observations_.subject(), {e});
+  const std::vector<effects::EffectParameter>& all = e.effect->parameters;
+  const VectorX start = effects::start_values(*e.effect);
+  Change out;
+  out.shaped = is_shaped(e);
+  out.summed = all.size() > 1 && std::all_of(all.begin(), all.end(), [](const effects::EffectParameter& p) {
+                 return p.vanishes && std::isfinite(*p.vanishes);
+               });
+  std::vector<VectorX> tried;
+  if (out.summed)
+    for (Eigen::Index i = 0; i < start.size(); ++i) {
+      VectorX alone = start;
+      for (Eigen::Index k = 0; k < start.size(); ++k)
+        if (k != i) alone(k) = *nth(all, k).vanishes;
+      tried.push_back(std::move(alone));
+    }
+  else
+    tried = shapes(all, start, out.shaped);
+  out.columns.resize(null_.size(), std::ssize(tried));
+  for (std::size_t i = 0; i < tried.size(); ++i)
+    out.columns.col(as_index(i)) = observations_.residual(prepared(tried[i])) - null_;
+  return out;
+}
+
+Change Changes::by(const effects::PlacedEffect& e) const {
+  if (std::optional<VectorX> change = by_statics(e)) return {std::move(*change), false, false};
+  return predicted(e);
 }
 
 }  // namespace deflect::diagnosis

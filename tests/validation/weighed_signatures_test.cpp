@@ -1,0 +1,108 @@
+// Signatures weighed anew, for other readings set aside, are those of a diagnosis that sets these aside from the start.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "msa/base/index.h"
+#include "tests/support/devices.h"
+#include "tests/support/effects.h"
+#include "validation/diagnosis/signatures.h"
+#include "validation/effects/place_effects.h"
+#include "validation/measurement/random.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
+
+namespace deflect::diagnosis {
+namespace {
+
+/// A device with every effect at every place, and the paper's readings of it.
+struct Looked {
+  explicit Looked(const std::string& device) : m(test::device(device)) {}
+
+  static measurement::Measurements simulated(const Mechanism& m) {
+    prediction::SimulationOptions o;
+    o.seed = 5;
+    return prediction::simulate(m, prediction::campaign("paper", m, 50, 2), o);
+  }
+  static std::vector<effects::Effect> effects_everywhere(const Mechanism& m) {
+    std::vector<effects::Effect> all = test::all_effects();
+    for (effects::Effect& e : effects::place_effects(subject::Subject(m), test::all_effects()))
+      all.push_back(std::move(e));
+    return all;
+  }
+  std::vector<bool> none() const { return std::vector<bool>(data.readings.size(), false); }
+  std::vector<bool> some(double share, std::uint64_t seed) const {
+    measurement::Random random(seed);
+    std::vector<bool> out;
+    for (std::size_t i = 0; i < data.readings.size(); ++i) out.push_back(random.uniform(0, 1) < share);
+    return out;
+  }
+
+  const Mechanism m;
+  const measurement::Measurements data = simulated(m);
+  const std::vector<effects::Effect> effects = effects_everywhere(m);
+  const Observations o{subject::Subject(m), data, {}};
+};
+
+/// What it does at the start values.
+VectorX at_start(const Signature& s) { return s.basis * s.start; }
+
+void expect_same(const SignaturesAtPlaces& again, const SignaturesAtPlaces& fresh) {
+  ASSERT_EQ(again.all().size(), fresh.all().size());
+  for (std::size_t i = 0; i < fresh.all().size(); ++i) {
+    const Signature &a = again.all()[i], &b = fresh.all()[i];
+    const std::string& name = b.effect.effect->name;
+    ASSERT_EQ(a.effect.effect, b.effect.effect) << name;
+    ASSERT_EQ(a.effect.leg, b.effect.leg) << name;
+    EXPECT_EQ(a.shaped, b.shaped) << name;
+    EXPECT_EQ(a.one_sided, b.one_sided) << name;
+    EXPECT_NEAR(a.lambda, b.lambda, 1e-9 * b.lambda + 1e-9) << name;
+    EXPECT_LT((at_start(a) - at_start(b)).norm(), 1e-9 * b.lambda + 1e-9) << name;
+    EXPECT_NEAR(cosine(a, b), 1, 1e-9) << name;
+    EXPECT_EQ(a.whatever_the_law == nullptr, b.whatever_the_law == nullptr) << name;
+  }
+  ASSERT_EQ(again.left_out().size(), fresh.left_out().size());
+  for (std::size_t i = 0; i < fresh.left_out().size(); ++i) {
+    EXPECT_EQ(again.left_out()[i].effect, fresh.left_out()[i].effect);
+    EXPECT_EQ(again.left_out()[i].why, fresh.left_out()[i].why);
+  }
+}
+
+class WeighedSignatures : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(WeighedSignatures, AreThoseOfAFreshLook) {
+  const Looked l(GetParam());
+  SignaturesAtPlaces again(l.o.keeping(l.none()), l.effects, 2);
+  ASSERT_GT(again.all().size(), 30u);
+  for (const std::vector<bool>& aside : {l.some(0.1, 1), l.some(0.3, 2)}) {
+    const Observations now = l.o.keeping(aside);
+    again.weigh_for(now, 2);
+    expect_same(again, SignaturesAtPlaces(now, l.effects, 2));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, WeighedSignatures, testing::Values("haptic-6psu-ideal-joints", "tripteron", "arm"),
+                         [](const auto& at) {
+                           std::string out = at.param;
+                           std::replace(out.begin(), out.end(), '-', '_');
+                           return out;
+                         });
+
+// Only a force along its line loads a drive of a tripteron. A law of that drive has no signature where all readings
+// under such a force are set aside, and gets one where they count.
+TEST(WeighedSignaturesOfATripteron, KnowWhatOnlyReadingsSetAsideShow) {
+  const Looked l("tripteron");
+  std::vector<bool> along_x;
+  for (const measurement::Reading& r : l.data.readings) along_x.push_back(r.load(0) != 0);
+  const Observations without = l.o.keeping(along_x), with = l.o.keeping(l.none());
+  SignaturesAtPlaces all(without, l.effects, 1);
+  const std::size_t before = all.all().size();
+  all.weigh_for(with, 1);
+  EXPECT_GT(all.all().size(), before);
+  expect_same(all, SignaturesAtPlaces(with, l.effects, 1));
+  all.weigh_for(without, 1);
+  expect_same(all, SignaturesAtPlaces(without, l.effects, 1));
+}
+
+}  // namespace
+}  // namespace deflect::diagnosis

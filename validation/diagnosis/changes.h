@@ -1,0 +1,53 @@
+// What an effect changes in the residual, before any weighing.
+//
+// Laws in series at places: their small effect on the readings follows from the forces at the place by statics
+// (Transmissions), without a prediction for each law. Readings whose load leaves play open are predicted, and all
+// readings with any other effect.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "validation/diagnosis/observations.h"
+#include "validation/effects/with_effect.h"
+
+namespace deflect::diagnosis {
+
+struct Change {
+  /// Measured numbers × directions, in the unit of the number. Of an effect whose parameters are all amplitudes: what
+  /// it does with each alone, or at several values together. Of a shaped effect: what it does in each of a few shapes.
+  /// The first column is at the start values, or they are the sum of all (summed).
+  MatrixX columns;
+  bool shaped = false;
+  bool summed = false;
+
+  VectorX at_start() const { return summed ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0)); }
+};
+
+class Changes {
+ public:
+  /// Statics tells those of the effects that are laws in series with one parameter, at places where it agrees with a
+  /// prediction. This is checked for one law at each place on the readings of the first pose, to 1 %. The observations
+  /// must outlive it.
+  Changes(const Observations&, const std::vector<effects::PlacedEffect>&, int threads);
+
+  /// At the start values; nullopt where it has to be predicted.
+  std::optional<VectorX> by_statics(const effects::PlacedEffect&) const;
+  /// Of any of these effects. Throws where the subject does not stand with it.
+  Change by(const effects::PlacedEffect&) const;
+
+ private:
+  std::optional<subject::Transmissions::Change> by_force(const effects::PlacedEffect&, const VectorX& values,
+                                                         const measurement::Measurements&) const;
+  bool agrees(const effects::PlacedEffect&) const;
+  Change predicted(const effects::PlacedEffect&) const;
+
+  const Observations& observations_;
+  VectorX null_;  ///< Observations::residual() of its subject
+  std::unique_ptr<const subject::Transmissions> transmissions_;
+  std::map<std::string, bool> known_;  ///< by place: whether statics agrees
+};
+
+}  // namespace deflect::diagnosis
