@@ -23,6 +23,7 @@ constexpr double known_to = 0.01;    // of the load at which it gives way
 constexpr double follows = 0.4;      // a step of Newton's method beside the one before, on the path of equilibria
 constexpr double least_step = 1e-6;  // of the load
 constexpr double settled = 1e-12;    // of the last step of Newton's method
+constexpr double stalls = 1e-9;      // steps no longer shorten; ten times that where forces of second order move play
 constexpr double nearly = 5e-3;      // from a step of which the next one may be the last
 constexpr double close = 1e-6;       // of a step, where Newton's method squares what is left
 
@@ -102,7 +103,7 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
   // Contacts have no stiffness at rest: where nothing is strained yet they are taken as under the whole load.
   const bool at_rest = largest_wrench(std::get<VirtualGroup>(whole.steps[legs_step(whole)])) == 0;
   c.least = !at_rest ? 1e-9 * largest : largest > 0 ? largest : 1;
-  LawsAtRest laws;
+  LawsAtRest laws(whole.length);
   for (int i = 0; i < 50; ++i) {
     ++d.iterations;
     if (d.move_steps && i > 0)
@@ -140,7 +141,8 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
       last = LastStep{std::move(l), moves};
     }
     const bool rest = (i > 0 || !d.move_steps) && laws.rest();
-    if (rest && (there || (d.residual <= 1e-9 && d.residual > 0.3 * previous))) return true;
+    if (rest && (there || (d.residual <= (d.move_steps ? 10 * stalls : stalls) && d.residual > 0.3 * previous)))
+      return true;
     previous = d.residual;
   }
   d.undecided = d.move_steps != nullptr;
@@ -222,10 +224,8 @@ void approach(Deformed& d, const Vector6& F, bool fitting) {
     step /= 2;
     if (step > least_step && !next.undecided) continue;
     d.converged = false;
-    if (next.undecided) {
-      d.undecided = true;
-      return;
-    }
+    d.undecided = next.undecided;
+    if (d.undecided) return;
     d.message = fmt::format(
         "it gives way at {:.4g} of the {}, a buckling or limit load: that is what the last stable "
         "equilibrium on the way carries",
@@ -311,26 +311,25 @@ std::vector<int> whole_members(const Configuration& c) {
   return std::vector<int>(members, 1);
 }
 
+/// The first step of Newton's method from there has the same legs for every load.
+Deformed knowing_legs(Deformed rest, const Configuration& c, bool linear) {
+  if (!linear || !all_fit(c.legs)) return rest;
+  auto& legs = std::get<VirtualGroup>(rest.whole.steps[legs_step(rest.whole)]);
+  legs.known = legs.restrain(rest.conditions);
+  return rest;
+}
+
 }  // namespace
 
 Deformed at_rest(const Configuration& c, Geometry geometry, bool linear) {
-  Deformed d = unloaded(c, {geometry}, whole_members(c));
-  if (linear && all_fit(c.legs)) {
-    auto& legs = std::get<VirtualGroup>(d.whole.steps[legs_step(d.whole)]);
-    legs.known = legs.restrain(d.conditions);
-  }
-  return d;
+  return knowing_legs(unloaded(c, {geometry}, whole_members(c)), c, linear);
 }
 
 Deformed at_rest_in(const std::vector<Step>& steps, const Configuration& c, Geometry geometry) {
   ShapeConditions under{geometry};
   under.steps = steps;
-  Deformed d = unloaded(c, under, whole_members(c));
-  if (all_fit(c.legs) && std::all_of(steps.begin(), steps.end(), [](const Step& s) { return s.offset == 0; })) {
-    auto& legs = std::get<VirtualGroup>(d.whole.steps[legs_step(d.whole)]);
-    legs.known = legs.restrain(d.conditions);
-  }
-  return d;
+  const bool unmoved = std::all_of(steps.begin(), steps.end(), [](const Step& s) { return s.offset == 0; });
+  return knowing_legs(unloaded(c, under, whole_members(c)), c, unmoved);
 }
 
 Deformed in_other_steps(const Deformed& from, const std::vector<Step>& steps, const Configuration& c) {

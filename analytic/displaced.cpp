@@ -249,9 +249,12 @@ std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector
   if (far) return std::nullopt;
   ShapeInSteps shape(configuration_, F, *rest_in_steps_);
   if (!shape.in(without_offsets).converged) return std::nullopt;
-  BalancedSteps laws = balance(
-      stepped_, conditions.slips, [&](const std::vector<Step>& steps) { return shape.answer(steps, legs_.length); },
-      imposed, false);
+  // A part that is pulled hangs within its play by a stiffness that it has under the load alone.
+  const AskSteps ask = [&](const std::vector<Step>& steps) { return shape.answer(steps, legs_.length); };
+  imposed = imposed_on(stepped_, ask, std::move(imposed));
+  if (auto found = balanced_on_the_way(F, conditions, imposed, far)) return found;
+  if (far) return std::nullopt;
+  BalancedSteps laws = balance(stepped_, conditions.slips, ask, imposed, false);
   if (!laws.converged) return std::nullopt;
   // Members bend otherwise there than without offsets, for which they were divided.
   const Deformed d =

@@ -16,10 +16,13 @@ struct StepsMoved {
 /// Follows the laws round by round.
 class LawsAtRest {
  public:
+  /// Of the mechanism, m.
+  explicit LawsAtRest(double length) : lost_(1e-10 * length) {}
+
   /// False where they go back and forth, or have no place to go.
   bool go_on(const StepsMoved& last) {
     rests_ = last.lacking <= alike || (last.lacking <= 10 * alike && last.lacking > 0.5 * before_.lacking);
-    if (before_.by > 0 && last.by > 0.5 * before_.by) ++astray_;
+    if (before_.by > lost_ && last.by > 0.5 * before_.by) ++astray_;
     before_ = last;
     return std::isfinite(last.lacking) && astray_ <= 4;
   }
@@ -31,6 +34,7 @@ class LawsAtRest {
 
  private:
   static constexpr double alike = 1e-9;
+  double lost_;  // in rounding: moves that say nothing
   StepsMoved before_;
   int astray_ = 0;
   bool rests_ = true;

@@ -96,10 +96,11 @@ class Balance {
     }
   }
 
-  /// The compliances and what offsets do.
+  /// The compliances and what offsets do; where these are known without load, what they do in the shape that it makes.
   void impose() {
-    stiff();
-    linearise(VectorX::Zero(n_), answer(VectorX::Zero(n_)), 1e3);
+    const bool known = imposed_.S.size() > 0;
+    if (!known) stiff();
+    linearise(VectorX::Zero(n_), answer(VectorX::Zero(n_)), known ? 1e-7 : 1e3);
   }
 
   BalancedSteps search() {
@@ -374,10 +375,9 @@ double SteppedLaw::stored_energy(double f, const Step& s) const {
   return stored(own) - stored(preload) - preload * d;
 }
 
-Imposed imposed_on(const std::vector<SteppedLaw>& laws, const AskSteps& ask) {
-  Imposed out;
-  Balance(laws, {}, ask, out, false).impose();
-  return out;
+Imposed imposed_on(const std::vector<SteppedLaw>& laws, const AskSteps& ask, Imposed unloaded) {
+  Balance(laws, {}, ask, unloaded, false).impose();
+  return unloaded;
 }
 
 BalancedSteps balance(const std::vector<SteppedLaw>& laws, const std::vector<double>& slips, const AskSteps& ask,

@@ -92,7 +92,8 @@ BalancedSteps balance_about(const VectorX& offsets, const SteppedForces& at, con
                             const std::vector<double>& slips, Imposed& imposed, double& lacking);
 
 /// What balance() computes where `imposed` is empty: compliances and the response to offsets, of a mechanism without
-/// load. Right for all loads where all that does not jump is linear.
-Imposed imposed_on(const std::vector<SteppedLaw>&, const AskSteps&);
+/// load. Right for all loads where all that does not jump is linear. `unloaded`: the result of this for the mechanism
+/// without load; then what offsets do in the deformed shape that answers, with the same compliances.
+Imposed imposed_on(const std::vector<SteppedLaw>&, const AskSteps&, Imposed unloaded = {});
 
 }  // namespace deflect::analytic

@@ -312,11 +312,9 @@ Linearised VirtualChain::linearise(const ShapeConditions& c) {
   const std::vector<int> joint_of = add_all_laws(steps, freedoms.first, along, c, length, out);
   out.s -= out.turned;
   out.scale = VectorX::Ones(out.Z.cols());
-  for (Eigen::Index i = 0; i < out.Z.cols(); ++i) {
-    // A freedom turns when it turns the end.
-    const Vector6 twist = out.J * out.Z.col(i);
-    if (twist.tail<3>().norm() * length > 1e-9 * twist.head<3>().norm()) out.scale(i) = 1 / length;
-  }
+  const Matrix6X twists = out.all ? out.J : Matrix6X(out.J * out.Z);
+  for (Eigen::Index i = 0; i < out.Z.cols(); ++i)  // a freedom turns when it turns the end
+    if (twists.col(i).tail<3>().norm() * length > 1e-9 * twists.col(i).head<3>().norm()) out.scale(i) = 1 / length;
   hold_idle(out, joint_of, length);
   return out;
 }

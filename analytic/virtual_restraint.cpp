@@ -169,8 +169,12 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   const MatrixX J_weighed = W.asDiagonal() * by_z.J * l.scale.asDiagonal();
   const MatrixX B = complement(J_weighed), P = complement(B);
   const Eigen::Index rank = P.cols(), passive = J_Q.cols();
-  const MatrixX C = P.transpose() * W.asDiagonal() * (J_E * yields) * W.asDiagonal() * P;
-  const MatrixX J_hat = P.transpose() * W.asDiagonal() * (J_Q - J_E * A_EE_EQ) * scale.asDiagonal();
+  const auto along_P = [&](const MatrixX& X) -> MatrixX {  // Pᵀ W X
+    const MatrixX weighed = W.asDiagonal() * X;
+    return B.cols() == 0 ? weighed : MatrixX(P.transpose() * weighed);
+  };
+  const MatrixX C = along_P(along_P(J_E * yields).transpose());
+  const MatrixX J_hat = along_P(J_Q - J_E * A_EE_EQ) * scale.asDiagonal();
   const MatrixX A_hat = scale.asDiagonal() * (A_QQ - A_EQ.transpose() * A_EE_EQ) * scale.asDiagonal();
   // In units in which the compliance is 1, so that ranks can be told.
   const double stiffest = A_hat.size() > 0 ? A_hat.cwiseAbs().maxCoeff() : 0;
@@ -179,11 +183,12 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   MatrixX M = MatrixX::Zero(rank + passive, rank + passive);
   M << C / unit, J_hat, J_hat.transpose(), -unit * A_hat;
   MatrixX right = MatrixX::Zero(rank + passive, 7);
-  right.topLeftCorner(rank, 6) = P.transpose() * W.asDiagonal() * Matrix6::Identity() / unit;
-  right.topRightCorner(rank, 1) = P.transpose() * W.cwiseProduct(e) / unit;
+  right.topLeftCorner(rank, 6) = along_P(Matrix6::Identity()) / unit;
+  right.topRightCorner(rank, 1) = along_P(e) / unit;
   right.bottomRightCorner(passive, 1) = scale.cwiseProduct(r_Q - A_EQ.transpose() * A_EE_r);
   const MatrixX solution = smallest_solution(M, right);
-  const MatrixX forces = W.asDiagonal() * P * solution.topRows(rank);  // F by [t + c; 1]
+  const MatrixX along = B.cols() == 0 ? MatrixX(solution.topRows(rank)) : MatrixX(P * solution.topRows(rank));
+  const MatrixX forces = W.asDiagonal() * along;  // F by [t + c; 1]
   response_.resize(by_z.J.cols(), 7);
   const MatrixX z_Q = unit * (scale.asDiagonal() * solution.bottomRows(passive));
   MatrixX z_E = yields * forces - A_EE_EQ * z_Q;

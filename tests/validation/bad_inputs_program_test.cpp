@@ -67,7 +67,7 @@ TEST_F(BadInputs, TheSameMachineTwiceIsSaid) {
 
 TEST_F(BadInputs, LoadsBeyondWhatTheMachineCarries) {
   expect("simulate " + device + " --campaign paper --elements 1 --force 1e6 -o " + path("data.csv"), 4,
-         "the machine as drawn gives way above");
+         "of the machine as drawn equilibria are found up to");
 }
 
 TEST_F(BadInputs, MeasurementsThatSayNothing) {

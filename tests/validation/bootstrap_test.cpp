@@ -31,7 +31,7 @@ Signature to_one_side(Signature s) {
 }
 
 double chance(const std::vector<Signature>& all, double p, int sets = 100'000) {
-  return chance_of_any(all, p, sets, {});
+  return chance_of_any(all, inner_products(all), p, sets, {});
 }
 
 /// Five standard deviations of a share of that many draws.
@@ -70,11 +70,12 @@ TEST(Bootstrap, IsResolvedToTheNumberOfSets) {
 
 TEST(Bootstrap, IsTheSameForAnyNumberOfThreadsAndRanks) {
   const std::vector<Signature> all = {along_axes(0), along_axes(3, 2), to_one_side(along_axes(7))};
-  const double alone = chance_of_any(all, 0.05, 12'345, {1});
-  EXPECT_EQ(chance_of_any(all, 0.05, 12'345, {3}), alone);
+  const MatrixX inner = inner_products(all);
+  const double alone = chance_of_any(all, inner, 0.05, 12'345, {1});
+  EXPECT_EQ(chance_of_any(all, inner, 0.05, 12'345, {3}), alone);
   for (const int size : {2, 3})
     test::ThreadRanks(size).run([&](Ranks& ranks) {
-      EXPECT_EQ(chance_of_any(all, 0.05, 12'345, {1, &ranks}), alone) << "rank " << ranks.rank();
+      EXPECT_EQ(chance_of_any(all, inner, 0.05, 12'345, {1, &ranks}), alone) << "rank " << ranks.rank();
     });
 }
 

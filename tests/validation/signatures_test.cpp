@@ -119,6 +119,16 @@ TEST(Signatures, InnerProductsAndCosinesAreThoseOfAllColumns) {
   EXPECT_EQ(inner_products({}).size(), 0);
 }
 
+// More columns than a thread takes at once.
+TEST(Signatures, InnerProductsAreTheSameWhateverTheThreads) {
+  std::vector<Signature> all;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) all.push_back(of_shapes(noise(300, 3, seed)));
+  const MatrixX alone = inner_products(all);
+  EXPECT_LT((alone - alone.transpose()).cwiseAbs().maxCoeff(), 1e-300);
+  EXPECT_NEAR(alone(149, 2), all[49].basis.col(2).dot(all[0].basis.col(2)), 1e-12);
+  for (const int threads : {2, 5}) EXPECT_EQ(inner_products(all, threads), alone);
+}
+
 // All laws at places together weigh 15 % of the entries, and none more than an entry.
 TEST(Signatures, LawsAtPlacesTogetherWeighAsLittleAsSaid) {
   effects::Effect place = test::effect("modulus");

@@ -32,8 +32,8 @@ double gain(const Signature& s, double sense, const Components& z) {
 
 }  // namespace
 
-double chance_of_any(const std::vector<Signature>& all, double least_p, int sets_drawn, const parallel::Work& work,
-                     const Counted& counted) {
+double chance_of_any(const std::vector<Signature>& all, const MatrixX& inner, double least_p, int sets_drawn,
+                     const parallel::Work& work, const Counted& counted) {
   if (all.empty() || !(least_p < 1)) return 1;
   std::vector<double> wanted;
   const std::vector<double> weights = weights_of(all);
@@ -41,7 +41,7 @@ double chance_of_any(const std::vector<Signature>& all, double least_p, int sets
   for (const Signature& s : all) senses.push_back(s.one_sided && !s.shaped && s.basis.cols() > 0 ? s.start(0) : 0);
   for (std::size_t i = 0; i < all.size(); ++i)
     wanted.push_back(std::max(gain_at_p_value(all[i], least_p * weights[i]), std::numeric_limits<double>::min()));
-  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(inner_products(all));
+  const Eigen::SelfAdjointEigenSolver<MatrixX> axes(inner);
   const Eigen::Index columns = axes.eigenvalues().size();
   const MatrixX root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 

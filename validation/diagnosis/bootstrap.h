@@ -15,10 +15,9 @@ using Counted = std::function<void(std::size_t done, std::size_t all)>;
 
 /// Probability that, with nothing missing, some effect reaches a p-value of at most `least_p`, from `sets` simulated
 /// data sets. The whitened residual is then r ~ N(0, 1), and only its components along the signatures matter, z = Bᵀr ~
-/// N(0, BᵀB). The result does not depend on the number of threads and ranks, nor on which of the sets a journal held.
-/// Its resolution and least value are 1/(sets
-/// + 1).
-double chance_of_any(const std::vector<Signature>&, double least_p, int sets, const parallel::Work&,
-                     const Counted& = {});
+/// N(0, BᵀB). `inner`: BᵀB, the signatures' inner_products(). The result does not depend on the number of threads and
+/// ranks, nor on which of the sets a journal held. Its resolution and least value are 1/(sets + 1).
+double chance_of_any(const std::vector<Signature>&, const MatrixX& inner, double least_p, int sets,
+                     const parallel::Work&, const Counted& = {});
 
 }  // namespace deflect::diagnosis

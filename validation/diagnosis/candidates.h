@@ -61,6 +61,8 @@ class Candidates {
   Candidates in_larger_sizes() const;
 
   int threads() const { return threads_; }
+  /// inner_products() of the signatures.
+  const MatrixX& between() const { return between_; }
 
   static constexpr double prior_missing = 0.8, prior_unknown = 0.1;  ///< prior_unknown: as a share of prior_missing
 
@@ -72,7 +74,7 @@ class Candidates {
   const std::vector<Signature>& signatures_;
   int threads_;
   std::function<void(std::size_t, std::size_t)> progress_;
-  MatrixX between_;                   ///< inner_products() of the signatures
+  MatrixX between_;
   std::vector<std::size_t> classes_;  ///< for each signature, the first that these data cannot distinguish from it
   std::vector<char> lets_go_;         ///< by signature: lets_go()
   /// The places of an entry share the entry's prior; the effects of one class have one share together.

@@ -206,7 +206,7 @@ struct FirstStep {
         patterns(o.whitened_patterns()),
         left(left_over(patterns, all(), null, work.threads)),
         larger(larger_tolerances(o)),
-        chance(chance_of_any(all(), least_p_value(all(), each), bootstrap_sets, work,
+        chance(chance_of_any(all(), candidates.between(), least_p_value(all(), each), bootstrap_sets, work,
                              [&](std::size_t done, std::size_t of) { rounds(done, of); })) {}
   FirstStep(const FirstStep&) = delete;  // the candidates hold the signatures by reference
 

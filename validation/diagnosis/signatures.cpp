@@ -239,12 +239,13 @@ double own_share(const Signature& s, const MatrixX& beside) {
 
 double cosine(const Signature& a, const Signature& b) { return cosine(a, b, a.basis.transpose() * b.basis); }
 
-MatrixX inner_products(const std::vector<Signature>& all) {
+MatrixX inner_products(const std::vector<Signature>& all, int threads) {
   Eigen::Index columns = 0;
   for (const Signature& s : all) columns += s.basis.cols();
   MatrixX out = MatrixX::Zero(columns, columns);
   if (all.empty()) return out;
-  constexpr Eigen::Index some = 2048;  // rows side by side at a time
+  constexpr Eigen::Index some = 2048,
+                         wide = 64;  // rows side by side at a time; columns of a case, whatever the threads
   const Eigen::Index rows = all.front().basis.rows();
   MatrixX part;
   for (Eigen::Index first = 0; first < rows; first += some) {
@@ -254,9 +255,12 @@ MatrixX inner_products(const std::vector<Signature>& all) {
       part.middleCols(at, s.basis.cols()) = s.basis.middleRows(first, part.rows());
       at += s.basis.cols();
     }
-    out.noalias() += part.transpose() * part;
+    parallel::for_each_case(as_size((columns + wide - 1) / wide), 1, threads, [&](std::size_t k) {
+      const Eigen::Index from = as_index(k) * wide, count = std::min(wide, columns - from), below = columns - from;
+      out.block(from, from, below, count).noalias() += part.rightCols(below).transpose() * part.middleCols(from, count);
+    });
   }
-  return out;
+  return out.selfadjointView<Eigen::Lower>();
 }
 
 MatrixX cosines(const std::vector<Signature>& all) { return cosines(all, inner_products(all)); }

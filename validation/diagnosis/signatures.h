@@ -91,7 +91,7 @@ double most_gain(const Signature&, const VectorX& residual, const MatrixX& besid
 double own_share(const Signature&, const MatrixX& beside);
 
 /// Inner products of the columns of all bases, in the order of the signatures.
-MatrixX inner_products(const std::vector<Signature>&);
+MatrixX inner_products(const std::vector<Signature>&, int threads = 1);
 
 /// Largest cosine between the spans of two signatures; cosines(): for every pair, from their inner_products() where
 /// these are known.

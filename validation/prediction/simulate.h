@@ -32,8 +32,8 @@ struct SimulationOptions {
 measurement::Measurements simulate(const Mechanism&, measurement::Measurements plan, const SimulationOptions&,
                                    const parallel::Work& = {});
 
-/// The share of the plan's loads that the machine as drawn can carry, at the first pose where it cannot carry them in
-/// full; known to 1 %. 1 where it carries all loads, 0 where it cannot carry a millionth of them.
+/// The share of the plan's loads under which the MSA finds the machine as drawn in equilibrium, at the first pose where
+/// it does not under all of them; known to 1 %. 1 where it does everywhere, 0 where not under a millionth of them.
 double share_carried(const Mechanism&, const measurement::Measurements& plan, const SimulationOptions&);
 
 }  // namespace deflect::prediction

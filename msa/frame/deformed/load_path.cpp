@@ -115,7 +115,8 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
   const bool finite = options.geometry == Geometry::finite;
   work.strain(factor);
   if (work.jump && state.load_factor == 0) begin_jumps(work, factor);
-  double previous = std::numeric_limits<double>::infinity(), slowest = 0;
+  double previous = std::numeric_limits<double>::infinity(), least = previous, slowest = 0;
+  int trembles = 0;  // small steps in turn, none shorter than half of the shortest before
   const VectorX before = work.shape.path;
   for (int i = 1; i <= options.max_iterations; ++i) {
     ++state.iterations;
@@ -134,12 +135,15 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     work.shape.move(step.u);
     const double change = size_of(step.u, model_.nodes.size(), work.length);
     const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
-    // Rounding is all that is left; of play that floats against hardly any stiffness, that of positions.
+    // Rounding is all that is left; of play that floats against hardly any stiffness, that of positions. What hangs in
+    // play by forces of second order goes on to tremble: stiffnesses round the forces that move it.
     const bool stalled =
         change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && change > 0.5 * previous;
+    trembles = work.jump && change < 1e-5 * size && change > 0.5 * least ? trembles + 1 : 0;
+    least = std::min(least, change);
     // Second order takes the forces of constraints from the shape before: that too has to have settled.
     const bool settled = finite || previous <= options.tolerance * size;
-    if ((change <= options.tolerance * size && settled) || stalled) {
+    if ((change <= options.tolerance * size && settled) || stalled || trembles >= 5) {
       // Across a buckling or limit load Newton finds equilibria that nothing would stay in.
       const bool stable = !finite || step.tangent->stable();
       if (!stable) work.why = "the equilibrium is unstable there, a buckling or limit load was passed";

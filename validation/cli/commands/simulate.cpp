@@ -132,7 +132,8 @@ std::string way_out(const Mechanism& m, const measurement::Measurements& plan, c
   const double share = prediction::share_carried(m, plan, o);
   if (share == 0 || share == 1) return "";
   const bool named = plan.origin == "campaign";
-  return fmt::format(": the machine as drawn gives way above {} % of the loads{}", digits_of(100 * share, 2),
+  return fmt::format(": of the machine as drawn equilibria are found up to {} % of the loads{}",
+                     digits_of(100 * share, 2),
                      named ? fmt::format(", --force {} N", digits_of(share * a.force, 2)) : "");
 }
 
