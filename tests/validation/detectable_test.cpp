@@ -32,7 +32,7 @@ class DetectableSizes : public ::testing::Test {
   const Observations o{subject::Subject(m), data, {}};
   const std::vector<effects::Effect> all = entries();
   const std::vector<Signature> signs = signatures(o, all, 1);
-  const std::vector<Detectable> detectable = detectable_sizes(signs);
+  const std::vector<Detectable> detectable = detectable_sizes(signs, cosines(signs, inner_products(signs)));
 };
 
 TEST_F(DetectableSizes, ChangeTheReadingsByFourDeviations) {

@@ -107,7 +107,7 @@ TEST(Signatures, InnerProductsAndCosinesAreThoseOfAllColumns) {
   MatrixX X(5000, 7);
   X << all[0].basis, all[1].basis, all[2].basis, all[3].basis;
   EXPECT_LT((inner_products(all) - X.transpose() * X).cwiseAbs().maxCoeff(), 1e-12);
-  const MatrixX between = cosines(all);
+  const MatrixX between = cosines(all, inner_products(all));
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t k = 0; k < all.size(); ++k)
       EXPECT_NEAR(between(as_index(i), as_index(k)), cosine(all[i], all[k]), 1e-12);

@@ -5,9 +5,9 @@
 
 namespace deflect::diagnosis {
 
-std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all, bool laws_at_places) {
+std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all, const MatrixX& cosines,
+                                         bool laws_at_places) {
   std::vector<Detectable> out;
-  const MatrixX between = cosines(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Signature& s = all[i];
     if (s.effect.effect->place && !laws_at_places) continue;
@@ -23,7 +23,7 @@ std::vector<Detectable> detectable_sizes(const std::vector<Signature>& all, bool
     }
     for (std::size_t k = 0; k < all.size(); ++k)
       if (all[k].effect.effect != s.effect.effect && (laws_at_places || !all[k].effect.effect->place))
-        if (const double c = between(as_index(i), as_index(k)); c > d.cosine)
+        if (const double c = cosines(as_index(i), as_index(k)); c > d.cosine)
           d.cosine = c, d.mistaken_for = name_of(all[k].effect);
     if (d.cosine < 0.9) d.mistaken_for.clear();
     out.push_back(std::move(d));

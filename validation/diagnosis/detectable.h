@@ -14,7 +14,8 @@ struct Detectable {
   double cosine = 0;
 };
 
-/// Of the entries of the catalogue; with `laws_at_places` of these too.
-std::vector<Detectable> detectable_sizes(const std::vector<Signature>&, bool laws_at_places = false);
+/// Of the entries of the catalogue; with `laws_at_places` of these too. `cosines`: of the signatures.
+std::vector<Detectable> detectable_sizes(const std::vector<Signature>&, const MatrixX& cosines,
+                                         bool laws_at_places = false);
 
 }  // namespace deflect::diagnosis

@@ -232,7 +232,7 @@ struct FirstStep {
 /// What the first step says of the effects, of "nothing" and of "unknown"; `alone`: its candidates, or larger ones.
 void tell(Diagnosis& d, const FirstStep& s, std::vector<Candidate> alone) {
   d.left_out = s.signatures.left_out();
-  d.detectable = detectable_sizes(s.all());
+  d.detectable = detectable_sizes(s.all(), cosines(s.all(), s.candidates.between()));
   d.baseline = quality(s.observations, {}, s.null);
   d.larger_tolerances = s.larger.scale * s.observations.tolerance_scale();
   d.chance = s.chance;

@@ -263,8 +263,6 @@ MatrixX inner_products(const std::vector<Signature>& all, int threads) {
   return out.selfadjointView<Eigen::Lower>();
 }
 
-MatrixX cosines(const std::vector<Signature>& all) { return cosines(all, inner_products(all)); }
-
 MatrixX cosines(const std::vector<Signature>& all, const MatrixX& inner) {
   MatrixX out(std::ssize(all), std::ssize(all));
   Eigen::Index row = 0;

@@ -93,10 +93,8 @@ double own_share(const Signature&, const MatrixX& beside);
 /// Inner products of the columns of all bases, in the order of the signatures.
 MatrixX inner_products(const std::vector<Signature>&, int threads = 1);
 
-/// Largest cosine between the spans of two signatures; cosines(): for every pair, from their inner_products() where
-/// these are known.
+/// Largest cosine between the spans of two signatures; cosines(): for every pair, from their inner_products().
 double cosine(const Signature&, const Signature&);
-MatrixX cosines(const std::vector<Signature>&);
 MatrixX cosines(const std::vector<Signature>&, const MatrixX& inner_products);
 
 /// Per signature the first one that does all but the same (a cosine above 0.999).

@@ -82,8 +82,8 @@ class Seeing {
     const diagnosis::Observations seen_data(subject_, data, options, work.part(0, 0.7));
     const std::vector<diagnosis::Signature> all =
         diagnosis::signatures(seen_data, effects_, work.threads, &out.left_out);
-    out.detectable = diagnosis::detectable_sizes(all, true);
-    out.cosines = diagnosis::cosines(all);
+    out.cosines = diagnosis::cosines(all, diagnosis::inner_products(all, work.threads));
+    out.detectable = diagnosis::detectable_sizes(all, out.cosines, true);
     for (const diagnosis::Signature& each : all) out.names.push_back(diagnosis::name_of(each.effect));
     if (work.progress) work.progress(0.9);
 
