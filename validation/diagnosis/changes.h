@@ -22,8 +22,6 @@ struct Change {
   MatrixX columns;
   bool shaped = false;
   bool summed = false;
-
-  VectorX at_start() const { return summed ? VectorX(columns.rowwise().sum()) : VectorX(columns.col(0)); }
 };
 
 class Changes {
