@@ -96,7 +96,7 @@ class Balance {
     }
   }
 
-  /// The compliances and what offsets do; where these are known without load, what they do in the shape that it makes.
+  /// The compliances and what offsets do without load; where both are known, what offsets do in the shape under a load.
   void impose() {
     const bool known = imposed_.S.size() > 0;
     if (!known) stiff();

@@ -6,10 +6,9 @@
 
 #include "msa/base/index.h"
 #include "tests/support/devices.h"
-#include "tests/support/effects.h"
+#include "tests/support/effects_everywhere.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/signatures.h"
-#include "validation/effects/place_effects.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
 
@@ -25,18 +24,11 @@ measurement::Measurements measured(const Mechanism& drawn, double gap_mm, const 
   return simulate(loose, campaign(plan, drawn, 50, 1), o);
 }
 
-std::vector<effects::Effect> effects_everywhere(const Mechanism& m) {
-  std::vector<effects::Effect> all = test::all_effects();
-  for (effects::Effect& e : effects::place_effects(subject::Subject(m), test::all_effects()))
-    all.push_back(std::move(e));
-  return all;
-}
-
 // Along x, y and z only one drive of a tripteron is loaded at a time. The play of the two others moves T by 20 µm to
 // one side, ten σ, of which linear geometry says nothing.
 TEST(FloatingPlay, OfATripteronsDrivesIsNamed) {
   const Mechanism drawn = test::device("tripteron");
-  const std::vector<effects::Effect> all = effects_everywhere(drawn);
+  const std::vector<effects::Effect> all = test::effects_everywhere(drawn);
   for (const std::uint64_t seed : {3, 4}) {
     SimulationOptions o;
     o.seed = seed;
@@ -57,7 +49,7 @@ TEST(FloatingPlay, LooksAlikeInADriveAndAlongTheJointsBehindIt) {
   SimulationOptions o;
   o.seed = 3;
   const measurement::Measurements data = measured(drawn, 0.02, o);
-  const std::vector<effects::Effect> all = effects_everywhere(drawn);
+  const std::vector<effects::Effect> all = test::effects_everywhere(drawn);
   const std::vector<diagnosis::Signature> looked_at = diagnosis::signatures({drawn, data, {}}, all, 2);
   const auto of = [&](const std::string& name) {
     const auto found = std::find_if(looked_at.begin(), looked_at.end(), [&](const diagnosis::Signature& s) {
@@ -100,7 +92,7 @@ TEST(FloatingPlay, WhereTolerancesDecideIsSetAside) {
   SimulationOptions o;
   o.seed = 3;
   const measurement::Measurements data = measured(drawn, 0.02, o, "rich");
-  const std::vector<effects::Effect> all = effects_everywhere(drawn);
+  const std::vector<effects::Effect> all = test::effects_everywhere(drawn);
   const diagnosis::Diagnosis d = diagnosis::diagnose(drawn, data, all, {{}, 199});
   EXPECT_FALSE(d.unexplained);
   ASSERT_EQ(d.missing.size(), 1u);

@@ -147,8 +147,7 @@ INSTANTIATE_TEST_SUITE_P(Devices, PlayInDrives,
                          ::testing::Values("tripteron", "haptic-6psu", "stewart-6ups", "scara", "gantry", "3-upu"));
 
 /// With play of one size at the place, in all of a machine's legs or stages.
-Mechanism with_play(const char* device, const std::string& at, double gap) {
-  const Mechanism drawn = test::device(device);
+Mechanism with_play(const Mechanism& drawn, const std::string& at, double gap) {
   const std::vector<effects::Effect> all = effects::place_effects(subject::Subject(drawn), test::all_effects());
   const auto play = std::find_if(all.begin(), all.end(), [&](const effects::Effect& e) {
     return e.name == "clearance@" + at && e.scope != effects::Scope::one_leg;
@@ -160,7 +159,7 @@ Mechanism with_play(const char* device, const std::string& at, double gap) {
 // Play across both joints of a leg: a leg that is pressed leans as far as it can, one that is pulled hangs in line with
 // its force, held by the load alone.
 TEST(JumpsInShape, PulledLegsHangWithinThePlayOfTheirJoints) {
-  const Mechanism m = with_play("stewart-6ups", "joints.tx", 0.02);
+  const Mechanism m = with_play(test::device("stewart-6ups"), "joints.tx", 0.02);
   for (const ValidationPoint& point : workspace_points(m))
     for (Eigen::Index i = 0; i < 3; ++i) {
       const Configuration c = stand(m, point.pose_mm_deg).configuration;
@@ -173,7 +172,7 @@ TEST(JumpsInShape, PulledLegsHangWithinThePlayOfTheirJoints) {
 
 // Under a load that bends an arm some joints are pushed to an end of their play, others hang within it.
 TEST(JumpsInShape, PlayInAllJointsOfAnArmStandsWhereBothTheoriesSay) {
-  const Mechanism m = with_play("arm", "drives.rz", 4e-5);
+  const Mechanism m = with_play(test::device("arm"), "drives.rz", 4e-5);
   for (const ValidationPoint& point : workspace_points(m)) {
     const auto there = stand(m, point.pose_mm_deg);
     Vector6 F;
@@ -213,14 +212,7 @@ std::vector<LoosePlay> hardly_held() {
 TEST(JumpsInShape, PlayThatHardlyAnythingHoldsIsFound) {
   for (const LoosePlay& at : hardly_held()) {
     Mechanism m = test::device(at.device);
-    const std::vector<effects::Effect> all = effects::place_effects(subject::Subject(m), test::all_effects());
-    for (const Play& play : at.play) {
-      const auto e = std::find_if(all.begin(), all.end(), [&](const effects::Effect& each) {
-        return each.name == std::string("clearance@") + play.at && each.scope != effects::Scope::one_leg;
-      });
-      ASSERT_NE(e, all.end()) << play.at;
-      m = effects::with_effect(m, *e, VectorX::Constant(1, play.gap));
-    }
+    for (const Play& play : at.play) m = with_play(m, play.at, play.gap);
     const Configuration c = stand(m, workspace_points(m)[at.point].pose_mm_deg).configuration;
     const Vector6 one = by_closed_form(c, at.F), other = by_msa(c, at.F, 4);
     // Across the load, play that nothing holds may be anywhere.
