@@ -56,6 +56,31 @@ loads: {push: {nodes: {B: {fx: 300 N}, D: {fx: 70 N}}}}
 sensors: {x: {node: B, direction: ux, sigma: 1 um}, end: {node: D, direction: ux, sigma: 1 um, gain: 2}}
 )";
 
+// A rigid link between held nodes: what passes through either support nobody can say, so that neither is a place whose
+// deformation explains a reading. The third support can be one.
+TEST(FrameSites, WhatIsHeldTwiceIsNone) {
+  const Subject s = frame::parse_frame(R"(
+name: twice-held
+plane: xz
+materials: {steel: {E: 200 GPa, nu: 0.3}}
+sections: {bar: {shape: rectangle, width_y: 10 mm, height_z: 10 mm}}
+nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m], C: [2 m, 0 m, 0 m]}
+members: {left: {from: A, to: B, section: bar, material: steel}, right: {from: B, to: C, section: bar, material: steel}}
+supports: {A: clamped, B: [ux], C: [ux, uz]}
+rigid_links: {link: {master: B, nodes: [C], freedoms: [ux]}}
+loads: {push: {nodes: {B: {fx: 100 N, fz: 50 N}}}}
+sensors: {z: {node: B, direction: uz, sigma: 1 um}}
+)",
+                                       "twice-held");
+  const auto data = readings_of(s, s);
+  const InnerSites sites = s.stand(data)->inner_sites(data);
+  EXPECT_THROW(site(sites, "support B ux"), std::out_of_range);
+  EXPECT_THROW(site(sites, "support C ux"), std::out_of_range);
+  EXPECT_TRUE(site(sites, "support C uz").per_load.allFinite());
+  EXPECT_EQ(sites.response.rows(), std::ssize(sites.all));
+  EXPECT_EQ(sites.response.cols(), std::ssize(sites.all));
+}
+
 TEST(FrameSites, ForcesAndRedundanciesByHand) {
   const Subject s = frame::parse_frame(two_rods, "two-rods");
   const auto data =

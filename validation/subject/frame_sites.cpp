@@ -53,10 +53,13 @@ InnerSites inner_sites_of(const FrameDescription& f, const measurement::Measurem
   for (const Listed& each : places) at.push_back(each.at), stiffest = std::max(stiffest, each.stiffness);
   std::optional<frame::Passages> known = nearby.known()->passages(sensors, at);
   if (!known) return {};
+  std::vector<Eigen::Index> giving;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (known->gives[i]) giving.push_back(as_index(i));
   InnerSites out;
-  out.response = std::move(known->response);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto k = as_index(i);
+  out.response = known->response(giving, giving);
+  for (const Eigen::Index k : giving) {
+    const std::size_t i = as_size(k);
     InnerSite site{name_of(places[i].place), places[i].place, places[i].place.rotation(), {}, {}};
     const Eigen::Index loads = known->carried.cols() - 1;  // the last one is always there
     site.per_load =
@@ -64,7 +67,7 @@ InnerSites inner_sites_of(const FrameDescription& f, const measurement::Measurem
     site.moves = known->moves.col(k);
     for (std::size_t s = 0; s < sensors.size(); ++s) site.moves(as_index(s)) *= sensors[s]->gain;
     // N/m; of a rotation over the square of the frame's size.
-    const double holds = -out.response(k, k), natural = places[i].stiffness;
+    const double holds = -known->response(k, k), natural = places[i].stiffness;
     const double scale = site.rotation ? stiffest * size_of(f) * size_of(f) : stiffest;
     site.determinate = !(holds > holds_nothing * (natural > 0 ? natural : scale));
     site.redundancy = site.determinate ? 0 : natural > 0 ? std::min(1.0, holds / natural) : 1;

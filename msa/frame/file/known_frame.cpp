@@ -22,6 +22,11 @@ constexpr int most_steps = 200;
 constexpr double found = 1e-24;  // of the energy of a change
 
 double stiffness_of(const Spring& s) { return tangent(s.law, 0); }
+VectorX stiffnesses_of(const Model& m) {
+  VectorX out(std::ssize(m.springs));
+  std::transform(m.springs.begin(), m.springs.end(), out.begin(), stiffness_of);
+  return out;
+}
 
 bool same_terms(const LinearForm& a, const LinearForm& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -138,12 +143,10 @@ double answer(const Near& n, const TakenLaws& t, const State& s) {
 
 Eigen::SparseMatrix<double> reduced_stiffness(const Model& m, const Elimination& e) {
   const Assembly assembly(m, e);
-  VectorX tangents(std::ssize(m.springs));
-  for (std::size_t s = 0; s < m.springs.size(); ++s) tangents(as_index(s)) = stiffness_of(m.springs[s]);
   const SparsePattern& p = assembly.pattern();
-  const std::vector<double> values = assembly.values(tangents);
-  return Eigen::Map<const Eigen::SparseMatrix<double>>(p.n, p.n, std::ssize(values), p.column_start.data(),
-                                                       p.row.data(), values.data());
+  const std::vector<double> all = assembly.values(stiffnesses_of(m));
+  using Mapped = Eigen::Map<const Eigen::SparseMatrix<double>>;
+  return Mapped(p.n, p.n, std::ssize(all), p.column_start.data(), p.row.data(), all.data());
 }
 
 }  // namespace
@@ -239,10 +242,9 @@ std::optional<VectorX> KnownFrame::Impl::solve(const Near& n, const VectorX& for
 
 std::optional<VectorX> KnownFrame::Impl::from_nothing(const Near& n, const VectorX& forces,
                                                       const VectorX& values) const {
+  if (!consistent(e, values)) return std::nullopt;
   const VectorX carried = e.expand(VectorX::Zero(e.independent), values);
-  VectorX tangents(std::ssize(n.m.model.springs));
-  for (Eigen::Index s = 0; s < tangents.size(); ++s) tangents(s) = stiffness_of(nth(n.m.model.springs, s));
-  std::optional<VectorX> u = solve(n, forces - tangent_forces(n.m.model, carried, tangents));
+  std::optional<VectorX> u = solve(n, forces - tangent_forces(n.m.model, carried, stiffnesses_of(n.m.model)));
   if (u) *u += carried;
   return u;
 }
@@ -372,18 +374,19 @@ std::optional<Passages> KnownFrame::passages(const std::vector<const FrameSensor
                                              const std::vector<TakenLaws>& places) const {
   const std::optional<Near> n = impl_->near(impl_->rest);
   if (!n) return std::nullopt;
-  Passages out{MatrixX(std::ssize(places), std::ssize(impl_->names)), MatrixX(std::ssize(sensors), std::ssize(places)),
-               MatrixX(std::ssize(places), std::ssize(places))};
+  const auto count = std::ssize(places), loads = std::ssize(impl_->names);
+  Passages out{MatrixX::Zero(count, loads), MatrixX::Zero(std::ssize(sensors), count), MatrixX::Zero(count, count), {}};
+  for (const TakenLaws& t : places) out.gives.push_back(consistent(impl_->e, input_of(*n, t).values));
   const auto all_at = [&](const State& s, MatrixX& to, std::size_t column) {
     for (std::size_t p = 0; p < places.size(); ++p) to(as_index(p), as_index(column)) = answer(*n, places[p], s);
   };
   for (std::size_t k = 0; k < impl_->names.size(); ++k) {
-    const auto& [name, load] = impl_->rest.loads[k];
-    const std::optional<State> state = impl_->under_load(*n, name, load);
+    const std::optional<State> state = impl_->under_load(*n, impl_->names[k], impl_->rest.loads[k].second);
     if (!state) return std::nullopt;
     all_at(*state, out.carried, k);
   }
   for (std::size_t p = 0; p < places.size(); ++p) {
+    if (!out.gives[p]) continue;
     const std::optional<State> state = impl_->under_input(*n, places[p]);
     if (!state) return std::nullopt;
     all_at(*state, out.response, p);

@@ -27,6 +27,9 @@ struct Passages {
   MatrixX carried;   ///< places × loads: N or Nm
   MatrixX moves;     ///< sensors × places: true reading by unit deformation
   MatrixX response;  ///< places × places: N/m and alike
+  /// By place: whether it can deform. A support cannot beside rigid parts that hold the same: then nobody can say what
+  /// passes, and what stands there means nothing.
+  std::vector<bool> gives;
 };
 
 class KnownFrame {
@@ -41,8 +44,8 @@ class KnownFrame {
 
   /// The true readings of sensors (rows) by column of `factors` on the loads as the near frame has them; those under a
   /// name of the constructor's take about the time of the change. Columns follow one another where `in_sequence`.
-  /// Nullopt where the frame is not near enough: other parts, misfits, or a state that is not found to 1e-12 of its
-  /// change.
+  /// Nullopt where the frame is not near enough: other parts, misfits, a state that is not found to 1e-12 of its
+  /// change, or a law at a place that cannot deform (Passages::gives).
   std::optional<MatrixX> readings(const FrameDescription&, const Named<LoadCase>& loads,
                                   const std::vector<const FrameSensor*>&, const MatrixX& factors,
                                   bool in_sequence) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "msa/base/error.h"
@@ -183,18 +184,35 @@ Elimination eliminate(const Model& m) {
   return out;
 }
 
+namespace {
+
+/// The value that the others imply, where it is not the constraint's own to 1e-9.
+std::optional<double> contradiction(const Redundancy& r, const VectorX& values) {
+  double implied = 0, scale = std::abs(values(r.constraint));
+  for (const Term& t : r.implied_by) {
+    implied += t.coefficient * values(t.dof);
+    scale = std::max(scale, std::abs(t.coefficient * values(t.dof)));
+  }
+  if (std::abs(implied - values(r.constraint)) > 1e-9 * scale) return implied;
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool consistent(const Elimination& e, const VectorX& values) {
+  return std::none_of(e.redundant.begin(), e.redundant.end(),
+                      [&](const Redundancy& r) { return contradiction(r, values).has_value(); });
+}
+
 void check_consistent(const Model& m, const Elimination& e, const VectorX& values) {
   for (const Redundancy& r : e.redundant) {
-    double implied = 0, scale = std::abs(values(r.constraint));
+    const std::optional<double> implied = contradiction(r, values);
+    if (!implied) continue;
     std::string names;
-    for (const Term& t : r.implied_by) {
-      implied += t.coefficient * values(t.dof);
-      scale = std::max(scale, std::abs(t.coefficient * values(t.dof)));
+    for (const Term& t : r.implied_by)
       if (names.size() < 200) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", nth(m.constraints, t.dof).name);
-    }
-    if (std::abs(implied - values(r.constraint)) > 1e-9 * scale)
-      throw ModelError(fmt::format("constraint '{}' contradicts {}: they imply the value {:.9g}, it asks for {:.9g}",
-                                   nth(m.constraints, r.constraint).name, names, implied, values(r.constraint)));
+    throw ModelError(fmt::format("constraint '{}' contradicts {}: they imply the value {:.9g}, it asks for {:.9g}",
+                                 nth(m.constraints, r.constraint).name, names, *implied, values(r.constraint)));
   }
 }
 

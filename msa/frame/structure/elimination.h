@@ -35,6 +35,9 @@ struct Elimination {
 /// is redundant.
 Elimination eliminate(const Model&);
 
+/// Whether no redundant constraint contradicts, for these values, those that imply it.
+bool consistent(const Elimination&, const VectorX& values);
+
 /// Throws ModelError with the constraints where, for these values, a redundant one contradicts those that imply it.
 void check_consistent(const Model&, const Elimination&, const VectorX& values);
 
