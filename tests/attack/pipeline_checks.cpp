@@ -170,15 +170,16 @@ void check_history(const Json& h, const Json& d, double numbers, bool noise_is_t
   const double first = versions[0]["chi2_beside_deformed_shape"], second = versions[1]["chi2_beside_deformed_shape"];
   // Where the diagnosis has widened the tolerances its misfit is a smaller one, by their square at most.
   const double scale = d["tolerance_scale"], widened = scale * scale;
-  c.require(first >= 0.9 * before && first <= 1.1 * widened * before, "misfit before, by history",
-            "{} for {} with tolerances {} times as wide", first, before, scale);
   if (!noise_is_told) {
-    // The diagnosis keeps the noise that the first version leaves, history takes it anew: then the errors are compared.
+    // History takes it from what each version leaves, the diagnosis from what the last one leaves: then the errors are
+    // compared.
     const double left = d["final"]["rmse_mm"], followed = versions[1]["kept_rmse_mm"];
     const double off = 0.1 * left + 0.02 * d["baseline"]["rmse_mm"].get<double>();
     c.require(std::abs(followed - left) <= off, "error after, by history", "{} for {}", followed, left);
     return;
   }
+  c.require(first >= 0.9 * before && first <= 1.1 * widened * before, "misfit before, by history",
+            "{} for {} with tolerances {} times as wide", first, before, scale);
   c.require(second >= 0.9 * after - 0.02 * before && second <= 1.1 * widened * after + 0.02 * before,
             "misfit after, by history", "{} for {}", second, after);
 }

@@ -12,6 +12,7 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "msa/frame/file/frame_description.h"
 #include "validation/compare/errors_by_group.h"
 #include "validation/compare/findings.h"
 #include "validation/compare/held_out.h"
@@ -19,6 +20,7 @@
 #include "validation/compare/residual_study.h"
 #include "validation/compare/shown_instead.h"
 #include "validation/parallel/cases.h"
+#include "validation/statistics/channel_noise.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
 
@@ -26,47 +28,55 @@ namespace deflect::compare {
 namespace {
 
 /// σ of every measured number: the file's or replicates', else the option's.
-std::optional<std::vector<double>> sigma_of(const std::vector<measurement::MeasuredValue>& values,
-                                            const ComparisonOptions& o) {
-  std::vector<double> out;
-  for (const measurement::MeasuredValue& v : values) {
-    const std::optional<double> sigma = v.sigma                                       ? v.sigma
-                                        : v.quantity == measurement::Quantity::length ? o.sigma_u
-                                        : v.quantity == measurement::Quantity::angle  ? o.sigma_th
-                                                                                      : std::nullopt;
-    if (!sigma) return std::nullopt;
-    out.push_back(*sigma);
-  }
+std::vector<std::optional<double>> told_sigma(const std::vector<measurement::MeasuredValue>& values,
+                                              const ComparisonOptions& o) {
+  std::vector<std::optional<double>> out;
+  for (const measurement::MeasuredValue& v : values)
+    out.push_back(v.sigma                                       ? v.sigma
+                  : v.quantity == measurement::Quantity::length ? o.sigma_u
+                  : v.quantity == measurement::Quantity::angle  ? o.sigma_th
+                                                                : std::nullopt);
   return out;
 }
 
-constexpr int fewest_left = 10;  // freedoms, for a scatter to within a quarter of itself
+/// Of forces the largest load, of moments that by the subject's size.
+statistics::LargestNumbers largest_numbers(const ResidualStudy& s) {
+  const double size = s.standing->size();
+  const auto force = [size](const Vector6& w) { return w.head<3>().norm() + w.tail<3>().norm() / size; };
+  const frame::FrameDescription* f = s.subject->frame();
+  std::vector<double> of_case;
+  for (const std::string& name : s.data->instruments.load_cases) {
+    of_case.push_back(0);
+    if (const frame::LoadCase* load = f ? find(f->loads, name) : nullptr) {
+      for (const auto& [node, wrench] : load->nodes) of_case.back() += std::abs(load->factor) * force(wrench);
+      for (const auto& [member, line] : load->members) of_case.back() += std::abs(load->factor) * line.q.norm() * size;
+    }
+  }
+  double largest = 0;
+  for (const measurement::Reading& r : s.data->readings) {
+    double sum = force(r.load);
+    for (std::size_t k = 0; k < r.factors.size(); ++k) sum += std::abs(r.factors[k]) * of_case[k];
+    for (const Vector6& wrench : r.at_points) sum += force(wrench);
+    largest = std::max(largest, sum);
+  }
+  return {{measurement::Quantity::force, largest}, {measurement::Quantity::moment, largest * size}};
+}
 
-/// The scatter that no pattern explains, alike for all numbers of one quantity.
-std::vector<double> scatter(const ResidualStudy& s, const VectorX& r, const MatrixX& patterns) {
-  const std::vector<double> one(s.values.size(), 1e-6);
-  const statistics::Uncertainty u(statistics::PartedColumns(MatrixX(r.size(), 0)), s.values, one, s.predicted, 0);
-  const statistics::Regression fit = statistics::regress(u, r, patterns);
-  if (static_cast<int>(s.values.size()) < fit.freedoms + fewest_left)
-    throw InputError(
-        fmt::format("{}: neither σ nor replicates, and {} measured numbers are too few to read the scatter off what no "
-                    "pattern explains: add a column sigma_u_mm (sigma_th_rad), repeat readings, or give --sigma "
-                    "(--sigma-rotation), or sigma of the sensors in the description",
-                    s.data->origin, s.values.size()));
-  const VectorX left = r - patterns * fit.amplitude;
-  std::array<double, measurement::quantity_rows.size()> squares{}, n{};
-  for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const auto kind = measurement::number_of(s.values[i].quantity);
-    squares[kind] += left(as_index(i)) * left(as_index(i));
-    n[kind] += 1;
+/// With what is estimated beside patterns, for a subject without tool point beside all that a linear effect can do, if
+/// it is read often enough for that.
+std::vector<double> estimated_sigma(const ResidualStudy& s, const std::vector<std::optional<double>>& told,
+                                    const VectorX& r, const MatrixX& patterns, const statistics::PartedColumns& A) {
+  const statistics::LargestNumbers largest = largest_numbers(s);
+  if (!s.standing->has_tool_point()) {
+    const MatrixX all = statistics::side_by_side({patterns, linear_answers(s)}, r.size());
+    if (auto found = statistics::channel_noise(s.values, told, r, all, A, largest)) return *found;
   }
-  const auto count = static_cast<double>(s.values.size());
-  std::vector<double> out;
-  for (const measurement::MeasuredValue& v : s.values) {
-    const auto kind = measurement::number_of(v.quantity);
-    out.push_back(std::max(1e-12, std::sqrt(squares[kind] / n[kind] * count / std::max(1.0, count - fit.freedoms))));
-  }
-  return out;
+  if (auto found = statistics::channel_noise(s.values, told, r, patterns, A, largest)) return *found;
+  throw InputError(
+      fmt::format("{}: neither σ nor replicates, and {} measured numbers are too few to read the scatter off what no "
+                  "pattern explains: add a column sigma_u_mm (sigma_th_rad), repeat readings, or give --sigma "
+                  "(--sigma-rotation), or sigma of the sensors in the description",
+                  s.data->origin, s.values.size()));
 }
 
 /// Variances of measured numbers by noise and tolerances, without unknown zeros.
@@ -145,9 +155,7 @@ class Comparing {
       c.deformed_shape = rms_of_errors(s.values, shape_);
       left_ -= shape_;
     }
-    const std::optional<std::vector<double>> sigma = sigma_of(s.values, options_);
-    c.sigma_from_residuals = !sigma;
-    c.sigma = sigma ? *sigma : scatter(s, left_, all);
+    take_noise(all);
     Outliers outliers = gross_outliers(s, c.tolerances.A, c.sigma, left_, all, work_.threads);
     aside_ = std::move(outliers.aside);
     uncertainty_ = std::move(outliers.uncertainty);
@@ -221,6 +229,19 @@ class Comparing {
   }
 
  private:
+  void take_noise(const MatrixX& patterns) {
+    std::vector<std::optional<double>> told = told_sigma(c.study.values, options_);
+    c.estimated.clear();
+    for (const auto& sigma : told) c.estimated.push_back(!sigma);
+    const measurement::Quantity errors = quantity_of_errors(c.study.values);
+    c.sigma_from_residuals = false;
+    for (std::size_t i = 0; i < told.size(); ++i) {
+      c.sigma_from_residuals = c.sigma_from_residuals || (!told[i] && c.study.values[i].quantity == errors);
+      if (!told[i] && !options_.sigma.empty()) told[i] = options_.sigma[i];
+    }
+    c.sigma = estimated_sigma(c.study, told, left_, patterns, c.tolerances.A);
+  }
+
   /// χ² = rᵀr − (sᵀr)²/(1/known² + sᵀs) of what is left, r, and the deformed shape, s, both whitened.
   double chi2_beside_shape() const {
     const double left = uncertainty_->inner(left_, left_)(0, 0);
@@ -294,7 +315,7 @@ std::optional<MisfitAccount> compared_again(const Comparison& recorded, const su
   at_best.share = comparing.c.all.measured > 0 ? comparing.c.all.rmse / comparing.c.all.measured : 0;
   if (!can_be_right(at_best)) return std::nullopt;
   comparing.add_tolerances();
-  if (!recorded.study.deformed_shape.empty() && !recorded.sigma_from_residuals) {
+  if (!recorded.study.deformed_shape.empty() && !is_any_estimated(recorded)) {
     comparing.c.study.deformed_shape = supposed_shape(recorded.study, comparing.c.study);
     comparing.weigh();
     comparing.find(false);
@@ -314,6 +335,10 @@ std::optional<MisfitAccount> compared_again(const Comparison& recorded, const su
 
 VectorX expected_deviations(const Comparison& c) {
   return expected_variances(c.study, c.tolerances, c.sigma).cwiseSqrt();
+}
+
+bool is_any_estimated(const Comparison& c) {
+  return std::find(c.estimated.begin(), c.estimated.end(), true) != c.estimated.end();
 }
 
 bool is_mistaken(const Comparison& c) { return !c.mistakes.empty() && c.mistakes.front().certain; }

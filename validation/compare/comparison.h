@@ -31,8 +31,8 @@ inline constexpr double shape_known_to = 0.2;
 struct Comparison {
   std::string device, data;
   std::size_t readings = 0, poses = 0, numbers = 0;
-  bool sigma_from_residuals = false;  ///< neither σ nor replicates are given: noise is estimated from what no pattern
-                                      ///< explains
+  bool sigma_from_residuals = false;  ///< of the numbers that Errors speak of: neither σ nor replicates are given, and
+                                      ///< noise is estimated from what no pattern explains
   double sigma_u = 0;                 ///< m: root mean square of σ over the readings
   std::optional<measurement::NoiseEstimate> pure_error;
   Errors all;
@@ -58,19 +58,25 @@ struct Comparison {
   std::size_t telling = 0;                 ///< the reading whose residual is the least likely by chance
   VectorX residual_forces;                 ///< of a frame by study.inner, at that reading
   statistics::ToleranceModel tolerances;
-  ResidualStudy study;        ///< residuals, forces, sites: for figures
-  VectorX residual;           ///< of study.values
-  std::vector<double> sigma;  ///< of study.values
+  ResidualStudy study;          ///< residuals, forces, sites: for figures
+  VectorX residual;             ///< of study.values
+  std::vector<double> sigma;    ///< of study.values
+  std::vector<bool> estimated;  ///< of study.values: nobody tells σ, it is from what no pattern explains
 };
 
 struct ComparisonOptions {
   std::optional<double> sigma_u, sigma_th;  ///< m, rad: used where the file has none
   bool as_recorded = false;                 ///< recording mistakes are not searched for
+  /// Of the measured numbers: used where nobody tells σ. Empty: it is estimated.
+  std::vector<double> sigma = {};
 };
 
 /// By measured number: the standard deviation that noise and tolerances give its residual with nothing missing. Unknown
 /// zeros do not count, because the residual is free of them.
 VectorX expected_deviations(const Comparison&);
+
+/// Whether nobody tells the σ of some number.
+bool is_any_estimated(const Comparison&);
 
 /// Whether a certain recording mistake was found: the data then support no verdict on the machine.
 bool is_mistaken(const Comparison&);

@@ -56,15 +56,14 @@ double quantile(std::vector<double> values, double share) {
 
 CorrectionScreen::CorrectionScreen(const subject::Subject& subject, const Comparison& c, int threads)
     : subject_(subject), study_(&c.study), threads_(threads), size_(c.study.standing->size()) {
-  if (!c.sigma_from_residuals) {
-    std::array<double, 2> sum{}, count{};
-    for (std::size_t i = 0; i < study_->values.size(); ++i) {
-      const std::size_t of = study_->values[i].quantity == measurement::Quantity::angle ? 1 : 0;
-      sum[of] += c.sigma[i] * c.sigma[i], count[of] += 1;
-    }
-    for (std::size_t of = 0; of < 2; ++of)
-      if (count[of] > 0) sigma_[of] = std::sqrt(sum[of] / count[of]);
+  std::array<double, 2> sum{}, count{};
+  for (std::size_t i = 0; i < study_->values.size(); ++i) {
+    if (c.estimated[i]) continue;
+    const std::size_t of = study_->values[i].quantity == measurement::Quantity::angle ? 1 : 0;
+    sum[of] += c.sigma[i] * c.sigma[i], count[of] += 1;
   }
+  for (std::size_t of = 0; of < 2; ++of)
+    if (count[of] > 0) sigma_[of] = std::sqrt(sum[of] / count[of]);
   std::tie(sample_, rows_) = sample_of(*c.study.data);
   as_recorded_ = loss(recording::Correction{});
   std::size_t numbers = 0;
@@ -80,7 +79,7 @@ CorrectionScreen::CorrectionScreen(const subject::Subject& subject, const Compar
     const measurement::MeasuredValue& v = study_->values[i];
     if (!v.of_tool_point()) continue;
     const double weight = v.quantity == measurement::Quantity::angle ? size_ : 1, s = scale.at({v.reading, v.channel});
-    const double variance = (c.sigma_from_residuals ? 0 : c.sigma[i] * c.sigma[i]) + tolerances(as_index(i));
+    const double variance = (c.estimated[i] ? 0 : c.sigma[i] * c.sigma[i]) + tolerances(as_index(i));
     noise += s > 0 ? std::log1p(weight * weight * variance / (s * s)) + std::log(s) : 0;
   }
   noise /= static_cast<double>(std::max<std::size_t>(1, scale.size()));

@@ -294,4 +294,17 @@ std::vector<Pattern> patterns_of(const ResidualStudy& s) {
   return out;
 }
 
+MatrixX linear_answers(const ResidualStudy& s) {
+  const Eigen::Index channels = 6 + std::ssize(s.data->instruments.sensors);
+  MatrixX all = MatrixX::Zero(std::ssize(s.values), channels * s.loads.rows());
+  for (std::size_t i = 0; i < s.values.size(); ++i)
+    for (Eigen::Index load = 0; load < s.loads.rows(); ++load)
+      all(as_index(i), load * channels + as_index(s.values[i].channel)) = s.loads(load, as_index(s.values[i].reading));
+  constexpr Eigen::Index fewest_rows = 4;  // under a load, for its own share in a channel
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index k = 0; k < all.cols(); ++k)
+    if ((all.col(k).array() != 0).count() >= fewest_rows) known.push_back(k);
+  return all(Eigen::all, known);
+}
+
 }  // namespace deflect::compare

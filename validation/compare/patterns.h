@@ -84,4 +84,8 @@ VectorX rows_of_sites(const ResidualStudy&,
 Columns site_columns(const ResidualStudy&,
                      const std::function<double(std::size_t reading, std::size_t site)>& elongation);
 
+/// What any linear effect does to the readings of a subject without tool point: each channel answers each load in its
+/// own way. One column for each pair that is read four times or more, over the measured numbers.
+MatrixX linear_answers(const ResidualStudy&);
+
 }  // namespace deflect::compare

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <unordered_set>
+#include <utility>
 
 #include "msa/base/number_words.h"
 #include "msa/base/outcome.h"
@@ -37,19 +39,21 @@ bool fits_badly(const Comparison& c, const MisfitAccount& account) {
          (c.sigma_from_residuals && account.share > share_of_misfit);
 }
 
-/// What it takes to describe the data: χ² left, and as much as ln n for each number fitted.
+/// What it takes to describe the data: −2 ln of their density beside the findings, up to a constant, and as much as
+/// ln n for each number fitted.
 double description(const MisfitAccount& a, int fitted, std::size_t readings) {
   const double columns = std::log(static_cast<double>(readings)) * (a.columns + fitted);
   const double aside = cost_of_reading * static_cast<double>(a.set_aside);
-  return (a.scatter > 0 ? 2 * a.numbers * std::log(a.scatter) : a.left) + columns + aside;
+  return a.left + a.density + columns + aside;
 }
 
 /// Of the recorded numbers y the corrected ones f y are told. Where σ is not told with them, σ/|f| is what y scatter
 /// by: −2 ln of the density of y is then χ² − 2 ln |f| a number, against χ² of y as they stand.
 double cost_of_scale(const Comparison& c, const recording::Correction& correction) {
-  if (c.sigma_from_residuals) return 0;
   double sum = 0;
-  for (const measurement::MeasuredValue& v : c.study.values) {
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    if (c.estimated[i]) continue;  // it follows
+    const measurement::MeasuredValue& v = c.study.values[i];
     const measurement::Reading& r = c.study.data->readings[v.reading];
     const bool told =
         correction.sigma_too && (v.quantity == measurement::Quantity::angle ? r.sigma_th : r.sigma_u).has_value();
@@ -68,10 +72,11 @@ bool cures(const MisfitAccount& before, const MisfitAccount& after, int fitted, 
   const auto excess = [&](const MisfitAccount& a) {
     return std::max(0.0, a.chi2 - a.numbers) + cost_of_reading * static_cast<double>(a.set_aside - common);
   };
-  const bool estimated = before.scatter > 0;
   const bool grossly = before.share > gross_misfit, falls = after.share < misfit_cured * before.share;
-  const bool right = estimated || after.chi2 < after.numbers + deviations_of_right * std::sqrt(2 * after.numbers);
-  const bool cured = estimated ? falls : excess(after) < (right ? excess_cured : excess_far_less) * excess(before);
+  const bool right =
+      before.estimated || after.chi2 < after.numbers + deviations_of_right * std::sqrt(2 * after.numbers);
+  const bool cured =
+      before.estimated ? falls : excess(after) < (right ? excess_cured : excess_far_less) * excess(before);
   // What physics can leave, a shift of the poses or of the point of the load can follow a long way.
   const bool all_of_it = after.share < all_of_misfit * before.share && after.chi2 < right_to_noise * after.numbers;
   if (fitted > 0 && !(cured && (right || all_of_it))) return false;
@@ -214,7 +219,7 @@ class MistakeSearch {
     if (!cures(before_, after, correction.fitted, gain)) return;
     if (found_ && gain <= most_) return;
     most_ = gain;
-    right_ = before_.scatter == 0 && after.chi2 < right_to_noise * after.numbers &&
+    right_ = !before_.estimated && after.chi2 < right_to_noise * after.numbers &&
              after.chi2 > after.numbers / right_to_noise;
     found_.emplace();
     std::string words;
@@ -239,6 +244,24 @@ class MistakeSearch {
   bool right_ = false;
 };
 
+/// MisfitAccount::density, without the readings of these lines.
+double density_of_estimated(const Comparison& c, const std::unordered_set<std::size_t>& lines) {
+  struct Channel {
+    double measured = 0, logarithms = 0, n = 0;
+  };
+  std::map<std::pair<measurement::Quantity, std::size_t>, Channel> channels;
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const measurement::MeasuredValue& v = c.study.values[i];
+    if (!c.estimated[i] || lines.contains(c.study.data->readings[v.reading].line)) continue;
+    Channel& channel = channels[{v.quantity, v.of_tool_point() ? 0 : v.channel}];
+    channel.measured += v.value * v.value, channel.logarithms += std::log(c.sigma[i]), channel.n += 1;
+  }
+  double sum = 0;
+  for (const auto& [key, channel] : channels)
+    if (channel.measured > 0) sum += 2 * channel.logarithms - channel.n * std::log(channel.measured / channel.n);
+  return sum;
+}
+
 }  // namespace
 
 MisfitAccount account_of(const Comparison& c) {
@@ -253,7 +276,8 @@ MisfitAccount account_of(const Comparison& c) {
   a.left = c.unexplained_chi2_per_dof * std::max(1.0, a.numbers - a.columns);
   a.set_aside = c.set_aside.size();
   a.share = c.all.measured > 0 ? c.all.rmse / c.all.measured : 0;
-  a.scatter = c.sigma_from_residuals && c.all.measured > 0 ? c.sigma_u / c.all.measured : 0;
+  a.estimated = c.sigma_from_residuals;
+  a.density = density_of_estimated(c, lines);
   return a;
 }
 

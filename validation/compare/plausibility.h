@@ -48,7 +48,8 @@ struct MisfitAccount {
   int columns = 0;               ///< of the findings
   std::size_t set_aside = 0;     ///< readings
   double share = 0;              ///< misfit of all readings over what was measured, as root mean squares
-  double scatter = 0;  ///< σ over what was measured, where σ is estimated from residuals; 0 where it is given
+  bool estimated = false;        ///< σ of the numbers that Errors speak of, from residuals
+  double density = 0;  ///< Σ 2 ln of σ over what the channel measured (rms), of the numbers whose σ is estimated
 };
 MisfitAccount account_of(const Comparison&);
 

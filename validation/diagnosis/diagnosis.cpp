@@ -24,6 +24,8 @@ constexpr std::size_t quality_of = 5;
 constexpr double worth_limits = 0.01;   // probability of a candidate
 constexpr double half_of_it = 0.5;      // of what others leave: an effect that leaves more explains too little
 constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked into
+constexpr int most_rounds_of_noise = 3;
+constexpr double falls_clearly = 0.75;
 
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
@@ -317,14 +319,9 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   d.set_aside_in_play = seen.set_aside_in_play();
 }
 
-}  // namespace
-
-bool is_mistaken(const Diagnosis& d) { return !d.mistakes.empty() && d.mistakes.front().certain; }
-
-Diagnosis diagnose(const subject::Subject& subject, const measurement::Measurements& data,
-                   const std::vector<effects::Effect>& effects, const DiagnosisOptions& options,
-                   const parallel::Work& work) {
-  const Observations o(subject, data, options.comparison, work.part(0, 0.2));
+Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data,
+                    const std::vector<effects::Effect>& effects, const DiagnosisOptions& options,
+                    const parallel::Work& work) {
   Diagnosis d = before_any_effect(o, data);
   if (is_mistaken(d)) return only_mistakes(std::move(d), o);
   d.bootstrap_sets = options.bootstrap_sets;
@@ -354,6 +351,43 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   tell(d, *step, large ? step->candidates.in_larger_sizes().beside(kept, {}, step->null, even_hopeless) : step->each);
   conclude(d, is_missing(d, *step) ? std::move(e) : nothing(*step), *step, data, work.threads);
   return d;
+}
+
+/// σ of every measured number as the subject with what was found leaves it. Empty where all of them are told, or none
+/// of the others falls by more than a tenth.
+std::vector<double> noise_beside(const Observations& o, const Diagnosis& d, const measurement::Measurements& data,
+                                 compare::ComparisonOptions options, const parallel::Work& work) {
+  const compare::Comparison& before = o.comparison();
+  if (d.missing.empty() || !compare::is_any_estimated(before)) return {};
+  options.as_recorded = true;
+  options.sigma.clear();
+  const auto after = outcome_of(
+      [&] { return compare::compare(subject_with(o, d.missing, d.fit.values), data, options, work.quiet()).sigma; });
+  if (!after) return {};
+  for (std::size_t i = 0; i < after->size(); ++i)
+    if ((*after)[i] < falls_clearly * before.sigma[i]) return *after.value;
+  return {};
+}
+
+}  // namespace
+
+bool is_mistaken(const Diagnosis& d) { return !d.mistakes.empty() && d.mistakes.front().certain; }
+
+Diagnosis diagnose(const subject::Subject& subject, const measurement::Measurements& data,
+                   const std::vector<effects::Effect>& effects, const DiagnosisOptions& options,
+                   const parallel::Work& work) {
+  DiagnosisOptions asked = options;
+  parallel::Work again = work;
+  for (int round = 1;; ++round) {
+    const Observations o(subject, data, asked.comparison, again.part(0, 0.2));
+    Diagnosis d = diagnosed(o, data, effects, asked, again);
+    if (round == most_rounds_of_noise) return d;
+    // Noise that nobody tells was read off what no pattern explains; what was found may have been part of it.
+    asked.comparison.sigma = noise_beside(o, d, data, asked.comparison, work);
+    if (asked.comparison.sigma.empty()) return d;
+    again = work.quiet();
+    again.journal = nullptr;  // it holds sets of the first
+  }
 }
 
 }  // namespace deflect::diagnosis

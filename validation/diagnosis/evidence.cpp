@@ -26,7 +26,7 @@ double log_evidence(double gain, int parameters, bool one_sided) {
   for (const double tau : log_spaced(0.5, 500, 40)) {
     const double share = tau * tau / (1 + tau * tau);
     double term = -0.5 * parameters * std::log1p(tau * tau) + 0.5 * gain * share;
-    if (one_sided) term += std::log(2 * statistics::normal_distribution(std::sqrt(gain * share)));
+    if (one_sided) term += std::log(2 * statistics::normal_distribution(std::sqrt(std::max(0.0, gain) * share)));
     terms.push_back(term);
   }
   return log_mean_exp(terms);

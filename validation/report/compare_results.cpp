@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "msa/base/index.h"
@@ -212,6 +213,26 @@ Json tolerances_json(const compare::Comparison& c) {
   return out;
 }
 
+/// Of a channel whose σ nobody tells.
+struct EstimatedNoise {
+  std::string channel;
+  double sigma = 0;  // SI
+  const measurement::QuantityRow* row = nullptr;
+};
+
+std::vector<EstimatedNoise> estimated_noise(const compare::Comparison& c) {
+  std::vector<EstimatedNoise> out;
+  std::set<std::string> named;
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const measurement::MeasuredValue& v = c.study.values[i];
+    if (!c.estimated[i]) continue;
+    const measurement::QuantityRow& row = measurement::row_of(v.quantity);
+    std::string name = v.of_tool_point() ? row.what : measurement::channel_name(*c.study.data, v.channel);
+    if (named.insert(name).second) out.push_back({std::move(name), c.sigma[i], &row});
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string compare_report(const compare::Comparison& c) {
@@ -230,6 +251,12 @@ std::string compare_report(const compare::Comparison& c) {
       fine * c.all.rmse, unit, fine * c.held_out, fine * c.sigma_u, unit,
       c.sigma_from_residuals ? " (from the residuals: neither σ nor replicates in the file)" : "",
       fine * c.noise_and_tolerances, unit, c.chi2_per_dof);
+  if (const std::vector<EstimatedNoise> all = estimated_noise(c); !all.empty()) {
+    std::vector<std::string> words;
+    for (const EstimatedNoise& each : all)
+      words.push_back(fmt::format("{} {:.3g} {}", each.channel, each.sigma * each.row->fine_per_SI, each.row->fine));
+    out += fmt::format("σ where nobody tells it, by what no pattern explains: {}\n", fmt::join(words, ", "));
+  }
   if (c.pure_error)
     out += fmt::format("replicates scatter by {:.2f} {} ({} degrees of freedom)\n", fine * c.pure_error->sigma, unit,
                        c.pure_error->degrees_of_freedom);
@@ -258,6 +285,9 @@ std::string compare_json(const compare::Comparison& c) {
   j["noise_floor_mm"] = json::json_number(coarse * c.noise_and_tolerances, "noise floor");
   j["sigma_u_mm"] = coarse * c.sigma_u;
   j["sigma_from_residuals"] = c.sigma_from_residuals;
+  for (const EstimatedNoise& each : estimated_noise(c))
+    j["noise_estimated"].push_back(
+        {{"channel", each.channel}, {"sigma", each.sigma * each.row->per_SI}, {"unit", each.row->unit}});
   if (c.pure_error)
     j["pure_error"] = {{"sigma_mm", coarse * c.pure_error->sigma},
                        {"degrees_of_freedom", c.pure_error->degrees_of_freedom}};

@@ -124,6 +124,7 @@ class Comparison(Result):
     noise_floor_mm: float
     sigma_u_mm: float
     sigma_from_residuals: bool
+    noise_estimated: Maybe[List[schema_measured.EstimatedNoise]]
     pure_error: Maybe[schema_measured.PureError]
     verdict: str
     notes: List[str]

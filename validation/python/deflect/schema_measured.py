@@ -38,6 +38,15 @@ class PureError(Record):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class EstimatedNoise(Record):
+    """Noise of a channel that nobody tells, by what no pattern explains."""
+
+    channel: str
+    sigma: float
+    unit: str
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Finding(Record):
     """A pattern that the residuals have, in a sentence, with its amplitudes and how much of the misfit it takes."""
 
