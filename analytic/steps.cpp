@@ -222,10 +222,10 @@ class Balance {
 
   /// The compliances: first less than all else, then as much as the mechanism itself yields along each law.
   void stiff() {
-    imposed_.c.resize(n_);
-    const double length = ask_({}).length;
+    imposed_.c = VectorX::Constant(n_, 1e-10);
+    const double length = answer(VectorX::Zero(n_)).length;
     for (Eigen::Index i = 0; i < n_; ++i)
-      imposed_.c(i) = nth(members_, i).stepped->rotation ? 1e-10 / (length * length) : 1e-10;
+      if (nth(members_, i).stepped->rotation) imposed_.c(i) /= length * length;
     // Several frictions side by side hold each other alone: digits are kept by the stiffness with which they stick. In
     // a table a deflection may be left without any force.
     for (Eigen::Index i = 0; i < n_; ++i) {
