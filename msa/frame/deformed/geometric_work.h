@@ -95,7 +95,8 @@ struct GeometricSolver::Work {
 /// One Newton step; its tangent is that of the shape before the step.
 struct GeometricSolver::Step {
   std::unique_ptr<Tangent> tangent;
-  VectorX u;  // empty: the tangent is singular
+  VectorX u;              // empty: the tangent is singular
+  double unbalanced = 0;  // the largest force before the step, of the largest load; of a structure with laws that jump
 };
 
 }  // namespace deflect::frame

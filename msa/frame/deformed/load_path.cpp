@@ -22,6 +22,14 @@ double size_of_forces(const VectorX& loads, double length) {
   return size;
 }
 
+/// The same of forces on the independent freedoms.
+double size_of_reduced(const VectorX& forces, const Elimination& e, double length) {
+  double size = 0;
+  for (Eigen::Index i = 0; i < forces.size(); ++i)
+    size = std::max(size, std::abs(forces(i)) / (nth(e.dof_of_q, i) % 6 > 2 ? length : 1));
+  return size;
+}
+
 double largest_spin(const VectorX& u, std::size_t nodes) {
   double spin = 0;
   for (std::size_t i = 0; i < nodes; ++i) spin = std::max(spin, u.segment<3>(as_index(6 * i + 3)).norm());
@@ -55,6 +63,8 @@ GeometricSolver::Step GeometricSolver::newton(Work& work, double factor, Geometr
   Eigen::SparseMatrix<double> K = tangent_stiffness(at, work.lambda, loads);
   if (work.damping > 0) K += damped(model_, work.damping, work.length);
   Step step{std::make_unique<Tangent>(e, K), {}};
+  if (work.jump)
+    step.unbalanced = size_of_reduced(e.reduce(loads - at.forces), e, work.length) / size_of_forces(loads, work.length);
   if (!step.tangent->regular()) return step;
   step.u = step.tangent->solve(loads - at.forces, gaps);
   if (work.jump) keep_laws(work, at, loads, step);
@@ -136,10 +146,12 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     const double change = size_of(step.u, model_.nodes.size(), work.length);
     const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
     // Rounding is all that is left; of play that floats against hardly any stiffness, that of positions. What hangs in
-    // play by forces of second order goes on to tremble: stiffnesses round the forces that move it.
+    // play by forces of second order goes on to tremble: stiffnesses round the forces that move it, the more the less
+    // the load. Where all forces balance, it may tremble further.
     const bool stalled =
         change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && change > 0.5 * previous;
-    trembles = work.jump && change < 1e-5 * size && change > 0.5 * least ? trembles + 1 : 0;
+    const double small = step.unbalanced < 1e-8 ? 1e-4 : 1e-5;
+    trembles = work.jump && change < small * size && change > 0.5 * least ? trembles + 1 : 0;
     least = std::min(least, change);
     // Second order takes the forces of constraints from the shape before: that too has to have settled.
     const bool settled = finite || previous <= options.tolerance * size;
