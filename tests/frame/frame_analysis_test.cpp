@@ -304,6 +304,19 @@ loads:
   EXPECT_NE(failed_check(broken).find("load case 'line': work"), std::string::npos) << failed_check(broken);
 }
 
+// Ground that sinks under all supports strains nothing: what passes through the members is rounding, which no check may
+// take for an error. Nor is it one beside a load that is as small.
+TEST(FrameAnalysis, SupportsThatSettleAlikeCarryTheFrameAlong) {
+  for (const char* load : {"0 N", "1e-12 N", "1 N"})
+    for (const char* way : {"0.1 mm", "10 mm", "-1 m"}) {
+      const Solved s =
+          solve(span + "supports: {a: {holds: clamped, settled: {uz: " + way +
+                "}}, c: {holds: clamped, settled: {uz: " + way + "}}}\nloads: {l: {nodes: {b: {fx: " + load + "}}}}\n");
+      EXPECT_EQ(s.u("b")(2), s.u("a")(2)) << way;
+      EXPECT_NEAR(std::abs(s.member("left").end(0)), load == std::string("1 N") ? 0.5 : 0, 1e-9) << load << " " << way;
+    }
+}
+
 TEST(FrameAnalysis, NamesThatDoNotResolveAreRefusedWithoutAFileToo) {
   FrameDescription f =
       parse_frame(head + span + "supports: {a: clamped}\nloads: {l: {nodes: {b: {fx: 1 N}}}}\n", "test");

@@ -11,17 +11,27 @@
 namespace deflect::frame {
 namespace {
 
-constexpr double cancelling = 1e-7;  // see FrameChecks
+constexpr double cancelling = 1e-7, rounding = 1e-15;  // see FrameChecks
 
-/// Unsigned sums of a beam's stiffness times its displacements, local axes: the size of what may cancel.
+/// Unsigned sums of a beam's stiffness times its displacements, local axes: the size of what may cancel. Of the motion
+/// that a beam makes as a rigid body, only what rounding leaves of it.
 struct Gross {
   double force = 0, energy = 0;
-  void add(const Beam& beam, const Vector12& d_W, double strain) {
+  void add(const Beam& beam, const Vector12& d_W, const ExtendedVector& u, double strain) {
+    add(beam, d_W, 1);
+    Vector12 whole;
+    whole << u.segment<6>(6 * beam.a).cast<double>(), u.segment<6>(6 * beam.b).cast<double>();
+    add(beam, whole, rounding / cancelling);
+    energy += beam.rigidity.EA * strain * strain * beam.length;
+  }
+
+ private:
+  void add(const Beam& beam, const Vector12& d_W, double share) {
     Vector12 d;
     for (int i = 0; i < 12; i += 3) d.segment<3>(i) = (beam.R_WM.transpose() * d_W.segment<3>(i)).cwiseAbs();
-    const Vector12 f = local_stiffness(beam.rigidity, beam.length).cwiseAbs() * d;
+    const Vector12 f = share * (local_stiffness(beam.rigidity, beam.length).cwiseAbs() * d);
     force = std::max({force, f.segment<3>(0).maxCoeff(), f.segment<3>(6).maxCoeff()});
-    energy += d.dot(f) + beam.rigidity.EA * strain * strain * beam.length;
+    energy += d.dot(f);
   }
 };
 
@@ -45,7 +55,7 @@ void find_member_forces(CaseResult& r, const FrameModel& m, Work& work) {
       const ElementLoad& load = work.load.elements[k];
       const Vector12 d = end_displacements(beam, work.fine), f = end_forces(beam, d, load);
       r.end_forces.push_back(f);
-      work.gross.add(beam, d, load.strain);
+      work.gross.add(beam, d, work.fine, load.strain);
       work.heat += (f(6) - f(0)) / 2 * load.strain * beam.length;  // the mean of N
       work.clamped += clamped_energy(beam.rigidity, beam.length, load);
       out.energy += strain_energy(beam, d, load);
