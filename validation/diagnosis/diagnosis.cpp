@@ -354,7 +354,7 @@ Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data
 }
 
 /// σ of every measured number as the subject with what was found leaves it. Empty where all of them are told, or none
-/// of the others falls by more than a tenth.
+/// of the others falls by a quarter: a few effects chosen out of hundreds take some off by chance.
 std::vector<double> noise_beside(const Observations& o, const Diagnosis& d, const measurement::Measurements& data,
                                  compare::ComparisonOptions options, const parallel::Work& work) {
   const compare::Comparison& before = o.comparison();
@@ -378,13 +378,18 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
                    const parallel::Work& work) {
   DiagnosisOptions asked = options;
   parallel::Work again = work;
+  std::vector<compare::RecordingMistake> mistakes;
   for (int round = 1;; ++round) {
     const Observations o(subject, data, asked.comparison, again.part(0, 0.2));
     Diagnosis d = diagnosed(o, data, effects, asked, again);
+    if (round == 1) mistakes = d.mistakes;
+    d.mistakes = mistakes;
     if (round == most_rounds_of_noise) return d;
-    // Noise that nobody tells was read off what no pattern explains; what was found may have been part of it.
+    // Noise that nobody tells was read off what no pattern explains; what was found may have been part of it. Whether
+    // the data are right has been settled.
     asked.comparison.sigma = noise_beside(o, d, data, asked.comparison, work);
     if (asked.comparison.sigma.empty()) return d;
+    asked.comparison.as_recorded = true;
     again = work.quiet();
     again.journal = nullptr;  // it holds sets of the first
   }

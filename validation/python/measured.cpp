@@ -43,9 +43,7 @@ std::optional<double> Noise::rotation() const {
 
 namespace {
 
-compare::ComparisonOptions comparison_options(const Noise& n) {
-  return {n.translation(), n.rotation(), n.as_recorded};
-}
+compare::ComparisonOptions comparison_options(const Noise& n) { return {n.translation(), n.rotation(), n.as_recorded}; }
 
 /// A JSON of the contract, and what a person reads.
 using Told = std::pair<std::string, std::string>;
