@@ -70,12 +70,19 @@ void check_verdict(Checks& c, const Json& d) {
   c.require(d["missing"].get<std::vector<std::string>>() == found, "found", "{} found of {}", d["found"].dump(),
             d["missing"].dump());
   if (found.size() == 1 && verdict != "unknown_effect") {
-    double most = 0;  // of its places
-    for (const Json& each : d["candidates"])
-      if (each["effect"] == found.front()) most = std::max(most, each["probability"].get<double>());
+    double most = 0, tied = 0;  // of its places; of those that cannot be told from it
+    for (const Json& each : d["candidates"]) {
+      const std::string& effect = each["effect"].get_ref<const std::string&>();
+      const double probability = each["probability"];
+      if (effect == found.front()) most = std::max(most, probability);
+      if (effect != found.front() && std::any_of(ties.begin(), ties.end(), [&](const Json& tie) {
+            return std::find(tie.begin(), tie.end(), effect) != tie.end();
+          }))
+        tied += probability;
+    }
     const double nothing = d["probability_nothing"];
-    c.require(most >= nothing || nothing < 0.01, "named, though nothing is likelier", "{} with {}, nothing with {}",
-              found.front(), most, nothing);
+    c.require(most + tied >= nothing || nothing < 0.01, "named, though nothing is likelier",
+              "{} with {}, in a tie with {}, nothing with {}", found.front(), most, tied, nothing);
   }
   for (const Json& tie : ties) {
     const bool holds = std::any_of(found.begin(), found.end(), [&](const auto& name) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -62,10 +61,15 @@ statistics::LargestNumbers largest_numbers(const ResidualStudy& s) {
   return {{measurement::Quantity::force, largest}, {measurement::Quantity::moment, largest * size}};
 }
 
-/// With what is estimated beside patterns, for a subject without tool point beside all that a linear effect can do, if
-/// it is read often enough for that.
+/// What is told, and what is estimated beside patterns; for a subject without tool point beside all that a linear
+/// effect can do, if it is read often enough for that.
 std::vector<double> estimated_sigma(const ResidualStudy& s, const std::vector<std::optional<double>>& told,
                                     const VectorX& r, const MatrixX& patterns, const statistics::PartedColumns& A) {
+  if (std::all_of(told.begin(), told.end(), [](const auto& sigma) { return sigma.has_value(); })) {
+    std::vector<double> all;
+    for (const std::optional<double>& sigma : told) all.push_back(*sigma);
+    return all;
+  }
   const statistics::LargestNumbers largest = largest_numbers(s);
   if (!s.standing->has_tool_point()) {
     const MatrixX all = statistics::side_by_side({patterns, linear_answers(s)}, r.size());
