@@ -314,6 +314,10 @@ TEST(FrameAnalysis, SupportsThatSettleAlikeCarryTheFrameAlong) {
                 "}}, c: {holds: clamped, settled: {uz: " + way + "}}}\nloads: {l: {nodes: {b: {fx: " + load + "}}}}\n");
       EXPECT_EQ(s.u("b")(2), s.u("a")(2)) << way;
       EXPECT_NEAR(std::abs(s.member("left").end(0)), load == std::string("1 N") ? 0.5 : 0, 1e-9) << load << " " << way;
+      FrameOptions iterative;
+      iterative.equations.solver = Equations::iterative;
+      const FrameResult by_iteration = analyse(s.frame, iterative);
+      EXPECT_EQ(failed_check(by_iteration), "") << load << " " << way;
     }
 }
 

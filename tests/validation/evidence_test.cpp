@@ -77,6 +77,8 @@ TEST(Evidence, GrowsWithTheGainAndFallsWithTheParameters) {
     EXPECT_GT(log_evidence(gain, 2, false), log_evidence(gain, 3, false));
   }
   EXPECT_LT(log_evidence(0, 1, false), 0);  // nothing gained: it is not there, rather
+  // A fit may leave more than nothing did: then the effect's own sense is no more likely than the other.
+  EXPECT_LT(log_evidence(-5, 1, true), log_evidence(0, 1, true));
 }
 
 /// Of numbers that are white as they are.

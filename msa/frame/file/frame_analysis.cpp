@@ -11,17 +11,18 @@
 namespace deflect::frame {
 namespace {
 
-constexpr double cancelling = 1e-7, rounding = 1e-15;  // see FrameChecks
+constexpr double cancelling = 1e-7, of_moved_supports = 1e-8;  // see FrameChecks
 
-/// Unsigned sums of a beam's stiffness times its displacements, local axes: the size of what may cancel. Of the motion
-/// that a beam makes as a rigid body, only what rounding leaves of it.
+/// Unsigned sums of a beam's stiffness times its displacements, local axes: the size of what may cancel. With moved
+/// supports a small part of the same with the motion that a beam makes as a rigid body.
 struct Gross {
   double force = 0, energy = 0;
+  double carried = 0;  // how much of the motion moved supports can have brought, 0 … 1
   void add(const Beam& beam, const Vector12& d_W, const ExtendedVector& u, double strain) {
     add(beam, d_W, 1);
     Vector12 whole;
     whole << u.segment<6>(6 * beam.a).cast<double>(), u.segment<6>(6 * beam.b).cast<double>();
-    add(beam, whole, rounding / cancelling);
+    add(beam, carried * whole, of_moved_supports / cancelling);
     energy += beam.rigidity.EA * strain * strain * beam.length;
   }
 
@@ -72,6 +73,21 @@ void find_member_forces(CaseResult& r, const FrameModel& m, Work& work) {
     }
     r.members.push_back(out);
   }
+}
+
+/// Gross::carried. Rotations times the frame's size.
+double carried_by_supports(const Model& m, const Work& work) {
+  const double length = characteristic_length(m);
+  const auto nodal = as_index(6 * m.nodes.size());
+  const auto size = [&](Eigen::Index dof, double motion) {
+    return std::abs(motion) * (dof < nodal && dof % 6 > 2 ? length : 1);
+  };
+  double moved = 0, motion = 0;
+  for (Eigen::Index k = 0; k < work.load.values.size(); ++k)
+    if (const double value = work.load.values(k); value != 0)
+      moved = std::max(moved, size(nth(m.constraints, k).form.front().dof, value));
+  for (Eigen::Index i = 0; i < nodal; ++i) motion = std::max(motion, size(i, static_cast<double>(work.fine(i))));
+  return motion > 0 ? std::min(1.0, moved / motion) : 0;
 }
 
 /// What a support or spring does to its node.
@@ -191,6 +207,7 @@ CaseResult result_of(const FrameDescription& f, const FrameModel& m, const Elimi
   const VectorX u = work.fine.cast<double>();
   work.lambda =
       reactions.forces(forces_with(m.model, work.fine, work.pulls) - padded(work.load.forces, m.model.dofs()));
+  work.gross.carried = carried_by_supports(m.model, work);
   find_reactions(r, m, work);
   find_member_forces(r, m, work);
   find_energies(r, f, m, stored_energies(m.model, work.fine));

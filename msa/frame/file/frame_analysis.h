@@ -40,9 +40,9 @@ struct MemberForces {
 };
 
 /// Relative errors, 0 where everything is exact. The reference is at least 1e-7 of the sum of the magnitudes of the
-/// cancelling terms, so that a case without reactions (free expansion) does not fail by rounding, and 1e-15 of what the
-/// motion of beams as rigid bodies would be as a strain (all supports settle alike); springs that jump count there with
-/// what their forces would store in a contact stiffness (relative.h), for those that are rigid do no work.
+/// cancelling terms, so that a case without reactions (free expansion) does not fail by rounding, and 1e-8 of what the
+/// motion of moved supports would be as a strain (all settle alike, which strains nothing); springs that jump count
+/// there with what their forces would store in a contact stiffness (relative.h), for those that are rigid do no work.
 struct FrameChecks {
   double residual = 0;  ///< Tᵀ(f − f_int): equilibrium of the free freedoms; nonlinear: size of the next Newton step
   /// Loads + reactions: resultant force and moment on the whole frame. Finite: in the deformed shape. Second order:
