@@ -95,6 +95,8 @@ TEST(HeldOut, LearnsTolerancesAtTheOtherPoses) {
     const VectorX left = r(own) - A * MatrixX(all(others, others)).llt().solve(VectorX(r(others)));
     squares += left.squaredNorm();
     n += static_cast<double>(own.size());
+    const double here = HeldOut(study, u, aside).squares(r)(static_cast<Eigen::Index>(pose));
+    EXPECT_NEAR(here, left.squaredNorm(), 1e-9 * here) << "of a fold, here a pose";
   }
   const double wanted = std::sqrt(squares / n);
   EXPECT_NEAR(HeldOut(study, u, aside).rmse(r), wanted, 1e-9 * wanted);

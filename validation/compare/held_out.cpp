@@ -26,7 +26,11 @@ std::vector<std::size_t> held_out_groups(const ResidualStudy& s) {
 }
 
 HeldOut::HeldOut(const ResidualStudy& s, const statistics::Uncertainty& u, const std::vector<bool>& set_aside)
-    : study_(&s), uncertainty_(&u), set_aside_(set_aside), group_(held_out_groups(s)) {
+    : study_(&s),
+      uncertainty_(&u),
+      set_aside_(set_aside),
+      quantity_(quantity_of_errors(s.values)),
+      group_(held_out_groups(s)) {
   folds_ = std::min<std::size_t>(10, 1 + *std::max_element(group_.begin(), group_.end()));
   const MatrixX& B = u.whitening()->shared();
   if (folds_ < 2 || B.cols() == 0) return;
@@ -47,7 +51,17 @@ HeldOut::HeldOut(const ResidualStudy& s, const statistics::Uncertainty& u, const
 
 std::size_t HeldOut::fold_of(std::size_t value) const { return group_[study_->values[value].reading] % folds_; }
 
+bool HeldOut::counts(std::size_t value) const {
+  return !set_aside_[study_->values[value].reading] && study_->values[value].quantity == quantity_;
+}
+
 double HeldOut::rmse(const VectorX& residual) const {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < study_->values.size(); ++i) n += counts(i);
+  return n > 0 ? std::sqrt(squares(residual).sum() / static_cast<double>(n)) : 0;
+}
+
+VectorX HeldOut::squares(const VectorX& residual) const {
   const statistics::Whitening& white = *uncertainty_->whitening();
   const MatrixX& B = white.shared();
   std::vector<VectorX> eta(folds_, VectorX::Zero(B.cols()));
@@ -64,17 +78,14 @@ double HeldOut::rmse(const VectorX& residual) const {
       eta[fold] = others_[fold].solve(all);
     }
   }
-  const measurement::Quantity quantity = quantity_of_errors(study_->values);
-  double squares = 0;
-  std::size_t n = 0;
+  VectorX out = VectorX::Zero(as_index(folds_));
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
-    if (set_aside_[study_->values[i].reading] || study_->values[i].quantity != quantity) continue;
+    if (!counts(i)) continue;
     const auto row = as_index(i);
     const double left = residual(row) - uncertainty_->tolerances().shared.row(row).dot(eta[fold_of(i)]);
-    squares += left * left;
-    ++n;
+    out(as_index(fold_of(i))) += left * left;
   }
-  return n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0;
+  return out;
 }
 
 }  // namespace deflect::compare

@@ -25,13 +25,17 @@ class HeldOut {
   /// Root mean square over the numbers of the quantity of errors (errors_by_group.h). `residual`: of
   /// all measured numbers, m and rad.
   double rmse(const VectorX& residual) const;
+  /// The sum of their squares by fold.
+  VectorX squares(const VectorX& residual) const;
 
  private:
+  bool counts(std::size_t value) const;
   std::size_t fold_of(std::size_t value) const;
 
   const ResidualStudy* study_;
   const statistics::Uncertainty* uncertainty_;
   std::vector<bool> set_aside_;
+  measurement::Quantity quantity_;
   std::vector<std::size_t> group_;  // of each reading; held out together
   std::size_t folds_ = 1;
   std::vector<Eigen::LLT<MatrixX>> others_;  // of 1 + BᵀB over all folds but one

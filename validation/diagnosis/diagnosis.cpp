@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "validation/compare/findings.h"
 #include "validation/diagnosis/bootstrap.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/diagnosis/larger_tolerances.h"
 #include "validation/diagnosis/left_over.h"
+#include "validation/diagnosis/rounds.h"
 #include "validation/diagnosis/selection.h"
 #include "validation/diagnosis/splitting.h"
 #include "validation/statistics/columns.h"
@@ -24,6 +25,9 @@ constexpr std::size_t quality_of = 5;
 constexpr double worth_limits = 0.01;   // probability of a candidate
 constexpr double half_of_it = 0.5;      // of what others leave: an effect that leaves more explains too little
 constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked into
+constexpr double rather_nothing = 0.6;  // probability from which nothing is called missing
+constexpr double unknown_beside =       // odds of something unknown beside effects, before any reading
+    Candidates::prior_unknown / (1 - Candidates::prior_unknown);
 constexpr int most_rounds_of_noise = 3;
 constexpr double falls_clearly = 0.75;
 
@@ -49,18 +53,9 @@ std::string left_over_pattern(const Observations& o, const subject::Subject& sub
   return out.empty() ? "no pattern that was looked for" : out;
 }
 
-/// ln of the weights of the first step's candidates, then of larger tolerances and of "nothing", 0.
-std::vector<double> log_weights(const std::vector<Candidate>& all, const LargerTolerances& larger) {
-  std::vector<double> out;
-  for (const Candidate& c : all) out.push_back(c.log_odds);
-  out.push_back(larger.log_odds);
-  out.push_back(0);
-  return out;
-}
-
 /// Probabilities of the first step's candidates and of "nothing", beside that of "unknown".
-void weigh(Diagnosis& d, const LargerTolerances& larger, double unknown) {
-  const std::vector<double> probability = normalised(log_weights(d.candidates, larger));
+void weigh(Diagnosis& d, const LargerTolerances& larger, double unknown, double together = not_several) {
+  const std::vector<double> probability = normalised(log_weights(d.candidates, larger, together));
   const std::size_t count = d.candidates.size();
   for (std::size_t i = 0; i < count; ++i) d.candidates[i].probability = (1 - unknown) * probability[i];
   d.probability_larger_tolerances = (1 - unknown) * probability[count];
@@ -72,8 +67,6 @@ void weigh(Diagnosis& d, const LargerTolerances& larger, double unknown) {
 double probability_of_unknown(double log_evidence, double prior_odds) {
   return 1 / (1 + std::exp(-log_evidence) / prior_odds);
 }
-
-double log_sum_exp(const std::vector<double>& x) { return log_mean_exp(x) + std::log(static_cast<double>(x.size())); }
 
 /// Of what is left unexplained: its size, its pattern, where it acts, the entry that comes nearest.
 void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const Selection& found, int threads) {
@@ -91,27 +84,6 @@ void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const S
       d.nearest_share = std::min(1.0, share);
     }
 }
-
-/// Rounds of candidates on a scale from 0 to 1: how many there will be is not known, each takes half of what is left.
-class Rounds {
- public:
-  Rounds(std::function<void(double)> tell, double from) : tell_(std::move(tell)), from_(from), to_((1 + from) / 2) {
-    if (tell_) tell_(from_);
-  }
-  void operator()(std::size_t done, std::size_t all) {
-    if (!tell_) return;
-    const std::lock_guard lock(mutex_);
-    tell_(from_ + (to_ - from_) * static_cast<double>(done) / static_cast<double>(all));
-    if (done < all) return;
-    from_ = to_;
-    to_ = (1 + to_) / 2;
-  }
-
- private:
-  std::mutex mutex_;
-  std::function<void(double)> tell_;
-  double from_, to_;
-};
 
 /// The candidates by their probability; of those that the table shows how well they predict.
 void sort_candidates(Diagnosis& d, const Observations& o) {
@@ -243,8 +215,13 @@ void tell(Diagnosis& d, const FirstStep& s, std::vector<Candidate> alone) {
 }
 
 bool is_missing(const Diagnosis& d, const FirstStep& s) {
-  return (d.chance < alarm && d.probability_nothing < 0.6) ||
+  return (d.chance < alarm && d.probability_nothing < rather_nothing) ||
          (d.probability_unknown > sure && s.left.p_value < LeftOver::least_p);
+}
+
+/// Whether larger tolerances stand for "nothing" and no single effect is likelier. Several together may be.
+bool is_missing_or_larger(const Diagnosis& d) {
+  return d.chance < alarm && d.probability_larger_tolerances > 0.5 * d.probability_nothing;
 }
 
 /// The effects that explain the data best, and what they leave.
@@ -266,6 +243,27 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
     out.left = left_over(out.patterns, s.all(), out.found.fit, candidates.threads());
   }
   return out;
+}
+
+/// ln of the likelihood of the readings where these effects are right, with what tolerances do beside them.
+double log_likelihood(const Observations& o, const Hypothesis& h, const VectorX& values) {
+  return o.log_likelihood_of_scales(subject_with(o, h, values), {1}).front();
+}
+
+/// ln(prior · evidence) of all that was found, something unknown included, against nothing, where it is several.
+double log_odds_together(const FirstStep& s, const Explained& e) {
+  const Selection& found = e.found;
+  if (found.effects.empty() || (found.effects.size() == 1 && !e.left.significant())) return not_several;
+  const bool same_readings = found.observations.aside() == s.observations.aside();
+  const double more = log_likelihood(found.observations, found.effects, found.fit.values) -
+                      log_likelihood(same_readings ? s.observations : found.observations, {}, VectorX(0));
+  return log_odds_of_all(s.candidates, found, 2 * more) +
+         (e.left.significant() ? e.left.log_evidence + std::log(unknown_beside) : 0);
+}
+
+/// Whether several effects together are likelier than larger tolerances, though none alone is.
+bool outweigh_larger_tolerances(const Explained& e, const FirstStep& s) {
+  return normalised({log_odds_together(s, e), s.larger.log_odds, 0}).front() > 1 - rather_nothing;
 }
 
 /// Where effects leave something unknown that were looked for from small sizes, and a large one alone leaves less than
@@ -295,11 +293,11 @@ Verdict verdict_of(const Diagnosis& d) {
 
 /// What was found and what it leaves. `told`: the first step that the diagnosis tells of.
 void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measurement::Measurements& data, int threads) {
+  const double together = log_odds_together(told, e);
   Selection found = std::move(e.found);
   d.unexplained = e.left.significant();
   if (!found.effects.empty())
-    weigh(d, told.larger,
-          probability_of_unknown(e.left.log_evidence, Candidates::prior_unknown / (1 - Candidates::prior_unknown)));
+    weigh(d, told.larger, probability_of_unknown(e.left.log_evidence, unknown_beside), together);
   sort_candidates(d, told.observations);
   if (d.unexplained) {
     found = named_beside_unknown(e.patterns, told.all(), told.candidates, std::move(found));
@@ -335,6 +333,9 @@ Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data
     e = explained(*step, step->candidates, step->each);
     large = look_for_large_ones(e, *step);
     if (large) tell(d, *step, *large);
+  } else if (is_missing_or_larger(d)) {
+    Explained several = explained(*step, step->candidates, step->each);
+    if (outweigh_larger_tolerances(several, *step)) e = std::move(several);
   }
   if (e.found.observations.aside() == o.aside()) {
     conclude(d, std::move(e), *step, data, work.threads);
@@ -349,7 +350,8 @@ Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data
   weighed.weigh_for(kept, work.threads);
   step.emplace(kept, std::move(weighed), options.bootstrap_sets, rounds, again);
   tell(d, *step, large ? step->candidates.in_larger_sizes().beside(kept, {}, step->null, even_hopeless) : step->each);
-  conclude(d, is_missing(d, *step) ? std::move(e) : nothing(*step), *step, data, work.threads);
+  const bool stays = is_missing(d, *step) || outweigh_larger_tolerances(e, *step);
+  conclude(d, stays ? std::move(e) : nothing(*step), *step, data, work.threads);
   return d;
 }
 

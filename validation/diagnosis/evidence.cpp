@@ -15,6 +15,8 @@ double log_mean_exp(const std::vector<double>& x) {
   return most + std::log(sum / static_cast<double>(x.size()));
 }
 
+double log_sum_exp(const std::vector<double>& x) { return log_mean_exp(x) + std::log(static_cast<double>(x.size())); }
+
 std::vector<double> log_spaced(double low, double high, int count) {
   std::vector<double> out;
   for (int i = 0; i < count; ++i) out.push_back(low * std::pow(high / low, (i + 0.5) / count));

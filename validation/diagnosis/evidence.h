@@ -23,8 +23,9 @@ double log_evidence(double gain, int parameters, bool one_sided);
 /// Probabilities of hypotheses from ln(prior · evidence).
 std::vector<double> normalised(const std::vector<double>& log_weights);
 
-/// ln of the mean of exp(x).
+/// ln of the mean and of the sum of exp(x).
 double log_mean_exp(const std::vector<double>& x);
+double log_sum_exp(const std::vector<double>& x);
 
 /// `count` numbers between low and high, evenly spaced in their logarithm, none at the ends.
 std::vector<double> log_spaced(double low, double high, int count);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "msa/base/index.h"
+#include "validation/diagnosis/hypothesis.h"
 #include "validation/diagnosis/signatures.h"
 #include "validation/parallel/cases.h"
 
@@ -46,16 +47,6 @@ double fit_in_turn(std::vector<std::size_t> all, double bar, int threads, const 
     all.erase(all.begin(), all.begin() + as_index(count));
   }
   return bar;
-}
-
-inline bool same(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
-  return a.effect == b.effect && a.leg == b.leg;
-}
-
-/// An effect is not taken twice. Where it is large its signature, which is that of a small one, does not show that it
-/// is there.
-inline bool is_among(const std::vector<effects::PlacedEffect>& h, const effects::PlacedEffect& e) {
-  return std::any_of(h.begin(), h.end(), [&](const auto& p) { return same(p, e); });
 }
 
 /// Physics lets it act to one side only, and the residual asks for the other.

@@ -1,6 +1,7 @@
 // A hypothesis: effects, each with its place, whose parameters are fitted.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,16 @@
 namespace deflect::diagnosis {
 
 using Hypothesis = std::vector<effects::PlacedEffect>;
+
+inline bool same(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
+  return a.effect == b.effect && a.leg == b.leg;
+}
+
+/// An effect is not taken twice. Where it is large its signature, which is that of a small one, does not show that it
+/// is there.
+inline bool is_among(const Hypothesis& h, const effects::PlacedEffect& e) {
+  return std::any_of(h.begin(), h.end(), [&](const effects::PlacedEffect& p) { return same(p, e); });
+}
 
 /// "guide_root_compliance", "leg_defect (leg 5)".
 std::string name_of(const effects::PlacedEffect&);

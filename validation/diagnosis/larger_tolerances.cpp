@@ -17,12 +17,23 @@ LargerTolerances larger_tolerances(const Observations& o, double prior) {
   if (!(room > 1.01)) return out;
   std::vector<double> scales = log_spaced(1, room, steps);
   scales.push_back(1);
-  std::vector<double> likelihood = o.log_likelihood_of_scales(scales);
+  std::vector<double> likelihood = o.log_likelihood_of_scales(o.subject(), scales);
   const double as_declared = likelihood.back();
   likelihood.pop_back();
   const auto best = std::max_element(likelihood.begin(), likelihood.end());
   out.scale = scales[as_size(best - likelihood.begin())];
   out.log_odds = std::log(prior) + log_mean_exp(likelihood) - as_declared;
+  return out;
+}
+
+std::vector<double> log_weights(const std::vector<Candidate>& all, const LargerTolerances& larger, double together) {
+  std::vector<double> out;
+  for (const Candidate& c : all) out.push_back(c.log_odds);
+  if (!out.empty())
+    if (const double more = together - log_sum_exp(out); more > 0)
+      for (double& each : out) each += more;
+  out.push_back(larger.log_odds);
+  out.push_back(0);
   return out;
 }
 

@@ -8,6 +8,7 @@
 // each s.
 #pragma once
 
+#include "validation/diagnosis/candidates.h"
 #include "validation/diagnosis/observations.h"
 
 namespace deflect::diagnosis {
@@ -19,5 +20,12 @@ struct LargerTolerances {
 
 /// `prior`: odds of larger tolerances against those declared, before any reading.
 LargerTolerances larger_tolerances(const Observations&, double prior = 0.2);
+
+inline constexpr double not_several = -1e9;  ///< ln of the odds of several effects where there are none
+
+/// ln of the weights of candidates, each alone, then of larger tolerances and of "nothing", 0. Several effects can
+/// explain together what none does alone: where their ln of odds `together` is larger than that of all candidates,
+/// these share it as they share their own.
+std::vector<double> log_weights(const std::vector<Candidate>&, const LargerTolerances&, double together = not_several);
 
 }  // namespace deflect::diagnosis

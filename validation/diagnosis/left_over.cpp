@@ -59,11 +59,10 @@ std::optional<Selection> at_one_place(const std::vector<Signature>& all, const C
   const auto log_odds = [&](const AtPlace& p) {
     return std::log(p.prior) + log_evidence(p.gain / noise, p.dimension, false);
   };
-  const double each = std::max(0.0, null.chi2 - s.fit.chi2) / noise / static_cast<double>(s.effects.size());
-  double found = further ? std::max(0.0, log_odds(*further)) : 0;
+  const double found = log_odds_of_all(candidates, s, (null.chi2 - s.fit.chi2) / noise) +
+                       (further ? std::max(0.0, log_odds(*further)) : 0);
   Selection there = s;
   for (std::size_t i = s.effects.size(); i-- > 0;) {
-    found += candidates.class_log_odds_of(s.effects[i], each);
     if (at_the_same_part(s.effects[i], place->best->effect)) continue;
     auto [others, values] = without(there.effects, there.fit.values, i);
     there.effects = std::move(others);

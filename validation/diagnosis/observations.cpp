@@ -91,13 +91,14 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
   weigh(aside_);
 }
 
-std::vector<double> Observations::log_likelihood_of_scales(const std::vector<double>& scales) const {
+std::vector<double> Observations::log_likelihood_of_scales(const subject::Subject& subject,
+                                                           const std::vector<double>& scales) const {
   std::vector<Eigen::Index> free;
   const std::vector<subject::Tolerance>& all = comparison_->tolerances.nuisances;
   for (Eigen::Index i = 0; i + 1 < A_.shared.cols(); ++i)
     if (nth(all, i).zero) free.push_back(i);
   free.push_back(A_.shared.cols() - 1);  // of the deformed shape
-  return uncertainty_->log_likelihood_of_scales(residual(subject_), MatrixX(measured_.size(), 0), scales, free);
+  return uncertainty_->log_likelihood_of_scales(residual(subject), MatrixX(measured_.size(), 0), scales, free);
 }
 
 VectorX Observations::bent_of(const subject::Subject& subject) const {
@@ -219,10 +220,20 @@ VectorX Observations::from_zero(VectorX residual) const {
   return residual;
 }
 
-double Observations::held_out_rmse(const subject::Subject& subject) const {
+VectorX Observations::residual_held_out(const subject::Subject& subject) const {
   const VectorX all = residual(subject);
   // Of one pose no other says where the readings count from.
-  return held_out_->rmse(comparison_->study.data->poses.size() > 1 ? all : from_zero(all));
+  return comparison_->study.data->poses.size() > 1 ? all : from_zero(all);
+}
+
+double Observations::held_out_rmse(const subject::Subject& subject) const {
+  return held_out_->rmse(residual_held_out(subject));
+}
+
+bool Observations::falls_held_out(const subject::Subject& subject, const subject::Subject& other) const {
+  constexpr double by_chance = 2;  // standard errors
+  const VectorX more = held_out_->squares(residual_held_out(subject)) - held_out_->squares(residual_held_out(other));
+  return more.sum() <= (more.size() > 1 ? by_chance * more.norm() : 0);
 }
 
 std::vector<std::pair<std::string, double>> Observations::strained(const subject::Subject& subject) const {

@@ -29,9 +29,10 @@ class Observations {
   const statistics::Uncertainty& uncertainty() const { return *uncertainty_; }
   std::size_t numbers() const { return uncertainty_->count(); }
   double tolerance_scale() const { return tolerance_scale_; }
-  /// ln of the likelihood of null_residual() under tolerances s times as large as they count here, for each s, up to
-  /// one constant. Zeros of readings and the size of the deformed shape's contribution are fitted.
-  std::vector<double> log_likelihood_of_scales(const std::vector<double>& scales) const;
+  /// ln of the likelihood of residual() of a subject under tolerances s times as large as they count here, for each s,
+  /// up to a constant that is the same in all copies with the same readings. Zeros of readings and the size of the
+  /// deformed shape's contribution are fitted.
+  std::vector<double> log_likelihood_of_scales(const subject::Subject&, const std::vector<double>& scales) const;
   std::size_t set_aside() const;          ///< readings
   std::size_t set_aside_in_play() const;  ///< of these, where the load leaves play of the granted subject open
   const std::vector<bool>& aside() const { return aside_; }  ///< by reading
@@ -64,6 +65,11 @@ class Observations {
   double rmse(const subject::Subject&) const;
   /// The same by cross-validation: at each pose with the tolerances fitted at the other poses (ten folds at most).
   double held_out_rmse(const subject::Subject&) const;
+  /// Whether that error is no larger for this subject than for the other one, but for what chance makes of it: the sum
+  /// over folds of the differences of squares exceeds twice its standard error, which the differences themselves tell.
+  /// What an effect does that a tolerance can do as well, the tolerance learns at the other poses: the error stays
+  /// then.
+  bool falls_held_out(const subject::Subject&, const subject::Subject& other) const;
   /// Tolerances that would deviate by more than two declared standard deviations if this subject were right; each with
   /// its number of standard deviations.
   std::vector<std::pair<std::string, double>> strained(const subject::Subject&) const;
@@ -109,6 +115,7 @@ class Observations {
   Linear linear(const subject::Subject&) const;                        // what is predicted in linear geometry
   VectorX shape_beside(const Linear&, const subject::Subject&) const;  // shape_for() a subject of which that is
   double in_noise(const VectorX& values) const;                        // their norm in σ of noise
+  VectorX residual_held_out(const subject::Subject&) const;
   /// Subtracts the estimated zero of the readings where it is unknown.
   VectorX from_zero(VectorX residual) const;
   void weigh(const std::vector<bool>& aside);

@@ -27,7 +27,7 @@ class Search {
   /// The best candidate beside what is there, if it is called for.
   bool add(const std::vector<Candidate>& all, double least) {
     const auto best = std::max_element(all.begin(), all.end(), less_likely);
-    if (best == all.end() || !(best->class_log_odds > least)) return false;
+    if (best == all.end() || !(best->class_log_odds > least) || was_granted(best->hypothesis)) return false;
     if (s_.effects.size() >= usual_effects && best->fit.chi2 > own_part_of_many * s_.fit.chi2) return false;
     if (!s_.effects.empty() && !falls(best->hypothesis, best->fit.values)) return false;
     grant(best->hypothesis, best->fit.values);
@@ -52,12 +52,12 @@ class Search {
       }
       if (!best->fit.found) continue;
       const double more = best->class_log_odds - odds;
-      if (more > better || (more == 0 && best->log_odds > own.log_odds + better)) {
+      if ((more > better || (more == 0 && best->log_odds > own.log_odds + better)) && !was_granted(best->hypothesis)) {
         grant(best->hypothesis, best->fit.values);
         return true;
       }
       s_.ties[i] = tie(all);
-      if (!s_.ties[i].names.empty() && !holds(s_.ties[i], own)) {
+      if (!s_.ties[i].names.empty() && !holds(s_.ties[i], own) && !was_granted(s_.ties[i].rivals.front().hypothesis)) {
         const Candidate instead = s_.ties[i].rivals.front();
         grant(instead.hypothesis, instead.fit.values);
         return true;
@@ -164,10 +164,8 @@ class Search {
 
   static double gain(const Fit& without, const Fit& with) { return std::max(0.0, without.chi2 - with.chi2); }
 
-  /// Whether the error at held-out poses is no larger than it is now.
   bool falls(const Hypothesis& h, const VectorX& values) const {
-    return !(seen().held_out_rmse(subject_with(seen(), h, values)) >
-             seen().held_out_rmse(subject_with(seen(), s_.effects, s_.fit.values)));
+    return seen().falls_held_out(subject_with(seen(), h, values), subject_with(seen(), s_.effects, s_.fit.values));
   }
 
   /// By what is the same to these data, then by the entry's own.
@@ -175,9 +173,18 @@ class Search {
     return std::pair(a.class_log_odds, a.log_odds) < std::pair(b.class_log_odds, b.log_odds);
   }
 
+  /// Whether these effects counted as right before, in any order. To each of two effects the other one can look
+  /// likelier where what is granted moves weights and shapes: neither is asked again then.
+  bool was_granted(const Hypothesis& h) const {
+    return std::any_of(granted_.begin(), granted_.end(), [&](const Hypothesis& g) {
+      return g.size() == h.size() && std::all_of(h.begin(), h.end(), [&](const auto& e) { return is_among(g, e); });
+    });
+  }
+
   /// These effects count as right, at the values with which the deformed shape is that of the subject they make. Where
   /// passes do not lead there, with the shape at the values given.
   void grant(const Hypothesis& h, VectorX values) {
+    granted_.push_back(h);
     std::optional<Selection> first;
     double before = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_passes; ++pass) {
@@ -234,6 +241,7 @@ class Search {
 
   Selection s_;
   const Candidates& candidates_;
+  std::vector<Hypothesis> granted_;
 };
 
 }  // namespace
@@ -247,6 +255,13 @@ Selection select(const Observations& o, const Candidates& candidates, const std:
   }
   search.note_ties();
   return search.result();
+}
+
+double log_odds_of_all(const Candidates& candidates, const Selection& s, double gain) {
+  const double each = std::max(0.0, gain) / std::max(1.0, static_cast<double>(s.effects.size()));
+  double sum = 0;
+  for (const effects::PlacedEffect& e : s.effects) sum += candidates.class_log_odds_of(e, each);
+  return sum;
 }
 
 }  // namespace deflect::diagnosis

@@ -32,4 +32,8 @@ inline constexpr double called_for = 4;
 /// step.
 Selection select(const Observations&, const Candidates&, const std::vector<Candidate>& first);
 
+/// ln(prior · evidence) of all its effects against none of them. Each counts as having an equal share in what they gain
+/// together in χ²: they are found one beside another, in an order that says nothing.
+double log_odds_of_all(const Candidates&, const Selection&, double gain);
+
 }  // namespace deflect::diagnosis
