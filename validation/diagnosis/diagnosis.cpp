@@ -245,11 +245,6 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
   return out;
 }
 
-/// ln of the likelihood of the readings where these effects are right, with what tolerances do beside them.
-double log_likelihood(const Observations& o, const Hypothesis& h, const VectorX& values) {
-  return o.log_likelihood_of_scales(subject_with(o, h, values), {1}).front();
-}
-
 /// ln(prior · evidence) of all that was found, something unknown included, against nothing, where it is several.
 double log_odds_together(const FirstStep& s, const Explained& e) {
   const Selection& found = e.found;

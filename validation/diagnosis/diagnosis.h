@@ -40,7 +40,7 @@ struct Diagnosis {
   /// unknown_effect, without candidates.
   std::vector<compare::RecordingMistake> mistakes;
   /// Probability of "nothing", among the candidates of the first step, and of something unknown in addition to what was
-  /// found, if anything.
+  /// found, if anything. Where several effects were found, the candidates share the weight of these (log_weights()).
   double probability_nothing = 0, probability_unknown = 0;
   /// Of the first, the part of machines whose tolerances are larger than declared (larger_tolerances.h).
   double probability_larger_tolerances = 0;

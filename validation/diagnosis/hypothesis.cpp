@@ -314,6 +314,10 @@ subject::Subject subject_with(const Observations& o, const Hypothesis& h, const 
   return h.empty() ? o.subject() : effects::PreparedEffects(o.subject(), h)(values);
 }
 
+double log_likelihood(const Observations& o, const Hypothesis& h, const VectorX& values) {
+  return o.log_likelihood_of_scales(subject_with(o, h, values), {1}).front();
+}
+
 bool wants_more_than_there_can_be(const Hypothesis& h, const Fit& f) {
   const std::vector<effects::EffectParameter>& own = h.back().effect->parameters;
   if (own.size() != 1 || !f.found) return false;

@@ -60,6 +60,9 @@ std::pair<Hypothesis, VectorX> without(Hypothesis, const VectorX& values, std::s
 
 /// The subject with the effects at these values.
 subject::Subject subject_with(const Observations&, const Hypothesis&, const VectorX& values);
+/// ln of the likelihood of the readings where these effects are right, tolerances as these observations weigh them; see
+/// Observations::log_likelihood_of_scales().
+double log_likelihood(const Observations&, const Hypothesis&, const VectorX& values);
 
 /// The parameters of all effects, one after the other.
 std::vector<const effects::EffectParameter*> parameters_of(const Hypothesis&);

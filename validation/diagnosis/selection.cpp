@@ -27,7 +27,7 @@ class Search {
   /// The best candidate beside what is there, if it is called for.
   bool add(const std::vector<Candidate>& all, double least) {
     const auto best = std::max_element(all.begin(), all.end(), less_likely);
-    if (best == all.end() || !(best->class_log_odds > least) || was_granted(best->hypothesis)) return false;
+    if (best == all.end() || !(best->class_log_odds > least) || granted_before(best->hypothesis)) return false;
     if (s_.effects.size() >= usual_effects && best->fit.chi2 > own_part_of_many * s_.fit.chi2) return false;
     if (!s_.effects.empty() && !falls(best->hypothesis, best->fit.values)) return false;
     grant(best->hypothesis, best->fit.values);
@@ -52,12 +52,12 @@ class Search {
       }
       if (!best->fit.found) continue;
       const double more = best->class_log_odds - odds;
-      if ((more > better || (more == 0 && best->log_odds > own.log_odds + better)) && !was_granted(best->hypothesis)) {
+      if ((more > better || (more == 0 && best->log_odds > own.log_odds + better)) && !goes_back(best->hypothesis)) {
         grant(best->hypothesis, best->fit.values);
         return true;
       }
       s_.ties[i] = tie(all);
-      if (!s_.ties[i].names.empty() && !holds(s_.ties[i], own) && !was_granted(s_.ties[i].rivals.front().hypothesis)) {
+      if (!s_.ties[i].names.empty() && !holds(s_.ties[i], own) && !goes_back(s_.ties[i].rivals.front().hypothesis)) {
         const Candidate instead = s_.ties[i].rivals.front();
         grant(instead.hypothesis, instead.fit.values);
         return true;
@@ -173,18 +173,33 @@ class Search {
     return std::pair(a.class_log_odds, a.log_odds) < std::pair(b.class_log_odds, b.log_odds);
   }
 
-  /// Whether these effects counted as right before, in any order. To each of two effects the other one can look
-  /// likelier where what is granted moves weights and shapes: neither is asked again then.
-  bool was_granted(const Hypothesis& h) const {
-    return std::any_of(granted_.begin(), granted_.end(), [&](const Hypothesis& g) {
-      return g.size() == h.size() && std::all_of(h.begin(), h.end(), [&](const auto& e) { return is_among(g, e); });
+  struct Granted {
+    Hypothesis effects;
+    double log_likelihood = 0;
+  };
+  /// These effects, in any order, where they counted as right before.
+  const Granted* granted_before(const Hypothesis& h) const {
+    const auto it = std::find_if(granted_.begin(), granted_.end(), [&](const Granted& g) {
+      return g.effects.size() == h.size() &&
+             std::all_of(h.begin(), h.end(), [&](const auto& e) { return is_among(g.effects, e); });
     });
+    return it == granted_.end() ? nullptr : &*it;
+  }
+  /// Whether they counted as right before, when the readings were no likelier than they are now. To each of two effects
+  /// the other one can look likelier, because what is granted moves weights and shapes.
+  bool goes_back(const Hypothesis& h) const {
+    const Granted* before = granted_before(h);
+    return before && before->log_likelihood <= granted_.back().log_likelihood;
+  }
+
+  void grant(const Hypothesis& h, VectorX values) {
+    count_as_right(h, std::move(values));
+    granted_.push_back({s_.effects, log_likelihood(seen(), s_.effects, s_.fit.values)});
   }
 
   /// These effects count as right, at the values with which the deformed shape is that of the subject they make. Where
   /// passes do not lead there, with the shape at the values given.
-  void grant(const Hypothesis& h, VectorX values) {
-    granted_.push_back(h);
+  void count_as_right(const Hypothesis& h, VectorX values) {
     std::optional<Selection> first;
     double before = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_passes; ++pass) {
@@ -241,7 +256,7 @@ class Search {
 
   Selection s_;
   const Candidates& candidates_;
-  std::vector<Hypothesis> granted_;
+  std::vector<Granted> granted_;
 };
 
 }  // namespace
