@@ -228,7 +228,9 @@ class Candidates::Round {
   }
 
   std::vector<Candidate>&& result() {
-    for (Candidate& c : out_) c.chi2_per_dof = (chi2_before_ - c.gain) / static_cast<double>(observations_.numbers());
+    // A gain that a signature says can exceed all there is by rounding.
+    for (Candidate& c : out_)
+      c.chi2_per_dof = std::max(0.0, chi2_before_ - c.gain) / static_cast<double>(observations_.numbers());
     all_.add_up_classes(out_);
     return std::move(out_);
   }
