@@ -46,7 +46,7 @@ def first_of_size(f, factors, effect, weight, target):
 
 
 def places(f):
-    out = {"factor": [m for m, x in f["members"].items()] + list(f["ends"]), "gain": list(f["sensors"]),
+    out = {"factor": list(f["members"]) + list(f["ends"]), "gain": list(f["sensors"]),
            "clearance": [], "linear": []}
     for node, held in f["supports"].items():
         for freedom in held:

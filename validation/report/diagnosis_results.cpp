@@ -24,8 +24,9 @@ double fine(const diagnosis::Diagnosis& d) { return measurement::row_of(d.quanti
 double coarse(const diagnosis::Diagnosis& d) { return measurement::row_of(d.quantity).coarse_per_SI; }
 
 std::string candidates_table(const diagnosis::Diagnosis& d) {
-  std::vector<std::vector<std::string>> rows = {
-      {"candidate", "probability", fmt::format("rms {}", micro(d)), "held-out", "chi2/n", "values with 95 % interval"}};
+  std::vector<std::vector<std::string>> rows = {{d.missing.size() > 1 ? "candidate, alone" : "candidate", "probability",
+                                                 fmt::format("rms {}", micro(d)), "held-out", "chi2/n",
+                                                 "values with 95 % interval"}};
   std::size_t shown = 0;
   for (const diagnosis::Candidate& c : d.candidates) {
     if (shown >= 8 || (c.probability < 1e-6 && shown >= 3)) break;
