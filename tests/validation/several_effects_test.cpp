@@ -1,4 +1,5 @@
-// Effects that explain a frame's readings only together: against larger tolerances, and against each other.
+// Effects that explain a frame's readings only together: against larger tolerances, and against each other. The
+// readings are the frame solver's own; foreign_pairs_test.cpp has sets of foreign make.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,6 +70,28 @@ TEST(SeveralEffects, ThatTakeEachOthersPlaceAreFoundTogether) {
     EXPECT_EQ(missing_in({{"factor@sections.post.wall", 0.829}, {"settled@support.D.ry", 2.4e-5}}, seed),
               (std::vector<std::string>{"factor@sections.post.wall", "settled@support.D.ry"}))
         << seed;
+}
+
+// A modulus is a tolerance of this frame: a change of it is learnt at the other poses, and the held-out error changes
+// by chance alone, to one side or the other. A sensor that reads a fifth too much is not.
+TEST(SeveralEffects, TheHeldOutErrorMayStay) {
+  const subject::Subject drawn = portal();
+  const std::vector<effects::Effect> all = test::effects_everywhere(drawn);
+  prediction::SimulationOptions one;
+  one.seed = 1;
+  const measurement::Measurements data =
+      subject::simulate_frame(*drawn.frame(), subject::frame_campaign("random", *drawn.frame(), 1), one);
+  const diagnosis::Observations o(drawn, data, {});
+  const auto with = [&](const std::string& name, double value) {
+    const auto e = std::find_if(all.begin(), all.end(), [&](const effects::Effect& each) { return each.name == name; });
+    return effects::with_effect(drawn, {{&*e, {}}, test::values({value})});
+  };
+  const subject::Subject stiffer = with("modulus", 1.02), misread = with("gain@mid_z", 1.2);
+  EXPECT_NE(o.held_out_rmse(stiffer), o.held_out_rmse(drawn));
+  EXPECT_TRUE(o.falls_held_out(stiffer, drawn));
+  EXPECT_TRUE(o.falls_held_out(drawn, stiffer));
+  EXPECT_FALSE(o.falls_held_out(misread, drawn));
+  EXPECT_TRUE(o.falls_held_out(drawn, misread));
 }
 
 TEST(SeveralEffects, ShareTheirWeightAmongTheCandidatesAsTheseShareTheirOwn) {

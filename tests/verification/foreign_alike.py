@@ -10,7 +10,6 @@ between 9 and 25 (see foreign_frames.py); places where no size of the effect rea
 up and down in steps, so that what lags and what has play can be told apart. Friction at a node ("node" in its id) is no
 candidate of deflect: the right answer is that something unknown is missing.
 """
-import argparse
 import collections
 import json
 import pathlib
@@ -175,21 +174,5 @@ def judge(folder, program):
     print(f"named with what it is to be told from: {others}\nties without a reading that splits them: {open_ties}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("out", type=pathlib.Path, nargs="?")
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1])
-    parser.add_argument("--only", nargs="+", choices=FRAMES)
-    parser.add_argument("--judge", nargs=2, metavar=("OUT_DIR", "DEFLECT"))
-    options = parser.parse_args()
-    if options.judge:
-        judge(pathlib.Path(options.judge[0]), options.judge[1])
-    elif options.out:
-        make(options.out, pathlib.Path(__file__).resolve().parents[2] / "validation" / "frames", options.seeds,
-             options.only)
-    else:
-        parser.error("name the folder for the sets")
-
-
 if __name__ == "__main__":
-    main()
+    run(__doc__, make, judge)

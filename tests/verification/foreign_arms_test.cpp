@@ -6,39 +6,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "msa/mechanism/device_file.h"
 #include "tests/support/effects.h"
 #include "tests/support/paths.h"
+#include "tests/verification/foreign_sets.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/effects/place_effects.h"
-#include "validation/json/json_text.h"
 #include "validation/subject/subject.h"
 
 namespace deflect {
 namespace {
 
-const std::string own = test::source_dir() + "/tests/verification/foreign_arms";
-
-std::filesystem::path folder() {
-  const char* named = std::getenv("DEFLECT_FOREIGN_ARMS");
-  return named ? named : own;
-}
-
-Json truths() {
-  std::ifstream file(folder() / "truth.json");
-  return Json::parse(file);
-}
-
-std::vector<std::string> sets() {
-  const Json all = truths();
-  std::vector<std::string> out;
-  for (auto each = all.begin(); each != all.end(); ++each) out.push_back(each.key());
-  return out;
+const test::ForeignSets& sets() {
+  static const test::ForeignSets all("foreign_arms", "DEFLECT_FOREIGN_ARMS");
+  return all;
 }
 
 /// An interval of a normal distribution misses by more than 1.6 times its half-width in two of a thousand.
@@ -60,9 +44,9 @@ void expect_values(const diagnosis::Diagnosis& d, const Json& hidden) {
 class ForeignArm : public testing::TestWithParam<std::string> {};
 
 TEST_P(ForeignArm, WhatIsHiddenIsNamedOrTied) {
-  const Json truth = truths().at(GetParam());
-  const subject::Subject s = read_mechanism(own + "/arm.yaml");
-  const auto data = s.placed(measurement::read_measurements(folder() / (GetParam() + ".csv"), s.instruments()));
+  const Json truth = sets().truths.at(GetParam());
+  const subject::Subject s = read_mechanism(sets().own / "arm.yaml");
+  const auto data = s.placed(measurement::read_measurements(sets().folder / (GetParam() + ".csv"), s.instruments()));
   std::vector<effects::Effect> all = test::all_effects();
   for (effects::Effect& e : effects::place_effects(s, all)) all.push_back(std::move(e));
   const diagnosis::Diagnosis d = diagnosis::diagnose(s, data, all, {{}, 199});
@@ -84,11 +68,8 @@ TEST_P(ForeignArm, WhatIsHiddenIsNamedOrTied) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sets, ForeignArm, testing::ValuesIn(sets()), [](const auto& set) {
-  std::string name = set.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Sets, ForeignArm, testing::ValuesIn(sets().names()),
+                         [](const auto& set) { return test::test_name(set.param); });
 
 }  // namespace
 }  // namespace deflect

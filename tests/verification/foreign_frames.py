@@ -379,6 +379,23 @@ def nominal(path):
     return out
 
 
+def run(about, make, judge):
+    """The command line of a script that makes its own sets and judges what a program says of them."""
+    parser = argparse.ArgumentParser(description=about.split("\n", maxsplit=1)[0])
+    parser.add_argument("out", type=pathlib.Path, nargs="?")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1])
+    parser.add_argument("--only", nargs="+", choices=FRAMES)
+    parser.add_argument("--judge", nargs=2, metavar=("OUT_DIR", "DEFLECT"))
+    options = parser.parse_args()
+    if options.judge:
+        judge(pathlib.Path(options.judge[0]), options.judge[1])
+    elif options.out:
+        make(options.out, pathlib.Path(__file__).resolve().parents[2] / "validation" / "frames", options.seeds,
+             options.only)
+    else:
+        parser.error("name the folder for the sets")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("out", type=pathlib.Path, nargs="?")

@@ -6,36 +6,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/effects.h"
 #include "tests/support/paths.h"
+#include "tests/verification/foreign_sets.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/place_effects.h"
-#include "validation/json/json_text.h"
 #include "validation/subject/subject.h"
 
 namespace deflect {
 namespace {
 
-std::filesystem::path folder() {
-  const char* named = std::getenv("DEFLECT_FOREIGN_FRAMES");
-  return named ? named : test::source_dir() + "/tests/verification/foreign_frames";
-}
-
-Json truths() {
-  std::ifstream file(folder() / "truth.json");
-  return Json::parse(file);
-}
-
-std::vector<std::string> sets() {
-  const Json all = truths();
-  std::vector<std::string> out;
-  for (auto each = all.begin(); each != all.end(); ++each) out.push_back(each.key());
-  return out;
+const test::ForeignSets& sets() {
+  static const test::ForeignSets all("foreign_frames", "DEFLECT_FOREIGN_FRAMES");
+  return all;
 }
 
 /// What the diagnosis says is missing, and all that it ties with that.
@@ -68,10 +54,10 @@ bool is_the_other(const std::string& hidden, const std::string& named) {
 class ForeignFrame : public testing::TestWithParam<std::string> {};
 
 TEST_P(ForeignFrame, WhatIsHiddenIsNamedOrTied) {
-  const Json truth = truths().at(GetParam());
+  const Json truth = sets().truths.at(GetParam());
   const subject::Subject s = frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" /
                                                (truth.at("frame").get<std::string>() + ".yaml"));
-  const auto data = s.placed(measurement::read_measurements(folder() / GetParam(), s.instruments()));
+  const auto data = s.placed(measurement::read_measurements(sets().folder / GetParam(), s.instruments()));
   std::vector<effects::Effect> all = test::all_effects();
   for (effects::Effect& e : effects::place_effects(s, all)) all.push_back(std::move(e));
   const diagnosis::Diagnosis d = diagnosis::diagnose(s, data, all, {{}, 199});
@@ -105,12 +91,8 @@ TEST_P(ForeignFrame, WhatIsHiddenIsNamedOrTied) {
     EXPECT_NE(d.mistakes.front().sentence.find(part), std::string::npos) << said;
 }
 
-INSTANTIATE_TEST_SUITE_P(Sets, ForeignFrame, testing::ValuesIn(sets()), [](const auto& set) {
-  std::string name = set.param.substr(0, set.param.rfind('.'));
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Sets, ForeignFrame, testing::ValuesIn(sets().names()),
+                         [](const auto& set) { return test::test_name(set.param); });
 
 }  // namespace
 }  // namespace deflect

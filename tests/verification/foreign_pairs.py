@@ -8,7 +8,6 @@ off, and beside it a member, an end, a sensor or a support.
 Places and what is off the drawing are drawn by lot from the seed. Each effect alone has a signature lambda between 8 and
 16 (see foreign_frames.py). Together they strain many tolerances, as a frame does that is built worse than declared.
 """
-import argparse
 import collections
 import copy
 import json
@@ -131,22 +130,5 @@ def judge(folder, program):
         print(f"| {frame} | {', '.join(f'{n} {what}' for (of, what), n in sorted(table.items()) if of == frame)} |")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("out", type=pathlib.Path, nargs="?")
-    parser.add_argument("--frames", type=pathlib.Path,
-                        default=pathlib.Path(__file__).parents[2] / "validation" / "frames")
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1])
-    parser.add_argument("--only", nargs="+", choices=FRAMES)
-    parser.add_argument("--judge", nargs=2, metavar=("OUT_DIR", "DEFLECT"))
-    options = parser.parse_args()
-    if options.judge:
-        judge(pathlib.Path(options.judge[0]), options.judge[1])
-    elif options.out:
-        make(options.out, options.frames, options.seeds, options.only)
-    else:
-        parser.error("give a folder, or --judge")
-
-
 if __name__ == "__main__":
-    main()
+    run(__doc__, make, judge)

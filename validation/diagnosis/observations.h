@@ -65,10 +65,10 @@ class Observations {
   double rmse(const subject::Subject&) const;
   /// The same by cross-validation: at each pose with the tolerances fitted at the other poses (ten folds at most).
   double held_out_rmse(const subject::Subject&) const;
-  /// Whether that error is no larger for this subject than for the other one, but for what chance makes of it: the sum
-  /// over folds of the differences of squares exceeds twice its standard error, which the differences themselves tell.
-  /// What an effect does that a tolerance can do as well, the tolerance learns at the other poses: the error stays
-  /// then.
+  /// Whether that error is no larger for this subject than for the other one, but for chance: false where the sum over
+  /// folds of the differences of squares exceeds twice its standard error, which the differences themselves tell; of
+  /// one fold, where it exceeds 0. What an effect does that a tolerance can do as well, the tolerance learns at the
+  /// other poses: the error stays then.
   bool falls_held_out(const subject::Subject&, const subject::Subject& other) const;
   /// Tolerances that would deviate by more than two declared standard deviations if this subject were right; each with
   /// its number of standard deviations.

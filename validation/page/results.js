@@ -39,7 +39,7 @@ export function candidates(d) {
   }));
   const ties = d.indistinguishable.length ? el('p', {}, el('span', {class: 'swatch', style: {background: 'var(--orange)'}}), 'These data cannot tell apart: ', d.indistinguishable.map((g) => g.join(', ')).join('; '), '.') : null;
   return figure('candidates', 'Candidates', 'Every effect of the catalogue at every place that it has, fitted with all tolerances free, weighed by the evidence.' +
-    (d.missing.length > 1 ? ' Each stands here alone; what was found together is what they share.' : ''),
+    (d.missing.length > 1 ? ' Each is fitted alone here; they share the probability of the effects that were found together.' : ''),
     picture, ties, ...(d.splitting ?? []).map((s) => el('p', {}, s.sentence)),
     numbers('candidates', () => ({
       columns: ['candidate', 'probability', 'rmse_mm', 'held_out_rmse_mm', 'chi2_per_dof', 'values with 95 % interval'],
