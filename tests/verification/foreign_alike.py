@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Sets of the built-in frames that look alike, by the solver of foreign_frames.py: friction, a sensor that sticks,
+"""Sets of the built-in frames that look alike, by the solver of own_frames.py: friction, a sensor that sticks,
 play, restraint of a free direction, a load at another node, friction at a node where the frame has no part.
 
   foreign_alike.py OUT_DIR --seeds 1 2 3      writes FRAME_EFFECT_SEED.csv and truth.json
   foreign_alike.py --judge OUT_DIR DEFLECT    diagnoses them with the program DEFLECT and counts, as a table
 
-Places, sizes and what is off the drawing are drawn by lot from the seed. Sizes are such that the signature lambda lies
-between 9 and 25 (see foreign_frames.py); places where no size of the effect reaches that are passed over. All loads go
-up and down in steps, so that what lags and what has play can be told apart. Friction at a node ("node" in its id) is no
-candidate of deflect: the right answer is that something unknown is missing.
+Places, sizes and what is off the drawing are drawn by lot from the seed. Sizes are such that the signature lambda
+lies between 9 and 25 (see foreign_laboratory.py); places where no size of the effect reaches that are passed over.
+All loads go up and down in steps, so that what lags and what has play can be told apart. Friction at a node ("node"
+in its id) is no candidate of deflect: the right answer is that something unknown is missing.
 """
 import collections
 import json
@@ -19,7 +19,7 @@ import zlib
 
 import numpy as np
 
-from foreign_frames import *  # noqa: F403
+from foreign_laboratory import *  # noqa: F403
 
 RANGES = {"friction": (1e-1, 1e6), "stiction": (1e-8, 1e-2), "clearance": (1e-8, 2e-2), "restraint": (1e2, 1e9)}
 KINDS = ("stiction", "friction", "clearance", "restraint", "elsewhere", "friction at a node")

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Sets of the built-in frames that hide two effects, by the solver of foreign_frames.py: a load cell or a modulus that is
+"""Sets of the built-in frames that hide two effects, by the solver of own_frames.py: a load cell or a modulus that is
 off, and beside it a member, an end, a sensor or a support.
 
   foreign_pairs.py OUT_DIR --seeds 1 2 3      writes FRAME_FIRST_SECOND_SEED.csv and truth.json
   foreign_pairs.py --judge OUT_DIR DEFLECT    diagnoses them with the program DEFLECT and counts, as a table
 
-Places and what is off the drawing are drawn by lot from the seed. Each effect alone has a signature lambda between 8 and
-16 (see foreign_frames.py). Together they strain many tolerances, as a frame does that is built worse than declared.
+Places and what is off the drawing are drawn by lot from the seed. Each effect alone has a signature lambda between 8
+and 16 (see foreign_laboratory.py). Together they strain many tolerances, as a frame does that is built worse than
+declared.
 """
 import collections
 import copy
@@ -19,7 +20,7 @@ import zlib
 
 import numpy as np
 
-from foreign_frames import *  # noqa: F403
+from foreign_laboratory import *  # noqa: F403
 
 FIRST = ("load_gain", "modulus")
 SECOND = {"factor": (0.999, 0.05), "gain": (1.0005, 1.5), "clearance": (1e-8, 2e-2), "linear": (1e10, 1e3)}

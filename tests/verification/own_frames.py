@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Frames by a direct stiffness method of their own, for foreign_frames.py.
+"""Frames by a direct stiffness method of their own, for foreign_laboratory.py.
 
 Reads a frame file and solves it under factors on its load cases: Euler-Bernoulli members, trusses, releases and
 semi-rigid ends by static condensation, supports, springs, plane frames. What sensors read follows, with an effect at
