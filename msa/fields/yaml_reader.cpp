@@ -20,6 +20,40 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
+/// Bytes of the UTF-8 sequence that begins here, 0 when there is none.
+std::size_t utf8_length(std::string_view s) {
+  const auto byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
+  const std::size_t n = byte(0) < 0x80                      ? 1
+                        : byte(0) >= 0xc2 && byte(0) < 0xe0 ? 2
+                        : byte(0) >= 0xe0 && byte(0) < 0xf0 ? 3
+                        : byte(0) >= 0xf0 && byte(0) < 0xf5 ? 4
+                                                            : 0;
+  for (std::size_t i = 1; i < n; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  const unsigned second = byte(1);
+  const bool overlong = (byte(0) == 0xe0 && second < 0xa0) || (byte(0) == 0xf0 && second < 0x90);
+  const bool surrogate = byte(0) == 0xed && second > 0x9f, beyond = byte(0) == 0xf4 && second > 0x8f;
+  return overlong || surrogate || beyond ? 0 : n;
+}
+
+/// yaml-cpp gives the escapes \N and \_ as one byte each, which is no UTF-8. No other escape and no character of the
+/// file gives a lone byte.
+std::string in_utf8(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t n = utf8_length(std::string_view(text).substr(i));
+    if (n == 0) out += '\xc2';
+    out.append(text, i, std::max<std::size_t>(n, 1));
+    i += std::max<std::size_t>(n, 1);
+  }
+  return out;
+}
+
+bool is_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (byte < 0x20 && c != '\n' && c != '\r' && c != '\t') || byte == 0x7f;
+}
+
 class Builder : public YAML::EventHandler {
  public:
   explicit Builder(const std::string& origin) : origin_(origin) {}
@@ -39,9 +73,11 @@ class Builder : public YAML::EventHandler {
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& text) override {
-    if (wants_key()) return key(mark.line + 1, tag, anchor, text);
+    if (const auto c = std::find_if(text.begin(), text.end(), is_control); c != text.end())
+      fail(mark.line + 1, fmt::format("control character 0x{:02x} by an escape: the file must be text", *c));
+    if (wants_key()) return key(mark.line + 1, tag, anchor, in_utf8(text));
     YamlNode scalar = node(Kind::scalar, mark, tag, anchor);
-    scalar.text = text;
+    scalar.text = in_utf8(text);
     if (text.empty() && scalar.ours) scalar.kind = Kind::null;  // "!ours" with nothing behind it
     value(std::move(scalar));
   }
@@ -151,22 +187,6 @@ class Ignore : public YAML::EventHandler {
   int begun_ = -1;  // where the last document begins
 };
 
-/// Bytes of the UTF-8 sequence that begins here, 0 when there is none.
-std::size_t utf8_length(std::string_view s) {
-  const auto byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
-  const std::size_t n = byte(0) < 0x80                      ? 1
-                        : byte(0) >= 0xc2 && byte(0) < 0xe0 ? 2
-                        : byte(0) >= 0xe0 && byte(0) < 0xf0 ? 3
-                        : byte(0) >= 0xf0 && byte(0) < 0xf5 ? 4
-                                                            : 0;
-  for (std::size_t i = 1; i < n; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  const unsigned second = byte(1);
-  const bool overlong = (byte(0) == 0xe0 && second < 0xa0) || (byte(0) == 0xf0 && second < 0x90);
-  const bool surrogate = byte(0) == 0xed && second > 0x9f, beyond = byte(0) == 0xf4 && second > 0x8f;
-  return overlong || surrogate || beyond ? 0 : n;
-}
-
 /// yaml-cpp takes byte 4 for the end of the file and passes invalid UTF-8 on.
 void check_characters(std::string_view text, const std::string& origin) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
@@ -174,7 +194,7 @@ void check_characters(std::string_view text, const std::string& origin) {
   int line = 1;
   for (std::size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
-    if ((c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7f)
+    if (is_control(text[i]))
       throw InputError(fmt::format("{}:{}: control character 0x{:02x}: the file must be text", origin, line, c));
     const std::size_t n = c < 0x80 ? 1 : utf8_length(text.substr(i));
     if (n == 0)

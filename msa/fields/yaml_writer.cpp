@@ -26,7 +26,7 @@ bool reserved(std::string_view text) {
 /// Would be read back as the same text, in block and in flow style.
 bool plain_safe(std::string_view text) {
   if (text.empty() || text.front() == ' ' || text.back() == ' ') return false;
-  if (one_of(text.front(), "?!&*|>'\"%@`~=<") || (text.front() == '-' && text.size() == 1)) return false;
+  if (one_of(text.front(), ",?!&*|>'\"%@`~=<") || (text.front() == '-' && text.size() == 1)) return false;
   if (text == "null" || text == "Null" || text == "NULL" || text.starts_with("- ") || text.starts_with("---") ||
       text.starts_with("..."))
     return false;
@@ -59,10 +59,13 @@ std::string quotation(std::string_view text) {
   return out + "\"";
 }
 
+/// Plain text in flow style ends at a comma, and in yaml-cpp at a question mark.
+bool ends_in_flow(std::string_view text) { return text.find_first_of(",?") != text.npos; }
+
 std::string scalar(const YamlNode& node, bool in_flow) {
   const std::string& text = node.text;
-  const bool comma = in_flow && text.find(',') != text.npos;
-  return plain_safe(text) && !comma && !(node.quoted && ambiguous(text)) ? text : quotation(text);
+  const bool plain = plain_safe(text) && !(in_flow && ends_in_flow(text)) && !(node.quoted && ambiguous(text));
+  return plain ? text : quotation(text);
 }
 
 const YamlNode& shown(const YamlNode& node) {
@@ -71,9 +74,7 @@ const YamlNode& shown(const YamlNode& node) {
 
 std::string tag(const YamlNode& node) { return node.ours ? "!ours " : ""; }
 
-std::string key_text(const std::string& key) {
-  return plain_safe(key) && key.find(',') == key.npos ? key : quotation(key);
-}
+std::string key_text(const std::string& key) { return plain_safe(key) && !ends_in_flow(key) ? key : quotation(key); }
 
 bool leaf(const YamlNode& node) {
   if (node.kind == Kind::map) return false;

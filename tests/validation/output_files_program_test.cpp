@@ -40,6 +40,18 @@ TEST_F(OutputFiles, ResultsCanGoToStandardOutput) {
   EXPECT_NE(csv.find("27 readings"), std::string::npos) << "what is printed after is not lost";
 }
 
+/// Names of files are bytes; JSON is UTF-8.
+TEST_F(OutputFiles, AFileWhoseNameIsNoUtf8IsReadAndWritten) {
+  const std::string data = path("messung-\xfc.csv"), device = path("ger\xe4t.yaml");
+  ASSERT_EQ(test::command("cp '" + test::source_dir() + "/validation/devices/haptic-6psu.yaml' " + device).code, 0);
+  test::Run run =
+      test::deflect("simulate " + device + " --campaign paper --seed 1 -o " + data + " --json " + path("s.json"));
+  EXPECT_EQ(run.code, 0) << run.out;
+  EXPECT_NE(contents(folder / "s.json").find("messung-\xef\xbf\xbd.csv"), std::string::npos);
+  run = test::deflect("compare " + device + " " + data + " --json " + path("c.json") + " --report " + path("c.html"));
+  EXPECT_EQ(run.code, 0) << run.out;
+}
+
 TEST_F(OutputFiles, DevicesAndFifosAreWrittenTo) {
   fs::create_symlink("/dev/null", folder / "null.vtu");
   EXPECT_EQ(test::deflect("export haptic-6psu --to vtk -o " + path("null.vtu")).code, 0);

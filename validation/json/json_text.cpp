@@ -13,11 +13,11 @@ namespace {
 
 /// One line, "{"point": 0, "pose": [0.0, …]}": nlohmann's compact form has no spaces.
 std::string one_line(const Json& value) {
-  if (!value.is_structured()) return value.dump();
+  if (!value.is_structured()) return compact(value);
   std::string text;
   for (const auto& [key, item] : value.items()) {
     if (!text.empty()) text += ", ";
-    if (value.is_object()) text += Json(key).dump() + ": ";
+    if (value.is_object()) text += compact(key) + ": ";
     text += one_line(item);
   }
   return value.is_object() ? "{" + text + "}" : "[" + text + "]";
@@ -30,7 +30,7 @@ std::string indented(const Json& value, std::size_t depth, bool in_list) {
   std::string text;
   for (const auto& [key, item] : value.items()) {
     text += (text.empty() ? "\n" : ",\n") + margin;
-    if (value.is_object()) text += Json(key).dump() + ": ";
+    if (value.is_object()) text += compact(key) + ": ";
     text += indented(item, depth + 1, value.is_array());
   }
   text.append("\n").append(2 * depth, ' ');
@@ -62,6 +62,8 @@ void require_shallow(const std::string& text, const std::string& origin, const s
 }
 
 }  // namespace
+
+std::string compact(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json json_number(double value, const std::string& what) {
   if (!std::isfinite(value)) throw NumericalError(fmt::format("result '{}' is {}, not a number to write", what, value));

@@ -22,6 +22,9 @@ Json json_rows(const Matrix6& values, const std::string& what);
 /// or holds a number that no double holds.
 Json parse_json(const std::string& text, const std::string& origin, const std::string& remedy);
 
+/// One line without spaces. Here and below, bytes that are no UTF-8, as the name of a file can have, become U+FFFD.
+std::string compact(const Json&);
+
 /// Indented by two; a list of plain values, or an object in a list, stays on one line.
 std::string json_text(const Json& value);
 

@@ -56,11 +56,10 @@ Json source_json(const std::optional<PageSource>& source) {
   return {{"name", source->name}, {"bytes", source->text.size()}, {"text", held ? Json(source->text) : Json()}};
 }
 
-/// What a script element may hold: no "<", so that no text ends it or begins a comment; bytes that are no UTF-8 are
-/// replaced.
+/// What a script element may hold: no "<", so that no text ends it or begins a comment.
 std::string embedded(const Json& data) {
   std::string out;
-  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace))
+  for (const char c : json::compact(data))
     if (c == '<')
       out += "\\u003c";
     else

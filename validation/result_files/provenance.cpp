@@ -99,8 +99,7 @@ class Comparison {
 
   void tell(const std::string& path, const Json& before, const Json& now) {
     const auto words = [](const Json& value) {
-      return value.is_number() ? value.dump()
-                               : measurement::excerpt(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+      return value.is_number() ? value.dump() : measurement::excerpt(json::compact(value));
     };
     out.push_back(fmt::format("{}: {} instead of {}", path, words(now), words(before)));
   }
@@ -146,7 +145,7 @@ Provenance read_provenance(const Json& result, const std::string& origin) {
   p.program = wanted(of, "program", &Json::is_string, origin);
   for (const Json& word : wanted(of, "command", &Json::is_array, origin)) {
     if (!word.is_string())
-      throw InputError(fmt::format("{}: {}.command holds {}", origin, provenance_key, word.dump()));
+      throw InputError(fmt::format("{}: {}.command holds {}", origin, provenance_key, json::compact(word)));
     p.command.push_back(word);
   }
   if (p.command.empty()) throw InputError(fmt::format("{}: {}.command is empty", origin, provenance_key));

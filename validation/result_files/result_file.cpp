@@ -55,7 +55,7 @@ std::string words_of(const Json& value) {
   if (value.is_null()) return "null";
   if (value.is_array()) return fmt::format("a list of {}", value.size());
   if (value.is_object()) return "an object";
-  return measurement::excerpt(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return measurement::excerpt(json::compact(value));
 }
 
 class ResultCheck {
