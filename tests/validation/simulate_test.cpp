@@ -3,14 +3,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "msa/frame/file/frame_file.h"
 #include "msa/mechanism/stand.h"
 #include "tests/support/devices.h"
+#include "tests/support/paths.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/prediction/as_built.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/prediction.h"
+#include "validation/subject/simulate_frame.h"
+#include "validation/subject/subject.h"
 
 namespace deflect {
 namespace {
@@ -137,6 +143,50 @@ TEST(Simulate, GrossOutliersAreAsManyAndAsLargeAsSaid) {
   EXPECT_LT(least, 13);
   EXPECT_GT(most, 27);
   EXPECT_LT(most, 30 + 5);
+}
+
+/// Shares of |z| below `within` by Student's t with three degrees of freedom, scaled to the deviation 1 (its own is
+/// √3).
+void expect_heavy_tails(const std::vector<double>& z) {
+  const auto n = static_cast<double>(z.size());
+  const boost::math::students_t t(3);
+  for (const double within : {0.25, 0.5, 1.0, 2.0, 4.0}) {
+    const double share = 1 - 2 * boost::math::cdf(boost::math::complement(t, std::sqrt(3.0) * within));
+    const auto inside = std::count_if(z.begin(), z.end(), [&](double x) { return std::abs(x) < within; });
+    EXPECT_NEAR(static_cast<double>(inside) / n, share, 4 * std::sqrt(share * (1 - share) / n)) << within;
+  }
+}
+
+TEST(Simulate, HeavyTailsAreStudents) {
+  const Mechanism m = ideal();
+  SimulationOptions o;
+  o.tolerances = 0;
+  o.geometry = Geometry::linear;
+  o.sigma_u = 3e-6;
+  o.heavy_tails = true;
+  std::vector<double> z;
+  const Measurements data = simulate(m, campaign("rich", m, 50, 1), o);
+  const std::vector<VectorX> d = predict(m, configure_all(m, data), data, {});
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      z.push_back((*data.readings[i].displacement[k] - d[i](static_cast<Eigen::Index>(k))) / 3e-6);
+  expect_heavy_tails(z);
+}
+
+TEST(Simulate, HeavyTailsOfAFrameAreStudents) {
+  const frame::FrameDescription f = frame::read_frame(test::source_dir() + "/validation/frames/truss-45.yaml");
+  const subject::Subject s = f;
+  SimulationOptions o;
+  o.tolerances = 0;
+  o.heavy_tails = true;
+  std::vector<double> z;
+  const Measurements data = subject::simulate_frame(f, subject::frame_campaign("rich", f, 1), o);
+  const std::vector<VectorX> d = s.stand(data)->predict(data);
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (std::size_t k = 0; k < data.instruments.sensors.size(); ++k)
+      z.push_back((*data.readings[i].sensors[k] - d[i](static_cast<Eigen::Index>(6 + k))) /
+                  *data.instruments.sensors[k].sigma);
+  expect_heavy_tails(z);
 }
 
 TEST(Simulate, TheTemperatureSwingsOnceAboutItsMean) {

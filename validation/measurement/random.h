@@ -18,6 +18,11 @@ class Random {
   double uniform(double low, double high) {
     return boost::random::uniform_real_distribution<double>(low, high)(engine_);
   }
+  /// Student's t with three degrees of freedom, scaled to a standard deviation of 1.
+  double heavy_tailed() {
+    const double z = normal();
+    return z / normal3().norm();
+  }
   Vector3 normal3() {
     const double x = normal(), y = normal(), z = normal();  // in this order
     return {x, y, z};

@@ -95,7 +95,7 @@ measurement::Measurements simulate(const Mechanism& m, measurement::Measurements
     measurement::Reading& r = plan.readings[i];
     const bool gross = o.outliers > 0 && random.uniform(0, 1) < o.outliers;
     const auto read = [&](double value, double sigma, measurement::Quantity quantity) {
-      value += sigma * random.normal();
+      value += sigma * o.noise(random);
       if (gross) value += (random.uniform(0, 1) < 0.5 ? -1 : 1) * random.uniform(10, 30) * sigma;
       return sigma > 0 ? rounded(value, sigma, measurement::row_of(quantity).per_SI) : value;
     };

@@ -8,6 +8,7 @@
 #include "msa/base/geometry.h"
 #include "msa/frame/mechanism/build.h"
 #include "validation/measurement/measurements.h"
+#include "validation/measurement/random.h"
 #include "validation/parallel/work.h"
 
 namespace deflect::prediction {
@@ -19,10 +20,14 @@ struct SimulationOptions {
   double sigma_u = 2e-6;                 ///< m: of a reading; 0: exact readings without σ in the file
   std::optional<double> sigma_th;        ///< rad; absent: rotations are not measured
   double tolerances = 1;                 ///< factor on those of the device; 0: built as drawn
+  bool heavy_tails = false;              ///< noise by Student's t with three degrees of freedom, scaled to the same σ
   double outliers = 0;                   ///< share of gross outliers among the readings, 10 to 30 σ
   double temperature = 20, swing = 0;    ///< °C; amplitude of one slow sine wave about it over the sequence, K
   Geometry geometry = Geometry::finite;  ///< shape in which equilibrium is written
   frame::MemberDivision division;
+
+  /// Of one number, in standard deviations.
+  double noise(measurement::Random& random) const { return heavy_tails ? random.heavy_tailed() : random.normal(); }
 };
 
 /// The plan with readings filled in: of the device's named sensors, or, where it has none, the displacement of T. Drawn

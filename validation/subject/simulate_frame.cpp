@@ -156,7 +156,7 @@ measurement::Measurements simulate_frame(const frame::FrameDescription& f, measu
     }
     const bool gross = o.outliers > 0 && random.uniform(0, 1) < o.outliers;
     for (std::size_t k = 0; k < sensors.size(); ++k) {
-      double value = exact[i](as_index(6 + k)) + zero[k] + scatter(k) * random.normal();
+      double value = exact[i](as_index(6 + k)) + zero[k] + scatter(k) * o.noise(random);
       if (gross) value += (random.uniform(0, 1) < 0.5 ? -1 : 1) * random.uniform(10, 30) * sigma[k];
       const double step = f.sensors[k].second.resolution, per_SI = measurement::row_of(sensors[k].quantity).per_SI;
       if (step > 0)

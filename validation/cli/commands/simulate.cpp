@@ -38,6 +38,7 @@ bool is_too_little(double sigma) { return sigma > 0 && sigma <= measurement::lea
 struct SimulateArguments {
   std::string device, out, json, campaign = "rich", geometry = "finite", temperature, noise_rad, machine;
   std::vector<std::string> with, files;
+  bool heavy_tails = false;
   double seed = 1, noise_mm = 0.002, tolerances = 1, outliers = 0, force = 50, elements = 4, threads = 0;
 };
 
@@ -103,6 +104,7 @@ prediction::SimulationOptions options_of(const SimulateArguments& a) {
   if (!(a.outliers >= 0 && a.outliers < 0.5))
     throw InputError(fmt::format("--outliers {}: give a share from 0 to 0.5", a.outliers));
   o.outliers = a.outliers;
+  o.heavy_tails = a.heavy_tails;
   if (!a.temperature.empty()) {
     const std::vector<double> t = parse_list("--temperature", a.temperature, {1, 2}, "mean or mean,swing in deg C");
     o.temperature = t[0];
@@ -255,6 +257,9 @@ Command simulate_command() {
        {"--force", "N", "largest force of a named campaign (default 50)", &a->force},
        {"--noise", "MM", "standard deviation of a translation in mm (default 0.002)", &a->noise_mm},
        {"--noise-rotation", "RAD", "measure rotations too, with this standard deviation", &a->noise_rad},
+       {"--heavy-tails", "",
+        "noise with heavy tails, of the same standard deviation: Student's t with three degrees of freedom",
+        &a->heavy_tails},
        {"--tolerances", "FACTOR", "factor on the device's tolerances (default 1; 0: built as drawn)", &a->tolerances},
        {"--outliers", "SHARE", "share of gross outliers, 10 to 30 standard deviations (default 0)", &a->outliers},
        {"--temperature", "MEAN,SWING", "deg C: mean, and amplitude of a slow wave about it (default 20)",
