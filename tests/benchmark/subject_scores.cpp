@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "msa/base/index.h"
+#include "tests/benchmark/cases.h"
 
 namespace deflect::benchmark {
 namespace {
@@ -43,6 +44,12 @@ std::string truth_reported(const Sets& all) {
 }
 std::string false_alarms(const Sets& all, SetKind kind) {
   return share(all, of(kind), [](const SubjectSet& s) { return !right(s); });
+}
+
+std::string alarms_under(const Sets& all, Stress stress) {
+  return share(
+      all, [=](const SubjectSet& s) { return s.stress == static_cast<int>(stress); },
+      [](const SubjectSet& s) { return !right(s); });
 }
 
 /// Of the sets that the oracle answers rightly: of pairs, or of one effect or none.
@@ -145,6 +152,9 @@ const std::vector<ScoreRow>& score_rows() {
       {"false alarms on healthy sets", ".03", [](const Sets& s) { return false_alarms(s, SetKind::healthy); }},
       {"– doubled tolerances, t(3) noise, outliers", ".06",
        [](const Sets& s) { return false_alarms(s, SetKind::stress); }},
+      {"–– doubled tolerances", "", [](const Sets& s) { return alarms_under(s, Stress::tolerances); }},
+      {"–– t(3) noise", "", [](const Sets& s) { return alarms_under(s, Stress::heavy_tails); }},
+      {"–– 2 % outliers", "", [](const Sets& s) { return alarms_under(s, Stress::outliers); }},
       {"confident and wrong, effect among the candidates", ".01", [](const Sets& s) { return share(s, known, wrong); }},
       {"– not among them, λ_res > 6", ".02", [](const Sets& s) { return share(s, res(6, INFINITY), wrong); }},
       {"unknown recognised, λ_res 6–12", ".80", [](const Sets& s) { return share(s, res(6, 12), unknown); }},
@@ -212,6 +222,7 @@ Json subjects_json(const std::vector<SubjectRow>& rows) {
     Json one = {{"subject", r.name}, {"frame", r.frame}, {"candidates", r.candidates}, {"sets", Json::array()}};
     for (const SubjectSet& s : r.sets) {
       Json set = {{"kind", nth(set_kind_names, s.kind)},
+                  {"stress", s.stress < 0 ? "" : nth(stress_names, s.stress)},
                   {"skipped", s.skipped},
                   {"hidden", s.hidden},
                   {"classes", s.classes},

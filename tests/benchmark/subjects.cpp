@@ -119,9 +119,11 @@ class Examined {
       out.hidden.push_back(name_of(h.effect));
       out.classes.push_back(alike(plan, h));
     }
-    const std::optional<Stress> stress =
-        order.kind == SetKind::stress ? std::optional(static_cast<Stress>(random.uniform(0, std::size(stress_names))))
-                                      : std::nullopt;
+    std::optional<Stress> stress;
+    if (order.kind == SetKind::stress) {
+      out.stress = static_cast<int>(random.uniform(0, std::size(stress_names)));
+      stress = static_cast<Stress>(out.stress);
+    }
     const std::optional<Measurements> data = as_measured(plan, truth, stress, seed);
     if (!data) {
       out.skipped = "the MSA finds no equilibrium";
@@ -328,8 +330,8 @@ subject::Subject built_in(const std::string& name, bool frame) {
 
 template <class Archive>
 void serialize(Archive& a, SubjectSet& s) {
-  a(s.kind, s.skipped, s.hidden, s.classes, s.lambda, s.lambda_res, s.answer, s.seconds, s.oracle_asked, s.oracle_right,
-    s.oracle_reported, s.intervals, s.covering, s.bias, s.told, s.told_rightly, s.new_poses);
+  a(s.kind, s.stress, s.skipped, s.hidden, s.classes, s.lambda, s.lambda_res, s.answer, s.seconds, s.oracle_asked,
+    s.oracle_right, s.oracle_reported, s.intervals, s.covering, s.bias, s.told, s.told_rightly, s.new_poses);
 }
 
 std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked, std::size_t sets,

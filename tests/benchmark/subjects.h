@@ -50,6 +50,7 @@ struct SubjectSet {
   double lambda = 0, lambda_res = 0;  ///< of each hidden effect; of what is not among the candidates
   Answer answer;
   double seconds = 0;  ///< of the diagnosis
+  int stress = -1;     ///< by index in stress_names; −1: none
   /// Answers by an exact Bayes oracle (oracle.h), of one effect or none, or of a pair.
   bool oracle_asked = false, oracle_right = false;
   std::size_t oracle_reported = 0;
