@@ -49,11 +49,6 @@ std::string in_utf8(const std::string& text) {
   return out;
 }
 
-bool is_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return (byte < 0x20 && c != '\n' && c != '\r' && c != '\t') || byte == 0x7f;
-}
-
 class Builder : public YAML::EventHandler {
  public:
   explicit Builder(const std::string& origin) : origin_(origin) {}
@@ -73,8 +68,6 @@ class Builder : public YAML::EventHandler {
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& text) override {
-    if (const auto c = std::find_if(text.begin(), text.end(), is_control); c != text.end())
-      fail(mark.line + 1, fmt::format("control character 0x{:02x} by an escape: the file must be text", *c));
     if (wants_key()) return key(mark.line + 1, tag, anchor, in_utf8(text));
     YamlNode scalar = node(Kind::scalar, mark, tag, anchor);
     scalar.text = in_utf8(text);
@@ -194,7 +187,7 @@ void check_characters(std::string_view text, const std::string& origin) {
   int line = 1;
   for (std::size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
-    if (is_control(text[i]))
+    if ((c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7f)
       throw InputError(fmt::format("{}:{}: control character 0x{:02x}: the file must be text", origin, line, c));
     const std::size_t n = c < 0x80 ? 1 : utf8_length(text.substr(i));
     if (n == 0)
