@@ -1,5 +1,6 @@
 #include "msa/base/ending.h"
 
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 
@@ -13,6 +14,9 @@ Ending ending_of(const std::exception_ptr& error) try { std::rethrow_exception(e
   return {3, e.what()};
 } catch (const NumericalError& e) {
   return {4, e.what()};
+} catch (const std::filesystem::filesystem_error& e) {
+  const std::string path = e.path1().string();
+  return {2, (path.empty() ? "the current folder" : path) + ": " + e.code().message()};
 } catch (const std::bad_alloc&) {
   return {4, "out of memory"};
 } catch (const std::exception& e) {

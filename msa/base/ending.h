@@ -6,8 +6,8 @@
 
 namespace deflect {
 
-/// 0 done, 2 bad input or usage (InputError), 3 an impossible model (ModelError), 4 a numerical failure
-/// (NumericalError, out of memory), 70 a bug (everything else).
+/// 0 done, 2 bad input or usage (InputError, a path that the system refuses), 3 an impossible model (ModelError), 4 a
+/// numerical failure (NumericalError, out of memory), 70 a bug (everything else).
 struct Ending {
   int code = 0;
   std::string message;

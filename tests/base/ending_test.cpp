@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <new>
 
 #include "msa/base/error.h"
@@ -22,6 +23,10 @@ TEST(Ending, HasTheCodeOfTheKind) {
   EXPECT_EQ(of(std::bad_alloc()).code, 4);
   EXPECT_EQ(of(std::logic_error("a")).code, 70);
   EXPECT_EQ(of(1).code, 70);
+  const Ending refused =
+      of(std::filesystem::filesystem_error("status", "a/b", {ENAMETOOLONG, std::generic_category()}));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.message, "a/b: File name too long");
   EXPECT_EQ(of(std::bad_alloc()).message, "out of memory");
 }
 
