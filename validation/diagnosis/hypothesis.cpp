@@ -199,6 +199,7 @@ Fit search_from(const FitProblem& problem, const Start& start) {
   }
   out.values = problem.values(best);
   out.residual = residual ? *residual : problem.residual_or_wall(best);
+  if (best.size() == 0) out.signature.resize(out.residual.size(), 0);
   out.chi2 = out.residual.squaredNorm();
   out.found = true;
   return out;
@@ -293,6 +294,7 @@ Fit fit_of_all(const Observations& o, const Hypothesis& h, const VectorX& values
   null.values = VectorX(0);
   null.residual = o.null_residual();
   null.chi2 = null.residual.squaredNorm();
+  null.signature.resize(null.residual.size(), 0);
   null.found = true;
   return null;
 }
