@@ -192,6 +192,14 @@ TEST(KnownCases, APlatformThatFloatsInItsPlayStaysInTheMiddle) {
     EXPECT_NEAR(a.result["floating"]["most"][static_cast<std::size_t>(axis)].get<double>(), 0.01, 1e-12);
 }
 
+// A spring of 100 N/mm, 3 mm off, strains a brake of 100 N to its limit: 10 N more stretch the spring alone.
+TEST(KnownCases, ABrakeThatAMisfitHasLetSlideIsSolved) {
+  const Answered a = solve(case_path("misfit-and-brake.yaml") + " --pose 0,0,0 --load=10,0,0");
+  expect_agreement(a);
+  for (const char* theory : {"analytic", "msa"})
+    EXPECT_NEAR(a.displacement(theory)(0), 0.1, 1e-12) << theory << a.run.out;
+}
+
 TEST(KnownCases, ACampaignOnADeviceWithBacklashIsSimulated) {
   for (const char* device : {"tripteron", "hybrid", "stewart-6ups"}) {
     const Folder folder;

@@ -107,6 +107,23 @@ TEST(ResponseChecks, FindEachFaultByName) {
   EXPECT_NE(response_failure(wrong).find("energy fails"), std::string::npos);
 }
 
+// A spring k that is assembled too long by more than a brake F can hold: both rest at F, the brake has slid. A load P
+// the same way lets the brake carry F still and the spring P more: E = ((F + P)² − F²)/2k, d = P/k, so that E is
+// 1 + 2F/P times half the work of P.
+TEST(ResponseChecks, WhereFrictionHasSlidAtRestTheEnergyHasNoBound) {
+  const double k = 1e5, F = 100, P = 10;
+  Response r;
+  r.F << P, 0, 0, 0, 0, 0;
+  r.d << P / k, 0, 0, 0, 0, 0;
+  r.reaction = -r.F;
+  r.energy = ((F + P) * (F + P) - F * F) / (2 * k);
+  r.linear = false;
+  r.strained = r.slides = true;
+  EXPECT_EQ(response_failure(r), "");
+  r.strained = false;
+  EXPECT_NE(response_failure(r).find("energy fails"), std::string::npos);
+}
+
 // A spring in two halves that press on each other with P at rest, δ = (f/a)²ᐟ³ each: the load F takes from one what it
 // gives to the other. While F grows to 2P the halves' stiffness together falls, as one of them softens to nothing.
 TEST(ResponseChecks, PrestressedContactsMayStoreMoreThanHalfTheWork) {
