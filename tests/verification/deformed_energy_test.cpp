@@ -102,6 +102,7 @@ TEST(DeformedEnergyOf, AJointThatTurnsFarAboutAllAxesIsTheWorkOfTheLoad) {
 /// Of machines with preloaded contacts whose legs do not fit, both theories tell what the load adds to the strained
 /// machine.
 TEST(StrainedMachine, HasTheEnergyThatTheLoadAdds) {
+  double strained = 0;  // how much of the energy is there before the load, at most
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Configuration c = test::random_mechanism(seed, true);
     std::mt19937 random(seed);
@@ -109,9 +110,10 @@ TEST(StrainedMachine, HasTheEnergyThatTheLoadAdds) {
     const Vector6 F = test::random_wrench(random);
     const analytic::AnalyticModel a(c);
     const double before = total(a.energies(a.assembled())), after = total(a.energies(a.solve(F)));
-    EXPECT_GT(std::abs(before), 1e-3 * std::abs(after)) << "the test shows nothing";
+    strained = std::max(strained, std::abs(before / after));
     EXPECT_NEAR(total(frame::MsaModel(c).solve(F).energies), after - before, 1e-8 * std::max(before, after)) << seed;
   }
+  EXPECT_GT(strained, 1e-3) << "the test shows nothing";
 }
 
 }  // namespace
