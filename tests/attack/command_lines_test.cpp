@@ -14,12 +14,13 @@
 #include "tests/attack/count.h"
 #include "tests/attack/random_frame.h"
 #include "tests/support/program.h"
+#include "tests/support/sanitizers.h"
 
 namespace deflect::attack {
 namespace {
 
 constexpr unsigned usual_lines = 200, line_shards = 8;
-constexpr int most_seconds = 100;
+constexpr int most_seconds = 100 * test::times_slower;
 
 using Words = std::vector<std::string>;
 

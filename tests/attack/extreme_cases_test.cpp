@@ -14,6 +14,7 @@
 #include "tests/support/apart.h"
 #include "tests/support/paths.h"
 #include "tests/support/program.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/stiffnesses.h"
 
 namespace deflect::attack {
@@ -23,7 +24,8 @@ using nlohmann::json;
 using test::Folder;
 
 test::Run timely(const std::string& arguments, int seconds = 20) {
-  return test::command("timeout " + std::to_string(seconds) + " '" + test::program() + "' " + arguments);
+  return test::command("timeout " + std::to_string(seconds * test::times_slower) + " '" + test::program() + "' " +
+                       arguments);
 }
 
 /// A built-in device with every match of a pattern in its file replaced; there is at least one.

@@ -13,6 +13,7 @@
 #include "tests/support/apart.h"
 #include "tests/support/paths.h"
 #include "tests/support/program.h"
+#include "tests/support/sanitizers.h"
 #include "validation/studies/solve.h"
 
 namespace deflect {
@@ -27,7 +28,8 @@ std::string case_path(const std::string& name) {
 
 /// The program with a limit on its time, so that a run that hangs is a failure and no stop of all tests.
 test::Run timely(const std::string& arguments, int seconds = 60) {
-  return test::command("timeout " + std::to_string(seconds) + " '" + test::program() + "' " + arguments);
+  return test::command("timeout " + std::to_string(seconds * test::times_slower) + " '" + test::program() + "' " +
+                       arguments);
 }
 
 struct Answered {

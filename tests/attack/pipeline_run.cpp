@@ -16,6 +16,7 @@
 #include "tests/attack/pipeline_checks.h"
 #include "tests/support/paths.h"
 #include "tests/support/program.h"
+#include "tests/support/sanitizers.h"
 #include "validation/measurement/column_names.h"
 #include "validation/measurement/replicates.h"
 #include "validation/result_files/result_file.h"
@@ -26,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of a step: of the processor, so that a machine with other work to do fails none; and in all.
-constexpr int most_seconds = 100, most_waiting = 1500;
+constexpr int most_seconds = 100 * test::times_slower, most_waiting = 1500 * test::times_slower;
 constexpr int out_of_time = 124, out_of_processor = 128 + 24;  // exit codes: of timeout; SIGXCPU
 
 /// One step of the program. An end that no user should see is a contradiction.

@@ -4,11 +4,7 @@
 
 #include <atomic>
 
-#if defined(__has_feature)  // clang++ has no macro for it
-#if __has_feature(address_sanitizer)
-#define __SANITIZE_ADDRESS__
-#endif
-#endif
+#include "tests/support/sanitizers.h"
 
 #ifdef __SANITIZE_ADDRESS__  // Debian's g++ comes without <sanitizer/allocator_interface.h>
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*taken)(const volatile void*, std::size_t),
