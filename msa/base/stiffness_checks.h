@@ -49,7 +49,8 @@ struct Response {
 /// load, or have play or friction. With reversible laws that carry nothing at rest, 0 ≤ E ≤ ½Fᵀd. Laws become softer
 /// where the load reduces their force at rest, and a friction element whose force reverses stores more than half of the
 /// work done on it. Then only this holds: the total potential E + D − Fᵀd, with D > 0 the heat of sliding, is at most
-/// that of the state at rest, so that E ≤ Fᵀd. Sliding may release strain energy stored at rest; otherwise E ≥ 0.
+/// that of the state at rest, so that E ≤ Fᵀd. Sliding may release strain energy stored at rest; otherwise E ≥ 0. Where
+/// friction has slid at rest already (strained and slides), the heat of that sliding is not in the balance: no bound.
 std::string response_failure(const Response&, double tolerance = 1e-9);
 
 }  // namespace deflect
