@@ -151,10 +151,11 @@ frame::FrameDescription measured_frame(unsigned seed, Dice& dice) {
   f.tolerances.modulus = 0.01;
   f.tolerances.load = 0.002;
   if (dice.chance(0.4)) f.tolerances.numbers.emplace_back("member.factor", "1 %");
-  // σ: a fiftieth of what the sensor reads at most, from readings with that of a thousandth.
+  // σ: a fiftieth of what the sensor reads at most, from readings with that of a thousandth. One that reads nothing has
+  // none.
   const measurement::Measurements read = subject::simulate_frame(f, subject::frame_campaign("paper", f, 1), {});
   for (std::size_t i = 0; i < f.sensors.size(); ++i)
-    f.sensors[i].second.sigma = *read.instruments.sensors[i].sigma * 20;
+    if (const auto& sigma = read.instruments.sensors[i].sigma) f.sensors[i].second.sigma = *sigma * 20;
   return f;
 }
 

@@ -184,10 +184,11 @@ std::string refused(const json& schema, const json& whole, const json& value) {
   if (!value.is_object()) return value.dump() + " is no map";
   for (const json& key : schema.value("required", json::array()))
     if (!value.contains(key.get<std::string>())) return key.dump() + " is missing in " + value.dump();
+  const json patterns = schema.value("patternProperties", json::object());
   for (const auto& [key, each] : value.items()) {
     const bool known = schema.contains("properties") && schema.at("properties").contains(key);
     json more = schema.value("additionalProperties", json(true));
-    for (const auto& [pattern, of_such] : schema.value("patternProperties", json::object()).items())
+    for (const auto& [pattern, of_such] : patterns.items())
       if (std::regex_search(key, std::regex(pattern))) more = of_such;
     if (!known && more == false) return key + " is unknown";
     const std::string why = known              ? refused(schema.at("properties").at(key), whole, each)
