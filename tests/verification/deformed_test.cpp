@@ -167,5 +167,56 @@ INSTANTIATE_TEST_SUITE_P(Devices, StiffDevice,
                                            "fanuc-r2000ic", "hybrid", "tripteron"),
                          name_of);
 
+/// A stiffness of all six freedoms at a joint turns with it, as its laws do: a column on a spring that lets it tilt,
+/// kθ = F L cos θ + P L sin θ in finite geometry and kθ = (F + Pθ) L in second order.
+TEST(CoupledJoint, LetsAColumnTiltUnderItsLoad) {
+  const Mechanism m = parse_mechanism(R"(
+name: column
+kinematics: {family: chains}
+leg:
+  foot: {joint: fixed, stiffness: {units: N-mm, rows: [
+    [1e9, 0, 0, 0, 0, 0], [0, 1e9, 0, 0, 0, 0], [0, 0, 1e9, 0, 0, 0],
+    [0, 0, 0, 1e6, 0, 0], [0, 0, 0, 0, 1e6, 0], [0, 0, 0, 0, 0, 1e6]]}}
+  end: {offset: [0 mm, 0 mm, 500 mm]}
+)",
+                                      "column.yaml");
+  const Configuration column = configure(m, home_pose(m));
+  Vector6 load = Vector6::Zero();
+  load(0) = 10, load(2) = -1000;
+  const double k = 1000, L = 0.5, second_order = 10 * L / (k - 1000 * L);
+  double finite = 0;
+  for (int i = 0; i < 60; ++i) finite = (10 * L * std::cos(finite) + 1000 * L * std::sin(finite)) / k;
+  for (const auto& [geometry, tilt] : {std::pair{Geometry::second_order, second_order}, {Geometry::finite, finite}}) {
+    EXPECT_NEAR(frame::MsaModel(column).solve(load, geometry).displacement(4), tilt, 1e-9) << tilt;
+    EXPECT_NEAR(analytic::AnalyticModel(column).solve(load, geometry).displacement(4), tilt, 1e-9) << tilt;
+  }
+}
+
+/// With stiffnesses between the freedoms, in axes that other joints turn, at every place that takes them.
+TEST(CoupledJoint, IsTheSameInBothTheories) {
+  const Mechanism arm = test::device("arm");
+  const std::string rows = R"(stiffness: {units: N-m, rows: [
+      [2e7, 1e6, 5e5, 2e5, 1e5, 3e4], [1e6, 3e7, 2e5, 1e4, -2e5, 1e5], [5e5, 2e5, 1e7, 5e4, 2e4, 1e4],
+      [2e5, 1e4, 5e4, 9e3, 5e2, 1e2], [1e5, -2e5, 2e4, 5e2, 7e3, 2e2], [3e4, 1e5, 1e4, 1e2, 2e2, 5e3]]})";
+  Vector6 load;
+  load << 100, -200, -300, 5, -10, 7.5;
+  for (const std::string at : {"leg.joint_1", "leg.joint_4", "base", "tool"}) {
+    const std::string kind = at.starts_with("leg") ? "joint: motor, " : "";
+    const Mechanism m = test::with(arm, at, "{" + kind + rows + "}");
+    VectorX q(6);
+    q << 0.3, -0.5, 0.7, 0.9, -0.4, 0.2;
+    const Configuration c = configure_joints(m, q);
+    const analytic::AnalyticModel a(c);
+    const Vector6 linear = a.solve(load).displacement;
+    for (const Geometry geometry : {Geometry::linear, Geometry::finite}) {
+      const Vector6 d = a.solve(load, geometry).displacement;
+      EXPECT_LE(difference(refined(c, load, geometry), d, c.size), 1e-6) << at;
+      if (geometry == Geometry::finite) {
+        EXPECT_GT(difference(d, linear, c.size), 1e-4) << "the test shows nothing";
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace deflect

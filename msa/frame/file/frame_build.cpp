@@ -205,7 +205,7 @@ void add_springs(FrameModel& out, const FrameDescription& f, LawSprings& springs
     const int first = count(m.springs);
     const std::size_t connection = m.connections.size();
     if (spring.coupled) {
-      connect_coupled(m, other, node, p, *spring.coupled, name, name);
+      connect_coupled(m, other, node, p, Matrix3::Identity(), *spring.coupled, name, name);
     } else {
       std::array<ConnectionFreedom, 6> freedoms = springs.freedoms({}, spring.laws);
       for (std::size_t i = 0; i < 6; ++i)

@@ -28,20 +28,6 @@ std::array<ConnectionFreedom, 6> connection(const PlacedJoint& j) {
   return out;
 }
 
-/// A stiffness of all six freedoms together: a spring d for each square d (vᵀ[δ; θ])² of its energy.
-void connect_elastic(Model& model, int a, int b, const PlacedJoint& j, const std::string& name) {
-  const Matrix6& K = *j.stiffness;
-  int number = 0;
-  for (const auto& [v, d] : squares(K)) {
-    LinearForm form;
-    for (const auto& [node, sign] : {std::pair{b, 1.0}, std::pair{a, -1.0}})
-      for (const LinearForm& half : {translation_of(model, node, j.p_W, j.R_WJ * v.head<3>(), sign),
-                                     rotation_of(node, j.R_WJ * v.tail<3>(), sign)})
-        form.insert(form.end(), half.begin(), half.end());
-    model.springs.push_back({form, LinearSpring{d}, fmt::format("{} [{}]", name, ++number), j.part});
-  }
-}
-
 /// Nodes must all exist before connections bring scalars: what is to be connected waits here.
 struct Pending {
   int a, b;
@@ -93,7 +79,7 @@ class Builder {
       const std::size_t constraints = model.constraints.size(), springs = model.springs.size(),
                         connections = model.connections.size();
       if (p.joint && p.joint->stiffness)
-        connect_elastic(model, p.a, p.b, *p.joint, p.name);
+        connect_coupled(model, p.a, p.b, p.p, p.joint->R_WJ, *p.joint->stiffness, p.name, p.joint->part);
       else
         model.connect(p.a, p.b, p.p, p.joint ? p.joint->R_WJ : Matrix3::Identity(),
                       p.joint ? connection(*p.joint) : std::array<ConnectionFreedom, 6>{}, p.name,

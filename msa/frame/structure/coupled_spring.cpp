@@ -34,17 +34,24 @@ std::vector<std::pair<Vector6, double>> squares(const Matrix6& K) {
   return out;
 }
 
-int connect_coupled(Model& m, int a, int b, const Vector3& p, const Matrix6& K, const std::string& name,
-                    const std::string& part) {
+int connect_coupled(Model& m, int a, int b, const Vector3& p, const Matrix3& R, const Matrix6& K,
+                    const std::string& name, const std::string& part) {
   const int first = static_cast<int>(m.constraints.size()), component = m.dofs();
-  m.connect(a, b, p, Matrix3::Identity(), {}, name, part);
+  Connection connection{a, b, p, {R, R}};
   for (int i = 0; i < 6; ++i) {
-    m.scalars.push_back(fmt::format("{} {}", name, nth(connection_freedoms, i)));
-    Constraint& c = nth(m.constraints, first + i);
-    c.form.push_back({component + i, -1});
-    c.eliminates = component + i;
+    const std::string label = fmt::format("{} {}", name, nth(connection_freedoms, i));
+    LinearForm form{{component + i, -1}};
+    for (const auto& [node, sign] : {std::pair{b, 1.0}, std::pair{a, -1.0}}) {
+      if (node < 0) continue;
+      const Vector3 axis = R.col(i % 3);
+      const LinearForm half = i < 3 ? translation_of(m, node, p, axis, sign) : rotation_of(node, axis, sign);
+      form.insert(form.end(), half.begin(), half.end());
+    }
+    m.scalars.push_back(label);
+    nth(connection.constraint, i) = first + i;
+    m.constraints.push_back({std::move(form), 0, label, component + i});
   }
-  if (a >= 0) m.welds.pop_back();
+  m.connections.push_back(connection);
   int number = 0;
   for (const auto& [v, d] : squares(K)) {
     LinearForm form;
