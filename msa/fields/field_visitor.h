@@ -47,7 +47,8 @@ struct Words {
   bool decides = false;  ///< the fields that follow depend on this word
 };
 
-enum class Need { required, optional };
+/// if_given: that it is there counts, even where all in it is left out.
+enum class Need { required, optional, if_given };
 
 /// A list, or a map of named entries, accessed element by element.
 class Elements {

@@ -152,7 +152,7 @@ YamlNode FieldWriter::filled(const std::string& path, const std::function<void()
 void FieldWriter::object(const char* key, Need need, bool absent, const std::function<void()>& fields, const char*) {
   YamlNode node = filled(joined(path_, key), fields);
   if (absent) imply_all(node);
-  const bool implied = need == Need::optional && all_implied(node);
+  const bool implied = need == Need::optional ? all_implied(node) : need == Need::if_given && absent;
   add(key, std::move(node), implied);
 }
 

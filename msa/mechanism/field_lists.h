@@ -54,7 +54,7 @@ void describe_if_given(FieldVisitor& v, const char* key, std::optional<T>& value
     fields_of(given);
     value = given;
   };
-  v.object(key, Need::optional, absent, body, about);
+  v.object(key, Need::if_given, absent, body, about);
 }
 
 /// `key: name` selects the alternative of the variant; its fields follow.

@@ -55,6 +55,20 @@ TEST(Edit, SettingANumberChangesItAlone) {
   EXPECT_EQ(write_mechanism(haptic()), before);
 }
 
+/// A home pose at the origin is all defaults, but that it is given counts: without it the loops would have to close
+/// from the joints' home coordinates.
+TEST(Edit, AHomePoseAtTheOriginStaysGiven) {
+  const Mechanism m = with(test::device("stewart-6ups"), "kinematics.home", "{shift: [0 mm, 0 mm, 0 mm]}");
+  ASSERT_TRUE(std::get<Chains>(m.kinematics).home);
+  const Mechanism again = parse_mechanism(write_mechanism(m), "again.yaml");
+  ASSERT_TRUE(std::get<Chains>(again.kinematics).home);
+  EXPECT_EQ(write_mechanism(again), write_mechanism(m));
+  EXPECT_TRUE(std::get<Chains>(with(again, "materials.steel.E", "200 GPa").kinematics).home);
+  Mechanism none = m;
+  std::get<Chains>(none.kinematics).home.reset();
+  EXPECT_FALSE(std::get<Chains>(parse_mechanism(write_mechanism(none), "none.yaml").kinematics).home);
+}
+
 TEST(Edit, WhatIsEditedIsNoLongerAssumed) {
   EXPECT_TRUE(haptic().ours.contains("sections.guide_rod.diameter"));
   for (const Action action : {Action::set, Action::multiply}) {

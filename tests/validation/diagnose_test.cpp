@@ -198,6 +198,24 @@ TEST(Diagnose, FindsAnEffectOfOnesOwnAndCallsItUnknownWithoutItsFile) {
   EXPECT_GT(high, 2e6);
 }
 
+// Where the machine stands with no effect, "nothing is missing" would be said of nothing tried.
+TEST(Diagnose, SaysNothingWhereNoEffectCanBeTried) {
+  std::string text = own_effect;
+  text.replace(text.find("{at: base.rz, append: {law: linear, stiffness: $stiffness_Nmm_per_rad}}"), text.npos,
+               "{at: kinematics.link_length, multiply: $stiffness_Nmm_per_rad}\n"
+               "pages: {machine: a, data: b, bench: c, cure: d}\n");
+  text.replace(text.find("start: 1e7, low: 1e3"), 20, "start: 0.3, low: 0.1");  // no pose of the data is within reach
+  Effect never = parse_effect(text, "own.yaml");
+  never.place = entries_and_places().back().place;
+  try {
+    diagnose(ideal(), measured_briefly(ideal(), 3), {never});
+    FAIL() << "no refusal";
+  } catch (const ModelError& e) {
+    const std::string what = e.what();
+    EXPECT_NE(what.find("none can be tried, so that nothing can be said: with turntable"), what.npos) << what;
+  }
+}
+
 // A turntable that yields in proportion to the load and stays as it is has neither play nor drift: where only these are
 // in the catalogue, nothing of it is named beside what is unknown.
 TEST(Diagnose, NamesNothingThatACommonPatternTakesBesideTheUnknown) {

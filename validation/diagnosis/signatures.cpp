@@ -1,11 +1,14 @@
 #include "validation/diagnosis/signatures.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/compare/channel_shapes.h"
@@ -128,6 +131,10 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
     if (change && !change->columns.allFinite()) p.why = "the prediction with it is no number";
     return p.why.empty() ? std::move(change.value) : std::nullopt;
   });
+  const auto failed = std::find_if(places_.begin(), places_.end(), [](const Place& p) { return !p.why.empty(); });
+  if (all_.empty() && failed != places_.end())
+    throw ModelError(fmt::format("{}: of {} effects none can be tried, so that nothing can be said: with {}, {}",
+                                 o.subject().name(), places_.size(), name_of(failed->effect), failed->why));
 }
 
 void SignaturesAtPlaces::weigh_for(const Observations& o, int threads) {

@@ -39,6 +39,7 @@ struct LeftOut {
 /// effects must outlive the result.
 class SignaturesAtPlaces {
  public:
+  /// Throws ModelError where effects have places and the subject stands with none of them.
   SignaturesAtPlaces(const Observations&, const std::vector<effects::Effect>&, int threads);
 
   /// Weighs the same changes as these observations do. They must be those of before but for the readings that are set
