@@ -146,6 +146,19 @@ TEST_F(EffectPhysics, OfOneLegAddsItsWorkThere) {
   });
 }
 
+/// A cylinder and its rod are two bars on one line, in which the joints' spring stands once: it moves the tool as the
+/// same spring in the drive does, which both carry.
+TEST(EffectPhysicsOfACylinder, TheJointsYieldOnceAlongTheLegsLine) {
+  const Mechanism stewart = device("stewart-6ups"),
+                  joints = with_effect(stewart, effect("joint_compliance"), values({2000})),
+                  drives = with_effect(stewart, effect("actuator_compliance"), values({2000}));
+  const Pose pose = home_pose(stewart);
+  const Vector6 F = (Vector6() << 30, -25, 31, 0.5, -1, 0.75).finished();
+  const Vector6 moved = displacement(joints, pose, F);
+  EXPECT_LE((moved - displacement(drives, pose, F)).norm(), 1e-9 * moved.norm());
+  EXPECT_GT((moved - displacement(stewart, pose, F)).norm(), 0.1 * moved.norm()) << "the test shows nothing";
+}
+
 TEST_F(EffectPhysics, OfPlatformBaseAndToolAddsItsWorkThere) {
   const Mechanism platform = with_effect(m, effect("platform_flexibility"), values({2000})),
                   tilt = with_effect(m, effect("base_tilt"), values({1e8})),

@@ -90,11 +90,17 @@ std::vector<std::string> moduli(const std::string& path, const Description& m) {
 /// "leg.…", as the reader has seen to, in one leg.
 std::string in_leg(const std::string& path, int leg) { return fmt::format("leg[{}]{}", leg, path.substr(3)); }
 
-/// Of a bar: its beginning, x along it.
+/// Of a bar: its beginning, x along it. Of bars one behind the other, as in a cylinder and its rod, the first: what
+/// yields along the leg's line stands in it once.
 std::vector<std::string> bars(const Mechanism& m) {
-  std::vector<std::string> out;
-  for (const subject::Place& p : subject::places_of(m))
-    if (p.kind == subject::PlaceKind::line) out.push_back(p.path);
+  std::vector<std::string> out, chains;
+  for (const subject::Place& p : subject::places_of(m)) {
+    if (p.kind != subject::PlaceKind::line) continue;
+    const std::string bar = p.path.substr(0, p.path.rfind('.')), chain = bar.substr(0, bar.rfind('.'));
+    if (std::find(chains.begin(), chains.end(), chain) != chains.end()) continue;
+    chains.push_back(chain);
+    out.push_back(p.path);
+  }
   return out;
 }
 
