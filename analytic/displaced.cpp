@@ -171,7 +171,7 @@ std::optional<AnalyticModel::Quick> AnalyticModel::quick(const Vector6& F, const
 }
 
 AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& conditions) const {
-  const bool in_part = conditions.geometry != Geometry::linear;
+  const bool in_part = conditions.geometry != Geometry::linear && !forceless(F + weight_, conditions);
   if (in_part && stepped_.empty()) return solve(F, conditions);
   AnalyticSolution s;
   if (const auto in_shape = in_part ? jumps_in_shape(F + weight_, conditions) : std::nullopt) {

@@ -202,11 +202,18 @@ AnalyticSolution AnalyticModel::assembled(Geometry geometry) const {
   return equilibrium(Vector6::Zero(), as_printed_.empty() && stepped_.empty() ? geometry : Geometry::linear);
 }
 
+bool AnalyticModel::forceless(const Vector6& F, const Conditions& conditions) const {
+  const bool heated = conditions.warmer != 0 && heat_force_ > 0;
+  return F.isZero(0) && legs_.fits() && !heated &&
+         std::all_of(conditions.slips.begin(), conditions.slips.end(), [](double x) { return x == 0; });
+}
+
 AnalyticSolution AnalyticModel::solve_in_part(const Vector6& F, const Conditions& conditions) const {
   Conditions linear = conditions;
   linear.geometry = Geometry::linear;
   AnalyticSolution s = solve(F, linear);
   if (!s.converged) return s;
+  if (forceless(F + weight_, conditions)) return s;
   if (const std::optional<InShape> found = jumps_in_shape(F + weight_, conditions)) {
     put_play(*found, F + weight_, s);
     s.shape = found->displacement - s.displacement;

@@ -115,6 +115,8 @@ class AnalyticModel {
   AnalyticSolution equilibrium_under(const Vector6& F, const ChainConditions&) const;
   AnalyticSolution solution(const Group::State&, const Vector6& F, const ChainConditions&) const;
   AnalyticSolution deformed_equilibrium(const Vector6& F, Geometry) const;
+  /// Nothing loads or strains it: no shape differs from that at rest, and play stands in its middle.
+  bool forceless(const Vector6& F, const Conditions&) const;
   AnalyticSolution solve_in_part(const Vector6& F, const Conditions&) const;
   /// Laws in balance in the deformed shape, and what that adds up to.
   struct InShape {

@@ -172,7 +172,7 @@ class Balance {
   SetValuedSolution settled_about(const VectorX& o, const SteppedForces& at) {
     const VectorX f0 = at.forces + imposed_.S * o;
     const MatrixX P = MatrixX::Identity(n_, n_) - MatrixX(imposed_.c.asDiagonal() * imposed_.S);
-    sizes_ = VectorX::Constant(n_, std::max(at.largest, at.idle / idle_share));
+    sizes_ = VectorX::Constant(n_, std::max({at.largest, at.idle / idle_share, held_by_slips(at.length)}));
     for (Eigen::Index i = 0; i < n_; ++i)
       if (nth(members_, i).stepped->rotation) sizes_(i) *= at.length;
     const LinearRelation relation{imposed_.c, imposed_.c.cwiseProduct(f0), P, sizes_};
@@ -180,17 +180,22 @@ class Balance {
     return settled(at.idle > 0 ? monotone(relation, o, laws_) : relation);
   }
 
+  /// N: what earlier loads have left in frictions. Without a load it is the scale beside which other forces are none.
+  double held_by_slips(double length) const {
+    double most = 0;
+    for (const Member& m : members_)
+      if (const auto* friction = std::get_if<FrictionLaw>(&m.law()))
+        most = std::max(most, std::abs(m.slip) * friction->stiffness / (m.stepped->rotation ? length : 1));
+    return most;
+  }
+
   /// The laws in equilibrium, with limits of frictions that are those of the loads beside them.
   SetValuedSolution settled(const LinearRelation& relation) {
     if (growing_.empty()) return solve_apart(relation, laws_, watched());
     SetValuedSolution found;
     VectorX limits(std::ssize(growing_));
-    double rounding = 0;
-    for (Eigen::Index i = 0; i < limits.size(); ++i) {
-      const Member& m = nth(members_, nth(growing_, i));
-      limits(i) = m.limit;
-      rounding = std::max(rounding, 1e-14 * std::abs(m.slip) * std::get<FrictionLaw>(m.law()).stiffness);
-    }
+    for (Eigen::Index i = 0; i < limits.size(); ++i) limits(i) = nth(members_, nth(growing_, i)).limit;
+    const double rounding = 1e-14 * held_by_slips(1);
     const auto of_loads = [&](const VectorX& tried) -> std::optional<VectorX> {
       VectorX out = tried;
       for (Eigen::Index i = 0; i < tried.size(); ++i) {

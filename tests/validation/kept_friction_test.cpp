@@ -1,5 +1,6 @@
 // Friction that still holds at the next pose what it held at the last one: from the readings alone, by the compliance
 // of the machine without friction and the geometry of its legs.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -59,6 +60,34 @@ TEST(KeptFriction, HoldsAtTheNextPoseItsShareOfWhatItHeld) {
       EXPECT_TRUE((size > 0.299).any() && ((size > 0.05) && (size < 0.29)).any()) << "slips here, sticks there";
       const Vector6 expected = second.solve(-kept * along_the_legs(c.back()) * held).displacement;
       EXPECT_LE((read[2].head<6>() - expected).norm(), 1e-8 * read[1].norm()) << theory << ", kept " << kept;
+    }
+  }
+}
+
+/// A slide's spring of 100 N/mm beside friction, in series with play and a spring. 60 N came and went: they left 0.2
+/// mm, from which readings count, and the play in its middle, wherever along its axis the slide stands. Under 100 N
+/// friction slides, (100 − 20)/100 mm; at 50 N it has just turned.
+TEST(StartedFriction, LeavesPlayBehindItInTheMiddle) {
+  const Mechanism m = parse_mechanism(R"(
+name: slide
+kinematics: {family: chains}
+leg:
+  slide: {joint: prismatic, tz: {law: linear, stiffness: 100 N/mm}, beside: {tz: {law: friction, force: 20 N, stiffness: 400 N/mm, start: 0.6}}}
+  play: {joint: fixed, tz: [{law: clearance, gap: 0.05 mm}, {law: linear, stiffness: 300 N/mm}], tx: {law: linear, stiffness: 1 kN/mm}, ty: {law: linear, stiffness: 1 kN/mm}, rx: {law: linear, stiffness: 1 kNm/rad}, ry: {law: linear, stiffness: 1 kNm/rad}, rz: {law: linear, stiffness: 1 kNm/rad}}
+)",
+                                      "slide.yaml");
+  for (const char* at : {"0", "1", "3", "5", "10", "50"}) {
+    const measurement::Measurements data = measurement::parse_measurements(
+        fmt::format(
+            "pose,sequence,q1_mm,fx_N,fy_N,fz_N,ux_mm,uy_mm,uz_mm\nb,1,{0},0,0,100,0,0,0\nb,2,{0},0,0,50,0,0,0\n", at),
+        "data.csv");
+    const std::vector<Configuration> c = measurement::configure_all(m, data);
+    for (const char* theory : {"analytic", "msa"}) {
+      prediction::PredictionOptions o;
+      o.theory = &theories::theory(theory);
+      const std::vector<VectorX> read = prediction::predict(m, c, data, o);
+      EXPECT_NEAR(1e3 * read[0](2), 0.8 + 0.05 + 100 / 300.0 - 0.2, 1e-9) << theory << " at " << at;
+      EXPECT_NEAR(1e3 * read[1](2), 0.7 + 0.05 + 50 / 300.0 - 0.2, 1e-9) << theory << " at " << at;
     }
   }
 }

@@ -149,7 +149,8 @@ TEST(Selection, TwoEffectsAreFoundThatAThirdResembles) {
   exact.tolerances = 0;
   const measurement::Measurements healthy = prediction::simulate(m, plan, exact);
   const Observations unloaded(subject::Subject(m), healthy, {});
-  const std::vector<Signature> alone = signatures(unloaded, {root, base, actuator}, 1);
+  const std::vector<Effect> three = {root, base, actuator};
+  const std::vector<Signature> alone = signatures(unloaded, three, 1);
   ASSERT_EQ(alone.size(), 3u);
   const double of_root = stiffness_for(alone[0], 20), of_base = stiffness_for(alone[1], 20);
   const Effect third = all_at_once({{&root, of_root}, {&base, of_base}, {&actuator, stiffness_for(alone[2], 15)}});

@@ -37,6 +37,24 @@ Vector6 by_msa(const Configuration& c, const Vector6& F, int elements = 1) {
   return s.displacement;
 }
 
+// A load cell that reads zero before and after each series: no rounding of no force may push play to one side.
+TEST(JumpsInShape, WithoutALoadPlayStandsInItsMiddle) {
+  const Mechanism arm = test::device("arm");
+  for (const char* joint : {"1", "2", "3", "4", "5", "6"}) {
+    const Mechanism m = edited(
+        arm, {std::string("leg.joint_") + joint + ".rz", "{law: clearance, gap: 0.7 mrad}", Edit::Action::append});
+    const Configuration c = configure(m, home_pose(m));
+    const Vector6 none = Vector6::Zero();
+    const analytic::AnalyticModel model(c);
+    for (const Geometry geometry : {Geometry::second_order, Geometry::finite}) {
+      EXPECT_EQ(model.solve(none, geometry).displacement, none) << joint;
+      EXPECT_FALSE(model.solve(none, geometry).loose.empty()) << joint;
+      EXPECT_EQ(model.displaced(none, geometry).displacement, none) << joint;
+      EXPECT_EQ(frame::MsaModel(c).solve(none, geometry).displacement, none) << joint;
+    }
+  }
+}
+
 // A hinge that yields about y carries a slide with play ±g along its arm, loaded across the arm. In linear geometry no
 // force acts along it. The hinge turns by θ, the load F then pulls along the arm by F sin θ > 0 whichever sign it has,
 // and the play stands at its outer end: k θ = F (L + g) cos θ.
