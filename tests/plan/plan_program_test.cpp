@@ -189,12 +189,12 @@ TEST_F(PlanProgram, WhatIsWrongIsSaid) {
   EXPECT_EQ(test::deflect("plan " + device + " " + path("diagnosis.json") + " --max-force 0 --forces-only").code, 2);
   EXPECT_EQ(test::deflect("plan " + device + " --before papre").code, 2);
   EXPECT_EQ(test::deflect("plan " + device + " --before paper --aim speed").code, 2);
-  for (const char* ignored : {"--group 1", "--readings 4", "--probability 0.9"}) {
+  for (const char* ignored : {"--group 2", "--readings 4", "--probability 0.9"}) {
     const test::Run run = test::deflect("plan " + device + " --before paper " + ignored);
     EXPECT_EQ(run.code, 2) << ignored;
-    EXPECT_NE(run.out.find("--before excludes --"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("leave out --"), std::string::npos) << run.out;
   }
-  EXPECT_EQ(test::deflect("plan " + device + " " + path("diagnosis.json") + " --aim effects").code, 2);
+  EXPECT_EQ(test::deflect("plan " + device + " " + path("diagnosis.json") + " --use x.csv").code, 2);
 }
 
 }  // namespace

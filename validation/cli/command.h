@@ -17,7 +17,6 @@ struct Option {
   std::string help;
   std::variant<std::string*, bool*, double*, std::vector<std::string>*> target;
   bool required = false;
-  std::string excludes = {}, needs = {};  ///< another option that must not, or must, stand beside it
 };
 
 /// The work of a command: it prints a report on standard output and writes files. Throws InputError, ModelError or

@@ -45,12 +45,6 @@ void declare(CLI::App& app, const Option& option) {
   o->required(option.required);
 }
 
-/// Once all options are declared.
-void relate(CLI::App& sub, const Option& option) {
-  if (!option.excludes.empty()) sub.get_option(option.flags)->excludes(sub.get_option(option.excludes));
-  if (!option.needs.empty()) sub.get_option(option.flags)->needs(sub.get_option(option.needs));
-}
-
 /// Returns false if the arguments only request help or the version, which it prints.
 bool parse(CLI::App& app, const std::vector<Command>& commands, int argc, char** argv, bool say) try {
   app.parse(argc, argv);
@@ -108,7 +102,6 @@ int main(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     sub->footer("Example:\n  " + command.example);
     for (const Option& option : command.options) declare(*sub, option);
-    for (const Option& option : command.options) relate(*sub, option);
     CLI::Option* const q = sub->add_flag("--quiet", quiet, "print only errors; files are still written");
     sub->add_flag("--verbose", loud, "print every step with its time and choices on standard error")->excludes(q);
     parsers.push_back(sub);

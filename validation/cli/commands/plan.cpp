@@ -156,6 +156,15 @@ void run_before(const PlanArguments& a, const figures::FigureStyle& style) {
   if (!a.diagnosis.empty())
     throw InputError(fmt::format("--before {}: plans a campaign before it is measured: leave out {}, or --before",
                                  a.before, a.diagnosis));
+  const PlanArguments usual;
+  for (const auto& [option, given] : {std::pair{"--group", a.group != usual.group},
+                                      {"--readings", a.readings != usual.readings},
+                                      {"--probability", a.probability != usual.probability}})
+    if (given)
+      throw InputError(
+          fmt::format("{} is of a plan after a diagnosis; the campaign of --before keeps its length: leave "
+                      "out {}, or --before",
+                      option, option));
   const subject::Subject s = read_subject(a.device);
   std::vector<effects::Effect> effects = known_effects(a.files, s);
   if (s.machine()) std::erase_if(effects, [](const effects::Effect& e) { return e.place.has_value(); });
@@ -196,6 +205,7 @@ void run(const PlanArguments& a) {
   if (!a.before.empty()) return run_before(a, style);
   if (a.diagnosis.empty())
     throw InputError("give the result of deflect diagnose --json, or --before CAMPAIGN to plan before measuring");
+  if (!a.use.empty()) throw InputError(fmt::format("--use {}: wants --before CAMPAIGN, which it is for", a.use));
   const subject::Subject s = read_subject(a.device);
   const std::vector<effects::Effect> effects = known_effects(a.files, s);
   const diagnosis::FoundEffects found = diagnosis::read_found_effects(a.diagnosis);
@@ -253,21 +263,21 @@ Command plan_command() {
            {"data", "DATA",
             "the measurements that were diagnosed, if they are no longer where the diagnosis names them; several files "
             "are sessions of one campaign",
-            &a->data, false, "--before"},
+            &a->data},
            {"--before", "paper|cycle|rich|random|FILE",
             "instead of a diagnosis: a campaign by its name, or a measurement file, whose readings may be empty",
             &a->before},
            {"--aim", "effects|precision",
             "with --before: what the better campaign is for: to see effects and tell them apart (default), or to "
             "predict the tool point once tolerances are fitted",
-            &a->aim, false, "", "--before"},
+            &a->aim},
            {"--use", "FILE",
             "with --before: poses and loads where the machine will be used (default: twelve poses of its workspace)",
-            &a->use, false, "", "--before"},
-           {"--group", "N", "which tie of the diagnosis (default 1)", &a->group, false, "--before"},
-           {"--readings", "N", "most readings (default 30)", &a->readings, false, "--before"},
+            &a->use},
+           {"--group", "N", "which tie of the diagnosis (default 1)", &a->group},
+           {"--readings", "N", "most readings (default 30)", &a->readings},
            {"--probability", "P", "the plan ends where the right effect is expected to be this probable (default 0.95)",
-            &a->probability, false, "--before"},
+            &a->probability},
            {"--max-force", "N", "largest force along an axis (default: that of the data)", &a->force},
            {"--max-moment", "NMM",
             "largest moment about an axis (default: that of the data; where they have none, the force times 20 mm)",
