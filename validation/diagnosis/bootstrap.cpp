@@ -75,4 +75,12 @@ double chance_of_any(const std::vector<Signature>& all, const MatrixX& inner, do
   return chance;
 }
 
+double least_p_value(const std::vector<Signature>& all, const std::vector<Candidate>& candidates) {
+  double out = 1;
+  const std::vector<double> weights = weights_of(all);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    out = std::min(out, single_p_value(all[i], candidates[i].gain) / weights[i]);
+  return out;
+}
+
 }  // namespace deflect::diagnosis

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "validation/diagnosis/signatures.h"
+#include "validation/diagnosis/candidates.h"
 #include "validation/parallel/work.h"
 
 namespace deflect::diagnosis {
@@ -19,5 +19,8 @@ using Counted = std::function<void(std::size_t done, std::size_t all)>;
 /// ranks, nor on which of the sets a journal held. Its resolution and least value are 1/(sets + 1).
 double chance_of_any(const std::vector<Signature>&, const MatrixX& inner, double least_p, int sets,
                      const parallel::Work&, const Counted& = {});
+
+/// The least p-value of candidates alone, in the order of their signatures, divided by their weights.
+double least_p_value(const std::vector<Signature>&, const std::vector<Candidate>&);
 
 }  // namespace deflect::diagnosis

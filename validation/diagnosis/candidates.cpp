@@ -12,14 +12,12 @@
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/fit_in_turn.h"
 #include "validation/diagnosis/fit_problem.h"
-#include "validation/diagnosis/pairs.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 
 namespace deflect::diagnosis {
 namespace {
 
-constexpr double out_of_question = -1e9;         // ln of the odds of what is there already, or cannot be
 constexpr double hopeless = 30;                  // gain in χ² that is not looked into
 constexpr double of_its_own = 0.05;              // share of a signature that others must leave it
 constexpr double behind_in_another_shape = 0.5;  // of the best odds: what may still be the best in its own shape
@@ -27,7 +25,8 @@ constexpr std::size_t most_exact = 16;           // fits in true geometry
 constexpr double grows_faster = 2;               // the deformed shape, where it grows much, than for small changes
 
 constexpr double small_share = 0.05;  // of the best gain, from which a signature may hide a large effect
-constexpr double most_of_it = 0.5;    // of what a law at a place explains: the part gone may explain it instead
+constexpr double same_chi2 = 1e-3;
+constexpr double most_of_it = 0.5;  // of what a law at a place explains: the part gone may explain it instead
 
 Fit better(Fit a, Fit b) { return b.found && (!a.found || b.chi2 < a.chi2) ? b : a; }
 
@@ -120,7 +119,7 @@ class Candidates::Round {
   void fit_promising(double least) {
     std::array<std::vector<std::size_t>, 2> parts;
     for (std::size_t i = 0; i < out_.size(); ++i)
-      if (allowed_[i] && (is_like_known(i) || said_[i] >= enough(signature(i))))
+      if (allowed_[i] && (is_same_as_known(i) || said_[i] >= enough(signature(i))))
         parts[signature(i).effect.effect->place ? 1 : 0].push_back(i);
     const std::size_t count = parts[0].size() + parts[1].size();
     std::atomic<std::size_t> done = 0;
@@ -135,8 +134,8 @@ class Candidates::Round {
       bar_ = fit_in_turn(
           std::move(part), bar_, all_.threads_,
           [&](std::size_t i) {
-            return is_like_known(i) ? certain
-                                    : all_.log_odds(i, can_gain(signature(i), said_[i]), all_.class_priors_[i]);
+            return is_same_as_known(i) ? certain
+                                       : all_.log_odds(i, can_gain(signature(i), said_[i]), all_.class_priors_[i]);
           },
           fit_one,
           [&](std::size_t i) {
@@ -183,8 +182,7 @@ class Candidates::Round {
   /// fitted anew, each predicted in its true geometry.
   void fit_in_true_geometry() {
     if (!observations_.is_slender()) return;
-    const Observations exact = observations_.in_true_geometry();
-    if (const Fit before = fit_of_all(exact, before_, so_far_.values); before.found) chi2_before_ = before.chi2;
+    const Observations exact = true_geometry();
     std::vector<std::optional<double>> promised(out_.size());
     parallel::for_each_case(out_.size(), 1, all_.threads_,
                             [&](std::size_t i) { promised[i] = promised_in_own_shape(i); });
@@ -227,6 +225,21 @@ class Candidates::Round {
     bar_ = likeliest() - far_behind;
   }
 
+  /// Fits anew, from these values, those that explain more from there.
+  void fit_again(const std::vector<effects::EffectInstance>& from) {
+    std::optional<Observations> exact;
+    if (observations_.is_slender()) exact = true_geometry();
+    const Observations& o = exact ? *exact : observations_;
+    for (const effects::EffectInstance& e : from)
+      for (std::size_t i = 0; i < out_.size(); ++i) {
+        if (!same(e, signature(i).effect)) continue;
+        Fit again = fit(o, out_[i].hypothesis, so_far_.values, e.values);
+        if (!again.found || (out_[i].fit.found && out_[i].fit.chi2 < again.chi2 + same_chi2)) continue;
+        out_[i].fit = std::move(again);
+        judge(i);
+      }
+  }
+
   std::vector<Candidate>&& result() {
     // A gain that a signature says can exceed all there is by rounding.
     for (Candidate& c : out_)
@@ -236,6 +249,13 @@ class Candidates::Round {
   }
 
  private:
+  /// In which the candidates are compared from now on.
+  Observations true_geometry() {
+    Observations exact = observations_.in_true_geometry();
+    if (const Fit before = fit_of_all(exact, before_, so_far_.values); before.found) chi2_before_ = before.chi2;
+    return exact;
+  }
+
   /// The most that ln of the odds can become in its own deformed shape, where that is another one.
   std::optional<double> promised_in_own_shape(std::size_t i) {
     const Candidate& c = out_[i];
@@ -256,9 +276,11 @@ class Candidates::Round {
       if (c.fit.found) least = std::min(least, c.fit.chi2);
     return least > 2 * static_cast<double>(observations_.numbers());
   }
-  /// What these data cannot distinguish from it may have the same values.
+  /// To these data: how much it explains more than its signature says holds for it too.
+  bool is_same_as_known(std::size_t i) const { return known_ && all_.classes_[i] == class_of_known_; }
+  /// It may have the same values.
   bool is_like_known(std::size_t i) const {
-    if (!known_ || all_.classes_[i] != class_of_known_) return false;
+    if (!is_same_as_known(i)) return false;
     const auto &own = signature(i).effect.effect->parameters, &other = known_->effect->parameters;
     return std::equal(own.begin(), own.end(), other.begin(), other.end(),
                       [](const auto& a, const auto& b) { return a.name == b.name; });
@@ -346,43 +368,13 @@ std::optional<std::vector<Candidate>> Candidates::likelier_if_larger(const Obser
   return round.result();
 }
 
-std::optional<TwoCandidates> Candidates::two_beside(const Observations& o, const Hypothesis& before, const Fit& so_far,
-                                                    double least, double each) const {
-  constexpr std::size_t looked_at = 4;
-  constexpr double signatures_may_miss = 4;  // of ln of the odds
-  const MatrixX fitted = statistics::orthonormal(so_far.signature);
-  const auto of_class = [&](std::size_t i, double gain) {
-    return is_among(before, signatures_[i].effect) ? out_of_question : log_odds(i, gain, class_priors_[i]);
-  };
-  const std::vector<PairOfSignatures> promising =
-      best_pairs(signatures_, between_, so_far.residual, fitted, of_class, least - signatures_may_miss, looked_at);
-  const auto together = [&](const Hypothesis& others, const Fit& fitted_so_far, std::size_t i) {
-    Hypothesis h = others;
-    h.push_back(signatures_[i].effect);
-    return TwoCandidates{h, fit(o, h, fitted_so_far.values, guess(signatures_[i], fitted_so_far.residual))};
-  };
-  std::map<std::size_t, TwoCandidates> alone;  // the first ones of pairs, each fitted once
-  for (const PairOfSignatures& p : promising) alone[p.first];
-  parallel::for_each_case(alone.size(), 1, threads_, [&](std::size_t k) {
-    auto& [first, fitted_alone] = *std::next(alone.begin(), as_index(k));
-    fitted_alone = together(before, so_far, first);
-  });
-  std::vector<TwoCandidates> all(promising.size(), {{}, {}, out_of_question});
-  parallel::for_each_case(promising.size(), 1, threads_, [&](std::size_t k) {
-    const auto [first, second, gain_of_first, gain] = promising[k];
-    const TwoCandidates& one = alone.at(first);
-    if (!one.fit.found) return;
-    TwoCandidates both = together(one.hypothesis, one.fit, second);
-    if (!both.fit.found || wants_more_than_there_can_be(both.hypothesis, both.fit)) return;
-    const double of_second = of_class(second, std::max(0.0, one.fit.chi2 - both.fit.chi2));
-    both.log_odds = of_class(first, std::max(0.0, so_far.chi2 - one.fit.chi2)) + of_second;
-    if (of_second < each || !(both.log_odds > least)) return;
-    const TwoCandidates other = together(before, so_far, second);
-    if (!other.fit.found || of_class(first, std::max(0.0, other.fit.chi2 - both.fit.chi2)) < each) return;
-    all[k] = std::move(both);
-  });
-  const auto best = std::ranges::max_element(all, {}, &TwoCandidates::log_odds);
-  return best == all.end() || best->log_odds <= least ? std::nullopt : std::optional(std::move(*best));
+std::vector<Candidate> Candidates::fitted_again(const Observations& o, const Fit& so_far,
+                                                const std::vector<Candidate>& fitted,
+                                                const std::vector<effects::EffectInstance>& from) const {
+  Round round(*this, o, {}, so_far, {});
+  round.take(fitted);
+  round.fit_again(from);
+  return round.result();
 }
 
 void add_left_out(std::vector<LeftOut>& noted, const std::vector<Candidate>& all) {

@@ -39,8 +39,9 @@ class Candidates {
   /// Every effect added to others that are fitted already, in the order of the signatures. Fits are made only where an
   /// effect can come near the best and its log_odds can reach `least`. An effect almost indistinguishable from one of
   /// the others is not added. `known`: an effect that was fitted together with the others before; its new fit also
-  /// starts from those values, so that it is no worse. Where a part that lets go is among the likeliest, play so wide
-  /// that nothing touches, and what else says the same, is fitted beside it.
+  /// starts from those values, so that it is no worse; what these data cannot distinguish from it is fitted too. Where
+  /// a part that lets go is among the likeliest, play so wide that nothing touches, and what else says the same, is
+  /// fitted beside it.
   std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                 const std::optional<effects::EffectInstance>& known = {}) const;
 
@@ -49,7 +50,7 @@ class Candidates {
 
   /// The likeliest two effects beside others that are fitted already, if ln of their odds exceeds `least` and each of
   /// them is called for beside the other, by odds of `each`. Of all pairs those are fitted that promise most by their
-  /// signatures (pairs.h).
+  /// signatures (pairs.h, pairs.cpp).
   std::optional<TwoCandidates> two_beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                           double each) const;
 
@@ -57,6 +58,9 @@ class Candidates {
   /// signatures show. Nullopt where none of these becomes the likeliest.
   std::optional<std::vector<Candidate>> likelier_if_larger(const Observations&, const Hypothesis&, const Fit&,
                                                            const std::vector<Candidate>&) const;
+  /// The candidates of beside() no other effect again, those fitted anew that explain more from these values.
+  std::vector<Candidate> fitted_again(const Observations&, const Fit&, const std::vector<Candidate>&,
+                                      const std::vector<effects::EffectInstance>& from) const;
   /// The same effects; beside() then tries larger sizes too.
   Candidates in_larger_sizes() const;
 

@@ -5,7 +5,6 @@
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
-#include "validation/compare/findings.h"
 #include "validation/diagnosis/bootstrap.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/interval.h"
@@ -28,7 +27,7 @@ constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked
 constexpr double rather_nothing = 0.6;  // probability from which nothing is called missing
 constexpr double unknown_beside =       // odds of something unknown beside effects, before any reading
     Candidates::prior_unknown / (1 - Candidates::prior_unknown);
-constexpr int most_rounds_of_noise = 3;
+constexpr int most_rounds = 3;
 constexpr double falls_clearly = 0.75;
 
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
@@ -38,19 +37,6 @@ Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   q.rmse = o.rmse(subject);
   q.held_out = o.held_out_rmse(subject);
   return q;
-}
-
-/// What is left, in words.
-std::string left_over_pattern(const Observations& o, const subject::Subject& subject) {
-  const compare::ResidualStudy& s = o.comparison().study;
-  std::vector<compare::Pattern> patterns = compare::patterns_of(s);
-  std::vector<MatrixX> columns;
-  for (compare::Pattern& p : patterns) columns.push_back(std::move(p.rows));
-  std::string out;
-  for (const compare::Finding& f :
-       compare::find_patterns(s, o.uncertainty(), o.residual(subject), patterns, columns).findings)
-    out += (out.empty() ? "" : "; then ") + f.sentence;
-  return out.empty() ? "no pattern that was looked for" : out;
 }
 
 /// Probabilities of the first step's candidates and of "nothing", beside that of "unknown".
@@ -74,7 +60,7 @@ void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const S
   const auto numbers = static_cast<double>(o.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
-  d.pattern = left_over_pattern(o, subject_with(o, found.effects, found.fit.values));
+  d.pattern = pattern_left(o, subject_with(o, found.effects, found.fit.values));
   d.localised = localised(at_places(all, found.fit, threads), found.fit.chi2, numbers);
   const MatrixX fitted = statistics::orthonormal(found.fit.signature);
   for (const Signature& s : all)
@@ -142,15 +128,6 @@ Diagnosis only_mistakes(Diagnosis d, const Observations& o) {
   d.share_unexplained = 1;
   d.pattern = d.mistakes.front().sentence;
   return d;
-}
-
-/// Of the candidates in the order of their signatures, weighed.
-double least_p_value(const std::vector<Signature>& all, const std::vector<Candidate>& candidates) {
-  double out = 1;
-  const std::vector<double> weights = weights_of(all);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    out = std::min(out, single_p_value(all[i], candidates[i].gain) / weights[i]);
-  return out;
 }
 
 /// What is known before any effect is tried.
@@ -290,6 +267,8 @@ Verdict verdict_of(const Diagnosis& d) {
 void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measurement::Measurements& data, int threads) {
   const double together = log_odds_together(told, e);
   Selection found = std::move(e.found);
+  // A search that went by another effect can find a better fit of one than the first step did.
+  d.candidates = told.candidates.fitted_again(told.observations, told.null, d.candidates, as_fitted(found));
   d.unexplained = e.left.significant();
   if (!found.effects.empty())
     weigh(d, told.larger, probability_of_unknown(e.left.log_evidence, unknown_beside), together);
@@ -366,6 +345,13 @@ std::vector<double> noise_beside(const Observations& o, const Diagnosis& d, cons
   return {};
 }
 
+/// How large tolerances look beside what was found, where that is all.
+double scale_beside(const Observations& o, const Diagnosis& d) {
+  if (d.missing.empty() || d.unexplained) return o.tolerance_scale();
+  const subject::Subject right = subject_with(o, d.missing, d.fit.values);
+  return tolerance_scale_beside(o.granted(right), right);
+}
+
 }  // namespace
 
 bool is_mistaken(const Diagnosis& d) { return !d.mistakes.empty() && d.mistakes.front().certain; }
@@ -376,16 +362,20 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   DiagnosisOptions asked = options;
   parallel::Work again = work;
   std::vector<compare::RecordingMistake> mistakes;
+  double tolerances = 1;  // times as declared
   for (int round = 1;; ++round) {
-    const Observations o(subject, data, asked.comparison, again.part(0, 0.2));
+    const Observations o(subject, data, asked.comparison, again.part(0, 0.2), tolerances);
     Diagnosis d = diagnosed(o, data, effects, asked, again);
     if (round == 1) mistakes = d.mistakes;
     d.mistakes = mistakes;
-    if (round == most_rounds_of_noise) return d;
-    // Noise that nobody tells was read off what no pattern explains; what was found may have been part of it. Whether
-    // the data are right has been settled.
-    asked.comparison.sigma = noise_beside(o, d, data, asked.comparison, work);
-    if (asked.comparison.sigma.empty()) return d;
+    if (round == most_rounds) return d;
+    // Noise that nobody tells was read off what no pattern explains; what was found may have been part of it.
+    // Tolerances may be larger than declared beside what was found. Whether the data are right has been settled.
+    std::vector<double> sigma = noise_beside(o, d, data, asked.comparison, work);
+    const double beside = sigma.empty() ? scale_beside(o, d) : tolerances;
+    if (sigma.empty() && beside == tolerances) return d;
+    if (!sigma.empty()) asked.comparison.sigma = std::move(sigma);
+    tolerances = beside;
     asked.comparison.as_recorded = true;
     again = work.quiet();
     again.journal = nullptr;  // it holds sets of the first

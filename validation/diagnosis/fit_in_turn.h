@@ -22,6 +22,7 @@ inline constexpr double far_behind = 6;  // what is sure to be less likely than 
 /// threads, so that the answer does not.
 inline constexpr std::size_t at_once = 8;
 inline constexpr double certain = 1e9;
+inline constexpr double out_of_question = -1e9;  // ln of the odds of what is there already, or cannot be
 
 /// Fits those signatures that can still come near the best, which promise the most first. `promise` returns the most
 /// that ln of the odds of a signature's class can become by its fit; it may learn from the fits so far, of which

@@ -7,15 +7,21 @@
 #include "validation/diagnosis/evidence.h"
 
 namespace deflect::diagnosis {
+namespace {
+
+constexpr double largest_tolerances = 3;  // times as declared
+constexpr int sizes_tried = 24;
+constexpr double rise_that_shows = 2;  // of ln of the likelihood
+constexpr double same_size = 0.1;      // ln of a ratio
+
+}  // namespace
 
 LargerTolerances larger_tolerances(const Observations& o, double prior) {
-  constexpr double most = 3;
-  constexpr int steps = 24;
   LargerTolerances out;
   // Observations that look larger than declared already count as far as they look.
-  const double room = most / o.tolerance_scale();
+  const double room = largest_tolerances / o.tolerance_scale();
   if (!(room > 1.01)) return out;
-  std::vector<double> scales = log_spaced(1, room, steps);
+  std::vector<double> scales = log_spaced(1, room, sizes_tried);
   scales.push_back(1);
   std::vector<double> likelihood = o.log_likelihood_of_scales(o.subject(), scales);
   const double as_declared = likelihood.back();
@@ -24,6 +30,16 @@ LargerTolerances larger_tolerances(const Observations& o, double prior) {
   out.scale = scales[as_size(best - likelihood.begin())];
   out.log_odds = std::log(prior) + log_mean_exp(likelihood) - as_declared;
   return out;
+}
+
+double tolerance_scale_beside(const Observations& o, const subject::Subject& right) {
+  std::vector<double> scales = log_spaced(1, largest_tolerances, sizes_tried);
+  std::vector<double> weighed = scales;
+  for (double& s : weighed) s /= o.tolerance_scale();
+  const std::vector<double> likelihood = o.log_likelihood_of_scales(right, weighed);
+  const auto best = std::max_element(likelihood.begin(), likelihood.end());
+  const double out = *best > likelihood.front() + rise_that_shows ? nth(scales, best - likelihood.begin()) : 1;
+  return std::abs(std::log(out / o.tolerance_scale())) < same_size ? o.tolerance_scale() : out;
 }
 
 std::vector<double> log_weights(const std::vector<Candidate>& all, const LargerTolerances& larger, double together) {

@@ -22,6 +22,11 @@ struct LargerTolerances {
 /// built worse than its drawing says.
 LargerTolerances larger_tolerances(const Observations&, double prior = 0.5);
 
+/// How large tolerances look beside what was found, times as declared: the likeliest of 1 … 3 where this subject counts
+/// as right, or 1 unless that raises ln of the likelihood by more than 2. As large as they count already where that is
+/// nearly the same.
+double tolerance_scale_beside(const Observations&, const subject::Subject&);
+
 inline constexpr double not_several = -1e9;  ///< ln of the odds of several effects where there are none
 
 /// ln of the weights of candidates, each alone, then of larger tolerances and of "nothing", 0. Several effects can

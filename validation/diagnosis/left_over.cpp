@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "msa/base/index.h"
+#include "validation/compare/findings.h"
 #include "validation/diagnosis/evidence.h"
 
 namespace deflect::diagnosis {
@@ -37,6 +38,18 @@ bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Fit& with, const F
 }
 
 }  // namespace
+
+std::string pattern_left(const Observations& o, const subject::Subject& subject) {
+  const compare::ResidualStudy& s = o.comparison().study;
+  std::vector<compare::Pattern> patterns = compare::patterns_of(s);
+  std::vector<MatrixX> columns;
+  for (compare::Pattern& p : patterns) columns.push_back(std::move(p.rows));
+  std::string out;
+  for (const compare::Finding& f :
+       compare::find_patterns(s, o.uncertainty(), o.residual(subject), patterns, columns).findings)
+    out += (out.empty() ? "" : "; then ") + f.sentence;
+  return out.empty() ? "no pattern that was looked for" : out;
+}
 
 LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,
                    const Fit& fit, int threads) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "validation/diagnosis/at_places.h"
 #include "validation/diagnosis/selection.h"
@@ -22,6 +23,9 @@ struct LeftOver {
 
 LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<Signature>&, const Fit&,
                    int threads);
+
+/// What this subject leaves, in words.
+std::string pattern_left(const Observations&, const subject::Subject&);
 
 /// Several effects can add up to what one law does that none of them is. The effects that are of one place, fitted
 /// anew, where an unknown law there alone is likelier than all the effects and an unknown law beside them, by `more` in

@@ -61,7 +61,8 @@ bool are_few(const std::vector<bool>& aside, const std::vector<bool>& open) {
 }  // namespace
 
 Observations::Observations(const subject::Subject& subject, const measurement::Measurements& data,
-                           const compare::ComparisonOptions& o, const parallel::Work& work)
+                           const compare::ComparisonOptions& o, const parallel::Work& work,
+                           std::optional<double> tolerance_scale)
     : subject_(subject),
       comparison_(std::make_shared<const compare::Comparison>(compare::compare(subject, data, o, work))),
       patterns_(std::make_shared<const Families>(discrepancy_families(comparison_->study))),
@@ -84,7 +85,8 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
     shape_ -= in_linear_;
   }
   bent_ = bent_of(subject);
-  tolerance_scale_ = uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
+  tolerance_scale_ = tolerance_scale ? *tolerance_scale
+                                     : uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
   A_ *= tolerance_scale_;
   A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
   count_shape();

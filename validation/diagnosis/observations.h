@@ -15,14 +15,15 @@ namespace deflect::diagnosis {
 /// σ of a value: by how much the deformed shape may be off.
 inline constexpr double known_shape = 0.1;
 
-/// Holds a comparison with its uncertainty and computes residuals for any edited subject. Where the data show
-/// tolerances larger than declared, these are scaled up (Uncertainty::scale_of_tolerances). The contribution of
+/// Holds a comparison with its uncertainty and computes residuals for any edited subject. The contribution of
 /// equilibrium in the deformed shape is known to compare::shape_known_to; this uncertainty is one more nuisance
 /// parameter.
 class Observations {
  public:
+  /// `tolerance_scale`: how large tolerances count, times as declared; none: as large as the data show them
+  /// (Uncertainty::scale_of_tolerances).
   Observations(const subject::Subject&, const measurement::Measurements&, const compare::ComparisonOptions&,
-               const parallel::Work& = {});
+               const parallel::Work& = {}, std::optional<double> tolerance_scale = {});
 
   const subject::Subject& subject() const { return subject_; }
   const compare::Comparison& comparison() const { return *comparison_; }

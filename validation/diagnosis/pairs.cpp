@@ -3,8 +3,14 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "msa/base/index.h"
+#include "validation/diagnosis/candidates.h"
+#include "validation/diagnosis/fit_in_turn.h"
+#include "validation/diagnosis/fit_problem.h"
+#include "validation/parallel/cases.h"
+#include "validation/statistics/columns.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -145,6 +151,45 @@ std::vector<PairOfSignatures> best_pairs(const std::vector<Signature>& all, cons
   std::vector<PairOfSignatures> out;
   for (const Found& f : best) out.push_back(f.pair);
   return out;
+}
+
+std::optional<TwoCandidates> Candidates::two_beside(const Observations& o, const Hypothesis& before, const Fit& so_far,
+                                                    double least, double each) const {
+  constexpr std::size_t looked_at = 4;
+  constexpr double signatures_may_miss = 4;  // of ln of the odds
+  const MatrixX fitted = statistics::orthonormal(so_far.signature);
+  const auto of_class = [&](std::size_t i, double gain) {
+    return is_among(before, signatures_[i].effect) ? out_of_question : log_odds(i, gain, class_priors_[i]);
+  };
+  const std::vector<PairOfSignatures> promising =
+      best_pairs(signatures_, between_, so_far.residual, fitted, of_class, least - signatures_may_miss, looked_at);
+  const auto together = [&](const Hypothesis& others, const Fit& fitted_so_far, std::size_t i) {
+    Hypothesis h = others;
+    h.push_back(signatures_[i].effect);
+    return TwoCandidates{h, fit(o, h, fitted_so_far.values, guess(signatures_[i], fitted_so_far.residual))};
+  };
+  std::map<std::size_t, TwoCandidates> alone;  // the first ones of pairs, each fitted once
+  for (const PairOfSignatures& p : promising) alone[p.first];
+  parallel::for_each_case(alone.size(), 1, threads_, [&](std::size_t k) {
+    auto& [first, fitted_alone] = *std::next(alone.begin(), as_index(k));
+    fitted_alone = together(before, so_far, first);
+  });
+  std::vector<TwoCandidates> all(promising.size(), {{}, {}, out_of_question});
+  parallel::for_each_case(promising.size(), 1, threads_, [&](std::size_t k) {
+    const auto [first, second, gain_of_first, gain] = promising[k];
+    const TwoCandidates& one = alone.at(first);
+    if (!one.fit.found) return;
+    TwoCandidates both = together(one.hypothesis, one.fit, second);
+    if (!both.fit.found || wants_more_than_there_can_be(both.hypothesis, both.fit)) return;
+    const double of_second = of_class(second, std::max(0.0, one.fit.chi2 - both.fit.chi2));
+    both.log_odds = of_class(first, std::max(0.0, so_far.chi2 - one.fit.chi2)) + of_second;
+    if (of_second < each || !(both.log_odds > least)) return;
+    const TwoCandidates other = together(before, so_far, second);
+    if (!other.fit.found || of_class(first, std::max(0.0, other.fit.chi2 - both.fit.chi2)) < each) return;
+    all[k] = std::move(both);
+  });
+  const auto best = std::ranges::max_element(all, {}, &TwoCandidates::log_odds);
+  return best == all.end() || best->log_odds <= least ? std::nullopt : std::optional(std::move(*best));
 }
 
 }  // namespace deflect::diagnosis

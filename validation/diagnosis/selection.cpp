@@ -71,10 +71,7 @@ class Search {
     for (std::size_t i = 0; i < s_.effects.size(); ++i) {
       const std::optional<AskedAgain> asked = asked_again(i);
       s_.ties[i] = asked && asked->own.fit.found ? tie(asked->all) : Tie{};
-      if (!s_.ties[i].names.empty() && !holds(s_.ties[i], asked->own)) {
-        s_.ties[i].names.push_back(asked->own.added().effect->name);
-        s_.ties[i].rivals.push_back(asked->own);
-      }
+      if (!s_.ties[i].names.empty()) put_first(s_.ties[i], asked->own);
     }
   }
 
@@ -121,6 +118,17 @@ class Search {
 
   static bool holds(const Tie& t, const Candidate& c) {
     return std::find(t.names.begin(), t.names.end(), c.added().effect->name) != t.names.end();
+  }
+
+  /// What was found comes before those that tie with it.
+  static void put_first(Tie& t, const Candidate& own) {
+    if (!holds(t, own)) {
+      t.names.push_back(own.added().effect->name);
+      t.rivals.push_back(own);
+    }
+    const auto k = std::find(t.names.begin(), t.names.end(), own.added().effect->name) - t.names.begin();
+    std::rotate(t.names.begin(), t.names.begin() + k, t.names.begin() + k + 1);
+    std::rotate(t.rivals.begin(), t.rivals.begin() + k, t.rivals.begin() + k + 1);
   }
 
   /// Effect i as it is fitted now.
@@ -270,6 +278,20 @@ Selection select(const Observations& o, const Candidates& candidates, const std:
   }
   search.note_ties();
   return search.result();
+}
+
+std::vector<effects::EffectInstance> as_fitted(const Selection& s) {
+  std::vector<effects::EffectInstance> out;
+  Eigen::Index at = 0;
+  for (const effects::PlacedEffect& e : s.effects) {
+    const auto count = std::ssize(e.effect->parameters);
+    out.push_back({e, s.fit.values.segment(at, count)});
+    at += count;
+  }
+  for (const Tie& t : s.ties)
+    for (const Candidate& c : t.rivals)
+      if (c.fit.found) out.push_back({c.added(), c.fit.values.tail(std::ssize(c.added().effect->parameters))});
+  return out;
 }
 
 double log_odds_of_all(const Candidates& candidates, const Selection& s, double gain) {

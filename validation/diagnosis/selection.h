@@ -13,7 +13,7 @@ namespace deflect::diagnosis {
 
 /// What does nearly as well as an effect, in its place.
 struct Tie {
-  std::vector<std::string> names;  ///< best first, until they have 95 % of the probability together
+  std::vector<std::string> names;  ///< what was found, then the best first, until they have 95 % of the probability
   std::vector<Candidate> rivals;   ///< the best of each name, as fitted, with its probability among all
 };
 
@@ -31,6 +31,9 @@ inline constexpr double called_for = 4;
 /// After each step the effects found so far count as right (Observations::granted). `first`: candidates of the first
 /// step.
 Selection select(const Observations&, const Candidates&, const std::vector<Candidate>& first);
+
+/// Its effects and those that tie with them, with the values that were fitted last.
+std::vector<effects::EffectInstance> as_fitted(const Selection&);
 
 /// ln(prior · evidence) of all its effects against none of them. Each counts as having an equal share in what they gain
 /// together in χ²: they are found one beside another, in an order that says nothing.
