@@ -61,6 +61,27 @@ statistics::LargestNumbers largest_numbers(const ResidualStudy& s) {
   return {{measurement::Quantity::force, largest}, {measurement::Quantity::moment, largest * size}};
 }
 
+/// The same with that of the other numbers of the channel, or else of the quantity, root mean square, where none is
+/// told: one instrument read them. Nullopt where nobody tells any of a quantity.
+std::optional<std::vector<double>> as_of_others(const std::vector<measurement::MeasuredValue>& values,
+                                                const std::vector<std::optional<double>>& told) {
+  const auto mean = [&](const auto& alike) -> std::optional<double> {
+    double squares = 0, n = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (told[i] && alike(values[i])) squares += *told[i] * *told[i], n += 1;
+    return n > 0 ? std::optional(std::sqrt(squares / n)) : std::nullopt;
+  };
+  std::vector<double> out;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::optional<double> sigma = told[i];
+    if (!sigma) sigma = mean([&](const auto& v) { return v.channel == values[i].channel; });
+    if (!sigma) sigma = mean([&](const auto& v) { return v.quantity == values[i].quantity; });
+    if (!sigma) return std::nullopt;
+    out.push_back(*sigma);
+  }
+  return out;
+}
+
 /// What is told, and what is estimated beside patterns; for a subject without tool point beside all that a linear
 /// effect can do, if it is read often enough for that.
 std::vector<double> estimated_sigma(const ResidualStudy& s, const std::vector<std::optional<double>>& told,
@@ -76,6 +97,7 @@ std::vector<double> estimated_sigma(const ResidualStudy& s, const std::vector<st
     if (auto found = statistics::channel_noise(s.values, told, r, all, A, largest)) return *found;
   }
   if (auto found = statistics::channel_noise(s.values, told, r, patterns, A, largest)) return *found;
+  if (auto found = as_of_others(s.values, told)) return *found;
   throw InputError(
       fmt::format("{}: neither σ nor replicates, and {} measured numbers are too few to read the scatter off what no "
                   "pattern explains: add a column sigma_u_mm (sigma_th_rad), repeat readings, or give --sigma "

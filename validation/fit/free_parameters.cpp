@@ -122,9 +122,16 @@ void take_unit(FreeParameter& p, const YamlNode& file) {
   p.per_unit = parse_quantity("1 " + p.unit, p.dimension);
 }
 
+/// Each leg of a machine has numbers of its own. Those under "leg", from which they were copied, are not the model's.
+void leave_out_copied(std::vector<std::size_t>& moved, const std::vector<DescribedNumber>& all) {
+  if (std::any_of(moved.begin(), moved.end(), [&](std::size_t i) { return all[i].path.starts_with("leg["); }))
+    std::erase_if(moved, [&](std::size_t i) { return all[i].path.starts_with("leg."); });
+}
+
 void take_values(FreeParameter& p, const subject::Subject& s) {
   const std::vector<DescribedNumber> all = numbers_of(s);
   p.numbers = moved_numbers(s, p.path);
+  leave_out_copied(p.numbers, all);
   if (p.numbers.empty())
     throw InputError("no number of the model follows from it: name a number that the model is computed from");
   const DescribedNumber& first = all[p.numbers.front()];

@@ -59,6 +59,9 @@ class Reader {
     return std::move(m_);
   }
 
+  /// Whether there is a column of this component of the displacement.
+  bool reads(std::size_t component) const { return columns_.displacement[component].has_value(); }
+
  private:
   Reading reading(std::size_t row) {
     Reading r;
@@ -268,6 +271,21 @@ Measurements parse_plan(std::string text, const std::string& origin, const Instr
   m.instruments.sensors.clear();
   for (Reading& r : m.readings) r.displacement = {}, r.sensors.clear();
   return m;
+}
+
+Measurements parse_campaign(std::string text, const std::string& origin, const Instruments& known) {
+  const CsvTable table = parse_csv(std::move(text), origin);
+  Reader reader(table, origin, known, true);
+  Measurements m = reader.read();
+  for (Reading& r : m.readings) {
+    for (std::size_t i = 0; i < 6; ++i) r.displacement[i] = reader.reads(i) ? std::optional(0.0) : std::nullopt;
+    r.sensors.assign(m.instruments.sensors.size(), 0.0);
+  }
+  return m;
+}
+
+Measurements read_campaign(const std::filesystem::path& path, const Instruments& known) {
+  return parse_campaign(read_text(path), path.string(), known);
 }
 
 Measurements read_plan(const std::filesystem::path& path, const Instruments& known) {

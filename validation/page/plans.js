@@ -97,8 +97,8 @@ export function foreseen(f) {
   const seen = f.given.detectable.map((d) => [d.effect, d.smallest.length ? d.smallest.map((x, i) => `${d.parameters[i]} ${num(x, 3)}`).join(', ') : 'none within bounds', d.mistaken_for || '–', d.mistaken_for ? num(d.cosine, 3) : '–']);
   const columns = ['effect', 'smallest size shown', 'would be mistaken for', 'cosine'];
   return [
-    figure('foresight', 'What the campaign will tell', found ? `Beside a better campaign for ${f.toward}.` : `No better campaign of as many readings was found for ${f.toward}.`,
-      table(['', 'this campaign', ...(found ? ['better'] : [])], compared), ...zeros, numbers('foresight', () => ({columns: ['what', 'given', ...(found ? ['better'] : [])], rows: compared}))),
+    figure('foresight', 'What the campaign will tell', f.given_within_limits === false ? 'It goes beyond the limits. Beside it the best one found within them.' : found ? `Beside a better campaign for ${f.toward}.` : `No better campaign of as many readings was found for ${f.toward}.`,
+      table(['', 'this campaign', ...(found ? [f.given_within_limits === false ? 'within the limits' : 'better'] : [])], compared), ...zeros, numbers('foresight', () => ({columns: ['what', 'given', ...(found ? ['better'] : [])], rows: compared}))),
     confusions(f, found),
     gains(f, found),
     stands(f, found),

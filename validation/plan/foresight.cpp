@@ -70,13 +70,13 @@ std::vector<std::size_t> parameters_of(const std::vector<subject::Tolerance>& al
 class Seeing {
  public:
   Seeing(const subject::Subject& s, const std::vector<effects::Effect>& effects, const ForesightOptions& o,
-         const Measurements& use)
-      : subject_(s), effects_(effects), o_(o), use_(use) {}
+         const Measurements& use, const Channels& read)
+      : subject_(s), effects_(effects), o_(o), use_(use), read_(read) {}
 
   Insight insight(const Measurements& plan, const parallel::Work& work) const {
     Insight out;
     out.readings = plan;
-    const Measurements data = filled_in(subject_, plan, o_, false);
+    const Measurements data = filled_in(subject_, plan, o_, false, read_);
     compare::ComparisonOptions options;
     options.as_recorded = true;
     const diagnosis::Observations seen_data(subject_, data, options, work.part(0, 0.7));
@@ -112,6 +112,7 @@ class Seeing {
   const std::vector<effects::Effect>& effects_;
   const ForesightOptions& o_;
   const Measurements& use_;
+  const Channels& read_;
 };
 
 /// By how much the change that an effect makes at its start is to be stretched.
@@ -207,14 +208,35 @@ Confusion confusion(const Insight& i, const Insight& given) {
   return out;
 }
 
-Measurements filled_in(const subject::Subject& s, Measurements plan, const ForesightOptions& o, bool linear) {
-  const measurement::Instruments known = s.instruments();
-  if (plan.instruments.sensors.empty()) plan.instruments.sensors = known.sensors;
-  const std::size_t sensors = plan.instruments.sensors.size();
+Channels channels_of(const subject::Subject& s, const Measurements& plan, const ForesightOptions& o) {
+  Channels out;
+  out.sensors = plan.instruments.sensors;
+  for (const Reading& r : plan.readings)
+    for (std::size_t i = 0; i < 6; ++i) out.displacement[i] = out.displacement[i] || r.displacement[i];
+  const auto any = [&](std::size_t first) {
+    return std::any_of(out.displacement.begin() + as_index(first), out.displacement.end(), [](bool b) { return b; });
+  };
+  if (out.sensors.empty() && !any(0)) {
+    out.sensors = s.instruments().sensors;
+    for (std::size_t i = 0; i < 6 && out.sensors.empty(); ++i) out.displacement[i] = i < 3 || o.sigma_th;
+  }
+  if (any(3) && !o.sigma_th &&
+      std::any_of(plan.readings.begin(), plan.readings.end(), [](const Reading& r) { return !r.sigma_th; }))
+    throw InputError(
+        fmt::format("{}: a rotation is read, and its standard deviation is not told: give a column "
+                    "sigma_th_rad, or --sigma-rotation",
+                    plan.origin));
+  return out;
+}
+
+Measurements filled_in(const subject::Subject& s, Measurements plan, const ForesightOptions& o, bool linear,
+                       const std::optional<Channels>& channels) {
+  const Channels read = channels ? *channels : channels_of(s, plan, o);
+  plan.instruments.sensors = read.sensors;
+  const std::size_t sensors = read.sensors.size();
   for (Reading& r : plan.readings) {
     r.sensors.assign(sensors, 0.0);
-    for (std::size_t i = 0; i < 6 && sensors == 0; ++i)
-      if (i < 3 || o.sigma_th) r.displacement[i] = 0;
+    for (std::size_t i = 0; i < 6; ++i) r.displacement[i] = read.displacement[i] ? std::optional(0.0) : std::nullopt;
     if (!r.sigma_u) r.sigma_u = o.sigma_u;
     if (!r.sigma_th && o.sigma_th) r.sigma_th = o.sigma_th;
   }
@@ -223,12 +245,12 @@ Measurements filled_in(const subject::Subject& s, Measurements plan, const Fores
     for (std::size_t i = 0; i < plan.readings.size(); ++i) plan.readings[i].sequence = static_cast<double>(i + 1);
   prediction::PredictionOptions options;
   options.geometry = linear ? Geometry::linear : s.true_geometry();
-  const std::vector<VectorX> read = s.stand(plan)->predict(plan, options, parallel::alone);
+  const std::vector<VectorX> predicted = s.stand(plan)->predict(plan, options, parallel::alone);
   for (std::size_t i = 0; i < plan.readings.size(); ++i) {
     Reading& r = plan.readings[i];
     for (std::size_t k = 0; k < 6; ++k)
-      if (r.displacement[k]) r.displacement[k] = read[i](as_index(k));
-    for (std::size_t k = 0; k < sensors; ++k) r.sensors[k] = read[i](as_index(6 + k));
+      if (r.displacement[k]) r.displacement[k] = predicted[i](as_index(k));
+    for (std::size_t k = 0; k < sensors; ++k) r.sensors[k] = predicted[i](as_index(6 + k));
   }
   return plan;
 }
@@ -255,15 +277,15 @@ Foresight foresight(const subject::Subject& s, const Measurements& plan, const s
   out.campaign = plan.origin;
   out.toward = o.toward;
   const Measurements use = o.use ? *o.use : usual_use(s, plan, o.limits, o.seed);
-  const Seeing seeing(s, effects, o, use);
+  const Channels read = channels_of(s, plan, o);
+  const Seeing seeing(s, effects, o, use, read);
   out.given = seeing.insight(plan, work.part(0, 0.4));
   out.given.separations = separations(out.given, out.given);
 
-  const Measurements data = filled_in(s, plan, o, true);
-  for (const Reading& r : data.readings)
-    for (std::size_t i = 0; i < 6; ++i) out.read[i] = out.read[i] || r.displacement[i];
+  out.read = read.displacement;
+  const Measurements data = filled_in(s, plan, o, true, read);
   Possible possible = possible_campaign(s, data, o.limits, o.seed);
-  possible.all.readings = filled_in(s, possible.all, o, true).readings;
+  possible.all.readings = filled_in(s, possible.all, o, true, read).readings;
   const Prospect prospect(s, std::move(possible), {o.sigma_u, o.sigma_th}, work.part(0.4, 0.5));
   std::unique_ptr<Aim> aim;
   if (o.toward == Toward::effects) {
@@ -287,7 +309,9 @@ Foresight foresight(const subject::Subject& s, const Measurements& plan, const s
   out.better = seeing.insight(s.placed(better), work.part(0.7, 1));
   out.better.separations = separations(out.better, out.given);
   out.better.gain = gains_of(choice, o.toward);
-  out.found = is_better(out);
+  out.tells_more = is_better(out);
+  out.allowed = prospect.possible().given.size() == plan.readings.size();
+  out.found = out.tells_more || !out.allowed;
   if (!out.found) out.better = out.given;
   return out;
 }

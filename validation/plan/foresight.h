@@ -39,6 +39,17 @@ struct ForesightOptions {
   std::uint64_t seed = 1;
 };
 
+/// What a campaign reads: components of the displacement at T, and sensors.
+struct Channels {
+  std::array<bool, 6> displacement = {};
+  std::vector<measurement::SensorChannel> sensors;
+};
+
+/// Those that the plan has cells for (measurement::read_campaign()). Of a plan without any: the subject's sensors or,
+/// where it has none, translations, and rotations if their σ is told. InputError where a rotation is read and nobody
+/// tells its σ.
+Channels channels_of(const subject::Subject&, const measurement::Measurements& plan, const ForesightOptions&);
+
 /// What the first so many readings bring toward the aim.
 struct Gain {
   std::size_t readings = 0;
@@ -76,7 +87,9 @@ struct Foresight {
   std::string subject, campaign;
   std::array<bool, 6> read = {};  ///< components of the displacement
   Insight given, better;
-  bool found = true;  ///< whether any better campaign was found; else `better` is the given one
+  bool found = true;       ///< whether `better` is another campaign than the given one
+  bool allowed = true;     ///< whether the given one keeps to the limits; else `better` does, whatever it tells
+  bool tells_more = true;  ///< whether `better` counts as better
   Toward toward = Toward::effects;
 };
 
@@ -84,9 +97,10 @@ struct Foresight {
 Foresight foresight(const subject::Subject&, const measurement::Measurements& plan, const std::vector<effects::Effect>&,
                     const ForesightOptions&, const parallel::Work& = {});
 
-/// Readings of a plan as they are predicted, in the geometry in which equilibrium really is or in linear geometry.
+/// Readings of these channels in a plan as they are predicted, in the geometry in which equilibrium really is or in
+/// linear geometry. Without channels: channels_of() a plan that has none.
 measurement::Measurements filled_in(const subject::Subject&, measurement::Measurements plan, const ForesightOptions&,
-                                    bool linear);
+                                    bool linear, const std::optional<Channels>& = {});
 
 /// Sensitivity of the displacement of T (translations; of a frame: of its displacement sensors) in use to the
 /// tolerances of these names, one column each: m.

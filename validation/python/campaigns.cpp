@@ -8,6 +8,7 @@
 #include "validation/diagnosis/found_effects.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
+#include "validation/measurement/parse_plan.h"
 #include "validation/plan/foresight.h"
 #include "validation/plan/next_readings.h"
 #include "validation/prediction/campaign.h"
@@ -122,7 +123,8 @@ Planned foresight(const Subject& s, const std::string& campaign, const std::opti
     o.toward = aim == "effects" ? plan::Toward::effects : plan::Toward::precision;
     o.most_poses = asked.most_poses;
     o.seed = asked.seed;
-    Measurements given = campaign_of(s, campaign, plan, o.limits.force.value_or(50), o.seed);
+    Measurements given = plan ? s.placed(measurement::parse_campaign(plan->first, plan->second, s.instruments()))
+                              : campaign_of(s, campaign, plan, o.limits.force.value_or(50), o.seed);
     if (!plan) given.origin = fmt::format("the campaign {}", campaign);
     const plan::Foresight f = plan::foresight(s, given, effects, o, {threads, nullptr, told});
     return Planned(report::foresight_json(f), report::foresight_report(f),

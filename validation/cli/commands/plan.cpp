@@ -17,6 +17,7 @@
 #include "validation/diagnosis/found_effects.h"
 #include "validation/figures/plan_figures.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/measurement/parse_plan.h"
 #include "validation/plan/foresight.h"
 #include "validation/plan/next_readings.h"
 #include "validation/prediction/campaign.h"
@@ -123,7 +124,7 @@ measurement::Measurements campaign_before(const PlanArguments& a, const subject:
     out.origin = fmt::format("the campaign {}", name);
     return out;
   }
-  return read_plan(a.before, s);
+  return s.placed(measurement::read_campaign(a.before, s.instruments()));
 }
 
 constexpr std::size_t most_drawn = 40;  // poses
@@ -195,7 +196,11 @@ void run_before(const PlanArguments& a, const figures::FigureStyle& style) {
   }
   fmt::print("{}", report::foresight_report(f));
   write_plan_report(a, s, f.better.readings, {"plan", report::foresight_json(f)});
-  if (!a.output.empty()) fmt::print("\n{}: the {} campaign, to be filled in\n", a.output, f.found ? "better" : "given");
+  if (!a.output.empty())
+    fmt::print("\n{}: the {}, to be filled in\n", a.output,
+               !f.allowed ? "campaign within the limits"
+               : f.found  ? "better campaign"
+                          : "given campaign");
   if (!a.out.empty()) fmt::print("\nFigure and table: {}\n", std::filesystem::absolute(a.out).string());
 }
 
@@ -265,7 +270,8 @@ Command plan_command() {
             "are sessions of one campaign",
             &a->data},
            {"--before", "paper|cycle|rich|random|FILE",
-            "instead of a diagnosis: a campaign by its name, or a measurement file, whose readings may be empty",
+            "instead of a diagnosis: a campaign by its name, or a measurement file, whose readings may be empty; its "
+            "columns say what is read",
             &a->before},
            {"--aim", "effects|precision",
             "with --before: what the better campaign is for: to see effects and tell them apart (default), or to "

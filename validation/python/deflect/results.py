@@ -319,7 +319,8 @@ class Foresight(Result):
     """Of plan(before=…): what the ``given`` campaign and a ``better`` one tell; rows: the effects by how large they must be
     to show in the given one.
 
-    ``better_found``  whether a better one was found; else ``better`` is the given one
+    ``better_found``  whether ``better`` is another one than the given
+    ``given_within_limits``  whether the given one keeps to the limits; else ``better`` does, whatever it tells
     ``measurements``  the better campaign as a file to be filled in
     """
 
@@ -328,6 +329,7 @@ class Foresight(Result):
     campaign: str
     toward: str
     better_found: bool
+    given_within_limits: bool
     gain_in: str
     given: schema_fitted.Insight
     better: schema_fitted.Insight

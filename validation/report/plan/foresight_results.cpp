@@ -54,7 +54,8 @@ std::string indices_table(const plan::Foresight& f) {
     all.push_back({fmt::format("O{} ({})", i + 1, sources[i]), a.O[i], b.O[i], "{:.3g}"});
   all.push_back({"D-gain, nats (Lindley 1956)", a.D_gain, b.D_gain, "{:.1f}"});
   std::vector<std::vector<std::string>> rows = {
-      {"", "this campaign", fmt::format("better, for {}", nth(plan::toward_names, f.toward))}};
+      {"", "this campaign",
+       f.allowed ? fmt::format("better, for {}", nth(plan::toward_names, f.toward)) : "within the limits"}};
   for (const Row& r : all)
     rows.push_back(
         {"  " + r.name, fmt::format(fmt::runtime(r.form), r.given), fmt::format(fmt::runtime(r.form), r.better)});
@@ -131,6 +132,9 @@ Json insight_json(const plan::Insight& i, const plan::Foresight& f) {
 }  // namespace
 
 std::string no_better_words(const plan::Foresight& f) {
+  if (!f.allowed)
+    return fmt::format("The given campaign goes beyond the limits. The one written keeps to them{}.",
+                       f.tells_more ? "" : ", and tells less");
   return fmt::format("No better campaign of {} readings was found for {}.", f.given.readings.readings.size(),
                      nth(plan::toward_names, f.toward));
 }
@@ -138,8 +142,8 @@ std::string no_better_words(const plan::Foresight& f) {
 std::string foresight_report(const plan::Foresight& f) {
   return fmt::format("{}: what {} will be able to tell (a calibration would fit {} tolerance{})\n\n", f.subject,
                      f.campaign, f.given.parameters, f.given.parameters == 1 ? "" : "s") +
-         (f.found ? "" : no_better_words(f) + "\n\n") + indices_table(f) + "\n" + detectable_table(f.given.detectable) +
-         left_out_words(f.given.left_out);
+         (f.tells_more && f.allowed ? "" : no_better_words(f) + "\n\n") + indices_table(f) + "\n" +
+         detectable_table(f.given.detectable) + left_out_words(f.given.left_out);
 }
 
 std::string foresight_json(const plan::Foresight& f) {
@@ -149,6 +153,7 @@ std::string foresight_json(const plan::Foresight& f) {
   j["campaign"] = f.campaign;
   j["toward"] = nth(plan::toward_names, f.toward);
   j["better_found"] = f.found;
+  j["given_within_limits"] = f.allowed;
   j["gain_in"] = f.toward == plan::Toward::precision ? "um" : "chance";
   j["given"] = insight_json(f.given, f);
   j["better"] = insight_json(f.better, f);
