@@ -1,6 +1,7 @@
 #include "msa/fields/tree_edit.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
@@ -107,13 +108,28 @@ YamlNode& opened(YamlNode& root, const TreePlace& place) {
   return *node;
 }
 
-void append(YamlNode& node, const YamlNode& value, const std::string& here) {
+/// What to say of an append to what is neither a list nor a set of named entries. A law is appended to a list that may
+/// be written as its only element.
+std::string where_to_append(const YamlNode& node, const YamlNode& value, const std::string& path) {
+  if (node.kind != Kind::map) return "is a single value: nothing can be appended to it, write set";
+  std::vector<std::string> lists;
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const YamlNode& child = node.children[i];
+    const bool takes = value.kind == Kind::map ? child.collapses || child.entries : child.kind == Kind::list;
+    if (takes) lists.push_back(node.keys[i]);
+  }
+  std::string out = "has fields of its own, and only a list or named entries can be appended to";
+  if (lists.empty()) return out + "; none of its fields is one: write set";
+  return out + fmt::format(": append to one of {}, as in '{}'", fmt::join(lists, ", "), joined(path, lists.front()));
+}
+
+void append(YamlNode& node, const YamlNode& value, const std::string& path, const std::string& here) {
   pass_down(node);
   if (node.kind == Kind::list) {
     node.children.push_back(value);
     return;
   }
-  if (!node.entries) throw InputError(here + "is not a list: nothing can be appended");
+  if (!node.entries) throw InputError(here + where_to_append(node, value, path));
   if (value.kind != Kind::map) throw InputError(here + "a map of new entries 'name: {...}' is wanted");
   for (std::size_t i = 0; i < value.keys.size(); ++i) {
     if (node.child(value.keys[i])) throw InputError(fmt::format("{}'{}' is there already", here, value.keys[i]));
@@ -210,14 +226,14 @@ std::string path_of(const YamlNode& root, const TreePlace& place) {
 
 void change(YamlNode& root, const TreePlace& place, Edit::Action action, const YamlNode& value,
             const std::string& where) {
-  const std::string here = fmt::format("{}{}: ", where, path_of(root, place));
+  const std::string path = path_of(root, place), here = fmt::format("{}{}: ", where, path);
   YamlNode& node = opened(root, place);
   switch (action) {
     case Edit::Action::set:
       node = value;
       break;
     case Edit::Action::append:
-      append(node, value, here);
+      append(node, value, path, here);
       break;
     case Edit::Action::multiply:
       multiply(node, value, here);

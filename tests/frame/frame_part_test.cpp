@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "msa/frame/file/frame_file.h"
 
 namespace deflect::frame {
@@ -93,6 +94,19 @@ TEST(FramePart, WhatOtherEntriesForbidIsRefused) {
   EXPECT_THROW(edited(f, {{"supports.A.uz", "{law: linear, stiffness: 5 N/mm}", Action::append}}), InputError);
   EXPECT_THROW(edited(f, {{"supports.D.rx", "[]"}}), InputError);
   EXPECT_FALSE(edited_entries(f, {parsed({"materials.steel.E", "0.9", Action::multiply})}));
+}
+
+// A law stands in the list of one freedom, never beside such lists.
+TEST(FramePart, AnAppendToWhatHoldsListsNamesThem) {
+  const auto refusal = [](const std::string& path) {
+    const Edit edit{path, "{law: linear, stiffness: 5 kNm/rad}", Action::append};
+    return outcome_of<InputError>([&] { return edited(bench(), {edit}); }).why;
+  };
+  const std::string at_end = refusal("members.beam.start");
+  EXPECT_NE(at_end.find("append to one of tx, ty, tz, rx, ry, rz, as in 'members.beam.start.tx'"), at_end.npos)
+      << at_end;
+  EXPECT_NE(refusal("materials.steel.E").find("is a single value"), std::string::npos);
+  EXPECT_EQ(refusal("members.beam").find("y_axis"), std::string::npos);  // holds numbers
 }
 
 // A tolerance of 5 % of nothing is none.

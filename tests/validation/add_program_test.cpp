@@ -148,6 +148,8 @@ TEST_F(AddProgram, ADiagnosisThatDoesNotFitIsNamed) {
   const std::string needs = "d.json: effect 'guide_root_compliance' needs a value: --set stiffness_Nmm_per_rad=1e+07";
   expect_refused(from("guide_rot_compliance", R"({"effect": "guide_rot_compliance"})"),
                  "d.json: there is no effect 'guide_rot_compliance', did you mean 'guide_root_compliance'?");
+  expect_refused(from("soft_pad", R"({"effect": "soft_pad"})"),
+                 "if it is one of your own, name its file with --effects FILE");
   expect_refused(from("guide_root_compliance", ""), needs);
   expect_refused(root(""), needs);
   expect_refused(root(R"(, "parameters": [])"), needs);

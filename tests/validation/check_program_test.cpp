@@ -78,6 +78,16 @@ TEST_F(CheckProgram, TheReferenceCanBeADeviceAtAPose) {
   EXPECT_GT(result()["ratio_to_reference"][0].get<double>(), 1);
 }
 
+// Contacts are as stiff as their load makes them: the result says under which it was computed.
+TEST_F(CheckProgram, TheLoadOfAResultIsTakenForTheDevice) {
+  const std::string at = "haptic-6psu --pose 10,-5,180";
+  ASSERT_EQ(test::deflect("solve " + at + " --load 30,0,20 --json " + file("solved.json")).code, 0);
+  const test::Run same = check(file("solved.json") + " --device " + at);
+  EXPECT_EQ(same.code, 0) << same.out;
+  EXPECT_NE(same.out.find("under the load 30,0,20,0,0,0"), std::string::npos) << same.out;
+  EXPECT_EQ(check(file("solved.json") + " --device " + at + " --load 300,0,0").code, 4);
+}
+
 TEST_F(CheckProgram, OrderUnitAndPassiveJointsAreOptions) {
   const Matrix6 P = test::halves_exchanged();
   write("swapped.csv", P * K * P, 6);

@@ -45,6 +45,35 @@ TEST(Csv, ReadsNamesCellsAndLines) {
   EXPECT_EQ(table.line(1), 3u);
 }
 
+TEST(Csv, ALineForExcelNamesTheSeparator) {
+  for (const char* text : {"sep=,\r\na,b\r\n1.5,2\r\n-3,4e2\r\n", "\xEF\xBB\xBFSEP=;\na;b\n1,5;2\n-3;4e2\n",
+                           "\"sep=;\"\n\na;b\n1.5;2\n-3;4e2\n", "sep=\t\na\tb\n1.5\t2\n-3\t4e2\n"}) {
+    SCOPED_TRACE(text);
+    const CsvTable table = parse_csv(text, "data.csv");
+    EXPECT_EQ(table.header(), (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(table.number(0, 0), 1.5);
+    EXPECT_EQ(table.number(1, 1), 400);
+    EXPECT_GE(table.line(1), 4u) << "the line counts";
+  }
+}
+
+// As exported with a title: more words than one line above the names, padded by a spreadsheet or not.
+TEST(Csv, LinesOfTitleAreToldFromTheHeader) {
+  const std::string names = "pose,fx_N,ux_mm\n1,50,0.2\n1,-50,-0.2\n";
+  for (const std::string title :
+       {"Stand 3\n", "Stand 3;12.3.2024\n\n", "Stand 3,,\nby,A. B.,\n", "Stand 3; run 1, run 2\n"}) {
+    const auto below = 1 + std::count(title.begin(), title.end(), '\n');
+    EXPECT_EQ(refusal(title + names),
+              "data.csv:1: this line is no header: the names of the columns seem to stand in line " +
+                  std::to_string(below) + "; delete the lines above them, or begin each of those with '#'")
+        << title;
+  }
+  EXPECT_EQ(refusal("sep=|\na|b\n1|2\n"),
+            "data.csv:1: 'sep=|': columns are separated by commas, semicolons or tabs; save the file so");
+  // No title, but a row with a cell too many.
+  EXPECT_NE(refusal("pose,note\n1,here\n2,there,again\n3,4,5\n").find("data.csv:3: 3 cells"), std::string::npos);
+}
+
 TEST(Csv, SameTableHoweverItWasSaved) {
   const char* variants[] = {
       "a,b\n1.5,2\n-3,4e2\n",  // plain

@@ -141,6 +141,15 @@ TEST(RecordingChecks, HealthyMachinesAreNotAccused) {
   }
 }
 
+// Poses a thousandth as large lie near the origin, which this machine reaches.
+TEST(RecordingChecks, PosesInAnotherUnitAreToldWhereTheyCanBeReached) {
+  const Mechanism m = test::device("tripteron");
+  Measurements data = measured(m, m, "paper", 1, false);
+  for (PoseGroup& pose : data.poses) pose.pose_mm_deg.head<3>() /= 1e3;
+  const Comparison c = compare::compare(m, data);
+  EXPECT_TRUE(named_first(c, "pose_in_m")) << words(c);
+}
+
 TEST(RecordingChecks, PracticeSetsAreNotAccused) {
   const Mechanism m = test::device("haptic-6psu-ideal-joints");
   const int step = all_wanted() ? 1 : 2;

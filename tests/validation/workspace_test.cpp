@@ -133,6 +133,19 @@ workspace: {cube_edge: 50 mm}
   }
 }
 
+// Not every command has --points.
+TEST(Workspace, WithoutOneTheOptionOfEachCommandIsNamed) {
+  Mechanism scara = test::device("scara");
+  scara.workspace = {};
+  try {
+    workspace_points(scara);
+    FAIL();
+  } catch (const InputError& e) {
+    for (const char* option : {"validate: --points", "map: --x, --y, --z", "simulate: --campaign", "plan: --before"})
+      EXPECT_NE(std::string(e.what()).find(option), std::string::npos) << e.what();
+  }
+}
+
 TEST(Workspace, MistakesInItAreTold) {
   const auto refusal = [](const std::string& workspace) {
     try {

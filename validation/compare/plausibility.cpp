@@ -127,8 +127,9 @@ std::vector<Tried> promising_readings(const Comparison& c, const CorrectionScree
 /// These want predictions of their own.
 std::vector<Tried> promising_poses(const Comparison& c, const CorrectionScreen& screen) {
   Promising out(screen.promising());
-  for (const recording::Correction& correction : recording::mistaken_poses(*c.study.data))
-    out.add(correction, screen.loss_elsewhere(correction));
+  for (const auto& corrections :
+       {recording::mistaken_poses(*c.study.data), recording::mistaken_pose_lengths(*c.study.data)})
+    for (const recording::Correction& correction : corrections) out.add(correction, screen.loss_elsewhere(correction));
   for (int axis = 0; axis < 3; ++axis)
     if (const auto shift = screen.best_shift(axis)) out.add(*shift, screen.loss_elsewhere(*shift));
   return std::move(out).sorted();

@@ -313,7 +313,8 @@ const Effect& find_effect(const std::vector<Effect>& all, const std::string& nam
     if (e.name == name) return e;
     names.push_back(e.name);
   }
-  throw InputError(fmt::format("there is no effect '{}'{}", name, suggestion(name, names)));
+  throw InputError(fmt::format("there is no effect '{}'{}; if it is one of your own, name its file with --effects FILE",
+                               name, suggestion(name, names)));
 }
 
 }  // namespace deflect::effects

@@ -14,6 +14,7 @@
 #include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "validation/measurement/column_names.h"
+#include "validation/measurement/csv_titles.h"
 
 namespace deflect::measurement {
 namespace {
@@ -86,6 +87,18 @@ class CsvParser {
     throw InputError(fmt::format("{}:{}: {}", table_.file_, line, message));
   }
 
+  /// Of a table whose first line is no header but a title, that is said.
+  [[noreturn]] void refuse_table(std::size_t line, std::string_view message) const {
+    const std::optional<std::size_t> below = header_below(bytes().substr(header_at_));
+    if (!below) refuse(line, message);
+    refuse(header_line(), fmt::format("this line is no header: the names of the columns seem to stand in line {}; "
+                                      "delete the lines above them, or begin each of those with '#'",
+                                      header_line() + *below));
+  }
+  std::size_t header_line() const {
+    return 1 + as_size(std::count(bytes().begin(), bytes().begin() + as_index(header_at_), '\n'));
+  }
+
   void check_encoding() {
     if (bytes().size() >= std::numeric_limits<std::uint32_t>::max())
       refuse(1, "the file is larger than 4 GB: split it into several");
@@ -107,6 +120,7 @@ class CsvParser {
   }
 
   void find_separator() {
+    if (told_) return;
     bool quoted = false, comma = false, semicolon = false, tab = false;
     for (std::size_t i = at_; i < bytes().size() && (quoted || bytes()[i] != '\n'); ++i) {
       const char c = bytes()[i];
@@ -115,7 +129,8 @@ class CsvParser {
       semicolon = semicolon || (!quoted && c == ';');
       tab = tab || (!quoted && c == '\t');
     }
-    if (comma && semicolon) refuse(line_, "the header has both commas and semicolons: separate columns by one of them");
+    if (comma && semicolon)
+      refuse_table(line_, "the header has both commas and semicolons: separate columns by one of them");
     separator_ = semicolon ? ';' : tab && !comma ? '\t' : ',';
   }
 
@@ -184,13 +199,29 @@ class CsvParser {
     return std::all_of(cells_.begin(), cells_.end(), [](CsvTable::Cell cell) { return cell.size == 0; });
   }
 
+  /// Whether the line names the separator, as Excel reads it.
+  bool take_separator(std::string_view line) {
+    const std::optional<std::string_view> told = told_separator(line);
+    if (!told) return false;
+    if (*told != "," && *told != ";" && *told != "\t")
+      refuse(line_, fmt::format("'sep={}': columns are separated by commas, semicolons or tabs; save the file so",
+                                excerpt(*told)));
+    separator_ = told->front();
+    told_ = true;
+    return true;
+  }
+
   /// Past blank lines and lines that begin with '#', before the header; where the separator is looked for.
   void skip_to_header() {
     for (std::size_t end; at_ < bytes().size(); at_ = end, ++line_) {
       end = std::min(bytes().find('\n', at_), bytes().size() - 1) + 1;
       const std::string_view line = bytes().substr(at_, end - at_);
+      if (take_separator(line)) continue;
       const std::size_t from = line.find_first_not_of(" \t\r\n,;");
-      if (from != line.npos && line[from] != '#') return;
+      if (from != line.npos && line[from] != '#') {
+        header_at_ = at_;
+        return;
+      }
       if (from != line.npos) table_.comments_.push_back(line_);
     }
     refuse(1, "there is no header: every line is blank or begins with '#'");
@@ -239,8 +270,8 @@ class CsvParser {
       const std::string name(view(cell));
       const std::size_t number = table_.header_.size() + 1;
       if (name.empty())
-        refuse(start_, fmt::format("column {} has no name{}", number,
-                                   number == cells_.size() ? ": is there a separator at the end?" : ""));
+        refuse_table(start_, fmt::format("column {} has no name{}", number,
+                                         number == cells_.size() ? ": is there a separator at the end?" : ""));
       const auto [same, is_new] = seen.emplace(name, number);
       if (!is_new)
         refuse(start_, fmt::format("column '{}' stands twice, as column {} and column {}: remove or rename one",
@@ -269,8 +300,8 @@ class CsvParser {
       return true;
     }
     if (cells_.size() != table_.header_.size())
-      refuse(start_, fmt::format("{} cells where the header has {} columns{}", cells_.size(), table_.header_.size(),
-                                 remedy_of_count()));
+      refuse_table(start_, fmt::format("{} cells where the header has {} columns{}", cells_.size(),
+                                       table_.header_.size(), remedy_of_count()));
     if (separator_ != ',' && !table_.decimal_comma_) {
       double ignored = 0;
       table_.decimal_comma_ = std::any_of(
@@ -294,7 +325,9 @@ class CsvParser {
   std::vector<std::uint32_t> hash_lines_;  // rows that begin with '#', until it is known what they are
   std::vector<CsvTable::Cell> hash_cells_;
   std::size_t at_ = 0, line_ = 1, start_ = 1;
+  std::size_t header_at_ = 0;
   char separator_ = ',';
+  bool told_ = false;  // the separator, by a line "sep=;"
 };
 
 std::optional<std::size_t> CsvTable::column(std::string_view name) const {

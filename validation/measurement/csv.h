@@ -3,7 +3,8 @@
 // UTF-8 with or without byte order mark; lines end with LF or CRLF; cells are separated by commas, or by
 // semicolons or tabs where the header is, and then numbers may have decimal commas (one sort per file). Cells may be
 // quoted, "" inside quotes is a quote, spaces around a cell do not count. Blank lines and rows of empty cells are
-// skipped, and so are lines that begin with '#', unless every row does: then '#' is part of the first column.
+// skipped, and so are lines that begin with '#', unless every row does: then '#' is part of the first column. A line
+// "sep=;" above the header, as Excel reads and writes it, names the separator.
 //
 // Every refusal is one InputError that begins with "file:line:" and says what to do.
 #pragma once

@@ -13,7 +13,7 @@ std::vector<Correction> mistaken_readings(const measurement::Measurements&);
 /// Of commanded poses or joint coordinates: those that would change these data.
 std::vector<Correction> mistaken_poses(const measurement::Measurements&);
 
-/// Lengths of poses in another unit: for poses that cannot be reached as they stand.
+/// Lengths of poses in another unit: of such poses hardly any can be reached as they stand.
 std::vector<Correction> mistaken_pose_lengths(const measurement::Measurements&);
 
 /// Every pose off by the same, mm in base axes.

@@ -22,6 +22,11 @@ bool stands(const Mechanism& m, const Vector6& mm_deg) {
   return bool(outcome_of<ModelError>([&] { return configure(m, pose_from(mm_deg)); }));
 }
 
+/// How poses are named where the file of the device names none, by command.
+constexpr const char* poses_of_ones_own =
+    "name poses of your own (validate: --points FILE; map: --x, --y, --z; simulate: --campaign FILE; plan: --before "
+    "FILE)";
+
 /// 1 for the axes of the base along which the tool moves a little, without turning, from where it is.
 Vector3 free_axes(const Mechanism& m, const Vector6& at_mm_deg, double step_mm) {
   Vector3 free = Vector3::Zero();
@@ -39,18 +44,17 @@ void set_box(Region& r, const Vector3& half_mm) {
 
 void shape(Region& r, const CubeSpace& cube, const Mechanism& m) {
   if (!(cube.edge > 0))
-    throw InputError(
-        fmt::format("{}: the device has no workspace; add for example 'workspace: {{cube_edge: 50 mm}}' to "
-                    "its file, or name points by --points",
-                    m.name));
+    throw InputError(fmt::format(
+        "{}: the device has no workspace; add for example 'workspace: {{cube_edge: 50 mm}}' to its file, or {}", m.name,
+        poses_of_ones_own));
   const double half = 1e3 * cube.edge / 2;
   const Vector3 free = free_axes(m, r.centre_mm_deg, 0.01 * half);
   if (free.isZero(0) && !actuators_of(m).empty())
     throw ModelError(
         fmt::format("{}: from the centre of its workspace the tool moves along no axis of the base without turning: "
                     "name its poses, as in 'workspace: {{poses: [{{shift: [100 mm, 0 mm, 0 mm], turn: [0 deg, 0 deg, "
-                    "30 deg]}}]}}', or points by --points",
-                    m.name));
+                    "30 deg]}}]}}', or {}",
+                    m.name, poses_of_ones_own));
   r.words = "cube";
   set_box(r, half * free);
 }

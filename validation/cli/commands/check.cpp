@@ -1,11 +1,16 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
 
 #include "msa/base/error.h"
+#include "msa/base/files.h"
 #include "validation/cli/command.h"
 #include "validation/cli/devices.h"
 #include "validation/cli/made_by.h"
 #include "validation/cli/report.h"
 #include "validation/cli/talk.h"
+#include "validation/json/json_text.h"
 #include "validation/report/check_results.h"
 #include "validation/studies/solve.h"
 #include "validation/theories/theory.h"
@@ -27,6 +32,23 @@ matrix::MatrixConvention convention_of(const CheckArguments& a) {
     throw InputError(fmt::format("--order '{}': write translation-first or rotation-first", a.order));
   c.rotation_first = a.order == "rotation-first";
   return c;
+}
+
+/// The load under which 'deflect solve' computed the matrix, as of --load; "" where the file does not say it.
+std::string load_of_result(const std::string& file) {
+  const std::string text = read_text(file);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == text.npos || text[first] != '{') return "";
+  const Json result = json::parse_json(text, file, "JSON has no NaN and no infinity");
+  const auto load = result.find("load");
+  if (result.value("kind", Json()) != "solve" || load == result.end() || !load->is_array() || load->size() != 6)
+    return "";
+  std::vector<double> components;
+  for (const Json& each : *load) {
+    if (!each.is_number()) return "";
+    components.push_back(each.get<double>());
+  }
+  return fmt::format("{}", fmt::join(components, ","));
 }
 
 /// The closed form's stiffness, which has passed its checks, in N and the unit of length.
@@ -63,10 +85,13 @@ matrix::MatrixCheckOptions options_of(const CheckArguments& a) {
   return o;
 }
 
-void run(const CheckArguments& a) {
+void run(CheckArguments a) {
   require_pages(a.report);
+  if (!a.device.empty() && a.load.empty()) a.load = load_of_result(a.matrix);
   const matrix::MatrixCheck m = timed("checks of " + a.matrix, [&] { return matrix::check_matrix(options_of(a)); });
-  const report::CheckedFiles files{a.matrix, a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints)};
+  const std::string under = a.load.empty() ? "" : " under the load " + a.load;
+  const report::CheckedFiles files{a.matrix,
+                                   a.device.empty() ? a.reference : a.device + " at " + (a.pose + a.joints) + under};
   const std::string report = report::check_report(m, files);
   if (!a.json.empty()) write_result(a.json, report::check_json(m, files));
   if (!a.out.empty()) {
@@ -104,7 +129,11 @@ Command check_command() {
        {"--pose", "x,y,z,roll,pitch,yaw", "pose of --device in mm and deg", &a->pose},
        {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
         &a->joints},
-       {"--load", "fx,fy,fz,mx,my,mz", "load on --device, N and Nmm; contacts are stiff only under load", &a->load},
+       {"--load", "fx,fy,fz,mx,my,mz",
+        "load on --device, N and Nmm; contacts are stiff only under load (default: that of K where 'deflect solve' "
+        "wrote "
+        "it)",
+        &a->load},
        {"--tolerance", "X", "relative difference to ignore (default: the digits printed)", &a->tolerance},
        {"--size", "LENGTH",
         "size of the device, with unit: K's characteristic length must be a tenth to ten times this (default: 1 mm to "

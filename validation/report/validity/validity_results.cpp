@@ -214,15 +214,14 @@ std::string validity_words(const ValidationStudy& s) {
     }
   const double rms = unit.fine * std::sqrt(squares / std::max(1.0, n)),
                u_val = unit.fine * std::sqrt(validation / std::max(1.0, n));
-  if (agrees(s.agreement))
-    return fmt::format(
-        "The errors ({} {} rms) are within the validation uncertainty ({} {}): the error of the model cannot be told "
-        "from zero by these data (p = {}).",
-        digits_of(rms, 3), unit.micro, digits_of(u_val, 3), unit.micro, p_words(s.agreement.p_value));
   return fmt::format(
-      "The errors ({} {} rms) are beyond the validation uncertainty ({} {}): the model is in error there (p {}{}).",
-      digits_of(rms, 3), unit.micro, digits_of(u_val, 3), unit.micro, s.agreement.p_value < 1e-16 ? "" : "= ",
-      p_words(s.agreement.p_value));
+      "{}: a right model, with its tolerances and the noise, has errors as large with a chance of p {}{}. The errors "
+      "are "
+      "{} {} rms; their uncertainty, as one standard deviation (u_val), is {} {}.",
+      agrees(s.agreement) ? "These data cannot tell the error of the model from zero"
+                          : "The model is in error at these readings",
+      s.agreement.p_value < 1e-16 ? "" : "= ", p_words(s.agreement.p_value), digits_of(rms, 3), unit.micro,
+      digits_of(u_val, 3), unit.micro);
 }
 
 std::string validity_report(const ValidationStudy& s) {

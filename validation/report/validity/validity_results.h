@@ -7,7 +7,7 @@
 
 namespace deflect::report {
 
-/// The verdict in a sentence: whether the errors are within the validation uncertainty, and how large they are.
+/// The verdict in words: how large the errors and their uncertainty are, and whether a right model has such errors.
 std::string validity_words(const validity::ValidationStudy&);
 
 std::string validity_report(const validity::ValidationStudy&);
