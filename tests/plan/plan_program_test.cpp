@@ -7,6 +7,7 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/program.h"
+#include "validation/measurement/measurements.h"
 
 namespace deflect {
 namespace {
@@ -180,6 +181,39 @@ TEST_F(PlanProgram, WritesAPage) {
   const test::Run frame = test::deflect("plan portal-semi-rigid --before paper --report " + path("frame.html"));
   EXPECT_EQ(frame.code, 0) << frame.out;
   EXPECT_TRUE(std::filesystem::exists(path("frame.html")));
+}
+
+// The columns of the file say what is read, filled in or not, and a campaign beyond the limits is not written.
+TEST_F(PlanProgram, ReadsTheChannelsOfTheFileWithinTheLimits) {
+  const std::string cells =
+      "p,0,0.5,0,30,0,0,,,0.01,1e-5\nq,0.6,0.9,30,0,0,0,,,0.01,1e-5\nq,0.6,0.9,0,30,0,0,,,0.01,1e-5\n";
+  std::ofstream(path("campaign.csv"))
+      << ("pose,q1_rad,q2_rad,fx_N,fy_N,fz_N,mz_Nmm,ux_mm,thz_rad,sigma_u_mm,sigma_th_rad\n" + cells);
+  std::ofstream(path("lever.yaml"))
+      << "name: lever\nkinematics: {family: chains}\nleg:\n"
+         "  pivot: {joint: motor, rz: {law: linear, stiffness: 2 kNm/rad}}\n  lever: {offset: [300 mm, 0 mm, 0 mm]}\n"
+         "  elbow: {joint: motor, rz: {law: linear, stiffness: 1 kNm/rad}}\n  fore: {offset: [200 mm, 0 mm, 0 mm]}\n"
+         "tolerances: {load: 1 %, leg.pivot.rz.stiffness: 5 %, leg.elbow.rz.stiffness: 5 %}\n";
+  const std::string plan = "plan " + path("lever.yaml") + " --before " + path("campaign.csv") + " -o " +
+                           path("better.csv") + " --json " + path("f.json");
+  ASSERT_EQ(test::deflect(plan).code, 0);
+  const auto header = [&] {
+    return test::contents(path("better.csv")).substr(0, test::contents(path("better.csv")).find('\n'));
+  };
+  EXPECT_NE(header().find("ux_mm,thz_rad"), std::string::npos) << header();
+  for (const char* not_read : {"uy_mm", "uz_mm"}) EXPECT_EQ(header().find(not_read), std::string::npos) << header();
+  EXPECT_EQ(test::contents(path("better.csv")).find(",0,0,0.01"), std::string::npos) << "cells are empty";
+
+  const test::Run limited = test::deflect(plan + " --max-force 10 --max-moment 500");
+  ASSERT_EQ(limited.code, 0) << limited.out;
+  EXPECT_NE(limited.out.find("goes beyond the limits"), std::string::npos) << limited.out;
+  EXPECT_EQ(nlohmann::json::parse(test::contents(path("f.json"))).at("given_within_limits"), false);
+  const measurement::Measurements within = measurement::read_plan(path("better.csv"));
+  ASSERT_EQ(within.readings.size(), 3u);
+  for (const measurement::Reading& r : within.readings) {
+    EXPECT_LE(r.load.head<3>().cwiseAbs().maxCoeff(), 10);
+    EXPECT_LE(r.load.tail<3>().cwiseAbs().maxCoeff(), 0.5);
+  }
 }
 
 TEST_F(PlanProgram, WhatIsWrongIsSaid) {

@@ -8,6 +8,7 @@
 #include "msa/base/error.h"
 #include "msa/base/outcome.h"
 #include "msa/frame/file/frame_file.h"
+#include "msa/mechanism/device_file.h"
 #include "tests/support/cantilever.h"
 #include "validation/effects/effect_file.h"
 #include "validation/fit/fit.h"
@@ -202,6 +203,27 @@ TEST(FitEffects, BesideANumber) {
   EXPECT_EQ(r.parameters[0].path, "materials.steel.E");
   EXPECT_NEAR(r.parameters[0].fitted, 189e9, 0.05 * r.parameters[0].deviation * 189e9);
   EXPECT_NEAR(r.parameters[1].fitted, 1e3 * clamp, 0.05 * r.parameters[1].deviation * 1e3 * clamp);
+}
+
+// The numbers of a machine with one leg have two names each.
+TEST(FitEffects, AToleranceOfTheOneLegGivesWayUnderBothNames) {
+  const Mechanism m = parse_mechanism(
+      "name: lever\nkinematics: {family: chains}\nleg:\n  pivot: {joint: motor, rz: {law: linear, stiffness: 2 "
+      "kNm/rad}}\n"
+      "  lever: {offset: [300 mm, 0 mm, 0 mm]}\ntolerances: {leg.pivot.rz.stiffness: 5 %}\n",
+      "lever.yaml");
+  const measurement::Measurements data = measurement::parse_measurements(
+      "pose,q1_rad,fy_N,uy_mm,sigma_u_mm\na,0,30,1.3,0.01\nb,0.5,20,0.7,0.01\nc,1,25,0.5,0.01\nd,0,-30,-1.3,0.01\n"
+      "e,0.5,-20,-0.7,0.01\nf,1,-25,-0.5,0.01\n",
+      "data.csv");
+  const subject::Subject s(m);
+  const auto of = [&](const std::string& path) {
+    return fit::fit(s, data, fit::free_parameters(s, {path}, {}), {}, parallel::alone).parameters.front();
+  };
+  const fit::FittedParameter one = of("leg[1].pivot.rz.stiffness"), all = of("leg.pivot.rz.stiffness");
+  EXPECT_NEAR(all.deviation, one.deviation, 1e-6 * one.deviation);
+  EXPECT_LT(all.deviation, 0.01);  // of 5 % otherwise
+  EXPECT_TRUE(all.beyond_tolerance.has_value());
 }
 
 TEST(FitEffects, RefusesWhatItCannotSetFree) {

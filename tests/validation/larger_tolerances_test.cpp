@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/effects.h"
@@ -23,11 +25,11 @@ const subject::Subject& truss() {
   return s;
 }
 
-measurement::Measurements built_with(double tolerances, std::uint64_t seed) {
+measurement::Measurements built_with(double tolerances, std::uint64_t seed, const std::vector<Edit>& edits = {}) {
   prediction::SimulationOptions o;
   o.tolerances = tolerances;
   o.seed = seed;
-  frame::FrameDescription f = *truss().frame();
+  frame::FrameDescription f = frame::edited(*truss().frame(), edits);
   f.geometry = Geometry::finite;  // not the one that the diagnosis uses
   return subject::simulate_frame(f, subject::frame_campaign("random", f, seed), o);
 }
@@ -55,6 +57,24 @@ TEST(LargerTolerances, AreToldInPlaceOfAnEffect) {
   const std::string said = report::verdict_words(d);
   EXPECT_NE(said.find(fmt::format("{:.1f} times as far as the tolerances", d.larger_tolerances)), std::string::npos)
       << said;
+}
+
+// A chord of less than half its stiffness, in a frame built two and a half times worse than declared: without the size
+// of tolerances that shows beside the chord, something unknown was said to be left.
+TEST(LargerTolerances, CountAsLargeAsTheyLookBesideWhatWasFound) {
+  const std::vector<Edit> softer = {{"members.C1b.factor", "0.4", Edit::Action::multiply}};
+  for (const auto& [built, least, most] : {std::tuple{1.0, 1.0, 1.0}, {2.5, 1.5, 3.0}}) {
+    const diagnosis::Diagnosis d =
+        diagnosis::diagnose(truss(), built_with(built, 3, softer), test::effects_everywhere(truss()), {{}, 199});
+    EXPECT_FALSE(d.unexplained) << built;
+    ASSERT_EQ(d.missing.size(), 1u) << built;
+    bool told = diagnosis::name_of(d.missing.front()) == "factor@C1b";
+    for (const std::vector<std::string>& tie : d.indistinguishable)
+      told = told || std::find(tie.begin(), tie.end(), "factor@C1b") != tie.end();
+    EXPECT_TRUE(told) << built;
+    EXPECT_GE(d.tolerance_scale, least) << built;
+    EXPECT_LE(d.tolerance_scale, most) << built;
+  }
 }
 
 }  // namespace

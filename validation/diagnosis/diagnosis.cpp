@@ -270,6 +270,7 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   // A search that went by another effect can find a better fit of one than the first step did.
   d.candidates = told.candidates.fitted_again(told.observations, told.null, d.candidates, as_fitted(found));
   d.unexplained = e.left.significant();
+  d.log_odds_unknown = e.left.log_evidence + std::log(unknown_beside);
   if (!found.effects.empty())
     weigh(d, told.larger, probability_of_unknown(e.left.log_evidence, unknown_beside), together);
   sort_candidates(d, told.observations);
@@ -345,11 +346,14 @@ std::vector<double> noise_beside(const Observations& o, const Diagnosis& d, cons
   return {};
 }
 
-/// How large tolerances look beside what was found, where that is all.
+/// How large tolerances look beside what was found. Where that is not all, larger ones must be likelier than something
+/// unknown.
 double scale_beside(const Observations& o, const Diagnosis& d) {
-  if (d.missing.empty() || d.unexplained) return o.tolerance_scale();
+  if (d.missing.empty()) return o.tolerance_scale();
   const subject::Subject right = subject_with(o, d.missing, d.fit.values);
-  return tolerance_scale_beside(o.granted(right), right);
+  const Observations seen = o.granted(right);
+  if (d.unexplained && larger_tolerances(seen.about(right)).log_odds < d.log_odds_unknown) return o.tolerance_scale();
+  return tolerance_scale_beside(seen, right);
 }
 
 }  // namespace

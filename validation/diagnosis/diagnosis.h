@@ -61,6 +61,7 @@ struct Diagnosis {
   std::size_t set_aside = 0;          ///< readings that are gross outliers given what was found
   std::size_t set_aside_in_play = 0;  ///< of these, the ones at which the load leaves play of what was found open
   bool unexplained = false;
+  double log_odds_unknown = 0;                           ///< ln of the odds of something unknown beside what was found
   double share_unexplained = 0;                          ///< of the misfit beyond noise and tolerances
   std::string pattern;                                   ///< the pattern of what is left
   std::string nearest;                                   ///< entry that explains most of what is left, …

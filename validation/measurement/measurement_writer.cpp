@@ -91,8 +91,9 @@ std::vector<Column> columns_of(const Measurements& m, const std::array<bool, 6>&
   if (m.temperature_recorded || any([](const Reading& r) { return r.temperature_C != 20; }))
     columns.push_back({"temperature_C", [](const Reading& r) { return number_text(r.temperature_C); }});
   const auto& sensors = m.instruments.sensors;
+  const bool told = std::find(to_fill_in.begin(), to_fill_in.end(), true) != to_fill_in.end();
   for (std::size_t i = 0; i < 6; ++i)
-    if ((i < 3 && sensors.empty()) || to_fill_in[i] ||
+    if ((i < 3 && sensors.empty() && !told) || to_fill_in[i] ||
         any([i](const Reading& r) { return r.displacement[i].has_value(); }))
       columns.push_back(
           {displacement_columns[i], [i](const Reading& r) { return number_text(r.displacement[i], i < 3 ? 1e3 : 1); }});

@@ -67,6 +67,15 @@ std::vector<std::size_t> parameters_of(const std::vector<subject::Tolerance>& al
   return out;
 }
 
+/// The plan to be filled in.
+Measurements empty_cells(Measurements plan) {
+  for (Reading& r : plan.readings) {
+    r.displacement.fill(std::nullopt);
+    std::fill(r.sensors.begin(), r.sensors.end(), std::nullopt);
+  }
+  return plan;
+}
+
 class Seeing {
  public:
   Seeing(const subject::Subject& s, const std::vector<effects::Effect>& effects, const ForesightOptions& o,
@@ -75,7 +84,7 @@ class Seeing {
 
   Insight insight(const Measurements& plan, const parallel::Work& work) const {
     Insight out;
-    out.readings = plan;
+    out.readings = empty_cells(plan);
     const Measurements data = filled_in(subject_, plan, o_, false, read_);
     compare::ComparisonOptions options;
     options.as_recorded = true;

@@ -130,10 +130,11 @@ std::vector<std::size_t> enough(RivalryAim aim, std::size_t blocks, bool in_orde
 class ReadBy {
  public:
   ReadBy(const subject::Subject& s, PossibleSensor sensor, const Measurements& all, std::size_t taken,
-         const SensorOptions& o)
+         const std::vector<Rival>& rivals, const SensorOptions& o)
       : sensor_(std::move(sensor)),
         with_(subject::with_sensors(s, {sensor_})),
-        prospect_(with_, possible(with_.placed(read_by(all, {sensor_}, taken)), taken), o.noise, parallel::alone),
+        prospect_(with_, possible(with_.placed(read_by(all, {sensor_}, taken)), taken), o.noise, parallel::alone,
+                  subject_with_likeliest(with_, rivals)),
         o_(o) {}
 
   /// Probability expected of the true rival to first order, with the rivals as fitted.
@@ -185,7 +186,7 @@ std::vector<NewSensor> new_sensors(const subject::Subject& s, const Measurements
   std::vector<std::optional<ReadBy>> read(order.size());
   std::vector<std::pair<double, std::size_t>> promising(order.size());
   parallel::for_each_case(order.size(), 1, work.threads, [&](std::size_t i) {
-    read[i].emplace(s, sensors[order[i]], all, taken, o);
+    read[i].emplace(s, sensors[order[i]], all, taken, rivals, o);
     promising[i] = {-read[i]->promise(rivals), i};
   });
   std::stable_sort(promising.begin(), promising.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

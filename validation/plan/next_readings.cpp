@@ -101,7 +101,7 @@ Judged judge(const subject::Subject& s, const Measurements& data, const Measurem
   Possible whole;
   whole.all = s.placed(measurement::joined({data, added}));
   whole.taken = data.readings.size();
-  const Prospect prospect(s, std::move(whole), o.noise, work);
+  const Prospect prospect(s, std::move(whole), o.noise, work, subject_with_likeliest(s, rivals));
   const Rivalry rivalry(prospect, s, rivals, o.draws, o.seed, work.quiet());
   Refits refits = rivalry.refitted(work.quiet());
   return {{added.readings.size(), rivalry.probability(refits.gain), rivalry.pairs(refits.gain)}, std::move(refits.at)};
@@ -221,7 +221,8 @@ Plan next_readings(const subject::Subject& s, const Measurements& data, std::vec
   for (const measurement::Reading& r : data.readings)
     for (std::size_t i = 0; i < 6; ++i) out.read[i] = out.read[i] || r.displacement[i];
   const bool sequences = remembers(s, data, rivals);
-  const Prospect prospect(s, possible_readings(s, data, o.limits, sequences, o.seed), o.noise, work.part(0, 0.2));
+  const Prospect prospect(s, possible_readings(s, data, o.limits, sequences, o.seed), o.noise, work.part(0, 0.2),
+                          subject_with_likeliest(s, rivals));
   out.possible = prospect.readings().readings.size() - out.taken;
   Planning planning(s, data, prospect, Rivalry(prospect, s, std::move(rivals), o.draws, o.seed, work.part(0.2, 0.4)), o,
                     work.threads);

@@ -55,7 +55,8 @@ MatrixX less_of(const MatrixX& O) {
 
 }  // namespace
 
-Prospect::Prospect(const subject::Subject& s, Possible p, const Noise& noise, const parallel::Work& work)
+Prospect::Prospect(const subject::Subject& s, Possible p, const Noise& noise, const parallel::Work& work,
+                   const std::optional<subject::Subject>& right)
     : possible_(std::move(p)), standing_(s.stand(possible_.all)) {
   const Measurements& all = possible_.all;
   values_ = measurement::measured_values(all, standing_->sensor_forms(all));
@@ -68,8 +69,9 @@ Prospect::Prospect(const subject::Subject& s, Possible p, const Noise& noise, co
     if (!t.pose) names_.push_back(t.name);
   prediction::PredictionOptions linear;
   linear.geometry = Geometry::linear;
+  const auto deflecting = right ? right->stand(all, standing_.get()) : standing_;
   uncertainty_.emplace(model.A, values_, sigma_of(values_, known_, all, noise),
-                       standing_->predict(all, linear, work.quiet()), s.load_tolerance());
+                       deflecting->predict(all, linear, work.quiet()), s.load_tolerance());
   tolerances_ = white(model.A.shared);
   const auto alone = [&](Measurements m) {
     std::shared_ptr<const subject::Standing> standing = s.stand(m);

@@ -19,8 +19,10 @@ struct Noise {
 /// All measured numbers, their noise, and the subject's tolerances; the numbers of the readings taken come first.
 class Prospect {
  public:
-  /// Throws InputError where σ of a number is not known. The subject, whose tolerances these are, is copied.
-  Prospect(const subject::Subject&, Possible, const Noise&, const parallel::Work&);
+  /// Throws InputError where σ of a number is not known. The subject, whose tolerances these are, is copied. Errors of
+  /// loads are proportional to what `right` reads; without it, the subject.
+  Prospect(const subject::Subject&, Possible, const Noise&, const parallel::Work&,
+           const std::optional<subject::Subject>& right = {});
 
   const Possible& possible() const { return possible_; }
   const measurement::Measurements& readings() const { return possible_.all; }

@@ -1,5 +1,6 @@
 #include "validation/plan/rival.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "msa/base/index.h"
@@ -40,6 +41,11 @@ std::vector<Rival> rivals_of(const diagnosis::FoundTie& tie, const std::vector<e
 
 subject::Subject subject_with(const subject::Subject& s, const Rival& r, const VectorX& values) {
   return effects::PreparedEffects(s, r.hypothesis)(values);
+}
+
+subject::Subject subject_with_likeliest(const subject::Subject& s, const std::vector<Rival>& all) {
+  const Rival& best = *std::ranges::max_element(all, {}, &Rival::probability);
+  return subject_with(s, best, best.values);
 }
 
 RivalModel::RivalModel(const Prospect& prospect, const subject::Subject& s, Rival rival)

@@ -33,6 +33,8 @@ struct Rival {
 std::vector<Rival> rivals_of(const diagnosis::FoundTie&, const std::vector<effects::Effect>&);
 
 subject::Subject subject_with(const subject::Subject&, const Rival&, const VectorX& values);
+/// With the most probable one as fitted.
+subject::Subject subject_with_likeliest(const subject::Subject&, const std::vector<Rival>&);
 
 struct Linearised {
   VectorX at;         ///< coordinates
