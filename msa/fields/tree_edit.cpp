@@ -111,16 +111,16 @@ YamlNode& opened(YamlNode& root, const TreePlace& place) {
 /// What to say of an append to what is neither a list nor a set of named entries. A law is appended to a list that may
 /// be written as its only element.
 std::string where_to_append(const YamlNode& node, const YamlNode& value, const std::string& path) {
-  if (node.kind != Kind::map) return "is a single value: nothing can be appended to it, write set";
+  if (node.kind != Kind::map) return "is not a list but a single value: nothing can be appended to it, write set";
   std::vector<std::string> lists;
   for (std::size_t i = 0; i < node.children.size(); ++i) {
     const YamlNode& child = node.children[i];
     const bool takes = value.kind == Kind::map ? child.collapses || child.entries : child.kind == Kind::list;
     if (takes) lists.push_back(node.keys[i]);
   }
-  std::string out = "has fields of its own, and only a list or named entries can be appended to";
-  if (lists.empty()) return out + "; none of its fields is one: write set";
-  return out + fmt::format(": append to one of {}, as in '{}'", fmt::join(lists, ", "), joined(path, lists.front()));
+  if (lists.empty()) return "is not a list, and none of its fields is one: nothing can be appended to it, write set";
+  return fmt::format("is not a list: append to one of its fields {}, as in '{}'", fmt::join(lists, ", "),
+                     joined(path, lists.front()));
 }
 
 void append(YamlNode& node, const YamlNode& value, const std::string& path, const std::string& here) {

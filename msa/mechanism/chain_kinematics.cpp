@@ -57,6 +57,39 @@ std::string left_open(const Closed& c) {
   return fmt::format("{:.4g} mm and {:.4g} deg are left open", 1e3 * c.shift, c.turn * 180 / pi);
 }
 
+/// The rotation nearby with which this leg takes the position: where one direction is missing, its nearest pose tells
+/// how far the rotation alone would have to go. Nothing where the leg lacks a motion of the position itself.
+std::optional<Matrix3> rotation_taken(ChainAssembly& a, std::size_t leg, Pose pose) {
+  constexpr int most_turns = 20;
+  constexpr double largest_turn = 0.3, farthest_turn = 1.5;  // rad: of a step, of what is called nearby
+  for (int i = 0; i < most_turns; ++i) {
+    const Closed c = close_leg(a, leg, pose);
+    if (c.closed) return pose.R_WT;
+    const Frame& end = c.trace.legs[0].end;
+    const Eigen::AngleAxisd turn(end.R * pose.R_WT.transpose());
+    const double turned = a.length * turn.angle(), gap = (end.p - pose.p_WT).squaredNorm() + turned * turned;
+    if (!(std::abs(turned) > 1e-6 * std::sqrt(gap))) return std::nullopt;
+    const double needed = turn.angle() * gap / (turned * turned);
+    if (!(std::abs(needed) < farthest_turn)) return std::nullopt;
+    const double angle = std::clamp(needed, -largest_turn, largest_turn);
+    pose.R_WT = Eigen::AngleAxisd(angle, turn.axis()).toRotationMatrix() * pose.R_WT;
+  }
+  return std::nullopt;
+}
+
+/// "; this position is taken with roll, pitch, yaw = 0, 0, 26.24699 deg", where the mechanism has such a rotation: what
+/// depends on the position must be given as it is there.
+std::string rotation_words(ChainAssembly a, std::size_t leg, const Pose& pose) {
+  const std::optional<Matrix3> R = rotation_taken(a, leg, pose);
+  if (!R) return "";
+  const Vector3 deg = (rpy_from_rotation(*R) * 180 / pi * 1e9).array().round() / 1e9;
+  const Pose taken{pose.p_WT, rotation_from_rpy(deg(0) * pi / 180, deg(1) * pi / 180, deg(2) * pi / 180)};
+  for (std::size_t each = 0; each < a.legs.size(); ++each)
+    if (!close_leg(a, each, taken).closed) return "";
+  return fmt::format("; this position is taken with roll, pitch, yaw = {:.12g}, {:.12g}, {:.12g} deg", deg(0) + 0.0,
+                     deg(1) + 0.0, deg(2) + 0.0);
+}
+
 /// The joints of a leg in the order of their states, with their names.
 void joints_of(const Named<Part>& parts, const std::string& within,
                std::vector<std::pair<std::string, const Joint*>>& out) {
@@ -204,8 +237,8 @@ ChainAssembly home_assembly(const Mechanism& m) {
     a.pose = {home.p, home.R};
     for (std::size_t leg = 0; leg < a.legs.size(); ++leg)
       if (const Closed c = close_leg(a, leg, a.pose); !c.closed)
-        throw ModelError(fmt::format("{}does not reach kinematics.home from the joints' home coordinates: {}",
-                                     leg_name(a, leg), left_open(c)));
+        throw ModelError(fmt::format("{}does not reach kinematics.home from the joints' home coordinates: {}{}",
+                                     leg_name(a, leg), left_open(c), rotation_words(a, leg, a.pose)));
   } else if (const Closed c = close_all(a); !c.closed) {
     throw ModelError(
         fmt::format("the loops do not close from the joints' home coordinates: {}; give kinematics.home, a "
@@ -233,7 +266,8 @@ void move_to(ChainAssembly& a, const Pose& pose) {
     for (std::size_t leg = 0; leg < a.legs.size(); ++leg) {
       const Closed c = close_leg(a, leg, a.pose);
       if (i == steps && !c.closed)
-        throw ModelError(fmt::format("{}does not take this pose: {} at the nearest", leg_name(a, leg), left_open(c)),
+        throw ModelError(fmt::format("{}does not take this pose: {} at the nearest{}", leg_name(a, leg), left_open(c),
+                                     rotation_words(a, leg, pose)),
                          {"does not take this pose", static_cast<int>(leg) + 1});
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "tests/support/frames.h"
 
 namespace deflect::frame {
@@ -144,6 +145,35 @@ loads: {wind: {nodes: {B: {fx: 500 N}, C: {fx: 500 N}}}}
   EXPECT_NEAR(s.u("B")(0), sway, 1e-7 * sway);
   EXPECT_NEAR(s.u("B")(4), theta * sway, 1e-7 * theta * sway);
   EXPECT_NEAR(std::abs(s.member("beam").start(5)), S * theta * sway, 1e-6 * S * theta * sway);
+}
+
+// A member's own y axis lies in the plane where its local y points up: the frame turns about z there. A law about y was
+// read, and did nothing.
+TEST(FrameLaws, AcrossThePlaneAreRefused) {
+  const auto refusal = [](const std::string& low, const std::string& supports, const std::string& springs) {
+    const std::string text =
+        "name: f\nplane: xz\nmaterials: {steel: {E: 210 GPa, nu: 0.3}}\n"
+        "sections: {rod: {shape: round, diameter: 20 mm}}\n"
+        "nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m], C: [1 m, 0 m, 1 m]}\nmembers:\n"
+        "  low: {from: A, to: B, section: rod, material: steel" +
+        low + "}\n  up: {from: B, to: C, section: rod, material: steel}\nsupports:\n  A: " + supports + "\n" + springs +
+        "loads: {push: {nodes: {C: {fx: 1 N}}}}\n";
+    return outcome_of<InputError>([&] { return parse_frame(text, "f.yaml"); }).why;
+  };
+  const std::string law = "{law: linear, stiffness: 5 kNm/rad}", push = "{law: linear, stiffness: 5 kN/mm}";
+  EXPECT_EQ(refusal(", start: {rz: " + law + ", tx: " + push + "}", "{holds: pinned, ry: " + law + "}",
+                    "springs: {s: {node: C, ux: 5 N/mm}}\n"),
+            "");
+  EXPECT_EQ(
+      refusal(", start: {ry: " + law + "}", "clamped", ""),
+      "f.yaml:7: members.low.start.ry: has no effect, because the plane xz of the frame holds ry here: the freedoms "
+      "that it leaves are tx, ty, rz; write one of them, or take the law away");
+  EXPECT_TRUE(refusal(", end: {beside: {rx: " + law + "}}, release_to: [rx]", "clamped", "")
+                  .starts_with("f.yaml:7: members.low.end.rx: has no effect"));
+  EXPECT_TRUE(
+      refusal("", "{holds: clamped, rz: " + law + "}", "").starts_with("f.yaml:10: supports.A.rz: has no effect"));
+  EXPECT_TRUE(refusal("", "clamped", "springs: {s: {node: C, uy: 5 N/mm}}\n")
+                  .starts_with("f.yaml:11: springs.s.uy: has no effect"));
 }
 
 TEST(FrameLaws, ACoupledSpringIsItsMatrix) {

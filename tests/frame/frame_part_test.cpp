@@ -103,9 +103,10 @@ TEST(FramePart, AnAppendToWhatHoldsListsNamesThem) {
     return outcome_of<InputError>([&] { return edited(bench(), {edit}); }).why;
   };
   const std::string at_end = refusal("members.beam.start");
-  EXPECT_NE(at_end.find("append to one of tx, ty, tz, rx, ry, rz, as in 'members.beam.start.tx'"), at_end.npos)
+  EXPECT_NE(at_end.find("append to one of its fields tx, ty, tz, rx, ry, rz, as in 'members.beam.start.tx'"),
+            at_end.npos)
       << at_end;
-  EXPECT_NE(refusal("materials.steel.E").find("is a single value"), std::string::npos);
+  EXPECT_NE(refusal("materials.steel.E").find("but a single value"), std::string::npos);
   EXPECT_EQ(refusal("members.beam").find("y_axis"), std::string::npos);  // holds numbers
 }
 

@@ -45,6 +45,51 @@ TEST(Refusal, PoseOutOfReachNamesTheLegAndWhatIsLeftOpen) {
   expect_says(refused(device("fanuc-r2000ic"), at(5000, 0, 0)), {"fanuc-r2000ic", ": does not take this pose: 2"});
 }
 
+// Two driven cranks hold the joint of their couplers; the tool is fixed to one coupler, so that its yaw depends on
+// where the joint is: by the cosine rule in the triangle of crank, coupler and the line from the motor to the joint.
+TEST(Refusal, AnAngleThatDependsOnThePositionIsTold) {
+  const std::string text = R"(
+name: fivebar
+kinematics: {family: chains, home: {shift: [0 mm, 250 mm, 0 mm]HOME}}
+materials: {alu: {E: 70 GPa, nu: 0.33}}
+sections: {bar: {shape: box, width_y: 30 mm, height_z: 40 mm, wall: 3 mm}}
+leg:
+  motor: {joint: motor, home: {rz: 120 deg}}
+  crank: {member: bar, material: alu, along: [180 mm, 0 mm, 0 mm]}
+  elbow: {joint: revolute, home: {rz: -60 deg}}
+  coupler: {member: bar, material: alu, along: [200 mm, 0 mm, 0 mm]}
+mounts:
+  - {base: {shift: [-100 mm, 0 mm, 0 mm]}}
+  - base: {shift: [100 mm, 0 mm, 0 mm]}
+    leg:
+      motor: {joint: motor, home: {rz: 60 deg}}
+      crank: {member: bar, material: alu, along: [180 mm, 0 mm, 0 mm]}
+      elbow: {joint: revolute, home: {rz: 60 deg}}
+      coupler: {member: bar, material: alu, along: [200 mm, 0 mm, 0 mm]}
+      wrist: {joint: revolute, home: {rz: -120 deg}}
+)";
+  const auto with_home = [&](const std::string& turn) {
+    std::string t = text;
+    return parse_mechanism(t.replace(t.find("HOME"), 4, turn), "fivebar");
+  };
+  const auto yaw_at = [](double x, double y) {
+    const double d = std::hypot(x + 100, y), at_joint = std::acos((200 * 200 + d * d - 180 * 180) / (2 * 200 * d));
+    return (std::atan2(y, x + 100) - at_joint) * 180 / pi;
+  };
+  const auto told = [](const std::string& message) {
+    const std::string before = "roll, pitch, yaw = 0, 0, ";
+    const std::size_t from = message.find(before);
+    return from == message.npos ? -1000 : std::stod(message.substr(from + before.size()));
+  };
+  EXPECT_NEAR(told(refusal([&] { home_pose(with_home("")); })), yaw_at(0, 250), 1e-7);
+  const Mechanism m = with_home(fmt::format(", turn: [0 deg, 0 deg, {:.10f} deg]", yaw_at(0, 250)));
+  EXPECT_NEAR(told(refused(m, at(10, 260, 0, 0, 0, yaw_at(0, 250)))), yaw_at(10, 260), 1e-7);
+  EXPECT_EQ(refused(m, at(10, 260, 0, 0, 0, told(refused(m, at(10, 260, 0, 0, 0, yaw_at(0, 250)))))), "")
+      << "can be copied";
+  // Of what is out of reach nothing is told.
+  EXPECT_EQ(told(refused(m, at(900, 0, 0))), -1000);
+}
+
 TEST(Refusal, LimitsNameLegJointValueAndLimit) {
   expect_says(refused(device("stewart-6ups"), at(0, 0, 3900)),
               {"leg 1: slide tz would stand at 2234.27 mm, above its limit of 2000 mm"});

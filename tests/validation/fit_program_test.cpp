@@ -1,6 +1,7 @@
 // `fit`, `predict` and `compare --validation` as a user runs them.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -89,6 +90,22 @@ TEST_F(FitProgram, RefusesWithTheRemedy) {
     EXPECT_NE(run.out.find(words), std::string::npos) << arguments << "\n" << run.out;
   }
   EXPECT_FALSE(fs::exists(file("x.yaml")));
+}
+
+// solve is linear: a reader who compares both is told why they differ.
+TEST_F(FitProgram, PredictSaysInWhichGeometryAndWhatItTakesFromIt) {
+  const std::string help = run("predict --help").out;
+  for (const char* words : {"deformed shape", "'solve' is linear", "a fifth"})
+    EXPECT_NE(help.find(words), std::string::npos) << words << "\n" << help;
+  const std::string at = " --load 50,0,0 --json " + file("at.json");
+  ASSERT_EQ(run("predict haptic-6psu --at 25,25,198.9 --sigma 0.002 --sigma-rotation 1e-5" + at).code, 0);
+  const auto uz = json("at.json")["numbers"][2];
+  ASSERT_EQ(run("solve haptic-6psu --pose 25,25,198.9 --geometry finite" + at).code, 0);
+  const double finite = json("at.json")["analytic"]["displacement"][2];
+  EXPECT_NEAR(uz["value"], finite, 1e-6);
+  ASSERT_EQ(run("solve haptic-6psu --pose 25,25,198.9" + at).code, 0);
+  const double linear = json("at.json")["analytic"]["displacement"][2];
+  EXPECT_GT(uz["deviation"]["tolerances"], 0.2 * std::abs(finite - linear));
 }
 
 TEST_F(FitProgram, AFrameIsPredictedUnderFactorsOnItsLoadCases) {

@@ -92,6 +92,19 @@ TEST_F(ShowProgram, FramesShowTheirNodesAndWhatHoldsThem) {
   EXPECT_NEAR(d.at("members").at(1).at("axes").at(2).at(2).get<double>(), 1, 1e-12) << "its web stands upright";
 }
 
+TEST_F(ShowProgram, FramesShowTheirSpringsLawsLoadCasesAndSensors) {
+  const json portal = shown("portal-semi-rigid"), rail = shown("beam-on-springs");
+  EXPECT_EQ(rail.at("springs").at(1).at("name"), "pad1");
+  EXPECT_EQ(rail.at("springs").at(1).at("words"), "N2 to the ground; uz: 20000 N/mm");
+  EXPECT_EQ(rail.at("loads").at(0).at("words"), "N1: fz -20000 N");
+  EXPECT_EQ(rail.at("sensors").size(), 8u);
+  EXPECT_EQ(rail.at("sensors").at(7).at("words"), "strain of member rail4 at 1 of its length, y = 0 mm, z = -70 mm");
+  ASSERT_FALSE(portal.at("laws").empty());
+  EXPECT_NE(portal.at("laws").at(0).at("words").get<std::string>().find("linear"), std::string::npos);
+  for (const char* word : {"pad1", "N2 to the ground; uz: 20000 N/mm", "load case", "at 9", "S_mid"})
+    EXPECT_NE(out.find(word), out.npos) << word << "\n" << out;
+}
+
 TEST_F(ShowProgram, WhatCannotStandIsDrawnWithItsMotions) {
   write("loose.yaml", loose);
   const json d = shown(path("loose.yaml"));

@@ -1,6 +1,7 @@
 #include "validation/figures/drawing.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -224,6 +225,95 @@ Outcome<Configuration> at_home(const Mechanism& m) {
   return outcome_of<ModelError>([&] { return configure(m, home_pose(m)); });
 }
 
+using EntryKind = DrawnEntry::Kind;
+using EntryWords = std::vector<std::string>;
+
+/// "ry: linear, clearance; ry beside: friction"
+void add_laws(const frame::FreedomLaws& laws, const frame::FreedomNames& names, EntryWords& out) {
+  for (std::size_t i = 0; i < 6; ++i)
+    for (const bool beside : {false, true}) {
+      EntryWords kinds;
+      for (const Law& law : laws.at(i, beside)) kinds.emplace_back(row_of(law).name);
+      if (!kinds.empty())
+        out.push_back(fmt::format("{}{}: {}", names[i], beside ? " beside" : "", fmt::join(kinds, ", ")));
+    }
+}
+
+std::string laws_words(const frame::FreedomLaws& laws, const frame::FreedomNames& names) {
+  EntryWords out;
+  add_laws(laws, names, out);
+  return fmt::format("{}", fmt::join(out, "; "));
+}
+
+std::string spring_words(const frame::FrameSpring& s) {
+  EntryWords out = {fmt::format("{} to {}", s.node, s.to.empty() ? "the ground" : s.to)};
+  if (s.coupled) out.emplace_back("6×6 stiffness");
+  for (std::size_t i = 0; i < 6; ++i)
+    if (s.stiffness[i])
+      out.push_back(fmt::format("{}: {:.6g} {}", frame::node_freedoms[i], (i < 3 ? 1e-3 : 1e3) * *s.stiffness[i],
+                                i < 3 ? "N/mm" : "Nmm/rad"));
+  add_laws(s.laws, frame::node_freedoms, out);
+  return fmt::format("{}", fmt::join(out, "; "));
+}
+
+/// "nodes B, M", with the names that have it.
+template <class T>
+void add_names(const char* what, const Named<T>& all, EntryWords& out) {
+  EntryWords names;
+  for (const auto& [name, value] : all) names.push_back(name);
+  if (!names.empty()) out.push_back(fmt::format("{} {}", what, fmt::join(names, ", ")));
+}
+
+std::string load_words(const frame::LoadCase& load) {
+  EntryWords out;
+  for (const auto& [node, wrench] : load.nodes) {
+    EntryWords components;
+    for (Eigen::Index i = 0; i < 6; ++i)
+      if (wrench(i) != 0)
+        components.push_back(fmt::format("{} {:.6g} {}", nth(frame::wrench_names, i), (i < 3 ? 1 : 1e3) * wrench(i),
+                                         i < 3 ? "N" : "Nmm"));
+    out.push_back(
+        fmt::format("{}: {}", node, components.empty() ? "0" : fmt::format("{}", fmt::join(components, ", "))));
+  }
+  add_names("along members", load.members, out);
+  add_names("heated members", load.temperature, out);
+  add_names("moved supports", load.displacements, out);
+  if (!load.gravity.isZero(0)) out.emplace_back("weight");
+  return fmt::format("{}", fmt::join(out, "; "));
+}
+
+std::string sensor_words(const frame::FrameSensor& s) {
+  switch (s.reads) {
+    case frame::FrameSensor::Reads::displacement:
+      return fmt::format("{} of node {}", s.direction, s.of);
+    case frame::FrameSensor::Reads::force:
+      return fmt::format("{} of member {}", nth(frame::section_force_names, s.component), s.of);
+    case frame::FrameSensor::Reads::strain:
+      return fmt::format("strain of member {} at {:g} of its length, y = {:g} mm, z = {:g} mm", s.of, s.at, 1e3 * s.y,
+                         1e3 * s.z);
+    case frame::FrameSensor::Reads::reaction:
+      break;
+  }
+  return fmt::format("{} of support {}", nth(frame::wrench_names, s.component), s.of);
+}
+
+/// Springs, laws at supports and at ends of members, load cases, sensors, each kind in the order of the file.
+std::vector<DrawnEntry> entries_of(const frame::FrameDescription& f) {
+  std::vector<DrawnEntry> out;
+  for (const auto& [name, spring] : f.springs) out.push_back({EntryKind::spring, name, spring_words(spring)});
+  const auto add = [&](const std::string& place, const frame::FreedomLaws& laws, const frame::FreedomNames& names) {
+    if (!laws.empty()) out.push_back({EntryKind::law, place, laws_words(laws, names)});
+  };
+  for (const auto& [node, support] : f.supports) add("support " + node, support.laws, frame::node_freedoms);
+  for (const auto& [name, member] : f.members) {
+    add(fmt::format("start of {}", name), member.start, frame::member_freedoms);
+    add(fmt::format("end of {}", name), member.end, frame::member_freedoms);
+  }
+  for (const auto& [name, load] : f.loads) out.push_back({EntryKind::load, name, load_words(load)});
+  for (const auto& [name, sensor] : f.sensors) out.push_back({EntryKind::sensor, name, sensor_words(sensor)});
+  return out;
+}
+
 }  // namespace
 
 SectionOutline outline_of(const Section& section) {
@@ -275,6 +365,7 @@ MachineDrawing drawing_of(const frame::FrameDescription& f) {
         if (held[i]) node.held += (node.held.empty() ? "" : " ") + std::string(frame::node_freedoms[i]);
     d.frames.push_back(std::move(node));
   }
+  d.entries = entries_of(f);
   set_motions(d, built.model, d.points.size());
   return d;
 }

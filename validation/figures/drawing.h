@@ -62,6 +62,17 @@ struct DrawnMotion {
   std::vector<Vector3> displacements;
 };
 
+/// What a frame's file holds beside members and nodes: a spring, laws at a support or an end of a member, a load case,
+/// a sensor.
+struct DrawnEntry {
+  enum class Kind { spring, law, load, sensor };
+  static constexpr std::array kinds = {Kind::spring, Kind::law, Kind::load, Kind::sensor};
+  Kind kind = Kind::spring;
+  std::string name, words;  ///< "support A", "ry: linear"
+};
+inline constexpr std::array<const char*, 4> entry_kinds = {"spring", "law", "load case", "sensor"};
+inline constexpr std::array<const char*, 4> entry_lists = {"springs", "laws", "loads", "sensors"};
+
 struct MachineDrawing {
   std::string name, about;
   bool frame = false;
@@ -77,6 +88,7 @@ struct MachineDrawing {
   std::vector<DrawnJoint> joints;
   std::vector<DrawnPoint> frames;  ///< base and tool of a machine; of a frame its nodes
   std::vector<DrawnInstrument> instruments;
+  std::vector<DrawnEntry> entries;   ///< of a frame
   std::vector<DrawnMotion> motions;  ///< where it cannot stand
   std::string trouble;               ///< why, or which loops are open; "" where all is well
 

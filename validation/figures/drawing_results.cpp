@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "msa/base/index.h"
 #include "msa/mechanism/joint_table.h"
 #include "validation/json/json_text.h"
 #include "validation/report/text.h"
@@ -99,6 +100,13 @@ std::vector<std::vector<std::string>> node_rows(const MachineDrawing& d) {
   return rows;
 }
 
+std::vector<std::vector<std::string>> entry_rows(const MachineDrawing& d, DrawnEntry::Kind kind) {
+  std::vector<std::vector<std::string>> rows = {{nth(entry_kinds, kind), ""}};
+  for (const DrawnEntry& e : d.entries)
+    if (e.kind == kind) rows.push_back({e.name, e.words});
+  return rows;
+}
+
 std::string table(std::vector<std::vector<std::string>> rows) {
   if (rows.size() < 2) return "";
   const std::size_t all = rows.size() - 1;
@@ -121,6 +129,7 @@ std::string drawing_report(const MachineDrawing& d) {
   if (!d.frame) text += driven.empty() ? "nothing is driven\n" : fmt::format("driven: {}\n", fmt::join(driven, ", "));
   text += table(member_rows(d)) + table(joint_rows(d)) + table(instrument_rows(d));
   if (d.frame) text += table(node_rows(d));
+  for (const DrawnEntry::Kind kind : DrawnEntry::kinds) text += table(entry_rows(d, kind));
   if (!d.trouble.empty()) text += fmt::format("\n{}\n", d.trouble);
   for (const DrawnMotion& motion : d.motions) text += fmt::format("  {}\n", motion.words);
   return text;
@@ -166,6 +175,12 @@ std::string drawing_json(const MachineDrawing& d) {
   for (const DrawnInstrument& i : d.instruments) {
     out["instruments"].push_back({{"name", i.name}, {"words", i.words}, {"at_mm", list_in_mm(i.at)}});
     if (i.axis) out["instruments"].back()["axis"] = {tidy(i.axis->x()), tidy(i.axis->y()), tidy(i.axis->z())};
+  }
+  for (const DrawnEntry::Kind kind : DrawnEntry::kinds) {
+    if (!d.frame) break;
+    Json& list = out[nth(entry_lists, kind)] = Json::array();
+    for (const DrawnEntry& e : d.entries)
+      if (e.kind == kind) list.push_back({{"name", e.name}, {"words", e.words}});
   }
   for (const Vector3& p : d.points) out["points_mm"].push_back(list_in_mm(p));
   for (const MachineDrawing::Line& line : d.lines) out["lines"].push_back({line.a, line.b, line.member});

@@ -193,11 +193,13 @@ export function drawn(d) {
     columns: ['name', 'what it is', 'at_mm', 'reads along'],
     rows: d.instruments.map((i) => [i.name, i.words, place(i.at_mm), i.axis ? axis(i.axis) : '']),
   });
+  const entries = (list) => () => ({columns: ['name', 'what it is'], rows: d[list].map((e) => [e.name, e.words])});
   return [
     figure('machine', d.trouble ? 'As drawn: it does not stand' : 'As drawn, unloaded', 'Before any solution. Drag to turn, scroll or pinch to zoom; a part under the pointer says what it is.', attempt('The machine', () => picture(d))),
     figure('members', 'Members', 'Lengths from node to node; axes of the section in axes of the base.', numbers('members', members, {open: d.members.length <= 30})),
     d.joints.length ? figure('joints', 'Joints', 'tx ty tz along, rx ry rz about the axes x y z of the joint.', numbers('joints', joints, {open: d.joints.length <= 30})) : null,
     d.instruments.length ? figure('instruments', 'Sensors and points of load', null, numbers('instruments', instruments, {open: true})) : null,
     figure('frames', d.drawing === 'frame' ? 'Nodes' : 'Frames', null, numbers('frames', frames, {open: d.frames.length <= 30})),
+    ...[['springs', 'Springs'], ['laws', 'Laws at supports and ends of members'], ['loads', 'Load cases'], ['sensors', 'Sensors']].map(([list, title]) => ((d[list] || []).length ? figure(list, title, null, numbers(list, entries(list), {open: d[list].length <= 30})) : null)),
   ];
 }

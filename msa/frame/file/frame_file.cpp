@@ -15,6 +15,7 @@
 #include "msa/frame/file/frame_fields.h"
 #include "msa/frame/file/frame_part.h"
 #include "msa/frame/file/frame_tolerances.h"
+#include "msa/frame/file/plane_laws.h"
 #include "msa/frame/file/short_forms.h"
 
 namespace deflect::frame {
@@ -43,6 +44,7 @@ DependentFrame frame_of(YamlNode file, const std::string& origin) {
   reader.read(tree, [&] { describe(reader, f); });
   f.ours = reader.ours();
   check_tolerances(f, tree, origin);
+  require_laws_in_plane(f, tree, origin);
   return {std::move(f), reader.depends()};
 }
 

@@ -90,7 +90,10 @@ Command predict_command() {
       "predict",
       "Predict readings with 95 % intervals, at one pose under one load or for a whole plan. The interval covers the "
       "uncertainty of parameters (from a fit), of tolerances (as the fit left them) and of the load, what the fit left "
-      "unexplained, and the noise of a reading. The report gives each share, and every theory's number",
+      "unexplained, and the noise of a reading. The report gives each share, and every theory's number. A machine is "
+      "predicted in the deformed shape (finite, where its file names no geometry; 'solve' is linear without "
+      "--geometry), a frame in the geometry of its file. What the deformed shape adds to the linear prediction counts "
+      "among the tolerances with a standard deviation of a fifth of it",
       "deflect predict fitted.yaml --at 25,25,198.9 --load 50,0,0 --fit fit.json",
       {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
        {"--at,--pose", "x,y,z,roll,pitch,yaw|CASE=FACTOR,...",
