@@ -168,6 +168,7 @@ TEST(FrameLaws, AcrossThePlaneAreRefused) {
       refusal(", start: {ry: " + law + "}", "clamped", ""),
       "f.yaml:7: members.low.start.ry: has no effect, because the plane xz of the frame holds ry here: the freedoms "
       "that it leaves are tx, ty, rz; write one of them, or take the law away");
+  EXPECT_EQ(refusal(", start: {ry: " + law + ", rz: " + law + "}", "clamped", ""), "") << "as in space";
   EXPECT_TRUE(refusal(", end: {beside: {rx: " + law + "}}, release_to: [rx]", "clamped", "")
                   .starts_with("f.yaml:7: members.low.end.rx: has no effect"));
   EXPECT_TRUE(

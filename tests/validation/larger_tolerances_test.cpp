@@ -11,6 +11,7 @@
 
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/effects.h"
+#include "tests/support/effects_everywhere.h"
 #include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/report/verdict_words.h"
@@ -63,9 +64,9 @@ TEST(LargerTolerances, AreToldInPlaceOfAnEffect) {
 // of tolerances that shows beside the chord, something unknown was said to be left.
 TEST(LargerTolerances, CountAsLargeAsTheyLookBesideWhatWasFound) {
   const std::vector<Edit> softer = {{"members.C1b.factor", "0.4", Edit::Action::multiply}};
+  const std::vector<effects::Effect> everywhere = test::effects_everywhere(truss());
   for (const auto& [built, least, most] : {std::tuple{1.0, 1.0, 1.0}, {2.5, 1.5, 3.0}}) {
-    const diagnosis::Diagnosis d =
-        diagnosis::diagnose(truss(), built_with(built, 3, softer), test::effects_everywhere(truss()), {{}, 199});
+    const diagnosis::Diagnosis d = diagnosis::diagnose(truss(), built_with(built, 3, softer), everywhere, {{}, 199});
     EXPECT_FALSE(d.unexplained) << built;
     ASSERT_EQ(d.missing.size(), 1u) << built;
     bool told = diagnosis::name_of(d.missing.front()) == "factor@C1b";

@@ -6,6 +6,7 @@
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "tests/support/effects_everywhere.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
@@ -42,7 +43,7 @@ tolerances: {modulus: 1 %, load: 0.3 %}
 // Where the spring is soft, each of the three explains far more than its signature, that of a small size, promises.
 TEST(Ties, HoldWhatDoesTheSameAtAnySize) {
   const subject::Subject s = frame::parse_frame(hinged_portal, "portal.yaml");
-  const std::vector<effects::Effect>& all = test::effects_everywhere(s);
+  const std::vector<effects::Effect> all = test::effects_everywhere(s);
   const auto hidden =
       std::find_if(all.begin(), all.end(), [](const effects::Effect& e) { return e.name == "linear@right.end.rz"; });
   ASSERT_NE(hidden, all.end());

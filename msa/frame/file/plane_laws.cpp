@@ -31,7 +31,8 @@ class PlaneCheck {
   PlaneCheck(const FrameDescription& f, const YamlNode& tree, const std::string& origin)
       : frame_(f), tree_(tree), origin_(origin) {}
 
-  /// A place of the frame and its freedoms that are given something.
+  /// A place of the frame and its freedoms that are given something. A place may be described as one in space, with
+  /// laws across the plane beside those in it.
   void require_in_plane(const std::vector<std::string>& path, const FreedomNames& names, const Matrix3& axes,
                         const Freedoms& given) const {
     const Freedoms held = held_by(frame_.plane, axes);
@@ -39,7 +40,9 @@ class PlaneCheck {
     for (std::size_t i = 0; i < 6; ++i)
       if (!held[i]) left.emplace_back(names[i]);
     for (std::size_t i = 0; i < 6; ++i)
-      if (given[i] && held[i])
+      if (given[i] && !held[i]) return;
+    for (std::size_t i = 0; i < 6; ++i)
+      if (given[i])
         throw InputError(fmt::format(
             "{}{}: {}.{}: has no effect, because the plane {} of the frame holds {} here: the freedoms that it leaves "
             "are {}; write one of them, or take the law away",

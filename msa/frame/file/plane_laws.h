@@ -1,4 +1,4 @@
-// Laws of a plane frame at freedoms that its plane holds: they would have no effect.
+// Places of a plane frame whose laws all stand at freedoms that its plane holds: they would have no effect.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace deflect::frame {
 
-/// InputError with file and line for a law across the plane, or about an axis in it, at a support, in a spring or at an
-/// end of a member. `tree` is that of the frame.
+/// InputError with file and line for a support, a spring or an end of a member all of whose laws act across the plane
+/// or about an axis in it. `tree` is that of the frame.
 void require_laws_in_plane(const FrameDescription&, const YamlNode& tree, const std::string& origin);
 
 }  // namespace deflect::frame
