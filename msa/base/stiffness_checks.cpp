@@ -95,7 +95,7 @@ std::string response_failure(const Response& r, double tolerance) {
   // The heat D₀ of that sliding is missing in the sum of the potentials, E ≤ Fᵀd + D₀: nothing bounds E.
   const bool slid_at_rest = r.strained && r.slides;
   const double least = r.linear ? 1 : slid_at_rest ? -unbounded : 0;
-  const double most = r.linear || !(r.strained || r.slides) ? 1 : slid_at_rest ? unbounded : 2;
+  const double most = r.linear || !(r.strained || r.slides || r.softens) ? 1 : slid_at_rest ? unbounded : 2;
   if (const double share = r.energy / work; share < least - tolerance || share > most + tolerance)
     return fmt::format("energy fails: {:.9g} J are stored, the load does {:.9g} J", r.energy, work);
   return "";

@@ -38,6 +38,7 @@ struct Response {
   bool from_rest = true;
   bool strained = false;  ///< parts carry forces before the load: misfits, preloads
   bool slides = false;    ///< some part has friction
+  bool softens = false;   ///< the stiffness of some law may fall under load
   bool rigid = false;     ///< some motions have an infinite stiffness: a load along them does no work
 };
 
@@ -45,12 +46,13 @@ struct Response {
 /// `tolerance`; without `from_rest` only equilibrium. Returns the check that fails and by how much; empty: all hold.
 /// Reciprocity is checked as the symmetry of the stiffness.
 ///
-/// The energy E is relative to the state at rest. For a linear structure E = ½Fᵀd. All nonlinear laws stiffen under
-/// load, or have play or friction. With reversible laws that carry nothing at rest, 0 ≤ E ≤ ½Fᵀd. Laws become softer
-/// where the load reduces their force at rest, and a friction element whose force reverses stores more than half of the
-/// work done on it. Then only this holds: the total potential E + D − Fᵀd, with D > 0 the heat of sliding, is at most
-/// that of the state at rest, so that E ≤ Fᵀd. Sliding may release strain energy stored at rest; otherwise E ≥ 0. Where
-/// friction has slid at rest already (strained and slides), the heat of that sliding is not in the balance: no bound.
+/// The energy E is relative to the state at rest. For a linear structure E = ½Fᵀd. All nonlinear laws but tables
+/// stiffen under load, or have play or friction. With reversible laws that do so and carry nothing at rest, 0 ≤ E ≤
+/// ½Fᵀd. Laws become softer as a table may have it, or where the load reduces their force at rest, and a friction
+/// element whose force reverses stores more than half of the work done on it. Then only this holds: the total potential
+/// E + D − Fᵀd, with D > 0 the heat of sliding, is at most that of the state at rest, so that E ≤ Fᵀd. Sliding may
+/// release strain energy stored at rest; otherwise E ≥ 0. Where friction has slid at rest already (strained and
+/// slides), the heat of that sliding is not in the balance: no bound.
 std::string response_failure(const Response&, double tolerance = 1e-9);
 
 }  // namespace deflect

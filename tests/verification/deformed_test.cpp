@@ -9,6 +9,7 @@
 #include "analytic/model.h"
 #include "msa/frame/mechanism/msa.h"
 #include "tests/support/chains.h"
+#include "tests/support/mechanisms.h"
 #include "validation/studies/solve.h"
 
 namespace deflect {
@@ -216,6 +217,18 @@ TEST(CoupledJoint, IsTheSameInBothTheories) {
       }
     }
   }
+}
+
+/// A leg that ends turned by t about x beside its seat carries the platform there: R0 = Rx(t). Its hinge then turns by
+/// a = m/k about z, R = Rz(a) Rx(t), so that R R0ᵀ, which the load adds, is a turn about z alone.
+TEST(Misfit, TurnsNoAxisOfTheRotationThatTheLoadAdds) {
+  const double k = 500, t = 0.04, a = 0.03;
+  PlacedLeg leg{"leg", {test::spring("hinge", Vector3::Zero(), {{5, k}})}};
+  leg.misfit(3) = t;
+  const Configuration c = test::configuration(Vector3::Zero(), {leg}, 1);
+  const Vector6 load = k * a * Vector6::Unit(5), right = a * Vector6::Unit(5);
+  EXPECT_LE((analytic::AnalyticModel(c).solve(load, Geometry::finite).displacement - right).norm(), 1e-12);
+  EXPECT_LE((frame::MsaModel(c).solve(load, Geometry::finite).displacement - right).norm(), 1e-12);
 }
 
 }  // namespace

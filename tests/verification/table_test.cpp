@@ -333,5 +333,19 @@ TEST(TableThatRemembers, HasOneAnswerInAllTheoriesInEveryGeometry) {
         << geometry_names[static_cast<int>(geometry)];
 }
 
+/// 30 N go 10 µm with 1 N/µm and 60 µm with 20 N on 60 µm: ½·10·10 + ½ (10 + 30)·60 Nµm are stored, more than half of
+/// 30 N times 70 µm. A slide that softens is answered.
+TEST(Table, ASlideThatSoftensStoresMoreThanHalfOfForceTimesWay) {
+  const Mechanism m = parse_mechanism(R"(
+name: slide
+kinematics: {family: chains}
+leg: {slide: {joint: prismatic, tz: {law: table, points: [[0 N, 0 um], [10 N, 10 um], [30 N, 70 um]]}}}
+workspace: {cube_edge: 1 mm}
+)",
+                                      "slide.yaml");
+  const studies::SolveResult r = studies::solve(m, stand(m, mm_deg_from(home_pose(m))), 30 * Vector6::Unit(2), {});
+  for (const studies::TheorySolution& s : r.solutions) EXPECT_NEAR(s.displacement_mm_rad(2), 0.07, 1e-12);
+}
+
 }  // namespace
 }  // namespace deflect

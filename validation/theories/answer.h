@@ -75,6 +75,7 @@ double total(const std::vector<std::pair<std::string, double>>& energies);
 struct AtRest {
   bool strained = false;  ///< parts carry forces: misfits, preloads
   bool history = false;   ///< some law has a history: friction
+  bool softens = false;   ///< some law may: a table
 };
 AtRest at_rest(const Configuration&);
 

@@ -9,6 +9,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/frame/elements/finite_rotation.h"
 #include "msa/frame/elements/member_loads.h"
 
 namespace deflect::frame {
@@ -238,6 +239,12 @@ MsaSolution MsaModel::solve(const Vector6& F_T_W, const Conditions& conditions) 
   }
   for (std::size_t i = 0; i < energies0.size(); ++i) out.energies[i].second -= energies0[i].second;
   out.displacement = (out.state.fine - u0).segment<6>(6 * built_.tool).cast<double>();
+  if (strained && out.state.geometric && conditions.geometry == Geometry::finite) {
+    const auto turned = [&](const ExtendedVector& u) {
+      return rotation_by(u.segment<3>(6 * built_.tool + 3).cast<double>());
+    };
+    out.displacement.tail<3>() = rotation_vector(turned(out.state.fine) * turned(u0).conjugate());
+  }
   out.slips = out.state.slips;
   std::stable_sort(out.energies.begin(), out.energies.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
