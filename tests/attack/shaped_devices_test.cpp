@@ -68,6 +68,15 @@ TEST_P(ShapedDevices, AreInEquilibriumWhereBothTheoriesSay) {
 
 INSTANTIATE_TEST_SUITE_P(Shard, ShapedDevices, ::testing::Range(0u, shards));
 
+// The MSA took every idle motion for the spin of a node and wrote beside an array where bodies idle that move: it
+// crashed, or found its tangent singular.
+TEST(ShapedDevices, WhoseBodiesIdleAreAnswered) {
+  for (const unsigned seed : {343u, 363u, 413u, 721u, 1783u}) {
+    const ShapeJudgement j = judge_in_shape_apart(seed, false);
+    EXPECT_EQ(j.outcome, Outcome::answered) << reproduction_in_shape(seed, false, j);
+  }
+}
+
 // Each was refused once, or answered wrongly by the MSA: the rounding of short elements in the stiffness, a misfit that
 // turned the axis of the rotation under load; with laws, tables that soften and store more than half of force times
 // way.
