@@ -54,7 +54,10 @@ class ShapeMethod {
     State rest = state;
     follow(state, out);
     if (out.found && out.stable) refine(rest, state, out);
-    if (out.found) out.compliance = compliance(state, factor(matrix(state, 1, 1, 1e-9L)));
+    if (out.found) {
+      if (out.regular) held_ = 0;  // where much is held by much else, it would count
+      out.compliance = compliance(state, factor(matrix(state, 1, 1, held_)));
+    }
     return out;
   }
 
@@ -187,7 +190,7 @@ class ShapeMethod {
   }
 
   void fill_chain(MatrixL& J, const State& s, std::size_t c, Long misfit, Long floor) const {
-    constexpr Long h = 1e-5L, held = 1e-9L;
+    constexpr Long h = 1e-5L;
     const Eigen::Index first = first_[c], rows = 6 + chains_[c].numbers;
     State moved = s;
     const auto column = [&](Eigen::Index k) {
@@ -205,7 +208,7 @@ class ShapeMethod {
     for (Eigen::Index k = first; k < first + rows; ++k) column(k);
     if (chains_[c].start != ChainL::ground)
       for (Eigen::Index i = 0; i < 6; ++i) column(first_body_ + 6 * chains_[c].start + i);
-    for (Eigen::Index i = 0; i < 6; ++i) J(first + i, first + i) += held;
+    for (Eigen::Index i = 0; i < 6; ++i) J(first + i, first + i) += held_;
     const VectorL slopes = left(s, c, misfit).slopes;
     for (Eigen::Index i = 0; i < chains_[c].numbers; ++i) {
       const Long slope = slopes(i) * unit(chains_[c], i);
@@ -310,6 +313,7 @@ class ShapeMethod {
   Vector3L p_T_;
   Shear shear_;
   Vector6L load_;
+  Long held_ = 1e-9L;  ///< compliance of chains in the matrix
   ShapeScale scale_;
   int bodies_ = 0, tool_ = 0, sign_ = 0, left_to_make_ = 40;
   bool misfits_ = false, straight_ = true;
