@@ -276,11 +276,11 @@ class ShapeMethod {
   }
 
   void refine(State& rest, State& state, ShapeTruth& out) {
-    constexpr int most = 128;
+    constexpr int most = 64;
     Vector6 before = between(rest, state);
     while (out.found) {
       scale_.steps *= 2;
-      left_to_make_ = std::max(left_to_make_, 10);
+      left_to_make_ = std::max(left_to_make_, 4);
       out.found = scale_.steps <= most && (!misfits_ || settle(rest, 0, 1, out)) && settle(state, 1, 1, out);
       out.displacement = between(rest, state);
       Vector6 w = Vector6::Ones();
