@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -126,8 +126,7 @@ Sent without_words(const DeviceJudgement& j) {
 }
 
 DeviceJudgement with_words(const std::string& bytes) {
-  Sent s{};
-  std::memcpy(&s, bytes.data(), sizeof s);
+  const auto s = from_bytes<Sent>(bytes);
   DeviceJudgement j{s.outcome, s.kind, s.condition, s.error, s.stiffness_error, s.between, {}, bytes.substr(sizeof s)};
   std::copy(s.displacement.begin(), s.displacement.end(), j.displacement.begin());
   return j;
@@ -197,30 +196,39 @@ DeviceJudgement judge_agreement(const RandomDevice& random) {
   return out;
 }
 
-DeviceJudgement judge_apart(const RandomDevice& random, DeviceJudgement (*how)(const RandomDevice&)) {
+FromChild in_child(const std::function<std::string()>& tell) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
   const pid_t child = ::fork();
   if (child == 0) {
-    ::alarm(20);
-    const DeviceJudgement j = how(random);
-    const Sent sent = without_words(j);
-    const bool written = ::write(ends[1], &sent, sizeof sent) == sizeof sent &&
-                         ::write(ends[1], j.words.data(), j.words.size()) == std::ssize(j.words);
-    ::_exit(written ? 0 : 1);
+    const rlimit seconds{20, 20};  // of the processor, whatever else runs
+    ::setrlimit(RLIMIT_CPU, &seconds);
+    ::alarm(600);
+    const std::string told = tell();
+    ::_exit(::write(ends[1], told.data(), told.size()) == std::ssize(told) ? 0 : 1);
   }
   ::close(ends[1]);
-  std::string received;
+  FromChild out;
   std::array<char, 4096> buffer;
   for (ssize_t n; (n = ::read(ends[0], buffer.data(), buffer.size())) > 0;)
-    received.append(buffer.data(), static_cast<std::size_t>(n));
+    out.told.append(buffer.data(), static_cast<std::size_t>(n));
   ::close(ends[0]);
   int status = 0;
   ::waitpid(child, &status, 0);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return with_words(received);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    out.died = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status)) : "no answer";
+  return out;
+}
+
+DeviceJudgement judge_apart(const RandomDevice& random, DeviceJudgement (*how)(const RandomDevice&)) {
+  const FromChild child = in_child([&] {
+    const DeviceJudgement j = how(random);
+    return bytes_of(without_words(j)) + j.words;
+  });
+  if (child.died.empty()) return with_words(child.told);
   DeviceJudgement out;
   out.outcome = Outcome::crashed;
-  out.words = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status)) : "no answer";
+  out.words = child.died;
   return out;
 }
 

@@ -1,7 +1,10 @@
 // What both theories say of a device, judged by the force method.
 #pragma once
 
+#include <cstring>
+#include <functional>
 #include <string>
+#include <type_traits>
 
 #include "tests/attack/device_oracle.h"
 #include "tests/attack/frame_judge.h"
@@ -33,8 +36,29 @@ DeviceJudgement judge(const RandomDevice&);
 /// none.
 DeviceJudgement judge_agreement(const RandomDevice&);
 
-/// One of these in a process of its own, so that a signal (also that of 20 s without an end) is an outcome: crashed.
+/// One of these in a process of its own, so that a signal (also that of 20 s of the processor without an end) is an
+/// outcome: crashed.
 DeviceJudgement judge_apart(const RandomDevice&, DeviceJudgement (*)(const RandomDevice&) = judge);
+
+/// What `tell` says in a process of its own, or why that died.
+struct FromChild {
+  std::string told, died;
+};
+FromChild in_child(const std::function<std::string()>& tell);
+
+/// Plain numbers as what can be told.
+template <class Numbers>
+requires std::is_trivially_copyable_v<Numbers> std::string bytes_of(const Numbers& numbers) {
+  std::string out(sizeof numbers, 0);
+  std::memcpy(out.data(), &numbers, sizeof numbers);
+  return out;
+}
+template <class Numbers>
+requires std::is_trivially_copyable_v<Numbers> Numbers from_bytes(const std::string& told) {
+  Numbers out{};
+  std::memcpy(&out, told.data(), sizeof out);
+  return out;
+}
 
 std::string reproduction(const RandomDevice&, const DeviceJudgement&);
 

@@ -5,7 +5,9 @@
 #include "tests/attack/dense_oracle.h"
 #include "tests/attack/device_oracle.h"
 #include "tests/attack/echelon.h"
+#include "tests/attack/shape_oracle.h"
 #include "tests/attack/standing_oracle.h"
+#include "tests/support/elastica.h"
 #include "tests/support/mechanisms.h"
 #include "tests/support/paths.h"
 
@@ -135,6 +137,39 @@ TEST(Echelon, FindsRankNullSpaceAndWhatCannotBeReached) {
   EXPECT_EQ(e.rank(), 1u);
   EXPECT_EQ(e.null_space().size(), 2u);
   EXPECT_EQ(static_cast<double>(e.left_over()), 0.5);
+}
+
+// k θ = L (Q cos θ + N sin θ) under a push N along an arm of length L and Q across it; beyond k/L it falls.
+TEST(ShapeOracle, FindsTheAngleOfAPendulumAndThatItFalls) {
+  const double k = 300, L = 0.5, N = 250, Q = 90;
+  const Configuration c = test::configuration({L, 0, 0}, {{"arm", {spring("hinge", Vector3::Zero(), {{5, k}})}}}, L);
+  Vector6 F = Vector6::Zero();
+  F.head<2>() << -N, Q;
+  const ShapeTruth t = solve_in_shape(c, F, 0.3);
+  ASSERT_TRUE(t.found && t.stable && t.regular);
+  const double angle = t.displacement(5), stiffness = k - L * (N * std::cos(angle) - Q * std::sin(angle));
+  EXPECT_NEAR(k * angle, L * (Q * std::cos(angle) + N * std::sin(angle)), 1e-12 * k);
+  EXPECT_NEAR(t.displacement(0), L * (std::cos(angle) - 1), 1e-14);
+  EXPECT_NEAR(t.compliance(5, 5), 1 / stiffness, 1e-8 / stiffness);
+  EXPECT_NEAR(t.at_rest(5, 5), 1 / k, 1e-8 / k);
+  F.head<2>() << -1.2 * k / L, 0;
+  EXPECT_FALSE(solve_in_shape(c, F, 0.3).stable);
+}
+
+TEST(ShapeOracle, BendsACantileverAsTheElastica) {
+  PlacedMember m = test::rod("rod", Vector3::Zero(), {1, 0, 0}, 0.01);
+  m.E = 1 / m.section.Iz;
+  m.G = m.E / 2.6;
+  m.section.A = 1e9 / m.E;
+  const Configuration c = test::configuration({1, 0, 0}, {{"leg", {m}}}, 1);
+  for (const double P : {0.1, 1.0, 2.0}) {
+    const test::Elastica exact = test::elastica(P, pi / 2);
+    const ShapeTruth t = solve_in_shape(c, P * Vector6::Unit(1), P / 3);
+    ASSERT_TRUE(t.found && t.stable) << P;
+    EXPECT_NEAR(1 + t.displacement(0), exact.x, 2e-8) << P;  // N/EA = 1e-9 P, and a fifteenth of 1e-7
+    EXPECT_NEAR(t.displacement(1), exact.y, 2e-8) << P;
+    EXPECT_NEAR(t.displacement(5), exact.angle, 2e-8) << P;
+  }
 }
 
 }  // namespace

@@ -52,6 +52,13 @@ double on_scalars(const Model& m, const LinearForm& form, const VectorX& path) {
   return sum;
 }
 
+/// Whether a form is a rotation of one node.
+bool spins(const LinearForm& form, int node, const Model& m) {
+  return std::all_of(form.begin(), form.end(), [&](const Term& t) {
+    return t.dof < static_cast<int>(6 * m.nodes.size()) && t.dof / 6 == node && t.dof % 6 >= 3;
+  });
+}
+
 /// How the elongation of a spring turns with the bodies that a connection puts it between.
 struct Curved {
   const Matrix12* hessian = nullptr;
@@ -164,6 +171,7 @@ Linearisation linearise_finite(const Model& m, const Shape& shape, const Structu
   for (std::size_t k = c.first_hold; k < m.constraints.size(); ++k) {
     LinearForm& form = out.forms[k];
     const int node = form.front().dof / 6;
+    if (!spins(form, node, m)) continue;  // an idle motion of bodies keeps the form in which it is held
     Vector3 axis = Vector3::Zero();
     for (const Term& t : form) axis(t.dof % 6 - 3) = t.coefficient;
     form = rotation_of(node, nth(shape.nodes, node).Q * axis);

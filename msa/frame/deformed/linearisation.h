@@ -60,7 +60,8 @@ struct Linearisation {
 struct StructureConditions {
   std::vector<double> strains;  ///< by beam: free thermal strain
   VectorX least_tangents;       ///< by spring: lower bound of the tangent used
-  /// Constraints from this index on hold a node against spinning about its own axis, which rotates with the node.
+  /// Constraints from this index on hold idle motions: a node against spinning about its own axis, which rotates with
+  /// the node, or bodies by the linear form of their motion.
   std::size_t first_hold = 0;
 };
 
