@@ -212,10 +212,11 @@ TEST(FitEffects, AToleranceOfTheOneLegGivesWayUnderBothNames) {
       "kNm/rad}}\n"
       "  lever: {offset: [300 mm, 0 mm, 0 mm]}\ntolerances: {leg.pivot.rz.stiffness: 5 %}\n",
       "lever.yaml");
-  const measurement::Measurements data = measurement::parse_measurements(
-      "pose,q1_rad,fy_N,uy_mm,sigma_u_mm\na,0,30,1.3,0.01\nb,0.5,20,0.7,0.01\nc,1,25,0.5,0.01\nd,0,-30,-1.3,0.01\n"
-      "e,0.5,-20,-0.7,0.01\nf,1,-25,-0.5,0.01\n",
-      "data.csv");
+  std::string csv = "pose,q1_rad,fx_N,fy_N,fz_N,uy_mm,sigma_u_mm\n";
+  for (const double q : {0.0, 0.3, 0.6, 0.9})
+    for (const double F : {30.0, -30.0, 15.0})  // uy = F (L cos q)²/k
+      csv += fmt::format("p{0},{0},0,{1},0,{2},0.01\n", q, F, 0.045 * F * std::cos(q) * std::cos(q));
+  const measurement::Measurements data = measurement::parse_measurements(csv, "data.csv");
   const subject::Subject s(m);
   const auto of = [&](const std::string& path) {
     return fit::fit(s, data, fit::free_parameters(s, {path}, {}), {}, parallel::alone).parameters.front();

@@ -371,7 +371,8 @@ std::optional<std::vector<Candidate>> Candidates::likelier_if_larger(const Obser
 std::vector<Candidate> Candidates::fitted_again(const Observations& o, const Fit& so_far,
                                                 const std::vector<Candidate>& fitted,
                                                 const std::vector<effects::EffectInstance>& from) const {
-  Round round(*this, o, {}, so_far, {});
+  const Hypothesis none;  // the round refers to it
+  Round round(*this, o, none, so_far, {});
   round.take(fitted);
   round.fit_again(from);
   return round.result();

@@ -270,9 +270,7 @@ Command plan_command() {
             "are sessions of one campaign",
             &a->data},
            {"--before", "paper|cycle|rich|random|FILE",
-            "instead of a diagnosis: a campaign by its name, or a measurement file, whose readings may be empty; its "
-            "columns say what is read",
-            &a->before},
+            "instead of a diagnosis: a campaign by its name, or a file, whose columns say what is read", &a->before},
            {"--aim", "effects|precision",
             "with --before: what the better campaign is for: to see effects and tell them apart (default), or to "
             "predict the tool point once tolerances are fitted",

@@ -108,8 +108,8 @@ class FrameSolution(Result):
 @dataclasses.dataclass(frozen=True, init=False, repr=False, eq=False)
 class Drawing(Result):
     """Of show(): the machine or frame as its file draws it, base axes, mm: ``members``, ``joints``, ``frames``,
-    ``instruments``, ``lines`` between ``points_mm`` (n, 3), ``motions`` that nothing resists, ``trouble``; rows: the
-    members."""
+    ``instruments``, ``lines`` between ``points_mm`` (n, 3), ``motions`` that nothing resists, ``trouble``; of a frame also
+    ``springs``, ``laws``, ``loads`` and ``sensors``; rows: the members."""
 
     kind: str
     drawing: str
@@ -121,6 +121,10 @@ class Drawing(Result):
     joints: List[schema_shapes.DrawnJoint]
     frames: List[schema_shapes.DrawnFrame]
     instruments: List[schema_shapes.DrawnInstrument]
+    springs: Maybe[List[schema_shapes.DrawnEntry]]
+    laws: Maybe[List[schema_shapes.DrawnEntry]]
+    loads: Maybe[List[schema_shapes.DrawnEntry]]
+    sensors: Maybe[List[schema_shapes.DrawnEntry]]
     points_mm: Array
     lines: List[List[int]]
     motions: List[schema_shapes.DrawnMotion]

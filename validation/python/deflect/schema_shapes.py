@@ -70,6 +70,14 @@ class DrawnInstrument(Record):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class DrawnEntry(Record):
+    """A spring, a place with laws, a load case or a sensor of a frame."""
+
+    name: str
+    words: str
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class DrawnMotion(Record):
     """A motion that nothing resists: displacements (n, 3) of the points."""
 
