@@ -229,6 +229,10 @@ TEST_F(PlanProgram, WhatIsWrongIsSaid) {
     EXPECT_NE(run.out.find("leave out --"), std::string::npos) << run.out;
   }
   EXPECT_EQ(test::deflect("plan " + device + " " + path("diagnosis.json") + " --use x.csv").code, 2);
+  const test::Run other =
+      test::deflect("plan haptic-6psu " + path("diagnosis.json") + " " + path("paper.csv") + " --readings 1");
+  EXPECT_NE(other.out.find("is of 'haptic-6psu-ideal-joints', and this is 'haptic-6psu'"), std::string::npos)
+      << other.out;
 }
 
 }  // namespace

@@ -5,10 +5,13 @@
 #include <filesystem>
 
 #include "msa/frame/file/frame_file.h"
+#include "tests/support/devices.h"
 #include "tests/support/effects_everywhere.h"
 #include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/effects/with_effect.h"
+#include "validation/prediction/campaign.h"
+#include "validation/prediction/simulate.h"
 #include "validation/subject/simulate_frame.h"
 
 namespace deflect {
@@ -72,6 +75,25 @@ TEST(UntoldNoise, PlayIsFoundWithoutIt) {
     EXPECT_EQ(d.missing.front().effect->name, "clearance@support.D.ux") << told;
     EXPECT_EQ(d.verdict, diagnosis::Verdict::effect) << told;
     EXPECT_NEAR(d.fit.values(0), 0.1, 0.03) << told;
+  }
+}
+
+// One row of a campaign without σ is too little to read the scatter off, and one instrument read all of them.
+TEST(UntoldNoise, AnEmptyCellTakesThatOfTheOtherRows) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  measurement::Measurements data = prediction::simulate(m, prediction::campaign("paper", m, 50, 1), {});
+  for (std::size_t i = 0; i < data.readings.size(); ++i) data.readings[i].sigma_u = i % 2 == 0 ? 1e-6 : 3e-6;
+  const std::size_t untold = 4;
+  data.readings[untold].sigma_u.reset();
+  const compare::Comparison c = compare::compare(Subject(m), data, {}, {1});
+  const double even = 13, odd = 13;  // of the 26 others
+  for (std::size_t i = 0; i < c.sigma.size(); ++i) {
+    const std::size_t reading = c.study.values[i].reading;
+    const double expected = reading == untold  ? std::sqrt((even * 1 + odd * 9) / 26) * 1e-6
+                            : reading % 2 == 0 ? 1e-6
+                                               : 3e-6;
+    EXPECT_NEAR(c.sigma[i], expected, 1e-12 * expected) << i;
+    EXPECT_EQ(c.estimated[i], reading == untold) << i;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "meshes/structure.h"
@@ -146,6 +147,13 @@ measurement::Measurements read_sessions(const std::vector<std::string>& files, c
   std::vector<measurement::Measurements> sessions;
   for (const std::string& file : files) sessions.push_back(read_data(file, subject));
   return subject.placed(measurement::joined(sessions));
+}
+
+void remark_if_of_another(const std::string& result, const subject::Subject& s) {
+  const auto json = nlohmann::json::parse(read_text(result), nullptr, false);
+  if (!json.is_object() || !json.contains("device") || !json["device"].is_string()) return;  // said where it is read
+  if (const std::string of = json["device"]; of != s.name())
+    remark(fmt::format("{} is of '{}', and this is '{}': what it says holds for the former", result, of, s.name()));
 }
 
 measurement::Measurements read_plan(const std::string& file, const subject::Subject& subject) {

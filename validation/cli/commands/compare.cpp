@@ -64,7 +64,10 @@ void validate(const CompareArguments& a, const subject::Subject& s, const measur
     use = read_plan(a.use, s);
     options.use = &*use;
   }
-  if (!a.fit.empty()) options.fit = fit::read_fit(read_text(a.fit), a.fit, s);
+  if (!a.fit.empty()) {
+    options.fit = fit::read_fit(read_text(a.fit), a.fit, s);
+    remark_if_of_another(a.fit, s);
+  }
   if (!a.free.empty()) options.parameters = fit::free_parameters(s, a.free, {}, read_text(subject_file(a.device)));
   const validity::ValidationStudy study = timed_with_progress(
       "validation: both theories at every reading, tolerances, groups left out", [&](const auto& told) {

@@ -67,7 +67,10 @@ void run(const PredictArguments& a) {
   const subject::Subject s = read_subject(a.device);
   const measurement::Measurements plan = plan_of(s, a);
   std::optional<fit::Knowledge> known;
-  if (!a.fit.empty()) known = fit::read_fit(read_text(a.fit), a.fit, s);
+  if (!a.fit.empty()) {
+    known = fit::read_fit(read_text(a.fit), a.fit, s);
+    remark_if_of_another(a.fit, s);
+  }
   fit::PredictedPlanOptions o;
   o.theories = parse_theories(a.theories);
   o.sigma_u = parse_sigma("--sigma", a.sigma_mm, "mm", 1e3);
