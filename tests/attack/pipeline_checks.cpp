@@ -69,6 +69,9 @@ void check_verdict(Checks& c, const Json& d) {
   }
   c.require(d["missing"].get<std::vector<std::string>>() == found, "found", "{} found of {}", d["found"].dump(),
             d["missing"].dump());
+  for (const Json& tie : ties)
+    c.require(left || std::find(found.begin(), found.end(), tie.front().get<std::string>()) != found.end(), "tie",
+              "{} begins with what was not found, {}", tie.dump(), d["found"].dump());
   if (found.size() == 1 && verdict != "unknown_effect") {
     double most = 0, tied = 0;  // of its places; of those that cannot be told from it
     for (const Json& each : d["candidates"]) {

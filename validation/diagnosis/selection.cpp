@@ -57,11 +57,13 @@ class Search {
         return true;
       }
       s_.ties[i] = tie(all);
-      if (!s_.ties[i].names.empty() && !holds(s_.ties[i], own) && !goes_back(s_.ties[i].rivals.front().hypothesis)) {
+      if (s_.ties[i].names.empty()) continue;
+      if (!holds(s_.ties[i], own) && !goes_back(s_.ties[i].rivals.front().hypothesis)) {
         const Candidate instead = s_.ties[i].rivals.front();
         grant(instead.hypothesis, instead.fit.values);
         return true;
       }
+      if (own.fit.found) put_first(s_.ties[i], own);
     }
     return false;
   }
