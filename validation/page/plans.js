@@ -29,7 +29,10 @@ export function planned(p) {
   ];
 }
 
-export const foresightHeadline = (f) => ({words: `With ${f.campaign}, ${f.given.effects_that_show} effects show within their bounds, and ${f.given.pairs_alike} pairs of effects look alike.`});
+export const foresightHeadline = (f) => ({words: `With ${f.campaign}, ${f.given.effects_that_show} effects show within their bounds, and ${f.given.pairs_alike} ${f.given.pairs_alike === 1 ? 'pair of effects looks' : 'pairs of effects look'} alike.`});
+
+/** What the campaign beside the given one is called. */
+const otherName = (f) => (f.given_within_limits === false ? 'within the limits' : 'better');
 
 /** Effects by what is mistaken for what: those with the largest chances where there are too many to be drawn. */
 function confusions(f, found) {
@@ -46,7 +49,7 @@ function confusions(f, found) {
   };
   const left = names.length > most ? ` The ${most} of ${names.length} with the largest chances.` : '';
   return figure('foresight-confusions', 'What is mistaken for what', `Chance in percent of taking the effect of the column for that of the row, each as large as λ = 8 in ${f.campaign}: 50 where nothing tells them apart, empty below ½.${left}`,
-    el('div', {class: 'matrices'}, matrix('this campaign', f.given.chances, true), found ? matrix('better', f.better.chances, false) : null),
+    el('div', {class: 'matrices'}, matrix('this campaign', f.given.chances, true), found ? matrix(otherName(f), f.better.chances, false) : null),
     numbers('foresight-confusions', () => ({columns: ['present', ...names], rows: names.map((n, i) => [n, ...f.given.chances[i]])})));
 }
 
@@ -56,18 +59,18 @@ function gains(f, found) {
   const precision = f.gain_in === 'um', what = precision ? 'error in use, µm rms' : 'chance of the wrong one';
   const picture = chart(what, 280, (t) => {
     const line = (label, gain, colour) => ({label, data: gain.map((g) => ({x: g.readings, y: g.value})), showLine: true, borderColor: colour, backgroundColor: colour, borderWidth: 2, pointRadius: gain.length > 40 ? 0 : 2});
-    return {type: 'scatter', data: {datasets: [line('this campaign', f.given.gain, t.blue), ...(found ? [line('better', f.better.gain, t.orange)] : [])]},
+    return {type: 'scatter', data: {datasets: [...(f.given.gain.length ? [line('this campaign', f.given.gain, t.blue)] : []), ...(found ? [line(otherName(f), f.better.gain, t.orange)] : [])]},
             options: {scales: {x: axis('readings', t, {min: 0}), y: axis(what, t, {min: precision ? 0 : undefined, type: precision ? 'linear' : 'logarithmic'})}, plugins: {legend: {position: 'bottom', labels: {usePointStyle: true}}}}};
   });
   const about = precision ? 'Root mean square error of predictions where the machine is used, once the tolerances are fitted.' : '½ ⟨exp(−λ²/8)⟩ over pairs of effects that remember no earlier loads.';
   return figure('foresight-gain', 'What each further reading brings', about, picture,
-    numbers('foresight-gain', () => ({columns: ['campaign', 'readings', f.gain_in], rows: [['given', f.given], ...(found ? [['better', f.better]] : [])].flatMap(([name, c]) => c.gain.map((g) => [name, g.readings, g.value]))})));
+    numbers('foresight-gain', () => ({columns: ['campaign', 'readings', f.gain_in], rows: [['given', f.given], ...(found ? [[otherName(f), f.better]] : [])].flatMap(([name, c]) => c.gain.map((g) => [name, g.readings, g.value]))})));
 }
 
 /** Where the readings are taken, from above and from the side. */
 function stands(f, found) {
   if (!f.given.stands || !f.given.stands.length) return null;
-  const campaigns = [['this campaign', f.given, 'blue'], ...(found ? [['better', f.better, 'orange']] : [])];
+  const campaigns = [['this campaign', f.given, 'blue'], ...(found ? [[otherName(f), f.better, 'orange']] : [])];
   const most = Math.max(...campaigns.flatMap(([, c]) => c.stands.map((s) => s.readings)));
   const view = (i, k) => chart(`Poses, ${'xyz'[i]} and ${'xyz'[k]}`, 300, (t) => ({
     type: 'scatter',
@@ -83,7 +86,7 @@ function stands(f, found) {
 function campaign(f, found) {
   if (!f.readings || !found) return null;
   const columns = ['reading', 'pose', 'at (mm, deg; joints in rad or mm)', 'load', 'how'], rows = f.readings.map((r, i) => [i + 1, r.pose, r.at, r.load, r.how]);
-  return figure('foresight-readings', 'The better campaign', '', table(columns, rows, {most: 60, show: String}), numbers('better-campaign', () => ({columns, rows})));
+  return figure('foresight-readings', f.given_within_limits === false ? 'The campaign within the limits' : 'The better campaign', '', table(columns, rows, {most: 60, show: String}), numbers('better-campaign', () => ({columns, rows})));
 }
 
 export function foreseen(f) {
@@ -98,7 +101,7 @@ export function foreseen(f) {
   const columns = ['effect', 'smallest size shown', 'would be mistaken for', 'cosine'];
   return [
     figure('foresight', 'What the campaign will tell', f.given_within_limits === false ? 'It goes beyond the limits. Beside it the best one found within them.' : found ? `Beside a better campaign for ${f.toward}.` : `No better campaign of as many readings was found for ${f.toward}.`,
-      table(['', 'this campaign', ...(found ? [f.given_within_limits === false ? 'within the limits' : 'better'] : [])], compared), ...zeros, numbers('foresight', () => ({columns: ['what', 'given', ...(found ? ['better'] : [])], rows: compared}))),
+      table(['', 'this campaign', ...(found ? [otherName(f)] : [])], compared), ...zeros, numbers('foresight', () => ({columns: ['what', 'given', ...(found ? [otherName(f)] : [])], rows: compared}))),
     confusions(f, found),
     gains(f, found),
     stands(f, found),

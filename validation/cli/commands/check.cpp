@@ -130,9 +130,8 @@ Command check_command() {
        {"--joints", "q1,...,qn", "joint coordinates instead of --pose: slides in mm, turns in rad, or with unit",
         &a->joints},
        {"--load", "fx,fy,fz,mx,my,mz",
-        "load on --device, N and Nmm; contacts are stiff only under load (default: that of K where 'deflect solve' "
-        "wrote "
-        "it)",
+        "load on --device, N and Nmm; contacts are stiff only under load (default: that of K, where 'deflect solve' "
+        "wrote it)",
         &a->load},
        {"--tolerance", "X", "relative difference to ignore (default: the digits printed)", &a->tolerance},
        {"--size", "LENGTH",

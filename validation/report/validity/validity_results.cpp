@@ -215,9 +215,8 @@ std::string validity_words(const ValidationStudy& s) {
   const double rms = unit.fine * std::sqrt(squares / std::max(1.0, n)),
                u_val = unit.fine * std::sqrt(validation / std::max(1.0, n));
   return fmt::format(
-      "{}: a right model, with its tolerances and the noise, has errors as large with a chance of p {}{}. The errors "
-      "are "
-      "{} {} rms; their uncertainty, as one standard deviation (u_val), is {} {}.",
+      "{}: a right model, with its tolerances and the noise, has errors as large with a chance of p {}{}. The "
+      "errors are {} {} rms; their uncertainty, as one standard deviation (u_val), is {} {}.",
       agrees(s.agreement) ? "These data cannot tell the error of the model from zero"
                           : "The model is in error at these readings",
       s.agreement.p_value < 1e-16 ? "" : "= ", p_words(s.agreement.p_value), digits_of(rms, 3), unit.micro,
