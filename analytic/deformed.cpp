@@ -35,22 +35,6 @@ std::size_t legs_step(const VirtualChain& whole) {
 
 const VirtualGroup& legs_of(const VirtualChain& whole) { return std::get<VirtualGroup>(whole.steps[legs_step(whole)]); }
 
-double largest_wrench(const VirtualGroup& group);
-
-/// On the chain and on all branches within, N.
-double largest_wrench(const VirtualChain& chain) {
-  double largest = chain.F.head<3>().norm() + chain.F.tail<3>().norm() / chain.length;
-  for (const VirtualStep& step : chain.steps)
-    if (const auto* group = std::get_if<VirtualGroup>(&step)) largest = std::max(largest, largest_wrench(*group));
-  return largest;
-}
-
-double largest_wrench(const VirtualGroup& group) {
-  double largest = 0;
-  for (const VirtualChain& branch : group.branches) largest = std::max(largest, largest_wrench(branch));
-  return largest;
-}
-
 Vector3 translation(const VirtualChain& whole, const Linearised& l, Geometry geometry) {
   return geometry == Geometry::finite ? l.end.displacement(whole.p_E) : Vector3(l.J.topRows<3>() * l.x);
 }
@@ -101,7 +85,8 @@ bool equilibrium(Deformed& d, const Vector6& F, double misfit, std::optional<Las
   double largest = largest_wrench(whole), previous = 1, step = 0;
   const bool finite = c.geometry == Geometry::finite;
   // Contacts have no stiffness at rest: where nothing is strained yet they are taken as under the whole load.
-  const bool at_rest = largest_wrench(std::get<VirtualGroup>(whole.steps[legs_step(whole)])) == 0;
+  const auto& branches = legs_of(whole).branches;
+  const bool at_rest = std::ranges::all_of(branches, [](const auto& leg) { return largest_wrench(leg) == 0; });
   c.least = !at_rest ? 1e-9 * largest : largest > 0 ? largest : 1;
   LawsAtRest laws(whole.length);
   for (int i = 0; i < 50; ++i) {
@@ -205,6 +190,19 @@ bool settles(Deformed& d, const Vector6& F, double misfit) {
   return equilibrium(d, F, misfit, last) && conclude(d, std::move(last));
 }
 
+/// Why no equilibrium follows on the last stable one.
+std::string why_it_ends(const Deformed& d, const char* what) {
+  if (const std::string chain = at_dead_centre(d.whole, d.conditions); !chain.empty())
+    return fmt::format(
+        "the passive joints of {} come to a singular position (a dead centre) at {:.4g} of the {}: from there it would "
+        "lock or jump",
+        chain, d.load_factor, what);
+  return fmt::format(
+      "it gives way at {:.4g} of the {}, a buckling or limit load: that is what the last stable equilibrium on the way "
+      "carries",
+      d.load_factor, what);
+}
+
 /// From the state as it is to all of the misfits under F, where F is given to a state that has them already.
 void approach(Deformed& d, const Vector6& F, bool fitting) {
   d.load_factor = 0;
@@ -226,10 +224,7 @@ void approach(Deformed& d, const Vector6& F, bool fitting) {
     d.converged = false;
     d.undecided = next.undecided;
     if (d.undecided) return;
-    d.message = fmt::format(
-        "it gives way at {:.4g} of the {}, a buckling or limit load: that is what the last stable "
-        "equilibrium on the way carries",
-        d.load_factor, fitting ? "misfits" : "load");
+    d.message = why_it_ends(d, fitting ? "misfits" : "load");
     return;
   }
 }

@@ -62,6 +62,10 @@ Deformed deform(const Deformed& rest, const Configuration&, const Vector6& F_T_W
 /// The state under the wrench that a state carries, with its laws held in other steps.
 Deformed in_other_steps(const Deformed&, const std::vector<Step>&, const Configuration&);
 
+/// What second order leaves out, as an order of magnitude relative to the displacement: the square of the largest
+/// rotation of a body plus the largest strain of a member's axis.
+double left_out_in_second_order(const Deformed&);
+
 /// Tangent of a state, [f; m] at T by [δ; spin], base axes: K = J⁻ᵀ(K − H)J⁻¹ − ½[m]× with K and H of the whole chain,
 /// symmetric where no outer moment m acts. Second order: K_E + K_G at the forces of the state. Throws ModelError where
 /// K is infinite.

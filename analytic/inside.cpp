@@ -165,7 +165,35 @@ Vector6 inside_deformed(const Inside& at, const Deformed& d, const Configuration
   return out;
 }
 
+/// Largest rotation of a body and largest strain of a member's axis so far.
+struct Largest {
+  double rotation = 0, strain = 0;
+
+  /// `turned`: of the chain's start, small.
+  void look_at(const VirtualChain& chain, Vector3 turned) {
+    for (const VirtualStep& step : chain.steps) {
+      if (const auto* joint = std::get_if<VirtualJoint>(&step)) {
+        turned += joint->joint.R_WJ * Eigen::Map<const Vector3>(joint->x.data() + 3);
+      } else if (const auto* member = std::get_if<VirtualMember>(&step)) {
+        strain = std::max(strain, std::abs(member->tip.x(0)) / member->member.length());
+        turned += member->tip.A * member->tip.x.tail<3>();
+      } else {
+        const auto& group = std::get<VirtualGroup>(step);
+        for (const VirtualChain& branch : group.branches) look_at(branch, turned);
+        turned += group.tip.A * group.tip.x.tail<3>();
+      }
+      rotation = std::max(rotation, turned.norm());
+    }
+  }
+};
+
 }  // namespace
+
+double left_out_in_second_order(const Deformed& d) {
+  Largest largest;
+  largest.look_at(d.whole, Vector3::Zero());
+  return largest.rotation * largest.rotation + largest.strain;
+}
 
 /// `s`: from the drawing, with the whole load at T.
 Vector6 AnalyticModel::inside_linear(const Inside& at, const AnalyticSolution& s) const {

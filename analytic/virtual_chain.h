@@ -84,6 +84,9 @@ struct Restraint {
   VectorX b = VectorX(0);
   Vector3 m = Vector3::Zero();  ///< moment of the state: with respect to spins the stiffness is K − ½[m]×
   bool stable = true;           ///< with the body held fixed; set where ShapeConditions::judged
+  /// Likewise: the smallest motion of the end by passive freedoms beside the largest, rotations weighed by the length;
+  /// 0 in a singular position, 1 without passive freedoms.
+  double mobility = 1;
 };
 
 /// The largest motion of a freedom so far, and in the last step; rotations times length (m).
@@ -192,6 +195,12 @@ std::size_t hold_laws(VirtualChain& whole);
 
 /// The forces with which these laws resist the motions of the state, by number.
 VectorX forces_in_held(const VirtualChain& whole, const ShapeConditions&);
+
+/// Largest force on the chain and on all branches within, moments divided by the length, N.
+double largest_wrench(const VirtualChain&);
+
+/// Name of a branch of a group whose passive freedoms are all but in a singular position; empty where there is none.
+std::string at_dead_centre(VirtualChain whole, ShapeConditions);
 
 /// Initialises a chain with the state of one whose members have fewer pieces; each coarser piece is taken to be bent as
 /// evenly as its ends allow.

@@ -55,6 +55,42 @@ bool plainly_splits(const MatrixX& C, const MatrixX& J, const MatrixX& A) {
   return MatrixX(A + half.transpose() * half).llt().info() == Eigen::Success;
 }
 
+/// A basis of the wrenches under which nothing yields, by the compliance C and the twists J of passive freedoms, in
+/// weighed coordinates. A direction whose compliance is lost in the rounding of the largest one counts as rigid: a
+/// lever that only the deformed shape gives a spring carries nothing that could be told.
+MatrixX held_rigidly(const MatrixX& C, const MatrixX& J) {
+  constexpr double lost_compliance = 1e-12;
+  const double most = C.cwiseAbs().maxCoeff();
+  if (const Eigen::LLT<MatrixX> yields(C);
+      yields.info() == Eigen::Success && yields.matrixLLT().diagonal().minCoeff() > 1e-5 * std::sqrt(most))
+    return MatrixX(C.rows(), 0);
+  const MatrixX S = complement(J);
+  if (S.cols() == 0) return S;
+  const Eigen::SelfAdjointEigenSolver<MatrixX> left(S.transpose() * C * S);
+  std::vector<Eigen::Index> rigid;
+  for (Eigen::Index i = 0; i < S.cols(); ++i)
+    if (std::abs(left.eigenvalues()(i)) <= lost_compliance * most) rigid.push_back(i);
+  return S * left.eigenvectors()(Eigen::all, rigid);
+}
+
+/// What the end of a chain lacks to where it is held.
+Vector6 gap(const Tip& end, const Linearised& l, const Vector3& p_E, const Vector6& misfit, bool finite) {
+  Vector6 c;
+  if (finite)
+    c << end.x.head<3>() - l.end.displacement(p_E), rotation_vector(combined(end.D, l.end.D.transpose()));
+  else
+    c = end.x - misfit - l.J * l.x;
+  if (!l.all) c -= l.J * l.offset;
+  return c;
+}
+
+/// Smallest singular value beside the largest.
+double mobility_of(const MatrixX& J) {
+  if (J.size() == 0) return 1;
+  const VectorX moves = J.jacobiSvd().singularValues();
+  return moves(moves.size() - 1) / moves(0);
+}
+
 MatrixX pick(const MatrixX& A, const std::vector<Eigen::Index>& rows, const std::vector<Eigen::Index>& cols) {
   return A(rows, cols);
 }
@@ -108,6 +144,17 @@ Elimination elimination_of(const ByFreeMotions& by_z, const std::vector<bool>& k
   return out;
 }
 
+std::string branch_at_dead_centre(const VirtualChain& chain) {
+  constexpr double singular = 1e-4;
+  for (const VirtualStep& step : chain.steps)
+    if (const auto* group = std::get_if<VirtualGroup>(&step))
+      for (const VirtualChain& branch : group->branches) {
+        if (branch.restraint().mobility < singular) return branch.name;
+        if (std::string within = branch_at_dead_centre(branch); !within.empty()) return within;
+      }
+  return {};
+}
+
 void hold_laws_of_joints(VirtualChain& chain, std::size_t& next) {
   for (VirtualStep& step : chain.steps)
     if (auto* v = std::get_if<VirtualJoint>(&step); v && !v->joint.stiffness)
@@ -154,20 +201,17 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   held_ = linearise(conditions);
   const Linearised& l = held_;
   const bool finite = conditions.geometry == Geometry::finite;
-  Vector6& c = lack_;
-  if (finite)
-    c << end.x.head<3>() - l.end.displacement(p_E), rotation_vector(combined(end.D, l.end.D.transpose()));
-  else
-    c = end.x - conditions.misfit * misfit - l.J * l.x;
-  if (!l.all) c -= l.J * l.offset;
+  lack_ = gap(end, l, p_E, conditions.misfit * misfit, finite);
+  const Vector6& c = lack_;
   const ByFreeMotions by_z = by_free_motions(l);
   const auto [E, Q, J_E, J_Q, A_EE, A_EQ, A_QQ, r_Q, yields, A_EE_EQ, A_EE_r, positive] = elimination_of(by_z, l.kept);
   const VectorX scale = l.scale(Q);
   const Vector6 e = J_E * A_EE_r;
 
   const Vector6 W = weights(length);
-  const MatrixX J_weighed = W.asDiagonal() * by_z.J * l.scale.asDiagonal();
-  const MatrixX B = complement(J_weighed), P = complement(B);
+  const MatrixX B =
+      held_rigidly(W.asDiagonal() * (J_E * yields) * W.asDiagonal(), W.asDiagonal() * J_Q * scale.asDiagonal());
+  const MatrixX P = complement(B);
   const Eigen::Index rank = P.cols(), passive = J_Q.cols();
   const auto along_P = [&](const MatrixX& X) -> MatrixX {  // Pᵀ W X
     const MatrixX weighed = W.asDiagonal() * X;
@@ -205,6 +249,7 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   held.B = W.asDiagonal() * B;
   held.b = -held.B.transpose() * c;
   held.stable = l.stable;
+  if (conditions.judged) held.mobility = mobility_of(J_hat);
   if (conditions.judged && held.stable)
     held.stable = (positive && plainly_splits(C / unit, J_hat, unit * A_hat)) ||
                   negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
@@ -268,6 +313,20 @@ Step VirtualJoint::deflected(std::size_t i, double f, const ShapeConditions& c) 
     out.compliance += c.steps[number].compliance;
   }
   return out;
+}
+
+double largest_wrench(const VirtualChain& chain) {
+  double largest = chain.F.head<3>().norm() + chain.F.tail<3>().norm() / chain.length;
+  for (const VirtualStep& step : chain.steps)
+    if (const auto* group = std::get_if<VirtualGroup>(&step))
+      for (const VirtualChain& branch : group->branches) largest = std::max(largest, largest_wrench(branch));
+  return largest;
+}
+
+std::string at_dead_centre(VirtualChain whole, ShapeConditions conditions) {
+  conditions.judged = true;
+  whole.linearise(conditions);
+  return branch_at_dead_centre(whole);
 }
 
 std::size_t hold_laws(VirtualChain& whole) {

@@ -137,14 +137,14 @@ ShapeClass class_of(const ShapeTruth& truth) {
 }
 
 /// Whether a refusal is a limit that the theories name, or one that their READMEs do not promise to pass: motions
-/// without any compliance in the deformed shape, members that bend too far, and laws that begin without a stiffness
-/// while misfits grow.
+/// without any compliance in the deformed shape, members that bend too far, passive joints at a dead centre (the judge
+/// jumps to another way to assemble them), and laws that begin without a stiffness while misfits grow.
 bool at_a_limit(const Shaped& s) {
   const bool laws = !all_linear(s.c);
   return std::any_of(s.said.begin(), s.said.end(), [&](const Said& said) {
     const auto says = [&](const char* words) { return said.refuses.find(words) != std::string::npos; };
-    return says("infinite stiffness") || says("members bend so far") || (laws && says("of the misfits")) ||
-           (said.linear && said.linear->rigid > 0);
+    return says("infinite stiffness") || says("members bend so far") || says("singular position") ||
+           (laws && says("of the misfits")) || (said.linear && said.linear->rigid > 0);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "analytic/model.h"
 #include "tests/attack/count.h"
 #include "tests/attack/shape_judge.h"
 
@@ -92,6 +93,25 @@ TEST(ShapedDevices, OfShortElementsMisfitsAndSoftTablesAreAnswered) {
     const ShapeJudgement j = judge_in_shape_apart(seed, laws);
     EXPECT_EQ(j.outcome, Outcome::answered) << reproduction_in_shape(seed, laws, j);
   }
+}
+
+// A lever that only the deformed shape gives a spring made one leg 1e14 times as stiff as its softest direction, and
+// what is left of the digits of the others was called a limit load at 0.056 of the load.
+TEST(ShapedDevices, WithALeverThatOnlyTheShapeHasAreAnswered) {
+  const ShapeJudgement j = judge_in_shape_apart(16332, false);
+  EXPECT_EQ(j.outcome, Outcome::answered) << reproduction_in_shape(16332, false, j);
+}
+
+// A slack leg of six passive freedoms reaches the end of its travel: no buckling load.
+TEST(ShapedDevices, AtADeadCentreOfPassiveJointsAreToldSo) {
+  const std::optional<ShapedDevice> d = shaped_device(16106, false);
+  ASSERT_TRUE(d.has_value());
+  const analytic::AnalyticSolution s =
+      analytic::AnalyticModel(d->at.configuration).solve(d->random.load, Geometry::finite);
+  EXPECT_FALSE(s.converged);
+  EXPECT_NE(s.message.find("the passive joints of leg 1 come to a singular position (a dead centre) at 0.005"),
+            std::string::npos)
+      << s.message;
 }
 
 class ShapedDevicesOnDemand : public ::testing::TestWithParam<bool> {};

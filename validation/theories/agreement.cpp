@@ -145,11 +145,11 @@ double require_agreement(const Theories& theories, const std::vector<Answer>& an
 
 bool require_agreement_deformed(const Theories& theories, const DeformedAnswers& d, const Configuration& c,
                                 const std::string& device) {
-  constexpr double solved_to = 1e-6, estimate_is_known_to = 10;
-  const std::size_t reference = reference_of(theories);
-  const double from_linear = d.from_linear[reference], rotation = d.answers[reference].displacement.tail<3>().norm();
+  constexpr double solved_to = 1e-6, estimate_is_known_to = 10, terms = 4;
+  const double from_linear = d.from_linear[reference_of(theories)];
   double bound = solved_to + estimate_is_known_to * d.discretisation;
-  if (d.geometry == Geometry::second_order) bound += from_linear * from_linear + rotation * rotation;
+  if (d.geometry == Geometry::second_order)
+    bound += terms * (from_linear * from_linear + std::ranges::min_element(d.answers, {}, &Answer::left_out)->left_out);
   if (std::ranges::any_of(d.answers, &Answer::apart)) bound += from_linear;
   bool in_play = false;
   for_each_pair(theories, [&](std::size_t i, std::size_t j, double known_to) {

@@ -50,10 +50,11 @@ struct DeformedAnswers {
   double play = 0;  ///< how far T can move in the play that the load leaves open in linear geometry, likewise
 };
 /// As require_agreement(), for equilibrium in the deformed shape. Theories may differ by the discretisation errors that
-/// each estimates. In second-order geometry they may also differ by the squares of the change from the linear answer
-/// and of the rotation, which each neglects in its own way. Where one takes laws that jump as in linear geometry
-/// (Answer::apart) they may differ by the change itself. Where play floats in linear geometry, equilibrium in the
-/// deformed shape may be stable at both its ends, and they may differ by the play. Returns whether they do.
+/// each estimates. In second-order geometry they may also differ by four times the square of the change from the linear
+/// answer plus what the theory with the smaller one says it leaves out (Answer::left_out): each neglects several terms
+/// of that order in its own way. Where one takes laws that jump as in linear geometry (Answer::apart) they may differ
+/// by the change itself. Where play floats in linear geometry, equilibrium in the deformed shape may be stable at both
+/// its ends, and they may differ by the play. Returns whether they do.
 bool require_agreement_deformed(const Theories&, const DeformedAnswers&, const Configuration&,
                                 const std::string& device);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "analytic/constraint.h"
+#include "analytic/deformed.h"
 #include "msa/base/error.h"
 #include "msa/base/outcome.h"
 #include "validation/theories/turned.h"
@@ -16,6 +17,13 @@ constexpr const char* by_closed_form = "analytic";
 
 bool fits(const Configuration& c) {
   return std::all_of(c.legs.begin(), c.legs.end(), [](const PlacedLeg& l) { return l.misfit.isZero(0); });
+}
+
+/// The tool turns in play too, which a state in the deformed shape leaves to its laws; where it is told apart from what
+/// laws that jump do, the tool's rotation is all that is known.
+double left_out_in_second_order(const analytic::AnalyticSolution& s) {
+  const double turned = s.displacement.tail<3>().squaredNorm();
+  return s.deformed ? std::max(turned, analytic::left_out_in_second_order(*s.deformed)) : turned;
 }
 
 }  // namespace
@@ -89,6 +97,7 @@ Answer AnalyticAt::answer(const Vector6& F, const Conditions& conditions) {
   Answer answer{s.displacement, model().stiffness(s), model().energies(s)};
   answer.slips = s.slips;
   answer.discretisation = s.discretisation;
+  if (conditions.geometry == Geometry::second_order) answer.left_out = left_out_in_second_order(s);
   return deformed_answer(std::move(answer), asked(), {load, -carried});
 }
 
@@ -105,6 +114,7 @@ Answer AnalyticAt::linear_answer(const analytic::AnalyticSolution& s, const Vect
   for (const std::size_t law : s.loose) answer.floating.loose.push_back(m.in_steps()[law].part);
   answer.floating.least = s.least, answer.floating.most = s.most;
   answer.apart = s.apart;
+  if (conditions.geometry == Geometry::second_order) answer.left_out = left_out_in_second_order(s);
   answer.rigid = static_cast<int>(r.rigid.cols());
   if (answer.rigid > 0) answer.rigid_motions = analytic::motions_resisted_by(r.rigid, configuration_->size);
   enforce_stiffness(answer.checks, asked());

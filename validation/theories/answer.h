@@ -29,6 +29,9 @@ struct Answer {
                                                               ///< Conditions
   /// In finite geometry: estimated discretisation error of the displacement, m and rad.
   Eigen::Vector2d discretisation = Eigen::Vector2d::Zero();
+  /// In second-order geometry: the order of what it leaves out, relative to the displacement: the square of the largest
+  /// rotation of a body plus the largest strain of a member's axis.
+  double left_out = 0;
   Floating floating = {};
   /// Number of motions with infinite stiffness; `stiffness` is that of the other motions.
   int rigid = 0;

@@ -131,6 +131,8 @@ Answer MsaAt::deformed() {
   Answer answer{last_.displacement, model().stiffness(last_.state).K, last_.energies};
   answer.slips = last_.slips;
   answer.discretisation = discretisation_;
+  if (last_.state.geometric->geometry == Geometry::second_order)
+    answer.left_out = last_.state.geometric->left_out.relative;
   const Vector6 reaction = model().base_reaction(last_.load, last_.state);
   return deformed_answer(std::move(answer), asked(), {last_.load, reaction});
 }

@@ -137,6 +137,18 @@ VectorX GeometricSolver::update_forces(Work& work, const Linearisation& at, cons
 }
 
 /// What is known of the shape that was reached.
+/// What second order leaves out, relative to the displacement: the square of the largest rotation, and the largest
+/// strain of a member's axis.
+double left_out_in_second_order(const Model& m, const GeometricState& state) {
+  double rotation = 0, strain = 0;
+  for (Eigen::Index node = 0; node < std::ssize(m.nodes); ++node)
+    rotation = std::max(rotation, state.u.segment<3>(6 * node + 3).norm());
+  for (std::size_t i = 0; i < m.beams.size(); ++i)
+    strain = std::max(
+        strain, std::abs(m.beams[i].R_WM.col(0).dot(state.beams[i].forces.segment<3>(6))) / m.beams[i].rigidity.EA);
+  return rotation * rotation + strain;
+}
+
 void GeometricSolver::conclude(Work& work, GeometricState& state) const {
   const VectorX loads = state.load_factor * work.loads;
   work.strain(state.load_factor);
@@ -167,6 +179,7 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
     state.left_out.twist += left.twist;
   }
   state.beams = std::move(at.beams);
+  if (state.geometry == Geometry::second_order) state.left_out.relative = left_out_in_second_order(model_, state);
   state.forms = std::move(at.forms);
   state.spring_forms = std::move(at.spring_forms);
   for (const auto& [part, energy] : energies(model_, state)) state.energy += energy;

@@ -81,7 +81,8 @@ struct GeometricState {
   std::vector<LinearForm> forms, spring_forms;
   Eigen::SparseMatrix<double> K;  ///< tangent by freedom, without constraints
   double energy = 0;              ///< J, beams and springs
-  /// Finite: approximate upper bound of the elements' errors: the largest relative one, the sum of twists.
+  /// Finite: approximate upper bound of the elements' errors: the largest relative one, the sum of twists. Second
+  /// order: the order of what it leaves out, relative: the square of the largest rotation plus the largest strain N/EA.
   LeftOut left_out;
 
   const SpringLaw& law(const Model& m, std::size_t i) const { return jumping.empty() ? m.springs[i].law : jumping[i]; }
