@@ -40,14 +40,45 @@ struct Strain {
   }
 };
 
+/// r* and ψ* of the header as one vector e with its derivatives by [r; ψ]; the first of r* is not used.
+struct Shape {
+  Vector6 e, stiffness;
+  Matrix6 by = Matrix6::Identity();
+  Vector3 slope;  // of the sections, by r_y and r_z
+  double helix;
+
+  Shape(const Strain& s, double L, const Vector3& r, const Vector3& psi) : helix(L / 24) {
+    stiffness << s.stiffness, s.twist_bend;
+    slope = (5 * L * L * s.across).cwiseSqrt() / L;
+    const Vector3 a = slope.cwiseProduct(r), b = slope.cwiseProduct(psi);
+    e << 0, r.y() - helix * psi.x() * psi.y(), r.z() - helix * psi.x() * psi.z(), psi.x() + a.dot(psi),
+        psi.y() - a.y() * psi.x(), psi.z() - a.z() * psi.x();
+    by.row(0).setZero();
+    by.row(1).tail<3>() << -helix * psi.y(), -helix * psi.x(), 0;
+    by.row(2).tail<3>() << -helix * psi.z(), 0, -helix * psi.x();
+    by.row(3) << 0, b.y(), b.z(), 1, a.y(), a.z();
+    by.row(4) << 0, -slope.y() * psi.x(), 0, -a.y(), 1, 0;
+    by.row(5) << 0, 0, -slope.z() * psi.x(), -a.z(), 0, 1;
+  }
+
+  /// Σ f_i ∂²e_i.
+  Matrix6 curved(const Vector6& f) const {
+    Matrix6 H = Matrix6::Zero();
+    const auto add = [&](int i, int j, double x) { H(i, j) += x, H(j, i) += x; };
+    for (const int k : {1, 2}) {  // y, z
+      add(3, 3 + k, -helix * f(k));
+      add(k, 3 + k, slope(k) * f(3));
+      add(k, 3, -slope(k) * f(3 + k));
+    }
+    return H;
+  }
+};
+
 /// U's second derivative: what the rigidities give, and what the axial force N gives.
-Matrix6 elastic(const Strain& s, double EA, double L) {
+Matrix6 elastic(const Strain& s, const Shape& shape, double EA, double L) {
   Vector6 by;
   by << s.by_r, s.by_psi;
-  Matrix6 H = EA * L * by * by.transpose();
-  H.topLeftCorner<3, 3>().diagonal() += s.stiffness;
-  H.bottomRightCorner<3, 3>().diagonal() += s.twist_bend;
-  return H;
+  return EA * L * by * by.transpose() + shape.by.transpose() * shape.stiffness.asDiagonal() * shape.by;
 }
 
 Matrix6 stressed(const Strain& s, double L, double N) {
@@ -61,13 +92,14 @@ Matrix6 stressed(const Strain& s, double L, double N) {
 Potential potential(const BeamRigidity& k, double L, const Vector3& r, const Vector3& psi, double stretch,
                     double strain) {
   const Strain s(k, L, r, psi, stretch, strain);
+  const Shape shape(s, L, r, psi);
+  const Vector6 f = shape.stiffness.cwiseProduct(shape.e), by = shape.by.transpose() * f;
   Potential p;
   p.N = k.EA * s.epsilon;
-  p.rho = p.N * L * s.by_r + s.stiffness.cwiseProduct(r);
-  p.mu = p.N * L * s.by_psi + s.twist_bend.cwiseProduct(psi);
-  p.H = elastic(s, k.EA, L) + stressed(s, L, p.N);
-  p.energy =
-      (k.EA * L * s.epsilon * s.epsilon + s.stiffness.dot(r.cwiseAbs2()) + s.twist_bend.dot(psi.cwiseAbs2())) / 2;
+  p.rho = p.N * L * s.by_r + by.head<3>();
+  p.mu = p.N * L * s.by_psi + by.tail<3>();
+  p.H = elastic(s, shape, k.EA, L) + stressed(s, L, p.N) + shape.curved(f);
+  p.energy = (k.EA * L * s.epsilon * s.epsilon + f.dot(shape.e)) / 2;
   return p;
 }
 
@@ -144,7 +176,10 @@ Matrix12 geometric_stiffness(const Beam& beam, const Vector12& ends) {
   p.N = (ends(6) - ends(0)) / 2;
   p.rho = (ends.segment<3>(6) - ends.segment<3>(0)) / 2;
   p.mu = (ends.segment<3>(9) - ends.segment<3>(3)) / 2;
-  p.H = stressed(Strain(beam.rigidity, beam.length, r, none, 0, 0), beam.length, p.N);
+  const Strain strain(beam.rigidity, beam.length, r, none, 0, 0);
+  Vector6 state;
+  state << p.rho, p.mu;
+  p.H = stressed(strain, beam.length, p.N) + Shape(strain, beam.length, r, none).curved(state);
   Matrix12 K = ends_of(r, none, p).K;
   // Axial motions count by their mean alone.
   K.row(0) = K.row(6) = (K.row(0) + K.row(6)) / 2;
