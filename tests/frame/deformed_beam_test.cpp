@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "msa/frame/deformed/geometric_solver.h"
+#include "tests/support/columns.h"
 #include "tests/support/finite_motion.h"
 
 namespace deflect::frame {
@@ -15,7 +19,11 @@ namespace {
 
 using test::any_vector;
 using test::carried;
+using test::column;
+using test::load_at;
 using test::moved;
+using test::rigid_in_shear;
+using test::solve;
 
 constexpr double none = std::numeric_limits<double>::infinity();
 
@@ -235,6 +243,40 @@ TEST(RotationVector, IsTheInverseOfRotation) {
               1e-15 * (1 + omega.norm()) * std::max(1e-3, size) * 10);
     EXPECT_LE((rotation_by(omega).toRotationMatrix() - rotation_from_vector(omega)).norm(), 1e-15);
   }
+}
+
+/// Tip of a unit rod under a moment that is constant in space: R' = R[C Rᵀm], r' = R e_x.
+Vector3 tip_under_moment(const Vector3& compliance, const Vector3& m) {
+  constexpr int steps = 20000;
+  Matrix3 R = Matrix3::Identity();
+  Vector3 r = Vector3::Zero();
+  for (int i = 0; i < steps; ++i) {  // by midpoint rotations
+    const auto turned = [&](const Matrix3& at, double step) -> Matrix3 {
+      const Vector3 k = step * compliance.cwiseProduct(at.transpose() * m);
+      return Eigen::AngleAxisd(k.norm(), k.normalized()).toRotationMatrix();
+    };
+    const Matrix3 half = R * turned(R, 0.5 / steps);
+    r += half.col(0) / steps;
+    R = R * turned(half, 1.0 / steps);
+  }
+  return r;
+}
+
+// Twist turns the plane of bending within an element: without that the error falls with the square of the load only, as
+// the displacement by the rotation of the sections does.
+TEST(DeformedBeam, TwistTurnsThePlaneOfBendingWithinElements) {
+  const Vector3 moment(0.2, 0.35, -0.25);
+  const BeamRigidity flat = {1e6, 2, 0.8, 0.5, rigid_in_shear, rigid_in_shear};
+  std::vector<double> errors;
+  for (const double share : {1.0, 0.5, 0.25}) {
+    const Model m = column(2, 1, flat);
+    const GeometricState s = solve(m, load_at(m, 2, Vector3::Zero(), share * moment), Geometry::finite);
+    ASSERT_TRUE(s.converged) << s.message;
+    const Vector3 exact = tip_under_moment({1 / flat.GJ, 1 / flat.EIy, 1 / flat.EIz}, share * moment);
+    errors.push_back((s.u.segment<3>(12) - (exact - Vector3::UnitX())).norm());
+  }
+  EXPECT_GT(errors[0] / errors[1], 7);
+  EXPECT_GT(errors[1] / errors[2], 7);
 }
 
 }  // namespace

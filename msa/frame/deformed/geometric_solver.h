@@ -120,7 +120,8 @@ class GeometricSolver {
   Step newton(Work&, double factor, Geometry) const;
   void keep_laws(Work&, const Linearisation&, const VectorX& loads, Step&) const;
   bool iterate(Work&, double factor, const GeometricOptions&, GeometricState&) const;
-  bool arrived(Work&, const VectorX& before, double factor, const GeometricState&, bool doubtful) const;
+  bool arrived(Work&, const VectorX& before, const VectorX& tangent, double factor, const GeometricState&,
+               bool doubtful) const;
   bool drives(Work&, double factor, const VectorX& towards) const;
   bool fall(Work&, const GeometricOptions&, GeometricState&) const;
   void follow(Work&, const GeometricOptions&, GeometricState&) const;

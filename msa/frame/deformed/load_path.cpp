@@ -102,15 +102,22 @@ void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const Vecto
   work.set_offsets();
 }
 
-/// An equilibrium was found: whether the path led there, which its energy tells where Newton's method does not.
-bool GeometricSolver::arrived(Work& work, const VectorX& before, double factor, const GeometricState& state,
-                              bool doubtful) const {
+/// An equilibrium was found: whether the path led there, which its energy tells where Newton's method does not. Beyond
+/// a buckling load there is one on each side, with nearly the same energy: the path does not lead back on its
+/// `tangent`.
+bool GeometricSolver::arrived(Work& work, const VectorX& before, const VectorX& tangent, double factor,
+                              const GeometricState& state, bool doubtful) const {
+  const VectorX moved = work.shape.path - before;
+  if (doubtful && !work.jump && !work.falling && tangent.dot(weights_of(model_, work.length).cwiseProduct(moved)) < 0) {
+    work.why = "a buckling load is there";
+    return false;
+  }
   // A law that is not linear shares work otherwise than in halves.
   const bool linear = std::all_of(model_.springs.begin(), model_.springs.end(),
                                   [](const Spring& spring) { return is_linear(spring.law); });
   if (work.jump || work.falling || !linear || !work.by_loads_alone()) return true;
   const double energy = work.stored(work.linearise(Geometry::finite));
-  const double done = (state.load_factor + factor) / 2 * work.loads.dot(work.shape.path - before);
+  const double done = (state.load_factor + factor) / 2 * work.loads.dot(moved);
   const double gained = energy - work.energy;
   if (doubtful && std::abs(gained - done) > balance * std::max(std::abs(gained), std::abs(done))) {
     work.why = "a limit load is there";
@@ -126,8 +133,10 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
   work.strain(factor);
   if (work.jump && state.load_factor == 0) begin_jumps(work, factor);
   double previous = std::numeric_limits<double>::infinity(), least = previous, slowest = 0;
+  int stalls = 0;    // steps in turn, each longer than half of the one before
   int trembles = 0;  // small steps in turn, none shorter than half of the shortest before
   const VectorX before = work.shape.path;
+  VectorX tangent;
   for (int i = 1; i <= options.max_iterations; ++i) {
     ++state.iterations;
     // At rest a spring has the stiffness that it will have under the load, later no less than a small part of it.
@@ -143,13 +152,15 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
       return false;
     }
     work.shape.move(step.u);
+    if (i == 1) tangent = step.u;
     const double change = size_of(step.u, model_.nodes.size(), work.length);
     const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
     // Rounding is all that is left; of play that floats against hardly any stiffness, that of positions. What hangs in
     // play by forces of second order goes on to tremble: stiffnesses round the forces that move it, the more the less
     // the load. Where all forces balance, it may tremble further.
-    const bool stalled =
-        change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && change > 0.5 * previous;
+    // In large steps of stiff members Newton's method gains digits in every other iteration only.
+    stalls = change > 0.5 * previous ? stalls + 1 : 0;
+    const bool stalled = change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && stalls >= 2;
     const double small = step.unbalanced < 1e-8 ? 1e-4 : 1e-5;
     trembles = work.jump && change < small * size && change > 0.5 * least ? trembles + 1 : 0;
     least = std::min(least, change);
@@ -159,7 +170,7 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
       // Across a buckling or limit load Newton finds equilibria that nothing would stay in.
       const bool stable = !finite || step.tangent->stable();
       if (!stable) work.why = "the equilibrium is unstable there, a buckling or limit load was passed";
-      return stable && (!finite || arrived(work, before, factor, state, slowest > follows));
+      return stable && (!finite || arrived(work, before, tangent, factor, state, slowest > follows));
     }
     if (i > 1 && change > 1e-6 * size) slowest = std::max(slowest, change / previous);
     previous = change;

@@ -45,17 +45,18 @@ struct Shape {
   Vector6 e, stiffness;
   Matrix6 by = Matrix6::Identity();
   Vector3 slope;  // of the sections, by r_y and r_z
-  double helix;
+  double length, helix;
 
-  Shape(const Strain& s, double L, const Vector3& r, const Vector3& psi) : helix(L / 24) {
+  Shape(const Strain& s, double L, const Vector3& r, const Vector3& psi) : length(L), helix(L / 24) {
     stiffness << s.stiffness, s.twist_bend;
     slope = (5 * L * L * s.across).cwiseSqrt() / L;
     const Vector3 a = slope.cwiseProduct(r), b = slope.cwiseProduct(psi);
-    e << 0, r.y() - helix * psi.x() * psi.y(), r.z() - helix * psi.x() * psi.z(), psi.x() + a.dot(psi),
-        psi.y() - a.y() * psi.x(), psi.z() - a.z() * psi.x();
+    const double shorter = 2 - r.x() / L;
+    e << 0, r.y() * shorter - helix * psi.x() * psi.y(), r.z() * shorter - helix * psi.x() * psi.z(),
+        psi.x() + a.dot(psi), psi.y() - a.y() * psi.x(), psi.z() - a.z() * psi.x();
     by.row(0).setZero();
-    by.row(1).tail<3>() << -helix * psi.y(), -helix * psi.x(), 0;
-    by.row(2).tail<3>() << -helix * psi.z(), 0, -helix * psi.x();
+    by.row(1) << -r.y() / L, shorter, 0, -helix * psi.y(), -helix * psi.x(), 0;
+    by.row(2) << -r.z() / L, 0, shorter, -helix * psi.z(), 0, -helix * psi.x();
     by.row(3) << 0, b.y(), b.z(), 1, a.y(), a.z();
     by.row(4) << 0, -slope.y() * psi.x(), 0, -a.y(), 1, 0;
     by.row(5) << 0, 0, -slope.z() * psi.x(), -a.z(), 0, 1;
@@ -66,6 +67,7 @@ struct Shape {
     Matrix6 H = Matrix6::Zero();
     const auto add = [&](int i, int j, double x) { H(i, j) += x, H(j, i) += x; };
     for (const int k : {1, 2}) {  // y, z
+      add(0, k, -f(k) / length);
       add(3, 3 + k, -helix * f(k));
       add(k, 3 + k, slope(k) * f(3));
       add(k, 3, -slope(k) * f(3 + k));
