@@ -8,6 +8,7 @@
 #include <string>
 
 #include "msa/base/error.h"
+#include "msa/base/index.h"
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/paths.h"
 #include "validation/compare/comparison.h"
@@ -103,6 +104,37 @@ TEST(FrameRecording, AChannelOfZerosWasNotConnected) {
   Measurements data = subject::simulate_frame(f, subject::frame_campaign("rich", f, 1), {});
   for (Reading& r : data.readings) r.sensors[7] = 0;
   EXPECT_EQ(mistake_in(f, data), std::vector<std::string>{"zero_column_S_mid_um_per_m"});
+}
+
+/// Of readings in which one channel is so many times what it should be.
+std::vector<std::string> mistake_where_scaled(const std::string& frame, const char* plan, const char* sensor,
+                                              double factor) {
+  const frame::FrameDescription f = built_in(frame);
+  Measurements data = subject::simulate_frame(f, subject::frame_campaign(plan, f, 1), {});
+  const auto at = std::find_if(f.sensors.begin(), f.sensors.end(), [&](const auto& s) { return s.first == sensor; });
+  for (Reading& r : data.readings) *r.sensors[as_size(at - f.sensors.begin())] *= factor;
+  return mistake_in(f, data);
+}
+
+// The errors of displacements say nothing of a force or a strain, and few readings little against a gain by channel.
+TEST(FrameRecording, AForceWithTheOtherSignOrInAnotherUnitIsNoGain) {
+  constexpr double lbf = 4.4482216152605;
+  EXPECT_EQ(mistake_where_scaled("portal-semi-rigid", "paper", "foot_z", -1), std::vector<std::string>{"foot_z_sign"});
+  EXPECT_EQ(mistake_where_scaled("portal-semi-rigid", "cycle", "foot_z", -1), std::vector<std::string>{"foot_z_sign"});
+  EXPECT_EQ(mistake_where_scaled("portal-semi-rigid", "paper", "foot_z", 1 / lbf),
+            std::vector<std::string>{"foot_z_in_lbf"});
+  EXPECT_EQ(mistake_where_scaled("truss-45", "cycle", "S_C1d", -1), std::vector<std::string>{"S_C1d_sign"});
+  EXPECT_EQ(mistake_where_scaled("truss-45", "paper", "F_C0c", 1 / lbf), std::vector<std::string>{"F_C0c_in_lbf"});
+  EXPECT_TRUE(mistake_where_scaled("portal-semi-rigid", "cycle", "foot_z", 1.3).empty());
+}
+
+// From the tenth reading on the gauge reads what it read there; a load that comes back is no standstill.
+TEST(FrameRecording, AChannelThatStandsStillIsSaid) {
+  const frame::FrameDescription f = built_in("portal-semi-rigid");
+  Measurements data = subject::simulate_frame(f, subject::frame_campaign("cycle", f, 1), {});
+  EXPECT_TRUE(mistake_in(f, data).empty());
+  for (std::size_t i = 10; i < data.readings.size(); ++i) data.readings[i].sensors[0] = data.readings[9].sensors[0];
+  EXPECT_EQ(mistake_in(f, data), std::vector<std::string>{"stuck_top_x_mm"});
 }
 
 // Row 3 and its repetition differ by 1 mm, 500 times the noise of the dial gauge.

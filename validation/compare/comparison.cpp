@@ -339,6 +339,7 @@ std::optional<MisfitAccount> compared_again(const Comparison& recorded, const su
   MisfitAccount at_best;
   at_best.numbers = static_cast<double>(comparing.c.numbers);
   at_best.share = comparing.c.all.measured > 0 ? comparing.c.all.rmse / comparing.c.all.measured : 0;
+  at_best.share_of_channel = shares_by_channel(comparing.c);
   if (!can_be_right(at_best)) return std::nullopt;
   comparing.add_tolerances();
   if (!recorded.study.deformed_shape.empty() && !is_any_estimated(recorded)) {

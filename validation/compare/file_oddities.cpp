@@ -17,6 +17,8 @@ namespace {
 constexpr std::size_t least_numbers = 10;       // of which a verdict can be made
 constexpr double sigma_out_of_scale = 50;       // between σ as stated and as seen
 constexpr std::size_t replicates_to_trust = 5;  // degrees of freedom
+constexpr std::size_t least_of_standstill = 6;  // readings
+constexpr double far_beyond = 10;               // of expected deviations
 constexpr const char* measured_names[] = {"ux_mm", "uy_mm", "uz_mm", "thx_rad", "thy_rad", "thz_rad"};
 
 std::string size_words(double value, measurement::Quantity q) {
@@ -57,6 +59,11 @@ struct ByChannel {
   }
 };
 
+double recorded_value(const Comparison& c, const measurement::MeasuredValue& v) {
+  const measurement::Reading& r = c.study.data->readings[v.reading];
+  return v.channel < 6 ? v.value : r.sensors[v.channel - 6].value_or(v.value);
+}
+
 std::string column_of(const measurement::Measurements& data, std::size_t channel) {
   return channel < 6 ? measured_names[channel] : measurement::sensor_column(data.instruments.sensors[channel - 6]);
 }
@@ -87,6 +94,48 @@ void add_empty_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
            fmt::format("{} is 0 in every reading, where {} rms are predicted: was its sensor connected? Leave "
                        "the column away if it was not measured",
                        column_of(data, k), size_words(by.predicted[k], by.quantity[k]))});
+}
+
+/// Readings one after the other in which a channel has the same number.
+struct Standstill {
+  std::size_t first = 0, last = 0, count = 0;  // readings
+  double moves = 0, deviation = 0;             // of what is predicted there, and the largest expected deviation
+};
+
+/// The longest one of a channel through which the prediction moves by far more than noise and tolerances.
+std::optional<Standstill> standstill(const Comparison& c, std::size_t channel, const VectorX& deviation) {
+  std::optional<Standstill> longest;
+  Standstill now;
+  double value = 0, low = 0, high = 0;
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const measurement::MeasuredValue& v = c.study.values[i];
+    if (v.channel != channel) continue;
+    const double p = c.study.predicted[v.reading](as_index(channel)), recorded = recorded_value(c, v);
+    if (now.count == 0 || recorded != value) now = {v.reading, v.reading, 0, 0, 0}, value = recorded, low = high = p;
+    low = std::min(low, p), high = std::max(high, p);
+    now.last = v.reading, now.moves = high - low, ++now.count;
+    now.deviation = std::max(now.deviation, deviation(as_index(i)));
+    if (now.moves > far_beyond * now.deviation && (!longest || now.count > longest->count)) longest = now;
+  }
+  return longest;
+}
+
+/// Columns of zeros are told as such.
+void add_stuck_ones(const Comparison& c, std::vector<RecordingMistake>& out) {
+  const measurement::Measurements& data = *c.study.data;
+  const ByChannel by(c);
+  const VectorX deviation = expected_deviations(c);
+  for (std::size_t k = 6; k < by.count.size(); ++k) {
+    if (by.measured[k] == 0) continue;
+    const std::optional<Standstill> stuck = standstill(c, k, deviation);
+    if (!stuck || stuck->count < least_of_standstill) continue;
+    out.push_back({{fmt::format("stuck_{}", column_of(data, k))},
+                   fmt::format("{} stands still in {} readings, from line {} to line {}, where it should move by {}: "
+                               "did its sensor stick, or was it at the end of its travel? Leave the cells empty in "
+                               "which it did not measure",
+                               column_of(data, k), stuck->count, data.readings[stuck->first].line,
+                               data.readings[stuck->last].line, size_words(stuck->moves, by.quantity[k]))});
+  }
 }
 
 /// Whether readings are written more finely than they scatter, so that chance does not make them alike: most of them
@@ -199,6 +248,7 @@ std::vector<RecordingMistake> file_oddities(const Comparison& c) {
                      "numbers, under loads in several directions",
                      c.readings, c.numbers, least_numbers)});
   add_identical_rows(c, out);
+  add_stuck_ones(c, out);
   return out;
 }
 

@@ -6,7 +6,7 @@
 
 namespace deflect::compare {
 
-/// Nothing measured, nothing loaded, too few readings, a column of zeros, identical rows.
+/// Nothing measured, nothing loaded, too few readings, a column of zeros or one that stands still, identical rows.
 std::vector<RecordingMistake> file_oddities(const Comparison&);
 
 /// σ in a unit other than that of the readings.

@@ -94,6 +94,28 @@ std::string what_would_fall(const MisfitAccount& before, const MisfitAccount& af
                      fall_words(before.chi2 / before.numbers, after.chi2 / after.numbers));
 }
 
+/// The sensors' channels that a correction rewrites.
+std::vector<std::size_t> changed_channels(const measurement::Measurements& before,
+                                          const measurement::Measurements& after) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < before.instruments.sensors.size(); ++k)
+    for (std::size_t i = 0; i < before.readings.size(); ++i)
+      if (before.readings[i].sensors[k] != after.readings[i].sensors[k]) {
+        out.push_back(6 + k);
+        break;
+      }
+  return out;
+}
+
+/// The same with the share of these channels, where there are any: errors of displacements say nothing of a force.
+MisfitAccount of_channels(MisfitAccount a, const std::vector<std::size_t>& channels) {
+  if (channels.empty()) return a;
+  double sum = 0;
+  for (const std::size_t k : channels) sum += std::pow(a.share_of_channel[k], 2);
+  a.share = std::sqrt(sum / static_cast<double>(channels.size()));
+  return a;
+}
+
 struct Tried {
   recording::Correction correction;
   double loss = 0;
@@ -206,18 +228,21 @@ class MistakeSearch {
 
   void try_one(const std::vector<Tried>& all, std::size_t from, std::size_t to,
                const recording::Correction& correction) {
+    const measurement::Measurements data = recording::corrected(*c_.study.data, correction);
+    const std::vector<std::size_t> changed = changed_channels(*c_.study.data, data);
+    const auto cured = [&](const MisfitAccount& after, double gain) {
+      return cures(of_channels(before_, changed), of_channels(after, changed), correction.fitted, gain);
+    };
     const auto compared = outcome_of([&] {
-      return again_(subject_as_read(*c_.study.subject, correction), recording::corrected(*c_.study.data, correction),
-                    [&](const MisfitAccount& at_best) {
-                      const double gain =
-                          at_best.left > 0 ? shorter_by(at_best, correction) : std::numeric_limits<double>::infinity();
-                      return cures(before_, at_best, correction.fitted, gain);
-                    });
+      return again_(subject_as_read(*c_.study.subject, correction), data, [&](const MisfitAccount& at_best) {
+        return cured(at_best,
+                     at_best.left > 0 ? shorter_by(at_best, correction) : std::numeric_limits<double>::infinity());
+      });
     });
     if (!compared || !*compared) return;  // the corrected data ask for what the machine cannot do, or cannot be right
     const MisfitAccount& after = **compared;
     const double gain = shorter_by(after, correction);
-    if (!cures(before_, after, correction.fitted, gain)) return;
+    if (!cured(after, gain)) return;
     if (found_ && gain <= most_) return;
     most_ = gain;
     right_ = !before_.estimated && after.chi2 < right_to_noise * after.numbers &&
@@ -265,6 +290,17 @@ double density_of_estimated(const Comparison& c, const std::unordered_set<std::s
 
 }  // namespace
 
+std::vector<double> shares_by_channel(const Comparison& c) {
+  const std::size_t channels = 6 + c.study.data->instruments.sensors.size();
+  std::vector<double> misfit(channels, 0), measured(channels, 0);
+  for (std::size_t i = 0; i < c.study.values.size(); ++i) {
+    const measurement::MeasuredValue& v = c.study.values[i];
+    misfit[v.channel] += std::pow(c.residual(as_index(i)), 2), measured[v.channel] += v.value * v.value;
+  }
+  for (std::size_t k = 0; k < channels; ++k) misfit[k] = measured[k] > 0 ? std::sqrt(misfit[k] / measured[k]) : 0;
+  return misfit;
+}
+
 MisfitAccount account_of(const Comparison& c) {
   MisfitAccount a;
   double aside = 0;
@@ -277,6 +313,7 @@ MisfitAccount account_of(const Comparison& c) {
   a.left = c.unexplained_chi2_per_dof * std::max(1.0, a.numbers - a.columns);
   a.set_aside = c.set_aside.size();
   a.share = c.all.measured > 0 ? c.all.rmse / c.all.measured : 0;
+  a.share_of_channel = shares_by_channel(c);
   a.estimated = c.sigma_from_residuals;
   a.density = density_of_estimated(c, lines);
   return a;

@@ -11,6 +11,8 @@
 //   - where the misfit is more than a quarter of what was measured and the correction leaves only noise: this comes
 //     before any physics;
 //   - where the correction leaves only noise and less than 1/20 of the misfit.
+// Where sensors' channels are corrected, the misfit that counts is theirs, over what they measured: of a force that is
+// recorded with the other sign the errors of displacements say nothing.
 // A fitted correction (a shift of the poses or of the point of the load) is reported only where it leaves only noise
 // or, nearly as good, less than 1/20 of the misfit. A sensor is in another unit only where its readings, so corrected,
 // follow the prediction beyond chance (ChannelScreen::follows): else it may as well read something of another sensor.
@@ -43,15 +45,18 @@ struct RecordingMistake {
 
 /// The misfit that is left, and what was fitted or set aside to reach it.
 struct MisfitAccount {
-  double numbers = 0, chi2 = 0;  ///< of the readings not set aside
-  double left = 0;               ///< χ² after the findings; 0: not known yet
-  int columns = 0;               ///< of the findings
-  std::size_t set_aside = 0;     ///< readings
-  double share = 0;              ///< misfit of all readings over what was measured, as root mean squares
-  bool estimated = false;        ///< σ of the numbers that Errors speak of, from residuals
+  double numbers = 0, chi2 = 0;               ///< of the readings not set aside
+  double left = 0;                            ///< χ² after the findings; 0: not known yet
+  int columns = 0;                            ///< of the findings
+  std::size_t set_aside = 0;                  ///< readings
+  double share = 0;                           ///< misfit of all readings over what was measured, as root mean squares
+  bool estimated = false;                     ///< σ of the numbers that Errors speak of, from residuals
+  std::vector<double> share_of_channel = {};  ///< the same of each channel; 0 where it was not measured
   double density = 0;  ///< Σ 2 ln of σ over what the channel measured (rms), of the numbers whose σ is estimated
 };
 MisfitAccount account_of(const Comparison&);
+/// MisfitAccount::share_of_channel.
+std::vector<double> shares_by_channel(const Comparison&);
 
 /// Whether data may still be right, judged by a preliminary account; called during a comparison.
 using CanBeRight = std::function<bool(const MisfitAccount&)>;

@@ -119,7 +119,7 @@ class Candidates::Round {
   void fit_promising(double least) {
     std::array<std::vector<std::size_t>, 2> parts;
     for (std::size_t i = 0; i < out_.size(); ++i)
-      if (allowed_[i] && (is_same_as_known(i) || said_[i] >= enough(signature(i))))
+      if (allowed_[i] && (is_near_known(i) || said_[i] >= enough(signature(i))))
         parts[signature(i).effect.effect->place ? 1 : 0].push_back(i);
     const std::size_t count = parts[0].size() + parts[1].size();
     std::atomic<std::size_t> done = 0;
@@ -134,8 +134,8 @@ class Candidates::Round {
       bar_ = fit_in_turn(
           std::move(part), bar_, all_.threads_,
           [&](std::size_t i) {
-            return is_same_as_known(i) ? certain
-                                       : all_.log_odds(i, can_gain(signature(i), said_[i]), all_.class_priors_[i]);
+            return is_near_known(i) ? certain
+                                    : all_.log_odds(i, can_gain(signature(i), said_[i]), all_.class_priors_[i]);
           },
           fit_one,
           [&](std::size_t i) {
@@ -278,6 +278,11 @@ class Candidates::Round {
   }
   /// To these data: how much it explains more than its signature says holds for it too.
   bool is_same_as_known(std::size_t i) const { return known_ && all_.classes_[i] == class_of_known_; }
+  /// Or another law at its place: the signature of a little restraint says little of a large one, which is what a
+  /// friction is that hardly slips.
+  bool is_near_known(std::size_t i) const {
+    return is_same_as_known(i) || (known_ && at_one_place(*known_, signature(i).effect));
+  }
   /// It may have the same values.
   bool is_like_known(std::size_t i) const {
     if (!is_same_as_known(i)) return false;

@@ -21,14 +21,35 @@ VectorX small_values(const effects::Effect& e) {
   return out;
 }
 
+/// Every amplitude with every shape.
+std::vector<VectorX> every_shape(const std::vector<effects::EffectParameter>& all, const VectorX& start) {
+  std::vector<VectorX> out = {start};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const effects::EffectParameter& p = all[i];
+    if (!p.log || (p.vanishes && std::isinf(*p.vanishes))) continue;
+    const std::vector<double> factors = p.vanishes ? std::vector{30.0, 900.0} : std::vector{1.0 / 30, 30.0};
+    const std::size_t before = out.size();
+    for (const double times : factors)
+      for (std::size_t k = 0; k < before; ++k) {
+        out.push_back(out[k]);
+        double& value = out.back()(as_index(i));
+        value = std::clamp(times * value, p.low, p.high);
+      }
+  }
+  return out;
+}
+
 /// Of amplitudes together: the start and each of them a hundredth to a hundred times, which spans what they can do.
 ///
 /// Where parameters shape the effect: the start, and what shapes it a thirtieth and thirty times, from never slipping
 /// to slipping at once, from hardly bent to bent at every load; an amplitude that starts from nothing thirty times too,
-/// since friction as large as the loads is no multiple of a little.
-std::vector<VectorX> shapes(const std::vector<effects::EffectParameter>& all, const VectorX& start, bool shaped) {
+/// since friction as large as the loads is no multiple of a little. Frames are of any size, from a bench to a bridge:
+/// there each amplitude up to nine hundred times the start goes with each shape.
+std::vector<VectorX> shapes(const std::vector<effects::EffectParameter>& all, const VectorX& start, bool shaped,
+                            bool of_frame) {
   std::vector<VectorX> out = {start};
   if (all.size() == 1) return out;
+  if (shaped && of_frame) return every_shape(all, start);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const effects::EffectParameter& p = all[i];
     std::vector<double> factors = {0.01, 0.1, 10, 100};
@@ -130,7 +151,7 @@ Change Changes::predicted(const effects::PlacedEffect& e) const {
       tried.push_back(std::move(alone));
     }
   else
-    tried = shapes(all, start, out.shaped);
+    tried = shapes(all, start, out.shaped, observations_.subject().frame() != nullptr);
   out.columns.resize(null_.size(), std::ssize(tried));
   for (std::size_t i = 0; i < tried.size(); ++i)
     out.columns.col(as_index(i)) = observations_.residual(prepared(tried[i])) - null_;

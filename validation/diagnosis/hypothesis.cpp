@@ -10,6 +10,7 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/diagnosis/fit_problem.h"
+#include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
 
 namespace deflect::diagnosis {
@@ -320,14 +321,26 @@ double log_likelihood(const Observations& o, const Hypothesis& h, const VectorX&
   return o.log_likelihood_of_scales(subject_with(o, h, values), {1}).front();
 }
 
+namespace {
+
+bool yields_to_one_sense(const effects::Effect& e) {
+  const std::optional<Law> law = effects::law_in_series(e, effects::start_values(e));
+  return law && std::holds_alternative<OneSidedLaw>(*law);
+}
+
+}  // namespace
+
 bool wants_more_than_there_can_be(const Hypothesis& h, const Fit& f) {
   const std::vector<effects::EffectParameter>& own = h.back().effect->parameters;
   if (own.size() != 1 || !f.found) return false;
   const effects::EffectParameter& p = own.front();
   const double x = coordinate(p, f.values(f.values.size() - 1));
+  // A factor that runs to nothing is a part that is missing; a support that yields without end to one sense lets go.
+  const auto has_a_meaning = [&](double bound) {
+    return p.log && (bound < 1e-5 * p.start || (bound > 1e5 * p.start && yields_to_one_sense(*h.back().effect)));
+  };
   for (const double bound : {p.low, p.high})
-    if (p.vanishes != bound && !(p.log && bound < 1e-5 * p.start) && std::abs(x - coordinate(p, bound)) < 1e-3)
-      return true;
+    if (p.vanishes != bound && !has_a_meaning(bound) && std::abs(x - coordinate(p, bound)) < 1e-3) return true;
   return false;
 }
 

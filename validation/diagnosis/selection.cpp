@@ -233,11 +233,20 @@ class Search {
     s_ = std::move(*first);
   }
 
-  /// Whether it is a simpler candidate under another name: it stands at a bound of its own, and one with fewer
-  /// parameters does as well.
+  /// Whether these data leave open one of the parameters of a law that bends: of a friction that never slips its force.
+  static bool leaves_one_open(const Candidate& c) {
+    constexpr double deviations = 10;  // a step of size 1 is a large one
+    const auto own = std::ssize(c.added().effect->parameters);
+    return is_shaped(c.added()) && c.fit.covariance.rows() >= own &&
+           c.fit.covariance.diagonal().tail(own).maxCoeff() > deviations * deviations;
+  }
+
+  /// Whether it is a simpler candidate under another name: it stands at a bound of its own or leaves one of its
+  /// parameters open, and one with fewer parameters does as well.
   static bool is_another(const Candidate& c, const std::vector<Candidate>& all) {
     const auto parameters = [](const Candidate& x) { return x.added().effect->parameters.size(); };
-    return runs_to_a_bound(c.hypothesis, c.fit) && std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
+    return (runs_to_a_bound(c.hypothesis, c.fit) || leaves_one_open(c)) &&
+           std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
              return other.fit.found && parameters(other) < parameters(c) && other.fit.chi2 < c.fit.chi2 + 1;
            });
   }
