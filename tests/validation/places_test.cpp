@@ -116,6 +116,44 @@ TEST(LawsAtPlacesOfTheHapticDevice, DoNotRepeatEntries) {
       EXPECT_NE(e.name, same);
 }
 
+const Effect* named(const std::string& device, const std::string& id) {
+  const std::vector<Effect>& all = laws_of(device);
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Effect& e) { return e.name == id; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+// Wear takes one leg: play, friction, contact and the rest are laws of one leg wherever they are of all, with a title,
+// pages and edits of their own.
+TEST(LawsInOneLeg, AreThoseOfAllLegs) {
+  for (const auto& [device, part] :
+       {std::pair{"stewart-6ups", "slide.tz"}, {"delta", "motor.rz"}, {"3-rrr", "motor.rz"}})
+    for (const char* law : {"clearance", "pull", "push", "hardening", "friction", "load_friction"}) {
+      const std::string id = std::string(law) + "@leg." + part;
+      const Effect* e = named(device, id);
+      ASSERT_TRUE(e) << device << ": " << id;
+      EXPECT_EQ(e->scope, Scope::one_leg) << id;
+      EXPECT_NE(e->title.find(" of one leg "), std::string::npos) << e->title;
+      EXPECT_EQ(places_of(*e, test::device(device)).size(), device == std::string("stewart-6ups") ? 6U : 3U) << id;
+    }
+  for (const char* id : {"restraint@leg.ball_joint.rx", "friction@leg.universal_joint.ry", "contact@leg.mount.tz",
+                         "clearance@leg.ball_joint.tz", "hardening@leg.actuator.tz"})
+    EXPECT_TRUE(named("haptic-6psu", id)) << id;
+}
+
+// What yields alike in many parts of a leg is of one make; wear is of one part.
+TEST(LawsInOneLeg, OfAGroupAreWhatItsMakeIs) {
+  for (const char* device : {"haptic-6psu", "tripteron", "delta", "stewart-6ups", "3-upu"})
+    for (const Effect& e : laws_of(device))
+      if (e.scope == Scope::one_leg && !e.place->others.empty()) {
+        EXPECT_TRUE(e.name.starts_with("linear@") || e.name.starts_with("factor@")) << device << ": " << e.name;
+      }
+}
+
+TEST(LawsInOneLeg, AreNoneWhereThereIsOneLeg) {
+  for (const char* device : {"arm", "scara", "gantry", "fanuc-r2000ic"})
+    for (const Effect& e : laws_of(device)) EXPECT_NE(e.scope, Scope::one_leg) << device << ": " << e.name;
+}
+
 // The entries that name a kind of place find it in machines of other makes.
 TEST(EntriesByKindOfPlace, ActOnOtherMachines) {
   for (const auto& [entry, device] : {std::pair{"joint_compliance", "delta"},

@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "msa/base/index.h"
 #include "tests/support/effects.h"
@@ -146,6 +147,25 @@ TEST(Signatures, LawsAtPlacesTogetherWeighAsLittleAsSaid) {
   EXPECT_EQ(many[0], 1);
   EXPECT_NEAR(many[25], 0.15 * 20 / 60, 1e-15);
   EXPECT_EQ(few[21], 1);
+}
+
+// A law in one leg weighs in six legs together as much as one in all legs alike, and its prior is the same.
+TEST(Signatures, ALawInOneLegWeighsAsOneInAllLegs) {
+  effects::Effect every = test::effect("modulus"), one = test::effect("leg_defect");
+  every.place.emplace(), one.place.emplace();
+  every.name = "clearance@elbow.rz", one.name = "clearance@leg.elbow.rz";
+  std::vector<Signature> all(3);
+  all[0].effect = {&test::effect("modulus"), {}}, all[1].effect = {&test::effect("self_weight"), {}};
+  all[2].effect = {&every, {}};
+  for (int leg = 1; leg <= 6; ++leg) all.emplace_back().effect = {&one, leg};
+  const std::vector<double> weights = weights_of(all);
+  EXPECT_NEAR(weights[2], 0.15 * 2 / 2, 1e-15);
+  for (std::size_t i = 3; i < all.size(); ++i) EXPECT_NEAR(weights[i], weights[2] / 6, 1e-15);
+  std::vector<std::size_t> classes(all.size());
+  std::iota(classes.begin(), classes.end(), std::size_t{0});
+  const std::vector<double> priors = shared_priors(all, classes, 0.7);
+  EXPECT_NEAR(std::accumulate(priors.begin() + 3, priors.end(), 0.0), priors[2], 1e-15);
+  EXPECT_NEAR(priors[2] / priors[0], 0.15, 1e-12);
 }
 
 /// With one parameter from `low` to `high` that starts at `start`.

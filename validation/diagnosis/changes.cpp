@@ -12,6 +12,9 @@ namespace deflect::diagnosis {
 namespace {
 
 constexpr double agreed = 1e-2;
+constexpr double unseen = 1e-6;     // standard deviations of noise
+constexpr std::size_t sampled = 8;  // of so many readings that leave play open, one is asked whether it shows
+constexpr double rounding = 1e-11;  // of a prediction: less is no change
 
 /// A thousandth of the start, where an effect of one parameter is of the first order in it.
 VectorX small_values(const effects::Effect& e) {
@@ -106,7 +109,7 @@ bool Changes::agrees(const effects::PlacedEffect& e) const {
     const VectorX before = statistics::rows_of(read, predicted(observations_.subject())),
                   after =
                       statistics::rows_of(read, predicted(effects::with_effect(observations_.subject(), {e, small})));
-    return (after - before - by_statics).norm() - agreed * by_statics.norm();
+    return (after - before - by_statics).norm() - agreed * by_statics.norm() - rounding * before.norm();
   });
   return off && *off <= 0;
 }
@@ -120,15 +123,35 @@ std::optional<VectorX> Changes::by_statics(const effects::PlacedEffect& e) const
   const auto told = by_force(e, start, *study.data);
   if (!told) return std::nullopt;
   VectorX change = -statistics::rows_of(study.values, told->readings);
-  if (std::find(told->floats.begin(), told->floats.end(), true) != told->floats.end()) {
-    const auto residual = outcome_of([&] {
-      const subject::Subject with = effects::with_effect(observations_.subject(), {e, start});
-      return observations_.residual_in_shape(with, told->floats);
-    });
-    for (std::size_t k = 0; residual && k < study.values.size(); ++k)
-      if (told->floats[study.values[k].reading]) change(as_index(k)) = (*residual)(as_index(k)) - null_(as_index(k));
-  }
+  std::vector<bool> some(told->floats.size(), false), others = some;
+  std::size_t floating = 0;
+  for (std::size_t i = 0; i < some.size(); ++i)
+    if (told->floats[i]) (floating++ % sampled == 0 ? some : others)[i] = true;
+  const auto moved = [&](const std::vector<bool>& readings) { return moved_by_play({e, start}, readings, change); };
+  if (floating > 0 && moved(some) && floating > 1) moved(others);
   return change;
+}
+
+/// Puts in what play changes that these readings leave open; false where they show nothing of it.
+bool Changes::moved_by_play(const effects::EffectInstance& play, const std::vector<bool>& readings,
+                            VectorX& change) const {
+  const auto residual = outcome_of(
+      [&] { return observations_.residual_in_shape(effects::with_effect(observations_.subject(), play), readings); });
+  if (!residual) return true;
+  const std::vector<measurement::MeasuredValue>& values = observations_.comparison().study.values;
+  VectorX there = VectorX::Zero(change.size());
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (readings[values[k].reading]) there(as_index(k)) = (*residual)(as_index(k)) - null_(as_index(k));
+  const bool shows = are_seen(there);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (readings[values[k].reading]) change(as_index(k)) = there(as_index(k));
+  return shows;
+}
+
+/// Whether noise alone would let them be told from nothing, if it were a million times less.
+bool Changes::are_seen(const VectorX& change) const {
+  const std::vector<double>& sigma = observations_.comparison().sigma;
+  return !(change.cwiseQuotient(Eigen::Map<const VectorX>(sigma.data(), std::ssize(sigma))).norm() <= unseen);
 }
 
 /// Parameter by parameter where each can vanish alone, else all at the start; parameters that only shape the effect
@@ -153,8 +176,10 @@ Change Changes::predicted(const effects::PlacedEffect& e) const {
   else
     tried = shapes(all, start, out.shaped, observations_.subject().frame() != nullptr);
   out.columns.resize(null_.size(), std::ssize(tried));
-  for (std::size_t i = 0; i < tried.size(); ++i)
+  for (std::size_t i = 0; i < tried.size(); ++i) {
     out.columns.col(as_index(i)) = observations_.residual(prepared(tried[i])) - null_;
+    if (out.shaped && i == 0 && !are_seen(out.columns.col(0))) return {MatrixX::Zero(null_.size(), 1), true, false};
+  }
   return out;
 }
 

@@ -1,8 +1,8 @@
 // What an effect changes in the residual, before any weighing.
 //
 // Laws in series at places: their small effect on the readings follows from the forces at the place by statics
-// (Transmissions), without a prediction for each law. Readings whose load leaves play open are predicted, and all
-// readings with any other effect.
+// (Transmissions), without a prediction for each law. Readings whose load leaves play open are predicted, all of them
+// where some show it, and all readings with any other effect.
 #pragma once
 
 #include <map>
@@ -40,6 +40,8 @@ class Changes {
   std::optional<subject::Transmissions::Change> by_force(const effects::PlacedEffect&, const VectorX& values,
                                                          const measurement::Measurements&) const;
   bool agrees(const effects::PlacedEffect&) const;
+  bool moved_by_play(const effects::EffectInstance&, const std::vector<bool>& readings, VectorX& change) const;
+  bool are_seen(const VectorX&) const;
   Change predicted(const effects::PlacedEffect&) const;
 
   const Observations& observations_;

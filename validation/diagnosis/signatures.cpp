@@ -79,6 +79,14 @@ std::vector<effects::PlacedEffect> every_leg(const effects::Effect& e, const sub
   return out;
 }
 
+/// How many signatures each effect has: one for each leg where it is of one.
+std::map<std::string, double> count_by_name(const std::vector<Signature>& all) {
+  std::map<std::string, double> out;
+  for (const Signature& s : all)
+    if (s.effect.effect) out[s.effect.effect->name] += 1;
+  return out;
+}
+
 /// What may be wrong with a sensor's channel, as unit columns. What tolerances hide, as a free zero does a constant, is
 /// left out.
 class ChannelFaults {
@@ -200,11 +208,13 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
 std::vector<double> weights_of(const std::vector<Signature>& all) {
   constexpr double share_of_places = 0.15;
   const auto is_place = [](const Signature& s) { return s.effect.effect && s.effect.effect->place; };
-  const auto places = static_cast<double>(std::count_if(all.begin(), all.end(), is_place));
-  const double entries = static_cast<double>(all.size()) - places;
-  const double each = entries > 0 ? std::min(1.0, share_of_places * entries / places) : 1;
+  const std::map<std::string, double> legs = count_by_name(all);
+  const auto share = [&](const Signature& s) { return s.effect.leg ? 1 / legs.at(s.effect.effect->name) : 1; };
+  double entries = 0, laws = 0;
+  for (const Signature& s : all) (is_place(s) ? laws : entries) += is_place(s) ? share(s) : 1;
+  const double each = entries > 0 ? std::min(1.0, share_of_places * entries / laws) : 1;
   std::vector<double> out;
-  for (const Signature& s : all) out.push_back(is_place(s) ? each : 1);
+  for (const Signature& s : all) out.push_back(is_place(s) ? each * share(s) : 1);
   return out;
 }
 
@@ -342,12 +352,12 @@ std::vector<double> summed(const std::vector<double>& x, const std::vector<std::
 
 std::vector<double> shared_priors(const std::vector<Signature>& all, const std::vector<std::size_t>& classes,
                                   double all_together) {
-  std::map<std::string, double> places;
-  for (const Signature& s : all) places[s.effect.effect->name] += 1;
+  const std::map<std::string, double> places = count_by_name(all);
   const std::vector<double> looks = weights_of(all);
   std::vector<double> weight, largest(all.size(), 0);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    weight.push_back(looks[i] / places[all[i].effect.effect->name]);
+    const effects::Effect& e = *all[i].effect.effect;
+    weight.push_back(e.place ? looks[i] : looks[i] / places.at(e.name));
     largest[classes[i]] = std::max(largest[classes[i]], weight[i]);
   }
   const std::vector<double> together = summed(weight, classes);

@@ -77,6 +77,10 @@ Effect effect_of(const PlaceLaw& law, const subject::Place& p, bool several_legs
   return e;
 }
 
+bool may_be_of_one_leg(const PlaceLaw& law, const subject::Place& p) {
+  return p.in_legs() && (p.others.empty() ? law.of_one_leg != OneLeg::never : law.of_one_leg == OneLeg::at_parts_alike);
+}
+
 /// What an effect does to the machine, without the names of its parameters; nothing where it has no place in it.
 std::optional<std::string> key_of(const Effect& e, const subject::Subject& subject) {
   static const std::regex names(R"(\$[A-Za-z0-9_-]+)");
@@ -108,7 +112,7 @@ std::vector<Effect> place_effects(const subject::Subject& subject, const std::ve
       if (!law.acts(place)) continue;
       const bool said = place.whole_section && law.action == EffectEdit::Action::multiply;
       if (!said) add(effect_of(law, place, several, false));
-      if (several && law.of_one_leg && place.in_legs()) add(effect_of(law, place, several, true));
+      if (several && may_be_of_one_leg(law, place)) add(effect_of(law, place, several, true));
     }
   return out;
 }

@@ -10,6 +10,9 @@
 
 namespace deflect::effects {
 
+/// Where a law may act in one leg alone: what wears does so at one part.
+enum class OneLeg { never, at_a_part, at_parts_alike };
+
 /// One law where it can act.
 struct PlaceLaw {
   const char* id;
@@ -18,7 +21,7 @@ struct PlaceLaw {
   std::vector<EffectParameter> (*parameters)(const subject::Place&);
   std::string (*value)(const std::vector<EffectParameter>&, const subject::Place&);
   EffectPages pages;  ///< with {} for the place
-  bool of_one_leg = false;
+  OneLeg of_one_leg = OneLeg::never;
   EffectEdit::Action action = EffectEdit::Action::append;
   const char* field = "";     ///< behind the freedom
   bool side_by_side = false;  ///< with what yields there

@@ -195,24 +195,57 @@ class MachineTransmissions final : public Transmissions {
   double size_;
 };
 
-bool is_proportional(const Configuration& c) {
-  bool preloaded = false;
+/// A spring in place of every law that is not linear, each one softer than the one before it by `differ`.
+Configuration with_springs(Configuration c, double differ) {
+  double softness = 1e-6;  // m/N, rad/Nm
+  for_each_law(c, [&](Law& law) {
+    if (!is_linear(law)) law = LinearLaw{1 / (softness *= differ)};
+  });
+  return c;
+}
+
+bool same_forces(const ByPart& a, const ByPart& b) {
+  constexpr double rounding = 1e-8;
+  double largest = 0, apart = 0;
+  for (auto x = a.begin(), y = b.begin(); x != a.end(); ++x, ++y)
+    for (std::size_t i = 0; i < 6; ++i) {
+      largest = std::max(largest, x->second.g[i].norm());
+      apart = std::max(apart, (x->second.g[i] - y->second.g[i]).norm());
+    }
+  return apart <= rounding * largest;
+}
+
+/// Nothing where forces hang on a law that is not linear. In a determinate machine they do not.
+std::optional<ByPart> proportional_forces_at(const Configuration& drawn, const Configuration& yielding) {
+  if (all_linear(drawn)) return forces_at(drawn, yielding);
+  ByPart out = forces_at(with_springs(drawn, 1), yielding);
+  if (!same_forces(out, forces_at(with_springs(drawn, 1.2), yielding))) return std::nullopt;
+  return out;
+}
+
+bool may_be_proportional(const Configuration& c) {
+  bool preloaded = false, jump = false;
+  for_each_law(c, [&](const Law& law) { jump = jump || jumps(law); });
   for_each_part(c.legs, [&](const auto& part) {
     if constexpr (requires { part.preload; })
       preloaded = preloaded || std::any_of(part.preload.begin(), part.preload.end(), [](double f) { return f != 0; });
   });
-  return !preloaded && all_linear(c) && c.weight.isZero(0) &&
+  return !preloaded && !jump && c.weight.isZero(0) &&
          std::all_of(c.legs.begin(), c.legs.end(), [](const PlacedLeg& leg) { return leg.misfit.isZero(0); });
 }
 
 }  // namespace
 
 std::unique_ptr<const Transmissions> transmissions_of(const Mechanism& m, const std::vector<Configuration>& drawn) {
-  if (drawn.empty() || !is_proportional(drawn.front())) return nullptr;
+  if (drawn.empty() || !may_be_proportional(drawn.front())) return nullptr;
   Mechanism yielding = m.legs.empty() ? resolved(m) : m;
   for (Named<Part>& leg : yielding.legs) yield_everywhere(leg);
   std::vector<ByPart> by_pose;
-  for (const Configuration& c : drawn) by_pose.push_back(forces_at(c, configure(yielding, c.pose)));
+  for (const Configuration& c : drawn) {
+    std::optional<ByPart> forces = proportional_forces_at(c, configure(yielding, c.pose));
+    if (!forces) return nullptr;
+    by_pose.push_back(std::move(*forces));
+  }
   return std::make_unique<MachineTransmissions>(m, std::move(by_pose), drawn.front().size);
 }
 

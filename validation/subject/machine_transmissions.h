@@ -10,7 +10,8 @@
 namespace deflect::subject {
 
 /// The machine stands, as drawn, in these configurations, one for each pose. Null where the force at a place is not
-/// proportional to the load: nonlinear laws, weight, misfits, preloads.
+/// proportional to the load: weight, misfits, preloads, play, friction; laws that bend, where the forces hang on them.
+/// In a determinate machine they do not.
 std::unique_ptr<const Transmissions> transmissions_of(const Mechanism&, const std::vector<Configuration>&);
 
 }  // namespace deflect::subject
