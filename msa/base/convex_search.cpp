@@ -71,7 +71,8 @@ class Search {
     noise_ = p_.rounding;
     for (Eigen::Index i = 0; i < rows_; ++i) {
       curvatures_(i) = side(i) == 0 ? row(i).curvature(out_.y(i)) : 0;
-      noise_ = std::max(noise_, 1e-15 * curvatures_(i) * std::abs(out_.y(i)) * norms_(i));
+      // y may be a small difference of e and B x.
+      noise_ = std::max(noise_, 1e-15 * curvatures_(i) * (std::abs(out_.y(i)) + std::abs(p_.e(i))) * norms_(i));
     }
     scaled_ = p_.a.asDiagonal() * Z_;
     H_.noalias() = Z_.transpose() * scaled_;

@@ -122,12 +122,12 @@ const Effect* named(const std::string& device, const std::string& id) {
   return found == all.end() ? nullptr : &*found;
 }
 
-// Wear takes one leg: play, friction, contact and the rest are laws of one leg wherever they are of all, with a title,
-// pages and edits of their own.
-TEST(LawsInOneLeg, AreThoseOfAllLegs) {
+// Wear takes one leg: play, friction and hardening are laws of one leg wherever they are of all, with a title, pages
+// and edits of their own.
+TEST(LawsInOneLeg, AreThoseThatWear) {
   for (const auto& [device, part] :
        {std::pair{"stewart-6ups", "slide.tz"}, {"delta", "motor.rz"}, {"3-rrr", "motor.rz"}})
-    for (const char* law : {"clearance", "pull", "push", "hardening", "friction", "load_friction"}) {
+    for (const char* law : {"clearance", "hardening", "friction"}) {
       const std::string id = std::string(law) + "@leg." + part;
       const Effect* e = named(device, id);
       ASSERT_TRUE(e) << device << ": " << id;
@@ -135,8 +135,7 @@ TEST(LawsInOneLeg, AreThoseOfAllLegs) {
       EXPECT_NE(e->title.find(" of one leg "), std::string::npos) << e->title;
       EXPECT_EQ(places_of(*e, test::device(device)).size(), device == std::string("stewart-6ups") ? 6U : 3U) << id;
     }
-  for (const char* id : {"restraint@leg.ball_joint.rx", "friction@leg.universal_joint.ry", "contact@leg.mount.tz",
-                         "clearance@leg.ball_joint.tz", "hardening@leg.actuator.tz"})
+  for (const char* id : {"friction@leg.universal_joint.ry", "clearance@leg.ball_joint.tz", "hardening@leg.actuator.tz"})
     EXPECT_TRUE(named("haptic-6psu", id)) << id;
 }
 

@@ -68,8 +68,6 @@ class Leg:
     def worn(self, f):
         if self.law == "clearance":
             return math.copysign(self.values[0], f) if f else 0
-        if self.law == "pull":
-            return self.values[0] * max(f, 0)
         if self.law == "hardening":
             stiffness, reference = self.values
             e = f / stiffness
@@ -107,9 +105,6 @@ def hidden_in(law, random):
     if law == "clearance":
         values = [random.uniform(0.008, 0.03)]
         return values, {"gap_mm": values[0]}
-    if law == "pull":
-        values = [random.uniform(4e-6, 1.5e-5)]
-        return values, {"yields_mm_per_N": values[0]}
     if law == "hardening":
         values = [random.uniform(3e4, 8e4), random.uniform(0.01, 0.02)]
         return values, {"stiffness_N_per_mm": values[0], "reference_mm": values[1]}
@@ -133,8 +128,8 @@ def make(folder, seeds):
     folder.mkdir(parents=True, exist_ok=True)
     truth = {}
     for seed in seeds:
-        for number, (law, one) in enumerate([("clearance", True), ("friction", True), ("hardening", True),
-                                             ("pull", True), ("clearance", False), ("friction", False), ("", False)]):
+        for number, law, one in [(0, "clearance", True), (1, "friction", True), (2, "hardening", True),
+                                 (4, "clearance", False), (5, "friction", False), (6, "", False)]:
             random = np.random.default_rng([2026, seed, number])
             leg = int(random.integers(6)) if one else None
             name = f"{law or 'healthy'}{'-in-one-leg' if one else ''}_{seed}.csv"

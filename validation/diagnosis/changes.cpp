@@ -128,7 +128,8 @@ std::optional<VectorX> Changes::by_statics(const effects::PlacedEffect& e) const
   for (std::size_t i = 0; i < some.size(); ++i)
     if (told->floats[i]) (floating++ % sampled == 0 ? some : others)[i] = true;
   const auto moved = [&](const std::vector<bool>& readings) { return moved_by_play({e, start}, readings, change); };
-  if (floating > 0 && moved(some) && floating > 1) moved(others);
+  // Of one leg's play the loaded readings tell enough to find it: those that it leaves open are as many as the legs.
+  if (!e.leg && floating > 0 && moved(some) && floating > 1) moved(others);
   return change;
 }
 
@@ -175,6 +176,8 @@ Change Changes::predicted(const effects::PlacedEffect& e) const {
     }
   else
     tried = shapes(all, start, out.shaped, observations_.subject().frame() != nullptr);
+  // There are as many laws as legs: where it slips and where it sticks is enough.
+  if (out.shaped && e.leg) tried.resize(std::min<std::size_t>(2, tried.size()));
   out.columns.resize(null_.size(), std::ssize(tried));
   for (std::size_t i = 0; i < tried.size(); ++i) {
     out.columns.col(as_index(i)) = observations_.residual(prepared(tried[i])) - null_;

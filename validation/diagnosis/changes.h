@@ -2,7 +2,7 @@
 //
 // Laws in series at places: their small effect on the readings follows from the forces at the place by statics
 // (Transmissions), without a prediction for each law. Readings whose load leaves play open are predicted, all of them
-// where some show it, and all readings with any other effect.
+// where some show it, and all readings with any other effect. Of play in one leg they count as in the middle of it.
 #pragma once
 
 #include <map>

@@ -26,8 +26,9 @@
 //
 // At the ends of a frame's members, which are many, no play and nothing one-sided is looked for.
 //
-// Where several legs have the place, the law of every leg is one effect and that of one leg another, because wear takes
-// one. Of groups in one leg only linear and factor: what yields alike in many parts is of one make, wear is of one part.
+// Where several legs have the place, linear, factor, clearance, friction and hardening of every leg are one effect and
+// those of one leg another, because wear takes one. Of groups in one leg only linear and factor: what yields alike in
+// many parts is of one make, wear is of one part.
 //
 // Their ids are law@place: "clearance@elbow.rz" of every leg, "clearance@leg.elbow.rz" of one leg.
 #pragma once

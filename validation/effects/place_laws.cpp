@@ -201,8 +201,7 @@ const PlaceLaw of_places[] = {
      {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
       "force pulls it along its positive axis.",
       "The displacement is too large for one sense of the load and right for the other.",
-      "Load both senses: two slopes that meet at zero.", "Preload {}."},
-     OneLeg::at_a_part},
+      "Load both senses: two slopes that meet at zero.", "Preload {}."}},
     {"push",
      may_be_loose,
      "yields to negative force alone",
@@ -211,8 +210,7 @@ const PlaceLaw of_places[] = {
      {"{} is held in one sense alone: an unpreloaded contact, a cable, a bearing against one shoulder. It yields where "
       "force pushes it against its positive axis.",
       "The displacement is too large for one sense of the load and right for the other.",
-      "Load both senses: two slopes that meet at zero.", "Preload {}."},
-     OneLeg::at_a_part},
+      "Load both senses: two slopes that meet at zero.", "Preload {}."}},
     {"contact",
      [](const subject::Place& p) { return in_series(p) && single(p) && !p.rotation(); },
      "yields like a contact",
@@ -224,8 +222,7 @@ const PlaceLaw of_places[] = {
      },
      {"Round bodies touch at {}: a ball, a roller, a cam. The contact flattens as the force to the power 2/3.",
       "The displacement is too large, most so at small loads: it grows as the force to the power 2/3.",
-      "Load in steps: the slope falls with the load.", "Preload {}, or more and larger rolling bodies."},
-     OneLeg::at_a_part},
+      "Load in steps: the slope falls with the load.", "Preload {}, or more and larger rolling bodies."}},
     {"hardening",
      [](const subject::Place& p) { return p.kind == subject::PlaceKind::drive && single(p); },
      "yields and becomes stiffer with deflection",
@@ -301,7 +298,7 @@ const PlaceLaw of_places[] = {
       "displacement stays until a good part of the load is gone.",
       "Load and unload to two amplitudes: the width of the loop grows with the load.",
       "Lubricate {}, or let rollers roll where they slide."},
-     OneLeg::at_a_part,
+     OneLeg::never,
      EffectEdit::Action::append,
      "",
      true},
@@ -318,8 +315,7 @@ const PlaceLaw of_places[] = {
      [](const auto& p, const subject::Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
      {"{} is drawn free and is held: a hose, a seal, a flexure, a joint that binds.",
       "The displacement is too small in proportion to the load, where the motion of {} would give way.",
-      "Move {} by hand, unloaded: it springs back.", "Free it, or take the restraint into the model."},
-     OneLeg::at_a_part},
+      "Move {} by hand, unloaded: it springs back.", "Free it, or take the restraint into the model."}},
 };
 
 }  // namespace
