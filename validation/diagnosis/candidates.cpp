@@ -12,6 +12,7 @@
 #include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/fit_in_turn.h"
 #include "validation/diagnosis/fit_problem.h"
+#include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 
@@ -278,10 +279,12 @@ class Candidates::Round {
   }
   /// To these data: how much it explains more than its signature says holds for it too.
   bool is_same_as_known(std::size_t i) const { return known_ && all_.classes_[i] == class_of_known_; }
-  /// Or another law at its place: the signature of a little restraint says little of a large one, which is what a
-  /// friction is that hardly slips.
+  /// Or another law side by side with it: the signature of a little restraint says little of a large one, which is what
+  /// a friction is that hardly slips.
   bool is_near_known(std::size_t i) const {
-    return is_same_as_known(i) || (known_ && at_one_place(*known_, signature(i).effect));
+    const auto is_beside = [&](const effects::PlacedEffect& e) { return !effects::law_in_series(*e.effect); };
+    const effects::PlacedEffect& e = signature(i).effect;
+    return is_same_as_known(i) || (known_ && at_one_place(*known_, e) && is_beside(*known_) && is_beside(e));
   }
   /// It may have the same values.
   bool is_like_known(std::size_t i) const {

@@ -76,7 +76,7 @@ Changes::Changes(const Observations& o, const std::vector<effects::PlacedEffect>
   if (!transmissions_) return;
   std::vector<const effects::PlacedEffect*> first;
   for (const effects::PlacedEffect& e : effects)
-    if (e.effect->place && effects::law_in_series(*e.effect, effects::start_values(*e.effect)) &&
+    if (e.effect->place && effects::law_in_series(*e.effect) &&
         known_.emplace(subject::id_of(*e.effect->place), false).second)
       first.push_back(&e);
   std::vector<char> agree(first.size());

@@ -324,7 +324,7 @@ double log_likelihood(const Observations& o, const Hypothesis& h, const VectorX&
 namespace {
 
 bool yields_to_one_sense(const effects::Effect& e) {
-  const std::optional<Law> law = effects::law_in_series(e, effects::start_values(e));
+  const std::optional<Law> law = effects::law_in_series(e);
   return law && std::holds_alternative<OneSidedLaw>(*law);
 }
 

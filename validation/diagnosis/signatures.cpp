@@ -319,7 +319,7 @@ bool lets_go(const effects::Effect& e) {
     return std::all_of(e.edits.begin(), e.edits.end(), [](const effects::EffectEdit& edit) {
       return edit.action == effects::EffectEdit::Action::multiply && edit.paths.front().ends_with(".stiffness");
     });
-  const std::optional<Law> law = effects::law_in_series(e, effects::start_values(e));
+  const std::optional<Law> law = effects::law_in_series(e);
   return law && (std::holds_alternative<LinearLaw>(*law) || std::holds_alternative<ClearanceLaw>(*law) ||
                  std::holds_alternative<OneSidedLaw>(*law));
 }

@@ -5,6 +5,7 @@
 #include "msa/fields/field_reader.h"
 #include "msa/mechanism/fields.h"
 #include "validation/effects/effect_value.h"
+#include "validation/effects/with_effect.h"
 
 namespace deflect::effects {
 
@@ -21,5 +22,7 @@ std::optional<Law> law_in_series(const Effect& e, const VectorX& values) {
   reader.read(node, [&] { describe(reader, law); });
   return law;
 }
+
+std::optional<Law> law_in_series(const Effect& e) { return law_in_series(e, start_values(e)); }
 
 }  // namespace deflect::effects

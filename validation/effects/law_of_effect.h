@@ -12,5 +12,7 @@ namespace deflect::effects {
 /// Returns a law only for an effect with one parameter whose edits all append the same law at load-carrying freedoms of
 /// its place. The law of such an effect never names a material.
 std::optional<Law> law_in_series(const Effect&, const VectorX& values);
+/// At the start values.
+std::optional<Law> law_in_series(const Effect&);
 
 }  // namespace deflect::effects

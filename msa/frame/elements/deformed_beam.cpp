@@ -40,23 +40,34 @@ struct Strain {
   }
 };
 
+/// N L times the second derivative of ε.
+Matrix6 stressed(const Strain& s, double L, double N) {
+  Matrix6 H = Matrix6::Zero();
+  H.topLeftCorner<3, 3>() = N * L * s.by_rr;
+  H.bottomRightCorner<3, 3>().diagonal() = N * L / 12 * Vector3(0, 1, 1);
+  return H;
+}
+
 /// r* and ψ* of the header as one vector e with its derivatives by [r; ψ]; the first of r* is not used.
 struct Shape {
-  Vector6 e, stiffness;
-  Matrix6 by = Matrix6::Identity();
-  Vector3 slope;  // of the sections, by r_y and r_z
-  double length, helix;
+  Vector6 e, stiffness, stretch;  // the last: ε by [r; ψ]
+  Matrix6 by = Matrix6::Identity(), stretch_bends;
+  Vector3 slope, across;  // of the sections, by r_y and r_z; r
+  double helix;
 
-  Shape(const Strain& s, double L, const Vector3& r, const Vector3& psi) : length(L), helix(L / 24) {
+  Shape(const Strain& s, double L, const Vector3& r, const Vector3& psi)
+      : stretch_bends(stressed(s, L, 1 / L)), across(r), helix(L / 24) {
     stiffness << s.stiffness, s.twist_bend;
+    stretch << s.by_r, s.by_psi;
     slope = (5 * L * L * s.across).cwiseSqrt() / L;
     const Vector3 a = slope.cwiseProduct(r), b = slope.cwiseProduct(psi);
-    const double shorter = 2 - r.x() / L;
+    const double shorter = 1 - s.epsilon;
     e << 0, r.y() * shorter - helix * psi.x() * psi.y(), r.z() * shorter - helix * psi.x() * psi.z(),
         psi.x() + a.dot(psi), psi.y() - a.y() * psi.x(), psi.z() - a.z() * psi.x();
     by.row(0).setZero();
-    by.row(1) << -r.y() / L, shorter, 0, -helix * psi.y(), -helix * psi.x(), 0;
-    by.row(2) << -r.z() / L, 0, shorter, -helix * psi.z(), 0, -helix * psi.x();
+    by.row(1) << 0, shorter, 0, -helix * psi.y(), -helix * psi.x(), 0;
+    by.row(2) << 0, 0, shorter, -helix * psi.z(), 0, -helix * psi.x();
+    for (const int k : {1, 2}) by.row(k) -= r(k) * stretch.transpose();
     by.row(3) << 0, b.y(), b.z(), 1, a.y(), a.z();
     by.row(4) << 0, -slope.y() * psi.x(), 0, -a.y(), 1, 0;
     by.row(5) << 0, 0, -slope.z() * psi.x(), -a.z(), 0, 1;
@@ -67,10 +78,12 @@ struct Shape {
     Matrix6 H = Matrix6::Zero();
     const auto add = [&](int i, int j, double x) { H(i, j) += x, H(j, i) += x; };
     for (const int k : {1, 2}) {  // y, z
-      add(0, k, -f(k) / length);
       add(3, 3 + k, -helix * f(k));
       add(k, 3 + k, slope(k) * f(3));
       add(k, 3, -slope(k) * f(3 + k));
+      H.row(k) -= f(k) * stretch.transpose();
+      H.col(k) -= f(k) * stretch;
+      H -= f(k) * across(k) * stretch_bends;
     }
     return H;
   }
@@ -81,13 +94,6 @@ Matrix6 elastic(const Strain& s, const Shape& shape, double EA, double L) {
   Vector6 by;
   by << s.by_r, s.by_psi;
   return EA * L * by * by.transpose() + shape.by.transpose() * shape.stiffness.asDiagonal() * shape.by;
-}
-
-Matrix6 stressed(const Strain& s, double L, double N) {
-  Matrix6 H = Matrix6::Zero();
-  H.topLeftCorner<3, 3>() = N * L * s.by_rr;
-  H.bottomRightCorner<3, 3>().diagonal() = N * L / 12 * Vector3(0, 1, 1);
-  return H;
 }
 
 /// `stretch`: l − L, which the caller knows to more digits than the difference of lengths.

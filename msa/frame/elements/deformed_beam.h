@@ -14,11 +14,11 @@
 // Engesser: N turns with the centre line. Modes after S. Krenk, Non-linear Modeling and Analysis of Solids and
 // Structures, 2009, ch. 5. Twist turns the plane of bending inside the element, to second order in r and ψ, with the
 // slopes of the sections a_y = r_y/((1+Φz) L) and a_z = r_z/((1+Φy) L):
-//   r*_y = r_y (2 − r_x/L) − L ψx ψy/24,   ψ*x = ψx + a_y ψy + a_z ψz,
-//   r*_z = r_z (2 − r_x/L) − L ψx ψz/24,   ψ*y = ψy − a_y ψx,   ψ*z = ψz − a_z ψx
+//   r*_y = r_y (1 − ε) − L ψx ψy/24,   ψ*x = ψx + a_y ψy + a_z ψz,
+//   r*_z = r_z (1 − ε) − L ψx ψz/24,   ψ*y = ψy − a_y ψx,   ψ*z = ψz − a_z ψx
 // A line of constant curvature κ in the axes of its sections ends at R_mᵀ∫R e_x ds = L e_x + L³ κ×(κ×e_x)/24 in its
-// mean axes; ψ* are the means of the curvature in axes that turn with the S; 2 − r_x/L ≈ L/l makes the slope of the S
-// an angle where the element is strained. Errors: relative (h κ)² of an element of length h bent to the curvature κ.
+// mean axes; ψ* are the means of the curvature in axes that turn with the S; 1 − ε makes the slope of the S an angle
+// where the element is strained. Errors: relative (h κ)² of an element of length h bent to the curvature κ.
 // Neglected: shortening by twist (Wagner effect), relative N/EA · E/G · (Iy + Iz)/J, which is negligible for closed
 // sections.
 //
