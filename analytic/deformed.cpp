@@ -195,7 +195,7 @@ std::string why_it_ends(const Deformed& d, const char* what) {
   if (const std::string chain = at_dead_centre(d.whole, d.conditions); !chain.empty())
     return fmt::format(
         "the passive joints of {} come to a singular position (a dead centre) at {:.4g} of the {}: from there it would "
-        "lock or jump",
+        "lock or jump. Load it less, or where that leg is farther from it",
         chain, d.load_factor, what);
   return fmt::format(
       "it gives way at {:.4g} of the {}, a buckling or limit load: that is what the last stable equilibrium on the way "

@@ -25,9 +25,6 @@ const test::ForeignSets& sets() {
   return all;
 }
 
-/// An interval of a normal distribution misses by more than 1.6 times its half-width in two of a thousand.
-constexpr double far_off = 1.6;
-
 void expect_values(const diagnosis::Diagnosis& d, const Json& hidden) {
   std::size_t at = 0;
   for (const effects::PlacedEffect& e : d.missing)
@@ -36,8 +33,8 @@ void expect_values(const diagnosis::Diagnosis& d, const Json& hidden) {
       if (!hidden.contains(e.effect->name) || !hidden.at(e.effect->name).contains(p.name)) continue;
       const double value = d.fit.values(static_cast<Eigen::Index>(at) - 1);
       const double truth = hidden.at(e.effect->name).at(p.name);
-      EXPECT_GE(truth, value - far_off * (value - low)) << e.effect->name << " " << p.name << " = " << value;
-      EXPECT_LE(truth, value + far_off * (high - value)) << e.effect->name << " " << p.name << " = " << value;
+      EXPECT_GE(truth, value - test::far_off * (value - low)) << e.effect->name << " " << p.name << " = " << value;
+      EXPECT_LE(truth, value + test::far_off * (high - value)) << e.effect->name << " " << p.name << " = " << value;
     }
 }
 

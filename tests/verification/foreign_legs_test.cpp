@@ -23,9 +23,6 @@ const test::ForeignSets& sets() {
   return all;
 }
 
-/// An interval of a normal distribution misses by more than 1.6 times its half-width in two of a thousand.
-constexpr double off_by_far = 1.6;
-
 class ForeignLeg : public testing::TestWithParam<std::string> {};
 
 TEST_P(ForeignLeg, WhatIsWornIsNamedOrTiedInItsLeg) {
@@ -58,8 +55,8 @@ TEST_P(ForeignLeg, WhatIsWornIsNamedOrTiedInItsLeg) {
     if (!truth.at("parameters").contains(name)) continue;
     const auto [low, high] = diagnosis::interval95(d.missing, d.fit, i);
     const double value = d.fit.values(static_cast<Eigen::Index>(i)), hidden = truth.at("parameters").at(name);
-    EXPECT_GE(hidden, value - off_by_far * (value - low)) << name << " = " << value;
-    EXPECT_LE(hidden, value + off_by_far * (high - value)) << name << " = " << value;
+    EXPECT_GE(hidden, value - test::far_off * (value - low)) << name << " = " << value;
+    EXPECT_LE(hidden, value + test::far_off * (high - value)) << name << " = " << value;
   }
 }
 

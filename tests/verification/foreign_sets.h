@@ -14,6 +14,9 @@
 
 namespace deflect::test {
 
+/// An interval of a normal distribution misses by more than 1.6 times its half-width in two of a thousand.
+inline constexpr double far_off = 1.6;
+
 struct ForeignSets {
   std::filesystem::path own;     ///< the folder in the tests
   std::filesystem::path folder;  ///< that one, or the one that an environment variable names

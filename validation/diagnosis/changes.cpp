@@ -13,7 +13,7 @@ namespace {
 
 constexpr double agreed = 1e-2;
 constexpr double unseen = 1e-6;     // standard deviations of noise
-constexpr std::size_t sampled = 8;  // of so many readings that leave play open, one is asked whether it shows
+constexpr double sampled = 0.125;   // share of the readings that leave play open which is asked whether it shows
 constexpr double rounding = 1e-11;  // of a prediction: less is no change
 
 /// A thousandth of the start, where an effect of one parameter is of the first order in it.
@@ -124,11 +124,12 @@ std::optional<VectorX> Changes::by_statics(const effects::PlacedEffect& e) const
   if (!told) return std::nullopt;
   VectorX change = -statistics::rows_of(study.values, told->readings);
   std::vector<bool> some(told->floats.size(), false), others = some;
-  std::size_t floating = 0;
+  // Golden section: no period of a campaign is sampled in step.
+  double floating = 0;
   for (std::size_t i = 0; i < some.size(); ++i)
-    if (told->floats[i]) (floating++ % sampled == 0 ? some : others)[i] = true;
+    if (told->floats[i]) (std::fmod(0.6180339887498949 * floating++, 1) < sampled ? some : others)[i] = true;
   const auto moved = [&](const std::vector<bool>& readings) { return moved_by_play({e, start}, readings, change); };
-  // Of one leg's play the loaded readings tell enough to find it: those that it leaves open are as many as the legs.
+  // Of play in one leg they count as in the middle: to predict them for every leg would take longer than all else.
   if (!e.leg && floating > 0 && moved(some) && floating > 1) moved(others);
   return change;
 }

@@ -1,8 +1,9 @@
 // What an effect changes in the residual, before any weighing.
 //
 // Laws in series at places: their small effect on the readings follows from the forces at the place by statics
-// (Transmissions), without a prediction for each law. Readings whose load leaves play open are predicted, all of them
-// where some show it, and all readings with any other effect. Of play in one leg they count as in the middle of it.
+// (Transmissions), without a prediction for each law. Readings whose load leaves play open are predicted: an eighth of
+// them, and the others where those show it. Of play in one leg they count as in the middle of it. All readings are
+// predicted with any other effect.
 #pragma once
 
 #include <map>
