@@ -1,6 +1,7 @@
 #include "analytic/virtual_chain.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -133,9 +134,10 @@ void add_laws(const VirtualJoint& v, const ShapeConditions& c, Eigen::Ref<Vector
       }
       continue;
     }
-    const Step laws = v.deflected(i, static_force(at), c);
+    const double force = v.tangent_force(i, static_force(at), c);
+    const Step laws = v.deflected(i, force, c);
     K(at, at) = 1 / laws.compliance;
-    s(at) = static_force(at) + K(at, at) * (v.x[i] - laws.offset);
+    s(at) = force + K(at, at) * (v.x[i] - laws.offset);
   }
 }
 
@@ -178,6 +180,27 @@ std::vector<int> add_all_laws(std::vector<VirtualStep>& steps, const std::vector
   }
   l.Z = Z(Eigen::all, allowed);
   return joint_of;
+}
+
+/// The part of F that passes through all passive joints; in equilibrium that is F. Nothing where no passive joint
+/// idles. Newton's method, on its way, would take the rest for a stiffness of what idles, and drive it far by a force
+/// that is no force.
+std::optional<Vector6> let_through(const Vector6& F, const Linearised& l, const Matrix6X& twists,
+                                   const std::vector<int>& step, double length) {
+  std::vector<Eigen::Index> passive;
+  for (std::size_t i = 0; i < l.kept.size(); ++i)
+    if (l.kept[i] && step[i] >= 0) passive.push_back(as_index(i));
+  if (passive.empty()) return std::nullopt;
+  Vector6 w = Vector6::Ones();
+  w.tail<3>().setConstant(length);
+  const MatrixX moves = w.asDiagonal() * twists(Eigen::all, passive) * l.scale(passive).asDiagonal();
+  Eigen::ColPivHouseholderQR<MatrixX> qr;
+  qr.setThreshold(1e-9);
+  qr.compute(moves);
+  if (qr.rank() == std::ssize(passive)) return std::nullopt;
+  const MatrixX Q = MatrixX(qr.householderQ()).leftCols(qr.rank());
+  const Vector6 F_w = F.cwiseQuotient(w);
+  return Vector6(w.cwiseProduct(F_w - Q * (Q.transpose() * F_w)));
 }
 
 /// Takes out of Z the motions of passive joints that do not move the end and let all between turn about one line, or
@@ -315,6 +338,9 @@ Linearised VirtualChain::linearise(const ShapeConditions& c) {
   const Matrix6X twists = out.all ? out.J : Matrix6X(out.J * out.Z);
   for (Eigen::Index i = 0; i < out.Z.cols(); ++i)  // a freedom turns when it turns the end
     if (twists.col(i).tail<3>().norm() * length > 1e-9 * twists.col(i).head<3>().norm()) out.scale(i) = 1 / length;
+  if (finite)
+    if (const std::optional<Vector6> through = let_through(F, out, twists, joint_of, length))
+      out.H = second_derivative(freedoms.columns, *through);
   hold_idle(out, joint_of, length);
   return out;
 }
@@ -324,29 +350,6 @@ RigidMotion VirtualChain::motion_before(std::size_t step, Geometry geometry) con
   if (geometry == Geometry::finite)
     for (std::size_t i = 0; i < step; ++i) motion = motion * motion_of(steps[i]);
   return motion;
-}
-
-void VirtualChain::add_energies(const ShapeConditions& c, std::map<std::string, double>& sums) const {
-  VirtualChain copy = *this;
-  const Linearised l = copy.linearise(c);
-  const VectorX s = l.J.transpose() * F + l.turned;
-  Eigen::Index next = 0;
-  for (const VirtualStep& step : steps)
-    if (const auto* v = std::get_if<VirtualJoint>(&step)) {
-      const PlacedJoint& j = v->joint;
-      const Vector6 x = Eigen::Map<const Vector6>(v->x.data());
-      if (j.stiffness) sums[j.part] += 0.5 * x.dot(*j.stiffness * x);
-      for (const std::size_t i : v->freedoms) {
-        if (!j.laws[i].empty() && !j.stiffness) sums[j.part] += stored_energy({j.laws[i], j.preload[i]}, s(next));
-        ++next;
-      }
-    } else if (const auto* member = std::get_if<VirtualMember>(&step)) {
-      sums[member->member.part] += tip_law(member->member, member->tip.x, s.segment<3>(next), c.geometry).energy;
-      next += 6;
-    } else {
-      for (const VirtualChain& branch : std::get<VirtualGroup>(step).branches) branch.add_energies(c, sums);
-      next += 6;
-    }
 }
 
 Progress VirtualChain::advance(const Linearised& at, const VectorX& delta, const ShapeConditions& c) {

@@ -105,6 +105,10 @@ struct VirtualJoint {
   bool elastic(std::size_t i) const { return joint.elastic(i) || !held[i].empty(); }
   /// The deflection of the laws of freedom i under the force f, and their compliance.
   Step deflected(std::size_t i, double f, const ShapeConditions&) const;
+  /// The force under which the laws of freedom i are taken for linear: f, that of statics, or, where f and the
+  /// deflection are on two sides of the unloaded laws, the one that the laws give to the deflection. |f|ⁿ with n < ½ is
+  /// so steep at its origin that Newton's method in f would go from one side to the other and back.
+  double tangent_force(std::size_t i, double f, const ShapeConditions&) const;
 };
 
 struct VirtualMember {

@@ -1,4 +1,5 @@
-// What a chain of virtual joints does to a body that holds its end, and branches side by side; its laws in steps.
+// What a chain of virtual joints does to a body that holds its end, and branches side by side; its laws in steps, and
+// what it stores.
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analytic/beam_column.h"
 #include "analytic/flexibility.h"
 #include "analytic/rotation_vector.h"
 #include "analytic/virtual_chain.h"
@@ -313,6 +315,44 @@ Step VirtualJoint::deflected(std::size_t i, double f, const ShapeConditions& c) 
     out.compliance += c.steps[number].compliance;
   }
   return out;
+}
+
+double VirtualJoint::tangent_force(std::size_t i, double f, const ShapeConditions& c) const {
+  const double unloaded = -joint.preload[i], way = x[i] - deflected(i, unloaded, c).offset;
+  if (std::ranges::all_of(joint.laws[i], is_linear) || !((f - unloaded) * way < 0)) return f;
+  const auto short_of = [&](double size) {
+    return std::abs(deflected(i, unloaded + std::copysign(size, way), c).offset - (x[i] - way)) < std::abs(way);
+  };
+  double low = 0, high = std::abs(f - unloaded);
+  while (short_of(high) && high < 1e300) low = high, high *= 4;
+  for (int k = 0; k < 200 && high - low > 1e-12 * high; ++k) {
+    const double between = low + (high - low) / 2;
+    (short_of(between) ? low : high) = between;
+  }
+  return unloaded + std::copysign(high, way);
+}
+
+void VirtualChain::add_energies(const ShapeConditions& c, std::map<std::string, double>& sums) const {
+  VirtualChain copy = *this;
+  const Linearised l = copy.linearise(c);
+  const VectorX s = l.J.transpose() * F + l.turned;
+  Eigen::Index next = 0;
+  for (const VirtualStep& step : steps)
+    if (const auto* v = std::get_if<VirtualJoint>(&step)) {
+      const PlacedJoint& j = v->joint;
+      const Vector6 x = Eigen::Map<const Vector6>(v->x.data());
+      if (j.stiffness) sums[j.part] += 0.5 * x.dot(*j.stiffness * x);
+      for (const std::size_t i : v->freedoms) {
+        if (!j.laws[i].empty() && !j.stiffness) sums[j.part] += stored_energy({j.laws[i], j.preload[i]}, s(next));
+        ++next;
+      }
+    } else if (const auto* member = std::get_if<VirtualMember>(&step)) {
+      sums[member->member.part] += tip_law(member->member, member->tip.x, s.segment<3>(next), c.geometry).energy;
+      next += 6;
+    } else {
+      for (const VirtualChain& branch : std::get<VirtualGroup>(step).branches) branch.add_energies(c, sums);
+      next += 6;
+    }
 }
 
 double largest_wrench(const VirtualChain& chain) {

@@ -26,7 +26,6 @@ class Laws {
   Laws(const LinearRelation& r, const std::vector<ScalarLaw>& laws, const MatrixX& watched)
       : relation_(r), laws_(laws), n_(r.c.size()), unit_(r.c.cwiseSqrt()), watched_(watched) {
     const MatrixX P = unit_.cwiseInverse().asDiagonal() * r.P * unit_.asDiagonal();
-    symmetric_ = (P - P.transpose()).cwiseAbs().maxCoeff() < 1e-8;
     const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(MatrixX((P + P.transpose()) / 2));
     const VectorX d0 = r.d0.cwiseQuotient(unit_), along = eigen.eigenvectors().transpose() * d0;
     std::vector<Eigen::Index> moving;
@@ -73,10 +72,11 @@ class Laws {
       if (found.side[at(i)] != 0) d_(i) = found.side[at(i)] > 0 ? row.high : row.low;
       s_(i) += row.slope(d_(i));
     }
-    bool stiff = false;  // laws whose s is lost in the rounding of d
+    bool coarse = !keeps_relation();
     for (Eigen::Index i = 0; i < n_; ++i)
-      stiff = stiff || (found.side[at(i)] == 0 && problem_.rows[at(i)].curvature(d_(i)) > 1e2);
-    if (!symmetric_ || stiff) refine(found.side);
+      // A law whose s is lost in the rounding of d.
+      coarse = coarse || (found.side[at(i)] == 0 && problem_.rows[at(i)].curvature(d_(i)) > 1e2);
+    if (coarse) refine(found.side);
     const double own = s_.size() ? s_.cwiseAbs().maxCoeff() : 0;
     for (Eigen::Index i = 0; i < n_; ++i) {
       const double size = std::max(own, relation_.size(i) * unit_(i));
@@ -168,6 +168,15 @@ class Laws {
 
   double beyond(Eigen::Index i, double d) const {
     return std::abs(d - std::clamp(d, problem_.rows[at(i)].low, problem_.rows[at(i)].high));
+  }
+
+  /// Whether d and s are on the relation as it is given. The search takes P for symmetric: what it is not, however
+  /// little, counts where an o is large beside others, as behind a wide gap.
+  bool keeps_relation() const {
+    const MatrixX P = unit_.cwiseInverse().asDiagonal() * relation_.P * unit_.asDiagonal();
+    const VectorX d0 = relation_.d0.cwiseQuotient(unit_), o = d_ - s_;
+    const VectorX off = (d0 + P * o - d_).cwiseAbs(), of = d0.cwiseAbs() + P.cwiseAbs() * o.cwiseAbs() + d_.cwiseAbs();
+    return (off.array() <= 1e-12 * of.array()).all();
   }
 
   /// Newton on the relation as it is given, with the ends that push; the sides of `end` stay where they are.
@@ -289,7 +298,6 @@ class Laws {
   const std::vector<ScalarLaw>& laws_;
   Eigen::Index n_;
   VectorX unit_;
-  bool symmetric_ = true;
   MatrixX watched_;
   ConvexProblem problem_;
   VectorX start_, x_, d_, s_;

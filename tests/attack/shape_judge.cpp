@@ -124,7 +124,7 @@ void compare_stiffness(ShapeJudgement& out, const Shaped& s) {
       Matrix6 without_moment = said.finite->stiffness;
       without_moment.bottomRightCorner<3, 3>() += skew(s.F.tail<3>()) / 2;
       const Matrix6 S = w.cwiseInverse().asDiagonal() * without_moment * w.cwiseInverse().asDiagonal();
-      const double differences = 1e-14 / s.device.share * S.norm();  // by which the judge has its matrix
+      const double differences = 1e-13 / s.device.share * S.norm();  // by which the judge has its matrix
       const double rounding = 10 * ((S - S.transpose()).norm() + differences) * C.norm(),
                    left = allowed(*said.finite, s.c.size, 0), error = (C * K * C - C).norm() / C.norm();
       out.compliance = std::max(out.compliance, error / (1e-2 * change + 2 * (left + out.of_strain) + rounding));

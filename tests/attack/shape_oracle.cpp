@@ -46,7 +46,7 @@ class ShapeMethod {
       state.numbers.push_back(VectorL::Zero(chain.numbers));
     }
     ShapeTruth out;
-    const Factor at_rest = factor(matrix(state, 0, 0, straight_ ? 1e-9L : 1e-3L));
+    const Factor at_rest = factor(matrix(state, 0, 0, straight_ ? 1e-9L : 1e-3L, Differences::fine));
     sign_ = at_rest.sign;
     out.regular = at_rest.regular();
     out.at_rest = compliance(state, at_rest);
@@ -56,7 +56,7 @@ class ShapeMethod {
     if (out.found && out.stable) refine(rest, state, out);
     if (out.found) {
       if (out.regular) held_ = 0;  // where much is held by much else, it would count
-      out.compliance = compliance(state, factor(matrix(state, 1, 1, held_)));
+      out.compliance = compliance(state, factor(matrix(state, 1, 1, held_, Differences::fine)));
     }
     return out;
   }
@@ -171,10 +171,14 @@ class ShapeMethod {
     return out;
   }
 
+  /// Newton's method bears coarse ones. A stiffness is compared: where one chain, which others hold, would turn by
+  /// hundreds of radians under the load alone, a difference over 1e-5 of it is off by 1e-3 or more.
+  enum class Differences { coarse, fine };
+
   /// By differences, chain by chain; slopes of laws at least `floor`.
-  MatrixL matrix(const State& s, Long share, Long misfit, Long floor) const {
+  MatrixL matrix(const State& s, Long share, Long misfit, Long floor, Differences d = Differences::coarse) const {
     MatrixL J = MatrixL::Zero(equations_, equations_);
-    for (std::size_t c = 0; c < chains_.size(); ++c) fill_chain(J, s, c, misfit, floor);
+    for (std::size_t c = 0; c < chains_.size(); ++c) fill_chain(J, s, c, misfit, floor, d);
     for (std::size_t c = 0; c < chains_.size(); ++c) {
       const Matrix6 one = Matrix6::Identity();
       if (const int e = chains_[c].end; e != ChainL::ground) {
@@ -189,8 +193,9 @@ class ShapeMethod {
     return J;
   }
 
-  void fill_chain(MatrixL& J, const State& s, std::size_t c, Long misfit, Long floor) const {
-    constexpr Long h = 1e-5L;
+  void fill_chain(MatrixL& J, const State& s, std::size_t c, Long misfit, Long floor, Differences differences) const {
+    const bool fine = differences == Differences::fine;
+    const Long h = fine ? 1e-6L : 1e-5L;
     const Eigen::Index first = first_[c], rows = 6 + chains_[c].numbers;
     State moved = s;
     const auto column = [&](Eigen::Index k) {
@@ -203,7 +208,9 @@ class ShapeMethod {
         moved.wrenches[c] = before.wrenches[0], moved.numbers[c] = before.numbers[0], moved.bodies[as_size(b)] = motion;
         return out;
       };
-      J.block(first, k, rows, 1) = (at(h) - at(-h)) / (2 * h);
+      VectorL slope = (at(h) - at(-h)) / (2 * h);
+      if (fine) slope = (4 * slope - (at(2 * h) - at(-2 * h)) / (4 * h)) / 3;
+      J.block(first, k, rows, 1) = slope;
     };
     for (Eigen::Index k = first; k < first + rows; ++k) column(k);
     if (chains_[c].start != ChainL::ground)

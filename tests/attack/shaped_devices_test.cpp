@@ -102,6 +102,35 @@ TEST(ShapedDevices, WithALeverThatOnlyTheShapeHasAreAnswered) {
   EXPECT_EQ(j.outcome, Outcome::answered) << reproduction_in_shape(16332, false, j);
 }
 
+// A leg's stiffness is known to the judge by differences: over too long ones, hundreds of radians of a leg that others
+// hold, it was off by 1e-3.
+TEST(ShapedDevices, WhoseLegsWouldTurnFarAloneHaveTheirStiffness) {
+  for (const unsigned seed : {853u, 3758u, 18281u}) {
+    const ShapeJudgement j = judge_in_shape_apart(seed, false);
+    EXPECT_EQ(j.outcome, Outcome::answered) << reproduction_in_shape(seed, false, j);
+  }
+}
+
+// |f|ⁿ with n < ½ threw Newton's method from one side to the other (471, 727); beside a gap of 22 mm the MSA entered
+// the rigid side of a spring (732).
+TEST(ShapedDevices, OfSteepLawsAndWideGapsAreAnswered) {
+  for (const unsigned seed : {471u, 727u, 732u}) {
+    const ShapeJudgement j = judge_in_shape_apart(seed, true);
+    EXPECT_EQ(j.outcome, Outcome::answered) << reproduction_in_shape(seed, true, j);
+  }
+}
+
+// Legs of a member and of four joints at one point: what idles there was driven by forces that are none in equilibrium.
+// That took 232 245 iterations.
+TEST(ShapedDevices, WhoseLegsIdleAtABallJointAreSolvedAtOnce) {
+  const std::optional<ShapedDevice> d = shaped_device(18343, false);
+  ASSERT_TRUE(d.has_value());
+  const analytic::AnalyticSolution s =
+      analytic::AnalyticModel(d->at.configuration).solve(d->random.load, Geometry::finite);
+  EXPECT_TRUE(s.converged) << s.message;
+  EXPECT_LE(s.iterations, 20);
+}
+
 // A slack leg of six passive freedoms reaches the end of its travel: no buckling load.
 TEST(ShapedDevices, AtADeadCentreOfPassiveJointsAreToldSo) {
   const std::optional<ShapedDevice> d = shaped_device(16106, false);
