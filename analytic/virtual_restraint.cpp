@@ -229,10 +229,12 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   MatrixX M = MatrixX::Zero(rank + passive, rank + passive);
   M << C / unit, J_hat, J_hat.transpose(), -unit * A_hat;
   MatrixX right = MatrixX::Zero(rank + passive, 7);
-  right.topLeftCorner(rank, 6) = along_P(Matrix6::Identity()) / unit;
-  right.topRightCorner(rank, 1) = along_P(e) / unit;
+  right.topRows(rank) << along_P(Matrix6::Identity()) / unit, along_P(e) / unit;
   right.bottomRightCorner(passive, 1) = scale.cwiseProduct(r_Q - A_EQ.transpose() * A_EE_r);
-  const MatrixX solution = smallest_solution(M, right);
+  // What is stiff beside the compliance would hide the others from ranks and signs.
+  const VectorX smaller = M.cwiseAbs().rowwise().maxCoeff().cwiseMax(1).cwiseSqrt().cwiseInverse();
+  M = smaller.asDiagonal() * M * smaller.asDiagonal();
+  const MatrixX solution = smaller.asDiagonal() * smallest_solution(M, smaller.asDiagonal() * right);
   const MatrixX along = B.cols() == 0 ? MatrixX(solution.topRows(rank)) : MatrixX(P * solution.topRows(rank));
   const MatrixX forces = W.asDiagonal() * along;  // F by [t + c; 1]
   response_.resize(by_z.J.cols(), 7);

@@ -38,7 +38,8 @@ std::string negative_eigenvalue(const Matrix6& symmetric, double tolerance) {
 
 }  // namespace
 
-StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffness>& legs, double tolerance) {
+StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffness>& legs, double tolerance,
+                                const Matrix6& rounding) {
   StiffnessChecks out;
   const double length = weighing_length(K_SI);
   const Matrix6 K = weighed(K_SI, length);
@@ -47,8 +48,9 @@ StiffnessChecks check_stiffness(const Matrix6& K_SI, const std::vector<LegStiffn
     out = {false, false, false, "the stiffness is not finite"};
     return out;
   }
-  const double asymmetry = (K - K.transpose()).cwiseAbs().maxCoeff();
-  out.symmetric = asymmetry <= tolerance * scale;
+  const Matrix6 differences = (K - K.transpose()).cwiseAbs(), open = weighed(rounding + rounding.transpose(), length);
+  const double asymmetry = differences.maxCoeff();
+  out.symmetric = (differences.array() <= tolerance * scale + open.array()).all();
   if (!out.symmetric)
     out.failure +=
         fmt::format("K = K^T fails: the largest difference is {:.3g} of the largest entry; ", asymmetry / scale);

@@ -25,8 +25,9 @@ struct StiffnessChecks {
 /// Rotations are weighed by the length ℓ = √(tr K_θθ / tr K_δδ), so that the result does not depend on units. Each
 /// quantity may differ from zero by `tolerance` times the largest entry (eigenvalue) of its matrix. The resistance of a
 /// leg along its passive joints may also be that share of K, because for a leg far softer than the others only rounding
-/// is left.
-StiffnessChecks check_stiffness(const Matrix6& K, const std::vector<LegStiffness>& legs, double tolerance = 1e-9);
+/// is left. `rounding`: by entry of K, what is known to be open; K may be so much less symmetric.
+StiffnessChecks check_stiffness(const Matrix6& K, const std::vector<LegStiffness>& legs, double tolerance = 1e-9,
+                                const Matrix6& rounding = Matrix6::Zero());
 
 /// The response of a structure to one load at T, SI, base axes.
 struct Response {

@@ -46,7 +46,9 @@ class ShapeMethod {
       state.numbers.push_back(VectorL::Zero(chain.numbers));
     }
     ShapeTruth out;
-    const Factor at_rest = factor(matrix(state, 0, 0, straight_ ? 1e-9L : 1e-3L, Differences::fine));
+    // Laws that are not linear have kinks at rest, across which fine differences change signs.
+    const Factor at_rest = straight_ ? factor(matrix(state, 0, 0, 1e-9L, Differences::fine))
+                                     : factor(matrix(state, 0, 0, 1e-3L, Differences::coarse));
     sign_ = at_rest.sign;
     out.regular = at_rest.regular();
     out.at_rest = compliance(state, at_rest);
@@ -176,7 +178,7 @@ class ShapeMethod {
   enum class Differences { coarse, fine };
 
   /// By differences, chain by chain; slopes of laws at least `floor`.
-  MatrixL matrix(const State& s, Long share, Long misfit, Long floor, Differences d = Differences::coarse) const {
+  MatrixL matrix(const State& s, Long share, Long misfit, Long floor, Differences d) const {
     MatrixL J = MatrixL::Zero(equations_, equations_);
     for (std::size_t c = 0; c < chains_.size(); ++c) fill_chain(J, s, c, misfit, floor, d);
     for (std::size_t c = 0; c < chains_.size(); ++c) {
@@ -252,7 +254,7 @@ class ShapeMethod {
     for (int i = 0; i < 100 && left_to_make_ > 0; ++i) {
       const Long floor = straight_ || made > 10 ? 1e-9L : made > 5 ? 1e-6L : 1e-3L;
       const bool fresh = !f;
-      if (fresh) f = factor(matrix(s, share, misfit, floor)), ++made, --left_to_make_;
+      if (fresh) f = factor(matrix(s, share, misfit, floor, Differences::coarse)), ++made, --left_to_make_;
       const VectorL step = -f->solve(residual(s, share, misfit));
       const Long size = step.cwiseAbs().maxCoeff();
       if (!(size < 1e6L)) return false;
@@ -261,7 +263,7 @@ class ShapeMethod {
       before = size;
       if (size > 1e-11L) continue;
       state = std::move(s);
-      if (sign_ != factor(matrix(state, share, misfit, 1e-9L)).sign) out.stable = false;
+      if (sign_ != factor(matrix(state, share, misfit, 1e-9L, Differences::coarse)).sign) out.stable = false;
       return true;
     }
     return false;

@@ -41,16 +41,9 @@ struct ShapeTable {
   }
 };
 
-/// Devices of extreme ratios are left to the linear ones. In one that amplifies rounding by 1e8 the closed form sees a
-/// limit load at no load, where there is none.
-bool left_out(unsigned seed) {
-  return static_cast<DeviceKind>(seed % std::size(device_kind_names)) == DeviceKind::stiff_and_soft || seed == 107;
-}
-
 ShapeTable judged_in_shape(bool laws, unsigned first, unsigned last, unsigned step) {
   ShapeTable table;
   for (unsigned seed = first; seed < last; seed += step) {
-    if (left_out(seed)) continue;
     const ShapeJudgement j = judge_in_shape_apart(seed, laws);
     table.add(j);
     if (is_wrong(j.outcome)) table.failures += reproduction_in_shape(seed, laws, j) + "\n";
@@ -111,10 +104,11 @@ TEST(ShapedDevices, WhoseLegsWouldTurnFarAloneHaveTheirStiffness) {
   }
 }
 
+// Inside play that carries nothing one part moves 1e4 times as far as the tool, and short elements round (1117).
 // |f|ⁿ with n < ½ threw Newton's method from one side to the other (471, 727); beside a gap of 22 mm the MSA entered
 // the rigid side of a spring (732).
 TEST(ShapedDevices, OfSteepLawsAndWideGapsAreAnswered) {
-  for (const unsigned seed : {471u, 727u, 732u}) {
+  for (const unsigned seed : {471u, 727u, 732u, 1117u}) {
     const ShapeJudgement j = judge_in_shape_apart(seed, true);
     EXPECT_EQ(j.outcome, Outcome::answered) << reproduction_in_shape(seed, true, j);
   }

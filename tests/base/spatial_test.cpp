@@ -60,6 +60,10 @@ TEST(StiffnessChecks, FindEachFaultByName) {
   asymmetric(0, 1) = 1;  // 1e-5 of the scale
   EXPECT_FALSE(check_stiffness(asymmetric, {}).symmetric);
   EXPECT_NE(check_stiffness(asymmetric, {}).failure.find("K = K^T"), std::string::npos);
+  Matrix6 open = Matrix6::Zero();
+  open(1, 0) = 1;
+  EXPECT_TRUE(check_stiffness(asymmetric, {}, 1e-9, open).symmetric);
+  EXPECT_FALSE(check_stiffness(asymmetric, {}, 1e-9, 0.9 * open).symmetric);
   EXPECT_FALSE(check_stiffness(-K, {}).positive);
   Matrix6 coupled = K;
   coupled(0, 4) = coupled(4, 0) = 1e5;  // > √(1e5 · 500)

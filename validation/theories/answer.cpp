@@ -98,11 +98,11 @@ void check_answer(const Answer& answer, const Asked& asked, const Found& found, 
 
 /// Shapes are known to 1e-12, forces and stiffness to that times the ratio of the stiffest to the softest part: of a
 /// member in short elements some 1e4.
-Answer deformed_answer(Answer answer, const Asked& asked, const Found& found) {
+Answer deformed_answer(Answer answer, const Asked& asked, const Found& found, const Matrix6& rounding) {
   constexpr double known_to = 1e-7;
   Matrix6 K = answer.stiffness;
   K.bottomRightCorner<3, 3>() += skew(found.load.tail<3>()) / 2;
-  answer.checks = check_stiffness(K, {}, known_to);
+  answer.checks = check_stiffness(K, {}, known_to, rounding);
   enforce_stiffness(answer.checks, asked);
   Vector6 balance = -found.load;
   balance.head<3>() = found.reaction.head<3>();

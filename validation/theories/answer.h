@@ -108,8 +108,8 @@ void enforce_stiffness(const StiffnessChecks&, const Asked&);
 
 /// Checks an answer in the deformed shape (Geometry). There the forces in legs resist the motion of passive joints, and
 /// the stored energy is not ½Fᵀd. Checked are K = Kᵀ and K ⪰ 0 for K without the term −½[m]× of the applied moment m,
-/// the sign, and the balance of forces. Returns the answer with its checks.
-Answer deformed_answer(Answer, const Asked&, const Found&);
+/// the sign, and the balance of forces. `rounding`: of K, by entry. Returns the answer with its checks.
+Answer deformed_answer(Answer, const Asked&, const Found&, const Matrix6& rounding = Matrix6::Zero());
 
 /// The checked answer of a sweep (pose_sweep.h, msa_sweep.h) after its solve(). `legs` have their passive twists.
 template <class Sweep>

@@ -128,13 +128,14 @@ Answer MsaAt::answer(const Vector6& F, const Conditions& conditions) {
 }
 
 Answer MsaAt::deformed() {
-  Answer answer{last_.displacement, model().stiffness(last_.state).K, last_.energies};
+  const frame::MsaModel::Stiffness found = model().stiffness(last_.state);
+  Answer answer{last_.displacement, found.K, last_.energies};
   answer.slips = last_.slips;
   answer.discretisation = discretisation_;
   if (last_.state.geometric->geometry == Geometry::second_order)
     answer.left_out = last_.state.geometric->left_out.relative;
   const Vector6 reaction = model().base_reaction(last_.load, last_.state);
-  return deformed_answer(std::move(answer), asked(), {last_.load, reaction});
+  return deformed_answer(std::move(answer), asked(), {last_.load, reaction}, found.rounding);
 }
 
 const MsaAt::Stiffness& MsaAt::stiffness() {

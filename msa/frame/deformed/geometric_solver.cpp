@@ -244,7 +244,7 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
   return state;
 }
 
-Matrix6 GeometricSolver::stiffness(const GeometricState& state, int node) const {
+NodeStiffness GeometricSolver::stiffness(const GeometricState& state, int node) const {
   Model m = held(state);
   const auto first = std::ssize(m.constraints);
   m.fix(node, "held");
@@ -256,7 +256,10 @@ Matrix6 GeometricSolver::stiffness(const GeometricState& state, int node) const 
   MatrixX values = MatrixX::Zero(first + 6, 6);
   values.bottomRows<6>().setIdentity();
   const MatrixX moved = tangent.solve(MatrixX::Zero(m.dofs(), 6), values);
-  return Reactions(m, e).forces(state.K * moved).bottomRows<6>();
+  const MatrixX sizes = moved.cwiseAbs();
+  const Eigen::SparseMatrix<double> K = state.K.cwiseAbs();
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  return {Reactions(m, e).forces(state.K * moved).bottomRows<6>(), epsilon * (sizes.transpose() * (K * sizes))};
 }
 
 MatrixX GeometricSolver::response(const GeometricState& state, const MatrixX& loads) const {

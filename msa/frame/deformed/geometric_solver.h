@@ -88,6 +88,11 @@ struct GeometricState {
   const SpringLaw& law(const Model& m, std::size_t i) const { return jumping.empty() ? m.springs[i].law : jumping[i]; }
 };
 
+struct NodeStiffness {
+  Matrix6 K;
+  Matrix6 rounding;  ///< by entry: ε |U|ᵀ|K||U|, U the motions of all nodes. Where one hardly held moves far, digits go
+};
+
 /// Energies by part, in order of first appearance, J.
 std::vector<std::pair<std::string, double>> energies(const Model&, const GeometricState&);
 
@@ -106,7 +111,7 @@ class GeometricSolver {
   /// Tangent stiffness ∂[f; m]/∂[δ; spin] of a node in a state, base axes: its reactions to unit displacements. It is
   /// symmetric unless moments are applied. A direction in which nothing holds the node has zero stiffness. Throws
   /// ModelError where the structure, with the node held, has no stiffness.
-  Matrix6 stiffness(const GeometricState&, int node) const;
+  NodeStiffness stiffness(const GeometricState&, int node) const;
 
   /// Tangent response of a state, [δ; spin] and scalars by freedom, to columns of load increments.
   MatrixX response(const GeometricState&, const MatrixX& loads) const;

@@ -318,7 +318,8 @@ Solution MsaModel::solve_geometric(const VectorX& load, const Conditions& condit
 MsaModel::Stiffness MsaModel::stiffness(const Solution& state) {
   if (state.geometric) {
     if (!geometric_) throw std::logic_error("a state of another mechanism");
-    return {above_rounding(geometric_->stiffness(*state.geometric, built_.tool), geometric_->model()), {}};
+    const NodeStiffness found = geometric_->stiffness(*state.geometric, built_.tool);
+    return {above_rounding(found.K, geometric_->model()), {}, MatrixX::Identity(6, 6), found.rounding};
   }
   if (!tool_held_ || tool_held_->kind != kinds(state.spring_tangents))
     tool_held_ = std::make_unique<Held>(built_, built_.tool, state.spring_tangents, configuration_.size);

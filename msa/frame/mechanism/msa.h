@@ -67,6 +67,7 @@ class MsaModel {
     Matrix6 K;
     std::vector<Matrix6> legs;
     MatrixX motions = MatrixX::Identity(6, 6);
+    Matrix6 rounding = Matrix6::Zero();  ///< of K, by entry; in nonlinear geometry
   };
   Stiffness stiffness(const Solution& state);
 
