@@ -116,7 +116,7 @@ std::vector<BaselineAnswer> baselines(const Plan& plan, const VectorX& residual,
     if (c.effect.effect->name != left_out) changes.push_back(&c);
   const Comparison& known = plan.observations->comparison();
   const Uncertainty noise(PartedColumns(MatrixX(residual.size(), 0)), known.study.values, known.sigma,
-                          known.study.predicted, plan.observations->subject().load_tolerance());
+                          known.study.load_errors);
   return {fixed_nuisances(plan, changes, noise, residual), all_parameters(plan, changes, noise, residual),
           bic(plan, changes, residual)};
 }

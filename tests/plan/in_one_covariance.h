@@ -22,7 +22,7 @@ class InOneCovariance {
     std::vector<double> sigma;
     for (const measurement::MeasuredValue& v : read_) sigma.push_back(*v.sigma);
     uncertainty_.emplace(statistics::tolerance_model(*standing, all_, read_).A, read_, sigma,
-                         standing->predict(all_, linear()), subject_.load_tolerance());
+                         statistics::LoadErrors(subject_.load_tolerance(), standing->predict(all_, linear())));
   }
 
   VectorX predicted(const Rival& r, const VectorX& at) const {

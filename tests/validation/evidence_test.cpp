@@ -128,7 +128,7 @@ TEST(Uncertainty, ToleranceScaleIsFoundBesidePatterns) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = tool_point_value(i / 3, i % 3, 0, {});
   const std::vector<double> sigma(600, 1);
   const MatrixX A = 0.5 * noise(600, 80, 4), patterns = noise(600, 5, 5);
-  const Uncertainty u(A, values, sigma, std::vector<VectorX>(200, Vector6::Zero()), 0);
+  const Uncertainty u(A, values, sigma, LoadErrors(0, std::vector<VectorX>(200, Vector6::Zero())));
   for (const double s : {1.0, 2.0, 2.5}) {
     const VectorX r = s * A * noise(80, 1, 6) + noise(600, 1, 7) + patterns * VectorX::Constant(5, 40);
     const double found = u.scale_of_tolerances(r, patterns);
@@ -152,7 +152,7 @@ TEST(Uncertainty, ToleranceScaleIsTheLikeliestOfItsSteps) {
   std::vector<MeasuredValue> values(60);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = tool_point_value(i / 3, i % 3, 0, {});
   const MatrixX A = noise(60, 10, 8), F = noise(60, 2, 9);
-  const Uncertainty u(A, values, std::vector<double>(60, 1), std::vector<VectorX>(20, Vector6::Zero()), 0);
+  const Uncertainty u(A, values, std::vector<double>(60, 1), LoadErrors(0, std::vector<VectorX>(20, Vector6::Zero())));
   int little = 0, just_enough = 0;
   for (double times = 1; times < 3; times += 0.05) {
     const VectorX r = times * A * noise(10, 1, 10) + noise(60, 1, 11) + 30 * F * VectorX::Ones(2);

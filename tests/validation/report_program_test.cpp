@@ -295,11 +295,15 @@ TEST_F(ReportProgram, ADiagnosedFrameShowsWhereItActs) {
   const std::string data = "'" + test::source_dir() + "/validation/measurements/frames/truss-45.csv'";
   run("diagnose truss-45 " + data + " --bootstrap 99 --report " + path("page.html"));
   const json scene = page_data(contents(folder / "page.html")).at("scene");
-  EXPECT_EQ(scene.at("guilty"), json({"member C2b"}));
+  const auto first = scene.at("guilty").at(0).get<std::string>();
+  EXPECT_EQ(scene.at("guilty").size(), 1u);
+  EXPECT_TRUE(first == "member C1b" || first == "member C2b") << first;
   if (test::browser().empty()) return;
   const std::string legend = used("page.html").at("legend").get<std::string>();
-  EXPECT_NE(legend.find("acts here: member C2b"), std::string::npos) << legend;
-  EXPECT_NE(legend.find("As likely here: member C1b"), std::string::npos) << legend;
+  EXPECT_NE(legend.find("acts here: " + first), std::string::npos) << legend;
+  EXPECT_NE(legend.find(first == "member C1b" ? "As likely here: member C2b" : "As likely here: member C1b"),
+            std::string::npos)
+      << legend;
 }
 
 // Of a member that differs at its start only the start is marked; springs stand where their nodes are.

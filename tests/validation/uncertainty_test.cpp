@@ -62,7 +62,7 @@ struct Small {
 
 TEST(Uncertainty, WeighsByTheInverseOfTheWholeCovariance) {
   Small s;
-  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01);
+  const Uncertainty u(s.A, s.values, s.sigma, LoadErrors(0.01, s.d));
   const MatrixX X = s.matrix(2), Y = s.matrix(3), inverse = s.dense(0.01).inverse();
   const MatrixX wanted = X.transpose() * inverse * Y;
   EXPECT_LT((u.inner(X, Y) - wanted).norm(), 1e-10 * wanted.norm());
@@ -83,7 +83,7 @@ TEST(HeldOut, LearnsTolerancesAtTheOtherPoses) {
   study.values = s.values;
   std::vector<bool> aside(12, false);
   aside[7] = true;
-  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01, aside);
+  const Uncertainty u(s.A, s.values, s.sigma, LoadErrors(0.01, s.d), aside);
   const VectorX r = s.A * s.matrix(1).topRows(5) + 1e-6 * s.matrix(1);
   const MatrixX all = s.dense(0.01);
   double squares = 0, n = 0;
@@ -104,7 +104,7 @@ TEST(HeldOut, LearnsTolerancesAtTheOtherPoses) {
 
 TEST(Uncertainty, CovarianceOfContrastsIsThatOfTheirReadings) {
   Small s;
-  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01);
+  const Uncertainty u(s.A, s.values, s.sigma, LoadErrors(0.01, s.d));
   Eigen::SparseMatrix<double, Eigen::RowMajor> T(2, 36);
   T.insert(0, 0) = 1;
   T.insert(0, 7) = -1;
@@ -117,7 +117,7 @@ TEST(Uncertainty, ReadingsSetAsideWeighNothing) {
   Small s;
   std::vector<bool> aside(12, false);
   aside[4] = true;
-  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01, aside);
+  const Uncertainty u(s.A, s.values, s.sigma, LoadErrors(0.01, s.d), aside);
   VectorX r = VectorX::Zero(36);
   r.segment<3>(12).setConstant(1);  // of reading 4
   EXPECT_EQ(u.inner(r, r)(0, 0), 0);
@@ -126,7 +126,7 @@ TEST(Uncertainty, ReadingsSetAsideWeighNothing) {
 
 TEST(Regression, FindsAmplitudesAndTheirScatter) {
   Small s;
-  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01);
+  const Uncertainty u(s.A, s.values, s.sigma, LoadErrors(0.01, s.d));
   const MatrixX G = s.matrix(3);
   const VectorX truth = Vector3(2e-6, -1e-6, 5e-7), r = G * truth;
   const Regression fit = regress(u, r, G);
@@ -139,7 +139,7 @@ TEST(Regression, FindsAmplitudesAndTheirScatter) {
 
 TEST(Regression, LeavesOpenWhatTheDataDoNotDetermine) {
   Small s;
-  const Uncertainty u(s.A, s.values, s.sigma, s.d, 0.01);
+  const Uncertainty u(s.A, s.values, s.sigma, LoadErrors(0.01, s.d));
   MatrixX G(36, 2);
   G.col(0) = s.matrix(1);
   G.col(1) = -2 * G.col(0);

@@ -282,7 +282,9 @@ struct Readings {
     study.data = &data;
     study.values = values;
   }
-  Uncertainty uncertainty(const PartedColumns& errors) const { return Uncertainty(errors, values, sigma, d, 0.01); }
+  Uncertainty uncertainty(const PartedColumns& errors) const {
+    return Uncertainty(errors, values, sigma, LoadErrors(0.01, d));
+  }
 };
 
 TEST(Uncertainty, IsTheSameWhetherErrorsArePartedOrNot) {

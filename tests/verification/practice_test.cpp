@@ -173,7 +173,7 @@ TEST(Fanuc, SixJointSpringsFitTheMeasurements) {
       rows_of(s.values,
               site_columns(s, [&](std::size_t i, std::size_t k) { return s.force[i](static_cast<Eigen::Index>(k)); }));
   const Uncertainty alike(PartedColumns(MatrixX(c.residual.size(), 0)), s.values,
-                          std::vector<double>(s.values.size(), 1e-4), s.predicted, 0);
+                          std::vector<double>(s.values.size(), 1e-4), LoadErrors(0, s.predicted));
   const Regression more = regress(alike, c.residual, G);
   const double published[] = {9.3394e5, 4.1293e6, 1.9075e6, 2.3320e5, 4.0436e5, 7.9618e4};
   const double fitted[] = {8.609e5, 2.720e6, 1.960e6, 2.708e5, 4.247e5, 2.060e5};  // Nm/rad, four digits

@@ -112,8 +112,7 @@ VectorX expected_variances(const ResidualStudy& s, const statistics::ToleranceMo
   for (std::size_t k = 0; k < t.nuisances.size(); ++k)
     if (t.nuisances[k].zero) out -= t.A.shared.col(as_index(k)).cwiseAbs2();
   for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const measurement::MeasuredValue& v = s.values[i];
-    const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.channel));
+    const double load = s.load_errors.deviation(s.values[i]);
     out(as_index(i)) += sigma[i] * sigma[i] + load * load;
   }
   return out.cwiseMax(0);

@@ -22,7 +22,7 @@ bool many(const std::vector<bool>& aside) {
 Outliers outliers_beside(const ResidualStudy& s, const statistics::PartedColumns& A, const std::vector<double>& sigma,
                          const VectorX& residual, const MatrixX& patterns, int threads) {
   const auto without = [&](const std::vector<bool>& aside) {
-    return statistics::Uncertainty(A, s.values, sigma, s.predicted, s.subject->load_tolerance(), aside, threads);
+    return statistics::Uncertainty(A, s.values, sigma, s.load_errors, aside, threads);
   };
   std::vector<bool> aside(s.data->readings.size(), false);
   std::optional<statistics::Uncertainty> uncertainty;
@@ -36,8 +36,8 @@ Outliers outliers_beside(const ResidualStudy& s, const statistics::PartedColumns
     std::vector<double> worst(aside.size(), 0);
     for (std::size_t i = 0; i < s.values.size(); ++i) {
       const measurement::MeasuredValue& v = s.values[i];
-      const double load = s.subject->load_tolerance() * s.predicted[v.reading](as_index(v.channel));
-      worst[v.reading] = std::max(worst[v.reading], std::abs(left(as_index(i))) / std::hypot(sigma[i], load));
+      const double scatter = std::hypot(sigma[i], s.load_errors.deviation(v));
+      worst[v.reading] = std::max(worst[v.reading], std::abs(left(as_index(i))) / scatter);
     }
     std::vector<double> sorted = worst;
     std::nth_element(sorted.begin(), sorted.begin() + as_index(sorted.size() / 2), sorted.end());

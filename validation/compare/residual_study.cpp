@@ -61,6 +61,7 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
                            [](const measurement::Reading& r) { return r.sequence.has_value(); });
   prediction::Predicted predicted = s.standing->predicted(data, {}, work);
   s.predicted = std::move(predicted.readings);
+  s.load_errors = {subject, *s.standing, data, s.predicted};
   s.floating = std::move(predicted.floating);
   const std::size_t poses = s.standing->poses();
   s.sites.resize(poses);

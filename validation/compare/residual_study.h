@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "validation/measurement/replicates.h"
+#include "validation/statistics/load_errors.h"
 #include "validation/subject/subject.h"
 
 namespace deflect::compare {
@@ -18,6 +19,7 @@ struct ResidualStudy {
   std::vector<measurement::MeasuredValue> values;     ///< the measured numbers
   MatrixX loads;                                      ///< by load channel and reading (loads_of)
   std::vector<VectorX> predicted;                     ///< of all channels (Standing::predict)
+  statistics::LoadErrors load_errors;                 ///< of `predicted`
   prediction::Floating floating;                      ///< with `predicted`
   std::vector<VectorX> deformed_shape;                ///< finite − linear geometry; empty: in `predicted`, or unknown
   std::vector<std::vector<subject::Site>> sites;      ///< by pose

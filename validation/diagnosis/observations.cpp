@@ -20,10 +20,9 @@ std::vector<bool> set_aside_by(const compare::Comparison& c) {
 
 std::shared_ptr<const statistics::Uncertainty> uncertainty_of(const compare::Comparison& c,
                                                               const statistics::PartedColumns& A,
-                                                              const std::vector<VectorX>& predicted,
+                                                              const statistics::LoadErrors& loads,
                                                               const std::vector<bool>& aside) {
-  return std::make_shared<const statistics::Uncertainty>(A, c.study.values, c.sigma, predicted,
-                                                         c.study.subject->load_tolerance(), aside);
+  return std::make_shared<const statistics::Uncertainty>(A, c.study.values, c.sigma, loads, aside);
 }
 
 prediction::Predicted in_linear_geometry(const compare::ResidualStudy& s, const subject::Standing& standing) {
@@ -69,8 +68,8 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
       threads_(work.threads),
       A_(comparison_->tolerances.A),
       aside_(set_aside_by(*comparison_)),
-      predicted_(comparison_->study.predicted),
-      uncertainty_(uncertainty_of(*comparison_, A_, predicted_, aside_)) {
+      load_errors_(std::make_shared<const statistics::LoadErrors>(comparison_->study.load_errors)),
+      uncertainty_(uncertainty_of(*comparison_, A_, *load_errors_, aside_)) {
   const compare::ResidualStudy& s = comparison_->study;
   measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
   in_linear_ = statistics::rows_of(s.values, s.predicted);
@@ -135,7 +134,7 @@ void Observations::move_tolerances(const subject::Subject& subject) {
 
 void Observations::weigh(const std::vector<bool>& aside) {
   aside_ = aside;
-  uncertainty_ = uncertainty_of(*comparison_, A_, predicted_, aside_);
+  uncertainty_ = uncertainty_of(*comparison_, A_, *load_errors_, aside_);
   held_out_.emplace(comparison_->study, *uncertainty_, aside_);
   null_ = whitened_residual(subject_);
 }
@@ -310,9 +309,12 @@ Observations Observations::in_shape_of(const subject::Subject& subject) const {
 Observations Observations::weighed_for(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;
-  auto predicted = outcome_of([&] { return in_linear_geometry(s, *stand(subject)); });
-  if (!predicted) return out;
-  out.predicted_ = std::move(predicted->readings);
+  auto load_errors = outcome_of([&] {
+    const auto standing = stand(subject);
+    return statistics::LoadErrors(subject, *standing, *s.data, in_linear_geometry(s, *standing).readings);
+  });
+  if (!load_errors) return out;
+  out.load_errors_ = std::make_shared<const statistics::LoadErrors>(std::move(*load_errors));
   out.move_tolerances(subject);
   out.weigh(aside_);
   return out;

@@ -134,7 +134,7 @@ class Observations {
   statistics::PartedColumns A_;  // the last shared column is that of the deformed shape
   double tolerance_scale_ = 1;
   std::vector<bool> aside_;
-  std::vector<VectorX> predicted_;  // what errors of loads are proportional to
+  std::shared_ptr<const statistics::LoadErrors> load_errors_;
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;
   VectorX measured_, shape_, null_;

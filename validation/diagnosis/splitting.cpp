@@ -54,7 +54,7 @@ MatrixX variance_of_tolerances(const Subject& s, const Measurements& trial) {
   MatrixX out = MatrixX::Zero(drawn.rows(), drawn.cols());
   for (std::size_t k = 0; k < deviations->tolerances().size(); ++k)
     if (!deviations->tolerances()[k].pose) out += (changes(deviations->with(k)->predict(trial)) - drawn).cwiseAbs2();
-  const double load = s.load_tolerance();
+  const double load = s.load_tolerance();  // each of these rows has one load
   return out + (load * load) * drawn.cwiseAbs2();
 }
 

@@ -82,9 +82,7 @@ Learnt::Learnt(const diagnosis::Observations& o, const std::vector<FreeParameter
 
 VectorX Learnt::variance_of_noise() const {
   const compare::Comparison& c = observations_->comparison();
-  const double load = c.study.subject->load_tolerance();
-  VectorX out = statistics::rows_of(c.study.values, c.study.predicted);
-  out = (load * out).cwiseAbs2();
+  VectorX out = c.study.load_errors.deviations(c.study.values).cwiseAbs2();
   for (std::size_t i = 0; i < c.sigma.size(); ++i) out(as_index(i)) += c.sigma[i] * c.sigma[i];
   for (const statistics::GroupColumns& group : observations_->uncertainty().tolerances().groups)
     for (std::size_t i = 0; i < group.rows.size(); ++i)

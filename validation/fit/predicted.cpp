@@ -162,6 +162,7 @@ PredictedPlan predict(const Subject& given, const Measurements& plan, const std:
   const auto without = fit && has_effects(fit->parameters) ? numbers.stand(out.plan) : nullptr;
   Joint joint = joint_of(P, tolerances_of(s, *standing, out.plan, values, shape, fit, without.get(), work), fit);
   out.errors = std::move(joint.root);
+  const statistics::LoadErrors load_errors(s, *standing, out.plan, all.front());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto row = as_index(i);
     const MeasuredValue& v = values[i];
@@ -170,8 +171,7 @@ PredictedPlan predict(const Subject& given, const Measurements& plan, const std:
     const std::optional<double> noise = noise_of(out.plan, v, fit, o);
     out.noise_known = out.noise_known && noise;
     number.deviation = {
-        std::sqrt(joint.parameters(row)), std::sqrt(joint.tolerances(row)),
-        s.load_tolerance() * std::abs(predicted(row)),
+        std::sqrt(joint.parameters(row)), std::sqrt(joint.tolerances(row)), load_errors.deviation(v),
         discrepancy_of(fit, o, v.quantity) * size_of_prediction(values, predicted, v.reading, v.quantity),
         noise.value_or(0)};
     const double half = normal95 * number.deviation.of_reading();

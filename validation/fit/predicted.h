@@ -1,15 +1,15 @@
 // What readings will be, with intervals: prediction of a plan of poses and loads.
 //
-//   y = f(x, p̂) + P δ + A η + s + t f u + c S w + ε
+//   y = f(x, p̂) + P δ + A η + s + l + c S w + ε
 //
 //   f      a theory's prediction in the geometry in which equilibrium really is, at the fitted parameters
 //   δ, η   deviations of parameters, and tolerances common to all poses, jointly normal as the fit left them
 //          (posterior.h); without a fit η ~ N(0, 1)
 //   s      errors of the pose: A of its own tolerances
-//   t      relative standard deviation of a load
+//   l      errors of the loads (load_errors.h)
 //   c      discrepancy as a share of the size S of the reading's predictions of that quantity (Discrepancy)
 //   ε      noise of one reading
-// with u, w ~ N(0, 1). The mean has what the fit learnt of η. Variances add up; that of P δ + A η is told in two parts,
+// with w ~ N(0, 1). The mean has what the fit learnt of η. Variances add up; that of P δ + A η is told in two parts,
 // var(A η | δ) as that of the tolerances and the rest as that of the parameters. Unknown zeros of sensors do not count.
 #pragma once
 

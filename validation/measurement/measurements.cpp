@@ -292,12 +292,6 @@ Measurements read_plan(const std::filesystem::path& path, const Instruments& kno
   return parse_plan(read_text(path), path.string(), known);
 }
 
-void scale_load(Reading& r, double factor) {
-  for (Vector6* load : {&r.load, &r.at_tool, &r.on_platform}) *load *= factor;
-  for (Vector6& load : r.at_points) load *= factor;
-  for (double& each : r.factors) each *= factor;
-}
-
 namespace {
 
 /// Components at named points that some reading has, by point and component.

@@ -129,6 +129,17 @@ MatrixX loads_of(const Measurements&);
 
 /// All loads of a reading times a factor.
 void scale_load(Reading&, double factor);
+/// The loads that a row combines, as numbers: load cases, then what acts at each of the load points, then at T; those
+/// that are not zero. The components of a load at one point are one load.
+std::vector<std::size_t> loads_of_row(const Reading&);
+/// One of them times a factor. Where it acts at a named point of a device, place_loads() (configure_all.h) must follow.
+void scale_load(Reading&, std::size_t load, double factor);
+/// Each of them times a factor of its own, in their order; of a row without load one factor is asked for as well.
+/// place_loads() must follow likewise.
+void scale_loads(Reading&, const std::function<double()>& factor);
+
+/// These readings, in this order and as often as they stand there, with all poses.
+Measurements repeated(const Measurements&, const std::vector<std::size_t>& readings);
 
 /// The readings of one of the poses alone, in the file's order.
 Measurements one_pose(const Measurements&, std::size_t pose);

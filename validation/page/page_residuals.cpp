@@ -34,12 +34,17 @@ VectorX with_nothing_missing(const compare::Comparison& c, std::uint64_t seed) {
   for (std::size_t k = 0; k < c.tolerances.nuisances.size(); ++k)
     if (c.tolerances.nuisances[k].zero) eta(as_index(k)) = 0;  // the residual is free of it
   VectorX r = c.tolerances.A * eta;
-  double load = 0;
+  std::vector<double> loads;
   for (std::size_t i = 0; i < c.study.values.size(); ++i) {
     const measurement::MeasuredValue& v = c.study.values[i];
-    if (i == 0 || v.reading != c.study.values[i - 1].reading)
-      load = c.study.subject->load_tolerance() * random.normal();
-    r(as_index(i)) += c.sigma[i] * random.normal() + load * c.study.predicted[v.reading](as_index(v.channel));
+    const MatrixX& of_loads = c.study.load_errors.of(v.reading);
+    if (i == 0 || v.reading != c.study.values[i - 1].reading) {
+      loads.assign(as_size(of_loads.cols()), 0);
+      for (double& each : loads) each = random.normal();
+    }
+    r(as_index(i)) += c.sigma[i] * random.normal();
+    for (std::size_t k = 0; k < loads.size(); ++k)
+      r(as_index(i)) += of_loads(as_index(v.channel), as_index(k)) * loads[k];
   }
   return r;
 }

@@ -70,8 +70,9 @@ Prospect::Prospect(const subject::Subject& s, Possible p, const Noise& noise, co
   prediction::PredictionOptions linear;
   linear.geometry = Geometry::linear;
   const auto deflecting = right ? right->stand(all, standing_.get()) : standing_;
-  uncertainty_.emplace(model.A, values_, sigma_of(values_, known_, all, noise),
-                       deflecting->predict(all, linear, work.quiet()), s.load_tolerance());
+  const statistics::LoadErrors load_errors(right.value_or(s), *deflecting, all,
+                                           deflecting->predict(all, linear, work.quiet()));
+  uncertainty_.emplace(model.A, values_, sigma_of(values_, known_, all, noise), load_errors);
   tolerances_ = white(model.A.shared);
   const auto alone = [&](Measurements m) {
     std::shared_ptr<const subject::Standing> standing = s.stand(m);

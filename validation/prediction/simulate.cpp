@@ -47,6 +47,14 @@ VectorX draw_errors(const std::vector<Actuator>& actuators, double sigma, measur
   return errors;
 }
 
+/// Each load off by its own factor.
+measurement::Measurements with_true_loads(const Mechanism& m, measurement::Measurements plan, double tolerance,
+                                          measurement::Random& random) {
+  for (measurement::Reading& r : plan.readings)
+    measurement::scale_loads(r, [&] { return 1 + tolerance * random.normal(); });
+  return measurement::place_loads(std::move(plan), m);
+}
+
 /// To a digit that an instrument of this noise would show, as a decimal number in mm or rad.
 double rounded(double value, double sigma, double per_SI) {
   const double digits = std::pow(10, std::ceil(-std::log10(sigma * per_SI / 1e3)));
@@ -79,8 +87,7 @@ measurement::Measurements simulate(const Mechanism& m, measurement::Measurements
       plan.readings[i].temperature_C =
           std::round(1e3 * (o.temperature + o.swing * std::sin(2 * pi * static_cast<double>(i) / n))) / 1e3;
   }
-  measurement::Measurements loaded = plan;
-  for (measurement::Reading& r : loaded.readings) scale_load(r, 1 + o.tolerances * m.tolerances.load * random.normal());
+  const measurement::Measurements loaded = with_true_loads(m, plan, o.tolerances * m.tolerances.load, random);
 
   PredictionOptions p;
   p.theory = &theories::theory("msa");

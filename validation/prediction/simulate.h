@@ -32,8 +32,8 @@ struct SimulationOptions {
 
 /// The plan with readings filled in: of the device's named sensors, or, where it has none, the displacement of T. Drawn
 /// at random: one machine within the device's tolerances (as_built.h), actuator errors for each pose, the gain of each
-/// named sensor, the difference of each true load from the recorded one within the load's tolerance, and the noise of
-/// each reading. The same seed gives the same file. Readings are rounded to a thousandth of σ or finer.
+/// named sensor, the difference of each true load of a reading from the recorded one within the load's tolerance, and
+/// the noise of each reading. The same seed gives the same file. Readings are rounded to a thousandth of σ or finer.
 measurement::Measurements simulate(const Mechanism&, measurement::Measurements plan, const SimulationOptions&,
                                    const parallel::Work& = {});
 

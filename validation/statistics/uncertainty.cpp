@@ -109,8 +109,8 @@ ToleranceModel tolerance_model(const subject::Standing& standing, const measurem
 }
 
 Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<measurement::MeasuredValue>& values,
-                         const std::vector<double>& sigma, const std::vector<VectorX>& predicted, double load,
-                         const std::vector<bool>& set_aside, int threads)
+                         const std::vector<double>& sigma, const LoadErrors& loads, const std::vector<bool>& set_aside,
+                         int threads)
     : A_(A) {
   for (std::size_t first = 0; first < values.size();) {
     std::size_t last = first;
@@ -118,14 +118,15 @@ Uncertainty::Uncertainty(const PartedColumns& A, const std::vector<measurement::
     const auto size = as_index(last - first);
     NoiseBlock block{as_index(first), size, {}};
     if (set_aside.empty() || !set_aside[values[first].reading]) {
-      VectorX d(size);
+      const MatrixX& of_reading = loads.of(values[first].reading);
+      MatrixX d(size, of_reading.cols());
       block.covariance = MatrixX::Zero(size, size);
       for (Eigen::Index i = 0; i < size; ++i) {
         const std::size_t at = first + as_size(i);
-        d(i) = load * predicted[values[at].reading](as_index(values[at].channel));
+        d.row(i) = of_reading.row(as_index(values[at].channel));
         block.covariance(i, i) = sigma[at] * sigma[at];
       }
-      block.covariance += d * d.transpose();
+      for (const auto& each : d.colwise()) block.covariance += each * each.transpose();
       count_ += as_size(size);
     }
     blocks_.push_back(std::move(block));

@@ -3,8 +3,8 @@
 // Measured numbers y (one per component that was measured) differ from the prediction by r = A η + ε:
 //   η  tolerances in standard deviations, η ~ N(0, 1), common to all poses or of one pose; A by differences of the
 //      prediction in linear geometry, with the subject deviating in one of them (Deviations, subject.h);
-//   ε  reading noise σ, and the relative error t of a reading's load, which acts along its prediction d: cov = diag(σ²)
-//      + t² d dᵀ.
+//   ε  reading noise σ, and the errors of a reading's loads (load_errors.h), each along what its load does: cov =
+//      diag(σ²) + t² Σ_c p_c p_cᵀ.
 // So Σ = A Aᵀ + cov(ε), and everything below weighs by Σ⁻¹; readings set aside have weight 0. Load errors affect one
 // reading only and actuator errors one pose only. They are eliminated there (whitening.h), so that time and memory grow
 // linearly with the readings.
@@ -19,6 +19,7 @@
 
 #include "validation/measurement/replicates.h"
 #include "validation/parallel/work.h"
+#include "validation/statistics/load_errors.h"
 #include "validation/statistics/whitening.h"
 #include "validation/subject/subject.h"
 
@@ -42,11 +43,9 @@ ToleranceModel tolerance_model(const subject::Standing&, const measurement::Meas
 
 class Uncertainty {
  public:
-  /// `predicted`: by reading; `load`: relative standard deviation of a recorded load. No reading may belong to two
-  /// groups of A. `threads`: as in whitening.h.
+  /// No reading may belong to two groups of A. `threads`: as in whitening.h.
   Uncertainty(const PartedColumns& A, const std::vector<measurement::MeasuredValue>&, const std::vector<double>& sigma,
-              const std::vector<VectorX>& predicted, double load, const std::vector<bool>& set_aside = {},
-              int threads = 1);
+              const LoadErrors&, const std::vector<bool>& set_aside = {}, int threads = 1);
 
   /// W X with WᵀW = Σ⁻¹: in least squares the rows are then independent with standard deviation 1. Rows set aside are
   /// 0.

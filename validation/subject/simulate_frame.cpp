@@ -131,7 +131,7 @@ measurement::Measurements simulate_frame(const frame::FrameDescription& f, measu
   std::vector<measurement::SensorChannel>& sensors = plan.instruments.sensors;
   measurement::Measurements loaded = plan;
   for (measurement::Reading& r : loaded.readings)
-    measurement::scale_load(r, 1 + o.tolerances * f.tolerances.load * random.normal());
+    measurement::scale_loads(r, [&] { return 1 + o.tolerances * f.tolerances.load * random.normal(); });
   const std::vector<VectorX> exact = predicted_readings(built, loaded, f.geometry);
 
   std::vector<double> sigma, zero;

@@ -83,7 +83,7 @@ Errors::Errors(const compare::Comparison& c, const fit::PredictedPlan& plan, con
 
 statistics::Uncertainty Errors::weighed(const std::vector<bool>& aside) const {
   const compare::ResidualStudy& s = comparison_->study;
-  return {columns_, s.values, sigma_, s.predicted, s.subject->load_tolerance(), aside};
+  return {columns_, s.values, sigma_, s.load_errors, aside};
 }
 
 bool Errors::counts(std::size_t number) const { return !aside_[comparison_->study.values[number].reading]; }
@@ -126,8 +126,7 @@ Agreement Errors::agreement_of_channel(std::size_t channel) const {
       sigma.push_back(sigma_[i]);
     }
   if (numbers.empty()) return {};
-  const statistics::Uncertainty own(rows_of(columns_, numbers), values, sigma, s.predicted,
-                                    s.subject->load_tolerance());
+  const statistics::Uncertainty own(rows_of(columns_, numbers), values, sigma, s.load_errors);
   const double chi2 = own.whitened(r.head(std::ssize(numbers))).squaredNorm();
   return agreement_of(chi2, numbers.size() - std::min(numbers.size(), zeros(numbers)));
 }
