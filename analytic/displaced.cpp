@@ -1,6 +1,8 @@
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 
+#include "analytic/deflection.h"
 #include "analytic/deformed.h"
 #include "analytic/model.h"
 #include "msa/base/index.h"
@@ -198,17 +200,20 @@ AnalyticSolution AnalyticModel::displaced(const Vector6& F, const Conditions& co
 }
 
 /// The laws and the shape in turn, round by round of Newton's method; nothing where the laws do not come to rest. From
-/// rest_in_steps_. `far`: laws give way by more than the length of the mechanism, so that no shape is near.
-std::optional<AnalyticModel::InShape> AnalyticModel::balanced_on_the_way(const Vector6& F, const Conditions& conditions,
-                                                                         Imposed& imposed, bool& far) const {
-  if (F.isZero(0)) return std::nullopt;
+/// `begun`. `far`: laws give way by more than the length of the mechanism, so that no shape is near.
+std::optional<AnalyticModel::InShape> AnalyticModel::balanced_on_the_way(const Deformed& begun, const Vector6& F,
+                                                                         const Conditions& conditions, Imposed& imposed,
+                                                                         bool& far) const {
+  const bool idle = std::all_of(begun.conditions.steps.begin(), begun.conditions.steps.end(),
+                                [](const Step& step) { return step.offset == 0; });
+  if (F.isZero(0) && idle) return std::nullopt;
   InShape out;
   const auto size_of = [this](VectorX o) {  // rotations times length
     for (Eigen::Index i = 0; i < o.size(); ++i)
       if (nth(stepped_, i).rotation) o(i) *= legs_.length;
     return largest(o);
   };
-  Deformed rest = *rest_in_steps_;
+  Deformed rest = begun;
   rest.move_steps = [&](const VectorX& forces, double largest, std::vector<Step>& steps) {
     const SteppedForces at{forces, Vector6::Zero(), largest, legs_.length, true, idle_force * largest};
     VectorX offsets(std::ssize(steps));
@@ -228,6 +233,34 @@ std::optional<AnalyticModel::InShape> AnalyticModel::balanced_on_the_way(const V
   return out;
 }
 
+/// The same from where linear geometry has the laws, if they are frictions and laws that bend. The compliance that
+/// `imposed` has in the place of a law may be far more than its own, as much as the mechanism yields along it: offsets
+/// are then as large as the machine, and what they do in its shape is another thing than in linear geometry. Here those
+/// of laws that bend are their own.
+std::optional<AnalyticModel::InShape> AnalyticModel::balanced_from_linear(const Vector6& F,
+                                                                          const Conditions& conditions,
+                                                                          Imposed imposed) const {
+  const auto follows_on = [](const SteppedLaw& l) {
+    return std::holds_alternative<FrictionLaw>(l.law) || (row_of(l.law).curve != Curve::jumps && !remembers(l.law));
+  };
+  if (frictions_ == 0 || !std::all_of(stepped_.begin(), stepped_.end(), follows_on)) return std::nullopt;
+  const std::optional<Quick> linear = quick(F, conditions);
+  if (!linear || !linear->laws.converged || !between_) return std::nullopt;
+  const VectorX forces = held_under(*between_, F, conditions).forces - imposed.S * linear->laws.offsets;
+  VectorX less = VectorX::Zero(forces.size());  // compliance
+  for (Eigen::Index i = 0; i < forces.size(); ++i)
+    if (const SteppedLaw& l = nth(stepped_, i); !std::holds_alternative<FrictionLaw>(l.law))
+      less(i) = std::max(0.0, imposed.c(i) - analytic::compliance(l.law, forces(i) + l.preload));
+  const MatrixX without = MatrixX::Identity(less.size(), less.size()) - MatrixX(imposed.S * less.asDiagonal());
+  imposed.S = without.partialPivLu().solve(imposed.S);
+  imposed.c -= less;
+  if (!imposed.S.allFinite()) return std::nullopt;
+  const VectorX offsets = linear->laws.offsets + less.cwiseProduct(forces);
+  bool far = false;
+  const Deformed begun = at_rest_in(steps_at(offsets, imposed.c), configuration_, conditions.geometry);
+  return balanced_on_the_way(begun, F, conditions, imposed, far);
+}
+
 /// Nothing in the cases that solve() names, and where the laws are not found in balance.
 std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector6& F,
                                                                     const Conditions& conditions) const {
@@ -237,7 +270,9 @@ std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector
   const bool watched =
       std::any_of(stepped_.begin(), stepped_.end(), [](const SteppedLaw& law) { return law.load >= 0; });
   if (!as_printed_.empty() || !legs_.fits() || stepped_.empty() || lines_ || heated || watched) return std::nullopt;
-  if (!imposed_) imposed_ = std::make_shared<Imposed>(offsets_unloaded());
+  // No load has told it yet: not that it depends on the load, where the compliances are unknown too.
+  if (!imposed_ || (imposed_->S.size() == 0 && imposed_->c.size() > 0))
+    imposed_ = std::make_shared<Imposed>(offsets_unloaded());
   Imposed imposed = imposed_->S.size() > 0 ? *imposed_ : offsets_unloaded();
   const VectorX c = imposed.c;
   const std::vector<Step> without_offsets = steps_at(VectorX::Zero(c.size()), c);
@@ -245,14 +280,15 @@ std::optional<AnalyticModel::InShape> AnalyticModel::jumps_in_shape(const Vector
       !same_steps(rest_in_steps_->conditions.steps, without_offsets))
     rest_in_steps_ = std::make_shared<const Deformed>(at_rest_in(without_offsets, configuration_, conditions.geometry));
   bool far = false;
-  if (auto found = balanced_on_the_way(F, conditions, imposed, far)) return found;
+  if (auto found = balanced_from_linear(F, conditions, imposed)) return found;
+  if (auto found = balanced_on_the_way(*rest_in_steps_, F, conditions, imposed, far)) return found;
   if (far) return std::nullopt;
   ShapeInSteps shape(configuration_, F, *rest_in_steps_);
   if (!shape.in(without_offsets).converged) return std::nullopt;
   // A part that is pulled hangs within its play by a stiffness that it has under the load alone.
   const AskSteps ask = [&](const std::vector<Step>& steps) { return shape.answer(steps, legs_.length); };
   imposed = imposed_on(stepped_, ask, std::move(imposed));
-  if (auto found = balanced_on_the_way(F, conditions, imposed, far)) return found;
+  if (auto found = balanced_on_the_way(*rest_in_steps_, F, conditions, imposed, far)) return found;
   if (far) return std::nullopt;
   BalancedSteps laws = balance(stepped_, conditions.slips, ask, imposed, false);
   if (!laws.converged) return std::nullopt;

@@ -126,7 +126,9 @@ class AnalyticModel {
   };
   Imposed offsets_unloaded() const;  ///< what offsets of the laws do in linear geometry
   std::optional<InShape> jumps_in_shape(const Vector6& F, const Conditions&) const;
-  std::optional<InShape> balanced_on_the_way(const Vector6& F, const Conditions&, Imposed&, bool& far) const;
+  std::optional<InShape> balanced_from_linear(const Vector6& F, const Conditions&, Imposed) const;
+  std::optional<InShape> balanced_on_the_way(const Deformed& begun, const Vector6& F, const Conditions&, Imposed&,
+                                             bool& far) const;
   void put_play(const InShape&, const Vector6& F, AnalyticSolution&) const;
   AnalyticSolution with_shape(AnalyticSolution, Geometry) const;
   Flexibility flexibility(const AnalyticSolution&) const;

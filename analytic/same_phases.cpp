@@ -1,5 +1,6 @@
 #include "analytic/same_phases.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace {
 constexpr int rounds = 20;
 constexpr double determined = 1e-10;  // reciprocal condition from which the phases determine the offsets
 constexpr double agrees = 1e-13;      // of a deflection, where a law bends
+constexpr double lost = 1e-14;        // of an offset: its rounding, from which a deflection can be a small difference
 
 const FrictionLaw* friction_of(const SteppedLaw& l) { return std::get_if<FrictionLaw>(&l.law); }
 const ClearanceLaw* clearance_of(const SteppedLaw& l) { return std::get_if<ClearanceLaw>(&l.law); }
@@ -133,7 +135,7 @@ std::optional<BalancedSteps> SamePhases::after(const VectorX& f0, const std::vec
     for (Eigen::Index i = 0; i < n_; ++i) {
       const LawPhase &now = nth(phases_, i), &then = nth(next, i) = phase(i, d, s, slips);
       stays = stays && then.phase == now.phase && then.of_load == now.of_load &&
-              std::abs(then.d - now.d) <= agrees * std::abs(then.d);
+              std::abs(then.d - now.d) <= std::max(agrees * std::abs(then.d), lost * std::abs(o(i)));
     }
     if (!stays) {
       phases_ = std::move(next);
