@@ -250,10 +250,11 @@ const PlaceLaw of_places[] = {
        const double force = p.rotation() ? 100 : 2, stiffness = p.rotation() ? 1e6 : 1e3;
        const std::string strength = fmt::format("{}_{}", u.moment_word, u.force),
                          stuck = fmt::format("stiffness_{}_per_{}", u.force, u.way);
+       const double most = of_frame(p) ? 1e6 : 1e4;  // a support of a building carries MN
        std::vector<EffectParameter> out = {
-           {strength, u.force, force, force * 1e-4, force * 1e4, true, 0,
+           {strength, u.force, force, force * 1e-4, force * most, true, 0,
             fmt::format("{} that friction holds before it slips, {}", u.moment_word, u.force)},
-           {stuck, fmt::format("{}/{}", u.force, u.way), stiffness, stiffness * 1e-4, stiffness * 1e4, true,
+           {stuck, fmt::format("{}/{}", u.force, u.way), stiffness, stiffness * 1e-4, stiffness * most, true,
             std::nullopt, fmt::format("stiffness while it sticks, {}/{}", u.force, u.way)}};
        if (!of_frame(p))  // whose frictions start relaxed
          out.push_back({"start_share", "", 0, -1, 1, false, std::nullopt,
@@ -309,7 +310,7 @@ const PlaceLaw of_places[] = {
        const Units& u = units(p);
        return std::vector<EffectParameter>{{fmt::format("stiffness_{}_per_{}", u.force, u.way),
                                             fmt::format("{}/{}", u.force, u.way), u.stiffness * 1e-5,
-                                            u.stiffness * 1e-11, u.stiffness * 10, true, 0,
+                                            u.stiffness * 1e-11, u.stiffness * (of_frame(p) ? 1e4 : 10), true, 0,
                                             fmt::format("stiffness that holds it, {}/{}", u.force, u.way)}};
      },
      [](const auto& p, const subject::Place&) { return "{law: linear, stiffness: " + first_of(p) + "}"; },
