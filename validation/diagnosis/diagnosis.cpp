@@ -154,8 +154,7 @@ struct FirstStep {
         candidates(all(), work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); }),
         null(fit_of_all(o, {}, VectorX(0))),
         each(candidates.beside(o, {}, null, even_hopeless)),
-        patterns(o.whitened_patterns()),
-        left(left_over(patterns, all(), null, work.threads)),
+        left(left_over(o.whitened_patterns(), all(), null, work.threads)),
         larger(larger_tolerances(o)),
         chance(chance_of_any(all(), candidates.between(), least_p_value(all(), each), bootstrap_sets, work,
                              [&](std::size_t done, std::size_t of) { rounds(done, of); })) {}
@@ -174,7 +173,6 @@ struct FirstStep {
   Candidates candidates;
   Fit null;
   std::vector<Candidate> each;  // in the order of the signatures
-  std::shared_ptr<const WhitenedFamilies> patterns;
   LeftOver left;
   LargerTolerances larger;
   double chance;
@@ -204,21 +202,24 @@ bool is_missing_or_larger(const Diagnosis& d) {
 /// The effects that explain the data best, and what they leave.
 struct Explained {
   Selection found;
-  std::shared_ptr<const WhitenedFamilies> patterns;  // whitened with what the effects have changed
   LeftOver left;
+  /// Whitened with what the effects have changed. Hundreds of columns over all numbers: kept only where `left` is
+  /// significant.
+  std::shared_ptr<const WhitenedFamilies> patterns = nullptr;
 };
 
-Explained nothing(const FirstStep& s) { return {{s.observations, {}, s.null, {}, {}}, s.patterns, {}}; }
+Explained nothing(const FirstStep& s) { return {{s.observations, {}, s.null, {}, {}}, {}}; }
 
 Explained explained(const FirstStep& s, const Candidates& candidates, const std::vector<Candidate>& first) {
-  Explained out{select(s.observations, candidates, first), s.patterns, {}};
-  if (!out.found.effects.empty()) out.patterns = out.found.observations.whitened_patterns();
+  Explained out{select(s.observations, candidates, first), {}};
+  out.patterns = out.found.observations.whitened_patterns();
   out.left = left_over(out.patterns, s.all(), out.found.fit, candidates.threads());
   const double more = out.left.significant() ? 0 : called_for - std::log(Candidates::prior_unknown);
   if (std::optional<Selection> there = at_one_place(s.all(), candidates, out.found, more)) {
     out.found = std::move(*there);
     out.left = left_over(out.patterns, s.all(), out.found.fit, candidates.threads());
   }
+  if (!out.left.significant()) out.patterns.reset();
   return out;
 }
 
@@ -276,6 +277,7 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   sort_candidates(d, told.observations);
   if (d.unexplained) {
     found = named_beside_unknown(e.patterns, told.all(), told.candidates, std::move(found));
+    e.patterns.reset();
     describe_left_over(d, told.all(), found, threads);
   }
   const Observations& seen = found.observations;
