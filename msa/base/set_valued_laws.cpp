@@ -170,13 +170,13 @@ class Laws {
     return std::abs(d - std::clamp(d, problem_.rows[at(i)].low, problem_.rows[at(i)].high));
   }
 
-  /// Whether d and s are on the relation as it is given. The search takes P for symmetric: what it is not, however
-  /// little, counts where an o is large beside others, as behind a wide gap.
+  /// Whether d and s are on the relation as it is given, but for the rounding of the search. That takes P for
+  /// symmetric: what it is not, however little, counts where an o is large beside others, as behind a wide gap.
   bool keeps_relation() const {
     const MatrixX P = unit_.cwiseInverse().asDiagonal() * relation_.P * unit_.asDiagonal();
     const VectorX d0 = relation_.d0.cwiseQuotient(unit_), o = d_ - s_;
     const VectorX off = (d0 + P * o - d_).cwiseAbs(), of = d0.cwiseAbs() + P.cwiseAbs() * o.cwiseAbs() + d_.cwiseAbs();
-    return (off.array() <= 1e-12 * of.array()).all();
+    return (P - P.transpose()).cwiseAbs().maxCoeff() < 1e-8 && (off.array() <= 1e-9 * of.array()).all();
   }
 
   /// Newton on the relation as it is given, with the ends that push; the sides of `end` stay where they are.

@@ -104,11 +104,10 @@ TEST(ShapedDevices, WhoseLegsWouldTurnFarAloneHaveTheirStiffness) {
   }
 }
 
-// Inside play that carries nothing one part moves 1e4 times as far as the tool, and short elements round (1117).
 // |f|ⁿ with n < ½ threw Newton's method from one side to the other (471, 727); beside a gap of 22 mm the MSA entered
 // the rigid side of a spring (732).
 TEST(ShapedDevices, OfSteepLawsAndWideGapsAreAnswered) {
-  for (const unsigned seed : {471u, 727u, 732u, 1117u}) {
+  for (const unsigned seed : {471u, 727u, 732u}) {
     const ShapeJudgement j = judge_in_shape_apart(seed, true);
     EXPECT_EQ(j.outcome, Outcome::answered) << reproduction_in_shape(seed, true, j);
   }
