@@ -320,13 +320,15 @@ Step VirtualJoint::deflected(std::size_t i, double f, const ShapeConditions& c) 
 }
 
 double VirtualJoint::tangent_force(std::size_t i, double f, const ShapeConditions& c) const {
+  if (std::ranges::all_of(joint.laws[i], is_linear)) return f;
   const double unloaded = -joint.preload[i], way = x[i] - deflected(i, unloaded, c).offset;
-  if (std::ranges::all_of(joint.laws[i], is_linear) || !((f - unloaded) * way < 0)) return f;
+  if (!((f - unloaded) * way < 0)) return f;
   const auto short_of = [&](double size) {
     return std::abs(deflected(i, unloaded + std::copysign(size, way), c).offset - (x[i] - way)) < std::abs(way);
   };
   double low = 0, high = std::abs(f - unloaded);
   while (short_of(high) && high < 1e300) low = high, high *= 4;
+  if (short_of(high)) return f;  // no force gives that deflection
   for (int k = 0; k < 200 && high - low > 1e-12 * high; ++k) {
     const double between = low + (high - low) / 2;
     (short_of(between) ? low : high) = between;

@@ -171,7 +171,8 @@ class Laws {
   }
 
   /// Whether d and s are on the relation as it is given, but for the rounding of the search. That takes P for
-  /// symmetric: what it is not, however little, counts where an o is large beside others, as behind a wide gap.
+  /// symmetric: even where P is so but for rounding, the rest counts where an o is large beside others, as behind a
+  /// wide gap.
   bool keeps_relation() const {
     const MatrixX P = unit_.cwiseInverse().asDiagonal() * relation_.P * unit_.asDiagonal();
     const VectorX d0 = relation_.d0.cwiseQuotient(unit_), o = d_ - s_;

@@ -149,8 +149,8 @@ bool at_a_limit(const Shaped& s) {
   });
 }
 
-/// Parts of extreme ratios may be refused in the deformed shape, where very stiff members get no coordinates of their
-/// own (README of msa/frame); no answer may be wrong.
+/// Parts of extreme ratios may be refused in the deformed shape, where very stiff members get no relative coordinates
+/// (geometric_solver.h); no answer may be wrong.
 bool of_extremes(const Shaped& s) { return s.device.random.kind == DeviceKind::stiff_and_soft; }
 
 /// What the program makes of both answers: it compares them.

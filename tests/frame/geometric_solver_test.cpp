@@ -312,6 +312,21 @@ TEST(GeometricSolver, DeadMomentsMakeTheStiffnessUnsymmetricByTheirOwnCrossProdu
   EXPECT_LE((K - K.transpose() - expected).norm(), 1e-10 * K.norm());
 }
 
+// Of n elements each is n³ times as stiff as the column, and n of them are summed: the rounding is of the order of ε
+// n⁴.
+TEST(GeometricSolver, TheRoundingOfAStiffnessHoldsItsAsymmetry) {
+  for (const int n : {1, 8, 64}) {
+    const Model m = column(n, 1, slender);
+    GeometricSolver solver(m);
+    const GeometricState s = solver.solve({load_at(m, n, {0.3, 0.2, -0.1}), {}, {}});
+    ASSERT_TRUE(s.converged) << s.message;
+    const auto [K, rounding] = solver.stiffness(s, n);
+    const Matrix6 open = (rounding + rounding.transpose()).array() + 1e-16 * K.norm();  // and of the sums themselves
+    EXPECT_TRUE(((K - K.transpose()).cwiseAbs().array() <= open.array()).all()) << n;
+    EXPECT_LE(rounding.norm(), 1e-14 * std::pow(n, 4) * K.norm()) << n;
+  }
+}
+
 // Between linear and second order, and linear and finite, the difference of the answers is of the order of the load
 // squared: a tenth of the load, a hundredth of it. 0.1 of the load itself shows in third order.
 TEST(GeometricSolver, GeometriesMeetQuadraticallyAtSmallLoads) {

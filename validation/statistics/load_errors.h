@@ -7,7 +7,7 @@
 // Of one load p_c is taken as the whole prediction d, so that cov = t² d dᵀ. Of several the p_c are differences of the
 // prediction in linear geometry; what they leave of d (the deformed shape, laws that are not linear, what is there
 // without a load) is shared in each channel by their sizes. So Σ_c p_c = d: were all loads off by one factor, that of
-// a single load would be left.
+// a single load would be left. Where nothing stands in linear geometry, one factor is taken for all loads of a reading.
 #pragma once
 
 #include <vector>
