@@ -48,6 +48,23 @@ TEST(SearchLimits, AFactorOfFewStartsIsFound) {
   }
 }
 
+// A part of stiffness f beside one of ½: its deflection 1/(½ + f) hardly grows below f = 0.01. A search that the
+// derivative at f = 1 has sent to the end of the range, where nothing leads back, is begun again.
+TEST(SearchLimits, ASearchThatJumpedToTheEndIsBegunAgain) {
+  EffectParameter factor = parameter("factor", 0.5, 1e-6, 50, 1.0);
+  factor.log = true;
+  const auto grown = [](double f) { return VectorX(50 * (1 / (0.5 + f) - 1 / 1.5) * axis(4, 0)); };
+  const Effect e = effect("factor", {factor}, [&](const VectorX& values) { return grown(values(0)); });
+  for (const double truth : {0.03, 0.05, 0.2}) {
+    const Seen s = seen(grown(truth));
+    const Fit f = fit(s.observations, {{&e, {}}}, {}, test::values({50}));
+    ASSERT_TRUE(f.found) << f.why;
+    EXPECT_NEAR(f.values(0), truth, 1e-3 * truth);
+  }
+  const Seen gone = seen(grown(0));
+  EXPECT_LT(fit(gone.observations, {{&e, {}}}, {}, test::values({50})).values(0), 1e-3);
+}
+
 // A shape that changes nothing but the last digits, as the stiffness of a friction that slips throughout, has no slope.
 TEST(SearchLimits, RoundingIsNoSlope) {
   const Effect e = effect("slips", {parameter("size", 1, 0, 100, 0.0), parameter("shape", 0.5, 0, 1, {})},

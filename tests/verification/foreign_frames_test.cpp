@@ -1,5 +1,5 @@
-// Measurement sets of frames made by foreign_frames.py and foreign_alike.py, which share nothing with deflect: what is
-// hidden in each is found, or tied with what these sensors cannot tell from it. Some are in
+// Measurement sets of frames made by foreign_frames.py, foreign_alike.py and foreign_soft.py, which share nothing with
+// deflect: what is hidden in each is found, or tied with what these sensors cannot tell from it. Some are in
 // tests/verification/foreign_frames; DEFLECT_FOREIGN_FRAMES names a folder with others, as the programs write them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

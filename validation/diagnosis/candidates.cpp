@@ -147,16 +147,15 @@ class Candidates::Round {
     if (all_.progress_) all_.progress_(1, 1);
   }
 
-  /// Fits anew, from a larger size, those that explain more in it than as they were fitted, if at all. A signature is
-  /// that of a small size: play as wide as the motion, or a support that yields until it is gone, moves the readings in
-  /// another direction than a little of it. Returns whether one of these is the likeliest then.
+  /// Fits anew, from a larger size, those that explain more in it than as they were fitted, if at all: play as wide as
+  /// the motion moves the readings in another direction than a little of it. Returns whether one is the likeliest then.
   bool fit_larger() {
     const double before = likeliest();
     fit_from_sizes([&](std::size_t i) -> std::optional<SizedEffect> {
-      if (!allowed_[i] || !has_one_size(signature(i)) || said_[i] < std::max(near_nothing, small_share * most_))
-        return std::nullopt;
-      const std::optional<VectorX> small = guess(signature(i), so_far_.residual);
-      return small ? best_size(observations_, out_[i].hypothesis, so_far_.values, *small) : std::nullopt;
+      const Signature& s = signature(i);
+      const bool may = turns_as_it_grows(*s.effect.effect) || said_[i] >= std::max(near_nothing, small_share * most_);
+      if (!allowed_[i] || !has_one_size(s) || !may) return std::nullopt;
+      return best_size(observations_, out_[i].hypothesis, so_far_.values, guess(s, so_far_.residual));
     });
     return likeliest() > before;
   }
@@ -214,8 +213,7 @@ class Candidates::Round {
     geometry_ = &exact;  // a large effect was not fitted at all where its size shows in the deformed shape alone
     fit_from_sizes([&](std::size_t i) -> std::optional<SizedEffect> {
       if (!allowed_[i] || out_[i].fit.found || !has_one_size(signature(i))) return std::nullopt;
-      const std::optional<VectorX> small = guess(signature(i), so_far_.residual);
-      return small ? best_size(exact, out_[i].hypothesis, so_far_.values, *small) : std::nullopt;
+      return best_size(exact, out_[i].hypothesis, so_far_.values, guess(signature(i), so_far_.residual));
     });
     geometry_ = &observations_;
   }

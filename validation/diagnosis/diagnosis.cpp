@@ -18,9 +18,8 @@
 namespace deflect::diagnosis {
 namespace {
 
-constexpr double alarm = 0.02;  // chance above which nothing is called missing
-constexpr double sure = 0.7;    // probability from which something unknown is there
-constexpr std::size_t quality_of = 5;
+constexpr double alarm = 0.02;          // chance above which nothing is called missing
+constexpr double sure = 0.7;            // probability from which something unknown is there
 constexpr double worth_limits = 0.01;   // probability of a candidate
 constexpr double half_of_it = 0.5;      // of what others leave: an effect that leaves more explains too little
 constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked into
@@ -71,20 +70,9 @@ void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const S
     }
 }
 
-/// The candidates by their probability; of those that the table shows how well they predict.
-void sort_candidates(Diagnosis& d, const Observations& o) {
+void sort_candidates(Diagnosis& d) {
   std::stable_sort(d.candidates.begin(), d.candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.log_odds > b.log_odds; });
-  for (std::size_t i = 0; i < d.candidates.size(); ++i) {
-    Candidate& c = d.candidates[i];
-    c.rmse = d.baseline.rmse;
-    c.held_out = d.baseline.held_out;
-    if (i < quality_of && c.fit.found) {
-      const Quality q = quality(o, c.hypothesis, c.fit);
-      c.rmse = q.rmse;
-      c.held_out = q.held_out;
-    }
-  }
 }
 
 /// What the data cannot tell apart, and the reading that would.
@@ -97,25 +85,26 @@ void note_ties(Diagnosis& d, const Selection& found, const measurement::Measurem
   }
 }
 
-/// The limits of the values of those that tie; of their fits beside what else was found, where derivatives do not tell
-/// them.
-void bound_ties(Diagnosis& d, const Observations& o, const Observations& seen, int threads) {
+/// Values and limits of what was found alone, and of what ties with it, weighed for each; beside what else was found
+/// limits, where derivatives do not tell them. Then how well the candidates that were fitted predict.
+void weigh_values(Diagnosis& d, const Observations& o, const Observations& seen, int threads) {
   for (Tie& tie : d.ties)
     for (Candidate& c : tie.rivals)
       if (says_nothing_of_last(c.fit)) c.fit = with_intervals(seen, c.hypothesis, std::move(c.fit), threads);
-  for (Candidate& c : d.candidates)
-    for (const std::vector<std::string>& group : d.indistinguishable)
-      if (c.probability > worth_limits && c.fit.limits.empty() &&
-          std::find(group.begin(), group.end(), c.added().effect->name) != group.end())
-        c.fit = with_intervals(o, c.hypothesis, std::move(c.fit), threads);
-}
-
-/// The values with their limits, weighed for what was found.
-Fit last_fit(const Observations& o, const Hypothesis& h, const Fit& f, int threads) {
-  if (h.empty()) return f;
-  const Observations last = o.weighed_for(subject_with(o, h, f.values));
-  Fit again = fit_of_all(last, h, f.values);
-  return again.found ? with_intervals(last, h, std::move(again), threads) : with_intervals(o, h, f, threads);
+  for (Candidate& c : d.candidates) {
+    const bool ties = std::any_of(d.indistinguishable.begin(), d.indistinguishable.end(), [&](const auto& group) {
+      return std::find(group.begin(), group.end(), c.added().effect->name) != group.end();
+    });
+    const bool alone = d.missing.size() == 1;
+    if (alone && ties && c.fit.found && c.probability > worth_limits)
+      c.fit = weighed_for_itself(seen, c.hypothesis, c.fit, threads);
+    else if (alone && same(c.added(), d.missing.front()))
+      c.fit = d.fit;
+    else if (ties && c.probability > worth_limits && c.fit.limits.empty())
+      c.fit = with_intervals(o, c.hypothesis, std::move(c.fit), threads);
+    const Quality q = c.fit.found ? quality(o, c.hypothesis, c.fit) : d.baseline;
+    c.rmse = q.rmse, c.held_out = q.held_out;
+  }
 }
 
 /// What there is to be said where the file is not what it seems.
@@ -223,10 +212,9 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
   return out;
 }
 
-/// ln(prior · evidence) of all that was found, something unknown included, against nothing, where it is several.
-double log_odds_together(const FirstStep& s, const Explained& e) {
+/// ln(prior · evidence) of all that was found, something unknown included, against nothing.
+double log_odds_of_all(const FirstStep& s, const Explained& e) {
   const Selection& found = e.found;
-  if (found.effects.empty() || (found.effects.size() == 1 && !e.left.significant())) return not_several;
   const bool same_readings = found.observations.aside() == s.observations.aside();
   const double more = log_likelihood(found.observations, found.effects, found.fit.values) -
                       log_likelihood(same_readings ? s.observations : found.observations, {}, VectorX(0));
@@ -234,26 +222,42 @@ double log_odds_together(const FirstStep& s, const Explained& e) {
          (e.left.significant() ? e.left.log_evidence + std::log(unknown_beside) : 0);
 }
 
+/// The same where it is several.
+double log_odds_together(const FirstStep& s, const Explained& e) {
+  const bool several = e.found.effects.size() > 1 || (!e.found.effects.empty() && e.left.significant());
+  return several ? log_odds_of_all(s, e) : not_several;
+}
+
 /// Whether several effects together are likelier than larger tolerances, though none alone is.
 bool outweigh_larger_tolerances(const Explained& e, const FirstStep& s) {
   return normalised({log_odds_together(s, e), s.larger.log_odds, 0}).front() > 1 - rather_nothing;
 }
 
-/// Where effects leave something unknown that were looked for from small sizes, and a large one alone leaves less than
-/// half as much beyond noise: what is found from there, if it leaves nothing. Returns the candidates for the first
-/// effect then.
+/// Whether a single large effect may explain more than what was found: that is several, or leaves more than noise does.
+bool may_hide_a_large_one(const Explained& e, const Observations& o) {
+  constexpr double deviations = 2;  // of χ² by noise
+  const auto numbers = static_cast<double>(o.numbers());
+  return e.left.significant() || e.found.effects.size() > 1 ||
+         e.found.fit.chi2 > numbers + deviations * std::sqrt(2 * numbers);
+}
+
+/// Effects are looked for from small sizes. What is found from a large one, if it leaves nothing unknown and, where the
+/// others do not either, is likelier; returns the candidates for the first effect then.
 std::optional<std::vector<Candidate>> look_for_large_ones(Explained& e, const FirstStep& s) {
-  if (!e.left.significant()) return std::nullopt;
   const Observations& o = s.observations;
+  if (!may_hide_a_large_one(e, o)) return std::nullopt;
   std::optional<std::vector<Candidate>> large = s.candidates.likelier_if_larger(o, {}, s.null, s.each);
   if (!large) return std::nullopt;
   const auto best = std::max_element(large->begin(), large->end(), [](const Candidate& a, const Candidate& b) {
     return a.class_log_odds < b.class_log_odds;
   });
   const auto beyond_noise = [&](const Fit& f) { return f.chi2 - static_cast<double>(o.numbers()); };
-  if (beyond_noise(best->fit) > half_of_it * beyond_noise(e.found.fit)) return std::nullopt;
+  const Observations weighed = o.weighed_for(subject_with(o, best->hypothesis, best->fit.values));
+  const Fit alone = fit_of_all(weighed, best->hypothesis, best->fit.values);
+  if (e.left.significant() && beyond_noise(alone) > half_of_it * beyond_noise(e.found.fit)) return std::nullopt;
   Explained again = explained(s, s.candidates.in_larger_sizes(), *large);
   if (again.left.significant()) return std::nullopt;
+  if (!e.left.significant() && log_odds_of_all(s, again) < log_odds_of_all(s, e)) return std::nullopt;
   e = std::move(again);
   return large;
 }
@@ -274,7 +278,7 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   d.log_odds_unknown = e.left.log_evidence + std::log(unknown_beside);
   if (!found.effects.empty())
     weigh(d, told.larger, probability_of_unknown(e.left.log_evidence, unknown_beside), together);
-  sort_candidates(d, told.observations);
+  sort_candidates(d);
   if (d.unexplained) {
     found = named_beside_unknown(e.patterns, told.all(), told.candidates, std::move(found));
     e.patterns.reset();
@@ -282,11 +286,11 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   }
   const Observations& seen = found.observations;
   d.missing = found.effects;
-  d.fit = last_fit(seen, d.missing, found.fit, threads);
+  d.fit = weighed_for_itself(seen, d.missing, found.fit, threads);
   add_left_out(d.left_out, told.each);
   d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
   note_ties(d, found, data);
-  bound_ties(d, told.observations, seen, threads);
+  weigh_values(d, told.observations, seen, threads);
   d.verdict = verdict_of(d);
   d.final = quality(seen, d.missing, d.fit);
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));

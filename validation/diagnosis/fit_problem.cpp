@@ -6,6 +6,7 @@
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "validation/diagnosis/signatures.h"
 
 namespace deflect::diagnosis {
 
@@ -27,9 +28,10 @@ std::optional<effects::ParameterPrior> prior_of_coordinate(const effects::Effect
 namespace {
 
 constexpr int doublings = 7;
-constexpr int halvings = 10, refinements = 3;    // of what lets go, in its size
-constexpr double no_more = 1e-3;                 // of χ²: as good as nothing
-constexpr double rounding_of_residuals = 1e-10;  // of a thousand readings of 1e4 σ
+constexpr double nearest_factor = 0.3, farthest_factor = 20;  // logarithms, each twice the one before
+constexpr int halvings = 10, refinements = 3;                 // of what lets go, in its size
+constexpr double no_more = 1e-3;                              // of χ²: as good as nothing
+constexpr double rounding_of_residuals = 1e-10;               // of a thousand readings of 1e4 σ
 
 /// So many times as far from where it vanishes; a factor on a logarithmic scale runs towards 0 or up by its logarithm.
 double times_as_large(const effects::EffectParameter& p, double small, double times) {
@@ -145,23 +147,32 @@ VectorX minimised(const FreeResidual& f, VectorX x, int evaluations) {
 }
 
 std::optional<SizedEffect> best_size(const Observations& o, const Hypothesis& h, const VectorX& from,
-                                     const VectorX& small) {
+                                     const std::optional<VectorX>& small) {
   const effects::EffectParameter& p = h.back().effect->parameters.front();
   const auto best = outcome_of([&] {
     FitProblem problem(o, h);
     problem.stand_as_granted();
     std::optional<SizedEffect> out;
-    double last = NAN;
-    for (int k = 0; k <= doublings; ++k) {
-      const double value = std::clamp(times_as_large(p, small(0), std::exp2(k)), p.low, p.high);
-      if (value == last) break;  // at the bound
-      last = value;
+    /// Whether it explains more than those before.
+    const auto take = [&](double value) {
       VectorX values(from.size() + 1);
       values << from, value;
       const std::optional<VectorX> r = problem.residual(problem.coordinates(values));
-      if (!r) continue;
-      if (out && out->chi2 <= r->squaredNorm()) break;
-      out = SizedEffect{VectorX::Constant(1, value), r->squaredNorm()};
+      if (r && out && out->chi2 <= r->squaredNorm()) return false;
+      if (r) out = SizedEffect{VectorX::Constant(1, value), r->squaredNorm()};
+      return true;
+    };
+    if (turns_as_it_grows(*h.back().effect)) {
+      for (const double sense : {-1.0, 1.0})
+        for (double ln = nearest_factor; ln < farthest_factor; ln *= 2)
+          if (const double value = *p.vanishes * std::exp(sense * ln); p.low <= value && value <= p.high) take(value);
+      return out;
+    }
+    double last = NAN;
+    for (int k = 0; small && k <= doublings; ++k) {
+      const double value = std::clamp(times_as_large(p, (*small)(0), std::exp2(k)), p.low, p.high);
+      if (value == last || !take(value)) break;  // at the bound
+      last = value;
     }
     return out;
   });

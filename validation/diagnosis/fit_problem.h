@@ -86,10 +86,13 @@ struct SizedEffect {
   double chi2 = 0;
 };
 
-/// From `small`, what the signature says (signatures.h), on to sizes up to 128 times as far from the value at which the
-/// effect vanishes, within its bounds, as long as each explains more than the one before. `from`: values of the effects
-/// before. Nullopt where none of them can be predicted.
-std::optional<SizedEffect> best_size(const Observations&, const Hypothesis&, const VectorX& from, const VectorX& small);
+/// The size that explains most: from `small`, what the signature says (signatures.h), on to sizes up to 128 times as
+/// far from the value at which the effect vanishes, within its bounds, as long as each explains more than the one
+/// before. Of a factor that moves the readings in another direction where it is large (turns_as_it_grows()), of both
+/// senses over the whole range, whatever its signature says. `from`: values of the effects before. Nullopt where none
+/// of them can be predicted, or nothing says where to begin.
+std::optional<SizedEffect> best_size(const Observations&, const Hypothesis&, const VectorX& from,
+                                     const std::optional<VectorX>& small);
 
 /// The same of an effect by which a part can let go (lets_go(), signatures.h), from the other side: from the end of its
 /// range, where the part is gone, to the size at which it begins to carry, and down to a thousandth of that, past sizes

@@ -222,6 +222,19 @@ Fit deepest(const FitProblem& problem, std::vector<Start> begun, int threads) {
   return best;
 }
 
+/// Whether the last effect has one parameter, on a logarithmic scale, and is so large that its size no longer shows: a
+/// search that began where it was small may have jumped over the size that explains most.
+bool is_saturated(const FitProblem& problem, const Hypothesis& h, const Fit& found) {
+  constexpr double hardly = 0.1, much = 1;  // of σ: by a step of size 1, and by the effect as a whole
+  const std::vector<effects::EffectParameter>& own = h.back().effect->parameters;
+  if (!found.found || own.size() != 1 || !own.front().log || !own.front().vanishes) return false;
+  if (found.signature.rightCols<1>().norm() > hardly) return false;
+  VectorX without = found.values;
+  without.tail<1>()(0) = std::clamp(*own.front().vanishes, own.front().low, own.front().high);
+  const auto nothing = problem.residual(problem.coordinates(without));
+  return !nothing || (*nothing - found.residual).norm() > much;
+}
+
 /// The fit with the deformed shape that belongs to its values.
 Fit in_own_shape(FitProblem& problem, Fit found) {
   for (int pass = 0; pass < most_shapes; ++pass) {
@@ -247,15 +260,17 @@ Fit fit(const Observations& o, const Hypothesis& h, const VectorX& from, const s
     VectorX first(from.size() + std::ssize(h.back().effect->parameters));
     first << from, guess ? *guess : effects::start_values(*h.back().effect);
     problem.stand_at(problem.coordinates(first));
-    std::vector<Start> begun;
     std::string why;
-    if (guess) begun = best_starts(problem, {*guess}, from, 1, why, 1);
-    if (begun.empty()) {
-      begun = best_starts(problem, starts(h.back()), from, valleys, why, threads);
+    Fit found;
+    if (guess) found = deepest(problem, best_starts(problem, {*guess}, from, 1, why, 1), threads);
+    if (!found.found || is_saturated(problem, h, found)) {
+      std::vector<Start> begun = best_starts(problem, starts(h.back()), from, valleys, why, threads);
       look_elsewhere(begun, problem, h.back(), from.size(), threads);
       if (begun.size() > 1 && !(may_have_valleys(h.back()) && problem.has_history(begun.front().x))) begun.resize(1);
+      Fit other = deepest(problem, std::move(begun), threads);
+      if (other.found && !(found.found && found.chi2 <= other.chi2)) found = std::move(other);
     }
-    return begun.empty() ? not_found(why) : in_own_shape(problem, deepest(problem, std::move(begun), threads));
+    return found.found ? in_own_shape(problem, std::move(found)) : not_found(why);
   });
   return fitted ? *fitted : not_found(fitted.why);  // the effects may not go together in this subject
 }

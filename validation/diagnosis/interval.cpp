@@ -123,6 +123,13 @@ Fit with_intervals(const Observations& o, const Hypothesis& h, Fit f, int thread
   return f;
 }
 
+Fit weighed_for_itself(const Observations& o, const Hypothesis& h, const Fit& f, int threads) {
+  if (h.empty()) return f;
+  const Observations own = o.weighed_for(subject_with(o, h, f.values));
+  Fit again = fit_of_all(own, h, f.values);
+  return again.found ? with_intervals(own, h, std::move(again), threads) : with_intervals(o, h, f, threads);
+}
+
 bool says_nothing_of_last(const Fit& f) {
   constexpr double deviations = 10;  // a step of size 1 is a large one
   const Eigen::Index last = f.values.size() - 1;

@@ -26,6 +26,9 @@ namespace deflect::diagnosis {
 /// evaluations for the other values at most, and their derivatives. The same for any number of threads.
 Fit with_intervals(const Observations&, const Hypothesis&, Fit, int threads);
 
+/// The values again with their limits, weighed for the subject that they make (Observations::weighed_for).
+Fit weighed_for_itself(const Observations&, const Hypothesis&, const Fit&, int threads);
+
 /// Whether the readings do not change with the last value, near the fit: then its limits are not where the derivatives
 /// say.
 bool says_nothing_of_last(const Fit&);

@@ -324,6 +324,12 @@ bool lets_go(const effects::Effect& e) {
                  std::holds_alternative<OneSidedLaw>(*law));
 }
 
+bool turns_as_it_grows(const effects::Effect& e) {
+  if (!e.place || e.parameters.size() != 1) return false;
+  const effects::EffectParameter& p = e.parameters.front();
+  return p.log && p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high && !e.place->one_stiffness;
+}
+
 std::vector<char> those_that_let_go(const std::vector<Signature>& all) {
   std::vector<char> out;
   for (const Signature& s : all) out.push_back(lets_go(*s.effect.effect));

@@ -116,6 +116,10 @@ std::vector<std::size_t> classes_of(const std::vector<Signature>&, const MatrixX
 bool lets_go(const effects::Effect&);
 std::vector<char> those_that_let_go(const std::vector<Signature>&);
 
+/// A factor on several stiffnesses at once, as those of a beam: where it is large it moves the readings in another
+/// direction than a little of it. (A single stiffness keeps its direction: K changes by a rank-one term.)
+bool turns_as_it_grows(const effects::Effect&);
+
 /// Of two laws at places.
 bool at_one_place(const effects::PlacedEffect&, const effects::PlacedEffect&);
 
