@@ -170,6 +170,26 @@ TEST_F(PlanProgram, BeforeAnyMeasurement) {
   EXPECT_EQ(used.code, 0) << used.out;
 }
 
+// A jack at a node: the planned file names the node, is read again, and the diagnosis takes what was read there.
+TEST_F(PlanProgram, PlansForcesAtNodes) {
+  const std::string hidden = " --with factor@cross0,factor=0.05 --machine 3";
+  const auto run = [&](const std::string& words) {
+    const test::Run r = test::deflect(words);
+    EXPECT_EQ(r.code, 0) << words << "\n" << r.out;
+    return r.out;
+  };
+  run("simulate lattice-girder --campaign paper --seed 5" + hidden + " -o " + path("girder.csv"));
+  run("diagnose lattice-girder " + path("girder.csv") + " --json " + path("girder.json"));
+  const auto found = nlohmann::json::parse(test::contents(path("girder.json")));
+  run("plan lattice-girder " + path("girder.json") + " --nodes all -o " + path("next.csv"));
+  EXPECT_NE(test::contents(path("next.csv")).find("node."), std::string::npos);
+  run("simulate lattice-girder --campaign " + path("next.csv") + " --seed 6" + hidden + " -o " + path("filled.csv"));
+  run("diagnose lattice-girder " + path("girder.csv") + " " + path("filled.csv"));
+  const test::Run machine = test::deflect("plan " + device + " --before paper --nodes all");
+  EXPECT_EQ(machine.code, 2);
+  EXPECT_NE(machine.out.find("no nodes to load"), std::string::npos) << machine.out;
+}
+
 // The page of a plan: of a machine with its poses, of a frame under its loads.
 TEST_F(PlanProgram, WritesAPage) {
   const test::Run machine = test::deflect("plan " + device + " --before paper --report " + path("machine.html"));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "msa/frame/file/frame_file.h"
 #include "tests/plan/rivals_on_the_6psu.h"
@@ -198,6 +199,44 @@ TEST(Plan, LoadCasesOfAFrameStandTogether) {
     for (std::size_t i = all.taken; i < all.all.readings.size(); ++i)
       for (const double factor : all.all.readings[i].factors) EXPECT_LE(std::abs(factor), 1);
   }
+}
+
+/// A force at each node named, along both axes of the plane, with both senses, in three sizes; as large as a load case
+/// has it at a node, or as it is said. What the data have loaded needs no name.
+TEST(Plan, AForceCanStandAtNodes) {
+  const subject::Subject beam = frame::parse_frame(
+      test::cantilever::file("sensors: {z: {node: B, direction: uz, sigma: 10 um}}\n"), "frame.yaml");
+  const auto read = [&](const char* rows) {
+    return beam.placed(measurement::parse_measurements(rows, "data.csv", beam.instruments()));
+  };
+  const auto forces = [&](const Measurements& data, const Limits& limits) {
+    const Possible all = possible_readings(beam, data, limits, false, 1);
+    std::map<std::string, std::vector<double>> at;
+    for (std::size_t i = all.taken; i < all.all.readings.size(); ++i)
+      for (std::size_t p = 0; p < all.all.instruments.load_points.size(); ++p)
+        if (const Vector6& load = all.all.readings[i].at_points[p]; !load.isZero(0))
+          at[all.all.instruments.load_points[p]].push_back(load.cwiseAbs().maxCoeff());
+    return at;
+  };
+  const Measurements by_cases = read("load.tip,z_mm\n2,0\n"), at_a_node = read("node.B.fz_N,z_mm\n-3,0\n");
+  EXPECT_TRUE(forces(by_cases, {}).empty());
+  Limits limits;
+  limits.nodes = {"all"};
+  const auto everywhere = forces(by_cases, limits);
+  EXPECT_EQ(everywhere.size(), beam.frame()->nodes.size());
+  const double tip = beam.frame()->loads.front().second.nodes.front().second.head<3>().cwiseAbs().maxCoeff();
+  for (const auto& [point, sizes] : everywhere) {
+    EXPECT_EQ(sizes.size(), 12u) << point;
+    EXPECT_EQ(*std::max_element(sizes.begin(), sizes.end()), 2 * tip) << point;
+  }
+  EXPECT_EQ(forces(at_a_node, {}).count("node.B"), 1u);
+  limits.nodes = {"B"}, limits.force = 7;
+  const auto at_b = forces(by_cases, limits);
+  ASSERT_EQ(at_b.size(), 1u);
+  EXPECT_EQ(*std::max_element(at_b.at("node.B").begin(), at_b.at("node.B").end()), 7);
+  limits.nodes = {"Q"};
+  EXPECT_THROW(forces(by_cases, limits), InputError);
+  EXPECT_THROW(possible_readings(machine(), paper(), limits, false, 1), InputError);
 }
 
 /// A campaign stands among what could be read instead of it, reading by reading, and shares its approaches.

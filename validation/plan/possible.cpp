@@ -3,10 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <numeric>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -14,8 +10,8 @@
 #include "msa/mechanism/stand.h"
 #include "validation/measurement/joined.h"
 #include "validation/measurement/random.h"
+#include "validation/plan/possible_loads.h"
 #include "validation/prediction/campaign.h"
-#include "validation/subject/trials.h"
 
 namespace deflect::plan {
 namespace {
@@ -33,111 +29,6 @@ constexpr Poses usual = {9, 24}, in_sequences = {5, 3}, of_campaign = {16, 24};
 constexpr double sizes[] = {1, 0.5, 0.2};
 /// What follows a load that has gone on: shares of it.
 const std::vector<std::vector<double>> sequences_of_loads = {{1}, {1, 0.5}, {1, 0}, {1, -1}};
-
-/// A load in full, and its words.
-struct Load {
-  Vector6 at_T = Vector6::Zero();
-  std::vector<double> factors = {};
-  std::string words = {};
-  bool in_full = false;  ///< only
-};
-
-const char* sign_of(double x) { return x < 0 ? "-" : "+"; }
-
-/// Four digits, so that a laboratory can set it.
-double settable(double x) {
-  if (x == 0) return 0;
-  const double scale = std::pow(10, 3 - std::floor(std::log10(std::abs(x))));
-  return std::round(x * scale) / scale;
-}
-
-std::vector<Load> loads_of_machine(const subject::LargestLoads& most, bool forces_only, bool together) {
-  std::vector<Load> out;
-  const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
-  for (Eigen::Index i = 0; i < (forces_only ? 3 : 6); ++i)
-    for (const double sense : {1.0, -1.0}) {
-      const double size = sense * (i < 3 ? most.force : most.moment);
-      if (size != 0)
-        out.push_back({settable(size) * Vector6::Unit(i), {}, fmt::format("{}{}", sign_of(sense), nth(names, i))});
-    }
-  for (const double x : {1.0, -1.0})
-    for (const double y : {1.0, -1.0})
-      for (const double z : {1.0, -1.0}) {
-        if (!together || most.force == 0) continue;
-        Load load;
-        load.at_T.head<3>() = settable(most.force / std::sqrt(3)) * Vector3(x, y, z);
-        load.words = fmt::format("{}fx {}fy {}fz", sign_of(x), sign_of(y), sign_of(z));
-        load.in_full = true;
-        out.push_back(load);
-      }
-  if (!together || forces_only || most.force == 0 || most.moment == 0) return out;
-  for (Eigen::Index i = 0; i < 3; ++i)  // beside the tool point
-    for (const double force : {1.0, -1.0})
-      for (int turn = 0; turn < 8; ++turn) {
-        const double angle = turn * std::numbers::pi / 4;
-        Load load;
-        load.at_T(i) = settable(force * most.force);
-        load.words = fmt::format("{}{}", sign_of(force), nth(names, i));
-        for (const auto& [k, share] :
-             {std::pair{(i + 1) % 3, std::cos(angle)}, std::pair{(i + 2) % 3, std::sin(angle)}}) {
-          if (std::abs(share) < 1e-9) continue;
-          load.at_T(3 + k) = settable(share * most.moment);
-          load.words += fmt::format(" {}{}", sign_of(share), nth(names, 3 + k));
-        }
-        load.in_full = true;
-        out.push_back(load);
-      }
-  return out;
-}
-
-/// A load of a frame, and all loads of that many further cases at most beside it, from the case `from` on.
-void add_with_further(std::vector<Load>& out, const Load& load, std::size_t from, std::size_t further,
-                      const std::vector<double>& most, const std::vector<std::string>& names) {
-  if (!load.words.empty()) out.push_back(load);
-  for (std::size_t k = from; k < most.size() && further > 0; ++k)
-    for (const double sense : {1.0, -1.0}) {
-      Load next = load;
-      next.in_full = !load.words.empty();
-      next.factors[k] = sense * most[k];
-      next.words += fmt::format("{}{}load.{}", load.words.empty() ? "" : " ", sign_of(sense), names[k]);
-      add_with_further(out, next, k + 1, further - 1, most, names);
-    }
-}
-
-std::vector<Load> loads_of_frame(const subject::Subject& s, const Measurements& data, std::size_t cases) {
-  const std::vector<double> most = subject::largest_factors(s, data);
-  Load none;
-  none.factors.assign(most.size(), 0);
-  std::vector<Load> out;
-  add_with_further(out, none, 0, cases, most, s.instruments().load_cases);
-  return out;
-}
-
-/// How many load cases stand together: all of a few, which are 3^n loads, else two.
-std::size_t cases_together(const subject::Subject& s, const Limits& limits) {
-  constexpr std::size_t few = 5;
-  const std::size_t all = s.instruments().load_cases.size(), at_most = all <= few ? all : 2;
-  return limits.cases == 0 ? at_most : std::min(at_most, limits.cases);
-}
-
-/// Within the limits; `together`: several components, or load cases, at once too.
-std::vector<Load> loads_of(const subject::Subject& s, const Measurements& data, const Limits& limits, bool together) {
-  std::vector<Load> out;
-  if (s.frame()) {
-    out = loads_of_frame(s, data, together ? cases_together(s, limits) : 1);
-  } else {
-    subject::LargestLoads most = subject::largest_loads(s, data);
-    if (limits.force) most.force = *limits.force;
-    if (limits.moment)
-      most.moment = *limits.moment;
-    else if (most.moment == 0)
-      most.moment = prediction::lever * most.force;
-    out = loads_of_machine(most, limits.forces_only, together);
-  }
-  if (out.empty())
-    throw InputError(fmt::format("{}: no load is allowed: give --max-force or --max-moment above zero", s.name()));
-  return out;
-}
 
 bool is_same(const PoseGroup& p, const PoseGroup& q) {
   return q.pose_mm_deg == p.pose_mm_deg && q.joints.size() == p.joints.size() && q.joints == p.joints;
@@ -205,7 +96,14 @@ class Rows {
     m_.note_columns = {"note"};
   }
 
-  void load_cases(const std::vector<std::string>& names) { m_.instruments.load_cases = names; }
+  /// The load cases of the frame, in its order, and the nodes of these loads behind those of the data.
+  void of_frame(const subject::Subject& s, const std::vector<PossibleLoad>& loads) {
+    m_.instruments.load_cases = s.instruments().load_cases;
+    std::vector<std::string>& points = m_.instruments.load_points;
+    for (const PossibleLoad& load : loads)
+      if (!load.point.empty() && std::find(points.begin(), points.end(), load.point) == points.end())
+        points.push_back(load.point);
+  }
 
   /// A pose that is approached anew.
   void approach(PoseGroup pose) {
@@ -222,14 +120,15 @@ class Rows {
       const std::vector<std::string>& all = m_.instruments.load_cases;
       r.factors[as_size(std::find(all.begin(), all.end(), known[k]) - all.begin())] = factors[k];
     }
+    if (!m_.instruments.load_points.empty()) r.at_points.resize(m_.instruments.load_points.size(), Vector6::Zero());
     r.notes = {"as in the campaign given"};
     blocks_.push_back({m_.readings.size(), 1, m_.poses.size() - 1});
     put(std::move(r));
   }
 
   /// Each load alone at the pose approached last.
-  void each(const std::vector<Load>& loads) {
-    for (const Load& load : loads)
+  void each(const std::vector<PossibleLoad>& loads) {
+    for (const PossibleLoad& load : loads)
       for (const double size : sizes) {
         if (size < 1 && load.in_full) continue;
         blocks_.push_back({m_.readings.size(), 1, m_.poses.size() - 1});
@@ -237,12 +136,12 @@ class Rows {
       }
   }
 
-  void add(const PoseGroup& pose, const std::vector<Load>& loads) {
+  void add(const PoseGroup& pose, const std::vector<PossibleLoad>& loads) {
     if (!sequences_) {
       approach(pose);
       return each(loads);
     }
-    for (const Load& load : loads)
+    for (const PossibleLoad& load : loads)
       for (const std::vector<double>& shares : sequences_of_loads) {
         approach(pose);
         blocks_.push_back({m_.readings.size(), shares.size(), m_.poses.size() - 1});
@@ -259,12 +158,15 @@ class Rows {
   const std::vector<Block>& blocks() const { return blocks_; }
 
  private:
-  void reading(const Load& load, double share, const std::string& how) {
+  void reading(const PossibleLoad& load, double share, const std::string& how) {
     Reading r = blank_;
     r.load = share * load.at_T + Vector6::Zero();  // no −0
     if (!m_.instruments.load_points.empty()) {
       r.at_tool = r.load;
       r.at_points.assign(m_.instruments.load_points.size(), Vector6::Zero());
+      const std::vector<std::string>& points = m_.instruments.load_points;
+      if (const auto at = std::find(points.begin(), points.end(), load.point); at != points.end())
+        r.at_points[as_size(at - points.begin())] = share * load.at_point + Vector6::Zero();
     }
     for (const double factor : load.factors) r.factors.push_back(share * factor + 0.0);
     if (load.factors.empty()) r.factors.assign(m_.instruments.load_cases.size(), 0);
@@ -299,8 +201,8 @@ Measurements Possible::data() const {
 Possible possible_readings(const subject::Subject& s, const Measurements& data, const Limits& limits, bool sequences,
                            std::uint64_t seed) {
   Rows rows(data, sequences);
-  if (s.frame()) rows.load_cases(s.instruments().load_cases);
-  const std::vector<Load> loads = loads_of(s, data, limits, !sequences);
+  const std::vector<PossibleLoad> loads = possible_loads(s, data, limits, !sequences);
+  if (s.frame()) rows.of_frame(s, loads);
   for (const PoseGroup& pose : poses_of(s, data, limits, sequences ? in_sequences : usual, seed)) rows.add(pose, loads);
   Possible out;
   out.taken = data.readings.size();
@@ -315,8 +217,8 @@ Possible possible_readings(const subject::Subject& s, const Measurements& data, 
 Possible possible_campaign(const subject::Subject& s, const Measurements& given, const Limits& limits,
                            std::uint64_t seed) {
   Rows rows(given, false);
-  if (s.frame()) rows.load_cases(s.instruments().load_cases);
-  const std::vector<Load> loads = loads_of(s, given, limits, true);
+  const std::vector<PossibleLoad> loads = possible_loads(s, given, limits, true);
+  if (s.frame()) rows.of_frame(s, loads);
   std::vector<PoseGroup> poses = poses_of(s, given, limits, of_campaign, seed);
   Possible out;
   for (const PoseGroup& pose : given.poses) {

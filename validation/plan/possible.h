@@ -1,32 +1,15 @@
 // Readings that a laboratory could take of a subject: poses × loads × senses, within its limits.
 //
-// Of a machine: at each pose forces along ±x, ±y, ±z and moments about ±x, ±y, ±z, each in full, half and a fifth; in
-// full, forces along the diagonals of their octants and forces that act beside the tool point, along an axis with a
-// moment about one or both of the others. Of a frame: each load case with both senses and the same sizes, and each two
-// of them together. Where some rival remembers the loads before it, a reading is a step of a sequence that begins at a
+// Loads are those of possible_loads.h, at each pose of a machine, in full, those of one component or load case also
+// half and a fifth. Where some rival remembers the loads before it, a reading is a step of a sequence that begins at a
 // new approach of the pose, unloaded: a load goes on; goes on and comes half off, all off, or turns to its opposite.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "validation/measurement/measurements.h"
-#include "validation/subject/subject.h"
+#include "validation/plan/possible_loads.h"
 
 namespace deflect::plan {
-
-enum class Where { workspace, as_measured };
-
-/// What the rig allows. Largest loads: of one component, absent: as in the data.
-struct Limits {
-  /// N, Nm; absent: the largest of the data, of moments, where the data have none, the force · prediction::lever.
-  std::optional<double> force, moment;
-  bool forces_only = false;
-  std::size_t cases = 0;                           ///< load cases of a frame at once; 0: any number
-  Where where = Where::workspace;                  ///< or only the poses of the data
-  std::optional<measurement::Measurements> poses;  ///< or those of another file
-};
 
 /// Readings that are taken together, in a row.
 struct Block {
@@ -46,7 +29,7 @@ struct Possible {
 };
 
 /// `seed`: of poses that are drawn in the workspace. All components and sensors that the data have are read, with their
-/// σ. Throws InputError where the limits leave no load, ModelError where a pose of the file cannot be reached.
+/// σ. Throws what possible_loads() throws, ModelError where a pose of the file cannot be reached.
 Possible possible_readings(const subject::Subject&, const measurement::Measurements& data, const Limits&,
                            bool sequences, std::uint64_t seed);
 

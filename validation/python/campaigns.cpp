@@ -196,13 +196,14 @@ void bind_campaigns(py::module_& m) {
   py::class_<SimulateAsked>(m, "SimulateAsked").def(py::init(&simulate_asked));
   py::class_<PlanAsked>(m, "PlanAsked")
       .def(py::init([](std::optional<double> force_N, std::optional<double> moment_Nmm, bool forces_only,
-                       std::size_t cases, bool as_measured, std::optional<NamedText> poses, std::size_t most_poses,
-                       std::uint64_t seed) {
+                       std::size_t cases, std::vector<std::string> nodes, bool as_measured,
+                       std::optional<NamedText> poses, std::size_t most_poses, std::uint64_t seed) {
         PlanAsked out;
         out.limits.force = force_N;
         if (moment_Nmm) out.limits.moment = *moment_Nmm / 1e3;
         out.limits.forces_only = forces_only;
         out.limits.cases = cases;
+        out.limits.nodes = std::move(nodes);
         out.limits.where = as_measured ? plan::Where::as_measured : plan::Where::workspace;
         out.poses = std::move(poses), out.most_poses = most_poses, out.seed = seed;
         return out;

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/frame/file/frame_description.h"
+#include "msa/frame/file/frame_fields.h"
 #include "validation/subject/possible_sensors.h"
 
 namespace deflect::subject {
@@ -117,6 +120,31 @@ std::vector<double> largest_factors(const Subject& s, const measurement::Measure
       if (at != known.end()) most = std::max(most, std::abs(r.factors[as_size(at - known.begin())]));
     out.push_back(most > 0 ? most : 1);
   }
+  return out;
+}
+
+ForcesAtNodes forces_at_nodes(const Subject& s, const measurement::Measurements& data,
+                              const std::vector<std::string>& nodes) {
+  const frame::FrameDescription& f = *s.frame();
+  ForcesAtNodes out;
+  std::vector<std::string> known;
+  for (const auto& [node, at] : f.nodes) known.push_back(node);
+  for (const std::string& node : nodes == std::vector<std::string>{"all"} ? known : nodes) {
+    if (std::find(known.begin(), known.end(), node) == known.end())
+      throw InputError(fmt::format("{}: {}", s.name(), frame::unknown_name("node", node, known)));
+    out.points.push_back("node." + node);
+  }
+  if (nodes.empty()) out.points = data.instruments.load_points;
+  for (int i = 0; i < 3; ++i)
+    if (i != frame::normal_axis(f.plane)) out.axes.push_back(i);
+  const auto count = [&](const Vector6& load, double factor) {
+    out.most = std::max(out.most, factor * load.head<3>().cwiseAbs().maxCoeff());
+  };
+  const std::vector<double> factors = largest_factors(s, data);
+  for (std::size_t k = 0; k < factors.size(); ++k)
+    for (const auto& [node, load] : f.loads[k].second.nodes) count(load, factors[k]);
+  for (const measurement::Reading& r : data.readings)
+    for (const Vector6& load : r.at_points) count(load, 1);
   return out;
 }
 

@@ -20,6 +20,17 @@ LargestLoads largest_loads(const Subject&, const measurement::Measurements&);
 /// Of a frame: the largest factor on each of its load cases in the data; 1 where they do not have it.
 std::vector<double> largest_factors(const Subject&, const measurement::Measurements&);
 
+/// Forces that can stand at nodes of a frame, one at a time.
+struct ForcesAtNodes {
+  std::vector<std::string> points;  ///< load points: "node.B"
+  std::vector<Eigen::Index> axes;   ///< of the base: all, or those of a plane frame's plane
+  /// N: the largest component of a force at one node in a row of the data, or in a load case times the largest factor
+  /// on it in the data (1 where they do not have it).
+  double most = 0;
+};
+/// `nodes`: their names, or "all"; without any the nodes that the data load. Throws InputError for a name that is none.
+ForcesAtNodes forces_at_nodes(const Subject&, const measurement::Measurements&, const std::vector<std::string>& nodes);
+
 /// Each load alone goes on, comes off, goes on the other way and comes off, in sequence, from an unloaded reading on:
 /// of a frame the load cases, of a machine forces and moments at T along x, y and z at the poses of the data (nine at
 /// most); as large as they are in the data. The note of each row names its load, "load.snow × 1", "fz = -50 N at pose

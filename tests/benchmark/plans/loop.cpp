@@ -13,6 +13,7 @@
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/device_file.h"
 #include "tests/support/paths.h"
+#include "validation/diagnosis/fit_problem.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/place_effects.h"
 #include "validation/measurement/joined.h"
@@ -55,32 +56,26 @@ Measurements read(const subject::Subject& s, const Measurements& plan, std::uint
   return prediction::simulate(*s.machine(), plan, o, parallel::alone);
 }
 
-/// Values at which the effect is `times` as large as at its start; parameters that do not say how large it is, as at
-/// which displacement a spring hardens, are drawn by lot within their bounds, as a plan takes them to be.
-VectorX values_at(const effects::Effect& e, double times, std::uint64_t seed) {
-  VectorX out = effects::start_values(e);
+/// A truth as a plan takes it to be before any reading: even over the coordinates of its parameters (fit_problem.h), of
+/// those the first that is as large as λ on some readings, within a quarter. Throws NumericalError where none is.
+VectorX drawn_truth(const diagnosis::Observations& o, const effects::PlacedEffect& e, double lambda,
+                    std::uint64_t seed) {
+  constexpr double within = 1.25;
+  constexpr int tries = 5000;
   measurement::Random random(seed);
-  for (std::size_t i = 0; i < e.parameters.size(); ++i) {
-    const effects::EffectParameter& p = e.parameters[i];
-    double& value = out(as_index(i));
-    const double lot = random.uniform(0, 1);
-    if (!p.vanishes) value = p.log ? p.low * std::pow(p.high / p.low, lot) : p.low + lot * (p.high - p.low);
-    if (p.vanishes) value = std::isinf(*p.vanishes) ? p.start / times : *p.vanishes + times * (p.start - *p.vanishes);
-    value = std::clamp(value, p.low, p.high);
+  for (int k = 0; k < tries; ++k) {
+    VectorX values(std::ssize(e.effect->parameters));
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      const effects::EffectParameter& p = nth(e.effect->parameters, i);
+      values(i) =
+          diagnosis::value_at(p, random.uniform(diagnosis::coordinate(p, p.low), diagnosis::coordinate(p, p.high)));
+    }
+    const auto there = outcome_of([&] { return o.whitened_residual(effects::with_effect(o.subject(), {e, values})); });
+    if (!there) continue;
+    const double times = (*there - o.null_residual()).norm() / lambda;
+    if (times < within && times > 1 / within) return values;
   }
-  return out;
-}
-
-/// Values at which it is as large as λ on those readings.
-VectorX sized(const diagnosis::Observations& o, const effects::PlacedEffect& e, double lambda, std::uint64_t seed) {
-  double x = 0;
-  for (int tries = 0; tries < 30; ++tries) {
-    const subject::Subject with = effects::with_effect(o.subject(), {e, values_at(*e.effect, std::exp(x), seed)});
-    const double here = (o.whitened_residual(with) - o.null_residual()).norm();
-    if (std::abs(here / lambda - 1) < 0.02) break;
-    x += std::clamp(std::log(lambda / std::max(here, 1e-9)), -2.0, 2.0) * 0.8;
-  }
-  return values_at(*e.effect, std::exp(x), seed);
+  throw NumericalError(fmt::format("'{}' does not become as large as λ = {}", e.effect->name, lambda));
 }
 
 class Loop {
@@ -103,7 +98,7 @@ class Loop {
     const Measurements as_drawn = read(subject_, paper, machine, machine + 1);
     const diagnosis::Observations healthy(subject_, as_drawn, recorded, parallel::alone);
     const subject::Subject built =
-        effects::with_effect(subject_, {truth, sized(healthy, truth, tied_.lambda, machine)});
+        effects::with_effect(subject_, {truth, drawn_truth(healthy, truth, tied_.lambda, machine)});
     const Measurements before = read(built, paper, machine, machine + 2);
     std::vector<plan::Rival> rivals = fitted(before, out.before, index % 2);
     if (rivals.size() < 2) {
@@ -115,6 +110,7 @@ class Loop {
     plan::PlanOptions o;
     o.seed = machine;
     if (tied_.moment > 0) o.limits.moment = tied_.moment;
+    if (tied_.nodes) o.limits.nodes = {"all"};
     o.readings = most_planned;
     const auto begun = std::chrono::steady_clock::now();
     const plan::Plan plan = plan::next_readings(subject_, before, rivals, o, {threads_});
@@ -124,6 +120,7 @@ class Loop {
       return out;
     }
     out.planned = plan.readings.readings.size();
+    if (!plan.at_random_is_more) out.by_lot = plan.at_random;
     const Measurements after = read_after(paper, plan.readings, built, machine);
     const Measurements all = subject_.placed(measurement::joined({before, after}));
     const plan::Pair expected = plan::expected_of(subject_, before, after, rivals, o, {threads_}).pairs.front();
@@ -250,8 +247,8 @@ std::vector<LoopResult> run_loops(const Tied& t, std::size_t truths, std::uint64
     const LoopResult& r = *result;
     fmt::print(stderr, "{} {}/{} {}: truth {} before {:.1f} ", t.subject, t.first, t.second, i, r.truth, r.before);
     if (r.skipped.empty() && r.tied)
-      fmt::print(stderr, "planned {} random {}{} predicted {:.1f} found {:.1f} ({:.1f} s)\n", r.planned,
-                 r.at_random_is_more ? ">" : "", r.at_random, r.predicted, r.found, r.seconds);
+      fmt::print(stderr, "planned {} random {}{} by lot {} predicted {:.1f} found {:.1f} ({:.1f} s)\n", r.planned,
+                 r.at_random_is_more ? ">" : "", r.at_random, r.by_lot, r.predicted, r.found, r.seconds);
     else
       fmt::print(stderr, "{}\n", r.skipped.empty() ? "no tie" : r.skipped);
     out.push_back(r);
@@ -261,10 +258,9 @@ std::vector<LoopResult> run_loops(const Tied& t, std::size_t truths, std::uint64
 
 std::string loop_table(const std::vector<std::pair<Tied, std::vector<LoopResult>>>& all) {
   std::string out =
-      "| subject | tied, λ | truths | of these tied | readings planned, median | of `random` for as much, median | "
-      "told "
-      "rightly | predicted λ², median | found, median | slope ± standard error "
-      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
+      "| subject | tied, λ | truths | of these tied | readings planned, median | of `random` for as much, median | by "
+      "lot, median | told rightly | predicted λ², median | found, median | slope ± standard error "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const auto& [tied, results] : all) {
     std::size_t n = 0, right = 0, tried = 0;
     double xy = 0, xx = 0, rest = 0;
@@ -282,15 +278,16 @@ std::string loop_table(const std::vector<std::pair<Tied, std::vector<LoopResult>
     out +=
         fmt::format("| {} | {} / {}, {:g} | {} | {} |", tied.subject, tied.first, tied.second, tied.lambda, tried, n);
     if (n == 0) {
-      out += " | | | | | |\n";
+      out += " | | | | | | |\n";
       continue;
     }
     const double slope = xy / xx;
     for (const LoopResult& r : results)
       if (r.skipped.empty() && r.tied) rest += std::pow(r.found - slope * r.predicted, 2);
     const double error = n > 1 ? std::sqrt(rest / static_cast<double>(n - 1) / xx) : NAN;
-    out += fmt::format(" {:g} | {}{:g} | {} | {:.1f} | {:.1f} | {:.2f} ± {:.2f} |\n",
-                       median(results, [](const LoopResult& r) { return r.planned; }), more ? "> " : "", random, right,
+    out += fmt::format(" {:g} | {}{:g} | {:g} | {} | {:.1f} | {:.1f} | {:.2f} ± {:.2f} |\n",
+                       median(results, [](const LoopResult& r) { return r.planned; }), more ? "> " : "", random,
+                       median(results, [](const LoopResult& r) { return r.by_lot; }), right,
                        median(results, [](const LoopResult& r) { return r.predicted; }),
                        median(results, [](const LoopResult& r) { return r.found; }), slope, error);
   }

@@ -18,6 +18,7 @@ struct Tied {
   std::string subject, first, second;  ///< built-in device or frame; effects
   double lambda = 8;                   ///< of the truth on the paper's plan
   double moment = 0;                   ///< Nm: largest of the rig; 0: 1 Nm, the force on a lever of 20 mm
+  bool nodes = false;                  ///< of a frame: forces at all nodes can be planned too
 };
 
 struct LoopResult {
@@ -27,10 +28,11 @@ struct LoopResult {
   std::size_t planned = 0;         ///< readings
   std::size_t at_random = 0;       ///< of the campaign "random" for the same expected probability
   bool at_random_is_more = false;  ///< than that
-  double predicted = 0;            ///< λ² that the planned readings add, mean over what the paper's plan leaves open
-  double found = 0;                ///< χ² of the wrong one − χ² of the true one, by how much it has grown
-  bool right = false;              ///< the true one fits better in the end
-  double seconds = 0;              ///< of planning
+  std::size_t by_lot = 0;  ///< of the readings that could be planned, drawn by lot, for the same; 0: not reached
+  double predicted = 0;    ///< λ² that the planned readings add, mean over what the paper's plan leaves open
+  double found = 0;        ///< χ² of the wrong one − χ² of the true one, by how much it has grown
+  bool right = false;      ///< the true one fits better in the end
+  double seconds = 0;      ///< of planning
 };
 
 std::vector<LoopResult> run_loops(const Tied&, std::size_t truths, std::uint64_t seed, int threads);

@@ -41,6 +41,7 @@ Tied pair_of(const std::string& text) {
   Tied out{parts[0], parts[1], parts[2]};
   if (parts.size() > 3) out.lambda = std::atof(parts[3].c_str());
   if (parts.size() > 4) out.moment = std::atof(parts[4].c_str());
+  if (parts.size() > 5) out.nodes = parts[5] == "nodes";
   return out;
 }
 

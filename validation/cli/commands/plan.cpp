@@ -35,7 +35,7 @@ struct PlanArguments {
   std::string device, diagnosis, before, output, json, out, poses = "workspace", aim = "effects", use;
   std::string report;
   std::string force, moment, sigma_mm, sigma_rad;
-  std::vector<std::string> data, files;
+  std::vector<std::string> data, files, nodes;
   bool forces_only = false;
   double group = 1, readings = 30, probability = 0.95, most_poses = 0, cases = 0, seed = 1, threads = 0;
   FigureArguments figures;
@@ -55,6 +55,7 @@ plan::Limits limits_of(const PlanArguments& a, const subject::Subject& s) {
   out.moment = largest("--max-moment", a.moment, "Nmm", 1e3);
   out.forces_only = a.forces_only;
   out.cases = as_size(whole("--max-cases", a.cases, 0, most_readings));
+  out.nodes = a.nodes;
   if (a.poses == "measured")
     out.where = plan::Where::as_measured;
   else if (a.poses != "workspace")
@@ -256,25 +257,22 @@ Command plan_command() {
   return {
       "plan",
       "Plan which readings to take. For effects that a diagnosis could not tell apart, the command chooses the "
-      "readings that separate them most: pose or load case, load, sense, size, loading or unloading. To judge a "
-      "reading, each effect is fitted again to what the other would read, with all tolerances free under their priors. "
-      "The command says how probable the right effect will be after these readings, writes the file that the "
-      "laboratory fills in, names pairs that no reading separates, and the instruments that would help most beside "
-      "those there are. With --before it says what a campaign will be able to tell before it is measured, and writes a "
-      "better one of the same length",
+      "readings that separate them most: pose, load case or node, load, sense, size, loading or unloading. It says how "
+      "probable the right effect will be after them, writes the file that the laboratory fills in, names pairs that no "
+      "reading separates, and the instruments that would help most beside those there are. With --before it says what "
+      "a campaign will be able to tell before it is measured, and writes a better one of the same length",
       "deflect plan haptic-6psu-ideal-joints diagnosis.json -o next.csv",
       with_figures(
           {{"device", "DEVICE", "built-in device or frame, or a file of one", &a->device, true},
            {"diagnosis", "DIAGNOSIS.json", "result of deflect diagnose --json", &a->diagnosis},
            {"data", "DATA",
-            "the measurements that were diagnosed, if they are no longer where the diagnosis names them; several files "
-            "are sessions of one campaign",
+            "the measurements that were diagnosed, if they are not where the diagnosis names them; several are "
+            "sessions",
             &a->data},
            {"--before", "paper|cycle|rich|random|FILE",
             "instead of a diagnosis: a campaign by its name, or a file, whose columns say what is read", &a->before},
            {"--aim", "effects|precision",
-            "with --before: what the better campaign is for: to see effects and tell them apart (default), or to "
-            "predict the tool point once tolerances are fitted",
+            "with --before: the better campaign is to tell effects apart (default), or to predict, tolerances fitted",
             &a->aim},
            {"--use", "FILE",
             "with --before: poses and loads where the machine will be used (default: twelve poses of its workspace)",
@@ -283,13 +281,18 @@ Command plan_command() {
            {"--readings", "N", "most readings (default 30)", &a->readings},
            {"--probability", "P", "the plan ends where the right effect is expected to be this probable (default 0.95)",
             &a->probability},
-           {"--max-force", "N", "largest force along an axis (default: that of the data)", &a->force},
+           {"--max-force", "N", "largest force along an axis, of a frame at a node (default: as in the data)",
+            &a->force},
            {"--max-moment", "NMM",
-            "largest moment about an axis (default: that of the data; where they have none, the force times 20 mm)",
+            "largest moment about an axis (default: as in the data; where they have none, the force times 20 mm)",
             &a->moment},
            {"--forces-only", "", "the rig cannot apply moments", &a->forces_only},
            {"--max-cases", "N", "of a frame: load cases at once (default 0: any number of up to five, else two)",
             &a->cases},
+           {"--nodes", "NODE|all",
+            "of a frame: nodes where a jack or a weight can put a force along an axis (default: those that the data "
+            "load)",
+            &a->nodes},
            {"--poses", "workspace|measured|FILE",
             "where: poses of the data and others in the workspace (default), those of the data, or those of a "
             "measurement file",
@@ -297,8 +300,7 @@ Command plan_command() {
            {"--max-poses", "N", "largest number of poses (default 0: any; with --before: as many as the campaign has)",
             &a->most_poses},
            {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->files},
-           {"--sigma", "MM",
-            "standard deviation of a translation in mm, if the file has none (with --before: default 0.002)",
+           {"--sigma", "MM", "standard deviation of a translation, if the file has none (with --before: default 0.002)",
             &a->sigma_mm},
            {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
            {"--seed", "N", "seed of the poses and parameters drawn by lot (default 1)", &a->seed},

@@ -45,7 +45,7 @@ class CheckAsked:
 
 class PlanAsked:
     def __init__(self, force: Optional[float], moment: Optional[float], forces_only: bool, cases: int,
-                 as_measured: bool, poses: Optional[NamedText], most_poses: int, seed: int) -> None: ...
+                 nodes: list[str], as_measured: bool, poses: Optional[NamedText], most_poses: int, seed: int) -> None: ...
 
 class Subject:
     name: str

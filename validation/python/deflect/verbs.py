@@ -188,17 +188,17 @@ def simulate(model: Any, effect: Any = (), *, campaign: Any = "rich", force: flo
 def plan(model: Any, diagnosis: Any = None, data: Any = None, *, before: Any = None, use: Any = None,
          aim: str = "effects", group: int = 1, readings: int = 30, probability: float = 0.95,
          max_force: float | None = None, max_moment: float | None = None, forces_only: bool = False,
-         max_cases: int = 0, poses: Any = "workspace", max_poses: int = 0, sigma: float | None = None,
-         sigma_rotation: float | None = None, effects: Any = (), seed: int = 1, threads: int = 0,
-         progress: Any = None) -> Plan | Foresight:
+         max_cases: int = 0, nodes: Iterable[str] = (), poses: Any = "workspace", max_poses: int = 0,
+         sigma: float | None = None, sigma_rotation: float | None = None, effects: Any = (), seed: int = 1,
+         threads: int = 0, progress: Any = None) -> Plan | Foresight:
     """What to measure. ``before``: what a campaign ("paper", … or a plan) will tell, and a better one: Foresight. Else the
     readings that tell the tied effects of a ``diagnosis`` (and its ``data``) apart: Plan. The result's ``measurements``
     are to be filled in. Arguments as the options of `deflect plan`; forces in N, moments in Nmm, ``sigma`` in mm and
-    ``sigma_rotation`` in rad. Raises InputError, MechanismError, NumericalError."""
+    ``sigma_rotation`` in rad, ``nodes`` of a frame their names or ("all",). Raises InputError, MechanismError, NumericalError."""
     s, noise, told = subject_of(model), _core.Noise(sigma, sigma_rotation, False), progress_of(progress, "plan")
     as_text = isinstance(poses, str) and poses in ("workspace", "measured")
-    asked = _core.PlanAsked(max_force, max_moment, forces_only, max_cases, as_text and poses == "measured",
-                            None if as_text else text_of(poses), max_poses, seed)
+    asked = _core.PlanAsked(max_force, max_moment, forces_only, max_cases, list(nodes),
+                            as_text and poses == "measured", None if as_text else text_of(poses), max_poses, seed)
     sources = _sources.effect_sources(effects)
     if before is not None:
         if diagnosis is not None:
