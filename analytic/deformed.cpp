@@ -191,8 +191,10 @@ bool settles(Deformed& d, const Vector6& F, double misfit) {
 }
 
 /// Why no equilibrium follows on the last stable one.
-std::string why_it_ends(const Deformed& d, const char* what) {
-  if (const std::string chain = at_dead_centre(d.whole, d.conditions); !chain.empty())
+std::string why_it_ends(Deformed& d, const char* what) {
+  const std::string chain = at_dead_centre(d.whole, d.conditions);
+  d.at_dead_centre = !chain.empty();
+  if (d.at_dead_centre)
     return fmt::format(
         "the passive joints of {} come to a singular position (a dead centre) at {:.4g} of the {}: from there it would "
         "lock or jump. Load it less, or where that leg is farther from it",
@@ -354,8 +356,9 @@ Deformed deform(const Deformed& rest, const Configuration& c, const Vector6& F) 
     finer.discretisation = {(finer.translation - d.translation).norm() / 3,
                             rotation_vector(combined(finer.turning, d.turning.transpose())).norm() / 3};
     left = d.converged && finer.converged ? relative(finer.discretisation, finer, c.size) : 1;
-    const bool gives_way =
-        !d.converged && !finer.converged && std::abs(finer.load_factor - d.load_factor) <= known_to * finer.load_factor;
+    const bool alike = (d.at_dead_centre && finer.at_dead_centre) ||
+                       std::abs(finer.load_factor - d.load_factor) <= known_to * finer.load_factor;
+    const bool gives_way = !d.converged && !finer.converged && alike;
     d = std::move(finer);
     if (gives_way) break;
   }

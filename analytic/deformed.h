@@ -41,8 +41,9 @@ struct Deformed {
   Vector3 rotation_vector = Vector3::Zero();  ///< second order: small rotation of T
   std::vector<Vector6> leg_wrenches;          ///< about the platform's T, base axes
   bool converged = false;
-  bool undecided = false;  ///< the steps did not come to rest
-  double load_factor = 0;  ///< share of the load that the state carries
+  bool undecided = false;       ///< the steps did not come to rest
+  bool at_dead_centre = false;  ///< where it does not converge: of the passive joints of a leg
+  double load_factor = 0;       ///< share of the load that the state carries
   int iterations = 0;
   double residual = 0;                                       ///< relative change by the last step
   std::vector<int> pieces;                                   ///< of each member, in the order of for_each_part

@@ -136,6 +136,13 @@ TEST(ShapedDevices, AtADeadCentreOfPassiveJointsAreToldSo) {
       << s.message;
 }
 
+// Divided more finely its members end at a dead centre as well, a little earlier each time: on the way to 64 pieces
+// each the judge's time, 15 s, ran out.
+TEST(ShapedDevices, AtADeadCentreAreNotDividedOnAndOn) {
+  const ShapeJudgement j = judge_in_shape_apart(1388, true);
+  EXPECT_EQ(j.outcome, Outcome::refused_rightly) << reproduction_in_shape(1388, true, j);
+}
+
 class ShapedDevicesOnDemand : public ::testing::TestWithParam<bool> {};
 
 TEST_P(ShapedDevicesOnDemand, AreInEquilibriumWhereBothTheoriesSay) {
