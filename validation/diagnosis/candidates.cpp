@@ -149,11 +149,12 @@ class Candidates::Round {
 
   /// Fits anew, from a larger size, those that explain more in it than as they were fitted, if at all: play as wide as
   /// the motion moves the readings in another direction than a little of it. Returns whether one is the likeliest then.
-  bool fit_larger() {
+  bool fit_larger(bool all) {
     const double before = likeliest();
     fit_from_sizes([&](std::size_t i) -> std::optional<SizedEffect> {
       const Signature& s = signature(i);
-      const bool may = turns_as_it_grows(*s.effect.effect) || said_[i] >= std::max(near_nothing, small_share * most_);
+      const bool may =
+          turns_as_it_grows(*s.effect.effect) || (all && said_[i] >= std::max(near_nothing, small_share * most_));
       if (!allowed_[i] || !has_one_size(s) || !may) return std::nullopt;
       return best_size(observations_, out_[i].hypothesis, so_far_.values, guess(s, so_far_.residual));
     });
@@ -360,17 +361,18 @@ std::vector<Candidate> Candidates::beside(const Observations& observations, cons
   Round round(*this, observations, before, so_far, known);
   round.fit_promising(least);
   round.fit_what_lets_go();
-  if (larger_sizes_) round.fit_larger();
+  if (larger_sizes_) round.fit_larger(true);
   round.fit_in_true_geometry();
   return round.result();
 }
 
 std::optional<std::vector<Candidate>> Candidates::likelier_if_larger(const Observations& observations,
                                                                      const Hypothesis& before, const Fit& so_far,
-                                                                     const std::vector<Candidate>& fitted) const {
+                                                                     const std::vector<Candidate>& fitted,
+                                                                     bool all) const {
   Round round(*this, observations, before, so_far, {});
   round.take(fitted);
-  if (!round.fit_larger()) return std::nullopt;
+  if (!round.fit_larger(all)) return std::nullopt;
   return round.result();
 }
 

@@ -55,9 +55,10 @@ class Candidates {
                                           double each) const;
 
   /// The candidates of beside() again, those fitted anew that explain more from a larger size than the one that their
-  /// signatures show. Nullopt where none of these becomes the likeliest.
+  /// signatures show; `all`, or only those that turn as they grow (signatures.h). Nullopt where none of these becomes
+  /// the likeliest.
   std::optional<std::vector<Candidate>> likelier_if_larger(const Observations&, const Hypothesis&, const Fit&,
-                                                           const std::vector<Candidate>&) const;
+                                                           const std::vector<Candidate>&, bool all) const;
   /// The candidates of beside() no other effect again, those fitted anew that explain more from these values.
   std::vector<Candidate> fitted_again(const Observations&, const Fit&, const std::vector<Candidate>&,
                                       const std::vector<effects::EffectInstance>& from) const;

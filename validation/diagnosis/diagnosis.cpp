@@ -212,13 +212,17 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
   return out;
 }
 
-/// ln(prior · evidence) of all that was found, something unknown included, against nothing.
+/// ln(prior · evidence) of effects, as they were fitted to these observations, against nothing.
+double log_odds_of(const FirstStep& s, const Observations& o, const Hypothesis& h, const Fit& f) {
+  const bool same_readings = o.aside() == s.observations.aside();
+  const double more =
+      log_likelihood(o, h, f.values) - log_likelihood(same_readings ? s.observations : o, {}, VectorX(0));
+  return log_odds_of_all(s.candidates, h, 2 * more);
+}
+
+/// The same of all that was found, something unknown included.
 double log_odds_of_all(const FirstStep& s, const Explained& e) {
-  const Selection& found = e.found;
-  const bool same_readings = found.observations.aside() == s.observations.aside();
-  const double more = log_likelihood(found.observations, found.effects, found.fit.values) -
-                      log_likelihood(same_readings ? s.observations : found.observations, {}, VectorX(0));
-  return log_odds_of_all(s.candidates, found, 2 * more) +
+  return log_odds_of(s, e.found.observations, e.found.effects, e.found.fit) +
          (e.left.significant() ? e.left.log_evidence + std::log(unknown_beside) : 0);
 }
 
@@ -235,10 +239,9 @@ bool outweigh_larger_tolerances(const Explained& e, const FirstStep& s) {
 
 /// Whether a single large effect may explain more than what was found: that is several, or leaves more than noise does.
 bool may_hide_a_large_one(const Explained& e, const Observations& o) {
-  constexpr double deviations = 2;  // of χ² by noise
   const auto numbers = static_cast<double>(o.numbers());
-  return e.left.significant() || e.found.effects.size() > 1 ||
-         e.found.fit.chi2 > numbers + deviations * std::sqrt(2 * numbers);
+  const double by_noise = numbers + 2 * std::sqrt(2 * numbers);  // χ², two standard deviations of it
+  return e.left.significant() || e.found.effects.size() > 1 || e.found.fit.chi2 > by_noise;
 }
 
 /// Effects are looked for from small sizes. What is found from a large one, if it leaves nothing unknown and, where the
@@ -246,15 +249,17 @@ bool may_hide_a_large_one(const Explained& e, const Observations& o) {
 std::optional<std::vector<Candidate>> look_for_large_ones(Explained& e, const FirstStep& s) {
   const Observations& o = s.observations;
   if (!may_hide_a_large_one(e, o)) return std::nullopt;
-  std::optional<std::vector<Candidate>> large = s.candidates.likelier_if_larger(o, {}, s.null, s.each);
+  auto large = s.candidates.likelier_if_larger(o, {}, s.null, s.each, e.left.significant());
   if (!large) return std::nullopt;
   const auto best = std::max_element(large->begin(), large->end(), [](const Candidate& a, const Candidate& b) {
     return a.class_log_odds < b.class_log_odds;
   });
-  const auto beyond_noise = [&](const Fit& f) { return f.chi2 - static_cast<double>(o.numbers()); };
+  const auto left = [&](const Fit& f) { return f.chi2 - static_cast<double>(o.numbers()); };
   const Observations weighed = o.weighed_for(subject_with(o, best->hypothesis, best->fit.values));
   const Fit alone = fit_of_all(weighed, best->hypothesis, best->fit.values);
-  if (e.left.significant() && beyond_noise(alone) > half_of_it * beyond_noise(e.found.fit)) return std::nullopt;
+  if (e.left.significant() ? left(alone) > half_of_it * left(e.found.fit)
+                           : log_odds_of(s, weighed, best->hypothesis, alone) < log_odds_of_all(s, e))
+    return std::nullopt;
   Explained again = explained(s, s.candidates.in_larger_sizes(), *large);
   if (again.left.significant()) return std::nullopt;
   if (!e.left.significant() && log_odds_of_all(s, again) < log_odds_of_all(s, e)) return std::nullopt;

@@ -72,7 +72,7 @@ std::optional<Selection> at_one_place(const std::vector<Signature>& all, const C
   const auto log_odds = [&](const AtPlace& p) {
     return std::log(p.prior) + log_evidence(p.gain / noise, p.dimension, false);
   };
-  const double found = log_odds_of_all(candidates, s, (null.chi2 - s.fit.chi2) / noise) +
+  const double found = log_odds_of_all(candidates, s.effects, (null.chi2 - s.fit.chi2) / noise) +
                        (further ? std::max(0.0, log_odds(*further)) : 0);
   Selection there = s;
   for (std::size_t i = s.effects.size(); i-- > 0;) {

@@ -305,10 +305,10 @@ std::vector<effects::EffectInstance> as_fitted(const Selection& s) {
   return out;
 }
 
-double log_odds_of_all(const Candidates& candidates, const Selection& s, double gain) {
-  const double each = std::max(0.0, gain) / std::max(1.0, static_cast<double>(s.effects.size()));
+double log_odds_of_all(const Candidates& candidates, const Hypothesis& effects, double gain) {
+  const double each = std::max(0.0, gain) / std::max(1.0, static_cast<double>(effects.size()));
   double sum = 0;
-  for (const effects::PlacedEffect& e : s.effects) sum += candidates.class_log_odds_of(e, each);
+  for (const effects::PlacedEffect& e : effects) sum += candidates.class_log_odds_of(e, each);
   return sum;
 }
 

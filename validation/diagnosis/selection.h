@@ -35,8 +35,8 @@ Selection select(const Observations&, const Candidates&, const std::vector<Candi
 /// Its effects and those that tie with them, with the values that were fitted last.
 std::vector<effects::EffectInstance> as_fitted(const Selection&);
 
-/// ln(prior · evidence) of all its effects against none of them. Each counts as having an equal share in what they gain
+/// ln(prior · evidence) of effects against none of them. Each counts as having an equal share in what they gain
 /// together in χ²: they are found one beside another, in an order that says nothing.
-double log_odds_of_all(const Candidates&, const Selection&, double gain);
+double log_odds_of_all(const Candidates&, const Hypothesis&, double gain);
 
 }  // namespace deflect::diagnosis
