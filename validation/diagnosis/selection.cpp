@@ -7,7 +7,9 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/diagnosis/fit_problem.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -17,6 +19,7 @@ constexpr double own_part_of_many = 0.5;       // of χ²: what more effects tha
 constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; of those that tie
 constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
 constexpr double never = -1e6;
+constexpr double as_good = 1;  // of χ²
 constexpr int most_passes = 6;
 
 class Search {
@@ -54,6 +57,11 @@ class Search {
       const double more = best->class_log_odds - odds;
       if ((more > better || (more == 0 && best->log_odds > own.log_odds + better)) && !goes_back(best->hypothesis)) {
         grant(best->hypothesis, best->fit.values);
+        return true;
+      }
+      if (const Candidate* simpler = simpler_form(own, all); simpler && !goes_back(simpler->hypothesis)) {
+        const Candidate instead = *simpler;
+        grant(instead.hypothesis, instead.fit.values);
         return true;
       }
       s_.ties[i] = tie(all);
@@ -241,17 +249,52 @@ class Search {
            c.fit.covariance.diagonal().tail(own).maxCoeff() > deviations * deviations;
   }
 
-  /// Whether it is a simpler candidate under another name: it stands at a bound of its own or leaves one of its
-  /// parameters open, and one with fewer parameters does as well.
-  static bool is_another(const Candidate& c, const std::vector<Candidate>& all) {
-    const auto parameters = [](const Candidate& x) { return x.added().effect->parameters.size(); };
-    return (runs_to_a_bound(c.hypothesis, c.fit) || leaves_one_open(c)) &&
-           std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
-             return other.fit.found && parameters(other) < parameters(c) && other.fit.chi2 < c.fit.chi2 + 1;
-           });
+  std::optional<VectorX> left_by(const Candidate& c, const VectorX& values) const {
+    const FitProblem problem(seen(), c.hypothesis);
+    return problem.residual(problem.coordinates(values));
   }
 
-  static Tie tie(const std::vector<Candidate>& all) {
+  /// Whether it is another one of fewer parameters wherever one of its own, on a logarithmic scale, stands at a bound,
+  /// and may stand there: a friction that need not slip is a restraint. Its derivative only says where it would begin
+  /// to.
+  bool may_be(const Candidate& simpler, const Candidate& c) const {
+    const auto fitted = left_by(c, c.fit.values), other = left_by(simpler, simpler.fit.values);
+    const std::vector<effects::EffectParameter>& own = c.added().effect->parameters;
+    for (std::size_t i = 0; i < own.size() && fitted && other; ++i)
+      for (const double bound : {own[i].low, own[i].high}) {
+        VectorX values = c.fit.values;
+        values(values.size() - std::ssize(own) + as_index(i)) = bound;
+        const auto there = own[i].log ? left_by(c, values) : std::nullopt;
+        if (there && there->squaredNorm() < fitted->squaredNorm() + as_good &&
+            (*there - *other).squaredNorm() < as_good)
+          return true;
+      }
+    return false;
+  }
+
+  static bool does_as_well(const Candidate& simpler, const Candidate& c) {
+    const auto parameters = [](const Candidate& x) { return x.added().effect->parameters.size(); };
+    return simpler.fit.found && c.fit.found && parameters(simpler) < parameters(c) &&
+           simpler.fit.chi2 < c.fit.chi2 + as_good;
+  }
+
+  /// The likeliest of those which it may be; null where there is none.
+  const Candidate* simpler_form(const Candidate& c, const std::vector<Candidate>& all) const {
+    const Candidate* out = nullptr;
+    for (const Candidate& other : all)
+      if (does_as_well(other, c) && !(out && out->log_odds >= other.log_odds) && may_be(other, c)) out = &other;
+    return out;
+  }
+
+  /// Whether it is a simpler candidate under another name: it stands at a bound of its own or leaves one of its
+  /// parameters open, and one with fewer parameters does as well; or it may be that one.
+  bool is_another(const Candidate& c, const std::vector<Candidate>& all) const {
+    const auto does = [&](const Candidate& other) { return does_as_well(other, c); };
+    if (std::none_of(all.begin(), all.end(), does)) return false;
+    return runs_to_a_bound(c.hypothesis, c.fit) || leaves_one_open(c) || simpler_form(c, all);
+  }
+
+  Tie tie(const std::vector<Candidate>& all) const {
     std::vector<double> log_odds;
     for (const Candidate& c : all) log_odds.push_back(c.fit.found && !is_another(c, all) ? c.log_odds : never);
     const std::vector<double> among = normalised(log_odds);

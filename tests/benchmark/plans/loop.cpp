@@ -60,7 +60,7 @@ Measurements read(const subject::Subject& s, const Measurements& plan, std::uint
 /// those the first that is as large as λ on some readings, within a quarter. Throws NumericalError where none is.
 VectorX drawn_truth(const diagnosis::Observations& o, const effects::PlacedEffect& e, double lambda,
                     std::uint64_t seed) {
-  constexpr double within = 2;
+  constexpr double within = 1.25;
   constexpr int tries = 5000;
   measurement::Random random(seed);
   for (int k = 0; k < tries; ++k) {
