@@ -14,7 +14,6 @@ import collections
 import json
 import pathlib
 import re
-import subprocess
 import zlib
 
 import numpy as np
@@ -156,21 +155,14 @@ def judge(folder, program):
     truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
     table, others, open_ties = collections.Counter(), [], []
     for name, t in truth.items():
-        out = folder / (name[:-4] + ".json")
-        if not out.exists():
-            subprocess.run([program, "diagnose", t["frame"], str(folder / name), "--json", str(out), "--quiet",
-                            "--bootstrap", "199"], check=True)
-        d = json.loads(out.read_text(encoding="utf-8"))
+        d = diagnosed(folder, name, t["frame"], program)
         what, other, open_tie = verdict(t, d)
         table[t["frame"], t["kind"], what] += 1
         others += [name] if other else []
         open_ties += [name] if open_tie else []
         print(f"{name}: {what}{' THE OTHER' if other else ''}{' OPEN TIE' if open_tie else ''}; lambda {t['lambda']}; "
               f"{d['verdict']}: {', '.join(d['missing'])}; ties {d['indistinguishable']}")
-    for kind in KINDS:
-        for frame in FRAMES:
-            counts = [f"{n} {what}" for (of, k, what), n in sorted(table.items()) if (of, k) == (frame, kind)]
-            print(f"| {kind} | {frame} | {', '.join(counts)} |")
+    print_table(table, KINDS)
     print(f"named with what it is to be told from: {others}\nties without a reading that splits them: {open_ties}")
 
 

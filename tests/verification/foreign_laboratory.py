@@ -7,8 +7,10 @@ d' S^-1 d, d the change of all readings by the effect, S the covariance of noise
 import argparse
 import copy
 import itertools
+import json
 import math
 import pathlib
+import subprocess
 
 import numpy as np
 
@@ -207,6 +209,23 @@ def write_set(path, f, factors, readings, ordered, units=None, columns=None):
         for row, value in zip(rows, readings[:, k] * (units or {}).get(name, 1) / size):
             row.append(f"{value:.{digits + (3 if name in (units or {}) else 0)}f}")
     path.write_text("\n".join(",".join(row) for row in [head] + rows) + "\n", encoding="utf-8")
+
+
+def diagnosed(folder, name, frame, program):
+    """What the program says of a set, as it was written before or now."""
+    out = folder / (name[:-4] + ".json")
+    if not out.exists():
+        subprocess.run([program, "diagnose", frame, str(folder / name), "--json", str(out), "--quiet", "--bootstrap",
+                        "199"], check=True)
+    return json.loads(out.read_text(encoding="utf-8"))
+
+
+def print_table(table, kinds):
+    """Counts by frame, kind and verdict."""
+    for kind in kinds:
+        for frame in FRAMES:
+            counts = [f"{n} {what}" for (of, k, what), n in sorted(table.items()) if (of, k) == (frame, kind)]
+            print(f"| {kind} | {frame} | {', '.join(counts)} |")
 
 
 def run(about, make, judge):

@@ -15,7 +15,6 @@ import json
 import math
 import pathlib
 import re
-import subprocess
 import zlib
 
 import numpy as np
@@ -119,10 +118,7 @@ def judge(folder, program):
     truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
     table = collections.Counter()
     for name, t in truth.items():
-        out = folder / (name[:-4] + ".json")
-        subprocess.run([program, "diagnose", t["frame"], str(folder / name), "--json", str(out), "--quiet",
-                        "--bootstrap", "199"], check=True)
-        d = json.loads(out.read_text(encoding="utf-8"))
+        d = diagnosed(folder, name, t["frame"], program)
         what = verdict(t, d)
         table[t["frame"], what] += 1
         print(f"{name}: {what}; lambda {t['lambda']}; {d['verdict']}: {', '.join(d['missing'])}; "

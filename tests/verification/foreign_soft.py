@@ -12,7 +12,6 @@ softer: its stiffnesses against tension, bending and torsion matter by turns.
 import collections
 import json
 import math
-import subprocess
 import zlib
 
 import numpy as np
@@ -66,20 +65,13 @@ def judge(folder, program):
     truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
     table, intervals = collections.Counter(), collections.Counter()
     for name, t in truth.items():
-        out = folder / (name[:-4] + ".json")
-        if not out.exists():
-            subprocess.run([program, "diagnose", t["frame"], str(folder / name), "--json", str(out), "--quiet",
-                            "--bootstrap", "199"], check=True)
-        d = json.loads(out.read_text(encoding="utf-8"))
+        d = diagnosed(folder, name, t["frame"], program)
         what, _, _ = verdict(t, d)
         table[t["frame"], t["kind"], what] += 1
         intervals[holds(t, d)] += 1
         print(f"{name}: {what}; factor {t['value_SI']}, lambda {t['lambda']}; {d['verdict']}: "
               f"{', '.join(d['missing'])}; holds {holds(t, d)}")
-    for kind in CAMPAIGNS:
-        for frame in FRAMES:
-            counts = [f"{n} {what}" for (of, k, what), n in sorted(table.items()) if (of, k) == (frame, kind)]
-            print(f"| {kind} | {frame} | {', '.join(counts)} |")
+    print_table(table, CAMPAIGNS)
     print(f"intervals that hold the factor as built: {intervals[True]} of {intervals[True] + intervals[False]}")
 
 
