@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/support/paths.h"
 #include "tests/support/program.h"
@@ -181,7 +182,8 @@ TEST_F(PlanProgram, PlansForcesAtNodes) {
   run("simulate lattice-girder --campaign paper --seed 5" + hidden + " -o " + path("girder.csv"));
   run("diagnose lattice-girder " + path("girder.csv") + " --json " + path("girder.json"));
   const auto found = nlohmann::json::parse(test::contents(path("girder.json")));
-  run("plan lattice-girder " + path("girder.json") + " --nodes all -o " + path("next.csv"));
+  const std::string told = run("plan lattice-girder " + path("girder.json") + " --nodes all -o " + path("next.csv"));
+  EXPECT_TRUE(std::regex_search(told, std::regex("node\\.[a-z0-9]+\\.f[xyz] = -?20000 N"))) << told;
   EXPECT_NE(test::contents(path("next.csv")).find("node."), std::string::npos);
   run("simulate lattice-girder --campaign " + path("next.csv") + " --seed 6" + hidden + " -o " + path("filled.csv"));
   run("diagnose lattice-girder " + path("girder.csv") + " " + path("filled.csv"));

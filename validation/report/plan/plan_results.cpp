@@ -19,15 +19,20 @@ std::string pair_words(const plan::Plan& p, const plan::Pair& pair) {
   return fmt::format("{} and {}", rival_words(p.rivals[pair.a]), rival_words(p.rivals[pair.b]));
 }
 
-/// "load.snow = 1", "fx = 50 N": what is not zero.
+/// "load.snow = 1", "node.B.fz = -500 N", "fx = 50 N": what is not zero.
 std::string load_words(const measurement::Measurements& m, const measurement::Reading& r) {
   std::string out;
   const auto add = [&](const std::string& name, double value, const char* unit) {
-    if (value != 0) out += fmt::format("{}{} = {:.4g}{}", out.empty() ? "" : ", ", name, value, unit);
+    if (value != 0) out += fmt::format("{}{} = {:.6g}{}", out.empty() ? "" : ", ", name, value, unit);
   };
   for (std::size_t k = 0; k < r.factors.size(); ++k) add("load." + m.instruments.load_cases[k], r.factors[k], "");
   const char* names[] = {"fx", "fy", "fz", "mx", "my", "mz"};
-  for (Eigen::Index i = 0; i < 6; ++i) add(nth(names, i), (i < 3 ? 1 : mm) * r.load(i), i < 3 ? " N" : " Nmm");
+  const auto add_wrench = [&](const std::string& at, const Vector6& w) {
+    for (Eigen::Index i = 0; i < 6; ++i) add(at + nth(names, i), (i < 3 ? 1 : mm) * w(i), i < 3 ? " N" : " Nmm");
+  };
+  if (m.instruments.stationary)
+    for (std::size_t p = 0; p < r.at_points.size(); ++p) add_wrench(m.instruments.load_points[p] + ".", r.at_points[p]);
+  add_wrench("", r.load);
   return out.empty() ? "no load" : out;
 }
 
