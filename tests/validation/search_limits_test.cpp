@@ -48,8 +48,8 @@ TEST(SearchLimits, AFactorOfFewStartsIsFound) {
   }
 }
 
-// A part of stiffness f beside one of ½: its deflection 1/(½ + f) hardly grows below f = 0.01. A search that the
-// derivative at f = 1 has sent to the end of the range, where nothing leads back, is begun again.
+// A part of stiffness f beside one of ½: its deflection 1/(½ + f) hardly grows below f = 0.01. A search from f = 50,
+// which the derivative there sends beyond the other end of the range, where nothing leads back, is begun again.
 TEST(SearchLimits, ASearchThatJumpedToTheEndIsBegunAgain) {
   EffectParameter factor = parameter("factor", 0.5, 1e-6, 50, 1.0);
   factor.log = true;

@@ -254,22 +254,21 @@ class Search {
     return problem.residual(problem.coordinates(values));
   }
 
-  /// Whether it is another one of fewer parameters wherever one of its own, on a logarithmic scale, stands at a bound,
-  /// and may stand there: a friction that need not slip is a restraint. Its derivative only says where it would begin
-  /// to.
-  bool may_be(const Candidate& simpler, const Candidate& c) const {
-    const auto fitted = left_by(c, c.fit.values), other = left_by(simpler, simpler.fit.values);
+  /// What is left where one of its own parameters, on a logarithmic scale, stands at a bound, as far as it may stand
+  /// there: that of a friction that need not slip. Its derivative only says where it would begin to.
+  std::vector<VectorX> left_at_bounds(const Candidate& c) const {
+    std::vector<VectorX> out;
+    const auto fitted = left_by(c, c.fit.values);
     const std::vector<effects::EffectParameter>& own = c.added().effect->parameters;
-    for (std::size_t i = 0; i < own.size() && fitted && other; ++i)
+    for (std::size_t i = 0; i < own.size() && fitted; ++i)
       for (const double bound : {own[i].low, own[i].high}) {
+        if (!own[i].log) continue;
         VectorX values = c.fit.values;
         values(values.size() - std::ssize(own) + as_index(i)) = bound;
-        const auto there = own[i].log ? left_by(c, values) : std::nullopt;
-        if (there && there->squaredNorm() < fitted->squaredNorm() + as_good &&
-            (*there - *other).squaredNorm() < as_good)
-          return true;
+        auto there = left_by(c, values);
+        if (there && there->squaredNorm() < fitted->squaredNorm() + as_good) out.push_back(std::move(*there));
       }
-    return false;
+    return out;
   }
 
   static bool does_as_well(const Candidate& simpler, const Candidate& c) {
@@ -278,11 +277,20 @@ class Search {
            simpler.fit.chi2 < c.fit.chi2 + as_good;
   }
 
-  /// The likeliest of those which it may be; null where there is none.
+  /// The likeliest of those that do as well and leave the same as it does at a bound, as a restraint does; null where
+  /// there is none.
   const Candidate* simpler_form(const Candidate& c, const std::vector<Candidate>& all) const {
-    const Candidate* out = nullptr;
+    std::vector<const Candidate*> simpler;
     for (const Candidate& other : all)
-      if (does_as_well(other, c) && !(out && out->log_odds >= other.log_odds) && may_be(other, c)) out = &other;
+      if (does_as_well(other, c)) simpler.push_back(&other);
+    const std::vector<VectorX> at_bounds = simpler.empty() ? std::vector<VectorX>() : left_at_bounds(c);
+    const Candidate* out = nullptr;
+    for (const Candidate* other : simpler) {
+      if (at_bounds.empty() || (out && out->log_odds >= other->log_odds)) continue;
+      const auto left = left_by(*other, other->fit.values);
+      const auto is_left = [&](const VectorX& there) { return left && (there - *left).squaredNorm() < as_good; };
+      if (std::any_of(at_bounds.begin(), at_bounds.end(), is_left)) out = other;
+    }
     return out;
   }
 

@@ -34,12 +34,14 @@ bool is_same(const PoseGroup& p, const PoseGroup& q) {
   return q.pose_mm_deg == p.pose_mm_deg && q.joints.size() == p.joints.size() && q.joints == p.joints;
 }
 
-bool is_within(const Limits& limits, const Reading& r) {
+bool is_within(const Limits& limits, const Reading& r, bool frame) {
   const auto within = [](const Vector3& load, const std::optional<double>& most) {
     return !most || load.cwiseAbs().maxCoeff() <= *most * (1 + 1e-9);
   };
+  const auto at_a_node = [&](const Vector6& load) { return within(load.head<3>(), limits.force); };
   return within(r.load.head<3>(), limits.force) && within(r.load.tail<3>(), limits.moment) &&
-         !(limits.forces_only && !r.load.tail<3>().isZero(0));
+         !(limits.forces_only && !r.load.tail<3>().isZero(0)) &&
+         (!frame || std::all_of(r.at_points.begin(), r.at_points.end(), at_a_node));
 }
 
 /// Poses that differ from each other, of a file.
@@ -226,7 +228,7 @@ Possible possible_campaign(const subject::Subject& s, const Measurements& given,
     if (here == poses.end() && limits.poses) continue;
     std::vector<std::size_t> kept;
     for (const std::size_t i : pose.readings)
-      if (is_within(limits, given.readings[i])) kept.push_back(i);
+      if (is_within(limits, given.readings[i], s.frame() != nullptr)) kept.push_back(i);
     if (kept.empty()) continue;
     rows.approach(pose);
     for (const std::size_t i : kept) {

@@ -124,7 +124,8 @@ void add_loads_at_nodes(std::vector<PossibleLoad>& out, const subject::Subject& 
 std::vector<PossibleLoad> possible_loads(const subject::Subject& s, const Measurements& data, const Limits& limits,
                                          bool together) {
   if (!s.frame() && !limits.nodes.empty())
-    throw InputError(fmt::format("{} is a machine: it is loaded at its tool point and has no nodes to load", s.name()));
+    throw InputError(fmt::format(
+        "{} is a machine: it is loaded at its tool point and has no nodes to load: leave them out", s.name()));
   std::vector<PossibleLoad> out;
   if (s.frame()) {
     out = loads_of_frame(s, data, together ? cases_together(s, limits) : 1);
