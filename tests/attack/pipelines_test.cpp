@@ -16,7 +16,7 @@
 namespace deflect::attack {
 namespace {
 
-constexpr unsigned usual_pipelines = 16, pipeline_shards = 8;
+constexpr unsigned usual_pipelines = 50, pipeline_shards = 10;
 
 /// λ² from which the hidden effect is large: 2 Δ ln L.
 constexpr double large = 64;

@@ -23,7 +23,7 @@ constexpr double sure = 0.7;            // probability from which something unkn
 constexpr double worth_limits = 0.01;   // probability of a candidate
 constexpr double half_of_it = 0.5;      // of what others leave: an effect that leaves more explains too little
 constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked into
-constexpr double rather_nothing = 0.6;  // probability from which nothing is called missing
+constexpr double rather_nothing = 0.5;  // probability from which nothing is called missing
 constexpr double unknown_beside =       // odds of something unknown beside effects, before any reading
     Candidates::prior_unknown / (1 - Candidates::prior_unknown);
 constexpr int most_rounds = 3;
@@ -192,8 +192,7 @@ bool is_missing_or_larger(const Diagnosis& d) {
 struct Explained {
   Selection found;
   LeftOver left;
-  /// Whitened with what the effects have changed. Hundreds of columns over all numbers: kept only where `left` is
-  /// significant.
+  /// Whitened with what the effects have changed; hundreds of columns, so kept only where `left` is significant.
   std::shared_ptr<const WhitenedFamilies> patterns = nullptr;
 };
 
@@ -283,6 +282,8 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   d.log_odds_unknown = e.left.log_evidence + std::log(unknown_beside);
   if (!found.effects.empty())
     weigh(d, told.larger, probability_of_unknown(e.left.log_evidence, unknown_beside), together);
+  // Something unknown alone was likelier, and nothing less likely, than they are beside what was found.
+  if (!d.unexplained && d.probability_nothing >= rather_nothing) found = nothing(told).found;
   sort_candidates(d);
   if (d.unexplained) {
     found = named_beside_unknown(e.patterns, told.all(), told.candidates, std::move(found));
@@ -327,8 +328,7 @@ Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data
     conclude(d, std::move(e), *step, data, work.threads);
     return d;
   }
-  // What is a gross outlier where nothing is missing may be none beside what was found, and the reverse. Then it counts
-  // for every candidate, and for whether anything is missing at all.
+  // A gross outlier where nothing is missing may be none beside what was found, and the reverse: all is asked anew.
   const Observations kept = o.keeping(e.found.observations.aside());
   parallel::Work again = work;
   again.journal = nullptr;  // it holds sets of the first
