@@ -3,7 +3,7 @@ import {axis, chart} from './charts.js';
 import {el, figure, num, numbers, table} from './dom.js';
 
 export const planHeadline = (p) => ({words: p.readings.length
-  ? `${p.readings.length} more readings are expected to show the right effect with a probability of ${num(p.probability, 3)}.`
+  ? `${p.readings.length === 1 ? '1 more reading is' : `${p.readings.length} more readings are`} expected to show the right effect with a probability of ${num(p.probability, 3)}.`
   : 'No reading within these limits tells the tied effects apart.'});
 
 const steps = (p) => chart('Expected probability by number of readings', 280, (t) => ({

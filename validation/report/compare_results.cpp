@@ -261,8 +261,8 @@ std::string compare_report(const compare::Comparison& c) {
     out += fmt::format("replicates scatter by {:.2f} {} ({} degrees of freedom)\n", fine * c.pure_error->sigma, unit,
                        c.pure_error->degrees_of_freedom);
   if (!c.set_aside.empty())
-    out += fmt::format("set aside as gross outliers: {} readings, lines {}\n", c.set_aside.size(),
-                       fmt::join(c.set_aside, ", "));
+    out += fmt::format("set aside as gross outliers: {}, {} {}\n", counted(c.set_aside.size(), "reading"),
+                       c.set_aside.size() == 1 ? "line" : "lines", fmt::join(c.set_aside, ", "));
   if (const std::string matter = tolerances_that_matter(c); !matter.empty())
     out += fmt::format("tolerances that matter most, by what one standard deviation moves: {}\n", matter);
   if (!c.strained.empty())

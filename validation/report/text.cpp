@@ -1,7 +1,8 @@
 #include "validation/report/text.h"
-#include "msa/base/index.h"
 
 #include <algorithm>
+
+#include "msa/base/index.h"
 
 namespace deflect::report {
 namespace {
@@ -18,6 +19,10 @@ std::string clip(std::string_view utf8, std::size_t most) {
   for (; bytes < utf8.size(); ++bytes)
     if (starts_letter(utf8[bytes]) && ++seen == most) break;
   return std::string(utf8.substr(0, bytes)) + "…";
+}
+
+std::string counted(std::size_t number, std::string_view one) {
+  return std::to_string(number) + ' ' + std::string(one) + (number == 1 ? "" : "s");
 }
 
 std::string csv_cell(std::string_view text) {

@@ -20,6 +20,9 @@ std::size_t letters(std::string_view utf8);
 /// The text, or its beginning and "…" where it has more than `most` letters.
 std::string clip(std::string_view utf8, std::size_t most);
 
+/// "1 reading", "2 readings": a number of things whose plural ends in s.
+std::string counted(std::size_t number, std::string_view one);
+
 /// A cell of a CSV file: in quotes, those of the text doubled.
 std::string csv_cell(std::string_view text);
 

@@ -174,16 +174,16 @@ Json planned_readings_json(const measurement::Measurements& m) {
 std::string plan_report(const plan::Plan& p) {
   std::string names;
   for (const plan::Rival& r : p.rivals) names += (names.empty() ? "" : ", ") + rival_words(r);
-  std::string out = fmt::format("{} after {} ({} readings): {} are tied\n\n", p.subject, p.data, p.taken, names);
+  std::string out =
+      fmt::format("{} after {} ({}): {} are tied\n\n", p.subject, p.data, counted(p.taken, "reading"), names);
   out += inseparable_words(p);
   if (p.readings.readings.empty()) return out + sensors_table(p);
-  out += fmt::format("{} readings at {} tell them apart with an expected probability of {:.3f} (before: {:.3f})",
-                     p.readings.readings.size(),
-                     p.readings.poses.size() == 1 ? "one pose" : fmt::format("{} poses", p.readings.poses.size()),
-                     p.probability, p.steps.front().probability);
+  out += fmt::format("{} at {} {} them apart with an expected probability of {:.3f} (before: {:.3f})",
+                     counted(p.readings.readings.size(), "reading"), counted(p.readings.poses.size(), "pose"),
+                     p.readings.readings.size() == 1 ? "tells" : "tell", p.probability, p.steps.front().probability);
   if (p.at_random > 0)
-    out += fmt::format("; drawn by lot from the same poses and loads, {}{} readings would do as well",
-                       p.at_random_is_more ? "more than " : "", p.at_random);
+    out += fmt::format("; drawn by lot from the same poses and loads, {}{} would do as well",
+                       p.at_random_is_more ? "more than " : "", counted(p.at_random, "reading"));
   out += ".\n\n" + readings_table(p.readings) + "\n" + steps_table(p);
   out += fmt::format("\nas planned, in this order:");
   for (const plan::Pair& pair : p.as_planned)

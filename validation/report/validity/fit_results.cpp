@@ -166,8 +166,9 @@ Json discrepancies_json(const std::vector<fit::Discrepancy>& all) {
 }
 
 std::string fit_report(const fit::FitResult& r) {
-  std::string out = fmt::format("{} fitted to {}: {} readings, {} numbers{}\n", r.device, r.data, r.readings, r.numbers,
-                                r.set_aside ? fmt::format(", {} readings set aside", r.set_aside) : "");
+  std::string out = fmt::format("{} fitted to {}: {}, {}{}\n", r.device, r.data, counted(r.readings, "reading"),
+                                counted(r.numbers, "number"),
+                                r.set_aside ? fmt::format(", {} set aside", counted(r.set_aside, "reading")) : "");
   out += how_read_text(r.how_read) + "\n";
   out += parameter_table(r) + correlation_table(r) + undetermined_text(r) + quality_table(r);
   for (const std::string& warning : fit_warnings(r)) {

@@ -100,7 +100,7 @@ std::string without_text(const ValidationStudy& s) {
   for (const validity::WithoutGroup& w : s.without) {
     if (!w.changes) continue;
     ++changes;
-    out += fmt::format("  changes without {} {} ({} readings): p = {}\n", w.kind, w.name, w.readings,
+    out += fmt::format("  changes without {} {} ({}): p = {}\n", w.kind, w.name, counted(w.readings, "reading"),
                        p_words(w.agreement.p_value));
   }
   if (changes == 0)
@@ -124,8 +124,8 @@ std::string calibration_text(const ValidationStudy& s) {
                         : "\nCalibration data: none given (--calibration). Data that a model was fitted to do not "
                           "validate it.\n";
   const double fine = error_unit(s.comparison).fine;
-  return fmt::format("\nCalibration data: {}, {} readings, kept apart; rms E {} there, {} {} here{}\n",
-                     s.calibration->data, s.calibration->readings, digits_of(fine * s.calibration->rms_E, 3),
+  return fmt::format("\nCalibration data: {}, {}, kept apart; rms E {} there, {} {} here{}\n", s.calibration->data,
+                     counted(s.calibration->readings, "reading"), digits_of(fine * s.calibration->rms_E, 3),
                      digits_of(fine * s.calibration->validation_rms_E, 3), error_unit(s.comparison).micro,
                      s.calibration->poses_shared
                          ? fmt::format("; {} of its poses are poses of the validation too", s.calibration->poses_shared)
@@ -224,11 +224,12 @@ std::string validity_words(const ValidationStudy& s) {
 }
 
 std::string validity_report(const ValidationStudy& s) {
-  std::string out = fmt::format("Validation of {} with {}: {} readings{}{}\n\n", s.device, s.data,
-                                s.comparison.readings, poses_words(s.comparison),
-                                s.comparison.set_aside.empty()
-                                    ? ""
-                                    : fmt::format(", {} gross outliers set aside", s.comparison.set_aside.size()));
+  std::string out =
+      fmt::format("Validation of {} with {}: {}{}{}\n\n", s.device, s.data, counted(s.comparison.readings, "reading"),
+                  poses_words(s.comparison),
+                  s.comparison.set_aside.empty()
+                      ? ""
+                      : fmt::format(", {} set aside", counted(s.comparison.set_aside.size(), "gross outlier")));
   for (const std::string& line : wrap(validity_words(s), line_length)) out += line + "\n";
   out += "\n" + channel_table(s);
   out += fmt::format("all: χ² = {} of {} numbers; area {} (a right model with independent errors: {} on average)\n",
