@@ -2,8 +2,9 @@
 // same machine read there, both fitted to everything.
 //
 // A truth is one of the pair, by turns, in a machine drawn within all tolerances and read by the MSA in the deformed
-// shape. Its parameters are drawn as a plan takes them to be before any reading, even over their coordinates, of those
-// that are as large as λ on the paper's plan, within a quarter. Beside the plan stand the readings of the campaign
+// shape. Its parameters are drawn as a plan takes them to be before any reading, even over their coordinates, until the
+// readings of the paper's plan show λ, within a quarter: what is chosen by the readings alone is distributed as a plan
+// takes it to be after them. Beside the plan stand the readings of the campaign
 // "random", in its order, that promise the same probability of the true effect. Truths that the paper's plan has
 // decided already, by a probability of 0.95 for either, are counted apart: they are no ties.
 #pragma once
@@ -17,7 +18,7 @@ namespace deflect::benchmark {
 
 struct Tied {
   std::string subject, first, second;  ///< built-in device or frame; effects
-  double lambda = 8;                   ///< of the truth on the paper's plan, within a quarter
+  double lambda = 8;                   ///< that the paper's plan shows, within a quarter
   double moment = 0;                   ///< Nm: largest of the rig; 0: 1 Nm, the force on a lever of 20 mm
   bool nodes = false;                  ///< of a frame: forces at all nodes can be planned too
 };
