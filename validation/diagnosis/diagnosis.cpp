@@ -282,7 +282,7 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   d.log_odds_unknown = e.left.log_evidence + std::log(unknown_beside);
   if (!found.effects.empty())
     weigh(d, told.larger, probability_of_unknown(e.left.log_evidence, unknown_beside), together);
-  // Something unknown alone was likelier, and nothing less likely, than they are beside what was found.
+  // In the first step something unknown counts for more than beside what was found: there nothing may be likelier.
   if (!d.unexplained && d.probability_nothing >= rather_nothing) found = nothing(told).found;
   sort_candidates(d);
   if (d.unexplained) {
