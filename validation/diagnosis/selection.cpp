@@ -19,7 +19,8 @@ constexpr double own_part_of_many = 0.5;       // of χ²: what more effects tha
 constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; of those that tie
 constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
 constexpr double never = -1e6;
-constexpr double as_good = 1;  // of χ²
+constexpr double as_good = 1;    // of χ²
+constexpr double far_worse = 2;  // times the error in the shape that was granted before
 constexpr int most_passes = 6;
 
 class Search {
@@ -210,28 +211,32 @@ class Search {
     return before && before->log_likelihood <= granted_.back().log_likelihood;
   }
 
-  void grant(const Hypothesis& h, VectorX values) {
-    count_as_right(h, std::move(values));
+  void grant(const Hypothesis& h, const VectorX& values) {
+    count_as_right(h, values);
     granted_.push_back({s_.effects, log_likelihood(seen(), s_.effects, s_.fit.values)});
   }
 
   /// These effects count as right, at the values with which the deformed shape is that of the subject they make. Where
-  /// passes do not lead there, with the shape at the values given.
-  void count_as_right(const Hypothesis& h, VectorX values) {
+  /// passes do not lead there, with the shape at the values given; where that shape makes the error far larger, so that
+  /// only a tolerance many times as large as it may be takes it off again, with the shape that was granted before.
+  void count_as_right(const Hypothesis& h, const VectorX& given) {
+    VectorX values = given;
     std::optional<Selection> first;
+    const auto error = [&](const Observations& o) { return o.rmse(subject_with(o, h, values)); };
+    const double error_before = error(seen());
     double before = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_passes; ++pass) {
-      const subject::Subject right = subject_with(seen(), h, values);
-      Observations next = seen().granted(right);
+      Observations next = seen().granted(subject_with(seen(), h, values));
       Fit again = fit_of_all(next, h, values);
       if (!again.found && first) break;
       if (!again.found) throw std::logic_error("a fit that was found is not found again");
       again = searched_again(next, h, std::move(again), candidates_.threads());
       values = again.values;
-      s_.observations = std::move(next);
-      s_.effects = h;
-      s_.fit = std::move(again);
-      s_.ties.assign(h.size(), {});
+      if (error(next) > far_worse * error_before) {
+        if (first) break;
+        if (Fit as_before = fit_of_all(seen(), h, given); as_before.found) return take(h, seen(), std::move(as_before));
+      }
+      take(h, std::move(next), std::move(again));
       const double change = seen().change_of_shape(subject_with(seen(), h, values));
       if (!(change > known_shape)) return;
       if (!first) first = s_;
@@ -239,6 +244,13 @@ class Search {
       before = change;
     }
     s_ = std::move(*first);
+  }
+
+  void take(const Hypothesis& h, Observations o, Fit f) {
+    s_.observations = std::move(o);
+    s_.effects = h;
+    s_.fit = std::move(f);
+    s_.ties.assign(h.size(), {});
   }
 
   /// Whether these data leave open one of the parameters of a law that bends: of a friction that never slips its force.
