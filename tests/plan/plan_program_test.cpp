@@ -184,6 +184,7 @@ TEST_F(PlanProgram, PlansForcesAtNodes) {
   const auto found = nlohmann::json::parse(test::contents(path("girder.json")));
   const std::string told = run("plan lattice-girder " + path("girder.json") + " --nodes all -o " + path("next.csv"));
   EXPECT_TRUE(std::regex_search(told, std::regex("node\\.[a-z0-9]+\\.f[xyz] = -?20000 N"))) << told;
+  EXPECT_EQ(told.find("pose"), std::string::npos) << "a frame has none: " << told;
   EXPECT_NE(test::contents(path("next.csv")).find("node."), std::string::npos);
   run("simulate lattice-girder --campaign " + path("next.csv") + " --seed 6" + hidden + " -o " + path("filled.csv"));
   run("diagnose lattice-girder " + path("girder.csv") + " " + path("filled.csv"));

@@ -12,9 +12,15 @@ const steps = (p) => chart('Expected probability by number of readings', 280, (t
   options: {scales: {x: axis('further readings', t, {min: 0}), y: axis('probability of the right effect', t, {min: 0, max: 1})}, plugins: {legend: {display: false}}},
 }));
 
+/** A frame stands as it is: its readings have no poses. */
+function readingsToTake(all) {
+  const stands = all.some((r) => r.at);
+  const columns = ['reading', ...(stands ? ['pose', 'at (mm, deg; joints in rad or mm)'] : []), 'load', 'how'];
+  return {columns, rows: all.map((r, i) => [i + 1, ...(stands ? [r.pose, r.at] : []), r.load, r.how])};
+}
+
 export function planned(p) {
-  const readings = p.readings.map((r, i) => [i + 1, r.pose, r.at, r.load, r.how]);
-  const columns = ['reading', 'pose', 'at (mm, deg; joints in rad or mm)', 'load', 'how'];
+  const {columns, rows: readings} = readingsToTake(p.readings);
   const instrument = ['a further instrument', 'readings enough', 'probability by all', 'its line in the description'];
   const instruments = (p.new_sensors || []).map((n) => [n.name, n.enough.length ? `${n.enough.length}: ${n.enough.slice(0, 4).join(', ')}${n.enough.length > 4 ? ' …' : ''}` : 'more', num(n.probability, 3), n.entry]);
   return [
@@ -85,7 +91,7 @@ function stands(f, found) {
 
 function campaign(f, found) {
   if (!f.readings || !found) return null;
-  const columns = ['reading', 'pose', 'at (mm, deg; joints in rad or mm)', 'load', 'how'], rows = f.readings.map((r, i) => [i + 1, r.pose, r.at, r.load, r.how]);
+  const {columns, rows} = readingsToTake(f.readings);
   return figure('foresight-readings', f.given_within_limits === false ? 'The campaign within the limits' : 'The better campaign', '', table(columns, rows, {most: 60, show: String}), numbers('better-campaign', () => ({columns, rows})));
 }
 

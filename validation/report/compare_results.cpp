@@ -238,8 +238,8 @@ std::vector<EstimatedNoise> estimated_noise(const compare::Comparison& c) {
 std::string compare_report(const compare::Comparison& c) {
   const char* unit = error_unit(c).micro;
   const double fine = error_unit(c).fine;
-  std::string out = fmt::format("{} against {}: {} readings{}\n\n{}\n", c.device, c.data, c.readings, poses_words(c),
-                                verdict_words(c));
+  std::string out = fmt::format("{} against {}: {}{}\n\n{}\n", c.device, c.data, counted(c.readings, "reading"),
+                                poses_words(c), verdict_words(c));
   const std::string found = findings_text(c);
   if (!found.empty()) out += "\n" + found;
   for (std::size_t i = compare::is_mistaken(c) ? 1 : 0; i < c.mistakes.size(); ++i)  // the headline has been said

@@ -85,7 +85,7 @@ std::vector<ReadingCells> cells_of(const compare::Comparison& c) {
 }
 
 std::string poses_words(const compare::Comparison& c) {
-  return c.study.standing->has_tool_point() || c.poses > 1 ? fmt::format(" at {} poses", c.poses) : "";
+  return c.study.standing->has_tool_point() || c.poses > 1 ? " at " + counted(c.poses, "pose") : "";
 }
 
 std::string subjects(const compare::Comparison& c) {
@@ -97,8 +97,8 @@ std::string data_sentence(const compare::Comparison& c) {
     std::vector<std::string> loads, sensors;
     for (const measurement::LoadChannel& each : measurement::load_channels(*c.study.data)) loads.push_back(each.name);
     for (const measurement::SensorChannel& each : c.study.data->instruments.sensors) sensors.push_back(each.name);
-    return fmt::format("Frame {}, measurements {}: {} readings of {} under {}.", c.device, file_of(c), c.readings,
-                       short_list(sensors, 8), short_list(loads, 6));
+    return fmt::format("Frame {}, measurements {}: {} of {} under {}.", c.device, file_of(c),
+                       counted(c.readings, "reading"), short_list(sensors, 8), short_list(loads, 6));
   }
   Vector3 low = Vector3::Constant(INFINITY), high = -low;
   for (std::size_t p = 0; p < c.poses; ++p) {
@@ -106,9 +106,9 @@ std::string data_sentence(const compare::Comparison& c) {
     low = low.cwiseMin(at);
     high = high.cwiseMax(at);
   }
-  return fmt::format("Device {}, measurements {}: {} readings at {} poses (tool point x {}, y {}, z {} mm), {}.",
-                     c.device, file_of(c), c.readings, c.poses, range(low.x(), high.x()), range(low.y(), high.y()),
-                     range(low.z(), high.z()), loads_text(*c.study.data));
+  return fmt::format("Device {}, measurements {}: {} at {} (tool point x {}, y {}, z {} mm), {}.", c.device, file_of(c),
+                     counted(c.readings, "reading"), counted(c.poses, "pose"), range(low.x(), high.x()),
+                     range(low.y(), high.y()), range(low.z(), high.z()), loads_text(*c.study.data));
 }
 
 std::string noise_sentence(const compare::Comparison& c) {

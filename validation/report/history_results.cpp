@@ -75,9 +75,9 @@ std::vector<Cells> versions_table(const compare::History& h, bool shape) {
 std::string history_report(const compare::History& h) {
   const std::vector<compare::Comparison>& all = h.versions;
   const bool shape = shape_matters(all);
-  std::string out =
-      fmt::format("{}: {} readings{}\n\n", all.front().data, all.front().readings, poses_words(all.front())) +
-      aligned(versions_table(h, shape));
+  std::string out = fmt::format("{}: {}{}\n\n", all.front().data, counted(all.front().readings, "reading"),
+                                poses_words(all.front())) +
+                    aligned(versions_table(h, shape));
   if (shape)
     out +=
         "Linear devices leave out equilibrium in the deformed shape. It is known and no missing effect: what is left "

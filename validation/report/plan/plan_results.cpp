@@ -49,14 +49,17 @@ std::string pose_words(const measurement::Measurements& m, const measurement::Po
 
 /// Readings one after the other that are alike share a line: "1 … 24".
 std::string readings_table(const measurement::Measurements& m) {
-  std::vector<std::vector<std::string>> rows = {
-      {"readings", "pose", m.by_joints() ? "joints" : "x y z mm, angles deg", "load", "how"}};
+  const bool stands = !m.instruments.stationary;
+  std::vector<std::vector<std::string>> rows = {{"readings"}};
+  if (stands) rows[0].insert(rows[0].end(), {"pose", m.by_joints() ? "joints" : "x y z mm, angles deg"});
+  rows[0].insert(rows[0].end(), {"load", "how"});
   constexpr std::size_t shown = 24;  // lines
   std::size_t first = 0, told = 0;
   for (std::size_t i = 0; i < m.readings.size(); ++i) {
     const measurement::Reading& r = m.readings[i];
-    std::vector<std::string> row = {"", m.poses[r.pose].label, pose_words(m, m.poses[r.pose]), load_words(m, r),
-                                    r.notes.front()};
+    std::vector<std::string> row = {""};
+    if (stands) row.insert(row.end(), {m.poses[r.pose].label, pose_words(m, m.poses[r.pose])});
+    row.insert(row.end(), {load_words(m, r), r.notes.front()});
     const bool again = rows.size() > 1 && std::equal(row.begin() + 1, row.end(), rows.back().begin() + 1);
     if (!again && rows.size() > shown) break;
     if (!again) rows.push_back(std::move(row)), first = i + 1;
@@ -171,6 +174,22 @@ Json planned_readings_json(const measurement::Measurements& m) {
   return out;
 }
 
+/// What the readings in the order planned tell of each pair; of many, those that are told worst.
+std::string pairs_table(const plan::Plan& p) {
+  constexpr std::size_t shown = 8;
+  std::vector<plan::Pair> pairs = p.as_planned;
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const plan::Pair& a, const plan::Pair& b) { return a.separation < b.separation; });
+  std::vector<std::vector<std::string>> rows = {{"after all of them", "λ²", "or more", "ln Bayes factor"}};
+  for (std::size_t i = 0; i < std::min(shown, pairs.size()); ++i)
+    rows.push_back({"  " + pair_words(p, pairs[i]), fmt::format("{:.1f}", pairs[i].separation),
+                    fmt::format("{:.1f}", pairs[i].least), fmt::format("{:.1f}", pairs[i].separation / 2)});
+  std::string out = aligned(rows);
+  if (pairs.size() > shown)
+    out += fmt::format("  and {} more that are told better: --json has all\n", pairs.size() - shown);
+  return out;
+}
+
 std::string plan_report(const plan::Plan& p) {
   std::string names;
   for (const plan::Rival& r : p.rivals) names += (names.empty() ? "" : ", ") + rival_words(r);
@@ -178,18 +197,16 @@ std::string plan_report(const plan::Plan& p) {
       fmt::format("{} after {} ({}): {} are tied\n\n", p.subject, p.data, counted(p.taken, "reading"), names);
   out += inseparable_words(p);
   if (p.readings.readings.empty()) return out + sensors_table(p);
-  out += fmt::format("{} at {} {} them apart with an expected probability of {:.3f} (before: {:.3f})",
-                     counted(p.readings.readings.size(), "reading"), counted(p.readings.poses.size(), "pose"),
+  const bool stands = !p.readings.instruments.stationary;
+  out += fmt::format("{}{} {} them apart with an expected probability of {:.3f} (before: {:.3f})",
+                     counted(p.readings.readings.size(), "reading"),
+                     stands ? " at " + counted(p.readings.poses.size(), "pose") : "",
                      p.readings.readings.size() == 1 ? "tells" : "tell", p.probability, p.steps.front().probability);
   if (p.at_random > 0)
-    out += fmt::format("; drawn by lot from the same poses and loads, {}{} would do as well",
+    out += fmt::format("; drawn by lot from the same {}loads, {}{} would do as well", stands ? "poses and " : "",
                        p.at_random_is_more ? "more than " : "", counted(p.at_random, "reading"));
   out += ".\n\n" + readings_table(p.readings) + "\n" + steps_table(p);
-  out += fmt::format("\nas planned, in this order:");
-  for (const plan::Pair& pair : p.as_planned)
-    out += fmt::format(" {}: λ² = {:.1f} ({:.1f} or more), ln Bayes factor {:.1f};", pair_words(p, pair),
-                       pair.separation, pair.least, pair.separation / 2);
-  out.back() = '\n';
+  out += "\n" + pairs_table(p);
   return out + sensors_table(p);
 }
 
