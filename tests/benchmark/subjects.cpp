@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <iterator>
 
 #include "msa/base/error.h"
@@ -98,7 +99,9 @@ class Examined {
       for (const char* campaign : subject_.machine() ? of_machines : of_frames)
         plans_.push_back(std::make_unique<Plan>(subject_, effects_, campaign, seed, o));
     }
-    for (const auto& plan : plans_) oracles_.emplace_back(*plan, 0.25, 0.5, seed, threads);
+    for (const auto& plan : plans_)
+      oracles_.emplace_back(std::async(
+          std::launch::deferred, [&plan = *plan, seed, threads] { return Oracle(plan, 0.25, 0.5, seed, threads); }));
   }
 
   std::size_t candidates() const { return plans_.front()->signatures.size(); }
@@ -136,7 +139,7 @@ class Examined {
       out.lambda_res = beyond_others(plan, hidden.front(), gone);
     }
     diagnose_with(gone, *data, plan, hidden, truth, out);
-    if (order.kind != SetKind::stress && !is_open(order.kind)) ask(oracles_[which], plan, *data, out);
+    if (order.kind != SetKind::stress && !is_open(order.kind)) ask(oracles_[which].get(), plan, *data, out);
     return out;
   }
 
@@ -309,7 +312,7 @@ class Examined {
   subject::Subject subject_;
   std::vector<effects::Effect> effects_;
   std::vector<std::unique_ptr<Plan>> plans_;
-  std::vector<Oracle> oracles_;
+  std::vector<std::shared_future<Oracle>> oracles_;  // made when they are first asked, which takes minutes
 };
 
 constexpr std::uint64_t most_sets = 1'000'000'000;  // of one subject, so that each has a number of its own
