@@ -32,6 +32,7 @@ constexpr double nearest_factor = 0.3, farthest_factor = 20;  // logarithms, eac
 constexpr int halvings = 10, refinements = 3;                 // of what lets go, in its size
 constexpr double no_more = 1e-3;                              // of χ²: as good as nothing
 constexpr double rounding_of_residuals = 1e-10;               // of a thousand readings of 1e4 σ
+constexpr double hardly_seen = 1e-7;                          // σ, by the step of a difference, of size 1e-5
 
 /// So many times as far from where it vanishes; a factor on a logarithmic scale runs towards 0 or up by its logarithm.
 double times_as_large(const effects::EffectParameter& p, double small, double times) {
@@ -128,8 +129,14 @@ int FreeResidual::df(const VectorX& x, MatrixX& J) const {
       moved(k) += each;
       const std::optional<VectorX> there = problem->residual(moved);
       if (!there) continue;
-      // Rounding is no slope: a search takes the parameter of a column that is next to nothing as far as it likes.
-      if (const VectorX change = *there - here; change.norm() > rounding_of_residuals) J.col(i) = change / each;
+      VectorX change = *there - here;
+      // A search takes the parameter of a column that is next to nothing as far as it likes. Rounding is no slope, nor
+      // is what changes alike to both sides, as 1 − cos of a turn about an axis that these readings do not show.
+      if (change.norm() < hardly_seen) {
+        moved(k) = from(k) - each;
+        if (const std::optional<VectorX> back = problem->residual(moved)) change = (*there - *back) / 2;
+      }
+      if (change.norm() > rounding_of_residuals) J.col(i) = change / each;
       break;
     }
   }
