@@ -28,6 +28,11 @@ namespace fs = std::filesystem;
   throw InputError(fmt::format("{}: cannot be written ({})", path.string(), reason));
 }
 
+std::vector<fs::path>& kept_as_they_are() {
+  static std::vector<fs::path> all;
+  return all;
+}
+
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 /// An open file that is closed in the end.
@@ -171,7 +176,15 @@ std::string read_text(const fs::path& path) {
   return text;
 }
 
+void keep_as_it_is(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) kept_as_they_are().push_back(path);
+}
+
 void write_text(const fs::path& path, const std::string& text) {
+  for (const fs::path& kept : kept_as_they_are())
+    if (std::error_code error; fs::equivalent(path, kept, error) && !error)
+      refuse(path, "this is an input file: name another");
   const int reason = system_error_of([&] {
     const Target t = target_of(path);
     require_writable(path, t);

@@ -24,6 +24,10 @@ std::string read_text(const std::filesystem::path&);
 /// Writes as described above and creates missing folders. Throws InputError "file: cannot be written (reason)".
 void write_text(const std::filesystem::path& path, const std::string& text);
 
+/// For the rest of the run write_text() refuses this file: what a command read is never what it writes. Of files that
+/// are written to directly nothing is lost, and they are not refused. Not to be called while others write.
+void keep_as_it_is(const std::filesystem::path&);
+
 /// For libraries that write files themselves: `write` fills an empty file whose name ends with `suffix`, and its text
 /// is returned. The file is the part file of `path`, or a temporary file where `path` is not a regular file.
 std::string text_written_by(const std::filesystem::path& path, const std::string& suffix,

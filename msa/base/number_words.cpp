@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 
 namespace deflect {
 namespace {
@@ -47,6 +49,22 @@ std::string fall_words(double from, double to) {
   int digits = 2;
   while (digits < 6 && digits_of(from, digits) == digits_of(to, digits)) ++digits;
   return digits_of(from, digits) + " to " + digits_of(to, digits);
+}
+
+std::string odd_character_words(std::string_view utf8) {
+  const auto at = std::find_if(utf8.begin(), utf8.end(), [](unsigned char c) { return c >= 0xC0; });
+  if (at == utf8.end()) return "";
+  const auto first = static_cast<unsigned char>(*at);
+  const int more = first >= 0xF0 ? 3 : first >= 0xE0 ? 2 : 1;
+  if (std::distance(at, utf8.end()) <= more) return "";
+  std::uint32_t code = first & (0x3FU >> more);
+  for (int i = 1; i <= more; ++i) code = (code << 6U) | (static_cast<unsigned char>(at[i]) & 0x3FU);
+  const bool minus = code == 0x2212 || (code >= 0x2010 && code <= 0x2015);
+  const bool space = code == 0xA0 || code == 0x202F || (code >= 0x2000 && code <= 0x200B) || code == 0xFEFF;
+  return fmt::format("; it holds U+{:04X}{}", code,
+                     minus   ? ", a minus sign that is no '-'"
+                     : space ? ", a space that is no ' '"
+                             : "");
 }
 
 }  // namespace deflect

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace deflect {
 
@@ -17,6 +18,10 @@ std::string interval_words(double value, double low, double high);
 
 /// The number rounded to the decimals that a sentence prints, so that the sentence is true for the printed number.
 double as_printed(double value, int decimals);
+
+/// What the eye does not see in a text that should be a number: "; it holds U+2212, a minus sign that is no '-'". Empty
+/// where all characters are ASCII.
+std::string odd_character_words(std::string_view utf8);
 
 /// "5.2 to 1.1": with two digits, or more (six at most) where the two would otherwise look equal.
 std::string fall_words(double from, double to);

@@ -10,6 +10,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "msa/base/number_words.h"
 #include "msa/base/spatial.h"
 
 namespace deflect {
@@ -163,7 +164,7 @@ double parse_number(std::string_view text) {
   double value = 0;
   std::string_view rest;
   if (!leading_number(trim(text), value, rest) || !rest.empty())
-    throw InputError(fmt::format("'{}' is not a finite number", text));
+    throw InputError(fmt::format("'{}' is not a finite number{}", text, odd_character_words(text)));
   return value;
 }
 
@@ -172,8 +173,9 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   double value = 0;
   std::string_view unit;
   if (!leading_number(trim(text), value, unit))
-    throw InputError(fmt::format("'{}' is not {}: write a finite number{}", text, r.words,
-                                 r.units.empty() ? "" : fmt::format(" and a unit, one of {}", unit_list(r))));
+    throw InputError(fmt::format("'{}' is not {}: write a finite number{}{}", text, r.words,
+                                 r.units.empty() ? "" : fmt::format(" and a unit, one of {}", unit_list(r)),
+                                 odd_character_words(text)));
   if (unit.empty()) {
     if (dimension == Dimension::none || dimension == Dimension::ratio) return value;
     throw InputError(

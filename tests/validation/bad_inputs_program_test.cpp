@@ -58,6 +58,14 @@ TEST_F(BadInputs, ADeviceIsNotWrittenOverWithoutAWord) {
   expect(add + " --force", 0, "modulus");
 }
 
+TEST_F(BadInputs, ASessionGivenTwiceIsNoReplicate) {
+  const std::string data = path("data.csv"), copy = path("copy.csv");
+  expect("simulate " + device + " --campaign paper --seed 1 -o " + data, 0, "27 readings");
+  ASSERT_EQ(test::command("cp " + data + " " + copy).code, 0);
+  for (const std::string& again : {data, copy})
+    expect("diagnose " + device + " " + data + " " + again + " --bootstrap 99", 2, "these are the readings of");
+}
+
 TEST_F(BadInputs, TheSameMachineTwiceIsSaid) {
   const std::string data = path("data.csv");
   expect("simulate " + device + " --campaign paper --geometry linear -o " + data, 0, "27 readings");

@@ -87,6 +87,49 @@ TEST_F(OutputFiles, LinksAndModesStayAndReadOnlyFilesAreRefused) {
   }
 }
 
+// By its name, by a link, in a folder of results: measurements stay what they were.
+TEST_F(OutputFiles, WhatIsReadIsNotWrittenOver) {
+  const std::string device = "haptic-6psu-ideal-joints ", data = path("data.csv");
+  ASSERT_EQ(test::deflect("simulate " + device + "--campaign paper --seed 1 -o " + data).code, 0);
+  fs::create_symlink("data.csv", folder / "link.csv");
+  fs::create_hard_link(folder / "data.csv", folder / "residuals.csv");
+  const std::string before = contents(folder / "data.csv");
+  for (const std::string& words :
+       {"compare " + device + data + " --json " + data, "compare " + device + data + " --report " + data,
+        "compare " + device + data + " --json " + path("link.csv"), "history " + data + " " + device + "--json " + data,
+        "simulate " + device + "--campaign " + data + " -o " + data,
+        "compare " + device + data + " --out " + path(".")}) {
+    const test::Run run = test::deflect(words);
+    EXPECT_EQ(run.code, 2) << words;
+    EXPECT_NE(run.out.find("this is an input file: name another"), std::string::npos) << words << "\n" << run.out;
+    EXPECT_EQ(contents(folder / "data.csv"), before) << words;
+  }
+}
+
+TEST_F(OutputFiles, TwoOutputsAreTwoFiles) {
+  const test::Run run =
+      test::deflect("simulate haptic-6psu --campaign paper -o " + path("two.csv") + " --json " + path("./two.csv"));
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.out.find("are one file"), std::string::npos) << run.out;
+  EXPECT_FALSE(fs::exists(folder / "two.csv"));
+  EXPECT_EQ(test::deflect("simulate haptic-6psu --campaign paper -o /dev/null --json /dev/null").code, 0);
+}
+
+// Texts longer than a buffer and short ones, by a full disk and by a pipe that nobody reads; where messages cannot be
+// written the code is the same.
+TEST_F(OutputFiles, LostWordsAreNoBugAndChangeNoCode) {
+  const std::string program = "'" + test::program() + "' ";
+  for (const char* words : {"effects", "devices --schema", "--help", "solve haptic-6psu --pose 0,0,173.9"}) {
+    EXPECT_EQ(test::command(program + words + " > /dev/full").code, 2) << words;
+    EXPECT_EQ(test::command("trap '' PIPE; { " + program + words + "; echo $? > " + path("code") + "; } | true").code,
+              0);
+    EXPECT_EQ(contents(folder / "code"), "2\n") << words;
+  }
+  EXPECT_EQ(test::command(program + "solve haptic-6psu --pose 0,0,9999 2> /dev/full").code, 3);
+  EXPECT_EQ(test::command(program + "nothing 2>&-").code, 2);
+  EXPECT_EQ(test::command(program + solve + "--verbose > /dev/null 2> /dev/full").code, 0);
+}
+
 TEST_F(OutputFiles, ANameInADeviceLeadsOutOfNoFolder) {
   std::ofstream(folder / "device.yaml") << R"(
 name: ../../far/x

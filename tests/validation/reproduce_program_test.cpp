@@ -41,6 +41,7 @@ TEST_F(ReproduceProgram, EveryCommandWithAResultIsReproduced) {
       "--json "
       "simulate.json");
   make("solve haptic-6psu --pose 25,25,198.9 --load=-50,0,0 --json solve.json");
+  make("solve haptic-6psu --pose 25,25,198.9 --load=50,0,0 --json drawn.json --out drawn");
   make("validate haptic-6psu --json validate.json");
   make("map haptic-6psu --n 3 --x=-20,20 --y=-20,20 --z 160,200 --json map.json");
   make("frame logan-5-8 --json frame.json");
@@ -50,8 +51,8 @@ TEST_F(ReproduceProgram, EveryCommandWithAResultIsReproduced) {
   make("add haptic-6psu-ideal-joints joint_clearance --set gap_mm=0.02 -o after.yaml --json add.json");
   make("history data.csv haptic-6psu-ideal-joints after.yaml --json history.json");
   make("check solve.json --device haptic-6psu --pose 25,25,198.9 --load=-50,0,0 --json check.json");
-  for (const char* name :
-       {"simulate", "solve", "validate", "map", "frame", "show", "compare", "diagnose", "add", "history", "check"})
+  for (const char* name : {"simulate", "solve", "drawn", "validate", "map", "frame", "show", "compare", "diagnose",
+                           "add", "history", "check"})
     expect_reproduced(std::string(name) + ".json");
   // What is written besides is not touched.
   EXPECT_EQ(result("simulate.json")["provenance"]["outputs"][0]["name"], "data.csv");

@@ -88,6 +88,19 @@ TEST(TolerantReader, ARowOfUnitsIsNoReading) {
   // A name and a unit that contradict each other are not guessed at.
   EXPECT_EQ(test::refusal(usual_file(",mm,mm,mm,deg,deg,deg,N,N,N,um,mm,mm\n" + row)),
             "data.csv:2: column 'ux_mm': the unit below is 'um': name and unit must say the same");
+  EXPECT_EQ(test::refusal("pose,x,y,z,roll,pitch,yaw,fx,fy,fz,ux,uy,uz\n"
+                          "-,mm,mm,mm,deg,deg,deg,N,N,N,mmm,mm,mm\n" +
+                          row),
+            "data.csv:2: column 'ux': 'mmm' is no unit: write one such as mm, um, N, Nmm, deg or rad, or '-' for none");
+}
+
+TEST(TolerantReader, CharactersThatLookLikeOthersAreNamed) {
+  EXPECT_EQ(
+      test::refusal(usual_file("a,0,0,174,0,0,0,50,0,0,\u22121,2,3\n")),
+      "data.csv:2: column 'ux_mm': '\u22121' is not a finite number; write one such as -12.5 or 1.25e-3; it holds "
+      "U+2212, a minus sign that is no '-'");
+  EXPECT_NE(test::refusal(usual_file("a,0,0,174,0,0,0,50,0,0,1\u00a0,2,3\n")).find("U+00A0, a space that is no ' '"),
+            std::string::npos);
 }
 
 TEST(TolerantReader, WhatWasNotMeasuredMayBeSaidInWords) {

@@ -19,6 +19,7 @@
 #include "msa/mechanism/device_schema.h"
 #include "msa/mechanism/questions.h"
 #include "validation/cli/command.h"
+#include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
 #include "validation/measurement/joined.h"
 #include "validation/report/schema_results.h"
@@ -128,6 +129,7 @@ subject::Subject read_subject(const std::string& name) {
 }
 
 measurement::Measurements read_data(const std::string& file, const subject::Subject& subject) {
+  keep_as_it_is(file);
   measurement::Measurements data = subject.placed(measurement::read_measurements(file, subject.instruments()));
   const auto count = [&](auto has) { return std::count_if(data.readings.begin(), data.readings.end(), has); };
   for (const auto& s : data.instruments.sensors) tell("sensor {} is read", s.name);
@@ -145,18 +147,29 @@ measurement::Measurements read_data(const std::string& file, const subject::Subj
 
 measurement::Measurements read_sessions(const std::vector<std::string>& files, const subject::Subject& subject) {
   std::vector<measurement::Measurements> sessions;
-  for (const std::string& file : files) sessions.push_back(read_data(file, subject));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    sessions.push_back(read_data(files[i], subject));
+    for (std::size_t k = 0; k < i; ++k)
+      if (files[i] == files[k] || read_text(files[i]) == read_text(files[k]))
+        throw InputError(fmt::format(
+            "{}: these are the readings of {} again: the same numbers twice are no replicates. Give each session once",
+            files[i], files[k]));
+  }
   return subject.placed(measurement::joined(sessions));
 }
 
-void remark_if_of_another(const std::string& result, const subject::Subject& s) {
+void remark_if_of_another(const std::string& result, const std::string& device, const subject::Subject& s) {
   const auto json = nlohmann::json::parse(read_text(result), nullptr, false);
   if (!json.is_object() || !json.contains("device") || !json["device"].is_string()) return;  // said where it is read
+  const auto outputs = json.value(nlohmann::json::json_pointer("/provenance/outputs"), nlohmann::json::array());
+  for (const auto& written : outputs)  // the fitted description itself, which has the name of its file
+    if (written.is_object() && written.value("sha256", "") == hash_of(device)) return;
   if (const std::string of = json["device"]; of != s.name())
     remark(fmt::format("{} is of '{}', and this is '{}': what it says holds for the former", result, of, s.name()));
 }
 
 measurement::Measurements read_plan(const std::string& file, const subject::Subject& subject) {
+  keep_as_it_is(file);
   return subject.placed(measurement::read_plan(file, subject.instruments()));
 }
 

@@ -66,12 +66,23 @@ std::string catalogue_text() {
   return out;
 }
 
+bool names_files(const Option& o) { return choices_of(o.value).files || o.value == "MACHINE"; }
+
+/// Not of devices such as /dev/stdout, which take one after the other.
+bool are_one_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  const bool there = fs::exists(a, error), also = fs::exists(b, error);
+  if (there != also) return false;
+  if (there) return fs::is_regular_file(a, error) && fs::equivalent(a, b, error);
+  return fs::weakly_canonical(fs::absolute(a), error) == fs::weakly_canonical(fs::absolute(b), error);
+}
+
 std::vector<result_files::HashedFile> inputs_of(const Command& command) {
   std::vector<result_files::HashedFile> out;
   bool knows_effects = false;
   for (const Option& o : command.options) {
     knows_effects = knows_effects || o.flags == "--effects";
-    if (is_output(o) || !(choices_of(o.value).files || o.value == "MACHINE")) continue;
+    if (is_output(o) || !names_files(o)) continue;
     for (const std::string& name : values_of(o)) {
       std::error_code error;
       if (is_built_in(name) || fs::exists(name, error)) out.push_back({name, hash_of(name)});
@@ -97,6 +108,38 @@ result_files::Provenance provenance_of(const Command& command) {
 }  // namespace
 
 void set_command(const Command& command) { running = &command; }
+
+void require_separate_files(const Command& command) {
+  struct Named {
+    std::string flag, file;
+  };
+  std::vector<Named> read, written;
+  bool can_force = false, forced = false;
+  for (const Option& o : command.options) {
+    const auto* flag = std::get_if<bool*>(&o.target);
+    if (flag && o.flags == "--force") can_force = true, forced = **flag;
+    if (o.flags == "--out" || !(is_output(o) || names_files(o))) continue;
+    const std::string called = o.flags.substr(0, o.flags.find(','));
+    for (const std::string& file : values_of(o)) {
+      if (is_output(o))
+        written.push_back({called, file});
+      else if (!is_built_in(file))
+        read.push_back({called, file});
+    }
+  }
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    const auto& [flag, file] = written[i];
+    const bool can = can_force && flag == "-o";
+    for (const Named& input : read)
+      if (are_one_file(input.file, file) && !(can && forced))
+        throw InputError(fmt::format("{} {}: this is an input file: name another{}", flag, file,
+                                     can ? ", or overwrite it with --force" : ""));
+    for (std::size_t k = 0; k < i; ++k)
+      if (are_one_file(written[k].file, file))
+        throw InputError(fmt::format("{} {} and {} {} are one file, of which one would be lost: name another",
+                                     written[k].flag, written[k].file, flag, file));
+  }
+}
 
 void write_result(const std::string& file, const std::string& json) {
   write_file(file, running ? result_files::with_provenance(json, provenance_of(*running)) : json);

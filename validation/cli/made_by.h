@@ -12,6 +12,10 @@ namespace deflect::cli {
 /// For the rest of the run: the command that runs. It must live as long.
 void set_command(const Command&);
 
+/// Before any work. InputError where a file that the command is to write is one that it reads, or two outputs are one
+/// file: one of them would be lost. With --force a description may be written in place of the one that was read.
+void require_separate_files(const Command&);
+
 /// write_file() of a JSON object, with its provenance (provenance.h).
 void write_result(const std::string& file, const std::string& json);
 

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <sstream>
+#include <system_error>
 #include <thread>
 
 #include "msa/base/error.h"
@@ -64,15 +65,25 @@ bool parse(CLI::App& app, const std::vector<Command>& commands, int argc, char**
 void run(const Command& command, Ranks* ranks) {
   const deflect::cli::Step step(command.name);
   deflect::cli::set_command(command);
+  deflect::cli::require_separate_files(command);
   if (const auto* shared = std::get_if<deflect::cli::SharedRun>(&command.run)) {
     (*shared)(ranks);
   } else if (!ranks || ranks->first()) {
     if (ranks)
-      fmt::print(stderr, "deflect: {} runs on one of the {} processes: its work is not divided\n", command.name,
-                 ranks->size());
+      deflect::cli::say(fmt::format("deflect: {} runs on one of the {} processes: its work is not divided\n",
+                                    command.name, ranks->size()));
     std::get<deflect::cli::Run>(command.run)();
   }
+}
+
+/// A printed word that is lost ends the run: fmt throws where a buffer is full, the rest is flushed here.
+template <class Work>
+void printing(const Work& work) try {
+  work();
   if (std::fflush(stdout) != 0) throw deflect::InputError("standard output cannot be written");
+} catch (const std::system_error&) {
+  if (std::ferror(stdout)) throw deflect::InputError("standard output cannot be written");
+  throw;
 }
 
 }  // namespace
@@ -116,7 +127,8 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < commands.size(); ++i)
       if (parsers[i]->parsed()) run(commands[i], ranks);
   };
-  return deflect::parallel::run_on_ranks(work, [](const deflect::Ending& end) {
-    fmt::print(stderr, "deflect: {}{}\n", end.code == 70 ? "a bug, please report it: " : "", end.message);
+  const auto whole = [&](Ranks* ranks) { printing([&] { work(ranks); }); };
+  return deflect::parallel::run_on_ranks(whole, [](const deflect::Ending& end) {
+    say(fmt::format("deflect: {}{}\n", end.code == 70 ? "a bug, please report it: " : "", end.message));
   });
 }

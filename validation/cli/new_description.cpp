@@ -25,14 +25,6 @@ void require_whole(const std::string& text, const std::string& out, bool is_fram
 
 }  // namespace
 
-void require_other_file(const std::string& out, const std::vector<std::string>& inputs, bool force) {
-  for (const std::string& input : inputs) {
-    std::error_code error;
-    if (!force && std::filesystem::equivalent(input, out, error) && !error)
-      throw InputError(fmt::format("-o {}: this is an input file: name another, or overwrite it with --force", out));
-  }
-}
-
 void write_description(const subject::Subject& changed, const std::string& before, const std::string& done,
                        const std::vector<std::string>& items, const std::string& out) {
   const std::string line = changed.about();

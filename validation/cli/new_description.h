@@ -8,9 +8,6 @@
 
 namespace deflect::cli {
 
-/// InputError where `out` is one of the input files, unless `force`.
-void require_other_file(const std::string& out, const std::vector<std::string>& inputs, bool force);
-
 /// Writes the changed subject whole or not at all. The name of the new one is its file's; what was done to `before`
 /// ("with …") stands in its one line and, item by item, above all. What is written can be read, and stands.
 void write_description(const subject::Subject& changed, const std::string& before, const std::string& done,

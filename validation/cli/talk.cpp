@@ -33,13 +33,15 @@ bool verbose() { return talk == Talk::verbose; }
 
 parallel::ProgressStream progress_stream() { return talk == Talk::quiet ? nullptr : parallel::watched_stream(); }
 
+void say(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 void tell_line(const std::string& text) {
-  fmt::print(stderr, "deflect {:.2f} s: {}\n", seconds(), text);
+  say(fmt::format("deflect {:.2f} s: {}\n", seconds(), text));
   std::fflush(stderr);
 }
 
 void remark(const std::string& text) {
-  if (talk != Talk::quiet) fmt::print(stderr, "note: {}\n", text);
+  if (talk != Talk::quiet) say(fmt::format("note: {}\n", text));
 }
 
 Step::Step(std::string what) : what_(std::move(what)), start_(seconds()), failing_(std::uncaught_exceptions()) {

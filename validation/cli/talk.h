@@ -20,6 +20,9 @@ bool verbose();
 /// The stream for progress of long work: watched_stream(), or none if quiet.
 parallel::ProgressStream progress_stream();
 
+/// Prints on standard error, if that can be: what becomes of the work does not depend on it.
+void say(const std::string&);
+
 /// Prints one line on standard error with the seconds since the program began: "deflect 0.12 s: …". tell() does so only
 /// if verbose.
 void tell_line(const std::string&);

@@ -11,6 +11,7 @@
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "msa/base/index.h"
+#include "msa/base/number_words.h"
 #include "msa/base/outcome.h"
 #include "msa/base/units.h"
 #include "validation/measurement/column_names.h"
@@ -369,8 +370,8 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
   if (decimal_comma_ && decimal_comma_number(cell, value)) return value;
   if (cell.empty()) refuse(row, column, "the cell is empty; a finite number is wanted");
   refuse(row, column,
-         fmt::format("'{}' is not a finite number; write one such as {}", excerpt(cell),
-                     decimal_comma_ ? "-12,5 or 1,25e-3" : "-12.5 or 1.25e-3"));
+         fmt::format("'{}' is not a finite number; write one such as {}{}", excerpt(cell),
+                     decimal_comma_ ? "-12,5 or 1,25e-3" : "-12.5 or 1.25e-3", odd_character_words(cell)));
 }
 
 void CsvTable::refuse(std::size_t row, std::size_t column, std::string_view message) const {

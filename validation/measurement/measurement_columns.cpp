@@ -95,24 +95,28 @@ class ContractColumns {
     return elsewhere ? std::nullopt : named;
   }
 
-  /// A row without numbers whose cells are units, two or more.
+  /// A row without numbers whose cells are units, two or more and twice as many as there are other words.
   bool has_units_row() const {
     if (table_.rows() < 2) return false;
-    std::size_t units = 0;
+    std::size_t units = 0, others = 0;
     for (std::size_t column = 0; column < table_.header().size(); ++column) {
       const std::string_view cell = table_.text(0, column);
       if (cell.empty() || is_note(table_.header()[column])) continue;
       if (table_.is_number(0, column)) return false;
       const std::optional<NamedColumn> named = named_column(table_.header()[column], {}, instruments_);
       if (named && (named->name == "pose" || named->name == "sequence")) continue;
-      if (!is_unit(cell)) return false;
-      units += cell != "-";
+      ++(is_unit(cell) ? units : others);
+      units -= cell == "-";
     }
-    return units > 1;
+    return units > 1 && units >= 2 * others;
   }
 
   [[noreturn]] void refuse(std::size_t column, std::vector<std::string> known) const {
     const std::string& written = table_.header()[column];
+    if (units_ && !is_unit(table_.text(0, column)))
+      table_.refuse(0, column,
+                    fmt::format("'{}' is no unit: write one such as mm, um, N, Nmm, deg or rad, or '-' for none",
+                                excerpt(table_.text(0, column))));
     if (units_ && named_column(written, {}, instruments_) && !table_.text(0, column).empty())
       table_.refuse(
           0, column,

@@ -109,15 +109,7 @@ std::vector<effects::EffectInstance> add_effects(subject::Subject& m, const AddA
   return added;
 }
 
-std::vector<std::string> inputs_of(const AddArguments& a) {
-  std::vector<std::string> out = a.files;
-  out.push_back(subject_file(a.device).string());
-  if (!a.from.empty()) out.push_back(a.from);
-  return out;
-}
-
 void run(const AddArguments& a) {
-  require_other_file(a.out, inputs_of(a), a.force);
   subject::Subject m = read_subject(a.device);
   const std::vector<effects::Effect> all = known_effects(a.files, m);
   const std::vector<effects::EffectInstance> added = add_effects(m, a, all);

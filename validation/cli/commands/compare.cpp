@@ -66,7 +66,7 @@ void validate(const CompareArguments& a, const subject::Subject& s, const measur
   }
   if (!a.fit.empty()) {
     options.fit = fit::read_fit(read_text(a.fit), a.fit, s);
-    remark_if_of_another(a.fit, s);
+    remark_if_of_another(a.fit, a.device, s);
   }
   if (!a.free.empty()) options.parameters = fit::free_parameters(s, a.free, {}, read_text(subject_file(a.device)));
   const validity::ValidationStudy study = timed_with_progress(

@@ -22,7 +22,6 @@ struct FitArguments {
 
 void run(const FitArguments& a) {
   const std::string file = subject_file(a.device).string();
-  require_other_file(a.out, {file, a.data}, a.force);
   const subject::Subject s = read_subject(a.device);
   const std::vector<fit::FreeParameter> free = fit::free_parameters(s, a.free, a.priors, read_text(file));
   const measurement::Measurements data = read_data(a.data, s);

@@ -215,7 +215,7 @@ void run(const PlanArguments& a) {
   const subject::Subject s = read_subject(a.device);
   const std::vector<effects::Effect> effects = known_effects(a.files, s);
   const diagnosis::FoundEffects found = diagnosis::read_found_effects(a.diagnosis);
-  remark_if_of_another(a.diagnosis, s);
+  remark_if_of_another(a.diagnosis, a.device, s);
   const diagnosis::FoundTie& tie = tie_of(a, found);
   const measurement::Measurements data = diagnosed_data(a, found, s);
   plan::PlanOptions o;

@@ -69,7 +69,7 @@ void run(const PredictArguments& a) {
   std::optional<fit::Knowledge> known;
   if (!a.fit.empty()) {
     known = fit::read_fit(read_text(a.fit), a.fit, s);
-    remark_if_of_another(a.fit, s);
+    remark_if_of_another(a.fit, a.device, s);
   }
   fit::PredictedPlanOptions o;
   o.theories = parse_theories(a.theories);

@@ -26,12 +26,6 @@ void write_structure(const std::filesystem::path& folder, const studies::SolveRe
   write_vtu(folder / "deflected.vtu", r.mesh, r.fields);
 }
 
-/// As asked for; else one element a member, which is exact at its ends, or as many as a drawing wants.
-frame::MemberDivision division(const Mechanism& m, const Stand& at, const SolveArguments& a) {
-  if (!a.element_size.empty() || a.out.empty()) return divide(m, a.element_size);
-  return frame::equal_division(at.configuration, 20);
-}
-
 void run(const SolveArguments& a) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
@@ -44,9 +38,14 @@ void run(const SolveArguments& a) {
   const Geometry geometry = parse_geometry(a.geometry);
   const Stand at = parse_stand(m, a.pose, a.joints, false);
   const studies::SolveResult r = timed(fmt::format("{}, geometry {}", theories::titles_of(theories), a.geometry), [&] {
-    return studies::solve(m, at, load, division(m, at, a), geometry, theories);
+    return studies::solve(m, at, load, divide(m, a.element_size), geometry, theories);
   });
-  if (!a.out.empty()) write_structure(a.out, r);
+  // One element a member is exact at its ends; a drawing wants more. The result is that of the first.
+  if (!a.out.empty() && a.element_size.empty())
+    write_structure(a.out,
+                    studies::solve(m, at, load, frame::equal_division(at.configuration, 20), geometry, theories));
+  else if (!a.out.empty())
+    write_structure(a.out, r);
   if (!a.json.empty()) write_result(a.json, report::solve_json(r));
   fmt::print("{}\n{}", m.name, report::solve_report(r));
   if (load.isZero(0) && r.reference().stiffness_mm.isZero(1e-9))
@@ -77,8 +76,8 @@ Command solve_command() {
             "of any size). In the deformed shape K is the tangent, and loads past buckling are refused",
             &a->geometry},
            {"--element-size", "LENGTH",
-            "size of the MSA's elements, with unit (default: one per member, exact at its ends; twenty with --out, for "
-            "the drawing; at least eight in the deformed shape)",
+            "size of the MSA's elements, with unit (default: one per member, exact at its ends; at least eight in the "
+            "deformed shape; --out draws twenty)",
             &a->element_size},
            {"--json", "FILE", "write the result", &a->json},
            report_option(&a->report),
