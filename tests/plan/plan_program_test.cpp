@@ -113,7 +113,9 @@ TEST_F(PlanProgram, AReadingThatIsAnOutlierToNothingAloneCountsForAllCandidates)
 TEST_F(PlanProgram, SeveralSessionsAreFoundAgain) {
   auto diagnosis = nlohmann::json::parse(test::contents(path("diagnosis.json")));
   std::filesystem::create_directory(path("elsewhere"));
-  std::filesystem::copy_file(path("paper.csv"), path("elsewhere/second.csv"));
+  const test::Run second =
+      test::deflect("simulate " + device + " --campaign paper --seed 9 -o " + path("elsewhere/second.csv"));
+  ASSERT_EQ(second.code, 0) << second.out;
   diagnosis["data"] = path("paper.csv") + " + gone/second.csv";
   std::ofstream(path("elsewhere/two.json")) << diagnosis.dump(2);
   const std::string planned = "plan " + device + " " + path("elsewhere/two.json") + " --readings 1 ";

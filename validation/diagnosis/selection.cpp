@@ -283,10 +283,11 @@ class Search {
     return out;
   }
 
+  /// Nor is a common cause another name of a law that is less likely, because it has fewer parameters.
   static bool does_as_well(const Candidate& simpler, const Candidate& c) {
     const auto parameters = [](const Candidate& x) { return x.added().effect->parameters.size(); };
     return simpler.fit.found && c.fit.found && parameters(simpler) < parameters(c) &&
-           simpler.fit.chi2 < c.fit.chi2 + as_good;
+           simpler.fit.chi2 < c.fit.chi2 + as_good && simpler.log_odds >= c.log_odds;
   }
 
   /// The likeliest of those that do as well and leave the same as it does at a bound, as a restraint does; null where
