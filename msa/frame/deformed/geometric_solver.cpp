@@ -160,7 +160,8 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
   state.K = tangent_stiffness(at, work.lambda, loads);
   const Tangent tangent(e, state.K);
   state.stable = tangent.stable();
-  if (const double size = size_of(work.shape.path, model_.nodes.size(), work.length); size > 0 && tangent.regular())
+  if (const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
+      size > 0 && tangent.regular() && !balances(work, at, e, state.load_factor, loads - at.forces, gaps))
     state.residual = size_of(tangent.solve(loads - at.forces, gaps), model_.nodes.size(), work.length) / size;
   if (work.jump) release_jumps(work, state);
   if (work.jump || (at.spring_tangents.array() <= work.least_tangents.array()).any()) {  // without the floor

@@ -43,7 +43,7 @@ namespace deflect::frame {
 struct GeometricOptions {
   Geometry geometry = Geometry::finite;
   int load_steps = 1;        ///< at least; second order applies the whole load at once
-  int max_iterations = 30;   ///< in a step
+  int max_iterations = 30;   ///< in a step; second order: in which the change has to halve
   double tolerance = 1e-12;  ///< of the last change of shape, relative
   int halvings = 20;         ///< of a load step, before it fails
   /// Slips of the friction elements before the load, by their numbers; empty: zero. A friction element changes from
@@ -70,8 +70,9 @@ struct GeometricState {
   double load_factor = 0;  ///< share of the load that is carried
   double snaps_at = 0;     ///< share of the load at which the structure snaps through before this state; 0: it does not
   int steps = 0, iterations = 0;
-  double residual = 0;        ///< size of the next Newton step, relative to the displacement
-  VectorX u;                  ///< by freedom of GeometricSolver::model(): m, rotation vector, the scalars' unit
+  double residual =
+      0;      ///< size of the next Newton step, relative to the displacement; 0 where it is rounding of forces
+  VectorX u;  ///< by freedom of GeometricSolver::model(): m, rotation vector, the scalars' unit
   VectorX constraint_forces;  ///< λ: constraint k exerts λ_k forms_k on the freedoms
   VectorX elongations, spring_forces, spring_tangents;
   std::vector<SpringLaw> jumping;  ///< by spring, with their known forces (stepped_spring.h); empty: no spring jumps
@@ -121,9 +122,12 @@ class GeometricSolver {
   Model constrained(const std::vector<LinearForm>& forms) const;
   double driving_force(const Linearisation& rest, const VectorX& values) const;
   VectorX update_forces(Work&, const Linearisation&, const Elimination&, const Model& constraints, double factor) const;
+  /// Whether at each free freedom the forces cancel up to what rounding leaves of those that were added up there.
+  bool balances(const Work&, const Linearisation&, const Elimination&, double factor, const VectorX& unbalanced,
+                const VectorX& gaps) const;
   struct Step;
   Step newton(Work&, double factor, Geometry) const;
-  void keep_laws(Work&, const Linearisation&, const VectorX& loads, Step&) const;
+  void keep_laws(Work&, const Linearisation&, const VectorX& loads, Step&, VectorX& unbalanced) const;
   bool iterate(Work&, double factor, const GeometricOptions&, GeometricState&) const;
   bool arrived(Work&, const VectorX& before, const VectorX& tangent, double factor, const GeometricState&,
                bool doubtful) const;

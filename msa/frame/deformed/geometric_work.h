@@ -97,6 +97,7 @@ struct GeometricSolver::Step {
   std::unique_ptr<Tangent> tangent;
   VectorX u;              // empty: the tangent is singular
   double unbalanced = 0;  // the largest force before the step, of the largest load; of a structure with laws that jump
+  bool balanced = false;  // see balances()
 };
 
 }  // namespace deflect::frame

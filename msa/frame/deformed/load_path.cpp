@@ -11,8 +11,9 @@
 namespace deflect::frame {
 namespace {
 
-constexpr double follows = 0.1;        // Newton's steps, each beside the one before: nothing else can be near
-constexpr double balance = 0.25;       // of work and energy in a step
+constexpr double follows = 0.1;   // Newton's steps, each beside the one before: nothing else can be near
+constexpr double balance = 0.25;  // of work and energy in a step
+constexpr double of_sums = 100 * std::numeric_limits<double>::epsilon();  // rounding of a sum of up to 100 terms
 constexpr int most_iterations = 5000;  // of all steps: a path of ever smaller ones leads nowhere in reasonable time
 
 /// N; moments over the length.
@@ -28,6 +29,19 @@ double size_of_reduced(const VectorX& forces, const Elimination& e, double lengt
   for (Eigen::Index i = 0; i < forces.size(); ++i)
     size = std::max(size, std::abs(forces(i)) / (nth(e.dof_of_q, i) % 6 > 2 ? length : 1));
   return size;
+}
+
+/// By freedom, the sum of the magnitudes of loads and of the forces of members and springs, which balance there.
+VectorX unsigned_forces(const Model& m, const Linearisation& at, const VectorX& loads) {
+  VectorX sum = loads.cwiseAbs();
+  for (std::size_t i = 0; i < m.beams.size(); ++i) {
+    const VectorX forces = at.beams[i].forces.cwiseAbs();
+    sum.segment<6>(6 * m.beams[i].a) += forces.head<6>();
+    sum.segment<6>(6 * m.beams[i].b) += forces.tail<6>();
+  }
+  for (std::size_t i = 0; i < at.spring_forms.size(); ++i)
+    for (const Term& t : at.spring_forms[i]) sum(t.dof) += std::abs(t.coefficient * at.spring_forces(as_index(i)));
+  return sum;
 }
 
 double largest_spin(const VectorX& u, std::size_t nodes) {
@@ -54,6 +68,21 @@ Eigen::SparseMatrix<double> damped(const Model& m, double damping, double length
 
 }  // namespace
 
+bool GeometricSolver::balances(const Work& work, const Linearisation& at, const Elimination& e, double factor,
+                               const VectorX& unbalanced, const VectorX& gaps) const {
+  const VectorX forces = e.reduce(unbalanced), sizes = unsigned_forces(model_, at, factor * work.loads);
+  VectorX size = VectorX::Zero(e.independent);
+  for (std::size_t dof = 0; dof < e.T.size(); ++dof)
+    for (const Term& t : e.T[dof]) size(t.dof) += std::abs(t.coefficient) * sizes(as_index(dof));
+  if ((forces.array().abs() > of_sums * size.array()).any()) return false;
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    double motion = factor * std::abs(work.values(as_index(active_[k])));
+    for (const Term& t : at.forms[active_[k]]) motion += std::abs(t.coefficient * work.shape.path(t.dof));
+    if (std::abs(gaps(as_index(k))) > of_sums * motion) return false;
+  }
+  return true;
+}
+
 GeometricSolver::Step GeometricSolver::newton(Work& work, double factor, Geometry geometry) const {
   const VectorX loads = factor * work.loads;
   const Linearisation at = work.linearise(geometry);
@@ -66,14 +95,17 @@ GeometricSolver::Step GeometricSolver::newton(Work& work, double factor, Geometr
   if (work.jump)
     step.unbalanced = size_of_reduced(e.reduce(loads - at.forces), e, work.length) / size_of_forces(loads, work.length);
   if (!step.tangent->regular()) return step;
-  step.u = step.tangent->solve(loads - at.forces, gaps);
-  if (work.jump) keep_laws(work, at, loads, step);
+  VectorX unbalanced = loads - at.forces;
+  step.u = step.tangent->solve(unbalanced, gaps);
+  if (work.jump) keep_laws(work, at, loads, step, unbalanced);
+  step.balanced = balances(work, at, e, factor, unbalanced, gaps);
   return step;
 }
 
 /// Springs that jump keep their laws at the end of the step: with the offsets o as unknowns its elongations are
-/// δ = δ0 + P o, P = Eᵀ K⁻¹ E k, E the forms of these springs and k their stiffness in K.
-void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const VectorX& loads, Step& step) const {
+/// δ = δ0 + P o, P = Eᵀ K⁻¹ E k, E the forms of these springs and k their stiffness in K. Their new offsets push too.
+void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const VectorX& loads, Step& step,
+                                VectorX& unbalanced) const {
   Work::Jumping& j = work.jumping;
   const auto n = std::ssize(j.springs);
   MatrixX pushes = MatrixX::Zero(model_.dofs(), n);
@@ -98,6 +130,7 @@ void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const Vecto
     return;
   }
   step.u += moved * (found.o - j.o);
+  unbalanced += pushes * (found.o - j.o);
   j.o = found.o, j.d = found.d, j.s = found.s, j.end = found.end;
   work.set_offsets();
 }
@@ -132,12 +165,14 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
   const bool finite = options.geometry == Geometry::finite;
   work.strain(factor);
   if (work.jump && state.load_factor == 0) begin_jumps(work, factor);
-  double previous = std::numeric_limits<double>::infinity(), least = previous, slowest = 0;
-  int stalls = 0;    // steps in turn, each longer than half of the one before
+  double previous = std::numeric_limits<double>::infinity(), least = previous, halved = previous, slowest = 0;
+  int stalls = 0;    // steps in turn, each longer than half of the one before; second order: than the whole
   int trembles = 0;  // small steps in turn, none shorter than half of the shortest before
+  int balanced = 0;  // states in turn in which rounding is all that the forces lack: the next step is noise
   const VectorX before = work.shape.path;
   VectorX tangent;
-  for (int i = 1; i <= options.max_iterations; ++i) {
+  int last = options.max_iterations;
+  for (int i = 1; i <= last; ++i) {
     ++state.iterations;
     // At rest a spring has the stiffness that it will have under the load, later no less than a small part of it.
     const bool at_rest = i == 1 && state.load_factor == 0 && !work.jump;
@@ -151,7 +186,8 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
       work.why = "a node would turn by more than a right angle at once";
       return false;
     }
-    work.shape.move(step.u);
+    balanced = step.balanced ? balanced + 1 : 0;
+    if (balanced < 2) work.shape.move(step.u);
     if (i == 1) tangent = step.u;
     const double change = size_of(step.u, model_.nodes.size(), work.length);
     const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
@@ -159,23 +195,29 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     // play by forces of second order goes on to tremble: stiffnesses round the forces that move it, the more the less
     // the load. Where all forces balance, it may tremble further.
     // In large steps of stiff members Newton's method gains digits in every other iteration only.
-    stalls = change > 0.5 * previous ? stalls + 1 : 0;
+    // Second order takes the K_G of the shape before, so that its steps shrink by a constant factor: it goes on while
+    // they do, and only what no longer shrinks is rounding.
+    stalls = change > (finite ? 0.5 : 0.999) * previous ? stalls + 1 : 0;
     const bool stalled = change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && stalls >= 2;
     const double small = step.unbalanced < 1e-8 ? 1e-4 : 1e-5;
     trembles = work.jump && change < small * size && change > 0.5 * least ? trembles + 1 : 0;
+    if (const double larger = std::max(change, previous); !finite && larger < halved / 2) {
+      halved = larger;
+      last = i + options.max_iterations;
+    }
     least = std::min(least, change);
     // Second order takes the forces of constraints from the shape before: that too has to have settled.
     const bool settled = finite || previous <= options.tolerance * size;
-    if ((change <= options.tolerance * size && settled) || stalled || trembles >= 5) {
+    if ((change <= options.tolerance * size && settled) || stalled || trembles >= 5 || balanced >= 2) {
       // Across a buckling or limit load Newton finds equilibria that nothing would stay in.
       const bool stable = !finite || step.tangent->stable();
       if (!stable) work.why = "the equilibrium is unstable there, a buckling or limit load was passed";
       return stable && (!finite || arrived(work, before, tangent, factor, state, slowest > follows));
     }
-    if (i > 1 && change > 1e-6 * size) slowest = std::max(slowest, change / previous);
+    if (i > 1 && change > 1e-6 * size && !step.balanced) slowest = std::max(slowest, change / previous);
     previous = change;
   }
-  work.why = fmt::format("Newton did not converge in {} iterations", options.max_iterations);
+  work.why = fmt::format("Newton did not converge in {} iterations", last);
   return false;
 }
 

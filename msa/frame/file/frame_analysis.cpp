@@ -11,7 +11,7 @@
 namespace deflect::frame {
 namespace {
 
-constexpr double cancelling = 1e-7, of_moved_supports = 1e-8;  // see FrameChecks
+constexpr double of_moved_supports = 1e-8;  // see FrameChecks
 
 /// Unsigned sums of a beam's stiffness times its displacements, local axes: the size of what may cancel. With moved
 /// supports a small part of the same with the motion that a beam makes as a rigid body.

@@ -5,9 +5,17 @@
 
 namespace deflect::frame {
 
+struct GeometricState;
+
 /// Solves the load cases in second-order or finite geometry and adds the solver's notes. `out` contains the structure,
 /// to which the constraints that hold idle spins are added.
 void analyse_geometric(const FrameDescription&, const FrameOptions&, FrameResult& out);
+
+/// Resultant of loads, constraints and springs, relative; its moment about the first node, in the deformed shape, where
+/// the geometry is finite: in second order moments balance to the accuracy of that theory only. The reference is at
+/// least 1e-7 of |K||u|, the terms that cancel in the forces of members and springs: to check_tolerance, rounding of
+/// 450 machine epsilons of each.
+double resultant(const FrameModel&, const GeometricState&, const VectorX& loads);
 
 /// A state of the structure in linear geometry.
 struct LinearState {
@@ -28,6 +36,8 @@ void find_energies(CaseResult&, const FrameDescription&, const FrameModel&, cons
 
 /// Keeps the moment with the larger magnitude; a difference by rounding does not replace it.
 void keep_larger(LargestMoment& largest_so_far, double value, double x);
+
+inline constexpr double cancelling = 1e-7;  ///< of the terms that cancel, see FrameChecks
 
 inline double ratio(double part, double whole) { return part == 0 ? 0 : part / whole; }
 

@@ -73,35 +73,6 @@ void find_reactions(CaseResult& r, const FrameDescription& f, const FrameModel& 
     r.springs.push_back(on_node(m.springs[i], state, m.nodes.find(f.springs[i].second.node)));
 }
 
-/// Resultant of loads, constraints and springs, relative; its moment about the first node, in the deformed shape, where
-/// the geometry is finite: in second order moments balance to the accuracy of that theory only.
-double equilibrium(const FrameModel& m, const GeometricState& state, const VectorX& loads) {
-  VectorX external = loads, unsigned_sum = loads.cwiseAbs();
-  const auto add = [&](const LinearForm& form, double along) {
-    for (const Term& t : form) {
-      external(t.dof) += t.coefficient * along;
-      unsigned_sum(t.dof) += std::abs(t.coefficient * along);
-    }
-  };
-  for (std::size_t k = 0; k < state.forms.size(); ++k) add(state.forms[k], state.constraint_forces(as_index(k)));
-  for (std::size_t s = 0; s < state.spring_forms.size(); ++s)
-    add(state.spring_forms[s], -state.spring_forces(as_index(s)));
-  Vector3 resultant = Vector3::Zero(), moment = Vector3::Zero();
-  double forces = 0, moments = 0;
-  for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
-    const auto at = as_index(6 * i);
-    const Vector6 wrench = external.segment<6>(at);
-    const Vector3 arm = m.model.nodes[i].position + state.u.segment<3>(at) - m.model.nodes.front().position;
-    resultant += wrench.head<3>();
-    moment += wrench.tail<3>() + arm.cross(wrench.head<3>());
-    forces += unsigned_sum.segment<3>(at).sum();
-    moments += unsigned_sum.segment<3>(at + 3).sum();
-  }
-  moments += forces * characteristic_length(m.model);
-  const double of_forces = ratio(resultant.norm(), forces);
-  return state.geometry == Geometry::finite ? std::max(of_forces, ratio(moment.norm(), moments)) : of_forces;
-}
-
 VectorX stored_energies(const Model& m, const GeometricState& state) {
   VectorX out(std::ssize(m.springs));
   for (std::size_t i = 0; i < m.springs.size(); ++i)
@@ -138,11 +109,40 @@ CaseResult result_of(const FrameDescription& f, const FrameModel& m, const CaseL
   find_member_forces(r, m, state);
   find_energies(r, f, m, stored_energies(m.model, state));
   r.checks.residual = state.residual;
-  r.checks.equilibrium = equilibrium(m, state, state.load_factor * (full.forces - full.thermal));
+  r.checks.equilibrium = resultant(m, state, state.load_factor * (full.forces - full.thermal));
   return r;
 }
 
 }  // namespace
+
+double resultant(const FrameModel& m, const GeometricState& state, const VectorX& loads) {
+  VectorX external = loads, unsigned_sum = loads.cwiseAbs();
+  const auto add = [&](const LinearForm& form, double along) {
+    for (const Term& t : form) {
+      external(t.dof) += t.coefficient * along;
+      unsigned_sum(t.dof) += std::abs(t.coefficient * along);
+    }
+  };
+  for (std::size_t k = 0; k < state.forms.size(); ++k) add(state.forms[k], state.constraint_forces(as_index(k)));
+  for (std::size_t s = 0; s < state.spring_forms.size(); ++s)
+    add(state.spring_forms[s], -state.spring_forces(as_index(s)));
+  const Eigen::SparseMatrix<double> K = state.K.cwiseAbs();
+  unsigned_sum += cancelling * (K * state.u.cwiseAbs());
+  Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
+  double forces = 0, moments = 0;
+  for (std::size_t i = 0; i < m.model.nodes.size(); ++i) {
+    const auto at = as_index(6 * i);
+    const Vector6 wrench = external.segment<6>(at);
+    const Vector3 arm = m.model.nodes[i].position + state.u.segment<3>(at) - m.model.nodes.front().position;
+    force += wrench.head<3>();
+    moment += wrench.tail<3>() + arm.cross(wrench.head<3>());
+    forces += unsigned_sum.segment<3>(at).sum();
+    moments += unsigned_sum.segment<3>(at + 3).sum();
+  }
+  moments += forces * characteristic_length(m.model);
+  const double of_forces = ratio(force.norm(), forces);
+  return state.geometry == Geometry::finite ? std::max(of_forces, ratio(moment.norm(), moments)) : of_forces;
+}
 
 void analyse_geometric(const FrameDescription& f, const FrameOptions& frame_options, FrameResult& out) {
   FrameModel& m = out.structure;
