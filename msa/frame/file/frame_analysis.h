@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "msa/frame/elements/section_course.h"
 #include "msa/frame/file/frame_build.h"
 #include "msa/frame/iterative/linear_solution.h"
 
@@ -31,8 +32,7 @@ struct LargestMoment {
 
 /// [N, Vy, Vz, T, My, Mz], N and Nm, in member axes, on the face with outward normal +x (member_loads.h): at the start
 /// the action of the member on the node, at the end that of the node on the member. Finite: in the axes of the section
-/// there, which rotate with the node. In nonlinear geometry the largest moments are searched only at the ends of
-/// elements.
+/// there, which rotate with the node.
 struct MemberForces {
   Vector6 start, end;
   LargestMoment My, Mz;
@@ -81,6 +81,7 @@ struct CaseResult {
                                      ///< springs in turn; empty without friction
   std::vector<ElementLoad> loads;    ///< by beam of it
   std::vector<Vector12> end_forces;  ///< by beam of it, local axes; finite: those of the sections at the ends
+  std::vector<SectionCourse> courses;  ///< by beam of it; nonlinear geometry only
 };
 
 struct FrameResult {

@@ -16,13 +16,21 @@ Vector12 in_axes(const BeamState& state, const Vector12& f) {
   return out;
 }
 
-Vector12 in_base_axes(const Beam& beam, const Vector12& f) {
-  Vector12 out;
-  for (int i = 0; i < 12; i += 3) out.segment<3>(i) = beam.R_WM * f.segment<3>(i);
-  return out;
+/// The displacements of an element's ends, base axes.
+Vector12 ends_of(const Beam& beam, const VectorX& u) {
+  Vector12 d;
+  d << u.segment<6>(6 * beam.a), u.segment<6>(6 * beam.b);
+  return d;
 }
 
-/// Member forces in the axes of the sections at their ends; line loads keep their direction.
+/// The section forces along an element.
+SectionCourse course_of(const Beam& beam, const ElementLoad& load, const BeamState& s, const GeometricState& state,
+                        const Vector12& ends) {
+  return state.geometry == Geometry::finite ? finite_course(beam, s.A, s.B, load, ends)
+                                            : second_order_course(beam, ends_of(beam, state.u), load, ends);
+}
+
+/// Member forces in the axes of the sections where they act; line loads keep their direction.
 void find_member_forces(CaseResult& r, const FrameModel& m, const GeometricState& state) {
   for (std::size_t member = 0; member + 1 < m.first_element.size(); ++member) {
     MemberForces out;
@@ -30,16 +38,17 @@ void find_member_forces(CaseResult& r, const FrameModel& m, const GeometricState
     for (int e = m.first_element[member]; e < m.first_element[member + 1]; ++e) {
       const auto k = as_size(e);
       const Beam& beam = m.model.beams[k];
+      const BeamState& s = state.beams[k];
       const ElementLoad line{r.loads[k].q_M, 0};
-      const Vector12 carried = in_base_axes(beam, equivalent_forces(beam.rigidity, beam.length, line));
-      r.end_forces.push_back(in_axes(state.beams[k], state.beams[k].forces - carried));
-      out.energy += state.beams[k].energy + clamped_energy(beam.rigidity, beam.length, line);
-      const Vector6 start = -r.end_forces.back().head<6>() + Vector6::Zero();  // 0 rather than -0
-      if (e == m.first_element[member]) out.start = start;
-      out.end = r.end_forces.back().tail<6>();
-      for (const auto& [s, x] : {std::pair{start, from_start}, {out.end, from_start + beam.length}}) {
-        keep_larger(out.My, s(4), x);
-        keep_larger(out.Mz, s(5), x);
+      const Vector12 carried = turned(beam.R_WM, equivalent_forces(beam.rigidity, beam.length, line));
+      r.end_forces.push_back(in_axes(s, s.forces - carried));
+      const SectionCourse& course = r.courses.emplace_back(course_of(beam, r.loads[k], s, state, r.end_forces.back()));
+      out.energy += s.energy + clamped_energy(beam.rigidity, beam.length, line);
+      if (e == m.first_element[member]) out.start = section_forces(course, 0);
+      out.end = section_forces(course, beam.length);
+      for (const auto& [largest, component] : {std::pair{&out.My, 4}, {&out.Mz, 5}}) {
+        const double x = place_of_largest(course, component);
+        keep_larger(*largest, section_forces(course, x)(component), from_start + x);
       }
       from_start += beam.length;
     }
@@ -104,7 +113,7 @@ CaseResult result_of(const FrameDescription& f, const FrameModel& m, const CaseL
   r.u = state.u;
   r.slips = state.slips;
   r.loads = full.elements;
-  for (ElementLoad& element : r.loads) element.q_M *= state.load_factor;
+  for (ElementLoad& element : r.loads) element.q_M *= state.load_factor, element.strain *= state.load_factor;
   find_reactions(r, f, m, state);
   find_member_forces(r, m, state);
   find_energies(r, f, m, stored_energies(m.model, state));

@@ -31,8 +31,10 @@ std::pair<std::size_t, double> element_at(const FrameModel& m, std::size_t membe
 /// [N, Vy, Vz, T, My, Mz] there, and the beam.
 std::pair<Vector6, const Beam*> section_at(const FrameSensor& s, const FrameModel& m, const CaseResult& r) {
   const auto [e, x] = element_at(m, index_of(m.members.find(s.of), "member", s.of), s.at);
+  const Beam* beam = &m.model.beams[e];
+  if (!r.courses.empty()) return {section_forces(r.courses[e], x), beam};
   const ElementLoad load = e < r.loads.size() ? r.loads[e] : ElementLoad{};
-  return {section_forces(r.end_forces[e], load, x), &m.model.beams[e]};
+  return {section_forces(r.end_forces[e], load, x), beam};
 }
 
 }  // namespace
