@@ -1,4 +1,5 @@
 // Where a search of the diagnosis begins and ends, on effects made by hand whose right values follow from what they do.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -235,6 +236,34 @@ TEST(SearchLimits, TwoOfFourEffectsAreExchanged) {
   std::set<std::string> names;
   for (const PlacedEffect& each : found.effects) names.insert(each.effect->name);
   EXPECT_EQ(names, (std::set<std::string>{"x", "y", "a", "b"}));
+}
+
+// An entry of which one of two parameters runs to nothing is no more than a law at a place. It is named all the same
+// where it is likelier, because a common cause is; where the law is, the law.
+TEST(SearchLimits, AnEntryAtABoundIsNamedWhereItIsLikelierThanTheLawThatDoesAsWell) {
+  EffectParameter further = parameter("further", 1, 0.001, 100, 0.0);
+  further.log = true;
+  const Effect entry = effect("entry", {parameter("size", 1, -1000, 1000, 0.0), further}, [](const VectorX& values) {
+    return VectorX(values(0) * axis(8, 0) + 0.3 * values(1) * axis(8, 1));
+  });
+  for (const std::size_t others : {0U, 12U}) {  // laws at other places, among which they share a prior
+    std::vector<Effect> effects = {entry, along("law", axis(8, 0))};
+    for (std::size_t i = 0; i < others; ++i)
+      effects.push_back(
+          along(fmt::format("other_{}", i), axis(8, 2 + as_index(i % 6)) + 0.01 * axis(8, as_index(i / 6))));
+    for (std::size_t i = 1; i < effects.size(); ++i) {
+      effects[i].place = subject::Place{};
+      effects[i].place->path = effects[i].place->part = effects[i].name;
+    }
+    const Seen s = seen(10 * axis(8, 0));
+    const std::vector<Signature> all = signatures(s.observations, effects, 1);
+    const Candidates candidates(all, 1);
+    const std::vector<Candidate> first = first_of(s, candidates, -1e6);
+    const Selection found = select(s.observations, candidates, first);
+    ASSERT_EQ(found.effects.size(), 1U) << others;
+    EXPECT_EQ(found.effects.front().effect->name, first[0].log_odds > first[1].log_odds ? "entry" : "law") << others;
+    EXPECT_EQ(first[0].log_odds > first[1].log_odds, others > 0) << "both are asked";
+  }
 }
 
 /// What a tilt of 20 and something unknown of 12 do, and a little in a reading of its own.
