@@ -166,7 +166,7 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
   work.strain(factor);
   if (work.jump && state.load_factor == 0) begin_jumps(work, factor);
   double previous = std::numeric_limits<double>::infinity(), least = previous, halved = previous, slowest = 0;
-  int stalls = 0;    // steps in turn, each longer than half of the one before; second order: than the whole
+  int stalls = 0;    // steps in turn, each longer than half of the one before; second order: than the shortest before
   int trembles = 0;  // small steps in turn, none shorter than half of the shortest before
   int balanced = 0;  // states in turn in which rounding is all that the forces lack: the next step is noise
   const VectorX before = work.shape.path;
@@ -196,8 +196,8 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     // the load. Where all forces balance, it may tremble further.
     // In large steps of stiff members Newton's method gains digits in every other iteration only.
     // Second order takes the K_G of the shape before, so that its steps shrink by a constant factor: it goes on while
-    // they do, and only what no longer shrinks is rounding.
-    stalls = change > (finite ? 0.5 : 0.999) * previous ? stalls + 1 : 0;
+    // they do, and only what is no shorter than the shortest before is rounding.
+    stalls = change > (finite ? 0.5 * previous : 0.999 * least) ? stalls + 1 : 0;
     const bool stalled = change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && stalls >= 2;
     const double small = step.unbalanced < 1e-8 ? 1e-4 : 1e-5;
     trembles = work.jump && change < small * size && change > 0.5 * least ? trembles + 1 : 0;
