@@ -196,9 +196,11 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     // the load. Where all forces balance, it may tremble further.
     // In large steps of stiff members Newton's method gains digits in every other iteration only.
     // Second order takes the K_G of the shape before, so that its steps shrink by a constant factor: it goes on while
-    // they do, and only what is no shorter than the shortest before is rounding.
+    // they do. The forces of constraints come a step or two later and lengthen it again; five that are no shorter than
+    // the shortest before are rounding.
     stalls = change > (finite ? 0.5 * previous : 0.999 * least) ? stalls + 1 : 0;
-    const bool stalled = change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && stalls >= 2;
+    const bool stalled =
+        change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && stalls >= (finite ? 2 : 5);
     const double small = step.unbalanced < 1e-8 ? 1e-4 : 1e-5;
     trembles = work.jump && change < small * size && change > 0.5 * least ? trembles + 1 : 0;
     if (const double larger = std::max(change, previous); !finite && larger < halved / 2) {
