@@ -195,9 +195,8 @@ bool GeometricSolver::iterate(Work& work, double factor, const GeometricOptions&
     // play by forces of second order goes on to tremble: stiffnesses round the forces that move it, the more the less
     // the load. Where all forces balance, it may tremble further.
     // In large steps of stiff members Newton's method gains digits in every other iteration only.
-    // Second order takes the K_G of the shape before, so that its steps shrink by a constant factor: it goes on while
-    // they do. The forces of constraints come a step or two later and lengthen it again; five that are no shorter than
-    // the shortest before are rounding.
+    // Second order takes the K_G of the shape before: its steps shrink by a constant factor, but for one or two where
+    // constraints take over forces. Five that are no shorter than the shortest before are rounding.
     stalls = change > (finite ? 0.5 * previous : 0.999 * least) ? stalls + 1 : 0;
     const bool stalled =
         change < 1e-6 * (work.jump ? std::max(size, 1e-5 * work.length) : size) && stalls >= (finite ? 2 : 5);
