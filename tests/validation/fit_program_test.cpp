@@ -50,6 +50,7 @@ TEST_F(FitProgram, FitsPredictsAndValidatesOneAfterTheOther) {
   const test::Run predicted = run("predict " + file("fitted.yaml") + " --plan " + file("second.csv") + " --fit " +
                                   file("fit.json") + " --json " + file("predicted.json") + " --out " + file("out"));
   ASSERT_EQ(predicted.code, 0) << predicted.out;
+  EXPECT_EQ(predicted.out.find("note: "), std::string::npos) << "it is the fitted one: " << predicted.out;
   EXPECT_EQ(json("predicted.json")["numbers"].size(), 280u * 6);
   EXPECT_TRUE(fs::exists(file("out") + "/predicted.csv"));
 

@@ -106,6 +106,22 @@ TEST_F(OutputFiles, WhatIsReadIsNotWrittenOver) {
   }
 }
 
+// A built-in device has a file too. (What else is wrong would be said after that, so that nothing is written.)
+TEST_F(OutputFiles, ABuiltInDeviceIsNotWrittenOver) {
+  const test::Run run = test::deflect("add haptic-6psu modulus --set factor=much -o '" + test::source_dir() +
+                                      "/validation/devices/haptic-6psu.yaml'");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.out.find("this is an input file: name another, or overwrite it with --force"), std::string::npos)
+      << run.out;
+}
+
+TEST_F(OutputFiles, TheNameOfACampaignIsNoFile) {
+  const test::Run run = test::command("cd " + path(".") + " && '" + test::program() +
+                                      "' simulate haptic-6psu --campaign paper --seed 1 -o paper");
+  EXPECT_EQ(run.code, 0) << run.out;
+  EXPECT_TRUE(fs::exists(folder / "paper"));
+}
+
 TEST_F(OutputFiles, TwoOutputsAreTwoFiles) {
   const test::Run run =
       test::deflect("simulate haptic-6psu --campaign paper -o " + path("two.csv") + " --json " + path("./two.csv"));

@@ -121,10 +121,13 @@ void require_separate_files(const Command& command) {
     if (o.flags == "--out" || !(is_output(o) || names_files(o))) continue;
     const std::string called = o.flags.substr(0, o.flags.find(','));
     for (const std::string& file : values_of(o)) {
-      if (is_output(o))
+      if (is_output(o)) {
         written.push_back({called, file});
-      else if (!is_built_in(file))
-        read.push_back({called, file});
+        continue;
+      }
+      const std::string own = is_built_in(file) ? subject_file(file).string() : file;
+      std::error_code error;  // not the name of a campaign or a case
+      if (fs::exists(own, error)) read.push_back({called, own});
     }
   }
   for (std::size_t i = 0; i < written.size(); ++i) {

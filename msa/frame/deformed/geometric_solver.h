@@ -70,9 +70,8 @@ struct GeometricState {
   double load_factor = 0;  ///< share of the load that is carried
   double snaps_at = 0;     ///< share of the load at which the structure snaps through before this state; 0: it does not
   int steps = 0, iterations = 0;
-  double residual =
-      0;      ///< size of the next Newton step, relative to the displacement; 0 where it is rounding of forces
-  VectorX u;  ///< by freedom of GeometricSolver::model(): m, rotation vector, the scalars' unit
+  double residual = 0;        ///< size of the next step, relative to the displacement; 0: what forces lack is rounding
+  VectorX u;                  ///< by freedom of GeometricSolver::model(): m, rotation vector, the scalars' unit
   VectorX constraint_forces;  ///< λ: constraint k exerts λ_k forms_k on the freedoms
   VectorX elongations, spring_forces, spring_tangents;
   std::vector<SpringLaw> jumping;  ///< by spring, with their known forces (stepped_spring.h); empty: no spring jumps

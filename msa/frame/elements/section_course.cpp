@@ -17,10 +17,7 @@ Vector3 cubic(const Vector3& a, const Vector3& slope_a, const Vector3& b, const 
 }
 
 Vector3 sheared(const BeamRigidity& r, const Vector3& F) { return {0, F.y() / r.GAs_y, F.z() / r.GAs_z}; }
-/// What has no stiffness carries no moment and has no curvature of its own.
-Vector3 curvature(const BeamRigidity& r, const Vector3& M) {
-  return (M.array() == 0).select(Vector3::Zero(), M.cwiseQuotient(Vector3(r.GJ, r.EIy, r.EIz)));
-}
+Vector3 curvature(const BeamRigidity& r, const Vector3& M) { return M.cwiseQuotient(Vector3(r.GJ, r.EIy, r.EIz)); }
 Vector3 sagging(const BeamRigidity& r, const Vector3& q) { return Vector3(0, q.y() / r.EIz, q.z() / r.EIy) / 24; }
 
 /// d/dx of the semitangential moment; F, and of the linear theory F_l and M_l, at a section turned by θ.
