@@ -203,14 +203,17 @@ struct Workspace {
   std::optional<Placement> centre;
 };
 
-/// How loads and displacements are recorded: true load = gain · R(rotation) · recorded, recorded displacement =
-/// R(rotation) · true. Used where measurements are compared or simulated; not part of the mechanics of the device.
+/// How loads and displacements are recorded: true load = gain · R(rotation) · recorded, its forces at T + point;
+/// recorded displacement = R(rotation) · true, its translations those of T + point. Used where measurements are
+/// compared or simulated; not part of the mechanics of the device.
 struct LoadCell {
   double gain = 1;
   Vector3 rotation = Vector3::Zero();  ///< rad, small rotation vector
+  Vector3 point = Vector3::Zero();     ///< m, from T, in platform axes: where the loads act that are recorded at T
 };
 struct Sensor {
   Vector3 rotation = Vector3::Zero();  ///< rad
+  Vector3 point = Vector3::Zero();     ///< m, from T, in platform axes: whose displacement is recorded as that of T
   Vector3 drift = Vector3::Zero();     ///< m, over a whole sequence
   bool free_zero = false;              ///< readings are relative to an unknown zero, the same for all readings of a
                                        ///< file

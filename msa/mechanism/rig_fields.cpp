@@ -131,9 +131,13 @@ void describe_rig(FieldVisitor& v, LoadCell& cell, Sensor& sensor, std::vector<s
   const auto cell_fields = [&] {
     v.quantity("gain", cell.gain, optional(1, Dimension::ratio, positive), "true load over recorded load");
     v.vector3("rotation", cell.rotation, Dimension::angle, "rotation vector from recorded to true load");
+    v.vector3("point", cell.point, Dimension::length,
+              "from T, in platform axes: where the loads act that are recorded at T");
   };
   const auto sensor_fields = [&] {
     v.vector3("rotation", sensor.rotation, Dimension::angle, "rotation vector from true to recorded displacement");
+    v.vector3("point", sensor.point, Dimension::length,
+              "from T, in platform axes: the point whose displacement is recorded as that of T");
     v.vector3("drift", sensor.drift, Dimension::length, "drift of the reading over a sequence");
     describe_zero(v, sensor.free_zero);
   };

@@ -179,8 +179,8 @@ TEST(DeviceFile, RandomNumbersComeBackToTheLastBit) {
     std::get<GivenSection>(m.sections[3].second.shape).Iy = number() * 1e-9;
     std::get<LinearLaw>(std::get<Joint>(m.leg[0].second).laws[3][0]).stiffness = number();
     std::get<Member>(m.leg[1].second).bending_factor = number();
-    m.load_cell = {number(), test::random_vector(random, 0.1)};
-    m.sensor = {test::random_vector(random, 0.1), test::random_vector(random, 1e-3)};
+    m.load_cell = {number(), test::random_vector(random, 0.1), test::random_vector(random, 0.05)};
+    m.sensor = {test::random_vector(random, 0.1), test::random_vector(random, 0.05), test::random_vector(random, 1e-3)};
     m.tolerances.load = std::ldexp(test::uniform(random, 1, 2), -1 - static_cast<int>(random() % 20));  // a share of 1
 
     const Mechanism r = parse_mechanism(write_mechanism(m), "written");
@@ -197,7 +197,9 @@ TEST(DeviceFile, RandomNumbersComeBackToTheLastBit) {
     ASSERT_EQ(member(r, "guide").bending_factor, member(m, "guide").bending_factor);
     ASSERT_EQ(r.load_cell.gain, m.load_cell.gain);
     ASSERT_EQ(r.load_cell.rotation, m.load_cell.rotation);
+    ASSERT_EQ(r.load_cell.point, m.load_cell.point);
     ASSERT_EQ(r.sensor.rotation, m.sensor.rotation);
+    ASSERT_EQ(r.sensor.point, m.sensor.point);
     ASSERT_EQ(r.sensor.drift, m.sensor.drift);
     ASSERT_EQ(r.tolerances.load, m.tolerances.load);
   }

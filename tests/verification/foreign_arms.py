@@ -56,6 +56,9 @@ class Arm:
     def value(self, name):
         return self.hidden.get(name)
 
+    def point(self, name):
+        return np.array(self.hidden.get(name, (0, 0, 0)))
+
     def turn(self, i, m, slips):
         """Elastic rotation vector of joint i, axes of the joint with z its own, under the moment m there."""
         name, k = NAMES[i], self.stiffness[i]
@@ -101,14 +104,15 @@ class Arm:
         return origins, frames, p + R @ self.offsets[-1], R
 
     def tool(self, q, load):
-        """Place of the tool point (m) under a load (N, Nm), from the state of friction that the last one left."""
-        F, M = load[:3].copy(), load[3:].copy()
+        """Place of the point that is read (m) under a load (N, Nm), from the state of friction that the last one left."""
+        F = load[:3].copy()
         if (mass := self.value("self_weight")) is not None:
             F[2] -= 9.80665 * mass
         phi, base = [np.zeros(3)] * 6, np.zeros(6)
         for _ in range(200):
             origins, frames, p, R = self.place(q, phi, base)
             slips, before = {}, phi
+            M = load[3:] + np.cross(R @ self.point("moved@load"), load[:3])
             moment = [frames[i].T @ (M + np.cross(p - origins[i], F)) for i in range(6)]
             phi = [self.turn(i, moment[i], slips) for i in range(6)]
             if (coupling := self.value("coupling")) is not None:  # the elbow's moment turns the shoulder too
@@ -126,7 +130,7 @@ class Arm:
         _, _, p, R = self.place(q, phi, base)
         if (k := self.value("tool_compliance")) is not None:
             p = p + R @ ((R.T @ F) / np.array([k[0], k[0], k[1]]))
-        return p
+        return p + R @ self.point("moved@sensor")
 
 
 def campaign(random, poses, cycles):
@@ -152,7 +156,7 @@ def measured(name, hidden, seed, scale=1.0, cycles=False, poses=16):
     random = np.random.default_rng([seed, zlib.crc32(name.encode())])
     arm = Arm(random, scale, hidden)
     rows, plan = [], campaign(random, poses, cycles)
-    at, bare = None, Arm(random, 0, {})
+    at, bare = None, Arm(random, 0, {k: hidden[k] for k in hidden if k == "moved@sensor"})
     bare.offsets = arm.offsets
     for n, (pose, q, load) in enumerate(plan):
         if pose != at:
@@ -198,6 +202,8 @@ SETS = [
     ("payload", {"self_weight": 3.0}, {}, False),
     ("gain", {"load_gain": 1.06}, {}, False), ("cell-turned", {"load_misalignment": (0.02, -0.01, 0.015)}, {}, False),
     ("tracker-turned", {"sensor_misalignment": (0.01, 0.015, -0.01)}, {}, False),
+    ("load-moved", {"moved@load": (0.01, -0.006, 0.02)}, {}, False),
+    ("reflector-moved", {"moved@sensor": (0.008, 0.005, -0.012)}, {}, False),
     ("drift", {"sensor_drift": (2e-5, -1e-5, 1.5e-5)}, {}, False),
     ("base-and-play", {"base_tilt": 3e6, "clearance@elbow.rz": 3e-5}, {}, False),
     ("bearing-and-payload", {"linear@elbow.tilt": 1.5e6, "self_weight": 3.0}, {}, False),
@@ -222,7 +228,7 @@ def in_units(name, value):
         return {"mass_kg": value}
     if law in ("load_misalignment", "sensor_misalignment"):
         return dict(zip(("rx_rad", "ry_rad", "rz_rad"), value))
-    if law == "sensor_drift":
+    if law in ("sensor_drift", "moved"):
         return dict(zip(("x_mm", "y_mm", "z_mm"), (1e3 * x for x in value)))
     return {"lateral_N_per_mm": 1e-3 * value[0], "axial_N_per_mm": 1e-3 * value[1]}
 

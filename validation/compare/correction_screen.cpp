@@ -12,6 +12,7 @@
 #include "validation/compare/residual_study.h"
 #include "validation/prediction/prediction.h"
 #include "validation/recording/recording_mistakes.h"
+#include "validation/statistics/uncertainty.h"
 
 namespace deflect::compare {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 constexpr std::size_t most_sampled = 1000;  // readings
 constexpr double of_usual = 0.005, of_predicted = 0.01, good_part = 0.4;
 constexpr double clearly_worse = 5;  // of the sum of losses
+constexpr double gross = 20;         // times the median of |left|/expected: an outlier, even where the model is wrong
 constexpr double least_shift_mm = 0.5, most_shift_mm = 100;
 
 /// Some of the readings, spread evenly over the file, at the poses that they have.
@@ -55,7 +57,7 @@ double quantile(std::vector<double> values, double share) {
 }  // namespace
 
 CorrectionScreen::CorrectionScreen(const subject::Subject& subject, const Comparison& c, int threads)
-    : subject_(subject), study_(&c.study), threads_(threads), size_(c.study.standing->size()) {
+    : subject_(subject), comparison_(&c), study_(&c.study), threads_(threads), size_(c.study.standing->size()) {
   std::array<double, 2> sum{}, count{};
   for (std::size_t i = 0; i < study_->values.size(); ++i) {
     if (c.estimated[i]) continue;
@@ -174,7 +176,7 @@ std::optional<recording::Correction> CorrectionScreen::best_shift(int axis) cons
   return std::abs(mm) >= least_shift_mm ? std::optional(shifted(mm)) : std::nullopt;
 }
 
-std::optional<recording::Correction> CorrectionScreen::best_point() const {
+std::optional<Vector3> CorrectionScreen::point_of_least_loss() const {
   Vector3 p = Vector3::Zero();
   double least = as_recorded_;
   for (int step = 0; step < 6; ++step) {
@@ -209,6 +211,30 @@ std::optional<recording::Correction> CorrectionScreen::best_point() const {
         least = loss, p += further, better = true;
     if (!better || further.norm() < 1e-5) break;
   }
+  return p;
+}
+
+Vector3 CorrectionScreen::weighed_point(const Vector3& p) const {
+  const Comparison& c = *comparison_;
+  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> by_reading;
+  for (const measurement::Reading& r : study_->data->readings)
+    by_reading.emplace_back(-study_->compliance[r.pose].rightCols<3>() * skew(r.load.head<3>()));
+  const MatrixX slopes = statistics::rows_of(study_->values, by_reading);
+  VectorX left = c.residual - slopes * p;
+  if (!study_->deformed_shape.empty()) left -= statistics::rows_of(study_->values, study_->deformed_shape);
+  const VectorX z = left.cwiseQuotient(expected_deviations(c)).cwiseAbs();
+  const double usual = quantile({z.begin(), z.end()}, 0.5);
+  std::vector<bool> aside(study_->data->readings.size(), false);
+  for (Eigen::Index i = 0; i < z.size(); ++i)
+    if (z(i) > gross * usual) aside[nth(study_->values, i).reading] = true;
+  const statistics::Uncertainty u(c.tolerances.A, study_->values, c.sigma, study_->load_errors, aside, threads_);
+  return p + statistics::regress(u, left, slopes).amplitude;
+}
+
+std::optional<recording::Correction> CorrectionScreen::best_point() const {
+  const std::optional<Vector3> least = point_of_least_loss();
+  if (!least) return std::nullopt;
+  const Vector3 p = weighed_point(*least);
   return p.norm() > 1e-3 ? std::optional(recording::forces_elsewhere(p)) : std::nullopt;
 }
 

@@ -32,8 +32,8 @@ class CorrectionScreen {
   double loss_elsewhere(const recording::Correction&) const;
   /// The shift of all poses along a base axis with the least loss, if it is 0.5 mm or more.
   std::optional<recording::Correction> best_shift(int axis) const;
-  /// The common point p of application of all forces with the least loss, if it is more than 1 mm from T: moments about
-  /// T are then M + p × f.
+  /// The common point p of application of all forces, if it is more than 1 mm from T: moments about T are then M + p ×
+  /// f. The loss shows which readings are gross outliers; the others give p, weighed by noise and tolerances.
   std::optional<recording::Correction> best_point() const;
 
  private:
@@ -46,8 +46,13 @@ class CorrectionScreen {
   double loss(const measurement::Measurements&, const std::vector<VectorX>& predicted,
               const recording::Rewritten& displacement) const;
   std::optional<std::vector<VectorX>> predicted_with(const recording::Correction&) const;
+  /// The point with the least loss.
+  std::optional<Vector3> point_of_least_loss() const;
+  /// The point by generalised least squares, without the readings that are gross outliers with the point p.
+  Vector3 weighed_point(const Vector3& p) const;
 
   subject::Subject subject_;
+  const Comparison* comparison_;
   const ResidualStudy* study_;
   int threads_;
   measurement::Measurements sample_;

@@ -64,6 +64,9 @@ double cost_of_scale(const Comparison& c, const recording::Correction& correctio
   return sum;
 }
 
+/// Whether noise and tolerances leave as much.
+bool is_right(const MisfitAccount& a) { return a.chi2 < a.numbers + deviations_of_right * std::sqrt(2 * a.numbers); }
+
 /// Whether the corrected data are right, or so much better that the mistake is certain. `gain`: by how much their
 /// description is shorter.
 bool cures(const MisfitAccount& before, const MisfitAccount& after, int fitted, double gain) {
@@ -73,8 +76,7 @@ bool cures(const MisfitAccount& before, const MisfitAccount& after, int fitted, 
     return std::max(0.0, a.chi2 - a.numbers) + cost_of_reading * static_cast<double>(a.set_aside - common);
   };
   const bool grossly = before.share > gross_misfit, falls = after.share < misfit_cured * before.share;
-  const bool right =
-      before.estimated || after.chi2 < after.numbers + deviations_of_right * std::sqrt(2 * after.numbers);
+  const bool right = before.estimated || is_right(after);
   const bool cured =
       before.estimated ? falls : excess(after) < (right ? excess_cured : excess_far_less) * excess(before);
   // What physics can leave, a shift of the poses or of the point of the load can follow a long way.
@@ -256,8 +258,9 @@ class MistakeSearch {
       words += (words.empty() ? "" : "; or ") + each.sentence;
     }
     found_->sentence = fmt::format("these data look like {}; {}", words, what_would_fall(before_, after));
-    // Legs of other lengths yield otherwise: a guideway's clamp that gives way follows a shift to the noise.
-    found_->certain = !(correction.pose && correction.fitted > 0);
+    // Legs of other lengths yield otherwise: a guideway's clamp that gives way follows a shift to the noise. A point of
+    // the load that turns with the platform is followed by one in base axes as far as poses are alike.
+    found_->certain = correction.fitted == 0 || (!correction.pose && (before_.estimated || is_right(after)));
     if (!found_->certain) found_->sentence += "; a missing effect can look alike";
   }
 

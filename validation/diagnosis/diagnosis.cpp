@@ -293,8 +293,8 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   const Observations& seen = found.observations;
   d.missing = found.effects;
   d.fit = weighed_for_itself(seen, d.missing, found.fit, threads);
-  add_left_out(d.left_out, told.each);
   d.left_out.insert(d.left_out.end(), found.left_out.begin(), found.left_out.end());
+  add_left_out(d.left_out, told.each);
   note_ties(d, found, data);
   weigh_values(d, told.observations, seen, threads);
   d.verdict = verdict_of(d);

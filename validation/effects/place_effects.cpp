@@ -37,9 +37,10 @@ std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p,
     }
     if (freedoms.empty()) out.push_back({law.action, {head + law.field}, value});
   };
-  if (law.field == std::string(".turned")) {
-    for (std::size_t k = 0; k < p.turns.size(); ++k)
-      out.push_back({law.action, {fmt::format("{}.turned.{}", p.path, p.turns[k])}, "$" + parameters[k].name});
+  if (law.axes) {
+    const std::vector<std::size_t>& axes = p.*law.axes;
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      out.push_back({law.action, {fmt::format("{}{}.{}", p.path, law.field, axes[k])}, "$" + parameters[k].name});
     return out;
   }
   add(p.path, p.freedoms);
@@ -51,7 +52,9 @@ std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p,
 std::string words_of(const subject::Place& p) {
   const std::string name = subject::name_of(p);
   if (!p.others.empty()) return name;
-  if (p.path.starts_with("loads.")) return "load " + name;
+  if (p.path == "rig.load_cell") return "load";
+  if (p.path == "rig.sensor") return "displacement sensor";
+  if (p.path.starts_with("loads.")) return "load " + p.path.substr(std::string("loads.").size());
   if (!p.path.starts_with("members.")) return name;
   const std::size_t dot = p.part.rfind('.');
   if (p.kind != subject::PlaceKind::member_end || dot == std::string::npos) return "member " + name;

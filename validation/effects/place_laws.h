@@ -25,6 +25,8 @@ struct PlaceLaw {
   EffectEdit::Action action = EffectEdit::Action::append;
   const char* field = "";     ///< behind the freedom
   bool side_by_side = false;  ///< with what yields there
+  /// Of a law with one parameter for each of some axes, which its edits name behind the field: those axes.
+  std::vector<std::size_t> subject::Place::*axes = nullptr;
 };
 
 /// All of them; rig_laws() are those of sensors and load cases.

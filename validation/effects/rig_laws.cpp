@@ -21,9 +21,18 @@ std::string value_of_first(const std::vector<EffectParameter>& p, const subject:
   return "$" + p.front().name;
 }
 
+/// Where a point lies that is described elsewhere.
+std::vector<EffectParameter> point_of(const subject::Place& p) {
+  std::vector<EffectParameter> out;
+  for (const std::size_t axis : p.shifts)
+    out.push_back({fmt::format("{}_mm", "xyz"[axis]), "mm", 5, -1000, 1000, false, 0,
+                   fmt::format("from the described to the true point along {} of the platform, mm", "xyz"[axis])});
+  return out;
+}
+
 const PlaceLaw of_rig[] = {
     {"factor",
-     [](const subject::Place& p) { return p.kind == subject::PlaceKind::load; },
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::load && p.shifts.empty(); },
      "is not as large as described",
      [](const subject::Place&) {
        return std::vector<EffectParameter>{{"factor", "", 0.95, 0.1, 10, true, 1, "true load over the recorded one"}};
@@ -36,7 +45,9 @@ const PlaceLaw of_rig[] = {
      EffectEdit::Action::multiply,
      ".factor"},
     {"gain",
-     [](const subject::Place& p) { return p.kind == subject::PlaceKind::sensor && p.other.empty(); },
+     [](const subject::Place& p) {
+       return p.kind == subject::PlaceKind::sensor && p.other.empty() && p.shifts.empty();
+     },
      "reads too much or too little",
      [](const subject::Place&) {
        return std::vector<EffectParameter>{{"gain", "", 0.98, 0.3, 3, true, 1, "recorded over true value"}};
@@ -112,7 +123,42 @@ const PlaceLaw of_rig[] = {
       "A plumb line or a level beside the loading.", "Align it, or put its direction into the description."},
      OneLeg::never,
      EffectEdit::Action::add,
-     ".turned"},
+     ".turned",
+     false,
+     &subject::Place::turns},
+    {"moved",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::load && !p.shifts.empty(); },
+     "acts at another point",
+     point_of,
+     value_of_first,
+     {"{} acts beside its point: the hook sits on a handle, the jack stands off the centre, the weight hangs on a "
+      "gripper. 10 mm beside it, 100 N give a moment of 1 Nm.",
+      "Readings that follow the moment of {} about its point: off most where the machine is soft in rotation, and "
+      "right "
+      "under a force through the true point.",
+      "Measure where it touches, or turn the mount by 180 degrees and repeat.",
+      "Load at the point, or put the true point into the description."},
+     OneLeg::never,
+     EffectEdit::Action::add,
+     ".point",
+     false,
+     &subject::Place::shifts},
+    {"moved",
+     [](const subject::Place& p) { return p.kind == subject::PlaceKind::sensor && !p.shifts.empty(); },
+     "reads another point",
+     point_of,
+     value_of_first,
+     {"{} follows a point beside the one described: a reflector on the flange, a probe at the rim of the platform. "
+      "10 mm beside it, a turn of 1 mrad reads as 10 um.",
+      "Readings that follow the turn of the platform: off most under moments, and right where it does not turn. "
+      "Rotations are read right.",
+      "Measure where it touches, or turn its mount by 180 degrees and repeat.",
+      "Read at the point, or put the true point into the description."},
+     OneLeg::never,
+     EffectEdit::Action::add,
+     ".point",
+     false,
+     &subject::Place::shifts},
 };
 
 }  // namespace

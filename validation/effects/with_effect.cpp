@@ -111,13 +111,18 @@ Dependent one_by_one(const Dependent& m, const Effect& e, const VectorX& values,
 
 /// The kind of place that the effect sits in, where the device says that nothing is missing there.
 std::optional<std::string> trusted_place(const Effect& e, const std::vector<std::string>& trusted) {
+  // Of several heads the first counts.
   static const std::pair<const char*, const char*> kinds[] = {
-      {"base", "base"},         {"tool", "tool"},       {"payload", "load"}, {"rig.load_cell", "load cell"},
-      {"rig.sensor", "sensor"}, {"sensors.", "sensor"}, {"loads.", "load"},  {"supports.", "support"}};
+      {"base", "base"},       {"tool", "tool"},         {"payload", "load"},
+      {"loads.", "load"},     {"supports.", "support"}, {"rig.load_cell.point", "load"},
+      {"sensors.", "sensor"}, {"rig.sensor", "sensor"}, {"rig.load_cell", "load cell"}};
   for (const EffectEdit& edit : e.edits)
-    for (const std::string& path : edit.paths)
-      for (const auto& [head, kind] : kinds)
-        if (path.starts_with(head) && std::find(trusted.begin(), trusted.end(), kind) != trusted.end()) return kind;
+    for (const std::string& path : edit.paths) {
+      const auto sits =
+          std::find_if(std::begin(kinds), std::end(kinds), [&](const auto& k) { return path.starts_with(k.first); });
+      if (sits != std::end(kinds) && std::find(trusted.begin(), trusted.end(), sits->second) != trusted.end())
+        return sits->second;
+    }
   return std::nullopt;
 }
 

@@ -40,7 +40,9 @@ std::vector<std::string> instead_of_readings(const std::vector<const effects::Pl
   std::vector<std::string> out;
   for (const effects::PlacedEffect* e : both) {
     std::string sentence;
-    if (edits(*e, "rig.load_cell"))
+    if (edits(*e, "rig.load_cell.point") || edits(*e, "rig.sensor.point"))
+      sentence = "a measurement of where it touches";
+    else if (edits(*e, "rig.load_cell"))
       sentence = "an independent calibration of the load cell";
     else if (edits(*e, "rig.sensor") || edits(*e, "sensors."))
       sentence = "an independent calibration of the sensor";

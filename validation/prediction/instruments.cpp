@@ -112,20 +112,20 @@ VectorX Instruments::readings(const Configuration& c, const Motion& motion, Geom
   return out;
 }
 
-Vector6 Instruments::turned(const Configuration& c, const measurement::Reading& r, const Matrix6& cell,
+Vector6 Instruments::turned(const Configuration& c, const measurement::Reading& r, const TrueLoads& loads,
                             const Vector3& theta) const {
-  Vector6 out = Vector6::Zero();
   const Matrix3 turn = rotation_from_vector(theta);
+  Vector6 out = loads.turned(r, turn);
   for (std::size_t k = 0; k < points_.size(); ++k) {
-    const Vector3 arm = c.pose.R_WT * points_[k]->point, force = (cell * r.at_points[k]).head<3>();
+    const Vector3 arm = c.pose.R_WT * points_[k]->point, force = loads.at_point(r.at_points[k]).head<3>();
     out.tail<3>() += (turn * arm - arm).cross(force);
   }
   return out;
 }
 
 LoadedMachine::LoadedMachine(const theories::Theory& theory, const theories::TheoryOptions& o, const Configuration& c,
-                             const Instruments& instruments, const Matrix6& cell)
-    : at_(c), instruments_(instruments), cell_(cell) {
+                             const Instruments& instruments, const TrueLoads& loads)
+    : at_(c), instruments_(instruments), loads_(loads) {
   theories::TheoryOptions asked = o;
   asked.inside = instruments.inside(c);
   machine_ = theory.at(c, asked);
@@ -144,12 +144,12 @@ LoadedMachine::LoadedMachine(const theories::Theory& theory, const theories::The
 /// where the machine stands.
 theories::Prediction LoadedMachine::predict(theories::TheoryAt& machine, const measurement::Reading& r,
                                             const Conditions& conditions) {
-  const Vector6 F = cell_ * r.load;
+  const Vector6 F = loads_.at_T(r);
   theories::Prediction found = machine.predict(F, conditions);
-  if (!instruments_.any_load() || conditions.geometry != Geometry::finite) return found;
+  if (!any_moves() || conditions.geometry != Geometry::finite) return found;
   for (int round = 0; round < 50 && found.converged; ++round) {
     const Vector3 theta = found.displacement.tail<3>();
-    found = machine.predict(F + instruments_.turned(at_, r, cell_, theta), conditions);
+    found = machine.predict(F + instruments_.turned(at_, r, loads_, theta), conditions);
     if ((found.displacement.tail<3>() - theta).norm() <= 1e-13 + 1e-10 * theta.norm()) return found;
   }
   if (found.converged) found.reason = "the moments of loads that move with the machine do not settle";
@@ -164,10 +164,10 @@ Motion LoadedMachine::move(const measurement::Reading& r, const Conditions& cond
              std::move(moved.reason), std::move(moved.inside), std::move(moved.floating)};
   if (!rigid_tool_) return out;
   Conditions undeformed = conditions;
-  if (instruments_.any_load()) undeformed = Conditions(Geometry::linear);
-  const Vector6 F = cell_ * (r.load - r.on_platform);
+  if (any_moves()) undeformed = Conditions(Geometry::linear);
+  const Vector6 F = loads_.through_tool(r);
   const theories::Prediction whole = machine_->predict(F, undeformed);
-  if (!locked_ && !whole.inside.empty()) out.inside = machine_->predict(cell_ * r.load, undeformed).inside;
+  if (!locked_ && !whole.inside.empty()) out.inside = machine_->predict(loads_.at_T(r), undeformed).inside;
   const theories::Prediction rigid =
       locked_ ? locked_->predict(F, undeformed) : theories::Prediction{Vector6::Zero(), true};
   out.tool += whole.displacement - rigid.displacement;

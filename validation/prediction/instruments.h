@@ -19,6 +19,7 @@
 #include "msa/mechanism/configuration.h"
 #include "msa/mechanism/inside.h"
 #include "validation/measurement/measurements.h"
+#include "validation/prediction/rig.h"
 #include "validation/theories/theory.h"
 
 namespace deflect::prediction {
@@ -50,8 +51,8 @@ class Instruments {
   Vector6 form(const Configuration&, std::size_t k) const;
   /// What the sensors read, in the deformed shape or to the first order.
   VectorX readings(const Configuration&, const Motion&, Geometry) const;
-  /// By how much the wrench at T of the loads at points changes as the machine turns by θ (rotation vector).
-  Vector6 turned(const Configuration&, const measurement::Reading&, const Matrix6& cell, const Vector3& theta) const;
+  /// By how much the wrench at T of loads that act elsewhere changes as the machine turns by θ (rotation vector).
+  Vector6 turned(const Configuration&, const measurement::Reading&, const TrueLoads&, const Vector3& theta) const;
 
  private:
   std::vector<const PointSensor*> sensors_;
@@ -62,22 +63,27 @@ class Instruments {
 /// A machine at one pose by one theory, under the loads of readings.
 class LoadedMachine {
  public:
-  /// `cell`: true from recorded loads. All but the theory and the cell must outlive this. Throws InputError where the
+  /// `loads`: those at this pose. All but the theory and the loads must outlive this. Throws InputError where the
   /// tool joint has friction and something is on the platform: its loops are not told apart.
   LoadedMachine(const theories::Theory&, const theories::TheoryOptions&, const Configuration&, const Instruments&,
-                const Matrix6& cell);
+                const TrueLoads& loads);
 
   theories::TheoryAt& theory() { return *machine_; }
   /// Whether the same load at T has the same answer, whatever points it acts at.
-  bool by_load_at_T(Geometry g) const { return !rigid_tool_ && !(instruments_.any_load() && g == Geometry::finite); }
+  bool by_load_at_T(Geometry g) const {
+    if (instruments_.any_load() && loads_.elsewhere()) return false;  // that share of it acts elsewhere
+    return !rigid_tool_ && !(any_moves() && g == Geometry::finite);
+  }
   Motion move(const measurement::Reading&, const Conditions&);
 
  private:
   theories::Prediction predict(theories::TheoryAt&, const measurement::Reading&, const Conditions&);
+  /// Whether the moment of a load about T changes with the machine's motion.
+  bool any_moves() const { return instruments_.any_load() || loads_.elsewhere(); }
 
   const Configuration& at_;
   const Instruments& instruments_;
-  Matrix6 cell_;
+  TrueLoads loads_;
   std::optional<Configuration> rigid_tool_;
   std::unique_ptr<theories::TheoryAt> machine_, locked_;  // as it is; with a rigid tool joint, where that differs
                                                           // and something still yields

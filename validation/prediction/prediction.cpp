@@ -124,11 +124,12 @@ double carried_before(const Configuration& c) {
 }
 
 /// The largest load of a pose (its six numbers in N and Nm together), as true load.
-Vector6 largest_load(const measurement::PoseGroup& pose, const measurement::Measurements& data, const Matrix6& cell) {
-  Vector6 largest = Vector6::Zero();
+Vector6 largest_load(const measurement::PoseGroup& pose, const measurement::Measurements& data,
+                     const TrueLoads& loads) {
+  std::size_t largest = pose.readings.front();
   for (const std::size_t i : pose.readings)
-    if (data.readings[i].load.norm() > largest.norm()) largest = data.readings[i].load;
-  return cell * largest;
+    if (data.readings[i].load.norm() > data.readings[largest].load.norm()) largest = i;
+  return loads.at_T(data.readings[largest]);
 }
 
 /// A load that came and went: the slips that it leaves, and what these alone leave of displacements and of what is read
@@ -199,14 +200,6 @@ void require_equilibrium(const Motion& r, const theories::Theory& theory, const 
 
 }  // namespace
 
-Vector6 true_load(const LoadCell& cell, const Vector6& recorded) {
-  return cell.gain * (rotate_twist(rotation_from_vector(cell.rotation)) * recorded);
-}
-
-Vector6 recorded_displacement(const Sensor& sensor, const Vector6& d) {
-  return rotate_twist(rotation_from_vector(sensor.rotation)) * d;
-}
-
 Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machines,
                     const measurement::Measurements& data, const PredictionOptions& o, const parallel::Work& work) {
   std::vector<VectorX> out(data.readings.size(), VectorX::Zero(6 + std::ssize(data.instruments.sensors)));
@@ -217,20 +210,20 @@ Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machin
   if (!history.empty()) measurement::in_sequence(data, history);
   const double before = machines.empty() ? 0 : carried_before(machines.front());
   Carried carried;
-  const Matrix6 cell = m.load_cell.gain * rotate_twist(rotation_from_vector(m.load_cell.rotation)),
-                sensor = rotate_twist(rotation_from_vector(m.sensor.rotation));
   const auto passed_over = [&](std::size_t i) { return history.empty() && !o.only.empty() && !o.only[i]; };
   const auto at_pose = [&](std::size_t p) {
     const std::vector<std::size_t>& here = data.poses[p].readings;
     if (std::all_of(here.begin(), here.end(), passed_over)) return;
     theories::TheoryOptions options{m.name, o.division};
     options.apart = o.apart;
-    LoadedMachine machine(*o.theory, options, machines[p], instruments, cell);
+    const TrueLoads loads(m.load_cell, machines[p].pose.R_WT);
+    const RecordedMotion sensor(m.sensor, machines[p].pose.R_WT);
+    LoadedMachine machine(*o.theory, options, machines[p], instruments, loads);
     Conditions conditions(o.geometry.value_or(m.geometry));
     if (conditions.geometry == Geometry::linear) expect(machine.theory(), data.poses[p], data);
     Motion unloaded;
     if (before != 0 && !beside)
-      unloaded = after(before * largest_load(data.poses[p], data, cell), machine.theory(), conditions);
+      unloaded = after(before * largest_load(data.poses[p], data, loads), machine.theory(), conditions);
     if (beside) {
       carried.enter(machines[p], o);
       conditions.slips = carried.slips();
@@ -258,7 +251,8 @@ Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machin
       conditions.slips = r.slips;
       open.at_readings[i].insert(r.floating.begin(), r.floating.end());
       const Motion seen = without(r, unloaded);
-      out[i] << m.sensor.zero + sensor * seen.tool, instruments.readings(machines[p], seen, conditions.geometry);
+      out[i] << m.sensor.zero + sensor.of(seen.tool, conditions.geometry),
+          instruments.readings(machines[p], seen, conditions.geometry);
     }
   };
   at_every_pose(data, beside, work, at_pose);

@@ -55,8 +55,4 @@ std::vector<VectorX> predict(const Mechanism&, const std::vector<Configuration>&
                              const measurement::Measurements&, const PredictionOptions& = {},
                              const parallel::Work& = {});
 
-/// The true load from the recorded one; the recorded displacement, without drift, from the true one.
-Vector6 true_load(const LoadCell&, const Vector6& recorded);
-Vector6 recorded_displacement(const Sensor&, const Vector6& true_displacement);
-
 }  // namespace deflect::prediction

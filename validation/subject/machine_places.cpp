@@ -108,6 +108,17 @@ void add_stock(const Mechanism& m, std::vector<Place>& out) {
   }
 }
 
+/// Where loads act, and where the displacement of T is measured.
+void add_points(const Mechanism& m, std::vector<Place>& out) {
+  const auto add = [&](PlaceKind kind, const std::string& part, const std::string& path) {
+    out.push_back({kind, {}, part, path});
+    out.back().shifts = {0, 1, 2};
+  };
+  add(PlaceKind::load, "load", "rig.load_cell");
+  add(PlaceKind::sensor, "sensor", "rig.sensor");
+  for (const auto& [name, point] : m.loads) add(PlaceKind::load, "loads." + name, "loads." + name);
+}
+
 }  // namespace
 
 std::vector<Place> places_of(const Mechanism& m) {
@@ -129,6 +140,7 @@ std::vector<Place> places_of(const Mechanism& m) {
     found.all.push_back({PlaceKind::sensor, {}, name, "sensors." + name});
     if (!sensor.free_zero) found.all.back().reads = measurement::quantity_of(sensor);
   }
+  add_points(m, found.all);
   std::erase_if(found.all, [&](const Place& p) {
     return std::find(m.trusted.begin(), m.trusted.end(), nth(place_kind_names, p.kind)) != m.trusted.end();
   });

@@ -10,6 +10,7 @@
 #include "msa/base/index.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/place.h"
+#include "validation/prediction/rig.h"
 
 namespace deflect::subject {
 namespace {
@@ -147,10 +148,15 @@ double deflection_of(const Law& law, double force) {
   return analytic::deflection(law, force);
 }
 
+struct Rig {
+  prediction::TrueLoads loads;
+  prediction::RecordedMotion sensor;
+};
+
 class MachineTransmissions final : public Transmissions {
  public:
-  MachineTransmissions(const Mechanism& m, std::vector<ByPart> by_pose, double size)
-      : by_pose_(std::move(by_pose)), cell_(m.load_cell), sensor_(m.sensor), size_(size) {}
+  MachineTransmissions(std::vector<ByPart> by_pose, std::vector<Rig> rigs, double size)
+      : by_pose_(std::move(by_pose)), rigs_(std::move(rigs)), size_(size) {}
 
   std::optional<Change> change(const Place& place, std::optional<int> leg, const Law& law,
                                const measurement::Measurements& data) const override {
@@ -162,14 +168,13 @@ class MachineTransmissions final : public Transmissions {
       if (all.empty()) return std::nullopt;
       for (const std::size_t i : data.poses[p].readings) {
         const measurement::Reading& r = data.readings[i];
-        const Vector6 through = place.kind == PlaceKind::tool ? Vector6(r.load - r.on_platform) : r.load;
-        const Vector6 F = prediction::true_load(cell_, through);
+        const Vector6 F = place.kind == PlaceKind::tool ? rigs_[p].loads.through_tool(r) : rigs_[p].loads.at_T(r);
         Vector6 d = Vector6::Zero();
         for (const Vector6& g : all) {
           d += g * deflection_of(law, g.dot(F));
           if (moved_by_shape && floats(g, F, size_)) out.floats[i] = true;
         }
-        out.readings[i] = prediction::recorded_displacement(sensor_, d);
+        out.readings[i] = rigs_[p].sensor.of(d, Geometry::linear);
       }
     }
     return out;
@@ -190,8 +195,7 @@ class MachineTransmissions final : public Transmissions {
   }
 
   std::vector<ByPart> by_pose_;
-  LoadCell cell_;
-  Sensor sensor_;
+  std::vector<Rig> rigs_;  // by pose
   double size_;
 };
 
@@ -241,12 +245,14 @@ std::unique_ptr<const Transmissions> transmissions_of(const Mechanism& m, const 
   Mechanism yielding = m.legs.empty() ? resolved(m) : m;
   for (Named<Part>& leg : yielding.legs) yield_everywhere(leg);
   std::vector<ByPart> by_pose;
+  std::vector<Rig> rigs;
   for (const Configuration& c : drawn) {
     std::optional<ByPart> forces = proportional_forces_at(c, configure(yielding, c.pose));
     if (!forces) return nullptr;
     by_pose.push_back(std::move(*forces));
+    rigs.push_back({{m.load_cell, c.pose.R_WT}, {m.sensor, c.pose.R_WT}});
   }
-  return std::make_unique<MachineTransmissions>(m, std::move(by_pose), drawn.front().size);
+  return std::make_unique<MachineTransmissions>(std::move(by_pose), std::move(rigs), drawn.front().size);
 }
 
 }  // namespace deflect::subject

@@ -57,11 +57,12 @@ struct Place {
   std::optional<measurement::Quantity> reads = {};  ///< of a sensor whose zero is taken
   std::string other = {};                           ///< of a sensor: another, of which it may read a share
   std::vector<std::size_t> turns = {};              ///< of a load: axes about which it may be turned
-  bool expands = false;                             ///< of a member whose material expands with heat
-  bool misfit_shows = false;                        ///< of a member: readings depend on its misfit
-  bool may_stick = false;                           ///< of a sensor whose description says how far it sticks
-  std::string make = {};                            ///< type of a joint, section of a member or of one with this end
-  std::string axes = {};                            ///< of a joint at a named point: their name
+  std::vector<std::size_t> shifts = {};  ///< of a load or a sensor: axes along which its point may lie elsewhere
+  bool expands = false;                  ///< of a member whose material expands with heat
+  bool misfit_shows = false;             ///< of a member: readings depend on its misfit
+  bool may_stick = false;                ///< of a sensor whose description says how far it sticks
+  std::string make = {};                 ///< type of a joint, section of a member or of one with this end
+  std::string axes = {};                 ///< of a joint at a named point: their name
   /// Of a group (place_groups.h): its name in ids and in words, and the parts beside the one at `path`. Empty: one
   /// part.
   std::string group = {}, group_words = {};
