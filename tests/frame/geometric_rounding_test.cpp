@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "msa/frame/deformed/geometric_solver.h"
 #include "msa/frame/file/frame_case.h"
@@ -133,6 +134,50 @@ TEST(GeometricRounding, ABeamBetweenClampedEndsStandsOnASpring) {
         // In the deformed shape to the square of the rotation, (q L²/12/(4 EI/L))² = 3e-7.
         EXPECT_NEAR(std::abs(at(5)), M * q * L * L / 12, 1e-6 * q * L * L) << geometry << freedom << load;
       }
+}
+
+// Two members from ball joints at C and F meet at A: all of it turns about CF within the play at C, which nothing
+// drives where a free end is warmer or both supports move alike. A light load drives it through the play.
+TEST(GeometricRounding, PlayThatNothingDrivesStandsInItsMiddle) {
+  const auto frame = [](const std::string& geometry, const std::string& load) {
+    return fmt::format(R"(name: swing
+geometry: {}
+materials: {{steel: {{E: 30 GPa, G: 11 GPa, expansion: 1e-5 1/K}}}}
+sections: {{rod: {{shape: given, A: 50 mm^2, Iy: 250 mm^4, Iz: 60 mm^4, J: 200 mm^4}}}}
+nodes: {{A: [372.6 mm, 197.4 mm, 1.9 mm], B: [193.7 mm, 387.3 mm, -193.7 mm], C: [193.7 mm, -387.3 mm, 387.3 mm],
+        F: [-204.2 mm, 285.5 mm, -177.6 mm]}}
+members:
+  from_C: {{from: C, to: A, section: rod, material: steel}}
+  to_F: {{from: A, to: F, section: rod, material: steel}}
+  tip: {{from: A, to: B, section: rod, material: steel}}
+supports:
+  F: pinned
+  C: {{holds: pinned, ry: [{{law: clearance, gap: 1e-3 rad}}, {{law: linear, stiffness: 40 Nm/rad}}]}}
+loads: {{load: {{{}}}}}
+)",
+                       geometry, load);
+  };
+  const std::string heat = "temperature: {tip: -20 K}", move = "{ux: 1 mm, uy: 1 mm, uz: 1 mm}";
+  const std::string settle = "displacements: {C: " + move + ", F: " + move + "}";
+  for (const std::string geometry : {"linear", "second-order", "finite"}) {
+    for (const std::string& load : {heat, settle, "factor: 1e-6, " + heat, "factor: 1e-6, " + settle}) {
+      const Solved s(parse_frame(frame(geometry, load), "t"));
+      ASSERT_EQ(failed_check(s.result), "") << geometry << load;
+      const double part = load[0] == 'f' ? 1e-6 : 1, moved = load.find("ux") != std::string::npos ? part * 1e-3 : 0;
+      EXPECT_LT((s.u("A").head<3>() - Vector3::Constant(moved)).norm(), 1e-12) << geometry << load;
+      EXPECT_LT(s.u("A").tail<3>().norm(), 1e-12) << geometry << load;
+      EXPECT_EQ(s.result.notes,
+                std::vector{std::string("load case 'load': support C ry [1] floats in its play, of which the middle "
+                                        "is given")})
+          << geometry << load;
+    }
+    for (const std::string& load : {heat, settle}) {
+      const Solved s(parse_frame(frame(geometry, load + ", nodes: {A: {fx: 1e-3 N}}"), "t"));
+      ASSERT_EQ(failed_check(s.result), "") << geometry << load;
+      EXPECT_GT(std::abs(s.u("C")(4)), 1e-3) << geometry << load;
+      EXPECT_TRUE(s.result.notes.empty()) << geometry << load;
+    }
+  }
 }
 
 // Small moments, heat and settlements of trees of members: the theories differ by the rotation and the strain, here

@@ -60,6 +60,7 @@ void GeometricSolver::take_jumps(Work& work) const {
   work.jumping.k = Eigen::Map<const VectorX>(k.data(), n);
   work.jumping.o = work.jumping.d = work.jumping.s = VectorX::Zero(n);
   work.jumping.end.assign(k.size(), 0);
+  work.jumping.loose.assign(k.size(), 0);
   work.set_offsets();
 }
 
@@ -81,6 +82,7 @@ void GeometricSolver::release_jumps(Work& work, GeometricState& state) const {
     linear = LinearSpring{work.jumping.k(i)};
     linear.preload = work.jumping.k(i) * d - s;
     keep_slips(law, d, s, end, state.slips);
+    if (work.jumping.loose[j]) state.loose.push_back(model_.springs[spring].name);
   }
 }
 
@@ -210,6 +212,9 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
   work.strains = load.strains;
   work.strains.resize(model_.beams.size(), 0);
   work.with.strains = work.strains;
+  work.driving = driving(model_, work.loads, work.values);
+  for (std::size_t e = 0; e < model_.beams.size(); ++e)
+    work.driving.force = std::max(work.driving.force, model_.beams[e].rigidity.EA * std::abs(work.strains[e]));
   work.with.first_hold = as_size(constraints - held);
   linear_->check(work.loads, work.values.head(constraints - held));
   work.with.least_tangents = VectorX::Zero(std::ssize(model_.springs));

@@ -76,6 +76,7 @@ struct GeometricState {
   VectorX elongations, spring_forces, spring_tangents;
   std::vector<SpringLaw> jumping;  ///< by spring, with their known forces (stepped_spring.h); empty: no spring jumps
   std::vector<double> slips;       ///< of the friction elements after the load
+  std::vector<std::string> loose;  ///< springs with unloaded play in which the structure floats: the middle is given
   std::vector<BeamState> beams;
   /// Of constraints and springs in this shape; spring i exerts −spring_forces_i spring_forms_i on the freedoms.
   std::vector<LinearForm> forms, spring_forms;
@@ -126,7 +127,7 @@ class GeometricSolver {
                 const VectorX& gaps) const;
   struct Step;
   Step newton(Work&, double factor, Geometry) const;
-  void keep_laws(Work&, const Linearisation&, const VectorX& loads, Step&, VectorX& unbalanced) const;
+  void keep_laws(Work&, const Linearisation&, double factor, Step&, VectorX& unbalanced) const;
   bool iterate(Work&, double factor, const GeometricOptions&, GeometricState&) const;
   bool arrived(Work&, const VectorX& before, const VectorX& tangent, double factor, const GeometricState&,
                bool doubtful) const;

@@ -11,6 +11,7 @@
 #include "msa/base/index.h"
 #include "msa/frame/deformed/geometric_solver.h"
 #include "msa/frame/elements/jumping_springs.h"
+#include "msa/frame/structure/driving.h"
 
 namespace deflect::frame {
 
@@ -43,13 +44,15 @@ struct GeometricSolver::Work {
     std::vector<std::size_t> springs;  // those
     std::vector<ScalarLaw> laws;       // their own
     VectorX k, o;
-    VectorX d, s;          // as the last step left them
-    std::vector<int> end;  // as in SetValuedSolution
+    VectorX d, s;             // as the last step left them
+    std::vector<int> end;     // as in SetValuedSolution
+    std::vector<char> loose;  // whether it floats in its play
   } jumping;
   VectorX loads, values;  // in full
   std::vector<double> strains;
   StructureConditions with;
   double force = 0;  // the largest that springs may see
+  Driving driving;   // by the whole load, heat with it
   VectorX least_tangents;
   Shape shape;
   VectorX lambda;

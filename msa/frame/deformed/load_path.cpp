@@ -16,14 +16,7 @@ constexpr double balance = 0.25;  // of work and energy in a step
 constexpr double of_sums = 100 * std::numeric_limits<double>::epsilon();  // rounding of a sum of up to 100 terms
 constexpr int most_iterations = 5000;  // of all steps: a path of ever smaller ones leads nowhere in reasonable time
 
-/// N; moments over the length.
-double size_of_forces(const VectorX& loads, double length) {
-  double size = 0;
-  for (Eigen::Index i = 0; i < loads.size(); ++i) size = std::max(size, std::abs(loads(i)) / (i % 6 > 2 ? length : 1));
-  return size;
-}
-
-/// The same of forces on the independent freedoms.
+/// Of forces on the independent freedoms, N; moments over the length.
 double size_of_reduced(const VectorX& forces, const Elimination& e, double length) {
   double size = 0;
   for (Eigen::Index i = 0; i < forces.size(); ++i)
@@ -93,18 +86,18 @@ GeometricSolver::Step GeometricSolver::newton(Work& work, double factor, Geometr
   if (work.damping > 0) K += damped(model_, work.damping, work.length);
   Step step{std::make_unique<Tangent>(e, K), {}};
   if (work.jump)
-    step.unbalanced = size_of_reduced(e.reduce(loads - at.forces), e, work.length) / size_of_forces(loads, work.length);
+    step.unbalanced = size_of_reduced(e.reduce(loads - at.forces), e, work.length) / (factor * work.driving.force);
   if (!step.tangent->regular()) return step;
   VectorX unbalanced = loads - at.forces;
   step.u = step.tangent->solve(unbalanced, gaps);
-  if (work.jump) keep_laws(work, at, loads, step, unbalanced);
+  if (work.jump) keep_laws(work, at, factor, step, unbalanced);
   step.balanced = balances(work, at, e, factor, unbalanced, gaps);
   return step;
 }
 
 /// Springs that jump keep their laws at the end of the step: with the offsets o as unknowns its elongations are
 /// δ = δ0 + P o, P = Eᵀ K⁻¹ E k, E the forms of these springs and k their stiffness in K. Their new offsets push too.
-void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const VectorX& loads, Step& step,
+void GeometricSolver::keep_laws(Work& work, const Linearisation& at, double factor, Step& step,
                                 VectorX& unbalanced) const {
   Work::Jumping& j = work.jumping;
   const auto n = std::ssize(j.springs);
@@ -116,12 +109,12 @@ void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const Vecto
     for (const Term& t : at.spring_forms[nth(j.springs, i)]) pushes(t.dof, i) += t.coefficient * j.k(i);
   const MatrixX moved = step.tangent->solve(pushes, MatrixX::Zero(std::ssize(active_), n));
   LinearRelation relation{j.k.cwiseInverse(), VectorX(n), MatrixX(n, n), VectorX(n)};
-  const double driving = size_of_forces(loads, work.length);
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t spring = nth(j.springs, i);
     for (Eigen::Index other = 0; other < n; ++other) relation.P(i, other) = elongation(i, moved.col(other));
     relation.d0(i) = at.elongations(as_index(spring)) + elongation(i, step.u);
-    relation.size(i) = driving * (model_.springs[spring].law.rotation ? work.length : 1);
+    const double arm = model_.springs[spring].law.rotation ? work.length : 1;
+    relation.size(i) = factor * work.driving.size(j.k(i), arm);
   }
   relation.d0 -= relation.P * j.o;
   const SetValuedSolution found = deflect::solve(monotone(std::move(relation), j.o, j.laws), j.laws, MatrixX(0, n));
@@ -132,6 +125,7 @@ void GeometricSolver::keep_laws(Work& work, const Linearisation& at, const Vecto
   step.u += moved * (found.o - j.o);
   unbalanced += pushes * (found.o - j.o);
   j.o = found.o, j.d = found.d, j.s = found.s, j.end = found.end;
+  for (Eigen::Index i = 0; i < n; ++i) nth(j.loose, i) = found.loose.cols() > 0 && !found.loose.row(i).isZero(0);
   work.set_offsets();
 }
 

@@ -240,9 +240,7 @@ void analyse_linear(const FrameDescription& f, const FrameOptions& options, Fram
       r.path = states.front().path;
       r.path.message = "the frame as assembled: " + r.path.message;
     }
-    for (const std::string& spring : states[c].loose)
-      out.notes.push_back(
-          fmt::format("load case '{}': {} floats in its play, of which the middle is given", r.name, spring));
+    note_floating(r.name, states[c].loose, out.notes);
     u.push_back(states[c].fine.cast<double>());
     out.cases.push_back(std::move(r));
   }
@@ -250,6 +248,11 @@ void analyse_linear(const FrameDescription& f, const FrameOptions& options, Fram
 }
 
 }  // namespace
+
+void note_floating(const std::string& load, const std::vector<std::string>& loose, std::vector<std::string>& notes) {
+  for (const std::string& spring : loose)
+    notes.push_back(fmt::format("load case '{}': {} floats in its play, of which the middle is given", load, spring));
+}
 
 void keep_larger(LargestMoment& largest_so_far, double value, double x) {
   if (std::abs(value) > std::abs(largest_so_far.value) * (1 + 1e-12)) largest_so_far = {value, x};

@@ -34,6 +34,9 @@ std::vector<LinearState> solve_states(const std::vector<CaseLoad>&, bool assembl
 /// Computes energies by group and in total, from those of the members and of the springs (by spring of the structure).
 void find_energies(CaseResult&, const FrameDescription&, const FrameModel&, const VectorX& of_springs);
 
+/// A note for each spring within whose play the structure floats.
+void note_floating(const std::string& load, const std::vector<std::string>& loose, std::vector<std::string>& notes);
+
 /// Keeps the moment with the larger magnitude; a difference by rounding does not replace it.
 void keep_larger(LargestMoment& largest_so_far, double value, double x);
 

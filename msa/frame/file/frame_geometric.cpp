@@ -178,6 +178,7 @@ void analyse_geometric(const FrameDescription& f, const FrameOptions& frame_opti
     }
     for (std::size_t i = 0; i < f.nodes.size(); ++i) r.displacements.push_back(r.u.segment<6>(as_index(6 * i)));
     if (frame_options.in_sequence && state.converged) options.slips = state.slips;
+    note_floating(name, state.loose, out.notes);
     out.cases.push_back(std::move(r));
   }
 }

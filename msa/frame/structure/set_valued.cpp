@@ -14,6 +14,7 @@
 #include "msa/base/index.h"
 #include "msa/base/settle.h"
 #include "msa/frame/elements/jumping_springs.h"
+#include "msa/frame/structure/driving.h"
 #include "msa/frame/structure/relative.h"
 #include "msa/frame/structure/solver.h"
 
@@ -22,14 +23,6 @@ namespace {
 
 constexpr double no_force = 1e-11;        // of the load
 constexpr double out_of_balance = 1e-11;  // of the forces: what is worth a correction
-
-/// The largest entry of a load, N: moments count by `length`.
-double driving_force(const Model& m, const VectorX& load, double length) {
-  double driving = 0;
-  for (Eigen::Index i = 0; i < load.size(); ++i)
-    driving = std::max(driving, std::abs(load(i)) / (i < as_index(6 * m.nodes.size()) && i % 6 > 2 ? length : 1));
-  return driving;
-}
 
 /// By spring its force at u; the springs `jumping` carry the forces `known`.
 VectorX spring_pulls(const std::vector<Spring>& springs, const ExtendedVector& u,
@@ -223,14 +216,14 @@ Solution Solver::solve_condensed(const VectorX& load, const VectorX& values, con
   const auto n = std::ssize(c.springs);
   ExtendedVector u = linear(c.tangents, load, values);
   const double length = characteristic_length(*model_);
-  const double driving = driving_force(*model_, load, length);
+  const Driving by = driving(*model_, load, values);
   LinearRelation relation{c.k.cwiseInverse(), VectorX(n), c.elongations * c.k.asDiagonal(), VectorX(n)};
   std::vector<ScalarLaw> laws;
   MatrixX by_elongation = MatrixX::Zero(std::ssize(watched), n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Spring& spring = springs[nth(c.springs, i)];
     relation.d0(i) = evaluate(spring.elongation, u);
-    relation.size(i) = driving * (spring.law.rotation ? length : 1);
+    relation.size(i) = by.size(c.k(i), spring.law.rotation ? length : 1);
     laws.push_back(scalar_law(spring.law));
     for (std::size_t w = 0; w < watched.size(); ++w)
       by_elongation(as_index(w), i) = c.k(i) * static_cast<double>(c.u(watched[w], i));
