@@ -82,6 +82,8 @@ TEST_F(FitProgram, RefusesWithTheRemedy) {
       {"predict arm", "--at POSE"},
       {"predict arm --at 1,2,3 --plan " + data, "--plan"},
       {"predict truss-45 --at donw=1", "did you mean 'down'"},
+      {"predict truss-45 --at down=1,side=2,down=2",
+       "--at 'down=1,side=2,down=2': 'down' is given twice: write the factor of a load case once"},
       {"predict truss-45 --at down=much", "--at 'down=much'"},
       {"predict arm --plan " + data + " --fit " + data, "fit --json"},
   };

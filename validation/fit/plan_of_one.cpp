@@ -43,12 +43,16 @@ measurement::Measurements plan_of_one(const subject::Subject& frame,
   const std::vector<std::string> cases = frame.instruments().load_cases;
   measurement::Reading r;
   r.factors.assign(cases.size(), 0);
+  std::vector<bool> given(cases.size());
   for (const auto& [name, factor] : factors) {
     const auto found = std::find(cases.begin(), cases.end(), name);
     if (found == cases.end())
       throw InputError(fmt::format("'{}' is no load case of {}: write factors on load cases, as in {}=1{}", name,
                                    frame.name(), cases.empty() ? "snow" : cases.front(), suggestion(name, cases)));
-    r.factors[as_size(found - cases.begin())] = factor;
+    const auto at = as_size(found - cases.begin());
+    if (given[at]) throw InputError(fmt::format("'{}' is given twice: write the factor of a load case once", name));
+    given[at] = true;
+    r.factors[at] = factor;
   }
   measurement::Measurements out = one_reading(r, {});
   out.instruments.load_cases = cases;
