@@ -165,6 +165,52 @@ TEST_F(AddProgram, ADiagnosisThatDoesNotFitIsNamed) {
                  "d.json: missing[0]: has no 'effect'");
 }
 
+// What the diagnosis says against adding is said, with the way out.
+TEST_F(AddProgram, SaysWhatTheDiagnosisSays) {
+  const auto from = [&](const std::string& verdict, const std::string& missing, const std::string& more = "") {
+    return " --from " + file("d.json", R"({"verdict": ")" + verdict + R"(", "missing": )" + missing + more +
+                                           diagnosis.substr(diagnosis.find(",\n  \"candidates\"")));
+  };
+  const auto expect_said = [&](const std::string& arguments, const std::string& words) {
+    const test::Run run = add(arguments);
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(run.out.find(words), std::string::npos) << run.out;
+    std::filesystem::remove(folder / "new.yaml");
+  };
+  const std::string root = R"(["guide_root_compliance"])";
+  const std::string pattern = R"(, "unexplained": {"pattern": "these look like degrees"})";
+  expect_refused("haptic-6psu" + from("nothing_missing", "[]"),
+                 "reports no missing effect (verdict nothing_missing): nothing has to be added");
+  expect_refused(
+      "haptic-6psu" + from("unknown_effect", "[]", pattern),
+      "(verdict unknown_effect): these look like degrees; mend that, or name the effect and give its values");
+  expect_refused("haptic-6psu" + from("unknown_effect", "[]", R"(, "unexplained": [1])"),
+                 "what is missing has no name");
+  expect_said("haptic-6psu modulus" + from("nothing_missing", "[]"),
+              "d.json does not report 'modulus' as missing (verdict nothing_missing): it is added as it was tried");
+  expect_said("haptic-6psu" + from("unknown_effect", root, pattern),
+              "still missing that the diagnosis cannot name (verdict unknown_effect): these look like degrees");
+  expect_said("haptic-6psu" + from("ambiguous", root), "(verdict ambiguous): 'indistinguishable' has them");
+  const test::Run plain = add("haptic-6psu" + from("effect", root));
+  EXPECT_EQ(plain.out.find("note: "), std::string::npos) << plain.out;
+}
+
+TEST_F(AddProgram, SaysWhereTheDiagnosisIsOfAnotherMachine) {
+  const std::string mine = file("mine.yaml", test::deflect("devices haptic-6psu-ideal-joints").out);
+  ASSERT_EQ(test::deflect("simulate " + mine + " --campaign paper --geometry linear -o " + path("data.csv")).code, 0);
+  ASSERT_EQ(
+      test::deflect("diagnose " + mine + " " + path("data.csv") + " --bootstrap 99 --json " + path("d.json")).code, 0);
+  const std::string effect = " modulus --set factor=0.9 --from " + path("d.json");
+  EXPECT_NE(add("haptic-6psu" + effect)
+                .out.find("note: " + (folder / "d.json").string() + " is of 'haptic-6psu-ideal-joints', and"),
+            std::string::npos);
+  EXPECT_EQ(add(mine + effect).out.find(" is of "), std::string::npos);
+  std::ofstream(folder / "mine.yaml", std::ios::app) << "# changed\n";
+  const test::Run changed = add(mine + effect);
+  EXPECT_EQ(changed.code, 0) << changed.out;
+  EXPECT_NE(changed.out.find("is of another version of 'haptic-6psu-ideal-joints'"), std::string::npos) << changed.out;
+}
+
 TEST_F(AddProgram, RefusesValuesThatDoNotFit) {
   const std::string effect = "haptic-6psu guide_root_compliance ";
   expect_refused(effect + "--set stifness_Nmm_per_rad=5e6",

@@ -158,16 +158,6 @@ measurement::Measurements read_sessions(const std::vector<std::string>& files, c
   return subject.placed(measurement::joined(sessions));
 }
 
-void remark_if_of_another(const std::string& result, const std::string& device, const subject::Subject& s) {
-  const auto json = nlohmann::json::parse(read_text(result), nullptr, false);
-  if (!json.is_object() || !json.contains("device") || !json["device"].is_string()) return;  // said where it is read
-  const auto outputs = json.value(nlohmann::json::json_pointer("/provenance/outputs"), nlohmann::json::array());
-  for (const auto& written : outputs)  // the fitted description itself, which has the name of its file
-    if (written.is_object() && written.contains("sha256") && written["sha256"] == hash_of(device)) return;
-  if (const std::string of = json["device"]; of != s.name())
-    remark(fmt::format("{} is of '{}', and this is '{}': what it says holds for the former", result, of, s.name()));
-}
-
 measurement::Measurements read_plan(const std::string& file, const subject::Subject& subject) {
   keep_as_it_is(file);
   return subject.placed(measurement::read_plan(file, subject.instruments()));

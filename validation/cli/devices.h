@@ -48,9 +48,6 @@ measurement::Measurements read_data(const std::string& file, const subject::Subj
 /// Of several files, which are sessions of one campaign, all readings as one (joined.h).
 measurement::Measurements read_sessions(const std::vector<std::string>& files, const subject::Subject&);
 
-/// Remarks where the result in this file says that it is of a subject of another name.
-void remark_if_of_another(const std::string& result, const std::string& device, const subject::Subject&);
-
 /// Poses and loads to be measured with the instruments of the subject.
 measurement::Measurements read_plan(const std::string& file, const subject::Subject&);
 

@@ -12,6 +12,7 @@
 #include "msa/base/files.h"
 #include "validation/cli/completion.h"
 #include "validation/cli/devices.h"
+#include "validation/cli/talk.h"
 #include "validation/result_files/sha256.h"
 
 namespace deflect::cli {
@@ -89,6 +90,24 @@ std::vector<result_files::HashedFile> inputs_of(const Command& command) {
     }
   }
   if (knows_effects) out.push_back({catalogue, hash_of(catalogue)});
+  return out;
+}
+
+/// The member of a result; null where it has none.
+Json member(const Json& result, const char* where) {
+  const Json::json_pointer at(where);
+  return result.contains(at) ? result.at(at) : Json();
+}
+
+/// Files with their hashes as a result has them; none where it has none.
+std::vector<result_files::HashedFile> files_in(const Json& result, const char* where) {
+  std::vector<result_files::HashedFile> out;
+  for (const auto& each : member(result, where)) {
+    if (!each.is_object()) continue;
+    const auto name = each.find("name"), hash = each.find("sha256");
+    if (name != each.end() && name->is_string() && hash != each.end() && hash->is_string())
+      out.push_back({*name, *hash});
+  }
   return out;
 }
 
@@ -186,6 +205,29 @@ std::string hash_of(const std::string& name) {
   std::error_code error;
   if (fs::exists(file, error) && !fs::is_regular_file(file, error)) return "";
   return result_files::sha256(read_text(file));
+}
+
+void remark_if_of_another(const std::string& result, const std::string& device, const subject::Subject& s) {
+  const Json json = Json::parse(read_text(result), nullptr, false);
+  if (!json.is_object() || !json.contains("device") || !json["device"].is_string()) return;  // said where it is read
+  const std::string now = hash_of(device);
+  // The fitted description itself has the name of its file.
+  const std::vector<result_files::HashedFile> outputs = files_in(json, "/provenance/outputs");
+  if (now.empty() || std::any_of(outputs.begin(), outputs.end(), [&](const auto& o) { return o.sha256 == now; }))
+    return;
+  if (const std::string of = json["device"]; of != s.name()) {
+    remark(fmt::format("{} is of '{}', and this is '{}': what it says holds for the former", result, of, s.name()));
+    return;
+  }
+  const Json subject = member(json, "/provenance/command/1");
+  for (const result_files::HashedFile& read : files_in(json, "/provenance/inputs"))
+    if (subject == read.name && !read.sha256.empty() && read.sha256 != now) {
+      remark(
+          fmt::format("{} is of another version of '{}': {} is not the file that was read then; what it says holds "
+                      "for the former",
+                      result, s.name(), device));
+      return;
+    }
 }
 
 }  // namespace deflect::cli

@@ -6,6 +6,7 @@
 
 #include "validation/cli/command.h"
 #include "validation/result_files/provenance.h"
+#include "validation/subject/subject.h"
 
 namespace deflect::cli {
 
@@ -33,5 +34,9 @@ const Option* required_output(const Command&);
 /// The file of an input by the name that a provenance gives it, and its hash now: empty for what is no regular file.
 /// InputError where there is none.
 std::string hash_of(const std::string& name);
+
+/// Remarks where the result in this file says that it is of a subject of another name, or of one of this name in a file
+/// that has changed since.
+void remark_if_of_another(const std::string& result, const std::string& device, const subject::Subject&);
 
 }  // namespace deflect::cli

@@ -32,7 +32,9 @@ class Reader {
     if (root_.contains("found")) take_found(out.missing);
     for (FoundEffect& f : out.missing) complete(f, out.candidates);
     if (root_.contains("ties")) out.ties = ties();
-    if (root_.contains("data") && root_["data"].is_string()) out.data = root_["data"];
+    out.data = text("/data");
+    out.verdict = text("/verdict");
+    out.unexplained = text("/unexplained/pattern");
     return out;
   }
 
@@ -76,6 +78,12 @@ class Reader {
       }
     }
     return out;
+  }
+
+  /// Empty where it is not there.
+  std::string text(const char* pointer) const {
+    const Json::json_pointer at(pointer);
+    return root_.contains(at) && root_.at(at).is_string() ? root_.at(at).get<std::string>() : "";
   }
 
   static FoundEffect named(const Json& name) { return {name.get<std::string>(), {}, {}}; }

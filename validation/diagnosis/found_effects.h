@@ -32,6 +32,7 @@ struct FoundEffects {
   std::vector<FoundEffect> candidates;  ///< every hypothesis, best first
   std::vector<FoundTie> ties;           ///< empty in results of versions before
   std::string data;                     ///< the measurements that were diagnosed; empty likewise
+  std::string verdict, unexplained;     ///< as the result has them: "unknown_effect", and the pattern that is left
 };
 
 /// Throws InputError with the file and the JSON member that does not match the format.

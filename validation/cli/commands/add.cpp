@@ -72,6 +72,41 @@ diagnosis::FoundEffect look_up(const diagnosis::FoundEffects& all, const std::st
                                leg ? fmt::format(" of leg {}", *leg) : "", suggestion(effect, names)));
 }
 
+/// Why there is nothing to add, with the way out.
+[[noreturn]] void refuse_nothing_missing(const diagnosis::FoundEffects& found, const std::string& file) {
+  const std::string start = file + ": the diagnosis reports no missing effect";
+  const char* by_name = "name the effect and give its values with --set";
+  if (found.verdict == "nothing_missing")
+    throw InputError(fmt::format("{} (verdict nothing_missing): nothing has to be added; to add one all the same, {}",
+                                 start, by_name));
+  if (found.verdict == "unknown_effect")
+    throw InputError(fmt::format("{} that could be added (verdict unknown_effect): {}; mend that, or {}", start,
+                                 found.unexplained.empty() ? "what is missing has no name" : found.unexplained,
+                                 by_name));
+  throw InputError(fmt::format("{}: {}", start, by_name));
+}
+
+/// What the diagnosis says against adding all that it found.
+void remark_on_verdict(const diagnosis::FoundEffects& found, const std::string& file) {
+  if (found.verdict == "unknown_effect")
+    remark(
+        fmt::format("{}: with what is added something is still missing that the diagnosis cannot name (verdict "
+                    "unknown_effect){}{}",
+                    file, found.unexplained.empty() ? "" : ": ", found.unexplained));
+  if (found.verdict == "ambiguous")
+    remark(
+        fmt::format("{}: these data support others as much as what is added (verdict ambiguous): 'indistinguishable' "
+                    "has them; name one to add it instead",
+                    file));
+}
+
+/// What the diagnosis says against adding this one.
+void remark_if_not_missing(const diagnosis::FoundEffects& found, const std::string& effect, const std::string& file) {
+  if (std::none_of(found.missing.begin(), found.missing.end(), [&](const auto& f) { return f.effect == effect; }))
+    remark(fmt::format("{} does not report '{}' as missing{}: it is added as it was tried", file, effect,
+                       found.verdict.empty() ? "" : fmt::format(" (verdict {})", found.verdict)));
+}
+
 std::vector<diagnosis::FoundEffect> wanted(const AddArguments& a) {
   const auto values = parse_values(a.set);
   const std::optional<int> leg = parse_leg(a.leg);
@@ -80,10 +115,14 @@ std::vector<diagnosis::FoundEffect> wanted(const AddArguments& a) {
     return {{a.effect, leg, values}};
   }
   const diagnosis::FoundEffects all = diagnosis::read_found_effects(a.from);
-  if (!a.effect.empty()) return {with_values(look_up(all, a.effect, leg, a.from), values)};
-  if (all.missing.empty())
-    throw InputError(a.from + ": the diagnosis reports no missing effect: name the effect to add");
+  if (!a.effect.empty()) {
+    const diagnosis::FoundEffect found = look_up(all, a.effect, leg, a.from);
+    remark_if_not_missing(all, a.effect, a.from);
+    return {with_values(found, values)};
+  }
+  if (all.missing.empty()) refuse_nothing_missing(all, a.from);
   if (leg || !values.empty()) throw InputError("--leg and --set apply to one effect: name it");
+  remark_on_verdict(all, a.from);
   return all.missing;
 }
 
@@ -112,6 +151,7 @@ std::vector<effects::EffectInstance> add_effects(subject::Subject& m, const AddA
 void run(const AddArguments& a) {
   subject::Subject m = read_subject(a.device);
   const std::vector<effects::Effect> all = known_effects(a.files, m);
+  if (!a.from.empty()) remark_if_of_another(a.from, a.device, m);
   const std::vector<effects::EffectInstance> added = add_effects(m, a, all);
   const std::string old = m.name();
   write_description(m, old, "with", names_of(added), a.out);
