@@ -65,6 +65,7 @@ const std::vector<Row>& table() {
        "a stiffness (force per length)",
        {{"N/mm", 1e3},
         {"N/m", 1},
+        {"kN/m", 1e3},
         {"kN/mm", 1e6},
         {"N/um", 1e6},
         {"lbf/in", lbf / inch},
@@ -136,6 +137,14 @@ std::string unit_list(const Row& r) {
   return list;
 }
 
+/// With u for the micro sign U+00B5 and for the Greek letter U+03BC, which look alike.
+std::string with_plain_micro(std::string_view unit) {
+  std::string out(unit);
+  for (const char* micro : {"\xC2\xB5", "\xCE\xBC"})
+    for (std::size_t at; (at = out.find(micro)) != out.npos;) out.replace(at, 2, "u");
+  return out;
+}
+
 }  // namespace
 
 void require_digits_of_angle(double rad, std::string_view text) {
@@ -171,11 +180,12 @@ double parse_number(std::string_view text) {
 double parse_quantity(std::string_view text, Dimension dimension) {
   const Row& r = row(dimension);
   double value = 0;
-  std::string_view unit;
-  if (!leading_number(trim(text), value, unit))
+  std::string_view written;
+  if (!leading_number(trim(text), value, written))
     throw InputError(fmt::format("'{}' is not {}: write a finite number{}{}", text, r.words,
                                  r.units.empty() ? "" : fmt::format(" and a unit, one of {}", unit_list(r)),
                                  odd_character_words(text)));
+  const std::string unit = with_plain_micro(written);
   if (unit.empty()) {
     if (dimension == Dimension::none || dimension == Dimension::ratio) return value;
     throw InputError(
@@ -195,7 +205,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
         throw InputError(
             fmt::format("'{}' is {}, where {} is wanted (units: {})", text, other.words, r.words, unit_list(r)));
   const std::string hint = nearest(unit, units_of(dimension));
-  throw InputError(fmt::format("'{}' has the unknown unit '{}'{} (units of {}: {})", text, unit,
+  throw InputError(fmt::format("'{}' has the unknown unit '{}'{} (units of {}: {})", text, written,
                                hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), r.words, unit_list(r)));
 }
 

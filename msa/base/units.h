@@ -37,7 +37,7 @@ std::vector<std::string> units_of(Dimension);
 std::string describe(Dimension);
 
 /// The value in SI of "125.5 mm". Throws InputError with the text and the allowed units: for a missing, unknown or
-/// misplaced unit, for a number that is not finite, for trailing text.
+/// misplaced unit, for a number that is not finite, for trailing text. µ is read as u.
 double parse_quantity(std::string_view text, Dimension);
 
 /// Largest angle, rad: above it the last binary digit is worth more than 1e-10 rad, too coarse.

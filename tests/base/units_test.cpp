@@ -58,6 +58,16 @@ TEST(Units, TextsGiveSI) {
   EXPECT_EQ(parse_quantity("010 mm", Dimension::length), 0.010);
 }
 
+// The micro sign and the Greek letter look alike.
+TEST(Units, MicroIsReadInEachOfItsSigns) {
+  for (const std::string micro : {"u", "\u00B5", "\u03BC"}) {
+    EXPECT_EQ(parse_quantity("5 " + micro + "m", Dimension::length), 5e-6);
+    EXPECT_EQ(parse_quantity("20 N/" + micro + "m", Dimension::stiffness), 20e6);
+    EXPECT_EQ(parse_quantity("3" + micro + "m/m", Dimension::strain), 3e-6);
+  }
+  EXPECT_EQ(refusal("5 \u00B5N", Dimension::length).find("'5 \u00B5N' has the unknown unit '\u00B5N'"), 0u);
+}
+
 TEST(Units, EveryUnitOfADimensionMeasuresTheSame) {
   const std::pair<Dimension, std::vector<const char*>> same[] = {
       {Dimension::length, {"25.4 mm", "0.0254 m", "2.54 cm", "25400 um", "1 in", "0.083333333333333333 ft"}},
@@ -71,7 +81,7 @@ TEST(Units, EveryUnitOfADimensionMeasuresTheSame) {
        {"6.894757293168361e-6 GPa", "6.894757293168361e-3 MPa", "6894.757293168361 Pa", "6.894757293168361e-3 N/mm^2",
         "1 psi", "1e-3 ksi"}},
       {Dimension::stiffness,
-       {"0.17512683524647636 N/mm", "175.12683524647636 N/m", "1.7512683524647636e-4 kN/mm",
+       {"0.17512683524647636 N/mm", "175.12683524647636 N/m", "0.17512683524647636 kN/m", "1.7512683524647636e-4 kN/mm",
         "1.7512683524647636e-4 N/um", "1 lbf/in", "1e-3 kip/in"}},
       {Dimension::rotational_stiffness,
        {"112.98482902761670 Nmm/rad", "0.11298482902761670 Nm/rad", "1.1298482902761670e-4 kNm/rad", "1 lbf*in/rad",

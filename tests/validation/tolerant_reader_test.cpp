@@ -35,6 +35,8 @@ TEST(ColumnUnits, AreConverted) {
       {"ux_in", "ux_mm", 1, 25.4},
       {"ux_um", "ux_mm", 1, 1e-3},
       {"ux_µm", "ux_mm", 1, 1e-3},
+      {"ux_\u03BCm", "ux_mm", 1, 1e-3},  // the Greek letter, which looks like the sign
+      {"Thx [\u03BCrad]", "thx_rad", 1, 1e-6},
       {"x_m", "x_mm", 1, 1000},
       {"yaw_rad", "yaw_deg", 1, 57.29577951308232},
       {"thx_deg", "thx_rad", 180, 3.141592653589793},

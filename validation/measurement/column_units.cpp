@@ -46,8 +46,16 @@ std::string in_lower_case(std::string_view text) {
   return out;
 }
 
+/// The Greek letter U+03BC looks like the micro sign U+00B5.
+std::string with_micro_sign(std::string_view text) {
+  std::string out(text);
+  for (std::size_t at; (at = out.find("\xCE\xBC")) != out.npos;) out.replace(at, 2, "\xC2\xB5");
+  return out;
+}
+
 /// As it stands; else without regard to case where only one unit is meant.
-const ColumnUnit* find_unit(const std::vector<ColumnUnit>& units, std::string_view text) {
+const ColumnUnit* find_unit(const std::vector<ColumnUnit>& units, std::string_view written) {
+  const std::string text = with_micro_sign(written);
   for (const ColumnUnit& u : units)
     if (u.name == text) return &u;
   const ColumnUnit* found = nullptr;

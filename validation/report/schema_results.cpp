@@ -127,8 +127,9 @@ Json number_json(const SchemaField& f) {
   for (const std::string& unit : units) {
     alternatives += alternatives.empty() ? "" : "|";
     for (const char c : unit)
-      alternatives +=
-          std::string_view("^*()/%").find(c) == std::string_view::npos ? std::string(1, c) : fmt::format("\\{}", c);
+      alternatives += c == 'u' ? "(u|\u00B5|\u03BC)"  // micro: both signs are read
+                      : std::string_view("^*()/%").find(c) == std::string_view::npos ? std::string(1, c)
+                                                                                     : fmt::format("\\{}", c);
   }
   const Json text = {{"type", "string"}, {"pattern", fmt::format("^{} *({})$", number, alternatives)}};
   return f.dimension == Dimension::ratio ? Json{{"anyOf", {plain, text}}} : text;
