@@ -86,7 +86,7 @@ Target target_of(const fs::path& path) {
     if ((t.own = own_descriptor(t.path))) return t;
     struct stat status {};
     if (::lstat(t.path.c_str(), &status) != 0) {
-      if (errno == ENOENT) return t;
+      if (errno == ENOENT || errno == ENOTDIR) return t;
       throw std::system_error(errno, std::generic_category());
     }
     t.there = status;
@@ -97,7 +97,21 @@ Target target_of(const fs::path& path) {
   throw std::system_error(ELOOP, std::generic_category());
 }
 
+/// Why no file can be made in this folder, which need not exist yet; empty where one can.
+std::string why_no_file_in(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path wanted = fs::absolute(folder, ignored);
+  fs::path at = wanted;
+  while (!fs::exists(at, ignored) && at.has_relative_path()) at = at.parent_path();
+  if (!fs::is_directory(at, ignored)) return at.string() + " is no folder";
+  if (::faccessat(AT_FDCWD, at.c_str(), W_OK | X_OK, AT_EACCESS) == 0) return "";
+  return fmt::format("no {} can be made in the folder {}: {}; name another, or allow it with chmod u+w",
+                     at == wanted ? "file" : "folder", at.string(), std::strerror(errno));
+}
+
 void require_writable(const fs::path& path, const Target& t) {
+  if (!t.there && !t.own)
+    if (const std::string why = why_no_file_in(folder_of(t.path)); !why.empty()) refuse(path, why);
   if (!t.there) return;
   if (S_ISDIR(t.there->st_mode)) refuse(path, "it is a folder, a file is wanted");
   if (S_ISREG(t.there->st_mode) && ((t.there->st_mode & 0222) == 0 || ::access(t.path.c_str(), W_OK) != 0))
@@ -179,6 +193,15 @@ std::string read_text(const fs::path& path) {
 void keep_as_it_is(const fs::path& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error)) kept_as_they_are().push_back(path);
+}
+
+void require_writable_file(const fs::path& path) {
+  const int reason = system_error_of([&] { require_writable(path, target_of(path)); });
+  if (reason != 0) refuse(path, std::strerror(reason));
+}
+
+void require_writable_folder(const fs::path& folder) {
+  if (const std::string why = why_no_file_in(folder); !why.empty()) refuse(folder, why);
 }
 
 void write_text(const fs::path& path, const std::string& text) {

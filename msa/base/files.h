@@ -24,6 +24,11 @@ std::string read_text(const std::filesystem::path&);
 /// Writes as described above and creates missing folders. Throws InputError "file: cannot be written (reason)".
 void write_text(const std::filesystem::path& path, const std::string& text);
 
+/// Before long work: throws the InputError that write_text() would throw for this file now, or for files in this
+/// folder, as far as can be told without writing.
+void require_writable_file(const std::filesystem::path&);
+void require_writable_folder(const std::filesystem::path&);
+
 /// For the rest of the run write_text() refuses this file: what a command read is never what it writes. Of files that
 /// are written to directly nothing is lost, and they are not refused. Not to be called while others write.
 void keep_as_it_is(const std::filesystem::path&);

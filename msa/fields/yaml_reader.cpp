@@ -8,6 +8,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 #include <unordered_map>
 
@@ -204,6 +205,18 @@ void parse(const std::string& text, YAML::EventHandler& handler) {
   }
 }
 
+/// The line, counted from 1, that is indented with a tab: that of an error or the one before it.
+std::optional<int> tab_indented_line(const std::string& text, int error_line) {
+  std::optional<int> found;
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; number <= error_line && std::getline(lines, line); ++number) {
+    const std::string indent = line.substr(0, line.find_first_not_of(" \t"));
+    if (!found && number >= error_line - 1 && indent.find('\t') != indent.npos) found = number;
+  }
+  return found;
+}
+
 /// Before anything is made of the events: those that precede a syntax error can be nonsense.
 void check_syntax(const std::string& text, const std::string& end, const std::string& origin) {
   Ignore ignore;
@@ -215,9 +228,14 @@ void check_syntax(const std::string& text, const std::string& end, const std::st
   } catch (const YAML::Exception& e) {
     const bool open = e.msg == YAML::ErrorMsg::DOC_IN_SCALAR || e.msg == YAML::ErrorMsg::EOF_IN_SCALAR;
     const auto lines = static_cast<int>(std::count(text.begin(), text.end(), '\n')) + !text.ends_with('\n');
-    throw InputError(fmt::format("{}:{}: not valid YAML: {}", origin,
-                                 std::clamp(e.mark.line + 1, 1, std::max(lines, 1)),
-                                 open ? "a quotation is not closed" : e.msg));
+    const int line = std::clamp(e.mark.line + 1, 1, std::max(lines, 1));
+    if (const std::optional<int> tab = tab_indented_line(text, line))
+      throw InputError(
+          fmt::format("{}:{}: not valid YAML: the line is indented with a tab; YAML wants spaces: write two "
+                      "in place of each tab",
+                      origin, *tab));
+    throw InputError(
+        fmt::format("{}:{}: not valid YAML: {}", origin, line, open ? "a quotation is not closed" : e.msg));
   }
 }
 

@@ -110,6 +110,30 @@ TEST_F(Files, AReadOnlyFileIsRefusedAndStays) {
   EXPECT_EQ(names(), 1u);
 }
 
+TEST_F(Files, AFolderThatTakesNothingIsNamedWithTheReason) {
+  fs::create_directories(folder / "closed");
+  write_text(folder / "closed" / "old", "old");
+  fs::permissions(folder, fs::perms{0755});
+  fs::permissions(folder / "closed", fs::perms{0555});
+  fs::permissions(folder / "closed" / "old", fs::perms{0666});
+  const bool root = ::geteuid() == 0;
+  ASSERT_EQ(root ? ::seteuid(65534) : 0, 0);  // nothing is closed to root
+  const auto file = refusal([&] { write_text(folder / "closed" / "x", "text"); });
+  const auto below = refusal([&] { write_text(folder / "closed" / "a" / "b" / "x", "text"); });
+  const auto before = refusal([&] { require_writable_file(folder / "closed" / "x"); });
+  const auto result = refusal([&] { require_writable_folder(folder / "closed" / "out"); });
+  EXPECT_NO_THROW(require_writable_file(folder / "closed" / "old"));
+  EXPECT_NO_THROW(require_writable_file("/dev/null"));
+  ASSERT_EQ(root ? ::seteuid(0) : 0, 0);
+  const std::string closed = (folder / "closed").string(), why = closed + ": Permission denied; name another";
+  EXPECT_EQ(file.find(closed + "/x: cannot be written (no file can be made in the folder " + why), 0u) << file;
+  EXPECT_EQ(below.find(closed + "/a/b/x: cannot be written (no folder can be made in the folder " + why), 0u) << below;
+  EXPECT_EQ(before, file);
+  EXPECT_EQ(result.find(closed + "/out: cannot be written (no folder can be made in the folder " + why), 0u) << result;
+  write_text(folder / "x", "text");
+  EXPECT_NE(refusal([&] { require_writable_folder(folder / "x"); }).find("/x is no folder"), std::string::npos);
+}
+
 TEST_F(Files, LinksAreFollowed) {
   fs::create_directories(folder / "far");
   write_text(folder / "far" / "x", "old");

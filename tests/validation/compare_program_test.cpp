@@ -346,6 +346,7 @@ TEST_F(CompareProgram, RefusesOptionsThatCannotBe) {
   expect_refused(soft_root(), "a standard deviation above zero, in mm", "--sigma=-1");
   expect_refused(soft_root(), "--sigma 'nan'", "--sigma nan");
   expect_refused(soft_root(), "--sigma 'inf'", "--sigma inf");
+  expect_refused(soft_root(), "--sigma 1e-27: is too small for a standard deviation", "--sigma 1e-27");
   expect_refused(soft_root(), "a standard deviation above zero, in rad", "--sigma-rotation 0");
   expect_refused(soft_root(), "--threads -1: give a whole number", "--threads=-1");
 }
@@ -355,7 +356,10 @@ TEST_F(CompareProgram, FilesThatCannotBeWrittenAreSaid) {
   for (const std::string& arguments : {"--json " + path("data.csv/r.json"), "--out " + path("data.csv/out")}) {
     const test::Run run = test::deflect("compare haptic-6psu-ideal-joints " + data + " " + arguments);
     EXPECT_EQ(run.code, 2) << run.out;
-    EXPECT_NE(run.out.find("cannot be written"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("cannot be written (" + (folder / "data.csv").string() + " is no folder)"),
+              std::string::npos)
+        << run.out;
+    EXPECT_EQ(run.out.find("readings at"), std::string::npos) << "after the work: " << run.out;
   }
   EXPECT_EQ(contents(folder / "data.csv"), soft_root());
 }

@@ -145,6 +145,7 @@ TEST(Csv, RefusesBadFilesWithLineAndReason) {
       {"a,b,a\n1,2,3\n", "data.csv:1:", "'a' stands twice, as column 1 and column 3"},
       {"a,,c\n1,2,3\n", "data.csv:1:", "column 2 has no name"},
       {"a,b,\n1,2,3\n", "data.csv:1:", "separator at the end"},
+      {"a|b|c\n1|2|3\n", "data.csv:1: columns are separated by '|' here", "put semicolons in place of it"},
       {"a,b;c\n1,2\n", "data.csv:1:", "both commas and semicolons"},
       {"a,b\n1,2\n1,2,3\n", "data.csv:3:", "3 cells where the header has 2"},
       {"a,b\n1,2,\n", "data.csv:2:", "separator at the end"},

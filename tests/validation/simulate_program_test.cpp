@@ -143,6 +143,8 @@ TEST_F(SimulateProgram, RefusesOptionsThatCannotBe) {
   expect_refused("--elements 0", "a whole number from 1 to 1000");
   expect_refused("--seed 1.5", "--seed 1.5: give a whole number");
   expect_refused("--seed -1", "--seed -1: give a whole number");
+  expect_refused("--seed 18446744073709551616",
+                 "--seed 1.844674407370955e+19: give a whole number from 0 to 9000000000000000");
   expect_refused("--force 0", "other than zero");
   expect_refused("--threads 0.5", "--threads 0.5: give a whole number");
 }

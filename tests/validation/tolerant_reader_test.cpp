@@ -132,6 +132,13 @@ TEST(TolerantReader, PosesOfALabelMayScatterAndTheirMeanIsTaken) {
             std::string::npos);
 }
 
+TEST(TolerantReader, AStandardDeviationThatNoInstrumentHasIsAskedAbout) {
+  const std::string row = "a,0,0,174,0,0,0,50,0,0,1,2,3,", head = ",sigma_u_mm";
+  EXPECT_TRUE(tells(read(usual_file(row + "2e-3\n" + row + "1e-26\n" + row + "1e-12\n", head)),
+                    "2 standard deviations such as 1e-26 in line 3, column 'sigma_u_mm', are finer than instruments"));
+  EXPECT_TRUE(read(usual_file(row + "1e-9\n", head)).how_read.empty());
+}
+
 TEST(TolerantReader, AFileOfTheContractIsReadWithoutAWord) {
   EXPECT_TRUE(read(usual_file("a,0,0,174,0,0,0,50,0,0,1,2,3\n")).how_read.empty());
 }

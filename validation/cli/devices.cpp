@@ -22,6 +22,7 @@
 #include "validation/cli/made_by.h"
 #include "validation/cli/talk.h"
 #include "validation/measurement/joined.h"
+#include "validation/measurement/number_limits.h"
 #include "validation/report/schema_results.h"
 
 namespace deflect::cli {
@@ -377,6 +378,11 @@ std::optional<double> parse_sigma(const std::string& option, const std::string& 
   const double value = parse_list(option, text, {1}, "a standard deviation in " + unit)[0];
   if (!(value > 0))
     throw InputError(fmt::format("{} {}: give a standard deviation above zero, in {}", option, text, unit));
+  if (!(value / per_SI > measurement::least_sigma))
+    throw InputError(fmt::format("{} {}: is too small for a standard deviation, no reading is exact", option, text));
+  if (value / per_SI < measurement::finest_sigma)
+    remark(fmt::format("{} {}: finer than instruments read (below {:g} {}): is the unit another?", option, text,
+                       measurement::finest_sigma * per_SI, unit));
   return value / per_SI;
 }
 

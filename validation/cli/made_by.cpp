@@ -163,6 +163,13 @@ void require_separate_files(const Command& command) {
   }
 }
 
+void require_writable_outputs(const Command& command) {
+  for (const Option& o : command.options)
+    if (is_output(o))
+      for (const std::string& name : values_of(o))
+        o.flags == "--out" ? require_writable_folder(name) : require_writable_file(name);
+}
+
 void write_result(const std::string& file, const std::string& json) {
   write_file(file, running ? result_files::with_provenance(json, provenance_of(*running)) : json);
 }

@@ -17,6 +17,9 @@ void set_command(const Command&);
 /// file: one of them would be lost. With --force a description may be written in place of the one that was read.
 void require_separate_files(const Command&);
 
+/// Before any work. InputError where a file or folder that the command is to write cannot be written.
+void require_writable_outputs(const Command&);
+
 /// write_file() of a JSON object, with its provenance (provenance.h).
 void write_result(const std::string& file, const std::string& json);
 

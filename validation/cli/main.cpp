@@ -66,6 +66,7 @@ void run(const Command& command, Ranks* ranks) {
   const deflect::cli::Step step(command.name);
   deflect::cli::set_command(command);
   deflect::cli::require_separate_files(command);
+  deflect::cli::require_writable_outputs(command);
   if (const auto* shared = std::get_if<deflect::cli::SharedRun>(&command.run)) {
     (*shared)(ranks);
   } else if (!ranks || ranks->first()) {

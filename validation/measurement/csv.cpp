@@ -122,16 +122,21 @@ class CsvParser {
 
   void find_separator() {
     if (told_) return;
-    bool quoted = false, comma = false, semicolon = false, tab = false;
+    bool quoted = false, comma = false, semicolon = false, tab = false, bar = false;
     for (std::size_t i = at_; i < bytes().size() && (quoted || bytes()[i] != '\n'); ++i) {
       const char c = bytes()[i];
       if (c == '"') quoted = !quoted;
       comma = comma || (!quoted && c == ',');
       semicolon = semicolon || (!quoted && c == ';');
       tab = tab || (!quoted && c == '\t');
+      bar = bar || (!quoted && c == '|');
     }
     if (comma && semicolon)
       refuse_table(line_, "the header has both commas and semicolons: separate columns by one of them");
+    if (bar && !comma && !semicolon && !tab)
+      refuse(line_,
+             "columns are separated by '|' here; commas, semicolons and tabs are read: put semicolons in place of "
+             "it, as 'tr \"|\" \";\"' does");
     separator_ = semicolon ? ';' : tab && !comma ? '\t' : ',';
   }
 

@@ -173,6 +173,12 @@ class Reader {
       m_.how_read.push_back(fmt::format(
           "the poses of {} label{} scatter, by {:.3g} mm and {:.3g} {} from the first at most: their mean is taken",
           labels, labels == 1 ? "" : "s", most_moved_, most_turned_, m_.by_joints() ? "rad" : "deg"));
+    if (too_fine_ > 0)
+      m_.how_read.push_back(fmt::format(
+          "{} standard deviation{} such as {} in line {}, column '{}', {} finer than instruments read (below 1e-9 mm, "
+          "1e-12 rad): is the unit another?",
+          too_fine_, too_fine_ == 1 ? "" : "s", excerpt(table_.text(first_fine_row_, first_fine_column_)),
+          table_.line(first_fine_row_), excerpt(table_.header()[first_fine_column_]), too_fine_ == 1 ? "is" : "are"));
     if (not_measured_ > 0)
       m_.how_read.push_back(fmt::format("{} cell{} such as '{}' in line {} count as not measured", not_measured_,
                                         not_measured_ == 1 ? "" : "s", excerpt(first_word_), first_word_line_));
@@ -221,12 +227,14 @@ class Reader {
   std::optional<double> sigma(std::size_t row, const std::optional<ReadColumn>& column, double per_SI) {
     std::optional<double> value = measured(row, column);
     if (!value) return value;
+    const char* what = *value > 0 ? "too small for a standard deviation" : "not positive";
     *value /= per_SI;
     if (!(*value > least_sigma))
       table_.refuse(row, column->index,
-                    fmt::format("{} is not positive: no reading is exact, leave the cell empty where the standard "
-                                "deviation is not known",
-                                excerpt(table_.text(row, column->index))));
+                    fmt::format("{} is {}: no reading is exact, leave the cell empty where the standard deviation is "
+                                "not known",
+                                excerpt(table_.text(row, column->index)), what));
+    if (*value < finest_sigma && ++too_fine_ == 1) first_fine_row_ = row, first_fine_column_ = column->index;
     return value;
   }
 
@@ -251,6 +259,7 @@ class Reader {
   std::vector<VectorX> beside_first_;  // by group: sums of what poses differ by from its first; empty where alike
   double most_moved_ = 0, most_turned_ = 0;
   std::size_t not_measured_ = 0, first_word_line_ = 0;
+  std::size_t too_fine_ = 0, first_fine_row_ = 0, first_fine_column_ = 0;
   std::string_view first_word_;
 };
 

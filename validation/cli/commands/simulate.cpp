@@ -31,6 +31,7 @@ namespace deflect::cli {
 namespace {
 
 constexpr double most_noise_mm = 1000, most_tolerances = 1000;
+constexpr double most_seed = 9e15;  // whole numbers up to 2^53 are told apart
 
 /// A file with such a standard deviation could not be read.
 bool is_too_little(double sigma) { return sigma > 0 && sigma <= measurement::least_sigma; }
@@ -82,8 +83,8 @@ effects::EffectInstance parse_with(const std::string& text, const std::vector<ef
 
 prediction::SimulationOptions options_of(const SimulateArguments& a) {
   prediction::SimulationOptions o;
-  if (!(a.seed >= 0 && a.seed < 9e15) || a.seed != std::floor(a.seed))
-    throw InputError(fmt::format("--seed {}: give a whole number of at least zero", a.seed));
+  if (!(a.seed >= 0 && a.seed <= most_seed) || a.seed != std::floor(a.seed))
+    throw InputError(fmt::format("--seed {:.16g}: give a whole number from 0 to {:.16g}", a.seed, most_seed));
   o.seed = static_cast<std::uint64_t>(a.seed);
   if (!a.machine.empty())
     o.machine = static_cast<std::uint64_t>(
