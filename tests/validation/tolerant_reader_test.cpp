@@ -112,6 +112,20 @@ TEST(TolerantReader, WhatWasNotMeasuredMayBeSaidInWords) {
   EXPECT_TRUE(tells(m, "4 cells such as 'NaN' in line 2 count as not measured"));
 }
 
+TEST(TolerantReader, DecimalCommasAreReadAndSaid) {
+  const auto with = [](char separator, char decimal) {
+    std::string text = usual_file("1:5,0,0,174,0,0,0,50,0,0,1,2,3,4:5\n1:5,0,0,174,0,0,0,0,50,0,1,2:5,3,\n", ",note");
+    for (char& c : text) c = c == ',' ? separator : c == ':' ? decimal : c;
+    return text;
+  };
+  const Measurements m = read(with(';', ','));
+  EXPECT_EQ(m.readings[1].displacement[1], 2.5e-3);
+  EXPECT_EQ(m.how_read, std::vector<std::string>{"numbers with decimal commas are read, as '2,5' in line 3 is 2.5, in "
+                                                 "the column uy_mm; semicolons (;) separate columns"});
+  EXPECT_TRUE(tells(read(with('\t', ',')), "in the column uy_mm; tabs separate columns"));
+  EXPECT_TRUE(read(with(';', '.')).how_read.empty());
+}
+
 TEST(TolerantReader, CommentsAndBlankLinesAreSkippedAndSaid) {
   const Measurements m = read("# rig 3\n\n" + usual_file("a,0,0,174,0,0,0,50,0,0,1,2,3\n\n# coffee\n"
                                                          "a,0,0,174,0,0,0,-50,0,0,-1,-2,-3\n"));

@@ -77,6 +77,7 @@ class CsvParser {
     while (read_row()) {
     }
     settle_comments();
+    table_.separator_ = separator_;
     if (table_.lines_.empty()) refuse(table_.header_line_, "there is a header but no row below it");
     return std::move(table_);
   }

@@ -22,6 +22,9 @@ class CsvTable {
   const std::vector<std::string>& header() const { return header_; }
   std::size_t rows() const { return lines_.size(); }
 
+  /// Between columns: a comma, a semicolon or a tab.
+  char separator() const { return separator_; }
+
   /// Lines that were skipped because they begin with '#'.
   const std::vector<std::size_t>& comments() const { return comments_; }
 
@@ -60,6 +63,7 @@ class CsvTable {
   std::vector<std::size_t> comments_;
   std::size_t header_line_ = 1;
   bool decimal_comma_ = false;
+  char separator_ = ',';
 };
 
 /// The table in the text; `file` is for messages only. Refuses text without rows.

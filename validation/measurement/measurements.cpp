@@ -14,6 +14,7 @@
 #include "msa/base/index.h"
 #include "msa/base/spatial.h"
 #include "validation/measurement/csv.h"
+#include "validation/measurement/decimal_commas.h"
 #include "validation/measurement/measurement_columns.h"
 #include "validation/measurement/number_limits.h"
 #include "validation/measurement/parse_plan.h"
@@ -167,6 +168,10 @@ class Reader {
   void tell_how() {
     take_means();
     m_.how_read = columns_.how_read;
+    std::vector<std::size_t> text = columns_.notes;
+    if (columns_.pose) text.push_back(*columns_.pose);
+    if (std::string words = decimal_comma_words(table_, columns_.first_row, text); !words.empty())
+      m_.how_read.push_back(std::move(words));
     const auto labels =
         std::count_if(beside_first_.begin(), beside_first_.end(), [](const VectorX& sum) { return sum.size() > 0; });
     if (labels > 0)
