@@ -379,8 +379,14 @@ TEST_F(ReportProgram, EveryCommandThatHasSomethingToShowMakesAPage) {
 TEST_F(ReportProgram, WhatIsNoResultIsRefused) {
   write_text(folder / "x.json", "{\"a\": 1}");
   write_text(folder / "y.json", "{");
+  write_text(folder / "z.json", R"({"kind": "simulation"})");
+  const std::string those =
+      "; pages are made of results of diagnose, compare, history, solve, validate, map, frame, "
+      "check, show, fit, predict, plan: give files that their --json wrote";
   for (const auto& [file, message] :
-       {std::pair{"x.json", "x.json: not a result of"}, std::pair{"y.json", "y.json:1: not valid JSON"}}) {
+       {std::pair{"x.json", "x.json: not a result of a command that has a page" + those},
+        std::pair{"z.json", "z.json: a result of the kind 'simulation' has no page" + those},
+        std::pair{"y.json", std::string("y.json:1: not valid JSON")}}) {
     const test::Run run = test::deflect("report " + path(file) + " -o " + path("page.html"));
     EXPECT_EQ(run.code, 2) << run.out;
     EXPECT_NE(run.out.find(message), std::string::npos) << run.out;

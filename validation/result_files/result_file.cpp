@@ -153,11 +153,11 @@ ReadResult read_result(const std::string& text, const std::string& origin) {
       for (const WantedMember& each : for_each_theory(wanted, json, paths)) check.check(json, each);
     return {kind.name, std::move(json)};
   }
-  throw InputError(
-      fmt::format("{}: not a result of diagnose, compare, history, solve, validate, map, frame, check or show: give "
-                  "files that their "
-                  "--json wrote",
-                  origin));
+  const bool told = json.is_object() && json.contains("kind") && json["kind"].is_string();
+  throw InputError(fmt::format("{}: {}; pages are made of results of {}: give files that their --json wrote", origin,
+                               told ? fmt::format("a result of the kind '{}' has no page", std::string(json["kind"]))
+                                    : "not a result of a command that has a page",
+                               commands_with_pages));
 }
 
 }  // namespace deflect::result_files

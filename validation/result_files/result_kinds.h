@@ -18,6 +18,10 @@ struct ResultKind {
   std::vector<WantedMember> wanted;
 };
 
+/// The commands whose results are shown.
+inline constexpr const char* commands_with_pages =
+    "diagnose, compare, history, solve, validate, map, frame, check, show, fit, predict, plan";
+
 /// In the order in which a result that does not say its kind is asked for it.
 const std::vector<ResultKind>& result_kinds();
 

@@ -6,6 +6,7 @@
 #include "validation/cli/devices.h"
 #include "validation/cli/report.h"
 #include "validation/result_files/result_file.h"
+#include "validation/result_files/result_kinds.h"
 
 namespace deflect::cli {
 namespace {
@@ -42,21 +43,23 @@ void run(const ReportArguments& a) {
 
 Command report_command() {
   auto a = std::make_shared<ReportArguments>();
-  return {"report",
-          "Write one self-contained page from several results (--json of diagnose, compare, history, solve, validate, "
-          "map, frame, check, show, fit, predict, plan): pictures with their numbers. With --device and --data the "
-          "page draws the machine with its residuals and adds the effects that a diagnosis among the results found",
-          "deflect report diagnosis.json solve.json --device haptic-6psu-ideal-joints --data measurements.csv "
-          "-o report.html",
-          {{"results", "RESULT.json", "results written by --json", &a->results, true},
-           {"--device", "DEVICE", "built-in device or frame, or a file of one", &a->device},
-           {"--data", "DATA", "measurements (CSV)", &a->data},
-           {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->effects},
-           {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
-           {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
-           {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
-           {"-o,--output", "FILE.html", "file to write", &a->output, true}},
-          [a] { run(*a); }};
+  return {
+      "report",
+      fmt::format("Write one self-contained page from several results (--json of {}): pictures with their numbers. "
+                  "With --device and --data the page draws the machine with its residuals and adds the effects that "
+                  "a diagnosis among the results found",
+                  result_files::commands_with_pages),
+      "deflect report diagnosis.json solve.json --device haptic-6psu-ideal-joints --data measurements.csv "
+      "-o report.html",
+      {{"results", "RESULT.json", "results written by --json", &a->results, true},
+       {"--device", "DEVICE", "built-in device or frame, or a file of one", &a->device},
+       {"--data", "DATA", "measurements (CSV)", &a->data},
+       {"--effects", "FILE", "your own effect files, in addition to the catalogue", &a->effects},
+       {"--sigma", "MM", "standard deviation of a translation in mm, if the file has none", &a->sigma_mm},
+       {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
+       {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
+       {"-o,--output", "FILE.html", "file to write", &a->output, true}},
+      [a] { run(*a); }};
 }
 
 }  // namespace deflect::cli
