@@ -169,6 +169,9 @@ void describe_coordinates(FieldVisitor& v, Joint& joint) {
     }
     v.require(!joint.min[i] || !joint.max[i] || *joint.min[i] < *joint.max[i], "max",
               fmt::format("{} must be above that of min", name));
+    const double q = joint.home[i];
+    v.require(q == 0 || (q >= joint.min[i].value_or(q) && q <= joint.max[i].value_or(q)), "home",
+              fmt::format("{} lies outside of the joint's min … max", name));
   }
 }
 

@@ -217,6 +217,7 @@ const std::vector<Mistake> mistakes = {
     {"max: {tz: 200 mm}", "max: {ty: 200 mm}", 23, {"leg.slide.max: ty is no coordinate"}},
     {"max: {tz: 200 mm}", "max: {tz: 5 mm}", 23, {"leg.slide.max: tz must be above that of min"}},
     {"max: {tz: 200 mm}", "max: {tz: 10 mm}", 23, {"leg.slide.max: tz must be above that of min"}},
+    {"max: {tz: 200 mm}", "max: {tz: 119 mm}", 21, {"leg.slide.home: tz lies outside of the joint's min … max"}},
     {"preload: {tz: -20 N}",
      "preload: {tx: -20 N}",
      25,

@@ -132,6 +132,15 @@ TEST_F(ShowProgram, LoopsThatDoNotCloseShowEachLegAlone) {
   EXPECT_NE(d.at("trouble").get<std::string>().find("Each leg is drawn alone"), std::string::npos) << d.at("trouble");
   EXPECT_EQ(d.at("members").size(), 6u);
   EXPECT_EQ(d.at("frames").size(), 4u);  // the base and the end of each leg
+  ASSERT_EQ(d.at("driven").size(), 3u);
+  EXPECT_EQ(out.find("nothing is driven"), out.npos) << out;
+  for (const json& member : d.at("members")) {  // local x runs along the member
+    double across = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      across += (member.at("end_mm").at(i).get<double>() - member.at("start_mm").at(i).get<double>()) *
+                member.at("axes").at(1).at(i).get<double>();
+    EXPECT_NEAR(across, 0, 1e-9) << member;
+  }
 }
 
 TEST_F(ShowProgram, ThePictureIsDrawn) {

@@ -167,6 +167,7 @@ class OpenDrawing {
         out.material = member->material;
         out.start = step.start;
         out.end = step.after.p;
+        out.axes = axes_of(*member, step);
         set_section(out, mechanism_.sections, member->section);
         add_line(out.start, out.end, static_cast<int>(drawing_.members.size()));
         drawing_.members.push_back(std::move(out));
@@ -187,6 +188,17 @@ class OpenDrawing {
   }
 
  private:
+  /// As place.h has them; those of the chain where the member has no length.
+  static Matrix3 axes_of(const Member& member, const Step& step) {
+    const Vector3 along = step.after.p - step.start, y_W = step.before.R * member.y_axis;
+    const bool own = along.cross(y_W).norm() > 1e-6 * along.norm() * y_W.norm();
+    PlacedMember placed;
+    placed.R_WM = step.before.R;
+    if (along.norm() > 1e-9)
+      place_between(placed, step.start, step.after.p, own ? y_W : Vector3(step.before.R.col(1)), step.before.R.col(2));
+    return placed.R_WM;
+  }
+
   void add_joint(const std::string& leg, const Step& step, const Joint& joint) {
     DrawnJoint out;
     out.leg = leg;
@@ -216,6 +228,9 @@ MachineDrawing open_legs(const Mechanism& m, const std::string& why) {
     d.frames.push_back({fmt::format("end of leg {}", i + 1), "", trace.legs[i].end.p, trace.legs[i].end.R});
   }
   d.frames.insert(d.frames.begin(), {"base", "", Vector3::Zero(), Matrix3::Identity()});
+  const ActuatedCoordinates driven = actuated_at_home(m);
+  for (std::size_t i = 0; i < driven.names.size(); ++i)
+    d.driven.push_back({driven.names[i], driven.values(as_index(i)), driven.rotation[i]});
   d.trouble = fmt::format("{}. Each leg is drawn alone, with its joints at their home", why);
   return d;
 }
