@@ -361,7 +361,9 @@ Command devices_command() {
       "start}' or 'at: end' chooses the end.\n"
       "A joint has the freedoms tx ty tz (along its axes) and rx ry rz (about them). In 'joint: custom' six letters "
       "set them: r rigid, f free, a actuated. They move in this order: along x, y and z, then about x, then about y as "
-      "turned by rx, then about z as turned by rx and ry. For another order, write several joints in series.\n"
+      "turned by rx, then about z as turned by rx and ry. For another order, write several joints in series. "
+      "Laws of freedoms that a joint holds act in its axes before it moves, with 'axes: after' in those that have "
+      "turned.\n"
       "Laws of a freedom, with their fields; several laws in a list act in series:" +
           report::law_lines(),
       "deflect devices haptic-6psu > my-device.yaml",
