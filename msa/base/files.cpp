@@ -110,6 +110,7 @@ std::string why_no_file_in(const fs::path& folder) {
 }
 
 void require_writable(const fs::path& path, const Target& t) {
+  if (!path.has_filename()) refuse(path, "it is a folder, a file is wanted");
   if (!t.there && !t.own)
     if (const std::string why = why_no_file_in(folder_of(t.path)); !why.empty()) refuse(path, why);
   if (!t.there) return;

@@ -78,6 +78,9 @@ TEST_F(Files, WhatCannotBeWrittenIsNamedAndChangesNothing) {
   fs::create_directories(folder / "taken" / "by");
   const std::string over_a_folder = refusal([&] { write_text(folder / "taken", "z"); });
   EXPECT_NE(over_a_folder.find("taken: cannot be written"), over_a_folder.npos) << over_a_folder;
+  const std::string new_folder = refusal([&] { write_text(folder / "new" / "", "z"); });
+  EXPECT_NE(new_folder.find("new/: cannot be written (it is a folder, a file is wanted)"), new_folder.npos)
+      << new_folder;
   EXPECT_EQ(read_text(folder / "x"), "text");
   EXPECT_EQ(names(), 2u);
 }

@@ -88,6 +88,19 @@ TEST_P(NewFile, WritesOverNothingUnlessTold) {
   EXPECT_EQ(typed("deflect show '2 of them.yaml'").code, 0);
 }
 
+// By such a name every command would read the built-in one, whatever is changed in the file.
+TEST_P(NewFile, HasNoNameThatIsBuiltIn) {
+  const test::Run run = typed("deflect new --like scara -o scara");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.out.find("-o scara: commands would read the built-in scara by this name, and not the new file: write "
+                         "scara.yaml"),
+            run.out.npos)
+      << run.out;
+  EXPECT_EQ(typed("deflect new --like scara -o ./scara").code, 0);
+  EXPECT_EQ(typed("deflect new --like scara -o plain").code, 0);
+  EXPECT_EQ(typed("deflect show plain").code, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Once, NewFile, ::testing::Values(""));
 
 }  // namespace

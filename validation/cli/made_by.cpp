@@ -141,6 +141,11 @@ void require_separate_files(const Command& command) {
     const std::string called = o.flags.substr(0, o.flags.find(','));
     for (const std::string& file : values_of(o)) {
       if (is_output(o)) {
+        if (o.flags == "-o,--output" && is_built_in(file))
+          throw InputError(
+              fmt::format("-o {0}: commands would read the built-in {0} by this name, and not the new file: "
+                          "write {0}.yaml, or another name",
+                          file));
         written.push_back({called, file});
         continue;
       }
