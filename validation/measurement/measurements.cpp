@@ -248,12 +248,17 @@ class Reader {
       table_.refuse(row, column, "the cell is empty: number all readings or remove the column");
     const double value = table_.number(row, column);
     const auto [same, is_new] = row_of_sequence_.emplace(value, row);
-    if (!is_new)
+    if (is_new) return value;
+    const std::string_view here = table_.text(row, column), there = table_.text(same->second, column);
+    if (here != there && std::abs(value) >= 9007199254740992)  // 2^53
       table_.refuse(row, column,
-                    fmt::format("{} stands in line {} too: two readings are not taken at once, number them in the "
-                                "order they were taken",
-                                excerpt(table_.text(row, column)), table_.line(same->second)));
-    return value;
+                    fmt::format("{} and {} in line {} differ beyond the 16 digits that are read: count from the first "
+                                "reading",
+                                excerpt(here), excerpt(there), table_.line(same->second)));
+    table_.refuse(row, column,
+                  fmt::format("{} stands in line {} too: two readings are not taken at once, number them in the order "
+                              "they were taken",
+                              excerpt(here), table_.line(same->second)));
   }
 
   const CsvTable& table_;
