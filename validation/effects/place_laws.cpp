@@ -125,7 +125,7 @@ const PlaceLaw of_places[] = {
      "is not as described",
      [](const subject::Place&) {
        return std::vector<EffectParameter>{
-           {"factor", "", 0.98, 0.8, 1.25, true, 1, "true length over the one in the description"}};
+           {"factor", "", 0.98, 0.4, 2.5, true, 1, "true length over the one in the description"}};
      },
      [](const auto& p, const subject::Place&) { return first_of(p); },
      {"{} was made, worn or written down wrong.", "All members of that section are off by one factor.",
