@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -176,6 +177,50 @@ loads: {{load: {{{}}}}}
       ASSERT_EQ(failed_check(s.result), "") << geometry << load;
       EXPECT_GT(std::abs(s.u("C")(4)), 1e-3) << geometry << load;
       EXPECT_TRUE(s.result.notes.empty()) << geometry << load;
+    }
+  }
+}
+
+// A piece of s at the tip of a beam of 1 m: rigid, but for the levers of its end. Its stiffness EI/s³ times the
+// rounding of the tip's displacement is far more than the load. The shorter it is, the less it changes: u(s) = u(0) +
+// O(s).
+TEST(GeometricRounding, AShortPieceAtTheTipOfABeamIsARigidOne) {
+  const auto solved = [](const std::string& geometry, double s) {
+    return Solved(parse_frame(fmt::format(R"(name: tip
+geometry: {}
+materials: {{steel: {{E: 200 GPa, G: 80 GPa}}}}
+sections: {{rod: {{shape: given, A: 100 mm^2, Iy: 2000 mm^4, Iz: 800 mm^4, J: 500 mm^4, As_y: 80 mm^2, As_z: 60 mm^2}}}}
+nodes: {{A: [0 mm, 0 mm, 0 mm], B: [1000 mm, 0 mm, 0 mm], C: [1000 mm, {} mm, {} mm]}}
+members:
+  beam: {{from: A, to: B, section: rod, material: steel}}
+  piece: {{from: B, to: C, section: rod, material: steel}}
+supports: {{A: clamped}}
+loads: {{load: {{nodes: {{C: {{fz: 1 N, fx: 3 N}}}}}}}}
+)",
+                                          geometry, 0.6 * s, 0.8 * s),
+                              "t"));
+  };
+  for (const std::string geometry : {"second-order", "finite"}) {
+    const Solved far = solved(geometry, 1), farther = solved(geometry, 2);
+    const Vector6 by_s = farther.u("B") - far.u("B"), none = far.u("B") - by_s;
+    for (const double s : {0.3, 0.1, 0.07, 0.05, 0.04, 0.03, 0.02, 0.015, 0.01}) {
+      const Solved at = solved(geometry, s);
+      ASSERT_EQ(failed_check(at.result), "") << geometry << s;
+      EXPECT_LT((at.u("B") - none - s * by_s).norm(), 1e-6 * none.norm()) << geometry << s;
+      EXPECT_NEAR(at.u("B")(3), s * by_s(3), 5e-4 * s * by_s(3)) << geometry << s;  // the twist, 1e-4 of the rest
+      const double missing = (at.member("piece").end.head<3>().norm() - std::sqrt(10.0)) / std::sqrt(10.0);
+      const bool told = std::any_of(at.result.notes.begin(), at.result.notes.end(), [](const std::string& note) {
+        return note.find("the forces of members balance to") != std::string::npos;
+      });
+      EXPECT_TRUE(told || std::abs(missing) < 2e-3) << geometry << s << ' ' << missing;
+      EXPECT_TRUE(s < 0.06 || !told) << geometry << s;
+      EXPECT_TRUE(s > 0.02 || told) << geometry << s;
+    }
+    // Where doubles have no digits left, the message says so and names the piece.
+    for (const double s : {1e-3, 1e-4}) {
+      const std::string refused = failed_check(solved(geometry, s).result);
+      EXPECT_NE(refused.find("In the deformed shape the stiffness is ill-conditioned"), std::string::npos) << refused;
+      EXPECT_NE(refused.find("'beam' is too soft beside 'piece'"), std::string::npos) << refused;
     }
   }
 }

@@ -10,8 +10,14 @@
 #include "msa/base/index.h"
 #include "msa/frame/deformed/geometric_work.h"
 #include "msa/frame/structure/relative.h"
+#include "msa/frame/structure/stability.h"
 
 namespace deflect::frame {
+namespace {
+
+constexpr double poor = 1e-12;  // reciprocal condition: to the rounding of a solution this adds as much
+
+}  // namespace
 
 /// Springs that jump begin where the linear theory has them under this part of the load, and the shape with them.
 void GeometricSolver::begin_jumps(Work& work, double factor) const {
@@ -162,6 +168,11 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
   state.K = tangent_stiffness(at, work.lambda, loads);
   const Tangent tangent(e, state.K);
   state.stable = tangent.stable();
+  const VectorX lacking = e.reduce(loads - at.forces);
+  for (Eigen::Index i = 0; i < lacking.size(); ++i)
+    if (const int dof = nth(e.dof_of_q, i); dof < 6 * std::ssize(model_.nodes) && dof % 6 < 3)
+      if (std::abs(lacking(i)) > state.unbalanced)
+        state.unbalanced = std::abs(lacking(i)), state.unbalanced_node = dof / 6;
   if (const double size = size_of(work.shape.path, model_.nodes.size(), work.length);
       size > 0 && tangent.regular() && !balances(work, at, e, state.load_factor, loads - at.forces, gaps))
     state.residual = size_of(tangent.solve(loads - at.forces, gaps), model_.nodes.size(), work.length) / size;
@@ -201,6 +212,21 @@ void GeometricSolver::conclude(Work& work, GeometricState& state) const {
           model_.constraints[k].name);
     }
   }
+}
+
+/// Where nothing was found because stiffnesses are too far apart for doubles: a sentence to add that says so. At rest,
+/// where the structure stands: what is not positive definite there is rounding.
+std::string GeometricSolver::lost_digits(const Work& work, Geometry geometry) const {
+  const Shape rest(model_);
+  const VectorX none = VectorX::Zero(std::ssize(model_.constraints));
+  const StructureConditions with{std::vector<double>(model_.beams.size(), 0), stiffness_at(model_, work.force),
+                                 work.with.first_hold};
+  const Linearisation at = geometry == Geometry::finite ? linearise_finite(work.structure, rest, with)
+                                                        : linearise_second_order(work.structure, rest, none, with);
+  const Tangent tangent(eliminate(constrained(at.forms)), tangent_stiffness(at, none, VectorX::Zero(model_.dofs())));
+  const Tangent::Softest softest = tangent.softest();
+  if (softest.condition > poor || softest.u.size() == 0) return "";
+  return ". In the deformed shape " + explain_condition(model_, softest.u, softest.condition);
 }
 
 GeometricState GeometricSolver::solve(const GeometricLoad& load, const GeometricOptions& options) {
@@ -247,6 +273,7 @@ GeometricState GeometricSolver::solve(const GeometricLoad& load, const Geometric
     state.message = options.geometry == Geometry::finite
                         ? "the equilibrium is unstable"
                         : "the load is beyond the first buckling load: K_E + K_G is not positive definite";
+  if (!state.converged || !state.stable) state.message += lost_digits(work, options.geometry);
   return state;
 }
 

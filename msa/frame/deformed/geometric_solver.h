@@ -70,7 +70,9 @@ struct GeometricState {
   double load_factor = 0;  ///< share of the load that is carried
   double snaps_at = 0;     ///< share of the load at which the structure snaps through before this state; 0: it does not
   int steps = 0, iterations = 0;
-  double residual = 0;        ///< size of the next step, relative to the displacement; 0: what forces lack is rounding
+  double residual = 0;    ///< size of the next step, relative to the displacement; 0: what forces lack is rounding
+  double unbalanced = 0;  ///< N: the largest force that is not balanced at a node, and the node
+  int unbalanced_node = 0;
   VectorX u;                  ///< by freedom of GeometricSolver::model(): m, rotation vector, the scalars' unit
   VectorX constraint_forces;  ///< λ: constraint k exerts λ_k forms_k on the freedoms
   VectorX elongations, spring_forces, spring_tangents;
@@ -135,6 +137,7 @@ class GeometricSolver {
   bool fall(Work&, const GeometricOptions&, GeometricState&) const;
   void follow(Work&, const GeometricOptions&, GeometricState&) const;
   void conclude(Work&, GeometricState&) const;
+  std::string lost_digits(const Work&, Geometry) const;
 
   void take_jumps(Work&) const;
   void begin_jumps(Work&, double factor) const;

@@ -33,6 +33,15 @@ void scatter(const Pair& nodes, const Matrix12& K, std::vector<Eigen::Triplet<do
     }
 }
 
+/// The displacements of the ends [0; θ_a; δ_b; θ_b] less the motion of end a as that of a rigid body.
+Vector12 without_rigid_motion(const Beam& beam, const Vector12& d) {
+  Vector12 out = Vector12::Zero();
+  const Vector3 turn = d.segment<3>(3);
+  out.segment<3>(6) = d.segment<3>(6) - turn.cross(beam.length * beam.R_WM.col(0));
+  out.tail<3>() = d.tail<3>() - turn;
+  return out;
+}
+
 /// A component of a connection in the place of the terms on nodes of its linear form; scalars stay.
 LinearForm with_gradient(const Model& m, const LinearForm& form, const Pair& nodes, const Vector12& gradient) {
   LinearForm out;
@@ -188,16 +197,20 @@ Linearisation linearise_second_order(const Model& m, const Shape& shape, const V
   for (std::size_t e = 0; e < m.beams.size(); ++e) {
     const Beam& beam = m.beams[e];
     const Pair nodes{beam.a, beam.b};
-    const Vector12 d = gather(nodes, shape.path);
+    // From end a on, so that a short piece that moves far keeps its digits; what is then rounding cancels between ends.
+    Vector12 d = gather(nodes, shape.path);
+    d.segment<3>(6) -= d.head<3>();
+    d.head<3>().setZero();
+    const Vector12 strained = without_rigid_motion(beam, d);
     const double heat = beam.rigidity.EA * c.strains[e];
-    Vector12 ends = end_forces(beam, d), pushed = Vector12::Zero();  // local axes, base axes
+    Vector12 ends = end_forces(beam, strained), pushed = Vector12::Zero();  // local axes, base axes
     ends(0) += heat, ends(6) -= heat;
     pushed.head<3>() = heat * beam.R_WM.col(0), pushed.segment<3>(6) = -pushed.head<3>();
-    const Matrix12 K = stiffness(beam) + geometric_stiffness(beam, ends);
-    const Vector12 forces = K * d + pushed;
+    const Matrix12 K_G = geometric_stiffness(beam, ends);
+    const Vector12 elastic = pull(beam, strained), forces = elastic + K_G * d + pushed;
     scatter(nodes, forces, out.forces);
-    scatter(nodes, K, out.stiffness);
-    const double energy = d.dot(pull(beam, d)) / 2 + d.dot(pushed) + heat * c.strains[e] * beam.length / 2;
+    scatter(nodes, stiffness(beam) + K_G, out.stiffness);
+    const double energy = strained.dot(elastic) / 2 + strained.dot(pushed) + heat * c.strains[e] * beam.length / 2;
     out.beams.push_back({forces, beam.R_WM, beam.R_WM, energy});
   }
   VectorX turned = VectorX::Zero(m.dofs());  // what the forces of connections gain by turning

@@ -19,6 +19,26 @@ Sparse sparse(const std::vector<LinearForm>& rows, Eigen::Index columns) {
   return out;
 }
 
+Sparse twice_the_symmetric_part(const Sparse& K) { return Sparse(K.transpose()) + K; }
+
+struct LowerTriangle {
+  SparsePattern pattern;
+  std::vector<double> values;
+
+  explicit LowerTriangle(const Sparse& symmetric) : pattern{static_cast<int>(symmetric.cols()), {0}, {}} {
+    for (int j = 0; j < pattern.n; ++j) {
+      pattern.row.push_back(j);
+      values.push_back(symmetric.coeff(j, j));
+      for (Sparse::InnerIterator entry(symmetric, j); entry; ++entry)
+        if (entry.row() > j) {
+          pattern.row.push_back(static_cast<int>(entry.row()));
+          values.push_back(entry.value());
+        }
+      pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
+    }
+  }
+};
+
 }  // namespace
 
 Sparse tangent_stiffness(const Linearisation& at, const VectorX& lambda, const VectorX& loads) {
@@ -70,22 +90,24 @@ double Tangent::largest_entry() const {
 }
 
 bool Tangent::stable() const {
-  const Sparse symmetric = Sparse(impl_->reduced.transpose()) + impl_->reduced;  // twice the part
-  SparsePattern pattern{static_cast<int>(symmetric.cols()), {0}, {}};
-  std::vector<double> values;
-  for (int j = 0; j < pattern.n; ++j) {
-    pattern.row.push_back(j);
-    values.push_back(symmetric.coeff(j, j));
-    for (Sparse::InnerIterator entry(symmetric, j); entry; ++entry)
-      if (entry.row() > j) {
-        pattern.row.push_back(static_cast<int>(entry.row()));
-        values.push_back(entry.value());
-      }
-    pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
-  }
-  if (SparseCholesky(pattern).factor(values) > 0) return true;
+  const Sparse symmetric = twice_the_symmetric_part(impl_->reduced);
+  const LowerTriangle lower(symmetric);
+  if (SparseCholesky(lower.pattern).factor(lower.values) > 0) return true;
   const Sparse skew_part = Sparse(impl_->reduced.transpose()) - impl_->reduced;
   return impl_->regular && skew_part.norm() > 1e-9 * symmetric.norm() && impl_->lu.signDeterminant() > 0;
+}
+
+Tangent::Softest Tangent::softest() const {
+  LowerTriangle lower(twice_the_symmetric_part(impl_->reduced));
+  if (lower.pattern.n == 0) return {};
+  SparseCholesky factor(lower.pattern);
+  Softest out{factor.factor(lower.values), {}};
+  if (out.condition == 0) {  // what is softest shows beside a little of the diagonal
+    for (int j = 0; j < lower.pattern.n; ++j) nth(lower.values, nth(lower.pattern.column_start, j)) *= 1 + 1e-13;
+    if (factor.factor(lower.values) == 0) return out;
+  }
+  out.u = impl_->T * factor.softest().motion;
+  return out;
 }
 
 MatrixX Tangent::solve(const MatrixX& loads, const MatrixX& values) const {

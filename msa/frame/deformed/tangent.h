@@ -28,6 +28,13 @@ class Tangent {
   /// unsymmetric, definiteness is no criterion, and a positive determinant is tested instead: no critical load was
   /// passed, or two.
   bool stable() const;
+  /// The reciprocal condition of K on the free motions (sparse_cholesky.h) and its softest motion, by freedom; 0 where
+  /// K is not positive definite but for rounding.
+  struct Softest {
+    double condition = 1;
+    VectorX u;
+  };
+  Softest softest() const;
   double largest_entry() const;  ///< of K on the free motions, by magnitude
   /// u̇ for columns of load increments and of increments of constraint values.
   MatrixX solve(const MatrixX& loads, const MatrixX& values) const;

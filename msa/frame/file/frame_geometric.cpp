@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -100,6 +102,18 @@ VectorX from(const GeometricState& before, const GeometricState& after, std::siz
   return u;
 }
 
+/// In a short stiff piece that moves far, forces are small differences of displacements: a note where those that act at
+/// a node balance to a thousandth of the largest only.
+void note_unbalanced(const FrameModel& m, const GeometricState& state, double load, const std::string& name,
+                     std::vector<std::string>& notes) {
+  for (const BeamState& beam : state.beams) load = std::max(load, beam.forces.segment<3>(6).norm());
+  if (state.unbalanced <= 1e-3 * load) return;
+  notes.push_back(
+      fmt::format("load case '{}': at '{}' the forces of members balance to {:.1g} N only: in a piece that is "
+                  "so short or stiff they are small differences of displacements",
+                  name, nth(m.model.nodes, state.unbalanced_node).name, state.unbalanced));
+}
+
 GeometricState state_under(GeometricSolver& solver, const CaseLoad& full, const GeometricOptions& options) {
   GeometricLoad given{full.forces - full.thermal, full.values, {}};  // heat strains the members instead
   for (const ElementLoad& element : full.elements) given.strains.push_back(element.strain);
@@ -179,6 +193,7 @@ void analyse_geometric(const FrameDescription& f, const FrameOptions& frame_opti
     for (std::size_t i = 0; i < f.nodes.size(); ++i) r.displacements.push_back(r.u.segment<6>(as_index(6 * i)));
     if (frame_options.in_sequence && state.converged) options.slips = state.slips;
     note_floating(name, state.loose, out.notes);
+    if (state.converged && !full.forces.isZero(0)) note_unbalanced(m, state, largest(full.forces), name, out.notes);
     out.cases.push_back(std::move(r));
   }
 }
