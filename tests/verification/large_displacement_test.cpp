@@ -61,6 +61,20 @@ TEST(Buckling, ShearSoftensTheColumnAfterEngesser) {
   expect_rate(errors, 4, 0.25);
 }
 
+// S. Timoshenko, J. Gere, Theory of Elastic Stability, 1961, §6.3: a deep cantilever under a load at its tip turns
+// sideways at P L² = 4.0126 √(EI GJ), twice the first zero of the Bessel function of order −1/4; warping left out.
+TEST(Buckling, ADeepCantileverTurnsSideways) {
+  std::vector<double> errors;
+  for (const int n : {4, 8, 16}) {
+    const Model m = column(n, 1, {1e6, 2, 1e4, 0.5, rigid_in_shear, rigid_in_shear});
+    const double P = buckling_factor(m, load_at(m, n, {0, -1, 0}), 10);
+    errors.push_back(P / 4.0126 - 1);
+  }
+  EXPECT_GT(errors.back(), 0);
+  EXPECT_LT(errors.back(), 1e-3);
+  expect_rate(errors, 4, 0.1);
+}
+
 TEST(Buckling, IsAResultWithWordsAndNotAnError) {
   const Model m = column(4, 1, {1e6, 2, 1, 1, rigid_in_shear, rigid_in_shear});
   const GeometricState s = solve(m, load_at(m, 4, {-3, 0, 0}), Geometry::second_order);
