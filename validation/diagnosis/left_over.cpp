@@ -1,5 +1,7 @@
 #include "validation/diagnosis/left_over.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +14,7 @@ namespace {
 
 // Times the misfit with all effects: without any of them, for them to be most of the matter; then without one of them.
 constexpr double large_part = 4, small_part = 1.25;
+constexpr double clearly_more_noise = 1.1;  // times the σ that is given
 
 /// The likeliest place.
 const AtPlace* likeliest(const std::vector<AtPlace>& places) {
@@ -37,6 +40,16 @@ bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Fit& with, const F
   return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.chi2)) + more < called_for;
 }
 
+/// What has no pattern may be noise of which the file tells too little.
+std::string no_pattern(const Observations& o, const subject::Subject& subject) {
+  const std::string none = "no pattern that was looked for";
+  const double chi2 = o.uncertainty().whitened(o.residual(subject)).squaredNorm(),
+               times = std::sqrt(chi2 / static_cast<double>(o.uncertainty().count()));
+  if (times < clearly_more_noise || compare::is_any_estimated(o.comparison())) return none;
+  return fmt::format("{}; noise {:.3g} times as large as the standard deviations that are given would leave as much",
+                     none, times);
+}
+
 }  // namespace
 
 std::string pattern_left(const Observations& o, const subject::Subject& subject) {
@@ -48,7 +61,7 @@ std::string pattern_left(const Observations& o, const subject::Subject& subject)
   for (const compare::Finding& f :
        compare::find_patterns(s, o.uncertainty(), o.residual(subject), patterns, columns).findings)
     out += (out.empty() ? "" : "; then ") + f.sentence;
-  return out.empty() ? "no pattern that was looked for" : out;
+  return out.empty() ? no_pattern(o, subject) : out;
 }
 
 LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,

@@ -72,7 +72,13 @@ std::string fall_of_error(const diagnosis::Diagnosis& d) {
     return fmt::format(
         "With it the error falls from {:.2f} to {:.2f} {} rms ({:.0f} %); the readings' noise is {:.2f} {}.", from, to,
         unit, percent, micro_per_SI * d.noise_floor, unit);
-  if (d.final.chi2_per_dof < d.baseline.chi2_per_dof)
+  const bool fits_better = d.final.chi2_per_dof < d.baseline.chi2_per_dof;
+  if (fits_better && percent <= -1)
+    return fmt::format(
+        "The error of the description alone rises with it, from {:.2f} to {:.2f} {} rms: together with tolerances of "
+        "likely size it explains the readings better, chi2 per degree of freedom falls from {}.",
+        from, to, unit, fall_words(d.baseline.chi2_per_dof, d.final.chi2_per_dof));
+  if (fits_better)
     return fmt::format(
         "It hardly shows in the size of the error, {:.2f} {} rms beside a noise of {:.2f} {}, but in all readings "
         "together: chi2 per degree of freedom falls from {}.",
