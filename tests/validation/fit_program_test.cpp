@@ -38,8 +38,11 @@ class FitProgram : public ::testing::Test {
 TEST_F(FitProgram, FitsPredictsAndValidatesOneAfterTheOther) {
   measure();
   measure_again();
-  const test::Run fitted = fit();
+  const test::Run fitted = fit("--out " + file("tables"));
   ASSERT_EQ(fitted.code, 0) << fitted.out;
+  EXPECT_TRUE(fitted.out.starts_with(test::contents(file("tables") + "/fit.txt")));
+  EXPECT_TRUE(test::contents(file("tables") + "/parameters.csv")
+                  .starts_with("path,unit,value,low95,high95,before\n\"leg.joint_2.rz.stiffness\",\"Nm/rad\","));
   const nlohmann::json parameter = json("fit.json")["parameters"][0];
   EXPECT_EQ(parameter["unit"], "Nm/rad");  // as the file has it
   EXPECT_EQ(parameter["before"], 4e4);

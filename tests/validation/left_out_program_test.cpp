@@ -1,8 +1,12 @@
 // What a device or an entry of the catalogue cannot do ends neither `compare` nor `diagnose`.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "tests/support/program.h"
 
@@ -20,7 +24,11 @@ class LeftOutProgram : public ::testing::Test {
     const test::Run run = test::deflect("diagnose " + device + " " + path("data.csv") + " --bootstrap 199 --json " +
                                         path("d.json") + " " + more);
     EXPECT_EQ(run.code, 0) << run.out;
-    return run.code == 0 ? json::parse(contents(folder / "d.json")) : json();
+    if (run.code != 0) return json();
+    json d = json::parse(contents(folder / "d.json"));
+    std::set<std::string> once;
+    for (const json& e : d["left_out"]) EXPECT_TRUE(once.insert(e["effect"]).second) << e << " is left out twice";
+    return d;
   }
   static std::string why_left_out(const json& d, const std::string& effect) {
     for (const json& e : d["left_out"])
@@ -73,6 +81,35 @@ TEST_F(LeftOutProgram, AMechanismWithoutADriveIsComparedAndDiagnosed) {
     EXPECT_EQ(d["candidates"][0]["effect"], "load_gain");
     EXPECT_NE(why_left_out(d, "actuator_compliance").find("nothing is driven"), std::string::npos);
   }
+}
+
+// The tables of a diagnosis say what its JSON says, in the same order.
+TEST_F(LeftOutProgram, TablesOfADiagnosis) {
+  ASSERT_EQ(
+      test::deflect("simulate tripteron --campaign random --with load_gain,factor=1.2 -o " + path("data.csv")).code, 0);
+  const json d = diagnosis("tripteron", "--out " + path("tables"));
+  EXPECT_NE(contents(folder / "tables" / "diagnosis.txt").find(d["sentence"].get<std::string>()), std::string::npos);
+  const auto rows_of = [&](const char* name) {
+    std::vector<std::string> rows;
+    std::istringstream lines(contents(folder / "tables" / name));
+    for (std::string line; std::getline(lines, line);) rows.push_back(line);
+    return rows;
+  };
+  const std::vector<std::string> rows = rows_of("candidates.csv");
+  ASSERT_GT(rows.size(), 3u);
+  EXPECT_EQ(rows[0], "effect,leg,probability,rmse_mm,held_out_rmse_mm,chi2_per_dof,parameter,unit,value,low95,high95");
+  const auto commas = std::count(rows[0].begin(), rows[0].end(), ',');
+  for (const std::string& row : rows) EXPECT_EQ(std::count(row.begin(), row.end(), ','), commas) << row;
+  const json& first = d["candidates"][0];
+  EXPECT_TRUE(rows[1].starts_with("\"" + first["effect"].get<std::string>() + "\",,")) << rows[1];
+  EXPECT_NE(rows[1].find(fmt::format(",factor,\"\",{:.6g},", first["parameters"][0]["value"].get<double>())),
+            std::string::npos)
+      << rows[1];
+  EXPECT_TRUE(rows.end()[-2].starts_with("\"nothing\",,")) << rows.end()[-2];
+  EXPECT_TRUE(rows.end()[-1].starts_with("something unknown,,")) << rows.end()[-1];
+  const std::vector<std::string> sizes = rows_of("detectable.csv");
+  ASSERT_GT(sizes.size(), 1u);
+  EXPECT_EQ(sizes[0], "effect,leg,parameter,unit,smallest,mistaken_for,cosine");
 }
 
 /// The links' aluminium states G: its moduli go together, or Poisson's ratio leaves its bounds.

@@ -103,8 +103,9 @@ TEST(VerdictWords, AnErrorIsSaidToFallWhereItFallsAsPrinted) {
     } else {
       EXPECT_TRUE(has(text, "does not fall")) << text;
     }
-    if (d.final.rmse > 1.02 * d.baseline.rmse && d.final.chi2_per_dof < 1.19)
+    if (d.final.rmse > 1.02 * d.baseline.rmse && d.final.chi2_per_dof < 1.19) {
       EXPECT_TRUE(has(text, "rises with it")) << text;
+    }
   }
 }
 

@@ -19,8 +19,10 @@ namespace {
 
 constexpr std::size_t most_sampled = 1000;  // readings
 constexpr double of_usual = 0.005, of_predicted = 0.01, good_part = 0.4;
-constexpr double clearly_worse = 5;  // of the sum of losses
-constexpr double gross = 20;         // times the median of |left|/expected: an outlier, even where the model is wrong
+constexpr double clearly_worse = 5;                // of the sum of losses
+constexpr double deviations_of_right = 5;          // of χ²
+constexpr double by_chance = 1, clearly_more = 9;  // of χ²
+constexpr double gross = 20;  // times the median of |left|/expected: an outlier, even where the model is wrong
 constexpr double least_shift_mm = 0.5, most_shift_mm = 100;
 
 /// Some of the readings, spread evenly over the file, at the poses that they have.
@@ -214,28 +216,38 @@ std::optional<Vector3> CorrectionScreen::point_of_least_loss() const {
   return p;
 }
 
-Vector3 CorrectionScreen::weighed_point(const Vector3& p) const {
+CorrectionScreen::Point CorrectionScreen::weighed_point(const Vector3& p) const {
   const Comparison& c = *comparison_;
-  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> by_reading;
-  for (const measurement::Reading& r : study_->data->readings)
-    by_reading.emplace_back(-study_->compliance[r.pose].rightCols<3>() * skew(r.load.head<3>()));
-  const MatrixX slopes = statistics::rows_of(study_->values, by_reading);
-  VectorX left = c.residual - slopes * p;
-  if (!study_->deformed_shape.empty()) left -= statistics::rows_of(study_->values, study_->deformed_shape);
-  const VectorX z = left.cwiseQuotient(expected_deviations(c)).cwiseAbs();
+  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> in_base, in_platform;
+  for (const measurement::Reading& r : study_->data->readings) {
+    in_base.emplace_back(-study_->compliance[r.pose].rightCols<3>() * skew(r.load.head<3>()));
+    in_platform.emplace_back(in_base.back() * study_->standing->tool(r.pose).R_W);
+  }
+  const MatrixX slopes = statistics::rows_of(study_->values, in_base);
+  VectorX residual = c.residual;
+  if (!study_->deformed_shape.empty()) residual -= statistics::rows_of(study_->values, study_->deformed_shape);
+  const VectorX z = (residual - slopes * p).cwiseQuotient(expected_deviations(c)).cwiseAbs();
   const double usual = quantile({z.begin(), z.end()}, 0.5);
   std::vector<bool> aside(study_->data->readings.size(), false);
   for (Eigen::Index i = 0; i < z.size(); ++i)
     if (z(i) > gross * usual) aside[nth(study_->values, i).reading] = true;
   const statistics::Uncertainty u(c.tolerances.A, study_->values, c.sigma, study_->load_errors, aside, threads_);
-  return p + statistics::regress(u, left, slopes).amplitude;
+  const statistics::Regression fixed = statistics::regress(u, residual, slopes),
+                               turning =
+                                   statistics::regress(u, residual, statistics::rows_of(study_->values, in_platform));
+  const double left = u.inner(residual, residual)(0, 0) - fixed.gain, numbers = static_cast<double>(u.count());
+  return {fixed.amplitude, turning.gain - fixed.gain, left < numbers + deviations_of_right * std::sqrt(2 * numbers)};
 }
 
-std::optional<recording::Correction> CorrectionScreen::best_point() const {
+std::optional<CorrectionScreen::BestPoint> CorrectionScreen::best_point() const {
   const std::optional<Vector3> least = point_of_least_loss();
   if (!least) return std::nullopt;
-  const Vector3 p = weighed_point(*least);
-  return p.norm() > 1e-3 ? std::optional(recording::forces_elsewhere(p)) : std::nullopt;
+  const Point point = weighed_point(*least);
+  if (point.p.norm() <= 1e-3) return std::nullopt;
+  BestPoint out{recording::forces_elsewhere(point.p), 0, point.leaves_noise};
+  out.loss = loss_elsewhere(out.correction);
+  out.correction.effect_alike = point.more_if_it_turns > (out.loss < promising_ ? by_chance : -clearly_more);
+  return out;
 }
 
 }  // namespace deflect::compare

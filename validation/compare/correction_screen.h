@@ -34,7 +34,12 @@ class CorrectionScreen {
   std::optional<recording::Correction> best_shift(int axis) const;
   /// The common point p of application of all forces, if it is more than 1 mm from T: moments about T are then M + p ×
   /// f. The loss shows which readings are gross outliers; the others give p, weighed by noise and tolerances.
-  std::optional<recording::Correction> best_point() const;
+  struct BestPoint {
+    recording::Correction correction;
+    double loss = 0;
+    bool leaves_noise = false;  ///< noise and tolerances alone, to the first order: the loss does not know tolerances
+  };
+  std::optional<BestPoint> best_point() const;
 
  private:
   /// A measured number minus its prediction; rotations times the machine's size.
@@ -48,8 +53,13 @@ class CorrectionScreen {
   std::optional<std::vector<VectorX>> predicted_with(const recording::Correction&) const;
   /// The point with the least loss.
   std::optional<Vector3> point_of_least_loss() const;
+  struct Point {
+    Vector3 p;
+    double more_if_it_turns;  ///< χ² that one in platform axes (the effect moved@load) explains more
+    bool leaves_noise;        ///< with it noise and tolerances are left, to the first order
+  };
   /// The point by generalised least squares, without the readings that are gross outliers with the point p.
-  Vector3 weighed_point(const Vector3& p) const;
+  Point weighed_point(const Vector3& p) const;
 
   subject::Subject subject_;
   const Comparison* comparison_;

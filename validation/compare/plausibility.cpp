@@ -127,8 +127,8 @@ struct Tried {
 class Promising {
  public:
   explicit Promising(double least) : least_(least) {}
-  void add(const recording::Correction& correction, double loss) {
-    if (loss < least_) all_.push_back({correction, loss});
+  void add(const recording::Correction& correction, double loss, bool known_to_be = false) {
+    if (known_to_be || loss < least_) all_.push_back({correction, loss});
   }
   std::vector<Tried> sorted() && {
     std::stable_sort(all_.begin(), all_.end(), [](const Tried& a, const Tried& b) { return a.loss < b.loss; });
@@ -144,7 +144,7 @@ std::vector<Tried> promising_readings(const Comparison& c, const CorrectionScree
   Promising out(screen.promising());
   for (const recording::Correction& correction : recording::mistaken_readings(*c.study.data))
     out.add(correction, screen.loss(correction));
-  if (const auto point = screen.best_point()) out.add(*point, screen.loss_elsewhere(*point));
+  if (const auto point = screen.best_point()) out.add(point->correction, point->loss, point->leaves_noise);
   return std::move(out).sorted();
 }
 
@@ -258,9 +258,8 @@ class MistakeSearch {
       words += (words.empty() ? "" : "; or ") + each.sentence;
     }
     found_->sentence = fmt::format("these data look like {}; {}", words, what_would_fall(before_, after));
-    // Legs of other lengths yield otherwise: a guideway's clamp that gives way follows a shift to the noise. A point of
-    // the load that turns with the platform is followed by one in base axes as far as poses are alike.
-    found_->certain = correction.fitted == 0 || (!correction.pose && (before_.estimated || is_right(after)));
+    // Legs of other lengths yield otherwise: a guideway's clamp that gives way follows a shift to the noise.
+    found_->certain = correction.fitted == 0 || (!correction.pose && !correction.effect_alike);
     if (!found_->certain) found_->sentence += "; a missing effect can look alike";
   }
 

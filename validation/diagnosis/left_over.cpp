@@ -40,14 +40,31 @@ bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Fit& with, const F
   return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.chi2)) + more < called_for;
 }
 
+/// The likeliest size of the noise that leaves this residual, in standard deviations as given, 1 or more. Noise s times
+/// as large is all as large with tolerances of 1/s: ln L = ln L(r/s; tolerances 1/s) − n ln s.
+double likeliest_noise(const statistics::Uncertainty& u, const VectorX& residual) {
+  constexpr double step = 1.02, most = 20;
+  const auto log_likelihood = [&](double s) {
+    return u.log_likelihood_of_scales(residual / s, MatrixX(residual.size(), 0), {1 / s}).front() -
+           static_cast<double>(u.count()) * std::log(s);
+  };
+  double size = 1, likeliest = log_likelihood(1);
+  while (size < most) {
+    const double next = log_likelihood(step * size);
+    if (next <= likeliest) break;
+    likeliest = next, size *= step;
+  }
+  return size;
+}
+
 /// What has no pattern may be noise of which the file tells too little.
 std::string no_pattern(const Observations& o, const subject::Subject& subject) {
   const std::string none = "no pattern that was looked for";
-  const double chi2 = o.uncertainty().whitened(o.residual(subject)).squaredNorm(),
-               times = std::sqrt(chi2 / static_cast<double>(o.uncertainty().count()));
-  if (times < clearly_more_noise || compare::is_any_estimated(o.comparison())) return none;
-  return fmt::format("{}; noise {:.3g} times as large as the standard deviations that are given would leave as much",
-                     none, times);
+  if (compare::is_any_estimated(o.comparison())) return none;
+  const double size = likeliest_noise(o.uncertainty(), o.residual(subject));
+  if (size < clearly_more_noise) return none;
+  return fmt::format("{}; noise {:.2g} times as large as the standard deviations that are given would leave as much",
+                     none, size);
 }
 
 }  // namespace

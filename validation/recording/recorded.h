@@ -37,6 +37,7 @@ struct Correction {
   std::function<void(frame::FrameDescription&)> description;    ///< of what sensors really show; or empty
   bool sigma_too = true;                                        ///< a unit of displacements is the unit of their σ too
   int fitted = 0;                                               ///< numbers that were fitted to the data
+  bool effect_alike = false;                                    ///< an effect does the same, or more
 };
 
 /// A number without a partner in its new place (a column that was not recorded) is not measured.

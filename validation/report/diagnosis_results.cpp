@@ -192,6 +192,45 @@ std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& d
   return out + left_out_words(d.left_out) + "\n" + detectable_table(d.detectable);
 }
 
+std::string candidates_csv(const diagnosis::Diagnosis& d) {
+  const char* unit = measurement::row_of(d.quantity).coarse;
+  std::string csv = fmt::format(
+      "effect,leg,probability,rmse_{0},held_out_rmse_{0},chi2_per_dof,parameter,unit,value,low95,high95\n", unit);
+  const auto add = [&](const std::string& name, const std::string& leg, double probability, const diagnosis::Quality& q,
+                       const std::string& value) {
+    csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", csv_cell(name), leg, probability, coarse(d) * q.rmse,
+                       coarse(d) * q.held_out, q.chi2_per_dof, value);
+  };
+  for (const diagnosis::Candidate& c : d.candidates) {
+    const effects::PlacedEffect& e = c.added();
+    const std::string leg = e.leg ? std::to_string(*e.leg) : "";
+    const diagnosis::Quality quality{c.rmse, c.held_out, c.chi2_per_dof};
+    if (!c.fit.found || e.effect->parameters.empty()) add(e.effect->name, leg, c.probability, quality, ",,,,");
+    for (std::size_t i = 0; c.fit.found && i < e.effect->parameters.size(); ++i) {
+      const auto [low, high] = diagnosis::interval95(c.hypothesis, c.fit, i);
+      const effects::EffectParameter& p = e.effect->parameters[i];
+      add(e.effect->name, leg, c.probability, quality,
+          fmt::format("{},{},{:.6g},{:.6g},{}", p.name, csv_cell(p.unit), c.fit.values(as_index(i)), low,
+                      std::isinf(high) ? std::string() : fmt::format("{:.6g}", high)));
+    }
+  }
+  add("nothing", "", d.probability_nothing, d.baseline, ",,,,");
+  csv += fmt::format("something unknown,,{:.6g},,,,,,,,\n", d.probability_unknown);
+  return csv;
+}
+
+std::string detectable_csv(const diagnosis::Diagnosis& d) {
+  std::string csv = "effect,leg,parameter,unit,smallest,mistaken_for,cosine\n";
+  for (const diagnosis::Detectable& e : d.detectable)
+    for (std::size_t i = 0; i < e.effect.effect->parameters.size() && i < e.smallest.size(); ++i) {
+      const effects::EffectParameter& p = e.effect.effect->parameters[i];
+      csv += fmt::format("{},{},{},{},{:.6g},{},{:.6g}\n", csv_cell(e.effect.effect->name),
+                         e.effect.leg ? std::to_string(*e.effect.leg) : "", p.name, csv_cell(p.unit), e.smallest[i],
+                         csv_cell(e.mistaken_for), e.cosine);
+    }
+  return csv;
+}
+
 std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   Json j;
   j["kind"] = "diagnosis";

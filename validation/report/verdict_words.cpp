@@ -8,6 +8,7 @@
 #include "msa/base/index.h"
 #include "msa/base/number_words.h"
 #include "validation/diagnosis/interval.h"
+#include "validation/diagnosis/signatures.h"
 #include "validation/report/compare_words.h"
 
 namespace deflect::report {
@@ -109,6 +110,25 @@ std::string gone_words(const diagnosis::Diagnosis& d) {
   return out;
 }
 
+/// Of a friction without a lower limit beside play at its place: what it says.
+std::string trace_of_friction_words(const diagnosis::Diagnosis& d) {
+  std::string out;
+  std::size_t first = 0;  // of its parameters
+  for (const effects::PlacedEffect& e : d.missing) {
+    const auto plays_there = [&](const effects::PlacedEffect& other) {
+      return other.effect->name.starts_with("clearance@") && diagnosis::at_one_place(e, other);
+    };
+    if (e.effect->name.starts_with("friction@") && d.fit.found &&
+        std::any_of(d.missing.begin(), d.missing.end(), plays_there) &&
+        diagnosis::interval95(d.missing, d.fit, first).first <= (1 + 1e-6) * e.effect->parameters.front().low)
+      out +=
+          fmt::format(" {} may be next to nothing: then it says only that the play stays where the last load left it.",
+                      diagnosis::name_of(e));
+    first += e.effect->parameters.size();
+  }
+  return out;
+}
+
 std::string nothing_missing_words(const diagnosis::Diagnosis& d) {
   const std::string left = residual_words(d.baseline.rmse, d.baseline.chi2_per_dof, d.quantity) + ".";
   if (d.probability_larger_tolerances > likely)
@@ -172,7 +192,8 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
     case diagnosis::Verdict::nothing_missing:
       return outliers + nothing_missing_words(d);
     case diagnosis::Verdict::effect:
-      return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d)) + larger_tolerances_words(d);
+      return outliers + fmt::format("Missing: {}. {}", names, fall_of_error(d)) + trace_of_friction_words(d) +
+             larger_tolerances_words(d);
     case diagnosis::Verdict::ambiguous: {
       std::string group;
       for (const std::vector<std::string>& g : d.indistinguishable) {
@@ -183,7 +204,7 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
       return outliers +
              fmt::format("Something is missing, and these data cannot tell what of: {}. Best: {}. {}", group, names,
                          fall_of_error(d)) +
-             gone_words(d) + larger_tolerances_words(d);
+             gone_words(d) + trace_of_friction_words(d) + larger_tolerances_words(d);
     }
     case diagnosis::Verdict::unknown_effect:
       return outliers +

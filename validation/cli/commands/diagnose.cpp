@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 
 #include "msa/base/error.h"
@@ -17,7 +18,7 @@ namespace deflect::cli {
 namespace {
 
 struct DiagnoseArguments {
-  std::string device, json, report;
+  std::string device, json, out, report;
   std::vector<std::string> data, files;
   std::string sigma_mm, sigma_rad, resume;
   bool as_recorded = false;
@@ -44,7 +45,14 @@ void run(const DiagnoseArguments& a, parallel::Ranks* ranks) {
   if (ranks && !ranks->first()) return;
   for (const effects::PlacedEffect& found : d.missing) tell("found: {}", diagnosis::name_of(found));
   if (!a.json.empty()) write_result(a.json, report::diagnosis_json(d));
-  fmt::print("{}", report::diagnosis_report(d, m.name(), data.origin));
+  const std::string report = report::diagnosis_report(d, m.name(), data.origin);
+  if (!a.out.empty()) {
+    const std::filesystem::path folder = a.out;
+    write_table(folder / "diagnosis.txt", report);
+    write_table(folder / "candidates.csv", report::candidates_csv(d));
+    write_table(folder / "detectable.csv", report::detectable_csv(d));
+  }
+  fmt::print("{}", report);
   if (!a.report.empty())
     write_report_of_diagnosis(a.report, a.device, m, data, effects, o.comparison, threads,
                               {{"diagnose", report::diagnosis_json(d)}});
@@ -81,6 +89,7 @@ Command diagnose_command() {
         "the end",
         &a->resume},
        {"--json", "FILE", "write the result", &a->json},
+       {"--out", "DIR", "write report and tables: diagnosis.txt, candidates.csv, detectable.csv", &a->out},
        report_option(&a->report)},
       [a](parallel::Ranks* ranks) { run(*a, ranks); }};
 }

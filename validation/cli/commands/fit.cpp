@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "msa/base/error.h"
 #include "msa/base/files.h"
 #include "validation/cli/command.h"
@@ -14,7 +16,7 @@ namespace deflect::cli {
 namespace {
 
 struct FitArguments {
-  std::string device, data, out, json, sigma_mm, sigma_rad;
+  std::string device, data, out, tables, json, sigma_mm, sigma_rad;
   std::vector<std::string> free, priors;
   bool as_recorded = false, force = false;
   double threads = 0;
@@ -38,7 +40,13 @@ void run(const FitArguments& a) {
   write_description(fit::with_values(s, free, fit::fitted_values(r)), s.name(), "fitted to " + data.origin + ":",
                     report::fitted_words(r), a.out);
   if (!a.json.empty()) write_result(a.json, report::fit_json(r));
-  fmt::print("{}\n{}: written\n", report::fit_report(r), a.out);
+  const std::string report = report::fit_report(r);
+  if (!a.tables.empty()) {
+    const std::filesystem::path folder = a.tables;
+    write_table(folder / "fit.txt", report);
+    write_table(folder / "parameters.csv", report::parameters_csv(r));
+  }
+  fmt::print("{}\n{}: written\n", report, a.out);
 }
 
 }  // namespace
@@ -68,7 +76,8 @@ Command fit_command() {
        {"--sigma-rotation", "RAD", "standard deviation of a rotation in rad, likewise", &a->sigma_rad},
        {"--as-recorded", "", "take the file as it is: skip the search for recording mistakes", &a->as_recorded},
        {"--threads", "N", "threads (default 0: all cores); they do not change the result", &a->threads},
-       {"--json", "FILE", "write the result, for 'deflect predict --fit'", &a->json}},
+       {"--json", "FILE", "write the result, for 'deflect predict --fit'", &a->json},
+       {"--out", "DIR", "write report and table: fit.txt, parameters.csv", &a->tables}},
       [a] { run(*a); }};
 }
 

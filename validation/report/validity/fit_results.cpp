@@ -221,4 +221,13 @@ std::string fit_json(const fit::FitResult& r) {
   return json::json_text(j);
 }
 
+std::string parameters_csv(const fit::FitResult& r) {
+  std::string csv = "path,unit,value,low95,high95,before\n";
+  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{:.9g}", x) : std::string(); };
+  for (const fit::FittedParameter& p : r.parameters)
+    csv += fmt::format("{},{},{:.9g},{},{},{:.9g}\n", csv_cell(p.path), csv_cell(p.unit), p.fitted / p.per_unit,
+                       cell(p.low / p.per_unit), cell(p.high / p.per_unit), p.value / p.per_unit);
+  return csv;
+}
+
 }  // namespace deflect::report

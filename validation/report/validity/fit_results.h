@@ -12,6 +12,9 @@ namespace deflect::report {
 /// Values with intervals, priors and what the data do not determine; how the error fell, and what is left.
 std::string fit_report(const fit::FitResult&);
 
+/// A row for each parameter; an empty limit is none.
+std::string parameters_csv(const fit::FitResult&);
+
 /// {"kind": "fit", "device", "data", "parameters": [{"path", "unit", "value", "low95", "high95", "before", …}],
 /// "correlation": [[…]], "undetermined": [{"sentence", "deviation"}], "before", "after": {"rmse_mm",
 /// "held_out_rmse_mm", "chi2_per_dof"}, "posterior": {"names", "mean", "covariance"}, "discrepancy", "noise", …}: what
