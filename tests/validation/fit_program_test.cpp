@@ -66,6 +66,11 @@ TEST_F(FitProgram, FitsPredictsAndValidatesOneAfterTheOther) {
   EXPECT_EQ(validity["calibration"]["readings"], 27);
   EXPECT_EQ(validity["use"]["points"].size(), 27u);
   EXPECT_EQ(validity["maturity"].size(), 14u);
+  const test::Run with_its_own =
+      run("compare " + file("fitted.yaml") + " " + file("first.csv") + " --validation --fit " + file("fit.json"));
+  EXPECT_EQ(with_its_own.code, 2);
+  EXPECT_NE(with_its_own.out.find("what a model was fitted to cannot validate it"), std::string::npos)
+      << with_its_own.out;
   // The arm as it was is a fifth too stiff in one joint.
   const test::Run before = run("compare arm " + file("second.csv") + " --validation --json " + file("before.json"));
   ASSERT_EQ(before.code, 0);

@@ -81,6 +81,27 @@ TEST(RigPoints, SensorReadsWhatProbesThereRead) {
     }
 }
 
+// The readings were placed for the machine as drawn. With the handle elsewhere the same file reads as one of a machine
+// that has it there.
+TEST(RigPoints, AHandleThatMovedIsLoadedWhereItIs) {
+  const Mechanism drawn = machine(), there = test::with(drawn, "loads.handle.point", "[40 mm, 10 mm, -20 mm]");
+  const std::string columns = command + ",handle.fx_N,handle.fy_N,handle.fz_N,handle.mx_Nmm,fx_N,fy_N,fz_N,px_mm";
+  const auto file = [&](const Mechanism& m) {
+    return place_loads(
+        parse_measurements(columns + "\n" + tilted + ",20,-30,10,400,0,3,7,0\n", "data.csv", instruments_of(m)), m);
+  };
+  const Measurements for_drawn = file(drawn), for_there = file(there);
+  const auto predicted = [](const Mechanism& m, const Measurements& data, Geometry g) {
+    PredictionOptions o;
+    o.geometry = g;
+    return predict(m, configure_all(m, data), data, o).front();
+  };
+  for (const Geometry g : {Geometry::linear, Geometry::finite})
+    expect_same(predicted(there, for_drawn, g), predicted(there, for_there, g), 1e-12);
+  EXPECT_GT((predicted(there, for_drawn, Geometry::linear) - predicted(drawn, for_drawn, Geometry::linear)).norm(),
+            0.01 * predicted(drawn, for_drawn, Geometry::linear).norm());
+}
+
 // As effects: the point moves by what is given, from where the description has it.
 TEST(RigPoints, EffectsMoveThePoints) {
   const subject::Subject s = test::with(machine(), "rig", "{load_cell: {point: [1 mm, 0 mm, 0 mm]}}");

@@ -242,4 +242,11 @@ void remark_if_of_another(const std::string& result, const std::string& device, 
     }
 }
 
+bool has_read(const std::string& result, const std::string& file) {
+  const std::string now = hash_of(file);
+  const std::vector<result_files::HashedFile> inputs =
+      files_in(Json::parse(read_text(result), nullptr, false), "/provenance/inputs");
+  return !now.empty() && std::any_of(inputs.begin(), inputs.end(), [&](const auto& i) { return i.sha256 == now; });
+}
+
 }  // namespace deflect::cli

@@ -38,6 +38,9 @@ const Option* required_output(const Command&);
 /// InputError where there is none.
 std::string hash_of(const std::string& name);
 
+/// Whether the result says that it was made from a file with these contents, whatever its name.
+bool has_read(const std::string& result, const std::string& file);
+
 /// Remarks where the result in this file says that it is of a subject of another name, or of one of this name in a file
 /// that has changed since.
 void remark_if_of_another(const std::string& result, const std::string& device, const subject::Subject&);

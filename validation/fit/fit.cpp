@@ -178,6 +178,16 @@ FitResult fit(const subject::Subject& s, const measurement::Measurements& data, 
   for (FreeParameter& p : moved) p = bounded(std::move(p), numbers);
   const Round last = next_round(first, numbers, data, moved, as_recorded, work.part(0.5, 1));
   const Learnt learnt(last.observations, moved, last.values);
+  const subject::Subject final = with_values(numbers, moved, last.values);
+  // Where the search ended at its own range, the description may allow more. What was found says what is little of it.
+  std::vector<FreeParameter> here = in_version(moved, last.values), scaled = moved;
+  MatrixX per_scale = learnt.whitened_derivative();
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    here[i] = bounded(std::move(here[i]), final);
+    if (here[i].scale() <= moved[i].scale()) continue;
+    scaled[i] = here[i];
+    per_scale.col(as_index(i)) *= here[i].scale() / moved[i].scale();
+  }
 
   FitResult out;
   out.device = s.name();
@@ -189,12 +199,11 @@ FitResult fit(const subject::Subject& s, const measurement::Measurements& data, 
   out.set_aside = last.observations.set_aside();
   out.posterior = learnt.posterior();
   const std::vector<subject::Tolerance>& tolerances = last.observations.comparison().tolerances.nuisances;
-  add_parameters(out, s, in_version(moved, values_of(all)), last.values);
-  const VectorX shift = step_left(out.posterior, moved, last.values);
+  add_parameters(out, s, in_version(here, values_of(all)), last.values);
+  const VectorX shift = step_left(out.posterior, here, last.values);
   for (Eigen::Index i = 0; i < shift.size(); ++i)
     out.converged = out.converged && std::abs(shift(i)) < 0.1 * nth(out.parameters, i).deviation;
-  out.undetermined = undetermined(learnt.whitened_derivative(), moved, last.values);
-  const subject::Subject final = with_values(numbers, moved, last.values);
+  out.undetermined = undetermined(per_scale, scaled, last.values);
   add_quality(out, first, last, final, learnt);
   const compare::Comparison& after = last.observations.comparison();
   out.quantity = compare::quantity_of_errors(after.study.values);

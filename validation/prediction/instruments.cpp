@@ -112,20 +112,9 @@ VectorX Instruments::readings(const Configuration& c, const Motion& motion, Geom
   return out;
 }
 
-Vector6 Instruments::turned(const Configuration& c, const measurement::Reading& r, const TrueLoads& loads,
-                            const Vector3& theta) const {
-  const Matrix3 turn = rotation_from_vector(theta);
-  Vector6 out = loads.turned(r, turn);
-  for (std::size_t k = 0; k < points_.size(); ++k) {
-    const Vector3 arm = c.pose.R_WT * points_[k]->point, force = loads.at_point(r.at_points[k]).head<3>();
-    out.tail<3>() += (turn * arm - arm).cross(force);
-  }
-  return out;
-}
-
 LoadedMachine::LoadedMachine(const theories::Theory& theory, const theories::TheoryOptions& o, const Configuration& c,
                              const Instruments& instruments, const TrueLoads& loads)
-    : at_(c), instruments_(instruments), loads_(loads) {
+    : loads_(loads) {
   theories::TheoryOptions asked = o;
   asked.inside = instruments.inside(c);
   machine_ = theory.at(c, asked);
@@ -146,10 +135,10 @@ theories::Prediction LoadedMachine::predict(theories::TheoryAt& machine, const m
                                             const Conditions& conditions) {
   const Vector6 F = loads_.at_T(r);
   theories::Prediction found = machine.predict(F, conditions);
-  if (!any_moves() || conditions.geometry != Geometry::finite) return found;
+  if (!loads_.any_turns() || conditions.geometry != Geometry::finite) return found;
   for (int round = 0; round < 50 && found.converged; ++round) {
     const Vector3 theta = found.displacement.tail<3>();
-    found = machine.predict(F + instruments_.turned(at_, r, loads_, theta), conditions);
+    found = machine.predict(F + loads_.turned(r, rotation_from_vector(theta)), conditions);
     if ((found.displacement.tail<3>() - theta).norm() <= 1e-13 + 1e-10 * theta.norm()) return found;
   }
   if (found.converged) found.reason = "the moments of loads that move with the machine do not settle";
@@ -164,7 +153,7 @@ Motion LoadedMachine::move(const measurement::Reading& r, const Conditions& cond
              std::move(moved.reason), std::move(moved.inside), std::move(moved.floating)};
   if (!rigid_tool_) return out;
   Conditions undeformed = conditions;
-  if (any_moves()) undeformed = Conditions(Geometry::linear);
+  if (loads_.any_turns()) undeformed = Conditions(Geometry::linear);
   const Vector6 F = loads_.through_tool(r);
   const theories::Prediction whole = machine_->predict(F, undeformed);
   if (!locked_ && !whole.inside.empty()) out.inside = machine_->predict(loads_.at_T(r), undeformed).inside;

@@ -40,7 +40,8 @@ class Instruments {
   /// Throws InputError where the mechanism lacks one. The mechanism must outlive this.
   Instruments(const Mechanism&, const measurement::Measurements&);
 
-  bool any_load() const { return !points_.empty(); }
+  /// By number in Reading::at_points.
+  const std::vector<const LoadPoint*>& load_points() const { return points_; }
   /// Whether a sensor or a load is on the platform, rather than beyond the tool joint.
   bool on_platform() const;
 
@@ -51,8 +52,6 @@ class Instruments {
   Vector6 form(const Configuration&, std::size_t k) const;
   /// What the sensors read, in the deformed shape or to the first order.
   VectorX readings(const Configuration&, const Motion&, Geometry) const;
-  /// By how much the wrench at T of loads that act elsewhere changes as the machine turns by θ (rotation vector).
-  Vector6 turned(const Configuration&, const measurement::Reading&, const TrueLoads&, const Vector3& theta) const;
 
  private:
   std::vector<const PointSensor*> sensors_;
@@ -71,18 +70,13 @@ class LoadedMachine {
   theories::TheoryAt& theory() { return *machine_; }
   /// Whether the same load at T has the same answer, whatever points it acts at.
   bool by_load_at_T(Geometry g) const {
-    if (instruments_.any_load() && loads_.elsewhere()) return false;  // that share of it acts elsewhere
-    return !rigid_tool_ && !(any_moves() && g == Geometry::finite);
+    return !rigid_tool_ && !loads_.any_named() && !(loads_.any_turns() && g == Geometry::finite);
   }
   Motion move(const measurement::Reading&, const Conditions&);
 
  private:
   theories::Prediction predict(theories::TheoryAt&, const measurement::Reading&, const Conditions&);
-  /// Whether the moment of a load about T changes with the machine's motion.
-  bool any_moves() const { return instruments_.any_load() || loads_.elsewhere(); }
 
-  const Configuration& at_;
-  const Instruments& instruments_;
   TrueLoads loads_;
   std::optional<Configuration> rigid_tool_;
   std::unique_ptr<theories::TheoryAt> machine_, locked_;  // as it is; with a rigid tool joint, where that differs

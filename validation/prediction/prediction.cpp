@@ -216,7 +216,7 @@ Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machin
     if (std::all_of(here.begin(), here.end(), passed_over)) return;
     theories::TheoryOptions options{m.name, o.division};
     options.apart = o.apart;
-    const TrueLoads loads(m.load_cell, machines[p].pose.R_WT);
+    const TrueLoads loads(m.load_cell, machines[p].pose.R_WT, instruments.load_points());
     const RecordedMotion sensor(m.sensor, machines[p].pose.R_WT);
     LoadedMachine machine(*o.theory, options, machines[p], instruments, loads);
     Conditions conditions(o.geometry.value_or(m.geometry));

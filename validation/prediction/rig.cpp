@@ -4,21 +4,40 @@
 
 namespace deflect::prediction {
 
-TrueLoads::TrueLoads(const LoadCell& cell, const Matrix3& R_WT)
-    : cell_(cell.gain * rotate_twist(rotation_from_vector(cell.rotation))), arm_(R_WT * cell.point) {}
-
-Vector3 TrueLoads::force_at_T(const measurement::Reading& r) const {
-  return (cell_ * (r.at_points.empty() ? r.load : r.at_tool)).head<3>();
+TrueLoads::TrueLoads(const LoadCell& cell, const Matrix3& R_WT, const std::vector<const LoadPoint*>& points)
+    : cell_(cell.gain * rotate_twist(rotation_from_vector(cell.rotation))), arm_(R_WT * cell.point) {
+  for (const LoadPoint* p : points) points_.push_back({R_WT * p->point, p->body == "platform"});
 }
 
-Vector6 TrueLoads::moved(Vector6 wrench, const measurement::Reading& r) const {
-  if (elsewhere()) wrench.tail<3>() += arm_.cross(force_at_T(r));
-  return wrench;
+/// What is recorded at T itself.
+Vector6 TrueLoads::at_tool(const measurement::Reading& r) const {
+  return cell_ * (r.at_points.empty() ? r.load : r.at_tool);
 }
+
+/// At T, of all loads or of those beyond the tool joint.
+Vector6 TrueLoads::placed(const measurement::Reading& r, bool all) const {
+  Vector6 out;
+  if (points_.empty()) {
+    out = cell_ * (all ? r.load : Vector6(r.load - r.on_platform));
+  } else {
+    out = at_tool(r);
+    for (std::size_t k = 0; k < points_.size(); ++k)
+      if (all || !points_[k].on_platform) out += shift_twist(points_[k].arm).transpose() * (cell_ * r.at_points[k]);
+  }
+  if (!arm_.isZero(0)) out.tail<3>() += arm_.cross(Vector3(at_tool(r).head<3>()));
+  return out;
+}
+
+Vector6 TrueLoads::at_T(const measurement::Reading& r) const { return placed(r, true); }
+Vector6 TrueLoads::through_tool(const measurement::Reading& r) const { return placed(r, false); }
 
 Vector6 TrueLoads::turned(const measurement::Reading& r, const Matrix3& turn) const {
   Vector6 out = Vector6::Zero();
-  if (elsewhere()) out.tail<3>() = (turn * arm_ - arm_).cross(force_at_T(r));
+  const auto add = [&](const Vector3& arm, const Vector6& F) {
+    out.tail<3>() += (turn * arm - arm).cross(Vector3(F.head<3>()));
+  };
+  if (!arm_.isZero(0)) add(arm_, at_tool(r));
+  for (std::size_t k = 0; k < points_.size(); ++k) add(points_[k].arm, cell_ * r.at_points[k]);
   return out;
 }
 

@@ -2,35 +2,42 @@
 // recorded of a displacement.
 #pragma once
 
+#include <vector>
+
 #include "msa/mechanism/description.h"
 #include "validation/measurement/measurements.h"
 
 namespace deflect::prediction {
 
-/// True loads at T from recorded ones: gain · R(rotation) · recorded, and the moment of those forces that are recorded
-/// at T and act at T + point (LoadCell). N, Nm, base axes.
+/// True loads at T from recorded ones: gain · R(rotation) · recorded, and the moments of those forces that act
+/// elsewhere: of what is recorded at T at T + point (LoadCell), of loads at named points at these. N, Nm, base axes.
 class TrueLoads {
  public:
-  TrueLoads(const LoadCell&, const Matrix3& R_WT);
+  /// `points`: of the loads in Reading::at_points, in their order. Without them a reading counts as it was placed
+  /// (place_loads), at the points of the machine that it was read for.
+  TrueLoads(const LoadCell&, const Matrix3& R_WT, const std::vector<const LoadPoint*>& points = {});
 
   /// Of all loads of a reading.
-  Vector6 at_T(const measurement::Reading& r) const { return moved(cell_ * r.load, r); }
+  Vector6 at_T(const measurement::Reading&) const;
   /// Of those that pass through the tool joint.
-  Vector6 through_tool(const measurement::Reading& r) const { return moved(cell_ * (r.load - r.on_platform), r); }
-  /// Of a load at a named point, about that point.
-  Vector6 at_point(const Vector6& recorded) const { return cell_ * recorded; }
-
-  /// Whether loads that are recorded at T act elsewhere.
-  bool elsewhere() const { return !arm_.isZero(0); }
-  /// By how much the wrench at T changes as their point turns about T.
+  Vector6 through_tool(const measurement::Reading&) const;
+  /// By how much the wrench at T changes as the points of loads turn about T.
   Vector6 turned(const measurement::Reading&, const Matrix3& turn) const;
+  bool any_named() const { return !points_.empty(); }
+  /// Whether it does.
+  bool any_turns() const { return !points_.empty() || !arm_.isZero(0); }
 
  private:
-  Vector3 force_at_T(const measurement::Reading&) const;
-  Vector6 moved(Vector6 wrench, const measurement::Reading&) const;
+  struct Point {
+    Vector3 arm;  // m from T, base axes
+    bool on_platform;
+  };
+  Vector6 placed(const measurement::Reading&, bool all) const;
+  Vector6 at_tool(const measurement::Reading&) const;
 
   Matrix6 cell_;
-  Vector3 arm_;  // m, base axes
+  Vector3 arm_;  // as of a Point
+  std::vector<Point> points_;
 };
 
 /// The recorded displacement from the true one of T: R(rotation) · displacement of T + point (Sensor), without its zero

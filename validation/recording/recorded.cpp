@@ -21,9 +21,11 @@ measurement::Measurements corrected(const measurement::Measurements& data, const
     }
     if (c.sigma_too && r.sigma_u) *r.sigma_u *= std::abs(c.displacement.factor[0]);
     if (c.sigma_too && r.sigma_th) *r.sigma_th *= std::abs(c.displacement.factor[3]);
-    r.load = c.load.of(r.load);
-    r.on_platform = c.load.of(r.on_platform);
-    r.load.tail<3>() += c.acts_at.cross(Vector3(r.load.head<3>()));
+    for (Vector6* load : {&r.load, &r.on_platform, &r.at_tool}) *load = c.load.of(*load);
+    for (Vector6& load : r.at_points) load = c.load.of(load);
+    const Vector3 moment = c.acts_at.cross(Vector3((r.at_points.empty() ? r.load : r.at_tool).head<3>()));
+    r.load.tail<3>() += moment;
+    r.at_tool.tail<3>() += moment;
   }
   if (c.pose)
     for (measurement::PoseGroup& group : out.poses) c.pose(group);

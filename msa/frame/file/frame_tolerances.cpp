@@ -149,13 +149,14 @@ std::vector<NumberMove> number_moves(const FrameDescription& f) {
 
 namespace {
 
-/// Members whose implied y_axis would become another one keep that of `drawn`.
+/// Sections of members whose ends moved do not turn about the members: the vector for local y is the y drawn.
 void keep_axes(FrameDescription& built, const FrameDescription& drawn) {
-  const auto implied = [](const FrameDescription& f, const FrameMember& m) {
-    return implied_y_axis(*find(f.nodes, m.to) - *find(f.nodes, m.from));
+  const auto along = [](const FrameDescription& f, const FrameMember& m) {
+    return Vector3(*find(f.nodes, m.to) - *find(f.nodes, m.from));
   };
   for (auto& [name, m] : built.members)
-    if (m.y_axis.isZero(0) && implied(built, m) != implied(drawn, m)) m.y_axis = implied(drawn, m);
+    if (const Vector3 before = along(drawn, m); m.y_axis.isZero(0) && along(built, m) != before)
+      m.y_axis = member_axes(before, m.y_axis).col(1);
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ namespace deflect::frame {
 /// are those of for_each_number (frame_file.h).
 std::vector<NumberMove> number_moves(const FrameDescription&);
 
-/// The frame so many standard deviations off. Axes of members stay those drawn: where a post leans so far that the
-/// vector implied for its y_axis (member_axes.h) would be another, its y_axis is the one implied before.
+/// The frame so many standard deviations off. A member whose ends move does not turn about itself: without y_axis its
+/// local y stays the one drawn, as far as it is across the member, whatever vector is implied there (member_axes.h).
 FrameDescription moved(const FrameDescription&, const NumberMove&, double times = 1);
 
 /// InputError where a key means no number, or its value is no standard deviation of one.

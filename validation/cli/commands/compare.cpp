@@ -50,11 +50,21 @@ void require_validation(const CompareArguments& a) {
     if (is_given) throw InputError(fmt::format("{} goes with --validation", name));
 }
 
+/// The data that the fit was made with.
+void require_data_beside_fit(const CompareArguments& a) {
+  if (has_read(a.fit, a.data))
+    throw InputError(
+        fmt::format("--fit {}: it was fitted to {}: what a model was fitted to cannot validate it. Give measurements "
+                    "of their own",
+                    a.fit, a.data));
+}
+
 void validate(const CompareArguments& a, const subject::Subject& s, const measurement::Measurements& data,
               const compare::ComparisonOptions& o, const figures::FigureStyle& style, int threads) {
   validity::ValidationOptions options;
   options.comparison = o;
   std::optional<measurement::Measurements> calibration, use;
+  if (!a.fit.empty()) require_data_beside_fit(a);
   if (!a.calibration.empty()) {
     require_other_data(a);
     calibration = read_data(a.calibration, s);
