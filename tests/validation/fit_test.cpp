@@ -271,6 +271,18 @@ TEST(Predict, AddsUpDeclaredTolerancesLoadAndNoise) {
   EXPECT_NEAR(n.high - n.low, 2 * 1.959964 * n.deviation.of_reading(), 1e-15);
 }
 
+// Of a quantity that was not read the share is that of what was.
+TEST(Predict, WhatWasNotReadLacksAsMuch) {
+  const Subject s = frame_of();
+  for (const auto quantity : {measurement::Quantity::length, measurement::Quantity::force}) {
+    PredictedPlanOptions o;
+    o.discrepancies = {{quantity, 0.03}};
+    const PredictedPlan p = fit::predict(s, plan_of(s, 1), {}, o);
+    EXPECT_NEAR(p.numbers[0].deviation.discrepancy, 0.03 * tip, 1e-9 * tip);
+    EXPECT_EQ(p.discrepancy_of_others.empty(), quantity == measurement::Quantity::length);
+  }
+}
+
 // With the fitted modulus the deflection is as certain as that, σ/‖d‖ of itself, whatever was declared of the modulus.
 TEST(Predict, HasWhatTheFitLeftUnknown) {
   const Subject s = frame_of("tolerances: {modulus: 1 %}"), truth = frame_of("", "210 GPa", "189 GPa");

@@ -124,13 +124,28 @@ std::optional<double> noise_of(const Measurements& plan, const MeasuredValue& v,
   return std::nullopt;
 }
 
-double discrepancy_of(const std::optional<Knowledge>& fit, const PredictedPlanOptions& o,
-                      measurement::Quantity quantity) {
-  const std::vector<Discrepancy> none;
-  for (const Discrepancy& d : !o.discrepancies.empty() ? o.discrepancies : fit ? fit->discrepancies : none)
-    if (d.quantity == quantity) return d.share;
-  return 0;
-}
+/// Of each quantity. What was not read may lack as much as the worst of what was.
+class KnownDiscrepancies {
+ public:
+  KnownDiscrepancies(const std::optional<Knowledge>& fit, const PredictedPlanOptions& o)
+      : all_(o.discrepancies.empty() && fit ? fit->discrepancies : o.discrepancies) {}
+
+  double share(measurement::Quantity quantity) {
+    double worst = 0;
+    for (const Discrepancy& d : all_) {
+      if (d.quantity == quantity) return d.share;
+      worst = std::max(worst, d.share);
+    }
+    if (worst > 0 && std::find(not_read_.begin(), not_read_.end(), quantity) == not_read_.end())
+      not_read_.push_back(quantity);
+    return worst;
+  }
+  const std::vector<measurement::Quantity>& not_read() const { return not_read_; }
+
+ private:
+  std::vector<Discrepancy> all_;
+  std::vector<measurement::Quantity> not_read_;
+};
 
 }  // namespace
 
@@ -163,6 +178,7 @@ PredictedPlan predict(const Subject& given, const Measurements& plan, const std:
   Joint joint = joint_of(P, tolerances_of(s, *standing, out.plan, values, shape, fit, without.get(), work), fit);
   out.errors = std::move(joint.root);
   const statistics::LoadErrors load_errors(s, *standing, out.plan, all.front());
+  KnownDiscrepancies discrepancies(fit, o);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto row = as_index(i);
     const MeasuredValue& v = values[i];
@@ -170,14 +186,14 @@ PredictedPlan predict(const Subject& given, const Measurements& plan, const std:
     for (const std::vector<VectorX>& each : all) number.by_theory.push_back(each[v.reading](as_index(v.channel)));
     const std::optional<double> noise = noise_of(out.plan, v, fit, o);
     out.noise_known = out.noise_known && noise;
-    number.deviation = {
-        std::sqrt(joint.parameters(row)), std::sqrt(joint.tolerances(row)), load_errors.deviation(v),
-        discrepancy_of(fit, o, v.quantity) * size_of_prediction(values, predicted, v.reading, v.quantity),
-        noise.value_or(0)};
+    number.deviation = {std::sqrt(joint.parameters(row)), std::sqrt(joint.tolerances(row)), load_errors.deviation(v),
+                        discrepancies.share(v.quantity) * size_of_prediction(values, predicted, v.reading, v.quantity),
+                        noise.value_or(0)};
     const double half = normal95 * number.deviation.of_reading();
     number.low = number.value - half, number.high = number.value + half;
     out.numbers.push_back(std::move(number));
   }
+  out.discrepancy_of_others = discrepancies.not_read();
   return out;
 }
 

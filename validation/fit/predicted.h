@@ -47,6 +47,8 @@ struct PredictedPlan {
   std::vector<PredictedNumber> numbers;
   /// Root of the covariance of P δ + A η + s over the numbers: columns times their transpose; groups: poses.
   statistics::PartedColumns errors;
+  /// Quantities that the fit did not read: their discrepancy is the largest share of those that it read.
+  std::vector<measurement::Quantity> discrepancy_of_others = {};
 };
 
 struct PredictedPlanOptions {

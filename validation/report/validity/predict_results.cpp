@@ -64,6 +64,10 @@ std::string predict_report(const fit::PredictedPlan& p) {
   out += "\nThe interval is that of one reading; shares are those of its variance.\n";
   if (!p.noise_known)
     out += "The noise of some readings is not known (--sigma): their interval is that of the true value.\n";
+  for (const measurement::Quantity q : p.discrepancy_of_others)
+    out += fmt::format(
+        "The fit read no {}: what the model lacks there is taken to be as large a share as of what it read.\n",
+        measurement::row_of(q).what);
   if (!p.fitted)
     out +=
         "Without --fit: tolerances as declared, no discrepancy. What measurements say about this model is not in these "
