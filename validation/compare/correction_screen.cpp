@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t most_sampled = 1000;  // readings
 constexpr double of_usual = 0.005, of_predicted = 0.01, good_part = 0.4;
 constexpr double clearly_worse = 5;                // of the sum of losses
-constexpr double deviations_of_right = 5;          // of χ²
+constexpr double deviations_of_noise = 5;          // of χ²
 constexpr double by_chance = 1, clearly_more = 9;  // of χ²
 constexpr double gross = 20;  // times the median of |left|/expected: an outlier, even where the model is wrong
 constexpr double least_shift_mm = 0.5, most_shift_mm = 100;
@@ -236,7 +236,7 @@ CorrectionScreen::Point CorrectionScreen::weighed_point(const Vector3& p) const 
                                turning =
                                    statistics::regress(u, residual, statistics::rows_of(study_->values, in_platform));
   const double left = u.inner(residual, residual)(0, 0) - fixed.gain, numbers = static_cast<double>(u.count());
-  return {fixed.amplitude, turning.gain - fixed.gain, left < numbers + deviations_of_right * std::sqrt(2 * numbers)};
+  return {fixed.amplitude, turning.gain - fixed.gain, left < numbers + deviations_of_noise * std::sqrt(2 * numbers)};
 }
 
 std::optional<CorrectionScreen::BestPoint> CorrectionScreen::best_point() const {

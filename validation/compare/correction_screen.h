@@ -32,13 +32,14 @@ class CorrectionScreen {
   double loss_elsewhere(const recording::Correction&) const;
   /// The shift of all poses along a base axis with the least loss, if it is 0.5 mm or more.
   std::optional<recording::Correction> best_shift(int axis) const;
-  /// The common point p of application of all forces, if it is more than 1 mm from T: moments about T are then M + p ×
-  /// f. The loss shows which readings are gross outliers; the others give p, weighed by noise and tolerances.
+  /// A point of application with what it leaves.
   struct BestPoint {
     recording::Correction correction;
     double loss = 0;
     bool leaves_noise = false;  ///< noise and tolerances alone, to the first order: the loss does not know tolerances
   };
+  /// The common point p of application of all forces, if it is more than 1 mm from T: moments about T are then M + p ×
+  /// f. The loss shows which readings are gross outliers; the others give p, weighed by noise and tolerances.
   std::optional<BestPoint> best_point() const;
 
  private:

@@ -23,9 +23,10 @@ class TrueLoads {
   Vector6 through_tool(const measurement::Reading&) const;
   /// By how much the wrench at T changes as the points of loads turn about T.
   Vector6 turned(const measurement::Reading&, const Matrix3& turn) const;
-  bool any_named() const { return !points_.empty(); }
-  /// Whether it does.
+  /// Whether that wrench changes so.
   bool any_turns() const { return !points_.empty() || !arm_.isZero(0); }
+  /// Whether loads act at named points.
+  bool any_named() const { return !points_.empty(); }
 
  private:
   struct Point {
