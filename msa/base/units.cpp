@@ -42,7 +42,7 @@ const std::vector<Row>& table() {
        "a length",
        {{"mm", 1, 1e3}, {"m", 1}, {"cm", 1, 100}, {"um", 1, 1e6}, {"in", inch}, {"ft", 12 * inch}},
        largest_length},
-      {Dimension::angle, "an angle", {{"deg", pi, 180}, {"rad", 1}, {"mrad", 1, 1e3}}},
+      {Dimension::angle, "an angle", {{"deg", pi, 180}, {"rad", 1}, {"mrad", 1, 1e3}, {"urad", 1, 1e6}}},
       {Dimension::area, "an area", {{"mm^2", 1, 1e6}, {"m^2", 1}, {"in^2", inch * inch}}, 1e12},
       {Dimension::second_moment,
        "a second moment of area",

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "msa/base/error.h"
@@ -9,6 +11,11 @@
 #include "msa/fields/yaml_tree.h"
 
 namespace deflect {
+
+void NumberMove::add(std::size_t index, double value, double shift) {
+  shifts.emplace_back(index, shift);
+  if (value != 0) relative = std::max(relative, std::abs(shift / value));
+}
 
 void NumberWalk::quantity(const char* key, double& x, const Quantity& q, const char*) {
   number(key, x, q.dimension);

@@ -21,7 +21,11 @@ struct DescribedNumber {
 struct NumberMove {
   std::string name;  ///< "leg 2 elbow rz stiffness", "steel E", "leg 1 forearm length"
   double sigma = 0;  ///< as declared: relative, or SI
-  std::vector<std::pair<std::size_t, double>> shifts;  ///< index of the number, what is added to it
+  std::vector<std::pair<std::size_t, double>> shifts = {};  ///< index of the number, what is added to it
+  double relative = 0;  ///< the largest of these relative to its number; 0 for numbers that are 0
+
+  /// Adds `shift` to a number of this value.
+  void add(std::size_t index, double value, double shift);
 };
 
 /// Visits every number. Throws InputError "KEY: …" where one lies outside its range, or numbers contradict each other.

@@ -30,8 +30,7 @@ class Search {
     if (node.kind == Kind::map) {
       if (segment == "*") return from_each(node, depth, walked);
       const YamlNode* child = node.child(segment);
-      if (!child)
-        fail(joined(walked, segment), fmt::format("there is no '{}'{}", segment, suggestion(segment, node.keys)));
+      if (!child) fail(joined(walked, segment), unknown(segment, node));
       step(node, as_size(child - node.children.data()), depth + 1, walked);
     } else if (node.kind == Kind::list) {
       from_list(node, depth, walked);
@@ -41,6 +40,13 @@ class Search {
   }
 
  private:
+  static std::string unknown(const std::string& segment, const YamlNode& node) {
+    const std::size_t bracket = segment.find('[');
+    if (const std::string list = segment.substr(0, bracket); bracket != segment.npos && node.child(list))
+      return fmt::format("entries of a list are numbered from 0 behind a dot: '{}.0'", list);
+    return fmt::format("there is no '{}'{}", segment, suggestion(segment, node.keys));
+  }
+
   [[noreturn]] void fail(const std::string& path, const std::string& what) const {
     throw InputError(fmt::format("{}{}: {}", where_, path, what));
   }

@@ -173,9 +173,9 @@ std::vector<NumberMove> lengths(const std::vector<Number>& components, double si
     Number member = components[i];
     member.at.back() = "length";
     std::erase(member.at, "along");
-    NumberMove move{words(member), sigma, {}};
+    NumberMove move{words(member), sigma};
     for (std::size_t k = 0; k < 3; ++k)
-      if (shift(as_index(k)) != 0) move.shifts.emplace_back(components[i + k].index, shift(as_index(k)));
+      if (shift(as_index(k)) != 0) move.add(components[i + k].index, components[i + k].value, shift(as_index(k)));
     out.push_back(std::move(move));
   }
   return out;
@@ -193,7 +193,9 @@ std::vector<NumberMove> moves_of(const std::vector<Number>& numbers, const std::
   if (key == "member.length") return lengths(numbers, sigma_of(value, Dimension::length), relative(value));
   for (const Number& n : numbers) {
     const double sigma = sigma_of(value, n.dimension), shift = relative(value) ? sigma * n.value : sigma;
-    if (shift != 0) out.push_back({words(n), sigma, {{n.index, shift}}});
+    if (shift == 0) continue;
+    out.push_back({words(n), sigma});
+    out.back().add(n.index, n.value, shift);
   }
   return out;
 }

@@ -71,7 +71,7 @@ TEST(Units, MicroIsReadInEachOfItsSigns) {
 TEST(Units, EveryUnitOfADimensionMeasuresTheSame) {
   const std::pair<Dimension, std::vector<const char*>> same[] = {
       {Dimension::length, {"25.4 mm", "0.0254 m", "2.54 cm", "25400 um", "1 in", "0.083333333333333333 ft"}},
-      {Dimension::angle, {"0.5 rad", "500 mrad", "28.64788975654116 deg"}},
+      {Dimension::angle, {"0.5 rad", "500 mrad", "5e5 urad", "28.64788975654116 deg"}},
       {Dimension::area, {"645.16 mm^2", "0.00064516 m^2", "1 in^2"}},
       {Dimension::second_moment, {"416231.4256 mm^4", "4.162314256e-7 m^4", "41.62314256 cm^4", "1 in^4"}},
       {Dimension::force, {"4448.2216152605 N", "4.4482216152605 kN", "1000 lbf", "1 kip"}},

@@ -116,6 +116,7 @@ class Session(unittest.TestCase):
         planned = deflect.plan(IDEAL, before="paper")
         self.assert_same("plan", planned)
         self.assertEqual(planned.measurements.text, pathlib.Path("better.csv").read_text())
+        self.assertEqual(len(planned.rows()), len(planned.given["detectable"]))
 
     def test_99_every_command_was_seen(self):
         self.assertEqual(sorted(self.seen), sorted(session_of(ROOT / "README.md")))

@@ -94,14 +94,10 @@ class Session(unittest.TestCase):
         self.assert_same("compare haptic-6psu-ideal-joints paper.csv --validation",
                          deflect.compare("haptic-6psu-ideal-joints", "paper.csv", validation=True))
 
-    def test_diagnose_and_plan(self):
+    def test_diagnose(self):
         found = deflect.diagnose("haptic-6psu-ideal-joints", "paper.csv", bootstrap=99)
         self.assert_same("diagnose haptic-6psu-ideal-joints paper.csv --bootstrap 99", found)
         self.assertEqual(found.verdict, found.content["verdict"])
-        planned = deflect.plan("haptic-6psu-ideal-joints", before="paper")
-        self.assert_same("plan haptic-6psu-ideal-joints --before paper -o better.csv", planned)
-        self.assertEqual(len(planned.rows()), len(planned.given["detectable"]))
-        self.assertEqual(planned.measurements.text, (self.folder / "better.csv").read_text())
 
     def test_fit_and_predict(self):
         path = "materials.steel.E"

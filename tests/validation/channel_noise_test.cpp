@@ -36,7 +36,8 @@ struct Channels {
     return r;
   }
   std::optional<std::vector<double>> noise(const MatrixX& A) const {
-    return statistics::channel_noise(values, told, residual(), patterns, statistics::PartedColumns(A));
+    return statistics::channel_noise(values, told, residual(), patterns, statistics::PartedColumns(A),
+                                     VectorX::Zero(std::ssize(values)));
   }
   std::optional<std::vector<double>> noise() const { return noise(MatrixX::Zero(std::ssize(values), 0)); }
 

@@ -117,6 +117,8 @@ TEST_F(FitProgram, PredictSaysInWhichGeometryAndWhatItTakesFromIt) {
   ASSERT_EQ(run("solve haptic-6psu --pose 25,25,198.9" + at).code, 0);
   const double linear = json("at.json")["analytic"]["displacement"][2];
   EXPECT_GT(uz["deviation"]["tolerances"], 0.2 * std::abs(finite - linear));
+  ASSERT_EQ(run("predict haptic-6psu --joints 90,90,90,90,90,90 --sigma 0.002 --sigma-rotation 1e-5" + at).code, 0);
+  EXPECT_EQ(json("at.json")["plan"], "--joints");
 }
 
 TEST_F(FitProgram, AFrameIsPredictedUnderFactorsOnItsLoadCases) {

@@ -1,6 +1,7 @@
 // The program as a user meets it: the contract's commands, results, files and exit codes.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.h"
@@ -35,6 +36,17 @@ TEST(Program, ValidateWritesTheContractsJsonAndTheFigure) {
   EXPECT_LE(v["rms_relative_difference"].get<double>(), v["max_relative_difference"].get<double>());
   for (const char* name : {"fig10.svg", "fig10.pdf", "fig10.png", "validation.csv"})
     EXPECT_GT(contents(folder / "out" / name).size(), 1000u) << name;
+}
+
+TEST(Program, SolveSaysThatItLeavesTheRigOut) {
+  const Folder folder;
+  const std::string at = "solve " + (folder / "m.yaml").string() + " --load 0,0,10", note = "not part of this";
+  ASSERT_EQ(deflect("new --like scara -o " + (folder / "m.yaml").string()).code, 0);
+  EXPECT_EQ(deflect(at + " --joints 0.1,0.2,100,0.3").out.find(note), std::string::npos);
+  std::ofstream(folder / "m.yaml", std::ios::app) << "\nrig: {load_cell: {point: [20 mm, 0 mm, 0 mm]}}\n";
+  const auto run = deflect(at + " --joints 0.1,0.2,100,0.3");
+  EXPECT_EQ(run.code, 0);
+  EXPECT_NE(run.out.find(note), std::string::npos) << run.out;
 }
 
 TEST(Program, SolveWritesTheContractsJsonAndTheDeflectedStructure) {

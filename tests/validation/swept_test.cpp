@@ -5,6 +5,7 @@
 #include "analytic/pose_sweep.h"
 #include "msa/frame/mechanism/msa_sweep.h"
 #include "tests/support/apart.h"
+#include "tests/support/catalogue_names.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/mechanisms.h"
@@ -56,8 +57,8 @@ TEST_P(SweptWithEffect, EqualsTheTheoriesOfOnePose) {
 }
 INSTANTIATE_TEST_SUITE_P(Catalogue, SweptWithEffect, ::testing::ValuesIn([] {
                            std::vector<std::string> names;
-                           for (const Effect& e : test::all_effects())
-                             if (e.name != "geometric_nonlinearity") names.push_back(e.name);
+                           for (const std::string& name : test::catalogue_names())
+                             if (name != "geometric_nonlinearity") names.push_back(name);
                            return names;
                          }()),
                          [](const auto& named) { return named.param; });

@@ -7,9 +7,11 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "msa/frame/file/frame_file.h"
 #include "tests/support/devices.h"
 #include "validation/compare/held_out.h"
 #include "validation/measurement/configure_all.h"
+#include "validation/measurement/measurements.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/prediction.h"
@@ -172,6 +174,42 @@ TEST(ToleranceModel, AMachineOfSofterSteelMovesInProportion) {
   EXPECT_EQ(A.col(slider).tail(72).norm(), 0);
   // By its σ over some 100 mm of guideway: deflections as its cube, so that they change by far less than a percent.
   EXPECT_LT(A.col(slider).head(9).norm(), 1e-2 * d.head(9).norm());
+}
+
+// d ∝ 1/E and d ∝ 1/k: the derivative says σ_d = t d, a difference over a deviation t d/(1 + t), of a fifth 17 % less.
+TEST(ToleranceModel, LargeOnesAreDerivatives) {
+  Mechanism m = test::device("haptic-6psu-ideal-joints");
+  m.tolerances.modulus = 0.2;
+  const Measurements data = campaign("paper", m, 50, 1);
+  std::vector<MeasuredValue> values;
+  for (std::size_t i = 0; i < data.readings.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) values.push_back(tool_point_value(i, k, 0, {}));
+  const std::shared_ptr<const Standing> standing = Subject(m).stand(data);
+  const ToleranceModel of_steel = tolerance_model(*standing, data, values);
+  const VectorX d = rows_of(values, standing->predict(data));
+  EXPECT_LT((of_steel.A.shared.col(0) + 0.2 * d).norm(), 0.0101 * 0.2 * d.norm());
+
+  const char* post = R"(
+name: post
+plane: xz
+materials: {steel: {E: 210 GPa, nu: 0.3}}
+sections: {bar: {shape: rectangle, width_y: 20 mm, height_z: 20 mm}}
+nodes: {A: [0 m, 0 m, 0 m], B: [1 m, 0 m, 0 m]}
+members: {bar: {from: A, to: B, section: bar, material: steel, y_axis: [0, 1, 0]}}
+supports: {A: {holds: [uz, ry]}}
+springs: {ground: {node: A, ux: 2000 N/mm}}
+loads: {pull: {nodes: {B: {fx: 1 kN}}}}
+sensors: {a: {node: A, direction: ux, sigma: 1 um}}
+tolerances: {spring.ux.stiffness: 50 %}
+)";
+  const Subject s = frame::parse_frame(post, "frame.yaml");
+  const Measurements read = s.placed(parse_measurements("load.pull,a_mm\n1,0\n2,0\n", "data.csv", s.instruments()));
+  const auto stands = s.stand(read);
+  const std::vector<MeasuredValue> seen = measured_values(read, stands->sensor_forms(read));
+  const ToleranceModel of_spring = tolerance_model(*stands, read, seen);
+  ASSERT_EQ(of_spring.A.shared.cols(), 1);
+  for (const Eigen::Index i : {0, 1})  // 0.5 and 1 mm; steps of a twentieth of the half change k by a fortieth
+    EXPECT_NEAR(of_spring.A.shared(i, 0), -0.5 * 0.5e-3 * static_cast<double>(i + 1), 0.025 * 0.25e-3 * 2);
 }
 
 // Readings of a pose are predicted alone there: their rank among them says nothing of a drift over all.

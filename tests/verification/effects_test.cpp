@@ -5,10 +5,11 @@
 #include <cmath>
 
 #include "msa/mechanism/stand.h"
+#include "tests/support/catalogue_names.h"
 #include "tests/support/chains.h"
 #include "tests/support/devices.h"
+#include "tests/support/effects.h"
 #include "tests/support/paths.h"
-#include "validation/effects/effect_file.h"
 #include "validation/effects/with_effect.h"
 #include "validation/measurement/configure_all.h"
 #include "validation/prediction/prediction.h"
@@ -21,8 +22,6 @@ using namespace effects;
 using namespace measurement;
 using namespace prediction;
 using namespace theories;
-
-std::vector<Effect> all_effects() { return catalogue(test::source_dir() + "/validation/effects/catalogue"); }
 
 /// Fifty poses, each with a load that rises, falls and turns round, and a temperature of its own.
 Measurements plan(const Mechanism& m, std::mt19937& random) {
@@ -79,8 +78,7 @@ Mechanism bare_device(const Effect& e) {
 class EveryEffect : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(EveryEffect, ActsAlikeInBothTheories) {
-  static const std::vector<Effect> effects = all_effects();
-  const Effect& e = effects.at(GetParam());
+  const Effect& e = test::effect(test::catalogue_names().at(GetParam()));
   const Mechanism bare = bare_device(e);
   std::mt19937 random(static_cast<unsigned>(GetParam()) + 1);
   const Measurements data = plan(bare, random);
@@ -104,8 +102,8 @@ TEST_P(EveryEffect, ActsAlikeInBothTheories) {
   EXPECT_TRUE(acts) << e.name << " changes nothing";
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::Range<std::size_t>(0, all_effects().size()),
-                         [](const auto& place) { return all_effects().at(place.param).name; });
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::Range<std::size_t>(0, test::catalogue_names().size()),
+                         [](const auto& place) { return test::catalogue_names().at(place.param); });
 
 }  // namespace
 }  // namespace deflect

@@ -92,11 +92,12 @@ std::vector<double> estimated_sigma(const ResidualStudy& s, const std::vector<st
     return all;
   }
   const statistics::LargestNumbers largest = largest_numbers(s);
+  const VectorX of_loads = s.load_errors.deviations(s.values).cwiseAbs2();
   if (!s.standing->has_tool_point()) {
     const MatrixX all = statistics::side_by_side({patterns, linear_answers(s)}, r.size());
-    if (auto found = statistics::channel_noise(s.values, told, r, all, A, largest)) return *found;
+    if (auto found = statistics::channel_noise(s.values, told, r, all, A, of_loads, largest)) return *found;
   }
-  if (auto found = statistics::channel_noise(s.values, told, r, patterns, A, largest)) return *found;
+  if (auto found = statistics::channel_noise(s.values, told, r, patterns, A, of_loads, largest)) return *found;
   if (auto found = as_of_others(s.values, told)) return *found;
   throw InputError(
       fmt::format("{}: neither σ nor replicates, and {} measured numbers are too few to read the scatter off what no "

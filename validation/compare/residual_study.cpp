@@ -62,6 +62,7 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
   prediction::Predicted predicted = s.standing->predicted(data, {}, work);
   s.predicted = std::move(predicted.readings);
   s.load_errors = {subject, *s.standing, data, s.predicted};
+  statistics::take_off_load_errors(s.values, s.load_errors, data);
   s.floating = std::move(predicted.floating);
   const std::size_t poses = s.standing->poses();
   s.sites.resize(poses);

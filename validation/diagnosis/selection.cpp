@@ -60,10 +60,14 @@ class Search {
         grant(best->hypothesis, best->fit.values);
         return true;
       }
-      if (const Candidate* simpler = simpler_form(own, all); simpler && !goes_back(simpler->hypothesis)) {
+      if (const Candidate* simpler = simpler_form(own, all)) {
         const Candidate instead = *simpler;
+        const bool back = goes_back(instead.hypothesis);
         grant(instead.hypothesis, instead.fit.values);
-        return true;
+        if (!back) return true;
+        // Each looks likelier where the other one is granted: the simpler one stays, and what looks as likely ties.
+        note_ties();
+        return false;
       }
       s_.ties[i] = tie(all);
       if (s_.ties[i].names.empty()) continue;

@@ -153,7 +153,7 @@ void require_apart(const std::vector<FreeParameter>& all) {
 
 Prior parsed(const PriorText& text, const FreeParameter& p) {
   Prior out;
-  out.mean = parse_quantity(text.mean, p.dimension);
+  out.mean = text.mean == "0" ? 0 : parse_quantity(text.mean, p.dimension);  // in every unit
   out.deviation = text.deviation.ends_with('%') ? std::abs(out.mean) * parse_quantity(text.deviation, Dimension::ratio)
                                                 : parse_quantity(text.deviation, p.dimension);
   if (!(out.deviation > 0)) throw InputError("the standard deviation must be above zero");

@@ -11,9 +11,9 @@
 namespace deflect::fit {
 namespace {
 
-measurement::Measurements one_reading(measurement::Reading r, measurement::PoseGroup pose) {
+measurement::Measurements one_reading(measurement::Reading r, measurement::PoseGroup pose, const char* origin) {
   measurement::Measurements out;
-  out.origin = "--at";
+  out.origin = origin;
   r.line = 1;
   pose.label = "at";
   pose.readings = {0};
@@ -29,11 +29,11 @@ measurement::Measurements plan_of_one(const Stand& at, const Vector6& F_T_W, boo
   r.load = F_T_W;
   measurement::PoseGroup pose;
   pose.pose_mm_deg = at.pose_mm_deg;
-  if (!by_joints) return one_reading(r, pose);
+  if (!by_joints) return one_reading(r, pose, "--at");
   const std::vector<Actuator>& driven = at.configuration.actuators;
   pose.joints.resize(std::ssize(driven));
   for (std::size_t i = 0; i < driven.size(); ++i) pose.joints(as_index(i)) = driven[i].value;
-  measurement::Measurements out = one_reading(r, pose);
+  measurement::Measurements out = one_reading(r, pose, "--joints");
   for (const Actuator& each : driven) out.joint_rotates.push_back(each.rotation);
   return out;
 }
@@ -54,7 +54,7 @@ measurement::Measurements plan_of_one(const subject::Subject& frame,
     given[at] = true;
     r.factors[at] = factor;
   }
-  measurement::Measurements out = one_reading(r, {});
+  measurement::Measurements out = one_reading(r, {}, "--at");
   out.instruments.load_cases = cases;
   out.instruments.stationary = true;
   return out;

@@ -140,7 +140,8 @@ std::optional<NoiseEstimate> pure_error_of(const Measurements& m, Quantity quant
 }
 
 MeasuredValue tool_point_value(std::size_t reading, std::size_t component, double value, std::optional<double> sigma) {
-  return {reading, component, value, sigma, displacement_quantity(component), Vector6::Unit(as_index(component))};
+  return {
+      reading, component, value, sigma, displacement_quantity(component), false, Vector6::Unit(as_index(component))};
 }
 
 std::vector<MeasuredValue> measured_values(const Measurements& m, const SensorForm& form) {
@@ -154,12 +155,14 @@ std::vector<MeasuredValue> measured_values(const Measurements& m, const SensorFo
       const std::optional<double>& given = k < 3 ? r.sigma_u : r.sigma_th;
       values.push_back(
           tool_point_value(i, k, *r.displacement[k], given ? given : sigma_of(k < 3 ? estimated.u : estimated.th)));
+      values.back().by_replicates = !given && values.back().sigma;
     }
     for (std::size_t k = 0; k < r.sensors.size(); ++k) {
       if (!r.sensors[k]) continue;
       const SensorChannel& sensor = m.instruments.sensors[k];
       MeasuredValue v{i, 6 + k, *r.sensors[k], sensor.sigma, sensor.quantity};
-      if (!v.sigma) v.sigma = sigma_of(of_sensors[k]);
+      v.by_replicates = !v.sigma && of_sensors[k];
+      if (v.by_replicates) v.sigma = of_sensors[k]->sigma;
       if (!v.sigma && sensor.quantity == Quantity::length) v.sigma = r.sigma_u;
       if (!v.sigma && sensor.quantity == Quantity::angle) v.sigma = r.sigma_th;
       if (form) v.form = form(r.pose, k);

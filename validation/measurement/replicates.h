@@ -47,6 +47,7 @@ struct MeasuredValue {
   double value = 0;             ///< SI
   std::optional<double> sigma;  ///< the file's; else from the replicates; empty where there is neither
   Quantity quantity = Quantity::length;
+  bool by_replicates = false;      ///< so is sigma; what errors of the recorded loads do is in it
   Vector6 form = Vector6::Zero();  ///< the first-order reading of a small displacement d of T: form · d
 
   /// Whether it is one of d_T_W's components.

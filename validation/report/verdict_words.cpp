@@ -90,10 +90,10 @@ std::string fall_of_error(const diagnosis::Diagnosis& d) {
 /// Where that is not out of the question: that no effect is needed if parts deviate farther than declared.
 std::string larger_tolerances_words(const diagnosis::Diagnosis& d) {
   if (d.missing.empty() || !(d.probability_larger_tolerances > rival)) return "";
-  return fmt::format(
-      " Tolerances {:.1f} times as large as declared would explain the readings without it (probability "
-      "{:.2g}).",
-      d.larger_tolerances, d.probability_larger_tolerances);
+  const std::string size =
+      d.larger_tolerances < 1.05 ? "as large as" : fmt::format("{:.1f} times as large as", d.larger_tolerances);
+  return fmt::format(" Tolerances {} declared would explain the readings without it (probability {:.2g}).", size,
+                     d.probability_larger_tolerances);
 }
 
 /// Of those that tie and have no upper limit: what they say.

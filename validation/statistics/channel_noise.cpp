@@ -10,6 +10,7 @@
 
 #include "msa/base/index.h"
 #include "validation/statistics/columns.h"
+#include "validation/statistics/load_errors.h"
 
 namespace deflect::statistics {
 namespace {
@@ -84,7 +85,7 @@ using Members = std::map<std::pair<measurement::Quantity, std::size_t>, std::vec
 
 /// Estimates σ by member; returns the freedoms.
 std::vector<double> estimate(const Members& members, const Channel& known, const MatrixX& G, const VectorX& r,
-                             const LargestNumbers& largest, std::vector<double>& sigma) {
+                             const VectorX& of_loads, const LargestNumbers& largest, std::vector<double>& sigma) {
   std::vector<Channel> channels;
   for (const auto& [key, rows] : members) {
     channels.emplace_back(G(rows, Eigen::all), r(rows), 0);
@@ -99,7 +100,8 @@ std::vector<double> estimate(const Members& members, const Channel& known, const
   std::size_t k = 0;
   for (const auto& [key, rows] : members) {
     const double left = last.freedoms[k] - 2, of = left > 0 ? std::sqrt(last.freedoms[k] / left) : 1;
-    for (const Eigen::Index i : rows) nth(sigma, i) = of * channels[k].sigma;
+    const double noise = noise_beside_loads(of * channels[k].sigma, of_loads(rows).mean());
+    for (const Eigen::Index i : rows) nth(sigma, i) = std::max(channels[k].least, noise);
     ++k;
   }
   last.freedoms.pop_back();
@@ -128,7 +130,8 @@ bool share(Members& members, const std::vector<double>& freedoms) {
 std::optional<std::vector<double>> channel_noise(const std::vector<measurement::MeasuredValue>& values,
                                                  const std::vector<std::optional<double>>& told,
                                                  const VectorX& residual, const MatrixX& patterns,
-                                                 const PartedColumns& A, LargestNumbers largest) {
+                                                 const PartedColumns& A, const VectorX& of_loads,
+                                                 LargestNumbers largest) {
   const MatrixX G = side_by_side({patterns, A.shared}, residual.size());
   std::vector<double> sigma(values.size());
   Members members;
@@ -157,7 +160,7 @@ std::optional<std::vector<double>> channel_noise(const std::vector<measurement::
   const Channel known_channel(std::move(of_known), std::move(known_residual), 1);
   std::vector<double> freedoms;
   do {
-    freedoms = estimate(members, known_channel, G, residual, largest, sigma);
+    freedoms = estimate(members, known_channel, G, residual, of_loads, largest, sigma);
   } while (share(members, freedoms));
   if (std::any_of(freedoms.begin(), freedoms.end(), too_few) ||
       std::accumulate(freedoms.begin(), freedoms.end(), 0.0) < fewest_left)

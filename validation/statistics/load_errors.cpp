@@ -1,8 +1,10 @@
 #include "validation/statistics/load_errors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
@@ -114,6 +116,32 @@ VectorX LoadErrors::deviations(const std::vector<measurement::MeasuredValue>& va
   VectorX out(std::ssize(values));
   for (std::size_t i = 0; i < values.size(); ++i) out(as_index(i)) = deviation(values[i]);
   return out;
+}
+
+double noise_beside_loads(double scatter, double mean_square) {
+  constexpr double least_share = 0.1;
+  const double square = scatter * scatter;
+  return std::sqrt(std::max(square - mean_square, least_share * square));
+}
+
+void take_off_load_errors(std::vector<measurement::MeasuredValue>& values, const LoadErrors& errors,
+                          const measurement::Measurements& data) {
+  std::vector<bool> repeated(data.readings.size());
+  for (const std::vector<std::size_t>& group : measurement::replicates(data))
+    for (const std::size_t i : group) repeated[i] = true;
+  // T's components of one quantity have one σ, each sensor its own.
+  const auto source = [](const measurement::MeasuredValue& v) {
+    return std::pair(v.quantity, v.of_tool_point() ? 0 : v.channel);
+  };
+  std::map<std::pair<measurement::Quantity, std::size_t>, std::pair<double, double>> sums;
+  for (const measurement::MeasuredValue& v : values) {
+    if (!v.by_replicates || !repeated[v.reading]) continue;
+    const double l = errors.deviation(v);
+    sums[source(v)].first += l * l, sums[source(v)].second += 1;
+  }
+  for (measurement::MeasuredValue& v : values)
+    if (const auto sum = sums.find(source(v)); v.by_replicates && sum != sums.end())
+      v.sigma = noise_beside_loads(*v.sigma, sum->second.first / sum->second.second);
 }
 
 }  // namespace deflect::statistics

@@ -36,4 +36,12 @@ class LoadErrors {
   std::vector<MatrixX> columns_;
 };
 
+/// σ of the noise in what scatters by so much, where errors of the loads, of this mean square, scatter too: what they
+/// share of the variance is taken off, up to nine tenths.
+double noise_beside_loads(double scatter, double mean_square);
+
+/// The same for the σ that replicates tell, by the loads of the replicates.
+void take_off_load_errors(std::vector<measurement::MeasuredValue>&, const LoadErrors&,
+                          const measurement::Measurements&);
+
 }  // namespace deflect::statistics

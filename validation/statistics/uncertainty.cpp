@@ -64,7 +64,7 @@ void move_own(GroupColumns& own, const subject::Deviations& off, std::size_t fir
     const std::vector<VectorX> d = off.with(k)->predict(of_pose, {}, parallel::alone);
     for (std::size_t i = 0; i < own.rows.size(); ++i)
       own.columns(as_index(i), as_index(k - first)) =
-          d[reading[i]](as_index(nth(values, own.rows[i]).channel)) - nominal(own.rows[i]);
+          (d[reading[i]](as_index(nth(values, own.rows[i]).channel)) - nominal(own.rows[i])) / off.tolerances()[k].step;
   }
 }
 
@@ -97,7 +97,8 @@ ToleranceModel tolerance_model(const subject::Standing& standing, const measurem
       cases, 1, work.threads,
       [&](std::size_t k) {
         if (k < shared) {
-          out.A.shared.col(as_index(k)) = rows_of(values, off->with(k)->predict(data, {}, parallel::alone)) - nominal;
+          out.A.shared.col(as_index(k)) =
+              (rows_of(values, off->with(k)->predict(data, {}, parallel::alone)) - nominal) / out.nuisances[k].step;
           return;
         }
         const auto [first, last] = of_pose[k - shared];

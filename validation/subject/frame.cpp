@@ -55,7 +55,7 @@ class FrameStanding : public Standing {
   std::shared_ptr<const FrameNearby> near_, known_;  // for itself; for others
 };
 
-/// One tolerance, moved by a standard deviation.
+/// One tolerance; its number by a standard deviation.
 struct FrameMove {
   Tolerance tolerance;
   NumberMove number = {};
@@ -67,6 +67,7 @@ std::vector<FrameMove> frame_moves(const FrameDescription& f, const measurement:
   std::vector<FrameMove> out;
   for (NumberMove& number : frame::number_moves(f)) {
     FrameMove move{{number.name, number.sigma}};
+    move.tolerance.step = step_of(number.relative);
     move.number = std::move(number);
     out.push_back(std::move(move));
   }
@@ -178,7 +179,8 @@ class FrameDeviations final : public Deviations {
   const Standing& drawn() const override { return *drawn_; }
   std::unique_ptr<const Standing> with(std::size_t k) const override {
     const FrameMove& move = moves_[k];
-    FrameDescription built = move.number.shifts.empty() ? *frame_ : frame::moved(*frame_, move.number);
+    FrameDescription built =
+        move.number.shifts.empty() ? *frame_ : frame::moved(*frame_, move.number, move.tolerance.step);
     for (auto& [name, sensor] : built.sensors)
       if (name == move.sensor) sensor.gain += move.gain, sensor.zero += move.zero;
     return std::make_unique<DeviatingFrame>(std::move(built), data_, drawn_);

@@ -23,7 +23,7 @@
 namespace deflect::subject {
 namespace {
 
-/// One tolerance, moved by a standard deviation: in every pose, or in one.
+/// One tolerance, moved by its step: in every pose, or in one.
 struct Move {
   Tolerance tolerance;
   prediction::AsBuilt built = {};
@@ -34,7 +34,7 @@ struct Move {
     double gain = 0, zero = 0;
   };
   OfSensor sensor = {};
-  NumberMove number = {};  ///< of the resolved description
+  NumberMove number = {};  ///< of the resolved description, by a standard deviation
   double start = 0;        ///< of the frictions of a pose whose start nobody knows
 };
 
@@ -62,28 +62,31 @@ std::vector<Move> shared_moves(const Mechanism& m) {
   const Tolerances t = named_tolerances(m);
   const auto legs = as_size(leg_count(m));
   std::vector<Move> moves;
-  const auto add = [&](const std::string& name, double sigma, const std::function<void(prediction::AsBuilt&)>& change) {
+  const auto add = [&](const std::string& name, double sigma, double step,
+                       const std::function<double&(prediction::AsBuilt&)>& number) {
     if (!(sigma > 0)) return;
     Move move{{name, sigma}};
+    move.tolerance.step = step;
     move.built.legs.resize(legs);
-    change(move.built);
+    number(move.built) = step * sigma;
     moves.push_back(std::move(move));
   };
-  add("modulus", t.modulus, [&](prediction::AsBuilt& b) { b.modulus = t.modulus; });
+  using prediction::AsBuilt;
+  add("modulus", t.modulus, step_of(t.modulus), [](AsBuilt& b) -> double& { return b.modulus; });
   const bool seats = std::holds_alternative<SixPsu>(m.kinematics) || !m.mounts.empty();
   for (std::size_t i = 0; i < legs; ++i) {
     const std::string leg = fmt::format("leg {} ", i + 1);
-    add(leg + "guide diameter", t.guide_diameter,
-        [&](prediction::AsBuilt& b) { b.legs[i].guide_diameter = t.guide_diameter; });
+    add(leg + "guide diameter", t.guide_diameter, step_of(t.guide_diameter),
+        [i](AsBuilt& b) -> double& { return b.legs[i].guide_diameter; });
     if (!seats) continue;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      add(leg + "base joint " + "xyz"[axis], t.joint_position,
-          [&](prediction::AsBuilt& b) { b.legs[i].base_joint(axis) = t.joint_position; });
-      add(leg + "platform joint " + "xyz"[axis], t.joint_position,
-          [&](prediction::AsBuilt& b) { b.legs[i].platform_joint(axis) = t.joint_position; });
+      add(leg + "base joint " + "xyz"[axis], t.joint_position, 1,
+          [&](AsBuilt& b) -> double& { return b.legs[i].base_joint(axis); });
+      add(leg + "platform joint " + "xyz"[axis], t.joint_position, 1,
+          [&](AsBuilt& b) -> double& { return b.legs[i].platform_joint(axis); });
     }
     if (std::holds_alternative<SixPsu>(m.kinematics))
-      add(leg + "link length", t.link_length, [&](prediction::AsBuilt& b) { b.legs[i].link_length = t.link_length; });
+      add(leg + "link length", t.link_length, 1, [i](AsBuilt& b) -> double& { return b.legs[i].link_length; });
   }
   return moves;
 }
@@ -130,8 +133,12 @@ std::vector<Move> moves_of(const Mechanism& m, const std::vector<Configuration>&
                            const measurement::Measurements& data) {
   std::vector<Move> moves = shared_moves(m);
   if (!m.tolerances.numbers.empty())
-    for (NumberMove& number : number_moves(resolved(m)))
-      moves.push_back({{number.name, number.sigma}, {}, 0, Vector6::Zero(), {}, std::move(number)});
+    for (NumberMove& number : number_moves(resolved(m))) {
+      Move move{{number.name, number.sigma}};
+      move.tolerance.step = step_of(number.relative);
+      move.number = std::move(number);
+      moves.push_back(std::move(move));
+    }
   if (m.sensor.free_zero)
     for (Move& zero : free_zeros(data)) moves.push_back(std::move(zero));
   for (Move& move : sensor_moves(m, data)) moves.push_back(std::move(move));
@@ -229,7 +236,7 @@ class MachineDeviations final : public Deviations {
                                                drawn_.machines());
     }
     if (!move.number.shifts.empty()) {
-      const auto built = std::make_shared<const Mechanism>(moved(resolved_, move.number));
+      const auto built = std::make_shared<const Mechanism>(moved(resolved_, move.number, move.tolerance.step));
       std::vector<Configuration> machines;
       for (const Configuration& c : drawn_.machines())
         machines.push_back(prediction::configure_as_built(*built, {}, c));

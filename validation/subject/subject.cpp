@@ -1,10 +1,16 @@
 #include "validation/subject/subject.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "msa/frame/file/frame_description.h"
 
 namespace deflect::subject {
+
+double step_of(double relative) {
+  constexpr double small = 0.01, least = 0.05;
+  return relative > small ? std::max(small / relative, least) : 1;
+}
 
 Subject::Subject(Mechanism m) : kind_(machine_subject(std::move(m))) {}
 Subject::Subject(frame::FrameDescription f) : kind_(frame_subject(std::move(f))) {}

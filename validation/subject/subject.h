@@ -64,7 +64,13 @@ struct Tolerance {
   double sigma = 0;  ///< standard deviation: relative, or m
   std::optional<std::size_t> pose = {};
   bool zero = false;  ///< the zero of a sensor's readings, not a property of the subject
+  /// How many standard deviations the subject deviates by where a difference is taken (Deviations): 1, or fewer.
+  double step = 1;
 };
+
+/// That number for a tolerance that changes a number by this share of it. Over a hundredth of the number a difference
+/// is a derivative: a stiffness that is 20 % larger moves 17 % less, one that is 1 % larger 0.99 %.
+double step_of(double relative);
 
 /// Position (m) and axes of a body of the subject, in W.
 struct BodyFrame {
@@ -134,7 +140,7 @@ class Standing {
   virtual std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const = 0;
 };
 
-/// A subject that deviates in one tolerance by one standard deviation. Linear geometry, but for a frame in which
+/// A subject that deviates in one tolerance, by its step. Linear geometry, but for a frame in which
 /// equilibrium in the deformed shape changes what tolerances do by more than a hundredth and a sensor's σ: there as the
 /// frame is described. Without the sensor's drift, which no tolerance changes.
 class Deviations {
@@ -144,7 +150,8 @@ class Deviations {
   virtual const std::vector<Tolerance>& tolerances() const = 0;
   /// The subject as drawn, from which differences are taken.
   virtual const Standing& drawn() const = 0;
-  /// Deviates by tolerance k. Where that tolerance belongs to one pose, the result has this pose only.
+  /// Deviates by tolerances()[k].step standard deviations of tolerance k. Where that tolerance belongs to one pose, the
+  /// result has this pose only.
   virtual std::unique_ptr<const Standing> with(std::size_t k) const = 0;
 };
 

@@ -104,7 +104,9 @@ std::vector<NumberMove> moves_of(const std::vector<Number>& numbers, const std::
   std::vector<NumberMove> out;
   for (const Number& n : numbers) {
     const double sigma = sigma_of(value, n.dimension), shift = relative(value) ? sigma * n.value : sigma;
-    if (shift != 0) out.push_back({words(n), sigma, {{n.index, shift}}});
+    if (shift == 0) continue;
+    out.push_back({words(n), sigma});
+    out.back().add(n.index, n.value, shift);
   }
   return out;
 }
@@ -114,10 +116,10 @@ void add_moduli(const FrameDescription& f, const std::vector<Number>& all, std::
   const double sigma = f.tolerances.modulus;
   if (!(sigma > 0)) return;
   for (const auto& [name, material] : f.materials) {
-    NumberMove move{f.materials.size() > 1 ? "modulus of " + name : "modulus", sigma, {}};
+    NumberMove move{f.materials.size() > 1 ? "modulus of " + name : "modulus", sigma};
     for (const Number& n : all)
       if (n.at.front() == "materials" && n.at[1] == name && (n.at.back() == "E" || n.at.back() == "G"))
-        move.shifts.emplace_back(n.index, sigma * n.value);
+        move.add(n.index, n.value, sigma * n.value);
     out.push_back(std::move(move));
   }
 }

@@ -211,14 +211,17 @@ void ExtendedStructure::add(Part part) {
   parts_.push_back(std::move(part));
 }
 
-/// Column by column, each from those before it.
+/// Column by column, each from those before it. Legs meet in the platform alone: most of L is zero.
 void ExtendedStructure::factor() {
   const Eigen::Index n = L_.rows();
-  ExtendedVector scaled(n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const Extended whole = L_(j, j);
-    for (Eigen::Index k = 0; k < j; ++k) scaled(k) = L_(j, k) * L_(k, k);
-    for (Eigen::Index k = 0; k < j; ++k) L_.col(j).tail(n - j) -= scaled(k) * L_.col(k).tail(n - j);
+    for (Eigen::Index k = 0; k < j; ++k) {
+      if (L_(j, k) == 0) continue;
+      const Extended scaled = L_(j, k) * L_(k, k);
+      for (Eigen::Index i = j; i < n; ++i)
+        if (L_(i, k) != 0) L_(i, j) -= scaled * L_(i, k);
+    }
     if (L_(j, j) > Extended(lost_pivot) * whole)
       L_.col(j).tail(n - j - 1) /= L_(j, j);
     else

@@ -26,6 +26,12 @@ void write_structure(const std::filesystem::path& folder, const studies::SolveRe
   write_vtu(folder / "deflected.vtu", r.mesh, r.fields);
 }
 
+/// Whether the description says more of how loads and displacements are recorded than that they are.
+bool has_rig(const Mechanism& m) {
+  return m.load_cell.gain != 1 || !m.load_cell.rotation.isZero(0) || !m.load_cell.point.isZero(0) ||
+         !m.sensor.rotation.isZero(0) || !m.sensor.point.isZero(0);
+}
+
 void run(const SolveArguments& a) {
   require_pages(a.report);
   const Mechanism m = read_device(a.device);
@@ -50,6 +56,10 @@ void run(const SolveArguments& a) {
   fmt::print("{}\n{}", m.name, report::solve_report(r));
   if (load.isZero(0) && r.reference().stiffness_mm.isZero(1e-9))
     fmt::print("Without load the contacts have no stiffness; give --load to get the stiffness under that load.\n");
+  if (has_rig(m))
+    fmt::print(
+        "Load and displacement are the true ones of T. The rig of the description, through which they are recorded, is "
+        "not part of this; predict counts it.\n");
   if (!a.out.empty()) fmt::print("Deflected structure: {0}/deflected.msh, {0}/deflected.vtu\n", a.out);
   if (!a.report.empty())
     write_report_of_stands(a.report, a.device, m, {{"", at.pose_mm_deg, at.configuration}}, {load},

@@ -68,6 +68,14 @@ std::string predict_report(const fit::PredictedPlan& p) {
     out += fmt::format(
         "The fit read no {}: what the model lacks there is taken to be as large a share as of what it read.\n",
         measurement::row_of(q).what);
+  const auto outside = [](const fit::PredictedNumber& n) {
+    return std::any_of(n.by_theory.begin(), n.by_theory.end(), [&](double x) { return x < n.low || x > n.high; });
+  };
+  if (p.fitted && std::any_of(p.numbers.begin(), p.numbers.end(), outside))
+    out +=
+        "The theories' columns are the description's alone, some of them outside the interval: what is predicted has "
+        "what "
+        "the fit learned of tolerances in it, too.\n";
   if (!p.fitted)
     out +=
         "Without --fit: tolerances as declared, no discrepancy. What measurements say about this model is not in these "

@@ -193,7 +193,3 @@ class Dataclasses(unittest.TestCase):
             for name, result in results().items():
                 result.save(folder + "/result.json")
                 self.assertEqual(deflect.read(folder + "/result.json"), result, name)
-
-
-if __name__ == "__main__":
-    unittest.main()

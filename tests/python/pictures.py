@@ -171,7 +171,3 @@ class Without(unittest.TestCase):
         self.assertIn("apt install python3-matplotlib", out[0])
         self.assertIn("apt install python3-pandas", out[1])
         self.assertEqual(out[2], "True False")
-
-
-if __name__ == "__main__":
-    unittest.main()
