@@ -109,7 +109,7 @@ TEST_P(Interrupted, AFullDiskIsToldAndLeavesNothing) {
 /// Work that keeps a journal with --resume; most of its time goes into what it keeps.
 constexpr Work long_works[] = {
     {"map", "map tripteron --n 17 --threads 1", "out.json"},
-    {"diagnose", "diagnose 3-rrr data.csv --bootstrap 150000 --threads 1", "out.json"},
+    {"diagnose", "diagnose 3-rrr data.csv --bootstrap 40000 --threads 1", "out.json"},
 };
 
 using InterruptedLong = Interrupted;

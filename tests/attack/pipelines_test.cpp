@@ -110,6 +110,8 @@ std::vector<std::string> kept_pipelines() {
 }
 
 TEST_P(KeptPipelines, NeverContradictThemselves) {
+  // Play in a machine that bends by its own size: a minute and more.
+  if (GetParam() == "shape-against-readings" && count_on_demand() == 0) GTEST_SKIP() << "set DEFLECT_ATTACK to 1";
   const std::filesystem::path from = std::filesystem::path(test::source_dir()) / "tests/attack/pipelines";
   const test::Folder folder;
   write_text(folder / "subject.yaml", read_text(from / (GetParam() + ".yaml")));
