@@ -43,7 +43,8 @@ class Search {
   static std::string unknown(const std::string& segment, const YamlNode& node) {
     const std::size_t bracket = segment.find('[');
     if (const std::string list = segment.substr(0, bracket); bracket != segment.npos && node.child(list))
-      return fmt::format("entries of a list are numbered from 0 behind a dot: '{}.0'", list);
+      return fmt::format("entries of a list are numbered from 0, behind a dot: '{}.{}'", list,
+                         segment.substr(bracket + 1, segment.find(']') - bracket - 1));
     return fmt::format("there is no '{}'{}", segment, suggestion(segment, node.keys));
   }
 

@@ -186,7 +186,7 @@ pages: {machine: a, data: b, bench: c, cure: d}
       "pad.yaml:7: edits.0: edit 'tool.zz += {law: linear, stiffness: 100 N/mm}': tool.zz: there is no 'zz'");
   add("leg.*.zz", "leg.*.zz += {law: linear, stiffness: 100 N/mm}': leg.actuator.zz: there is no 'zz'");
   add("leg.carrage.tz", "leg.carrage: there is no 'carrage', did you mean 'carriage'?");
-  add("'leg.universal_joint.tz[0].radius'", "entries of a list are numbered from 0 behind a dot: 'tz.0'");
+  add("'leg.universal_joint.tz[1].radius'", "entries of a list are numbered from 0, behind a dot: 'tz.1'");
   add("[leg.carrage.tz, leg.x.tz]", "edits.0: leg.carrage: there is no 'carrage', did you mean 'carriage'?");
 }
 

@@ -40,7 +40,7 @@ class Search {
 
   std::vector<Candidate> further() { return beside(seen(), s_.effects, s_.fit, called_for); }
 
-  /// Each effect asked again beside the others; true when one was dropped or exchanged.
+  /// Each effect asked again beside the others; true when one was dropped or exchanged, so that all are asked again.
   bool reconsider() {
     for (std::size_t i = 0; i < s_.effects.size(); ++i) {
       const std::optional<AskedAgain> asked = asked_again(i);

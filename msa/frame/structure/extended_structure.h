@@ -11,8 +11,8 @@ namespace deflect::frame {
 
 /// TᵀKT as the sum of SᵀkS over beams and springs. S maps the freedoms q to the strains of a part (motion of a beam's
 /// end b relative to the body of its end a); k is the part's stiffness in its own axes. Rigid motions cause no strain,
-/// to the precision of Extended, however stiff the part. Factored as LDLᵀ, which costs n³/6 software operations; for up
-/// to most_freedoms.
+/// to the precision of Extended, however stiff the part. Factored as LDLᵀ, which costs at most n³/6 software
+/// operations; for up to most_freedoms.
 class ExtendedStructure {
  public:
   static constexpr int most_freedoms = 300;

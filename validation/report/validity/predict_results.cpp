@@ -73,9 +73,8 @@ std::string predict_report(const fit::PredictedPlan& p) {
   };
   if (p.fitted && std::any_of(p.numbers.begin(), p.numbers.end(), outside))
     out +=
-        "The theories' columns are the description's alone, some of them outside the interval: what is predicted has "
-        "what "
-        "the fit learned of tolerances in it, too.\n";
+        "The theories' columns are the description's alone, some of them outside the interval: what is predicted also "
+        "has what the fit learned of tolerances in it.\n";
   if (!p.fitted)
     out +=
         "Without --fit: tolerances as declared, no discrepancy. What measurements say about this model is not in these "
