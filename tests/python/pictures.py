@@ -6,6 +6,7 @@ import io
 import re
 import subprocess
 import sys
+import tempfile
 import types
 import unittest
 import unittest.mock
@@ -89,6 +90,24 @@ class Pictures(unittest.TestCase):
         drawn = np.concatenate([line.get_ydata() for axes in compared.plot().axes for line in axes.lines
                                 if len(line.get_ydata()) == compared.readings])
         np.testing.assert_allclose(sorted(drawn), sorted(1e3 * residuals["residual"]))
+
+    def test_of_files_too(self):
+        """A result that was read is drawn as the one that was written, but for residuals, which no file holds."""
+        with tempfile.TemporaryDirectory() as folder:
+            for name, result in self.results.items():
+                with self.subTest(name):
+                    result.save(folder + "/result.json")
+                    read = deflect.read(folder + "/result.json")
+                    if not isinstance(result, deflect.Comparison):
+                        self.assertEqual(len(read.plot().axes), len(result.plot().axes))
+                        continue
+                    with self.assertRaisesRegex(deflect.InputError, "does not hold the residuals.*compare again"):
+                        read.plot()
+                    self.assertIn("<table", read._repr_html_())
+            fit = self.results["fit"]
+            fit.save(folder + "/fit.json")
+            with self.assertRaisesRegex(AttributeError, "the file of a Fit has no 'model'"):
+                deflect.read(folder + "/fit.json").model
 
     def test_into_a_figure_of_ones_own(self):
         from matplotlib.figure import Figure

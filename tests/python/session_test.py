@@ -111,6 +111,32 @@ class Session(unittest.TestCase):
         self.assert_same("predict haptic-6psu-ideal-joints --plan paper.csv --sigma 0.002",
                          deflect.predict("haptic-6psu-ideal-joints", "paper.csv", sigma=0.002))
 
+    def test_plan_finds_what_was_diagnosed(self):
+        """There or beside the diagnosis; a platform and an actuator that yield look alike under forces."""
+        m = "haptic-6psu-ideal-joints"
+        self.program(f"simulate {m} --with platform_flexibility,stiffness_N_per_mm=1500 --campaign paper --seed 5 -o t.csv")
+        self.program(f"diagnose {m} t.csv --bootstrap 99 --json tie.json")
+        self.assert_same(f"plan {m} tie.json --readings 1 --poses measured --forces-only",
+                         deflect.plan(m, "tie.json", readings=1, poses="measured", forces_only=True))
+        with self.assertRaisesRegex(deflect.InputError, "no replicates"):
+            deflect.plan(m, "tie.json", ["t.csv", "t.csv"])
+        with self.assertRaisesRegex(deflect.InputError, "give at least one session"):
+            deflect.plan(m, "tie.json", [])
+        found = deflect.measurements.diagnosed_sessions
+        self.assertEqual(found("tie.json"), [((self.folder / "t.csv").read_text(), "t.csv")])
+        self.assertEqual(found(deflect.read("tie.json")), found("tie.json"))
+        moved = self.folder / "moved"
+        moved.mkdir()
+        for name in ("tie.json", "t.csv"):
+            (self.folder / name).rename(moved / name)
+        self.assertEqual(found(moved / "tie.json"), [((moved / "t.csv").read_text(), str(moved / "t.csv"))])
+        with self.assertRaisesRegex(deflect.InputError, "'t.csv', are not there: give data too"):
+            deflect.plan(m, deflect.read(moved / "tie.json"))
+        two = json.loads((moved / "tie.json").read_text())
+        two["data"] = "t.csv + paper.csv"  # sessions of one campaign
+        (moved / "two.json").write_text(json.dumps(two))
+        self.assertEqual([origin for _, origin in found(moved / "two.json")], [str(moved / "t.csv"), "paper.csv"])
+
     def test_history(self):
         self.program("add haptic-6psu-ideal-joints joint_clearance --set gap_mm=0.02 -o with.yaml")
         self.assert_same("history hidden.csv haptic-6psu-ideal-joints with.yaml",

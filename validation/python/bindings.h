@@ -76,6 +76,8 @@ Vector6 load_from(const std::vector<double>& given);
 
 /// Measurements of the subject, from the text of a file.
 measurement::Measurements data_of(const subject::Subject&, const NamedText&);
+/// Those of several sessions of one campaign as one (joined.h). InputError for none, and for the same text twice.
+measurement::Measurements data_of(const subject::Subject&, const std::vector<NamedText>& sessions);
 /// A plan likewise.
 measurement::Measurements plan_of(const subject::Subject&, const NamedText&);
 

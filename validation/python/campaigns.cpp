@@ -133,7 +133,8 @@ Planned foresight(const Subject& s, const std::string& campaign, const std::opti
 }
 
 struct NextAsked {
-  NamedText diagnosis, data;
+  NamedText diagnosis;
+  std::vector<NamedText> data;  ///< its sessions
   int group = 1;
   std::size_t readings = 30;
   double probability = 0.95;
@@ -211,8 +212,11 @@ void bind_campaigns(py::module_& m) {
   m.def("is_campaign", &is_campaign);
   m.def("simulate", &simulate);
   m.def("foresight", &foresight);
-  m.def("next_readings", [](const Subject& s, NamedText diagnosis, NamedText data, int group, std::size_t readings,
-                            double probability, const Noise& noise, const PlanAsked& asked,
+  m.def("data_of_diagnosis", [](const std::string& json, const std::string& origin) {
+    return diagnosis::parse_found_effects(json, origin).data;
+  });
+  m.def("next_readings", [](const Subject& s, NamedText diagnosis, std::vector<NamedText> data, int group,
+                            std::size_t readings, double probability, const Noise& noise, const PlanAsked& asked,
                             const EffectSources& sources, int threads, const py::object& progress) {
     const NextAsked next{std::move(diagnosis), std::move(data), group, readings, probability};
     return next_readings(s, next, noise, asked, sources, threads, progress);

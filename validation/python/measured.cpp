@@ -10,7 +10,6 @@
 #include "validation/fit/fit_file.h"
 #include "validation/fit/plan_of_one.h"
 #include "validation/fit/predicted.h"
-#include "validation/measurement/joined.h"
 #include "validation/python/bindings.h"
 #include "validation/python/interruptible.h"
 #include "validation/python/mechanism.h"
@@ -86,9 +85,7 @@ Told diagnose(const Subject& s, const std::vector<NamedText>& sessions, const Ef
               const Noise& noise, int bootstrap, int threads, const py::object& progress) {
   if (bootstrap < 99) throw InputError(fmt::format("bootstrap = {}: give a whole number of at least 99", bootstrap));
   return interruptible(progress, [&](const auto& told) {
-    std::vector<Measurements> all;
-    for (const NamedText& csv : sessions) all.push_back(data_of(s, csv));
-    const Measurements data = s.placed(measurement::joined(all));
+    const Measurements data = data_of(s, sessions);
     const std::vector<effects::Effect> known = effects.known(s);
     const diagnosis::Diagnosis d =
         diagnosis::diagnose(s, data, known, {comparison_options(noise), bootstrap}, {threads, nullptr, told});
@@ -98,6 +95,7 @@ Told diagnose(const Subject& s, const std::vector<NamedText>& sessions, const Ef
 
 Told history(const std::vector<Subject>& versions, const NamedText& csv, const Noise& noise, int threads,
              const py::object& progress) {
+  if (versions.empty()) throw InputError("models: give at least one version");
   return interruptible(progress, [&](const auto& told) {
     const Measurements data = data_of(versions.front(), csv);
     const parallel::Work work{threads, nullptr, told};

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/units.h"
@@ -18,6 +20,7 @@ Stand stand_at_joints(const Mechanism& m, const std::vector<double>& joints, dou
         fmt::format("joints: {} coordinates, but {} has {} actuators", joints.size(), m.name, actuators.size()));
   VectorX q(std::ssize(joints));
   for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (!std::isfinite(joints[i])) throw InputError(fmt::format("joints: {} is no finite number", joints[i]));
     q(as_index(i)) = actuators[i].rotation ? joints[i] : joints[i] / slides_per_m;
     if (actuators[i].rotation) require_digits_of_angle(joints[i], fmt::format("{:g} rad", joints[i]));
   }

@@ -16,6 +16,7 @@
 #include "validation/effects/effect_file.h"
 #include "validation/effects/place_effects.h"
 #include "validation/effects/with_effect.h"
+#include "validation/measurement/joined.h"
 #include "validation/measurement/parse_plan.h"
 #include "validation/python/bindings.h"
 #include "validation/report/effect_results.h"
@@ -96,6 +97,20 @@ Vector6 load_from(const std::vector<double>& given) {
 
 measurement::Measurements data_of(const Subject& s, const NamedText& csv) {
   return s.placed(measurement::parse_measurements(csv.first, csv.second, s.instruments()));
+}
+
+measurement::Measurements data_of(const Subject& s, const std::vector<NamedText>& sessions) {
+  if (sessions.empty()) throw InputError("data: give at least one session");
+  std::vector<measurement::Measurements> all;
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k)
+      if (sessions[i].first == sessions[k].first)
+        throw InputError(fmt::format(
+            "{}: these are the readings of {} again: the same numbers twice are no replicates. Give each session once",
+            sessions[i].second, sessions[k].second));
+    all.push_back(data_of(s, sessions[i]));
+  }
+  return s.placed(measurement::joined(all));
 }
 
 measurement::Measurements plan_of(const Subject& s, const NamedText& csv) {

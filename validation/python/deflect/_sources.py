@@ -6,9 +6,10 @@ import functools
 import json
 import os
 import pathlib
-from typing import Any
+from typing import Any, Mapping
 
 from . import _core
+from ._checks import listed, number, shown, text, whole
 from .errors import InputError
 
 KINDS = {"machine": ("devices",), "frame": ("cases", "frames")}
@@ -41,6 +42,21 @@ def named_file(name: str, kinds: tuple[str, ...]) -> str:
                      f"name a built-in one ({', '.join(known)}) or a file, or give its text")
 
 
+def read_text(path: str | os.PathLike[str]) -> str:
+    """Of a file. InputError where it cannot be read or is not UTF-8, with the line."""
+    try:
+        return _core.read_text(os.fspath(path))
+    except UnicodeDecodeError as wrong:
+        read, at = wrong.object, wrong.start
+        line, why = read.count(b"\n", 0, at) + 1, f"byte 0x{read[at]:02X} is not UTF-8: save the file as UTF-8"
+        if read.startswith((b"\xff\xfe", b"\xfe\xff")):
+            line, why = 1, "the file is UTF-16: save it as UTF-8"
+        elif b"\0" in read[:at]:
+            line = read.count(b"\n", 0, read.index(b"\0")) + 1
+            why = "there is a NUL byte: the file is binary or damaged, save it as UTF-8 text"
+    raise InputError(f"{os.fspath(path)}:{line}: {why}")
+
+
 def as_yaml(value: Any) -> str:
     """YAML as it would stand in a file: text as it is, numbers with all their digits, dicts and lists in flow style."""
     if isinstance(value, str):
@@ -64,24 +80,44 @@ def description(source: Any, kinds: tuple[str, ...]) -> tuple[str, str]:
     if not isinstance(source, (str, os.PathLike)):
         raise TypeError(f"a built-in name, a path, a text or a dict is wanted, not {type(source).__name__}")
     path = named_file(source, kinds) if isinstance(source, str) else os.fspath(source)
-    return _core.read_text(path), path
+    return read_text(path), path
 
 
 def effect_sources(own: Any = ()) -> _core.EffectSources:
     """The catalogue and own effects: files, texts or dicts; dicts whose "edits" is a function are computed ones."""
-    if isinstance(own, (str, dict, os.PathLike)):
-        own = [own]
     texts, computed = [], []
-    for each in own:
+    for each in own_effects(own):
         if isinstance(each, dict) and callable(each.get("edits")):
             computed.append(_computed(each))
         elif isinstance(each, dict):
             texts.append((as_yaml(with_pages(each)), f"effect {each.get('name', '')}".strip()))
         elif isinstance(each, str) and "\n" in each:
             texts.append((each, "text"))
+        elif isinstance(each, (str, os.PathLike)):
+            texts.append((read_text(each), os.fspath(each)))
         else:
-            texts.append((_core.read_text(os.fspath(each)), os.fspath(each)))
+            raise InputError(f"effects: {shown(each)}: an effect file, its text or a dict is wanted")
     return _core.EffectSources(str(data_folder() / "effects" / "catalogue"), texts, computed)
+
+
+def own_effects(own: Any) -> list[Any]:
+    return listed("effects", own, (str, dict, os.PathLike))
+
+
+def asked_effect(each: Any) -> _core.AskedEffect:
+    """"clearance", or ("clearance", {"gap_mm": 0.1}) or ("leg_defect", {"leg": 4, …})."""
+    name, leg, values = name_leg_values(each)
+    return _core.AskedEffect(name, leg, values)
+
+
+def name_leg_values(each: Any) -> tuple[str, int | None, list[tuple[str, float]]]:
+    pair = (each, {}) if isinstance(each, str) else each
+    if not (isinstance(pair, (tuple, list)) and len(pair) == 2 and isinstance(pair[1], Mapping)):
+        raise InputError(f"effect {shown(each)}: write a name, or (name, {{parameter: value}})")
+    values = dict(pair[1])
+    leg = values.pop("leg", None)
+    return (text("effect", pair[0]), None if leg is None else whole("leg", leg, 1, 1000),
+            [(text("parameter", name), number(name, value)) for name, value in values.items()])
 
 
 def with_pages(effect: dict[str, Any]) -> dict[str, Any]:

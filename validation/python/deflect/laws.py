@@ -30,6 +30,7 @@ from typing import Any, Callable, Iterable
 
 import numpy as np
 
+from ._checks import listed, number, numbers
 from .errors import InputError
 
 
@@ -46,12 +47,14 @@ def law(curve: Callable[[float], float], loads: Iterable[float], *, rotation: bo
 
     Raises InputError where the curve is not 0 at 0, does not rise, or needs more loads.
     """
-    at = np.array(list(loads), dtype=float)
+    if not number("within", within) > 0:
+        raise InputError(f"within = {within}: give a share of the largest deflection, above 0")
+    at = numbers("loads", listed("loads", loads))
     if at.ndim != 1 or len(at) < 2 or not np.all(np.isfinite(at)) or not np.all(np.diff(at) > 0) or 0 not in at:
         raise InputError("loads: at least two rising numbers with 0 among them are wanted")
     if at[0] < 0 and at[-1] <= 0:
         raise InputError("loads: give some above 0; of a law that is the same under push as under pull these alone")
-    deflection = np.array([float(curve(f)) for f in at])
+    deflection = np.array([number("the curve", curve(f)) for f in at])
     if not np.all(np.isfinite(deflection)):
         raise InputError(f"the curve is no number at {at[~np.isfinite(deflection)][0]:g}")
     if abs(deflection[list(at).index(0)]) > 1e-12 * np.abs(deflection).max():
@@ -62,7 +65,7 @@ def law(curve: Callable[[float], float], loads: Iterable[float], *, rotation: bo
         raise InputError(f"the curve does not rise from {at[fall[0]]:g} to {at[fall[0] + 1]:g}: a law gives way with the "
                          "load; a free travel is the law 'clearance'")
     between = 0.5 * (at[1:] + at[:-1])
-    off = np.abs(np.array([float(curve(f)) for f in between]) - 0.5 * (deflection[1:] + deflection[:-1]))
+    off = np.abs(np.array([number("the curve", curve(f)) for f in between]) - 0.5 * (deflection[1:] + deflection[:-1]))
     if off.max() > within * np.abs(deflection).max():
         worst = int(np.argmax(off))
         raise InputError(f"between {at[worst]:g} and {at[worst + 1]:g} the curve is {off[worst]:.3g} from the straight "

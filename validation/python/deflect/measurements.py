@@ -10,6 +10,7 @@ from typing import Any, Mapping
 import numpy as np
 
 from . import _core, _sheet, _sources, notebook
+from ._checks import is_missing, number, numbers, shown
 from .errors import InputError
 from .units import displacement_in_mm, loads_in_mm, poses_in_mm, require_units
 
@@ -33,7 +34,7 @@ class Measurements:
     @classmethod
     def from_csv(cls, path: Any) -> "Measurements":
         """Of a file. InputError where it cannot be read; what it says is read by the function that uses it."""
-        return cls(_core.read_text(os.fspath(path)), os.fspath(path))
+        return cls(_sources.read_text(path), os.fspath(path))
 
     @classmethod
     def from_arrays(cls, poses: Any = None, loads: Any = None, displacements: Any = None, *,
@@ -44,41 +45,42 @@ class Measurements:
         ``poses``          (n, 6) or (n, 3), mm and deg; rows that are equal are readings at one approach, unless
                            ``columns`` has "pose", the labels
         ``loads``          (n, 6) or (n, 3), N and Nmm
-        ``displacements``  (n, 6) or (n, 3), mm and rad; NaN was not measured
+        ``displacements``  (n, 6) or (n, 3), mm and rad; NaN, None and pandas.NA were not measured
         ``columns``        name -> n values: any other columns, sensors too, in the units of their names
         ``units``          "SI": poses, loads and displacements in m, rad, N, Nm
 
-        Raises InputError for other shapes and for columns of different length.
+        Raises InputError for other shapes, for columns of different length or given twice, and for what is no real number.
         """
         si = require_units(units)
         table: dict[str, Any] = dict(columns or {})
-        for names, rows in ((POSE, poses), (LOAD, loads), (DISPLACEMENT, displacements)):
-            if rows is None:
+        for what, names, in_mm, given in (("poses", POSE, poses_in_mm, poses), ("loads", LOAD, loads_in_mm, loads),
+                                          ("displacements", DISPLACEMENT, displacement_in_mm, displacements)):
+            if given is None:
                 continue
-            rows = np.array(rows, dtype=float)
+            rows = numbers(what, given)
             if rows.ndim != 2 or rows.shape[1] not in (3, 6):
                 raise InputError(f"{names[0]} …: shape {rows.shape}; (n, 6) or (n, 3) is wanted")
-            if si:
-                rows = {POSE: poses_in_mm, LOAD: loads_in_mm, DISPLACEMENT: displacement_in_mm}[names](rows)
-            padded = np.zeros((len(rows), 6)) if names is POSE else rows
-            padded[:, : rows.shape[1]] = rows
-            table.update({name: padded[:, i] for i, name in enumerate(names[: padded.shape[1]])})
+            if what == "poses":
+                rows = np.hstack([rows, np.zeros((len(rows), 6 - rows.shape[1]))])
+            rows = in_mm(rows) if si else rows
+            for name, column in zip(names, rows.T.tolist()):
+                if name in table:
+                    raise InputError(f"column {name} is given twice: in {what} and in columns")
+                table[name] = column
         if poses is not None and "pose" not in table:
             seen: dict[tuple, int] = {}
-            table["pose"] = [str(seen.setdefault(tuple(row), len(seen))) for row in np.asarray(poses, dtype=float)]
-        lengths = {name: len(values) for name, values in table.items()}
-        if len(set(lengths.values())) != 1:
-            raise InputError(f"columns of different length: {lengths}")
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(table)
-        writer.writerows(zip(*([_cell(x) for x in values] for values in table.values())))
-        return cls(out.getvalue(), origin)
+            table["pose"] = [str(seen.setdefault(tuple(row), len(seen))) for row in numbers("poses", poses).tolist()]
+        return cls(_file_of(table), origin)
 
     @classmethod
     def from_dataframe(cls, frame: Any, origin: str = "dataframe") -> "Measurements":
         """Of a pandas.DataFrame whose columns are those of a file. Raises InputError."""
-        return cls.from_arrays(columns={str(name): frame[name] for name in frame.columns}, origin=origin)
+        table: dict[str, Any] = {}
+        for name in frame.columns:
+            if str(name) in table:
+                raise InputError(f"column {name} is given twice")
+            table[str(name)] = frame[name]
+        return cls(_file_of(table), origin)
 
     def to_csv(self, path: Any) -> None:
         """Writes the file."""
@@ -114,13 +116,38 @@ class Measurements:
         return f"<Measurements {self.origin}: {len(self)} readings>"
 
 
-def _cell(x: Any) -> str:
+def _file_of(table: dict[str, Any]) -> str:
+    """The text of a file with these columns."""
+    if not table:
+        raise InputError("no columns: measurements have loads and displacements at least")
+    cells = {name: _cells(str(name), values) for name, values in table.items()}
+    lengths = {name: len(column) for name, column in cells.items()}
+    if len(set(lengths.values())) != 1:
+        raise InputError(f"columns of different length: {lengths}")
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(cells)
+    writer.writerows(zip(*cells.values()))
+    return out.getvalue()
+
+
+def _cells(name: str, values: Any) -> list[str]:
+    one = isinstance(values, (str, bytes)) or getattr(values, "ndim", 1) == 0
+    if one or not hasattr(values, "__len__") or not hasattr(values, "__iter__"):
+        raise InputError(f"column {name}: {shown(values)} is no list: give a value for each reading")
+    return [_cell(name, x) for x in values]
+
+
+def _cell(name: str, x: Any) -> str:
+    """Of a number, a truth as 1 or 0, or a text; empty where nothing was measured."""
+    if type(x) is float:
+        return "" if x != x else repr(x)
     if isinstance(x, str):
         return x
-    if x is None:
+    if is_missing(x):
         return ""
-    number = float(x)
-    return "" if number != number else repr(number)
+    value = number(f"column {name}", int(x) if isinstance(x, (bool, np.bool_)) else x)
+    return "" if value != value else repr(value)
 
 
 def _array(name: str, cells: list[str]) -> np.ndarray:
@@ -138,8 +165,11 @@ def text_of(data: Any) -> tuple[str, str]:
         data = Measurements.from_dataframe(data)
     if isinstance(data, str) and "\n" in data:
         data = Measurements(data, "text")
-    if not isinstance(data, Measurements):
+    if isinstance(data, (str, os.PathLike)):
         data = Measurements.from_csv(data)
+    if not isinstance(data, Measurements):
+        raise InputError(f"{shown(data)}: these are no measurements: give Measurements, a path, the text of a file or a "
+                         "DataFrame")
     return data.text, data.origin
 
 
@@ -147,8 +177,32 @@ def maybe_text_of(data: Any) -> tuple[str, str] | None:
     return None if data is None else text_of(data)
 
 
+def sessions_of(data: Any) -> list[tuple[str, str]]:
+    """(text, origin) of each session of one campaign: of a list of them, or of one."""
+    return [text_of(each) for each in (data if isinstance(data, (list, tuple)) else [data])]
+
+
+def diagnosed_sessions(diagnosis: Any) -> list[tuple[str, str]]:
+    """What a diagnosis was made of: the files that it names, there or beside its own, as `deflect plan` finds them."""
+    content, origin = result_text(diagnosis)
+    named = _core.data_of_diagnosis(content, origin)
+    if not named:
+        raise InputError(f"{origin}: names no measurements: give data too")
+    files = [named] if os.path.exists(named) else named.split(" + ")
+    of_file = isinstance(diagnosis, (str, os.PathLike))
+    for i, file in enumerate(files):
+        beside = os.path.join(os.path.dirname(origin), os.path.basename(file))
+        if not os.path.exists(file) and of_file and os.path.exists(beside):
+            files[i] = beside
+        elif not os.path.exists(file):
+            raise InputError(f"{origin}: the measurements it names, '{file}', are not there: give data too")
+    return sessions_of(files)
+
+
 def result_text(result: Any) -> tuple[str, str]:
     """(JSON, origin) of a result, or of the file of one."""
     if hasattr(result, "json"):
         return result.json, type(result).__name__.lower()
-    return _core.read_text(os.fspath(result)), os.fspath(result)
+    if not isinstance(result, (str, os.PathLike)):
+        raise InputError(f"{shown(result)}: this is no result: give one, or the file of one")
+    return _sources.read_text(result), os.fspath(result)

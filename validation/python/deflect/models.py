@@ -12,6 +12,7 @@ from typing import Any, Iterable, TypeVar
 import numpy as np
 
 from . import _core, _sources
+from ._checks import (MOST, listed, maybe_number, maybe_vector, number, six, text, theory_names, threads_of, whole)
 from .errors import InputError
 from .results import progress_of
 from .results_of_shapes import Drawing, FrameSolution
@@ -90,7 +91,7 @@ class Subject:
 
         Raises InputError, MechanismError (out of reach).
         """
-        at = _core.Asked(() if pose is None else pose, () if joints is None else joints, False)
+        at = _core.Asked(maybe_vector("pose", pose), maybe_vector("joints", joints), False)
         return Drawing(*_core.drawing(self._core, at))
 
     def places(self) -> list[Place]:
@@ -112,12 +113,12 @@ class Subject:
 
     def named(self: S, name: str) -> S:
         """The same under another name; ``source`` keeps its comments."""
-        core = self._core.named(name)
+        core = self._core.named(text("name", name))
         written = name if re.fullmatch(r"[A-Za-z][\w .-]*\w", name) else json.dumps(name, ensure_ascii=False)
-        text, times = re.subn(r"^name: .*$", lambda _: f"name: {written}", self._text, flags=re.MULTILINE)
+        source, times = re.subn(r"^name: .*$", lambda _: f"name: {written}", self._text, flags=re.MULTILINE)
         if times != 1:
-            text = ""  # not written in a line of its own
-        return type(self)(core, text)
+            source = ""  # not written in a line of its own
+        return type(self)(core, source)
 
     def edited(self: S, path: str | dict[str, Any], value: Any = None, action: str = "set") -> S:
         """With a field of the description changed; checked like a file. Several by a dict of path -> value.
@@ -129,7 +130,8 @@ class Subject:
         Raises InputError with path, value and the nearest valid name.
         """
         pairs = path.items() if isinstance(path, dict) else [(path, value)]
-        return type(self)(self._core.edited([(p, _sources.as_yaml(v), action) for p, v in pairs]))
+        return type(self)(self._core.edited([(text("path", p), _sources.as_yaml(v), text("action", action))
+                                             for p, v in pairs]))
 
     def with_effect(self: S, effect: Any, /, *, leg: int | None = None, effects: Any = (), **parameters: float) -> S:
         """With an effect of the catalogue, of its places ("clearance@elbow.rz") or of ``effects`` (files, texts or
@@ -142,7 +144,7 @@ class Subject:
         """
         if isinstance(effect, dict):
             effects, effect = [effect], effect["name"]
-        asked = _core.AskedEffect(effect, leg, [(k, float(v)) for k, v in parameters.items()])
+        asked = _sources.asked_effect((effect, {**parameters, "leg": leg}))
         return type(self)(self._core.with_effect(_sources.effect_sources(effects), asked))
 
     def __eq__(self, other: Any) -> bool:
@@ -197,13 +199,13 @@ class Model(Subject):
         Raises InputError, MechanismError (out of reach, cannot stand), NumericalError (a failed check).
         """
         si = require_units(units)
-        load = (0.0,) * 6 if load is None else load
         if si:
-            load = loads_in_mm(_six(load, "load"))
-            pose = None if pose is None else poses_in_mm(_six(pose, "pose"))
-        at = _core.Asked(() if pose is None else pose, () if joints is None else joints, si)
-        names = _names(theories)
-        return Solution(_core.solve(self._core, at, load, geometry, names, elements), units)
+            load = None if load is None else loads_in_mm(six(load, "load"))
+            pose = None if pose is None else poses_in_mm(six(pose, "pose"))
+        at = _core.Asked(maybe_vector("pose", pose), maybe_vector("joints", joints), si)
+        forces = maybe_vector("load", load) or [0.0] * 6
+        return Solution(_core.solve(self._core, at, forces, text("geometry", geometry), theory_names(theories),
+                                    whole("elements", elements, 0, MOST)), units)
 
     def stiffness(self, poses: Any, loads: Any = None, *, theory: str | Iterable[str] | None = None,
                   out_of_reach: str = "raise", threads: int = 0, units: str = "mm", progress: Any = None) -> Any:
@@ -239,17 +241,17 @@ class Model(Subject):
         si = require_units(units)
         if out_of_reach not in ("raise", "nan"):
             raise InputError(f"out_of_reach '{out_of_reach}': write 'raise' or 'nan'")
-        rows = _six(poses, "poses")
+        rows = six(poses, "poses")
         single = rows.ndim == 1
-        forces = np.zeros(6) if loads is None else _six(loads, "loads")
+        forces = np.zeros(6) if loads is None else six(loads, "loads")
         if si:
             rows, forces = poses_in_mm(rows), loads_in_mm(forces)
         if single:
             rows = rows[np.newaxis, :]
         one = theory if isinstance(theory, str) and theory != "all" else None
-        names = [one] if one else _names(None if theory in (None, "all") else theory)
-        found = _core.solve_many(self._core, rows, forces, names, wanted, out_of_reach == "nan", threads,
-                                 progress_of(progress, self.name))
+        names = [one] if one else theory_names(None if theory in (None, "all") else theory)
+        found = _core.solve_many(self._core, rows, forces, names, wanted, out_of_reach == "nan",
+                                 threads_of(threads), progress_of(progress, self.name))
         by_theory = {}
         for name, (d, K) in zip(_in_order(names), found):
             if si:
@@ -276,12 +278,12 @@ class Model(Subject):
         """
         file = os.fspath(path)
         kinds = {".vtu": "vtk", ".msh": "msh"}
-        kind = to or kinds.get(os.path.splitext(file)[1], "")
+        kind = text("to", to or "") or kinds.get(os.path.splitext(file)[1], "")
         if not kind:
             raise InputError(f"{file}: a path that ends in .vtu or .msh is wanted, or to='vtk' or 'msh'")
-        at = _core.Asked(() if pose is None else pose, () if joints is None else joints, False)
-        second, _, _ = _core.export_structure(self._core, file, kind, at, (0.0,) * 6 if load is None else load,
-                                              float(element_size), None if scale is None else float(scale))
+        at = _core.Asked(maybe_vector("pose", pose), maybe_vector("joints", joints), False)
+        second, _, _ = _core.export_structure(self._core, file, kind, at, maybe_vector("load", load) or [0.0] * 6,
+                                              number("element_size", element_size), maybe_number("scale", scale))
         return file, second
 
     def derivatives(self, paths: str | Iterable[str], poses: Any, loads: Any = None, *, theory: str | None = None,
@@ -296,10 +298,10 @@ class Model(Subject):
         Returns (n, 6, number of paths), or (6, number of paths) for one pose, mm and rad, SI: m and rad. A number that is
         0 has the derivative 0. Raises InputError for a path that leads to no number, and as displacement().
         """
-        if not 0 < step < 0.5:
+        if not 0 < number("step", step) < 0.5:
             raise InputError(f"step = {step}: give a relative step above 0 and below 0.5")
         columns = []
-        for path in [paths] if isinstance(paths, str) else paths:
+        for path in listed("paths", paths, str, "number of the description"):
             more, less = (self.edited(path, 1 + s, "multiply").displacement(
                 poses, loads, theory=theory, threads=threads, units=units) for s in (step, -step))
             columns.append((more - less) / (2 * step))
@@ -337,31 +339,12 @@ class Frame(Subject):
 
         Raises InputError, MechanismError with ``motions`` where it cannot stand, NumericalError.
         """
-        return FrameSolution(*_core.solve_frame(self._core, solver, progress_of(progress, self.name)))
-
-
-def _names(theories: Iterable[str] | str | None) -> list[str]:
-    if theories is None:
-        return list(_core.theories)
-    names = [theories] if isinstance(theories, str) else list(theories)
-    if not names:
-        raise InputError(f"theories: name at least one of {', '.join(_core.theories)}")
-    return names
+        return FrameSolution(*_core.solve_frame(self._core, text("solver", solver), progress_of(progress, self.name)))
 
 
 def _in_order(names: list[str]) -> list[str]:
     """In the order of the table, as results are."""
     return [name for name in _core.theories if name in names]
-
-
-def _six(values: Any, what: str) -> np.ndarray:
-    """(…, 6) of float64, the last three zero where three are given."""
-    rows = np.asarray(values, dtype=np.float64)
-    if rows.ndim in (1, 2) and rows.shape[-1] == 3:
-        rows = np.concatenate([rows, np.zeros_like(rows)], axis=-1)
-    if rows.ndim not in (1, 2) or rows.shape[-1] != 6:
-        raise InputError(f"{what}: shape {rows.shape}; (n, 6), (n, 3), (6,) or (3,) is wanted")
-    return rows
 
 
 def _restored(kind: type, yaml: str, text: str) -> Subject:

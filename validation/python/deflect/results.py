@@ -12,6 +12,8 @@ from typing import Any, Iterator, List
 import numpy as np
 
 from . import _sheet, notebook, records, schema, schema_fitted, schema_measured
+from ._checks import shown
+from .errors import InputError
 from .records import Array, Maybe
 
 class Result(records.Record):
@@ -50,6 +52,9 @@ class Result(records.Record):
         return _json.loads(self.json)
 
     def __getattr__(self, name: str) -> Any:
+        if name in self._beside:
+            raise AttributeError(f"the file of a {type(self).__name__} has no '{name}': call the function again that "
+                                 "made it")
         if name.startswith("_") or not any(f.name == name for f in records.fields_of(type(self))):
             words = "" if name.startswith("_") else f"; it has {', '.join(f.name for f in records.fields_of(type(self)))}"
             raise AttributeError(f"{type(self).__name__} has no '{name}'{words}")
@@ -149,7 +154,11 @@ class Comparison(Result):
     @functools.cached_property
     def residuals(self) -> dict[str, Any]:
         """Every measured number: "line" (of the file), "pose" and "component" and "unit" (str), "measured", "predicted",
-        "residual" and its "sigma" of noise and tolerances, (n,) each, in that unit."""
+        "residual" and its "sigma" of noise and tolerances, (n,) each, in that unit. InputError where the comparison was
+        read from a file, which does not hold them."""
+        if "readings_csv" not in self.__dict__:
+            raise InputError("the file of a comparison does not hold the residuals, which its picture shows: compare again "
+                             "(deflect.compare), or read the table that deflect compare --out writes")
         rows = list(csv.DictReader(io.StringIO(self.readings_csv)))
         words = ("pose", "component", "unit")
         return {name: [r[name] for r in rows] if name in words else np.array([float(r[name]) for r in rows])
@@ -381,4 +390,8 @@ def progress_of(progress: Any, what: str) -> Any:
     standard error."""
     if progress is None or progress is False:
         return None
-    return progress if callable(progress) else notebook.progress(what)
+    if progress is True:
+        return notebook.progress(what)
+    if not callable(progress):
+        raise InputError(f"progress: {shown(progress)} is neither True nor False nor a function")
+    return progress
