@@ -142,9 +142,10 @@ namespace {
 
 /// The same with two laws at one place, which together may be a third one: a spring is what yields to pull and what
 /// yields to push as much.
-double beyond_two_at_a_place(const Plan& plan, const VectorX& change, const std::vector<std::string>& left_out) {
+double beyond_two_at_a_place(const Plan::Told& told, const std::vector<std::string>& left_out) {
+  const VectorX& change = told.change;
   std::vector<const Signature*> single;
-  for (const Signature& s : plan.signatures)
+  for (const Signature& s : told.signatures)
     if (s.effect.effect->place && !s.shaped && s.basis.cols() == 1 &&
         std::find(left_out.begin(), left_out.end(), s.effect.effect->name) == left_out.end())
       single.push_back(&s);
@@ -172,22 +173,43 @@ bool is_part(const subject::Place& one, const subject::Place& group) {
 }
 
 /// The same with the law of a group, which is that law at all of its parts together.
-double beyond_its_parts(const Plan& plan, const Hidden& hidden, const std::vector<std::string>& left_out) {
-  const effects::Effect& e = *hidden.effect.effect;
-  if (!e.place || e.place->others.empty()) return hidden.lambda();
+double beyond_its_parts(const Plan::Told& told, const effects::Effect& e, const std::vector<std::string>& left_out) {
+  if (!e.place || e.place->others.empty()) return told.change.norm();
   std::vector<MatrixX> parts;
-  for (const Signature& s : plan.signatures)
+  for (const Signature& s : told.signatures)
     if (s.effect.effect->place && is_part(*s.effect.effect->place, *e.place) && law_of(*s.effect.effect) == law_of(e) &&
         std::find(left_out.begin(), left_out.end(), s.effect.effect->name) == left_out.end())
       parts.push_back(s.basis);
-  const MatrixX all = statistics::orthonormal(statistics::side_by_side(parts, hidden.change.size()), 1e-6);
-  return (hidden.change - all * (all.transpose() * hidden.change)).norm();
+  const MatrixX all = statistics::orthonormal(statistics::side_by_side(parts, told.change.size()), 1e-6);
+  return (told.change - all * (all.transpose() * told.change)).norm();
+}
+
+/// The same with the factor of one load, which is that of all loads less those of the others.
+double beyond_other_loads(const Plan::Told& told, const effects::Effect& e, const std::vector<std::string>& left_out) {
+  double least = told.change.norm();
+  if (!e.place || e.place->kind != subject::PlaceKind::load) return least;
+  std::vector<MatrixX> others;
+  for (const Signature& s : told.signatures)
+    if (s.effect.effect->place && s.effect.effect->place->kind == e.place->kind &&
+        law_of(*s.effect.effect) == law_of(e) &&
+        std::find(left_out.begin(), left_out.end(), s.effect.effect->name) == left_out.end())
+      others.push_back(s.basis);
+  for (const Signature& s : told.signatures) {
+    if (s.shaped || s.effect.effect->place) continue;
+    std::vector<MatrixX> with = others;
+    with.push_back(s.basis);
+    const MatrixX all = statistics::orthonormal(statistics::side_by_side(with, told.change.size()), 1e-6);
+    least = std::min(least, (told.change - all * (all.transpose() * told.change)).norm());
+  }
+  return least;
 }
 
 }  // namespace
 
 double beyond_others(const Plan& plan, const Hidden& hidden, const std::vector<std::string>& left_out) {
-  const VectorX& change = hidden.change;
+  const Plan::Told told = plan.told(hidden.effect);
+  const VectorX& change = told.change;
+  const effects::Effect& e = *hidden.effect.effect;
   constexpr int most = 4;
   constexpr double least_own = 1e-6;  // of a unit column: less is rounding
   VectorX left = change;
@@ -195,7 +217,7 @@ double beyond_others(const Plan& plan, const Hidden& hidden, const std::vector<s
   for (int round = 0; round < most; ++round) {
     double gain = 0;
     MatrixX best;
-    for (const Signature& s : plan.signatures) {
+    for (const Signature& s : told.signatures) {
       if (std::find(left_out.begin(), left_out.end(), s.effect.effect->name) != left_out.end()) continue;
       const MatrixX beside = s.basis - taken * (taken.transpose() * s.basis);
       if (s.shaped || s.basis.cols() == 1) {  // one column at a time
@@ -213,8 +235,8 @@ double beyond_others(const Plan& plan, const Hidden& hidden, const std::vector<s
     taken = statistics::side_by_side({taken, best}, change.size());
     left = change - taken * (taken.transpose() * change);
   }
-  return std::min(
-      {left.norm(), beyond_two_at_a_place(plan, change, left_out), beyond_its_parts(plan, hidden, left_out)});
+  return std::min({left.norm(), beyond_two_at_a_place(told, left_out), beyond_its_parts(told, e, left_out),
+                   beyond_other_loads(told, e, left_out)});
 }
 
 }  // namespace deflect::benchmark

@@ -1,5 +1,6 @@
 #include "tests/benchmark/plan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -108,7 +109,8 @@ Plan::Plan(const subject::Subject& s, const std::vector<Effect>& effects, const 
   }
   healthy = simulated(s, readings, simulation);
   observations = std::make_unique<Observations>(s, healthy, ComparisonOptions(), alone);
-  signatures = diagnosis::signatures(*observations, effects, 1);
+  at_places = std::make_unique<const SignaturesAtPlaces>(*observations, effects, 1);
+  signatures = at_places->all();
   const VectorX rest = observations->residual(s);
   nominal = numbers_of(healthy) - rest;
   if (!m || o.record) return;
@@ -133,6 +135,23 @@ VectorX Plan::residual(const Measurements& data) const { return numbers_of(data)
 
 VectorX Plan::whitened_change(const EffectInstance& e) const {
   return observations->null_residual() - observations->whitened_residual(with_effect(observations->subject(), e));
+}
+
+Plan::Told Plan::told(const EffectInstance& e) const {
+  Told out{signatures, whitened_change(e)};
+  const subject::Subject with = with_effect(observations->subject(), e);
+  PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  const prediction::Floating floating = with.stand(healthy)->predicted(healthy, linear).floating;
+  std::vector<bool> open;
+  for (std::size_t i = 0; i < healthy.readings.size(); ++i) open.push_back(floating.at(i));
+  if (std::find(open.begin(), open.end(), true) == open.end()) return out;
+  const Observations others = observations->keeping(open);
+  SignaturesAtPlaces of_others = *at_places;
+  of_others.weigh_for(others, 1);
+  out.signatures = of_others.all();
+  out.change = others.null_residual() - others.whitened_residual(with);
+  return out;
 }
 
 VectorX predict_elsewhere(const Plan& plan, const Mechanism& m, const Theory& theory) {

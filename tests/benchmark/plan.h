@@ -45,7 +45,8 @@ struct Plan {
   measurement::Measurements readings;                     ///< poses and loads
   measurement::Measurements healthy;                      ///< nothing hidden, seed of its own
   std::unique_ptr<diagnosis::Observations> observations;  ///< of `healthy`
-  std::vector<diagnosis::Signature> signatures;
+  std::unique_ptr<const diagnosis::SignaturesAtPlaces> at_places;
+  std::vector<diagnosis::Signature> signatures;  ///< of these
   std::vector<Change> changes;
   measurement::Measurements elsewhere;  ///< of a machine: twenty poses that are not in the plan, three loads each
   VectorX nominal_elsewhere;            ///< m: prediction there with nothing added
@@ -55,6 +56,13 @@ struct Plan {
   VectorX residual(const measurement::Measurements&) const;
   /// Σ^(−1/2) times what an effect changes in the plan's numbers.
   VectorX whitened_change(const effects::EffectInstance&) const;
+  /// The same, and all signatures, without the readings whose load leaves play of the subject with the effect open:
+  /// small forces decide where in it the subject stands, so that these readings tell no law from another.
+  struct Told {
+    std::vector<diagnosis::Signature> signatures;
+    VectorX change;
+  };
+  Told told(const effects::EffectInstance&) const;
 };
 
 /// The plan's readings as taken from a subject; of a machine by the MSA in the deformed shape, of a frame by the MSA in

@@ -54,6 +54,29 @@ TEST(PlanSeparation, WhereALawBendsTheRivalIsFittedToTheEnd) {
   EXPECT_GT(std::abs(linear / bent - 1), 0.1) << linear << ' ' << bent;  // else the test shows nothing
 }
 
+/// Of three effects two do the same in every reading, so that the probability cannot reach what is wanted: once the
+/// third is told from both, further readings would bring nothing.
+TEST(PlanLength, EndsWhereReadingsBringNothing) {
+  PlanOptions o;
+  o.draws = 1;
+  o.probability = 0.999;
+  const std::vector<Rival> rivals = {rival("modulus", values({0.9})), rival("load_gain", values({1.1})),
+                                     rival("actuator_compliance", values({500}))};
+  const Plan p = next_readings(machine(), as_predicted("paper"), rivals, o);
+  ASSERT_EQ(p.inseparable.size(), 1u);
+  ASSERT_GE(p.steps.size(), 2u);
+  EXPECT_LT(p.readings.readings.size(), o.readings);
+  EXPECT_EQ(p.steps.back().readings, p.readings.readings.size());
+  EXPECT_GT(p.steps.back().probability, p.steps[p.steps.size() - 2].probability);
+}
+
+/// A pose is approached once, those that were chosen first come first.
+TEST(PlanOrder, IsPoseByPoseAsTheyWereChosen) {
+  Possible possible;
+  for (const std::size_t pose : {0u, 0u, 1u, 1u, 2u}) possible.blocks.push_back({possible.blocks.size(), 1, pose});
+  EXPECT_EQ(pose_by_pose(possible, {3, 0, 2, 4, 1, 3}), (std::vector<std::size_t>{3, 2, 3, 0, 1, 4}));
+}
+
 /// A platform that hardly yields has no derivatives that lead to one that yields as much as actuators do.
 TEST(PlanSeparation, ARivalFarFromItsFitIsFound) {
   PlanOptions o;

@@ -377,5 +377,24 @@ TEST(Plausibility, ReplicatesThatContradictEachOtherAreNamedByLine) {
   EXPECT_TRUE(says(all.front(), "ux_mm"));
 }
 
+// The third reading and its repetition differ by 4 % of what it reads, which is 14 standard deviations of the noise and
+// 1.4 of what two loads do that are known to 2 %.
+TEST(Plausibility, ErrorsOfLoadsAreNoContradiction) {
+  Mechanism m = ideal();
+  Measurements data = made(m, "rich", nothing);
+  Reading &first = data.readings[2], &again = data.readings[362];
+  again.displacement = first.displacement;
+  *again.displacement[0] *= 1.04;
+  first.sigma_u = again.sigma_u = 0.04 * std::abs(*first.displacement[0]) / (14 * std::sqrt(2));
+  const auto contradict = [&] {
+    const std::vector<std::string> all = sentences(compare::compare(m, data));
+    return !all.empty() && says(all.front(), "contradict each other");
+  };
+  m.tolerances.load = 0;
+  EXPECT_TRUE(contradict());
+  m.tolerances.load = 0.02;
+  EXPECT_FALSE(contradict());
+}
+
 }  // namespace
 }  // namespace deflect

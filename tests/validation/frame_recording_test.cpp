@@ -137,6 +137,18 @@ TEST(FrameRecording, AChannelThatStandsStillIsSaid) {
   EXPECT_EQ(mistake_in(f, data), std::vector<std::string>{"stuck_top_x_mm"});
 }
 
+// Whatever the campaign is written for, it has a column for each sensor of the frame, with empty cells.
+TEST(FrameRecording, ACampaignIsOfTheFramesSensors) {
+  const frame::FrameDescription f = built_in("portal-semi-rigid");
+  const Measurements plan = subject::frame_campaign("paper", f, 1);
+  std::vector<std::string> names, wanted;
+  for (const measurement::SensorChannel& s : plan.instruments.sensors) names.push_back(s.name);
+  for (const auto& [name, sensor] : f.sensors) wanted.push_back(name);
+  EXPECT_EQ(names, wanted);
+  for (const measurement::Reading& r : plan.readings)
+    EXPECT_EQ(r.sensors, std::vector<std::optional<double>>(wanted.size()));
+}
+
 // Row 3 and its repetition differ by 1 mm, 500 times the noise of the dial gauge.
 TEST(FrameRecording, ReplicatesThatContradictEachOtherAreNamedByLine) {
   const frame::FrameDescription f = built_in("beam-on-springs");

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <deque>
+#include <memory>
 
 #include "validation/diagnosis/evidence.h"
 
@@ -32,6 +33,12 @@ class Places {
     s.start = VectorX::Unit(columns.cols(), 0);
     s.lambda = 1;
     all_.push_back(std::move(s));
+    return *this;
+  }
+
+  /// At the place of the last law.
+  Places& whatever(const MatrixX& columns) {
+    all_.back().whatever_the_law = std::make_shared<const MatrixX>(columns);
     return *this;
   }
 
@@ -69,6 +76,17 @@ TEST(Localised, APlaceIsJudgedByAllItsLawsTogether) {
   // 400 with two dimensions against 324 with one.
   const double odds = log_evidence(400, 2, false) - log_evidence(324, 1, false);
   EXPECT_NEAR(found[0].probability, 1 / (1 + std::exp(-odds)), 1e-12);
+}
+
+// What may happen at a place whether or not a law describes it counts with its laws.
+TEST(Localised, APlaceCanDoMoreThanItsLaws) {
+  const VectorX hidden = 20 * axis(0);
+  Places p;
+  p.law("load", "factor", axis(1)).whatever(axis(0)).law("wrist", "spring", (axis(0) + axis(2)).normalized());
+  const std::vector<Localised> found = p.of(hidden);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].effect.effect->place->part, "load");
+  EXPECT_NEAR(found[0].share, 1, 1e-12);
 }
 
 TEST(Localised, WhatReadingsCannotTellApartIsToldTogether) {

@@ -148,14 +148,12 @@ measurement::Measurements read_data(const std::string& file, const subject::Subj
 
 measurement::Measurements read_sessions(const std::vector<std::string>& files, const subject::Subject& subject) {
   std::vector<measurement::Measurements> sessions;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    sessions.push_back(read_data(files[i], subject));
-    for (std::size_t k = 0; k < i; ++k)
-      if (files[i] == files[k] || read_text(files[i]) == read_text(files[k]))
-        throw InputError(fmt::format(
-            "{}: these are the readings of {} again: the same numbers twice are no replicates. Give each session once",
-            files[i], files[k]));
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const std::string& file : files) {
+    sessions.push_back(read_data(file, subject));
+    texts.emplace_back(read_text(file), file);
   }
+  measurement::require_different(texts);
   return subject.placed(measurement::joined(sessions));
 }
 

@@ -187,8 +187,8 @@ std::optional<Replicate> replicate_of(const Comparison& c, std::size_t reading, 
   const std::optional<double>& sigma = channel < 6 ? r.sigma_u : data.instruments.sensors[channel - 6].sigma;
   if (!value || !sigma) return std::nullopt;
   const auto of_loads = c.study.load_errors.of(reading).row(as_index(channel));
-  double load = channel < 6 ? 0 : c.study.subject->load_tolerance() * *value;
-  if (channel >= 6 && of_loads.size() > 1) load = std::max(std::abs(load), of_loads.norm());
+  double load = c.study.subject->load_tolerance() * *value;
+  if (of_loads.size() > 1) load = std::max(std::abs(load), of_loads.norm());
   return Replicate{*value, std::hypot(*sigma, load), r.line};
 }
 

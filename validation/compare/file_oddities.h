@@ -12,7 +12,8 @@ std::vector<RecordingMistake> file_oddities(const Comparison&);
 /// σ in a unit other than that of the readings.
 std::vector<RecordingMistake> sigma_oddities(const Comparison&);
 
-/// Replicates that differ by more than ten standard deviations of their difference, with their lines.
+/// Replicates that differ by more than ten standard deviations of their difference, with their lines. Noise and errors
+/// of the recorded loads count.
 std::vector<RecordingMistake> contradictions(const Comparison&);
 
 }  // namespace deflect::compare

@@ -15,6 +15,8 @@ constexpr double agreed = 1e-2;
 constexpr double unseen = 1e-6;     // standard deviations of noise
 constexpr double sampled = 0.125;   // share of the readings that leave play open which is asked whether it shows
 constexpr double rounding = 1e-11;  // of a prediction: less is no change
+constexpr double part_of_a_load = 0.1;
+constexpr double no_force = 1e-9;  // of the largest
 
 /// A thousandth of the start, where an effect of one parameter is of the first order in it.
 VectorX small_values(const effects::Effect& e) {
@@ -112,6 +114,46 @@ bool Changes::agrees(const effects::PlacedEffect& e) const {
     return (after - before - by_statics).norm() - agreed * by_statics.norm() - rounding * before.norm();
   });
   return off && *off <= 0;
+}
+
+MatrixX Changes::by_whatever(const subject::Place& place) const {
+  const frame::FrameDescription* drawn = observations_.subject().frame();
+  if (drawn && place.kind == subject::PlaceKind::load)
+    if (const frame::LoadCase* load = find(drawn->loads, place.part)) return by_any_load(*load, place.part);
+  if (drawn && place.kind == subject::PlaceKind::member && place.others.empty()) return by_any_elongation(place);
+  return MatrixX(null_.size(), 0);
+}
+
+MatrixX Changes::by_any_load(const frame::LoadCase& load, const std::string& of) const {
+  double most = 0;
+  for (const auto& [node, wrench] : load.nodes) most = std::max(most, wrench.norm());
+  const double size = observations_.comparison().study.standing->size();
+  std::vector<MatrixX> out;
+  for (Eigen::Index axis = 0; most > 0 && axis < 6; ++axis) {
+    frame::FrameDescription other = *observations_.subject().frame();
+    for (auto& [name, each] : other.loads)
+      for (auto& [node, wrench] : each.nodes)
+        if (name == of) wrench(axis) += part_of_a_load * most * (axis < 3 ? 1 : size);
+    if (const auto residual = outcome_of([&] { return observations_.residual(subject::Subject(other)); }))
+      out.emplace_back(*residual - null_);
+  }
+  return statistics::side_by_side(out, null_.size());
+}
+
+MatrixX Changes::by_any_elongation(const subject::Place& place) const {
+  const compare::ResidualStudy& study = observations_.comparison().study;
+  const auto site = std::find_if(study.inner.all.begin(), study.inner.all.end(),
+                                 [&](const subject::InnerSite& s) { return s.place.path == place.path; });
+  if (site == study.inner.all.end()) return MatrixX(null_.size(), 0);
+  const VectorX forces = study.loads.transpose() * site->per_load;
+  const double none = no_force * forces.cwiseAbs().maxCoeff();
+  MatrixX out(null_.size(), 3);
+  for (std::size_t i = 0; i < study.values.size(); ++i) {
+    const measurement::MeasuredValue& v = study.values[i];
+    const double f = forces(as_index(v.reading)), step = std::abs(f) <= none ? 0 : f > 0 ? 1 : -1;
+    out.row(as_index(i)) = -site->moves(as_index(v.channel) - 6) * Vector3(f, std::abs(f), step);
+  }
+  return out;
 }
 
 std::optional<VectorX> Changes::by_statics(const effects::PlacedEffect& e) const {

@@ -32,6 +32,10 @@ class Changes {
   /// must outlive it.
   Changes(const Observations&, const std::vector<effects::PlacedEffect>&, int threads);
 
+  /// What may happen at a place of a frame whether or not a law describes it: columns. At a load a force along and a
+  /// moment about each axis, at all nodes that it acts on; at a member an elongation that grows with the force that
+  /// passes, one that grows in both senses of it, and a step where it turns. None at other places.
+  MatrixX by_whatever(const subject::Place&) const;
   /// At the start values; nullopt where it has to be predicted.
   std::optional<VectorX> by_statics(const effects::PlacedEffect&) const;
   /// Of any of these effects. Throws where the subject does not stand with it.
@@ -40,6 +44,8 @@ class Changes {
  private:
   std::optional<subject::Transmissions::Change> by_force(const effects::PlacedEffect&, const VectorX& values,
                                                          const measurement::Measurements&) const;
+  MatrixX by_any_load(const frame::LoadCase&, const std::string& name) const;
+  MatrixX by_any_elongation(const subject::Place&) const;
   bool agrees(const effects::PlacedEffect&) const;
   bool moved_by_play(const effects::EffectInstance&, const std::vector<bool>& readings, VectorX& change) const;
   bool are_seen(const VectorX&) const;

@@ -87,30 +87,48 @@ std::map<std::string, double> count_by_name(const std::vector<Signature>& all) {
   return out;
 }
 
-/// What may be wrong with a sensor's channel, as unit columns. What tolerances hide, as a free zero does a constant, is
-/// left out.
-class ChannelFaults {
- public:
-  explicit ChannelFaults(const Observations& o) {
-    constexpr double hidden = 1e-3;  // of the length that it has beside noise alone
-    const std::vector<double>& sigma = o.comparison().sigma;
-    const VectorX noise = Eigen::Map<const VectorX>(sigma.data(), std::ssize(sigma));
-    for (const auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study)) {
-      MatrixX columns = o.uncertainty().whitened(shapes);
-      for (Eigen::Index k = 0; k < columns.cols(); ++k)
-        if (columns.col(k).norm() < hidden * shapes.col(k).cwiseQuotient(noise).norm()) columns.col(k).setZero();
-      all_[sensor] = std::make_shared<const MatrixX>(unit_columns(columns).basis);
-    }
-  }
+/// The part whose place it is, or "" of a group.
+std::string whose(const subject::Place& p) { return p.others.empty() ? p.path : ""; }
 
-  /// Null for an effect that is not at a sensor.
+/// What may happen at sensors, loads and members: unit columns, without those that tolerances hide.
+class Whatever {
+ public:
+  Whatever(const Observations& o, const std::map<std::string, MatrixX>& of_parts)
+      : sensors_(whitened(o, compare::channel_shapes(o.comparison().study))), parts_(whitened(o, of_parts)) {}
+
+  /// Null where nothing is known.
   std::shared_ptr<const MatrixX> at(const effects::PlacedEffect& e) const {
-    const auto found = e.effect->place ? all_.find(subject::sensor_of(*e.effect->place)) : all_.end();
-    return found == all_.end() ? nullptr : found->second;
+    const std::optional<subject::Place>& place = e.effect->place;
+    if (!place) return nullptr;
+    const std::string sensor = subject::sensor_of(*place);
+    const auto& all = sensor.empty() ? parts_ : sensors_;
+    const auto found = all.find(sensor.empty() ? whose(*place) : sensor);
+    return found == all.end() ? nullptr : found->second;
   }
 
  private:
-  std::map<std::string, std::shared_ptr<const MatrixX>> all_;
+  using Shapes = std::map<std::string, std::shared_ptr<const MatrixX>>;
+
+  /// All of them at once, which takes a fraction of the time.
+  static Shapes whitened(const Observations& o, const std::map<std::string, MatrixX>& all) {
+    constexpr double hidden = 1e-3;  // of the length that it has beside noise alone
+    std::vector<MatrixX> shapes;
+    for (const auto& [name, each] : all) shapes.push_back(each);
+    const VectorX noise = Eigen::Map<const VectorX>(o.comparison().sigma.data(), std::ssize(o.comparison().sigma));
+    const MatrixX raw = statistics::side_by_side(shapes, noise.size()), white = o.uncertainty().whitened(raw);
+    Shapes out;
+    Eigen::Index at = 0;
+    for (const auto& [name, each] : all) {
+      MatrixX columns = white.middleCols(at, each.cols());
+      for (Eigen::Index k = 0; k < columns.cols(); ++k)
+        if (columns.col(k).norm() < hidden * each.col(k).cwiseQuotient(noise).norm()) columns.col(k).setZero();
+      if (columns.cols() > 0) out[name] = std::make_shared<const MatrixX>(unit_columns(columns).basis);
+      at += each.cols();
+    }
+    return out;
+  }
+
+  Shapes sensors_, parts_;
 };
 
 }  // namespace
@@ -131,6 +149,9 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
   nowhere_ = left_out_.size();
   for (const effects::PlacedEffect& e : placed) places_.push_back({e});
   const Changes changes(o, placed, threads);
+  for (const effects::PlacedEffect& e : placed)
+    if (e.effect->place && !whatever_.contains(whose(*e.effect->place)))
+      whatever_.emplace(whose(*e.effect->place), changes.by_whatever(*e.effect->place));
   weigh(o, threads, [&](std::size_t i) {
     Place& p = places_[i];
     auto change = outcome_of([&] { return changes.by(p.effect); });
@@ -178,7 +199,7 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
   const std::vector<measurement::MeasuredValue>& values = o.comparison().study.values;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (o.aside()[values[k].reading]) aside_.push_back(as_index(k));
-  const ChannelFaults channels(o);
+  const Whatever any(o, whatever_);
   all_.assign(places_.size(), {});
   parallel::for_each_case(places_.size(), 1, threads, [&](std::size_t i) {
     Place& p = places_[i];
@@ -193,7 +214,7 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
     s.start = change->summed ? VectorX(spanned.coordinates.rowwise().sum()) : VectorX(spanned.coordinates.col(0));
     s.lambda = s.start.norm();
     s.one_sided = s.shaped ? amplitude_from_nothing(*p.effect.effect) : one_sided(p.effect);
-    s.whatever_the_law = channels.at(p.effect);
+    s.whatever_the_law = any.at(p.effect);
     p.coordinates = std::move(spanned.coordinates);
     p.aside = change->columns(aside_, Eigen::all);
     p.summed = change->summed;

@@ -1,6 +1,7 @@
 // The signature of an effect: the directions in which it changes the whitened residual.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,8 +21,8 @@ struct Signature {
   VectorX start;           ///< change of the whitened residual at the start values is basis · start
   double lambda = 0;       ///< its norm
   bool one_sided = false;  ///< physics fixes the amplitude's sign (where shaped, that of the columns)
-  /// What else may happen at its place, whether or not a law describes it: unit columns. Of sensors (channel_shapes.h);
-  /// none elsewhere.
+  /// What else may happen at its place, whether or not a law describes it: unit columns. Of sensors (channel_shapes.h)
+  /// and of loads and members of frames (Changes::by_whatever()); null elsewhere.
   std::shared_ptr<const MatrixX> whatever_the_law = nullptr;
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
@@ -63,7 +64,8 @@ class SignaturesAtPlaces {
   void weigh(const Observations&, int threads, const ChangeOf&);
 
   std::vector<Place> places_;
-  std::vector<Signature> all_;  ///< in the order of the places
+  std::map<std::string, MatrixX> whatever_;  ///< Changes::by_whatever(), by the path of the part
+  std::vector<Signature> all_;               ///< in the order of the places
   std::vector<LeftOut> left_out_;
   std::size_t nowhere_ = 0;  ///< how many of left_out_ have no place in the subject
   std::shared_ptr<const statistics::Whitening> whitening_;

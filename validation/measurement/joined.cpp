@@ -117,4 +117,13 @@ Measurements joined(const std::vector<Measurements>& all) {
   return Joining(all).join();
 }
 
+void require_different(const std::vector<std::pair<std::string, std::string>>& sessions) {
+  for (std::size_t i = 0; i < sessions.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (sessions[i].first == sessions[k].first)
+        throw InputError(fmt::format(
+            "{}: these are the readings of {} again: the same numbers twice are no replicates. Give each session once",
+            sessions[i].second, sessions[k].second));
+}
+
 }  // namespace deflect::measurement

@@ -56,7 +56,7 @@ export function labelled(unit, of = (item) => item.parsed.y) {
 }
 
 /** The error from version to version: what is left, what each step takes off, held-out poses, a placebo, the floor. */
-export function waterfall(steps, unit = 'µm') {
+export function waterfall(steps, floor = 'noise and tolerances', unit = 'µm') {
   const bars = [{label: steps[0].name, from: 0, to: steps[0].rmse, kind: 'level'}];
   for (let i = 1; i < steps.length; ++i) {
     bars.push({label: steps[i].step, from: steps[i].rmse, to: steps[i - 1].rmse, kind: steps[i].rmse <= steps[i - 1].rmse ? 'fall' : 'rise', held: steps[i].held, placebo: steps[i].placebo});
@@ -73,7 +73,7 @@ export function waterfall(steps, unit = 'µm') {
       datasets: [
         points('held-out poses', 'held', t.purple, 'rectRot'),
         ...(bars.some((b) => b.placebo !== null && b.placebo !== undefined) ? [points('a placebo in its place', 'placebo', t.grey, 'crossRot')] : []),
-        {type: 'line', label: 'noise and tolerances', data: bars.map(() => last.floor), borderColor: t.orange, borderDash: [6, 4], borderWidth: 2, pointRadius: 0, pointStyle: 'line'},
+        ...(Number.isFinite(last.floor) ? [{type: 'line', label: floor, data: bars.map(() => last.floor), borderColor: t.orange, borderDash: [6, 4], borderWidth: 2, pointRadius: 0, pointStyle: 'line'}] : []),
         {label: 'rms of measured − predicted', data: bars.map((b) => [b.from, b.to]), backgroundColor: bars.map((b) => ({level: t.blue, fall: t.green, rise: t.guilty}[b.kind])), maxBarThickness: 90},
       ],
     },

@@ -35,7 +35,7 @@ function headline() {
 function facts() {
   const list = [], add = (name, value) => value !== undefined && value !== null && list.push(el('div', {}, el('dt', {}, name), el('dd', {}, value)));
   const [diagnosis] = of('diagnosis'), [comparison] = of('comparison').concat(data.versions.map((v) => v.result));
-  if (comparison) add('readings', String(comparison.readings)), data.scene?.kind !== 'frame' && add('poses', String(comparison.poses)), add('χ² per degree of freedom', num(comparison.baseline.chi2_per_dof, 3));
+  if (comparison) add('readings', String(comparison.readings)), data.scene?.kind !== 'frame' && add('poses', String(comparison.poses)), add('χ² per degree of freedom', num((diagnosis ?? comparison).baseline.chi2_per_dof, 3));
   if (diagnosis) add('χ² with what was found', num(diagnosis.final.chi2_per_dof, 3)), add('chance of such a finding', diagnosis.chance_of_any === undefined ? null : num(diagnosis.chance_of_any, 2));
   return list.length ? el('dl', {class: 'facts'}, list) : null;
 }

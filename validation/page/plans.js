@@ -26,9 +26,9 @@ export function planned(p) {
   return [
     figure('plan-rivals', 'Effects that are tied', '', table(['effect', 'probability'], p.rivals.map((r) => [r.effect, r.probability])),
       p.inseparable.map((i) => el('p', {}, `No reading within these limits tells ${i.between.join(' and ')} apart. What would: ${i.instead.join(' ')}`))),
-    readings.length ? figure('plan-readings', 'Readings to take', 'In this order; each is chosen to separate the effects most.', table(columns, readings, {most: 60, show: String}),
+    readings.length ? figure('plan-readings', 'Readings to take', 'In this order, pose by pose; together they are chosen to separate the effects most.', table(columns, readings, {most: 60, show: String}),
       numbers('plan', () => ({columns, rows: readings}))) : null,
-    p.steps.length > 1 ? figure('plan-steps', 'What each further reading brings', 'Expected probability of the right effect after so many readings.', steps(p),
+    p.steps.length > 1 ? figure('plan-steps', 'What each further reading brings', 'Expected probability of the right effect after so many of them, in this order.', steps(p),
       numbers('plan-steps', () => ({columns: ['readings', 'probability'], rows: p.steps.map((s) => [s.readings, s.probability])}))) : null,
     instruments.length ? figure('plan-instruments', 'Instruments that would help', `Beside the others in these readings${readings.length ? '' : ' (those of the data, taken again)'}: how many of them would be enough and which, and the expected probability by all of them.`,
       table(instrument, instruments, {show: String}), numbers('plan-instruments', () => ({columns: instrument, rows: instruments}))) : null,

@@ -90,7 +90,7 @@ export function fall(history, diagnosis) {
   const one = (q, name, label) => ({name, step: label, rmse: um(q.rmse_mm), held: um(q.held_out_rmse_mm), placebo: null, floor: um(diagnosis.noise_floor_mm)});
   const steps = [one(diagnosis.baseline, 'as given', '')];
   if (diagnosis.missing.length) steps.push(one(diagnosis.final, 'with what was found', '+ ' + diagnosis.missing.join(' + ')));
-  return figure('fall', title, 'What is found takes off the residual; poses held out; the readings’ noise.', waterfall(steps), numbers('fall', () => ({
+  return figure('fall', title, 'What is found takes off the residual; poses held out; the readings’ noise.', waterfall(steps, 'noise of the readings'), numbers('fall', () => ({
     columns: ['state', 'rmse_mm', 'held_out_rmse_mm', 'chi2_per_dof'],
     rows: [['as given', ...Object.values(diagnosis.baseline)], ['with what was found', ...Object.values(diagnosis.final)]],
   }), {open: true}));

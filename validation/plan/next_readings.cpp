@@ -129,6 +129,16 @@ struct Chosen {
   Judged judged;
 };
 
+/// How many of the blocks, each the one that brings most after those before: where all of them do not reach the
+/// probability that is wanted, those after which the others raise it by next to nothing, one at least.
+std::size_t worth_taking(const std::vector<Step>& steps, double wanted) {
+  constexpr double next_to_nothing = 2e-3;
+  const double end = steps.back().probability;
+  std::size_t out = steps.size() - 1;
+  while (end < wanted && out > 1 && steps[out - 1].probability > end - next_to_nothing) --out;
+  return out;
+}
+
 /// Whether rivals fitted to the end say something else than the choice reckoned with.
 bool bends(const Chosen& c) {
   constexpr double much = 0.1;  // of λ²
@@ -180,6 +190,9 @@ class Planning {
   Chosen chosen(const parallel::Work& work) const {
     Chosen out;
     out.choice = choose(aim(), blocks(), {o_.readings, o_.most_poses}, work);
+    out.choice.blocks.resize(worth_taking(steps(out.choice.blocks), o_.probability));
+    out.choice.readings.resize(out.choice.blocks.size());
+    out.choice.blocks = pose_by_pose(prospect_.possible(), std::move(out.choice.blocks));
     out.steps = steps(out.choice.blocks);
     if (out.choice.blocks.empty()) return out;
     out.plan = out.as_taken = as_plan(prospect_.possible(), out.choice.blocks);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -257,10 +258,15 @@ Possible without_data(Possible p) {
   return p;
 }
 
+std::vector<std::size_t> pose_by_pose(const Possible& p, std::vector<std::size_t> chosen) {
+  std::map<std::size_t, std::size_t> turn;  // of each pose
+  for (const std::size_t b : chosen) turn.emplace(p.blocks[b].pose, turn.size());
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [&](std::size_t a, std::size_t b) { return turn.at(p.blocks[a].pose) < turn.at(p.blocks[b].pose); });
+  return chosen;
+}
+
 Measurements as_plan(const Possible& p, const std::vector<std::size_t>& chosen) {
-  std::vector<std::size_t> order = chosen;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return p.blocks[a].pose < p.blocks[b].pose; });
   Measurements out;
   out.origin = "plan";
   out.joint_rotates = p.all.joint_rotates;
@@ -269,7 +275,7 @@ Measurements as_plan(const Possible& p, const std::vector<std::size_t>& chosen) 
   const auto note =
       std::find(p.all.note_columns.begin(), p.all.note_columns.end(), "note") - p.all.note_columns.begin();
   std::optional<std::size_t> pose;
-  for (const std::size_t b : order) {
+  for (const std::size_t b : pose_by_pose(p, chosen)) {
     const Block& block = p.blocks[b];
     if (pose != block.pose || p.sequences) {
       PoseGroup group = p.all.poses[block.pose];

@@ -41,8 +41,12 @@ Possible without_data(Possible);
 Possible possible_campaign(const subject::Subject&, const measurement::Measurements& given, const Limits&,
                            std::uint64_t seed);
 
-/// The blocks in the order of their poses as a file to be filled in: cells of readings are empty, a column "note" says
-/// how each load is reached. Labels of poses begin with "plan".
+/// The same blocks, those of one pose one after the other: a pose is approached once. Poses come in the order in which
+/// they were chosen first.
+std::vector<std::size_t> pose_by_pose(const Possible&, std::vector<std::size_t> blocks);
+
+/// The blocks pose_by_pose() as a file to be filled in: cells of readings are empty, a column "note" says how each load
+/// is reached. Labels of poses begin with "plan".
 measurement::Measurements as_plan(const Possible&, const std::vector<std::size_t>& blocks);
 
 }  // namespace deflect::plan

@@ -101,15 +101,9 @@ measurement::Measurements data_of(const Subject& s, const NamedText& csv) {
 
 measurement::Measurements data_of(const Subject& s, const std::vector<NamedText>& sessions) {
   if (sessions.empty()) throw InputError("data: give at least one session");
+  measurement::require_different(sessions);
   std::vector<measurement::Measurements> all;
-  for (std::size_t i = 0; i < sessions.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k)
-      if (sessions[i].first == sessions[k].first)
-        throw InputError(fmt::format(
-            "{}: these are the readings of {} again: the same numbers twice are no replicates. Give each session once",
-            sessions[i].second, sessions[k].second));
-    all.push_back(data_of(s, sessions[i]));
-  }
+  for (const NamedText& each : sessions) all.push_back(data_of(s, each));
   return s.placed(measurement::joined(all));
 }
 

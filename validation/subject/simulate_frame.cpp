@@ -24,6 +24,7 @@ class Plan {
   Plan(const frame::FrameDescription& f, bool sequence) : sequence_(sequence) {
     const measurement::Instruments all = Subject(f).instruments();
     m_.origin = "campaign";
+    m_.instruments.sensors = all.sensors;
     m_.instruments.load_cases = all.load_cases;
     m_.instruments.stationary = true;
     m_.poses.push_back({"all", Vector6::Zero(), {}, {}});
@@ -34,6 +35,7 @@ class Plan {
   void add(const std::vector<std::pair<std::size_t, double>>& loads) {
     measurement::Reading r;
     r.factors.assign(cases(), 0);
+    r.sensors.assign(m_.instruments.sensors.size(), std::nullopt);
     for (const auto& [k, factor] : loads) r.factors[k] = std::round((r.factors[k] + factor) * 100) / 100 + 0.0;
     r.line = m_.readings.size() + 2;
     if (sequence_) r.sequence = static_cast<double>(m_.readings.size() + 1);
