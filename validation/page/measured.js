@@ -16,7 +16,7 @@ export function failureMap(version) {
   const maps = [{title: 'measured − predicted', values: version.poses.map((p) => p.rmse)},
                 ...[0, 1, 2].map((k) => ({title: `nothing missing, draw ${k + 1}`, values: version.poses.map((p) => p.with_nothing_missing[k])}))];
   return figure('failure', 'Where it fails',
-    `Root mean square of the residual at each pose, beside three draws of what noise, tolerances and loads give with nothing missing; one colour scale. ${version.device}.`,
+    `Root mean square of the residual at each pose, beside three draws of what noise, tolerances and loads give with nothing missing; one colour scale. Predicted by ${version.device}.`,
     attempt('The map', () => workspace('failure-map', version.poses, maps, {unit, times})),
     numbers('residual-by-pose', () => ({
       columns: ['pose', 'x_mm', 'y_mm', 'z_mm', `rms_${version.unit}`, 'mean_x', 'mean_y', 'mean_z', 'draw_1', 'draw_2', 'draw_3'],
@@ -53,7 +53,7 @@ export function errorHeat(version) {
   const axes = groups.some(([, e]) => e.bias_mm.some((x) => x !== 0)) ? ['mean x', 'mean y', 'mean z'] : [];
   const worstAt = 2 + axes.length, lineAt = worstAt + 1;
   const rows = groups.map(([by, e]) => [by === 'pose' ? e.group : `${by}: ${e.group}`, e.rmse_mm, ...(axes.length ? e.bias_mm : []), e.worst_mm, e.worst_line]);
-  return figure('errors', 'Errors by group', `Root mean square${axes.length ? ', mean by axis' : ''} and worst of measured − predicted, ${unit}. ${version.device}.`,
+  return figure('errors', 'Errors by group', `Root mean square${axes.length ? ', mean by axis' : ''} and worst of measured − predicted by ${version.device}, ${unit}.`,
     table(['group', 'rms', ...axes, 'worst', 'in line'], rows, {
       shade: (i, j) => (j === 0 || j === lineAt || !same.includes(groups[i]) ? null : Math.abs(rows[i][j]) / (j === worstAt ? worst : largest)),
       show: (x, i, j) => (j === 0 || j === lineAt ? String(x) : same.includes(groups[i]) ? num(fineOf(unitOf(version))[1] * x) : sized(x, groups[i][1].unit)),
@@ -85,7 +85,7 @@ function channelResiduals(version, index) {
     };
   });
   const names = version.channels.map((c) => c.name), loads = [...new Set(version.readings.flatMap((r) => Object.keys(r.loads || {})))];
-  return figure('residuals-' + index, 'Residuals channel by channel', `Measured − predicted, each in standard deviations of what noise and tolerances give with nothing missing. ${version.device}.${left}`, picture,
+  return figure('residuals-' + index, 'Residuals channel by channel', `Measured − predicted by ${version.device}, each in standard deviations of what noise and tolerances give with nothing missing.${left}`, picture,
     numbers('readings-' + index, () => ({
       columns: ['line', 'sequence', ...loads, ...version.channels.flatMap((c) => [`measured_${c.name}_${c.unit}`, `residual_${c.name}_${c.unit}`]), ...version.note_columns],
       rows: version.readings.map((r) => [r.line, r.sequence, ...loads.map((l) => (r.loads || {})[l] ?? 0), ...names.flatMap((n) => [r.sensors?.[n]?.measured ?? null, r.sensors?.[n]?.residual ?? null]), ...(r.notes || [])]),
@@ -116,7 +116,7 @@ export function residuals(version, index) {
       },
     };
   });
-  return figure('residuals-' + index, 'Residuals reading by reading', `Measured − predicted. ${version.device}.${left}`, picture,
+  return figure('residuals-' + index, 'Residuals reading by reading', `Measured − predicted by ${version.device}.${left}`, picture,
     numbers('readings-' + index, () => ({
       columns: ['line', 'pose', 'sequence', ...loads, ...components.map((c) => 'measured_' + c), ...components.map((c) => 'predicted_' + c), ...components.map((c) => 'residual_' + c), ...version.note_columns],
       rows: version.readings.map((r) => [r.line, version.poses[r.pose].label, r.sequence, ...r.load_N_Nmm, ...r.measured, ...r.predicted, ...r.residual, ...(r.notes || [])]),
