@@ -16,7 +16,8 @@ constexpr double unseen = 1e-6;     // standard deviations of noise
 constexpr double sampled = 0.125;   // share of the readings that leave play open which is asked whether it shows
 constexpr double rounding = 1e-11;  // of a prediction: less is no change
 constexpr double part_of_a_load = 0.1;
-constexpr double no_force = 1e-9;  // of the largest
+constexpr std::size_t most_apart = 4;  // nodes of a load
+constexpr double no_force = 1e-9;      // of the largest
 
 /// A thousandth of the start, where an effect of one parameter is of the first order in it.
 VectorX small_values(const effects::Effect& e) {
@@ -128,14 +129,19 @@ MatrixX Changes::by_any_load(const frame::LoadCase& load, const std::string& of)
   double most = 0;
   for (const auto& [node, wrench] : load.nodes) most = std::max(most, wrench.norm());
   const double size = observations_.comparison().study.standing->size();
+  const bool apart = load.nodes.size() <= most_apart;
   std::vector<MatrixX> out;
-  for (Eigen::Index axis = 0; most > 0 && axis < 6; ++axis) {
+  const auto add = [&](Eigen::Index axis, const std::string& only) {
     frame::FrameDescription other = *observations_.subject().frame();
     for (auto& [name, each] : other.loads)
       for (auto& [node, wrench] : each.nodes)
-        if (name == of) wrench(axis) += part_of_a_load * most * (axis < 3 ? 1 : size);
+        if (name == of && (only.empty() || node == only)) wrench(axis) += part_of_a_load * most * (axis < 3 ? 1 : size);
     if (const auto residual = outcome_of([&] { return observations_.residual(subject::Subject(other)); }))
       out.emplace_back(*residual - null_);
+  };
+  for (Eigen::Index axis = 0; most > 0 && axis < 6; ++axis) {
+    if (!apart) add(axis, "");
+    for (std::size_t i = 0; apart && i < load.nodes.size(); ++i) add(axis, load.nodes[i].first);
   }
   return statistics::side_by_side(out, null_.size());
 }

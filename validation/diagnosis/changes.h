@@ -33,8 +33,9 @@ class Changes {
   Changes(const Observations&, const std::vector<effects::PlacedEffect>&, int threads);
 
   /// What may happen at a place of a frame whether or not a law describes it: columns. At a load a force along and a
-  /// moment about each axis, at all nodes that it acts on; at a member an elongation that grows with the force that
-  /// passes, one that grows in both senses of it, and a step where it turns. None at other places.
+  /// moment about each axis, at each node that it acts on, or, at more than four, at all of them; at a member an
+  /// elongation that grows with the force that passes, one that grows in both senses of it, and a step where it turns,
+  /// which a gauge on the member itself does not read. None at other places.
   MatrixX by_whatever(const subject::Place&) const;
   /// At the start values; nullopt where it has to be predicted.
   std::optional<VectorX> by_statics(const effects::PlacedEffect&) const;

@@ -87,22 +87,20 @@ std::map<std::string, double> count_by_name(const std::vector<Signature>& all) {
   return out;
 }
 
-/// The part whose place it is, or "" of a group.
-std::string whose(const subject::Place& p) { return p.others.empty() ? p.path : ""; }
-
 /// What may happen at sensors, loads and members: unit columns, without those that tolerances hide.
 class Whatever {
  public:
   Whatever(const Observations& o, const std::map<std::string, MatrixX>& of_parts)
       : sensors_(whitened(o, compare::channel_shapes(o.comparison().study))), parts_(whitened(o, of_parts)) {}
 
-  /// Null where nothing is known.
+  /// Null where nothing is known, and at groups.
   std::shared_ptr<const MatrixX> at(const effects::PlacedEffect& e) const {
     const std::optional<subject::Place>& place = e.effect->place;
     if (!place) return nullptr;
     const std::string sensor = subject::sensor_of(*place);
+    if (sensor.empty() && !place->others.empty()) return nullptr;
     const auto& all = sensor.empty() ? parts_ : sensors_;
-    const auto found = all.find(sensor.empty() ? whose(*place) : sensor);
+    const auto found = all.find(sensor.empty() ? place->path : sensor);
     return found == all.end() ? nullptr : found->second;
   }
 
@@ -150,8 +148,8 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
   for (const effects::PlacedEffect& e : placed) places_.push_back({e});
   const Changes changes(o, placed, threads);
   for (const effects::PlacedEffect& e : placed)
-    if (e.effect->place && !whatever_.contains(whose(*e.effect->place)))
-      whatever_.emplace(whose(*e.effect->place), changes.by_whatever(*e.effect->place));
+    if (const auto& at = e.effect->place; at && at->others.empty() && !whatever_.contains(at->path))
+      whatever_.emplace(at->path, changes.by_whatever(*at));
   weigh(o, threads, [&](std::size_t i) {
     Place& p = places_[i];
     auto change = outcome_of([&] { return changes.by(p.effect); });
