@@ -138,6 +138,20 @@ TEST_F(PlanProgram, SeveralSessionsAreFoundAgain) {
   EXPECT_EQ(sessions.code, 0) << sessions.out;
 }
 
+// Readings may be added to a diagnosis, but a slip in a file's name must not pass unseen.
+TEST_F(PlanProgram, DataOtherThanTheDiagnosedAreRemarked) {
+  const std::string plan = "plan " + device + " " + path("diagnosis.json") + " ", few = " --readings 1";
+  const std::string remark = path("diagnosis.json") + " was not made from ";
+  const test::Run diagnosed = test::deflect(plan + path("paper.csv") + few);
+  EXPECT_EQ(diagnosed.code, 0) << diagnosed.out;
+  EXPECT_EQ(diagnosed.out.find(remark), std::string::npos) << diagnosed.out;
+  const test::Run other = test::deflect("simulate " + device + " --campaign paper --seed 5 -o " + path("other.csv"));
+  ASSERT_EQ(other.code, 0) << other.out;
+  const test::Run planned = test::deflect(plan + path("other.csv") + few);
+  EXPECT_EQ(planned.code, 0) << planned.out;
+  EXPECT_NE(planned.out.find(remark + path("other.csv")), std::string::npos) << planned.out;
+}
+
 TEST_F(PlanProgram, AnEmptyPlanIsRefusedUntilItIsFilledIn) {
   const test::Run planned =
       test::deflect("plan " + device + " " + path("diagnosis.json") + " --readings 4 -o " + path("empty.csv"));

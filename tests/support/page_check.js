@@ -64,6 +64,7 @@
         const shown = each.getClientRects().length > 0 && getComputedStyle(each).overflow !== 'auto';
         return shown && (each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== 'inline' || each.getBoundingClientRect().right > innerWidth + 0.5);
       }).map((each) => each.textContent.slice(0, 80));
+      report.from = [...document.querySelectorAll('.from')].map((each) => each.textContent);
       report.scripts = document.querySelectorAll('script').length;
       report.wide = document.documentElement.scrollWidth > innerWidth;
       report.charts = [...document.querySelectorAll('.chart canvas')].map((c) => ({about: c.getAttribute('aria-label'), drawn: Number(c.dataset.drawn || 0), colours: painted(c).colours}));

@@ -353,10 +353,12 @@ TEST_F(ReportProgram, SeveralResultsAreOnePage) {
   run("solve delta --pose 0,0,-900 --load 0,0,10 --json " + path("s.json"));
   run("validate tripteron --json " + path("v.json"));
   run("map haptic-6psu-ideal-joints --n 3 --json " + path("m.json"));
+  run("map tripteron --n 2 --json " + path("m2.json"));
   std::string files;
-  for (const char* each : {"c.json", "h.json", "s.json", "v.json", "m.json"}) files += " " + path(each);
+  for (const char* each : {"c.json", "h.json", "s.json", "v.json", "m.json", "m2.json"}) files += " " + path(each);
   run("report" + files + " -o " + path("page.html"));
   const json seen = used("page.html");
+  EXPECT_EQ(seen.at("from"), json({"From m.json:", "From m2.json:"}));
   for (const char* id : {"tests", "fall", "displacement", "stiffness", "validation", "map"})
     EXPECT_TRUE(std::any_of(seen.at("tables").begin(), seen.at("tables").end(), [&](const json& t) {
       return t.at("id") == id && t.at("rows") > 0;

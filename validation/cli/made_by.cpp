@@ -249,4 +249,14 @@ bool has_read(const std::string& result, const std::string& file) {
   return !now.empty() && std::any_of(inputs.begin(), inputs.end(), [&](const auto& i) { return i.sha256 == now; });
 }
 
+void remark_if_of_other_data(const std::string& result, const std::vector<std::string>& files) {
+  if (files_in(Json::parse(read_text(result), nullptr, false), "/provenance/inputs").empty()) return;
+  for (const std::string& file : files)
+    if (!has_read(result, file))
+      remark(
+          fmt::format("{} was not made from {} as it is now: the effects are as fitted then, and these readings count "
+                      "as those that were taken so far",
+                      result, file));
+}
+
 }  // namespace deflect::cli

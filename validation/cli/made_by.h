@@ -45,4 +45,7 @@ bool has_read(const std::string& result, const std::string& file);
 /// that has changed since.
 void remark_if_of_another(const std::string& result, const std::string& device, const subject::Subject&);
 
+/// Remarks where the result in this file says what it was made from, and one of these files is not among that.
+void remark_if_of_other_data(const std::string& result, const std::vector<std::string>& files);
+
 }  // namespace deflect::cli

@@ -110,7 +110,8 @@ function sections() {
     ['Residuals', () => first && residuals(first, 0)],
     ['Residuals of the last version', () => versions.length > 1 && residuals(last, 1)],
     ...[['The drawing', 'drawing', drawn], ['The displacement', 'solve', solved], ['The frame', 'frame', framed], ['The checks', 'check', checked], ['Validity', 'validity', validity], ['The fit', 'fit', fitted], ['The prediction', 'prediction', predicted], ['The plan', 'plan', planned], ['The campaign', 'foresight', foreseen], ['The validation', 'validation', validated], ['The map', 'map', mapped]]
-      .flatMap(([name, kind, make]) => of(kind).map((result) => [name, () => make(result)])),
+      .flatMap(([name, kind, make]) => data.results.filter((r) => r.kind === kind)
+        .map((r, _, alike) => [name, () => [alike.length > 1 ? el('p', {class: 'from'}, `From ${fileName(r.origin)}:`) : null, make(r.result)]])),
     ['Strained tolerances', () => diagnosis && strained(diagnosis)],
     ['What this campaign can see', () => diagnosis && unseen(diagnosis)],
     ['What was not looked at', () => diagnosis && leftOut(diagnosis)],

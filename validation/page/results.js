@@ -38,7 +38,7 @@ export function candidates(d) {
               plugins: {legend: {display: false}, tooltip: labelled('', (item) => item.parsed.x)}},
   }));
   const ties = d.indistinguishable.length ? el('p', {}, el('span', {class: 'swatch', style: {background: 'var(--orange)'}}), 'These data cannot tell apart: ', d.indistinguishable.map((g) => g.join(', ')).join('; '), '.') : null;
-  return figure('candidates', 'Candidates', 'Every effect of the catalogue at every place that it has, fitted with all tolerances free, weighed by the evidence.' +
+  return figure('candidates', 'Candidates', 'Every effect of the catalogue at every place that it has, fitted with all tolerances free, weighed by the evidence. Intervals of those that are not named count tolerances as on the device as given.' +
     (d.missing.length > 1 ? ' Each is fitted alone here; they share the probability of the effects that were found together.' : ''),
     picture, ties, ...(d.splitting ?? []).map((s) => el('p', {}, s.sentence)),
     numbers('candidates', () => ({

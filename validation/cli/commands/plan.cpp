@@ -77,10 +77,9 @@ std::vector<std::string> session_files(const std::string& named) {
   return out;
 }
 
-/// The measurements that were diagnosed: as given, else as the diagnosis names them, there or next to it.
-measurement::Measurements diagnosed_data(const PlanArguments& a, const diagnosis::FoundEffects& found,
-                                         const subject::Subject& s) {
-  if (!a.data.empty()) return read_sessions(a.data, s);
+/// Files of the measurements that were diagnosed: as given, else as the diagnosis names them, there or next to it.
+std::vector<std::string> diagnosed_files(const PlanArguments& a, const diagnosis::FoundEffects& found) {
+  if (!a.data.empty()) return a.data;
   if (found.data.empty())
     throw InputError(fmt::format("{}: names no measurements: give them too, as in deflect plan {} {} DATA", a.diagnosis,
                                  a.device, a.diagnosis));
@@ -95,7 +94,7 @@ measurement::Measurements diagnosed_data(const PlanArguments& a, const diagnosis
           a.diagnosis, file, a.device, a.diagnosis));
     file = beside.string();
   }
-  return read_sessions(files, s);
+  return files;
 }
 
 const diagnosis::FoundTie& tie_of(const PlanArguments& a, const diagnosis::FoundEffects& found) {
@@ -217,7 +216,9 @@ void run(const PlanArguments& a) {
   const diagnosis::FoundEffects found = diagnosis::read_found_effects(a.diagnosis);
   remark_if_of_another(a.diagnosis, a.device, s);
   const diagnosis::FoundTie& tie = tie_of(a, found);
-  const measurement::Measurements data = diagnosed_data(a, found, s);
+  const std::vector<std::string> files = diagnosed_files(a, found);
+  remark_if_of_other_data(a.diagnosis, files);
+  const measurement::Measurements data = read_sessions(files, s);
   plan::PlanOptions o;
   o.limits = limits_of(a, s);
   o.noise = {parse_sigma("--sigma", a.sigma_mm, "mm", 1e3), parse_sigma("--sigma-rotation", a.sigma_rad, "rad", 1)};
