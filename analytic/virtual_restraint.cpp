@@ -189,6 +189,12 @@ void add_forces(const VirtualChain& chain, const ShapeConditions& c, VectorX& fo
     }
 }
 
+/// 1/√(largest |entry|) of each row, 1 at most; of no rows none.
+VectorX by_row(const MatrixX& M) {
+  if (M.size() == 0) return VectorX();
+  return M.cwiseAbs().rowwise().maxCoeff().cwiseMax(1).cwiseSqrt().cwiseInverse();
+}
+
 }  // namespace
 
 // With A = K − H, δ = offset + Z z and z split into E, which is eliminated, and Q, which stays,
@@ -232,7 +238,7 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   right.topRows(rank) << along_P(Matrix6::Identity()) / unit, along_P(e) / unit;
   right.bottomRightCorner(passive, 1) = scale.cwiseProduct(r_Q - A_EQ.transpose() * A_EE_r);
   // What is stiff beside the compliance would hide the others from ranks and signs.
-  const VectorX smaller = M.cwiseAbs().rowwise().maxCoeff().cwiseMax(1).cwiseSqrt().cwiseInverse();
+  const VectorX smaller = by_row(M);
   M = smaller.asDiagonal() * M * smaller.asDiagonal();
   const MatrixX solution = smaller.asDiagonal() * smallest_solution(M, smaller.asDiagonal() * right);
   const MatrixX along = B.cols() == 0 ? MatrixX(solution.topRows(rank)) : MatrixX(P * solution.topRows(rank));

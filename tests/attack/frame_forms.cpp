@@ -194,7 +194,7 @@ Matrix3 signed_permutation(Dice& dice) {
 }
 
 Matrix3 any_rotation(Dice& dice) {
-  const Vector3 axis(dice.real(-1, 1), dice.real(-1, 1), dice.real(-1, 1));
+  const Vector3 axis = dice.reals(-1, 1);
   return Eigen::AngleAxisd(dice.real(0.1, 3), axis.normalized()).toRotationMatrix();
 }
 

@@ -30,7 +30,10 @@ class DeviceDice {
       Mount mount;
       mount.base = {place(), turn()};
       mount.leg = parts(legs == 1 ? dice_.whole(2, 7) : dice_.whole(1, 6), legs == 1 ? 0.04 : legs < 4 ? 0.35 : 0.5);
-      if (out_.kind == DeviceKind::nested) mount.leg.insert(mount.leg.begin() + dice_.whole(0, 1), {"group", group()});
+      if (out_.kind == DeviceKind::nested) {
+        auto inner = group();
+        mount.leg.insert(mount.leg.begin() + dice_.whole(0, 1), {"group", std::move(inner)});
+      }
       if (i > 0 && dice_.chance(0.3)) mount.leg = m().mounts.front().leg;  // like the first
       close(mount, frame_of(home));
       m().mounts.push_back(mount);
@@ -56,18 +59,19 @@ class DeviceDice {
   }
 
   Vector3 place() {
-    if (aligned_) return unit_ * 0.25 * Vector3(dice_.whole(-2, 2), dice_.whole(-2, 2), dice_.whole(-2, 2));
-    return unit_ * Vector3(dice_.real(-1, 1), dice_.real(-1, 1), dice_.real(-1, 1));
+    if (aligned_) return unit_ * 0.25 * dice_.wholes(-2, 2);
+    return unit_ * dice_.reals(-1, 1);
   }
 
   Vector3 turn() {
-    if (aligned_) return pi / 2 * Vector3(dice_.whole(0, 2), 0, dice_.whole(0, 2));
-    return Vector3(dice_.real(-3, 3), dice_.real(-1.4, 1.4), dice_.real(-3, 3));
+    const double z = aligned_ ? dice_.whole(0, 2) : dice_.real(-3, 3);
+    const double y = aligned_ ? 0 : dice_.real(-1.4, 1.4), x = aligned_ ? dice_.whole(0, 2) : dice_.real(-3, 3);
+    return (aligned_ ? pi / 2 : 1) * Vector3(x, y, z);
   }
 
   Vector3 direction() {
     if (aligned_) return Vector3::Unit(dice_.whole(0, 2));
-    return Vector3(dice_.real(-1, 1), dice_.real(-1, 1), dice_.real(-1, 1)).normalized();
+    return dice_.reals(-1, 1).normalized();
   }
 
   /// Of a member: N/m, or Nm/rad on a rotation, and around it.

@@ -60,7 +60,8 @@ class FrameDice {
 
   Vector3 free_point(bool plane) {
     for (;;) {
-      const Vector3 p(dice_.whole(-4, 4), plane ? 0 : dice_.whole(-4, 4), dice_.whole(-4, 4));
+      const double z = dice_.whole(-4, 4), y = plane ? 0 : dice_.whole(-4, 4), x = dice_.whole(-4, 4);
+      const Vector3 p(x, y, z);
       if (!taken(p)) return p;
     }
   }
@@ -79,7 +80,7 @@ class FrameDice {
     m.beam = static_cast<BeamTheory>(dice_.whole(0, 1));
     if (dice_.chance(0.3)) {
       const Vector3 along = f().nodes[b].second - f().nodes[a].second;
-      do m.y_axis = Vector3(dice_.whole(-2, 2), dice_.whole(-2, 2), dice_.whole(-2, 2));
+      do m.y_axis = dice_.wholes(-2, 2);
       while (along.cross(m.y_axis).norm() < 0.1 * along.norm() * m.y_axis.norm() || m.y_axis.isZero(0));
     }
     if (dice_.chance(0.15)) m.bending_factor = dice_.real(0.3, 1);
@@ -137,7 +138,8 @@ class FrameDice {
   void chain() {
     const int count = dice_.whole(2, 6);
     if (dice_.chance(0.4)) {
-      const Vector3 step(dice_.whole(-2, 2), dice_.whole(-2, 2), dice_.whole(1, 2));
+      const double z = dice_.whole(1, 2), y = dice_.whole(-2, 2), x = dice_.whole(-2, 2);
+      const Vector3 step(x, y, z);
       for (int i = 0; i < count; ++i) add_node(i * step);
     } else {
       add_points(count);
@@ -153,7 +155,8 @@ class FrameDice {
   }
 
   void ring() {
-    add_points(dice_.whole(3, 6), dice_.chance(0.3));
+    const bool plane = dice_.chance(0.3);
+    add_points(dice_.whole(3, 6), plane);
     for (std::size_t i = 0; i < f().nodes.size(); ++i) add_member(i, (i + 1) % f().nodes.size());
     release_some(0.3);
   }

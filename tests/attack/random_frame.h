@@ -39,8 +39,21 @@ class Dice {
   double real(double low, double high) { return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1p-53; }
   bool chance(double p) { return real(0, 1) < p; }
   double power_of_ten(double low, double high);
+  /// Components from z to x: the arguments of a call would be drawn in an order of the compiler's own.
+  Vector3 wholes(int low, int high) {
+    return from_the_last([&] { return whole(low, high); });
+  }
+  Vector3 reals(double low, double high) {
+    return from_the_last([&] { return real(low, high); });
+  }
 
  private:
+  template <class Draw>
+  static Vector3 from_the_last(const Draw& draw) {
+    Vector3 out;
+    for (Eigen::Index i = 2; i >= 0; --i) out(i) = draw();
+    return out;
+  }
   unsigned long long state_;
 };
 

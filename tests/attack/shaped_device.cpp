@@ -111,7 +111,7 @@ std::optional<ShapedDevice> shaped_device(unsigned seed, bool laws) {
   if (dice.chance(0.3)) yield(m.base, unit, dice);
   if (dice.chance(0.2)) yield(m.tool, unit, dice);
   if (dice.chance(0.3)) {  // a force beside T
-    const Vector3 beside = unit * Vector3(dice.real(-1, 1), dice.real(-1, 1), dice.real(-1, 1));
+    const Vector3 beside = unit * dice.reals(-1, 1);
     random.load.tail<3>() = beside.cross(Vector3(random.load.head<3>()));
   }
   const double weighs = dice.chance(0.25) ? dice.real(0.1, 1) : 0;
