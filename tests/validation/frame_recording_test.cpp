@@ -5,13 +5,17 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <utility>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/paths.h"
+#include "tests/support/program.h"
 #include "validation/compare/comparison.h"
+#include "validation/measurement/parse_plan.h"
 #include "validation/subject/simulate_frame.h"
 #include "validation/subject/subject.h"
 
@@ -82,6 +86,19 @@ TEST(FrameRecording, ALoadAtAnotherNodeIsFoundInTheDeformedShape) {
   const Measurements data = subject::simulate_frame(truth, subject::frame_campaign("rich", f, 1), {});
   const std::vector<std::string> ids = mistake_in(f, data);
   EXPECT_TRUE(holds(ids, "load.above_at_C")) << (ids.empty() ? "none" : ids.front());
+}
+
+// The file has a column of zeros for the node where the jack stood: as many components are loaded either way.
+TEST(FrameRecording, AJackIsFoundAtAnotherNodeThatTheFileNamesToo) {
+  const frame::FrameDescription f = built_in("portal-semi-rigid");
+  const test::Folder folder;
+  std::ofstream(folder / "jack.csv") << "node.M.fz_N,node.C.fz_N\n2000,0\n4000,0\n-3000,0\n-6000,0\n5000,0\n-1000,0\n";
+  const Measurements campaign = Subject(f).placed(read_campaign(folder / "jack.csv", Subject(f).instruments()));
+  Measurements data = subject::simulate_frame(f, campaign, {});
+  ASSERT_TRUE(mistake_in(f, data).empty());
+  for (Reading& r : data.readings) std::swap(r.at_points[0], r.at_points[1]);
+  const std::vector<std::string> ids = mistake_in(f, data);
+  EXPECT_TRUE(holds(ids, "node.C_at_M")) << (ids.empty() ? "none" : ids.front());
 }
 
 // What is there in a healthy frame, or missing in one member, is no mistake of a channel.

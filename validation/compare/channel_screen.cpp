@@ -154,8 +154,13 @@ std::vector<std::pair<recording::Correction, double>> ChannelScreen::other_quant
 }
 
 bool ChannelScreen::has_other_loads(const measurement::Measurements& data) const {
+  // By reading: loads_of() has a row for each component that is loaded, and a correction may load others.
+  const auto alike = [](const measurement::Reading& a, const measurement::Reading& b) {
+    return a.load == b.load && a.factors == b.factors && a.at_points == b.at_points;
+  };
+  const std::vector<measurement::Reading>& recorded = study_->data->readings;
   return data.instruments.load_points != study_->data->instruments.load_points ||
-         measurement::loads_of(data) != study_->loads;
+         !std::equal(data.readings.begin(), data.readings.end(), recorded.begin(), recorded.end(), alike);
 }
 
 double ChannelScreen::loss(const recording::Correction& c) const {
