@@ -209,21 +209,39 @@ double parse_quantity(std::string_view text, Dimension dimension) {
                                hint.empty() ? "" : fmt::format(", did you mean '{}'?", hint), r.words, unit_list(r)));
 }
 
-std::string format_quantity(double value, Dimension dimension) {
-  const Row& r = row(dimension);
-  if (r.units.empty() || dimension == Dimension::ratio) return fmt::format("{}", value);
-  const Unit& u = r.units.front();
+namespace {
+
+/// The shortest number in this unit that is read back as exactly `value`; empty where rounding makes every one miss.
+std::string digits_in(double value, const Unit& u) {
   const double scaled = value * u.over / u.times;
-  // Beyond the range of the preferred unit, or where rounding makes it miss, the SI unit stands.
   for (int digits = 1; digits <= 17 && std::isfinite(scaled); ++digits) {
     double rounded = 0;
     std::string_view rest;
     if (leading_number(fmt::format("{:.{}g}", scaled, digits), rounded, rest) && in_si(rounded, u) == value)
-      return fmt::format("{} {}", rounded, u.name);
+      return fmt::format("{}", rounded);
   }
-  for (const Unit& other : r.units)
-    if (other.times == 1 && other.over == 1) return fmt::format("{} {}", value, other.name);
-  return fmt::format("{:.17g} {}", scaled, u.name);
+  return "";
+}
+
+}  // namespace
+
+std::string format_quantity(double value, Dimension dimension) {
+  constexpr std::size_t many = 12, fewer = 5, exponent = 5;  // characters
+  const Row& r = row(dimension);
+  if (r.units.empty() || dimension == Dimension::ratio) return fmt::format("{}", value);
+  const Unit* best = &r.units.front();
+  std::string text = digits_in(value, *best);
+  if (!text.empty() && text.size() <= many) return fmt::format("{} {}", text, best->name);
+  // "60 um" is 0.060000000000000005 mm: the unit in which it was written has few digits, and hardly another one.
+  const auto length = [](const std::string& digits) {
+    return digits.empty() ? std::string::npos : digits.size() + (digits.find('e') == std::string::npos ? 0 : exponent);
+  };
+  std::size_t least = text.empty() ? std::string::npos : text.size() - fewer;
+  for (const Unit& u : r.units)
+    if (std::string other = digits_in(value, u); length(other) < least)
+      least = length(other), text = std::move(other), best = &u;
+  if (text.empty()) text = fmt::format("{:.17g}", value * best->over / best->times);  // not finite
+  return fmt::format("{} {}", text, best->name);
 }
 
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {

@@ -53,7 +53,7 @@ void require_usable_size(double si, Dimension, std::string_view text);
 /// Throws InputError where the angle of `text` is larger than largest_angle; parse_quantity() checks this itself.
 void require_digits_of_angle(double rad, std::string_view text);
 
-/// The shortest text in the preferred unit that parse_quantity turns back into exactly `value`.
+/// The shortest text that parse_quantity() reads as exactly `value`: in the preferred unit or, if that is long, in any.
 std::string format_quantity(double value, Dimension);
 
 /// The whole text as a finite decimal number. Throws InputError where it is none.

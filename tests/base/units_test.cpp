@@ -150,6 +150,16 @@ TEST(Units, ShortDecimalsStayShort) {
   }
 }
 
+TEST(Units, WhatIsShortInAnotherUnitStaysInIt) {
+  for (const auto& [text, d, written] : {std::tuple{"60 um", Dimension::length, "60 um"},
+                                         {"3.3 um", Dimension::length, "3.3 um"},
+                                         {"0.01 mrad", Dimension::angle, "10 urad"},
+                                         {"0.1 rad", Dimension::angle, "0.1 rad"},
+                                         {"100 lbf", Dimension::force, "100 lbf"}})
+    EXPECT_EQ(format_quantity(parse_quantity(text, d), d), written);
+  EXPECT_EQ(format_quantity(1.0 / 3, Dimension::length), "333.3333333333333 mm") << "no unit makes it short";
+}
+
 TEST(Units, WrongTextsAreRefusedWithTheUnitsThatFit) {
   const struct {
     const char* text;
