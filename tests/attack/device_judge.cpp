@@ -19,6 +19,7 @@
 #include "msa/mechanism/device_file.h"
 #include "tests/attack/count.h"
 #include "tests/support/apart.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/theories.h"
 #include "validation/studies/solve.h"
 
@@ -201,9 +202,10 @@ FromChild in_child(const std::function<std::string()>& tell) {
   if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
   const pid_t child = ::fork();
   if (child == 0) {
-    const rlimit seconds{20, 20};  // of the processor, whatever else runs
+    constexpr rlim_t most = 20 * test::times_slower;  // seconds of the processor, whatever else runs
+    const rlimit seconds{most, most};
     ::setrlimit(RLIMIT_CPU, &seconds);
-    ::alarm(600);
+    ::alarm(600 * test::times_slower);
     const std::string told = tell();
     ::_exit(::write(ends[1], told.data(), told.size()) == std::ssize(told) ? 0 : 1);
   }
