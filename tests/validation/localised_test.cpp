@@ -1,5 +1,5 @@
 // Where the unexplained rest acts, on signatures made by hand: each axis of the space of readings is one unit of noise.
-#include "validation/diagnosis/localised.h"
+#include "validation/diagnosis/at_places.h"
 
 #include <gtest/gtest.h>
 
@@ -47,13 +47,13 @@ class Places {
     fit.residual = residual;
     fit.signature = fitted;
     fit.chi2 = residual.squaredNorm();
-    return localised(at_places(all_, fit, 1), fit.chi2, static_cast<double>(numbers));
+    return localised(at_places(all_, {}, fit, 1), fit.chi2, static_cast<double>(numbers));
   }
 
   std::vector<AtPlace> at(const VectorX& residual) const {
     Fit fit;
     fit.residual = residual;
-    return at_places(all_, fit, 1);
+    return at_places(all_, {}, fit, 1);
   }
 
  private:

@@ -66,6 +66,32 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, StaticsAtPlaces,
                            return std::regex_replace(std::string(at.param), std::regex("-"), "_");
                          });
 
+// The same by a law and by the function that it is.
+TEST(StaticsOfACurve, IsThatOfTheLaw) {
+  const Mechanism m = test::device("arm");
+  const Measurements data = campaign("random", m, 50, 3);
+  const auto transmissions = Subject(m).stand(data)->transmissions();
+  ASSERT_TRUE(transmissions);
+  const PowerLaw law{1e-5, 10, 0.5};  // m, N
+  const auto curve = [&](double f) { return std::copysign(law.deflection * std::sqrt(std::abs(f) / law.force), f); };
+  int looked_at = 0;
+  for (const Effect& e : place_effects(Subject(m), test::all_effects())) {
+    if (!e.name.starts_with("linear@")) continue;
+    const auto by_law = transmissions->change(*e.place, {}, Law(law), data);
+    const auto by_curve = transmissions->change(*e.place, {}, Transmissions::Curve(curve), data);
+    ASSERT_TRUE(by_law && by_curve) << e.name;
+    double largest = 0, apart = 0;
+    for (std::size_t i = 0; i < by_curve->size(); ++i) {
+      largest = std::max(largest, (*by_curve)[i].norm());
+      apart = std::max(apart, ((*by_curve)[i] - by_law->readings[i]).norm());
+    }
+    // A force of rounding counts as none for the curve: 1e-9 of the largest, of which the root is 3e-5.
+    EXPECT_LE(apart, 1e-4 * largest) << e.name;
+    ++looked_at;
+  }
+  EXPECT_GT(looked_at, 10);
+}
+
 // The contacts of the haptic device do not bend its forces, because it is determinate. Those of a machine that is held
 // more than once do, and there statics alone tells nothing; nor does it where play floats.
 TEST(StaticsWithBentLaws, AreToldWhereForcesDoNotHangOnBentLaws) {

@@ -73,6 +73,7 @@ void expect_same(const SignaturesAtPlaces& again, const SignaturesAtPlaces& fres
     const MatrixX along = b.shaped ? MatrixX(a.basis) : MatrixX(a.basis * (a.basis.transpose() * b.basis));
     EXPECT_LT((along - b.basis).colwise().norm().maxCoeff(), 1e-6) << name;  // of the shortest column that is seen
     EXPECT_EQ(a.whatever_the_law == nullptr, b.whatever_the_law == nullptr) << name;
+    EXPECT_EQ(a.any_curve == nullptr, b.any_curve == nullptr) << name;
   }
   ASSERT_EQ(again.left_out().size(), fresh.left_out().size());
   for (std::size_t i = 0; i < fresh.left_out().size(); ++i) {
@@ -142,6 +143,25 @@ TEST(WhateverTheLaw, HoldsTheLawsOfALoadAndOfAMember) {
   }
   EXPECT_GE(turned, 3u);
   EXPECT_GE(softer, 30u);
+}
+
+// Any curve of deflection over force is close to a sum of powers of the force and of its size: what is one of them is
+// in their span, and a contact, |f|^(2/3), is within a hundredth of it. Statics tells the forces, so that a law's
+// change is to the first order.
+TEST(WhateverTheLaw, HoldsTheLawsOfAPlaceInAMachine) {
+  const Looked l("arm");
+  std::size_t sums = 0, contacts = 0;
+  for (const Signature& s : SignaturesAtPlaces(l.o, l.effects, 2).all()) {
+    const effects::Effect& e = *s.effect.effect;
+    EXPECT_TRUE(e.place || !s.any_curve) << e.name;
+    const bool sum = e.name.starts_with("linear@") || e.name.starts_with("pull@") || e.name.starts_with("push@");
+    if (!s.any_curve || !(sum || e.name.starts_with("contact@"))) continue;
+    const MatrixX span = statistics::orthonormal(s.any_curve->columns(), 1e-6);
+    EXPECT_LT((s.basis - span * (span.transpose() * s.basis)).norm(), sum ? 1e-6 : 0.01) << e.name;
+    ++(sum ? sums : contacts);
+  }
+  EXPECT_GE(sums, 30u);
+  EXPECT_GE(contacts, 10u);
 }
 
 }  // namespace

@@ -1,10 +1,16 @@
 // What the laws at each place could take off a residual together.
 //
 // What is missing at a place may be a law that nobody wrote. The signatures of all laws at the place span what such a
-// law can do to the readings, as a curve drawn by hand is a sum of a few shapes. With g the reduction of χ² by that
-// span, beside the fit, and k its dimension, the evidence for the place is log_evidence(g, k) (evidence.h).
+// law can do to the readings, as a curve drawn by hand is a sum of a few shapes; in a machine any curve of deflection
+// over force is tried as well (whatever_the_law.h), at the places whose laws explain most. With g the reduction of χ²
+// by that span, beside the fit, and k its dimension, the evidence for the place is log_evidence(g, k) (evidence.h), of
+// the laws alone or of any curve, whichever is likelier.
+//
+// Where the unexplained rest of a misfit acts is told by the same gains. What no place explains makes places harder to
+// tell apart: the gains are divided by s = max(1, χ² left by the best place over the numbers left).
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "validation/diagnosis/signatures.h"
@@ -15,20 +21,31 @@ namespace deflect::diagnosis {
 struct AtPlace {
   const Signature* best = nullptr;  ///< of the laws at the place the one that explains most
   bool other_way = false;           ///< physics lets that one act to the other side only
-  double gain = 0;                  ///< in χ², by all laws together
+  double gain = 0;                  ///< in χ², by all laws together, or by any curve
   int dimension = 0;                ///< of their span
   /// Prior probability. All places share it alike, and the single legs of a place share that of one place.
   double prior = 0;
 };
 
-/// In the order of the signatures; places whose laws do nothing beside the fit are left out. The signatures must
-/// outlive the result.
-std::vector<AtPlace> at_places(const std::vector<Signature>&, const Fit&, int threads);
+/// Beside the fit of these effects, in the order of the signatures; places whose laws do nothing beside it are left
+/// out. Any curve is tried at the places of the effects too. The signatures must outlive the result.
+std::vector<AtPlace> at_places(const std::vector<Signature>&, const Hypothesis& fitted, const Fit&, int threads);
 
 /// ln of the evidence that an unknown law acts at one of the places, over all places by their priors. ln 0 without any.
 double log_evidence(const std::vector<AtPlace>&);
 
 /// Chance that some place gains as much where there is only noise, at most (Bonferroni, by the priors).
 double p_value(const std::vector<AtPlace>&);
+
+struct Localised {
+  effects::PlacedEffect effect;  ///< of the laws at the place the one that explains most
+  std::string what;              ///< "the actuator rx of every leg yields like a spring"
+  double share = 0;              ///< of χ² beyond noise and tolerances that the place can explain beside the fit
+  double probability = 0;        ///< that it acts there and at no other place
+};
+
+/// The places for the residual of a fit with that χ² of `numbers` measured numbers, the most probable first, until they
+/// have 95 % of the probability together, at most `most`. Empty where none reduces χ² clearly more than chance (by 30).
+std::vector<Localised> localised(const std::vector<AtPlace>&, double chi2, double numbers, std::size_t most = 3);
 
 }  // namespace deflect::diagnosis

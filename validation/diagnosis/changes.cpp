@@ -16,8 +16,9 @@ constexpr double unseen = 1e-6;     // standard deviations of noise
 constexpr double sampled = 0.125;   // share of the readings that leave play open which is asked whether it shows
 constexpr double rounding = 1e-11;  // of a prediction: less is no change
 constexpr double part_of_a_load = 0.1;
-constexpr std::size_t most_apart = 4;  // nodes of a load
-constexpr double no_force = 1e-9;      // of the largest
+constexpr std::size_t most_apart = 4;     // nodes of a load
+constexpr double no_force = 1e-9;         // of the largest
+constexpr double size_of_a_curve = 1e-3;  // m
 
 /// A thousandth of the start, where an effect of one parameter is of the first order in it.
 VectorX small_values(const effects::Effect& e) {
@@ -162,10 +163,30 @@ MatrixX Changes::by_any_elongation(const subject::Place& place) const {
   return out;
 }
 
+bool Changes::is_known_by_statics(const subject::Place& place) const {
+  const auto known = known_.find(subject::id_of(place));
+  return transmissions_ && known != known_.end() && known->second;
+}
+
+MatrixX Changes::by_any_curve(const effects::PlacedEffect& e) const {
+  const compare::ResidualStudy& study = observations_.comparison().study;
+  std::vector<MatrixX> out;
+  const auto add = [&](const subject::Transmissions::Curve& curve) {
+    const auto told = transmissions_->change(*e.effect->place, e.leg, curve, *study.data);
+    if (!told) return;
+    const VectorX change = -statistics::rows_of(study.values, *told);
+    if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
+  };
+  for (const double p : {0.0, 0.25, 0.5, 1.0, 2.0}) {
+    const auto power = [p](double f) { return f == 0 ? 0 : std::pow(std::abs(f), p); };
+    add(power);
+    add([power](double f) { return std::copysign(power(f), f); });
+  }
+  return statistics::side_by_side(out, null_.size());
+}
+
 std::optional<VectorX> Changes::by_statics(const effects::PlacedEffect& e) const {
-  if (!transmissions_ || !e.effect->place) return std::nullopt;
-  const auto known = known_.find(subject::id_of(*e.effect->place));
-  if (known == known_.end() || !known->second) return std::nullopt;
+  if (!e.effect->place || !is_known_by_statics(*e.effect->place)) return std::nullopt;
   const compare::ResidualStudy& study = observations_.comparison().study;
   const VectorX start = effects::start_values(*e.effect);
   const auto told = by_force(e, start, *study.data);

@@ -28,8 +28,7 @@ struct Change {
 class Changes {
  public:
   /// Statics tells those of the effects that are laws in series with one parameter, at places where it agrees with a
-  /// prediction. This is checked for one law at each place on the readings of the first pose, to 1 %. The observations
-  /// must outlive it.
+  /// prediction. This is checked for one law at each place on the readings of the first pose, to 1 %.
   Changes(const Observations&, const std::vector<effects::PlacedEffect>&, int threads);
 
   /// What may happen at a place of a frame whether or not a law describes it: columns. At a load a force along and a
@@ -37,6 +36,12 @@ class Changes {
   /// elongation that grows with the force that passes, one that grows in both senses of it, and a step where it turns,
   /// which a gauge on the member itself does not read. None at other places.
   MatrixX by_whatever(const subject::Place&) const;
+  bool is_known_by_statics(const subject::Place&) const;
+  /// Any curve of deflection δ over force f, in each freedom of the effect's place in a machine: |f|^p and
+  /// sign(f)|f|^p, p = 0 (a step, as of play), ¼, ½, 1 and 2. Contacts, play, springs that harden or soften and
+  /// one-sided laws are close to sums of these. Columns of the size of a motion of 1 mm; none where statics does not
+  /// tell the forces.
+  MatrixX by_any_curve(const effects::PlacedEffect&) const;
   /// At the start values; nullopt where it has to be predicted.
   std::optional<VectorX> by_statics(const effects::PlacedEffect&) const;
   /// Of any of these effects. Throws where the subject does not stand with it.
@@ -52,7 +57,7 @@ class Changes {
   bool are_seen(const VectorX&) const;
   Change predicted(const effects::PlacedEffect&) const;
 
-  const Observations& observations_;
+  const Observations observations_;
   VectorX null_;  ///< Observations::residual() of its subject
   std::unique_ptr<const subject::Transmissions> transmissions_;
   std::map<std::string, bool> known_;  ///< by place: whether statics agrees

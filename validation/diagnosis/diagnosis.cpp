@@ -60,7 +60,7 @@ void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const S
   const double left = std::max(1.0, found.fit.chi2 - numbers);
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
   d.pattern = pattern_left(o, subject_with(o, found.effects, found.fit.values));
-  d.localised = localised(at_places(all, found.fit, threads), found.fit.chi2, numbers);
+  d.localised = localised(at_places(all, found.effects, found.fit, threads), found.fit.chi2, numbers);
   const MatrixX fitted = statistics::orthonormal(found.fit.signature);
   for (const Signature& s : all)
     if (const double share = most_gain(s, found.fit.residual, fitted) / left;
@@ -143,7 +143,7 @@ struct FirstStep {
         candidates(all(), work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); }),
         null(fit_of_all(o, {}, VectorX(0))),
         each(candidates.beside(o, {}, null, even_hopeless)),
-        left(left_over(o.whitened_patterns(), all(), null, work.threads)),
+        left(left_over(o.whitened_patterns(), all(), {}, null, work.threads)),
         larger(larger_tolerances(o)),
         chance(chance_of_any(all(), candidates.between(), least_p_value(all(), each), bootstrap_sets, work,
                              [&](std::size_t done, std::size_t of) { rounds(done, of); })) {}
@@ -201,11 +201,11 @@ Explained nothing(const FirstStep& s) { return {{s.observations, {}, s.null, {},
 Explained explained(const FirstStep& s, const Candidates& candidates, const std::vector<Candidate>& first) {
   Explained out{select(s.observations, candidates, first), {}};
   out.patterns = out.found.observations.whitened_patterns();
-  out.left = left_over(out.patterns, s.all(), out.found.fit, candidates.threads());
+  out.left = left_over(out.patterns, s.all(), out.found.effects, out.found.fit, candidates.threads());
   const double more = out.left.significant() ? 0 : called_for - std::log(Candidates::prior_unknown);
   if (std::optional<Selection> there = at_one_place(s.all(), candidates, out.found, more)) {
     out.found = std::move(*there);
-    out.left = left_over(out.patterns, s.all(), out.found.fit, candidates.threads());
+    out.left = left_over(out.patterns, s.all(), out.found.effects, out.found.fit, candidates.threads());
   }
   if (!out.left.significant()) out.patterns.reset();
   return out;

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "validation/diagnosis/at_places.h"
 #include "validation/diagnosis/candidates.h"
 #include "validation/diagnosis/detectable.h"
-#include "validation/diagnosis/localised.h"
 #include "validation/diagnosis/splitting.h"
 #include "validation/parallel/ranks.h"
 

@@ -31,13 +31,13 @@ bool at_the_same_part(const effects::PlacedEffect& a, const effects::PlacedEffec
 
 /// Whether an unknown law at another place takes what this effect explains: with the effect and a law at a place the
 /// readings are not clearly likelier than with a law at a place alone.
-bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Fit& with, const Fit& without,
-                        const std::vector<Signature>& all, const Candidates& candidates) {
-  const std::vector<AtPlace> alone = at_places(all, without, candidates.threads());
+bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Selection& with, const Hypothesis& others,
+                        const Fit& without, const std::vector<Signature>& all, const Candidates& candidates) {
+  const std::vector<AtPlace> alone = at_places(all, others, without, candidates.threads());
   const AtPlace* place = likeliest(alone);
   if (!place || at_the_same_part(e, place->best->effect)) return false;
-  const double more = log_evidence(at_places(all, with, candidates.threads())) - log_evidence(alone);
-  return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.chi2)) + more < called_for;
+  const double more = log_evidence(at_places(all, with.effects, with.fit, candidates.threads())) - log_evidence(alone);
+  return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.fit.chi2)) + more < called_for;
 }
 
 /// The likeliest size of the noise that leaves this residual, in standard deviations as given, 1 or more. Noise s times
@@ -82,9 +82,9 @@ std::string pattern_left(const Observations& o, const subject::Subject& subject)
 }
 
 LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,
-                   const Fit& fit, int threads) {
+                   const Hypothesis& fitted, const Fit& fit, int threads) {
   const Discrepancy common(patterns, fit.signature);
-  const std::vector<AtPlace> places = at_places(all, fit, threads);
+  const std::vector<AtPlace> places = at_places(all, fitted, fit, threads);
   return {log_mean_exp({common.log_evidence(fit.residual), log_evidence(places)}),
           std::min(1.0, 2 * std::min(common.p_value(fit.residual), p_value(places)))};
 }
@@ -93,8 +93,8 @@ std::optional<Selection> at_one_place(const std::vector<Signature>& all, const C
                                       const Selection& s, double more) {
   if (s.effects.empty()) return std::nullopt;
   const Fit null = fit_of_all(s.observations, {}, VectorX(0));
-  const std::vector<AtPlace> alone = at_places(all, null, candidates.threads()),
-                             beside = at_places(all, s.fit, candidates.threads());
+  const std::vector<AtPlace> alone = at_places(all, {}, null, candidates.threads()),
+                             beside = at_places(all, s.effects, s.fit, candidates.threads());
   const AtPlace *place = likeliest(alone), *further = likeliest(beside);
   if (!place) return std::nullopt;
   const double left = std::min(null.chi2 - place->gain, s.fit.chi2 - (further ? further->gain : 0));
@@ -130,7 +130,7 @@ Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& pa
     const double gain = common.chi2(rest.residual, size) - common.chi2(s.fit.residual, size);
     const bool is_common = rest.chi2 <= own_part * s.fit.chi2 &&
                            candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) <= called_for;
-    if (!is_common && !is_a_law_elsewhere(s.effects[i], s.fit, rest, all, candidates)) continue;
+    if (!is_common && !is_a_law_elsewhere(s.effects[i], s, others, rest, all, candidates)) continue;
     s.effects = std::move(others);
     s.fit = std::move(rest);
     if (i < s.ties.size()) s.ties.erase(s.ties.begin() + as_index(i));

@@ -21,8 +21,8 @@ struct LeftOver {
   static constexpr double least_p = 3e-3;
 };
 
-LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<Signature>&, const Fit&,
-                   int threads);
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<Signature>&,
+                   const Hypothesis& fitted, const Fit&, int threads);
 
 /// What this subject leaves, in words.
 std::string pattern_left(const Observations&, const subject::Subject&);

@@ -11,7 +11,6 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
-#include "validation/compare/channel_shapes.h"
 #include "validation/diagnosis/changes.h"
 #include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
@@ -87,48 +86,6 @@ std::map<std::string, double> count_by_name(const std::vector<Signature>& all) {
   return out;
 }
 
-/// What may happen at sensors, loads and members: unit columns, without those that tolerances hide.
-class Whatever {
- public:
-  Whatever(const Observations& o, const std::map<std::string, MatrixX>& of_parts)
-      : sensors_(whitened(o, compare::channel_shapes(o.comparison().study))), parts_(whitened(o, of_parts)) {}
-
-  /// Null where nothing is known, and at groups.
-  std::shared_ptr<const MatrixX> at(const effects::PlacedEffect& e) const {
-    const std::optional<subject::Place>& place = e.effect->place;
-    if (!place) return nullptr;
-    const std::string sensor = subject::sensor_of(*place);
-    if (sensor.empty() && !place->others.empty()) return nullptr;
-    const auto& all = sensor.empty() ? parts_ : sensors_;
-    const auto found = all.find(sensor.empty() ? place->path : sensor);
-    return found == all.end() ? nullptr : found->second;
-  }
-
- private:
-  using Shapes = std::map<std::string, std::shared_ptr<const MatrixX>>;
-
-  /// All of them at once, which takes a fraction of the time.
-  static Shapes whitened(const Observations& o, const std::map<std::string, MatrixX>& all) {
-    constexpr double hidden = 1e-3;  // of the length that it has beside noise alone
-    std::vector<MatrixX> shapes;
-    for (const auto& [name, each] : all) shapes.push_back(each);
-    const VectorX noise = Eigen::Map<const VectorX>(o.comparison().sigma.data(), std::ssize(o.comparison().sigma));
-    const MatrixX raw = statistics::side_by_side(shapes, noise.size()), white = o.uncertainty().whitened(raw);
-    Shapes out;
-    Eigen::Index at = 0;
-    for (const auto& [name, each] : all) {
-      MatrixX columns = white.middleCols(at, each.cols());
-      for (Eigen::Index k = 0; k < columns.cols(); ++k)
-        if (columns.col(k).norm() < hidden * each.col(k).cwiseQuotient(noise).norm()) columns.col(k).setZero();
-      if (columns.cols() > 0) out[name] = std::make_shared<const MatrixX>(unit_columns(columns).basis);
-      at += each.cols();
-    }
-    return out;
-  }
-
-  Shapes sensors_, parts_;
-};
-
 }  // namespace
 
 SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<effects::Effect>& effects,
@@ -146,13 +103,13 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
   }
   nowhere_ = left_out_.size();
   for (const effects::PlacedEffect& e : placed) places_.push_back({e});
-  const Changes changes(o, placed, threads);
+  changes_ = std::make_shared<const Changes>(o, placed, threads);
   for (const effects::PlacedEffect& e : placed)
     if (const auto& at = e.effect->place; at && at->others.empty() && !whatever_.contains(at->path))
-      whatever_.emplace(at->path, changes.by_whatever(*at));
+      whatever_.emplace(at->path, changes_->by_whatever(*at));
   weigh(o, threads, [&](std::size_t i) {
     Place& p = places_[i];
-    auto change = outcome_of([&] { return changes.by(p.effect); });
+    auto change = outcome_of([&] { return changes_->by(p.effect); });
     // The subject cannot stand with it, or it wants what the file does not have: a sequence.
     if (!change) p.why = change.why;
     if (change && !change->columns.allFinite()) p.why = "the prediction with it is no number";
@@ -197,7 +154,7 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
   const std::vector<measurement::MeasuredValue>& values = o.comparison().study.values;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (o.aside()[values[k].reading]) aside_.push_back(as_index(k));
-  const Whatever any(o, whatever_);
+  const WhateverTheLaw any(o, changes_, whatever_);
   all_.assign(places_.size(), {});
   parallel::for_each_case(places_.size(), 1, threads, [&](std::size_t i) {
     Place& p = places_[i];
@@ -213,6 +170,7 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
     s.lambda = s.start.norm();
     s.one_sided = s.shaped ? amplitude_from_nothing(*p.effect.effect) : one_sided(p.effect);
     s.whatever_the_law = any.at(p.effect);
+    s.any_curve = any.curve_at(p.effect);
     p.coordinates = std::move(spanned.coordinates);
     p.aside = change->columns(aside_, Eigen::all);
     p.summed = change->summed;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "validation/diagnosis/hypothesis.h"
+#include "validation/diagnosis/whatever_the_law.h"
 
 namespace deflect::diagnosis {
 
@@ -24,6 +25,7 @@ struct Signature {
   /// What else may happen at its place, whether or not a law describes it: unit columns. Of sensors (channel_shapes.h)
   /// and of loads and members of frames (Changes::by_whatever()); null elsewhere.
   std::shared_ptr<const MatrixX> whatever_the_law = nullptr;
+  std::shared_ptr<const AnyCurve> any_curve = nullptr;  ///< at its place in a machine, where statics tells the forces
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
   /// Inner product of the change at the start values with a residual.
@@ -64,6 +66,7 @@ class SignaturesAtPlaces {
   void weigh(const Observations&, int threads, const ChangeOf&);
 
   std::vector<Place> places_;
+  std::shared_ptr<const Changes> changes_;
   std::map<std::string, MatrixX> whatever_;  ///< Changes::by_whatever(), by the path of the part
   std::vector<Signature> all_;               ///< in the order of the places
   std::vector<LeftOut> left_out_;

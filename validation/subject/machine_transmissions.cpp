@@ -161,8 +161,29 @@ class MachineTransmissions final : public Transmissions {
   std::optional<Change> change(const Place& place, std::optional<int> leg, const Law& law,
                                const measurement::Measurements& data) const override {
     const bool moved_by_shape = std::holds_alternative<ClearanceLaw>(law) && !carries_the_load_itself(place);
-    const std::size_t readings = data.readings.size();
-    Change out{std::vector<Vector6>(readings, Vector6::Zero()), std::vector<bool>(readings, false)};
+    std::vector<bool> floating(data.readings.size(), false);
+    auto readings = changed(place, leg, data, [&](std::size_t reading, const Vector6& g, const Vector6& F) {
+      if (moved_by_shape && floats(g, F, size_)) floating[reading] = true;
+      return deflection_of(law, g.dot(F));
+    });
+    if (!readings) return std::nullopt;
+    return Change{std::move(*readings), std::move(floating)};
+  }
+
+  std::optional<std::vector<Vector6>> change(const Place& place, std::optional<int> leg, const Curve& curve,
+                                             const measurement::Measurements& data) const override {
+    return changed(place, leg, data, [&](std::size_t, const Vector6& g, const Vector6& F) {
+      return curve(floats(g, F, size_) ? 0 : g.dot(F));
+    });
+  }
+
+ private:
+  /// `deflection(reading, g, F)`: of a freedom, under the load F.
+  template <class Deflection>
+  std::optional<std::vector<Vector6>> changed(const Place& place, std::optional<int> leg,
+                                              const measurement::Measurements& data,
+                                              const Deflection& deflection) const {
+    std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
     for (std::size_t p = 0; p < data.poses.size(); ++p) {
       const std::vector<Vector6> all = freedoms(p, place, leg);
       if (all.empty()) return std::nullopt;
@@ -170,17 +191,13 @@ class MachineTransmissions final : public Transmissions {
         const measurement::Reading& r = data.readings[i];
         const Vector6 F = place.kind == PlaceKind::tool ? rigs_[p].loads.through_tool(r) : rigs_[p].loads.at_T(r);
         Vector6 d = Vector6::Zero();
-        for (const Vector6& g : all) {
-          d += g * deflection_of(law, g.dot(F));
-          if (moved_by_shape && floats(g, F, size_)) out.floats[i] = true;
-        }
-        out.readings[i] = rigs_[p].sensor.of(d, Geometry::linear);
+        for (const Vector6& g : all) d += g * deflection(i, g, F);
+        out[i] = rigs_[p].sensor.of(d, Geometry::linear);
       }
     }
     return out;
   }
 
- private:
   std::vector<Vector6> freedoms(std::size_t pose, const Place& place, std::optional<int> leg) const {
     std::vector<Vector6> out;
     const auto add = [&](const std::string& part, const std::vector<std::size_t>& freedoms) {

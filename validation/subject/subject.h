@@ -3,6 +3,7 @@
 // use nothing else of it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -90,6 +91,10 @@ class Transmissions {
   /// under the force that it carries; in one leg only where `leg` is given. Empty where the place is not known.
   virtual std::optional<Change> change(const Place&, std::optional<int> leg, const Law&,
                                        const measurement::Measurements&) const = 0;
+  /// The same where they yield by any function of that force, which is 0 where a load leaves them open.
+  using Curve = std::function<double(double force)>;
+  virtual std::optional<std::vector<Vector6>> change(const Place&, std::optional<int> leg, const Curve&,
+                                                     const measurement::Measurements&) const = 0;
 };
 
 class Deviations;

@@ -1,0 +1,80 @@
+#include "validation/diagnosis/whatever_the_law.h"
+
+#include <vector>
+
+#include "msa/base/index.h"
+#include "validation/compare/channel_shapes.h"
+#include "validation/statistics/columns.h"
+
+namespace deflect::diagnosis {
+namespace {
+
+/// Of `white`, which are the whitened `raw` columns.
+MatrixX that_are_seen(const Observations& o, const MatrixX& raw, const MatrixX& white) {
+  constexpr double nothing = 1e-6;  // standard deviations
+  constexpr double hidden = 1e-3;   // of the length that it has beside noise alone
+  const std::vector<double>& sigma = o.comparison().sigma;
+  const VectorX noise = Eigen::Map<const VectorX>(sigma.data(), std::ssize(sigma));
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index k = 0; k < white.cols(); ++k)
+    if (const double length = white.col(k).norm();
+        length > nothing && length >= hidden * raw.col(k).cwiseQuotient(noise).norm())
+      seen.push_back(k);
+  MatrixX out = white(Eigen::all, seen);
+  out.colwise().normalize();
+  return out;
+}
+
+}  // namespace
+
+AnyCurve::AnyCurve(std::shared_ptr<const Observations> o, std::shared_ptr<const Changes> changes,
+                   const effects::PlacedEffect& at)
+    : observations_(std::move(o)), changes_(std::move(changes)), at_(at) {}
+
+const MatrixX& AnyCurve::columns() const {
+  std::call_once(once_, [&] {
+    const MatrixX raw = changes_->by_any_curve(at_);
+    columns_ = that_are_seen(*observations_, raw, observations_->uncertainty().whitened(raw));
+  });
+  return columns_;
+}
+
+WhateverTheLaw::WhateverTheLaw(const Observations& o, std::shared_ptr<const Changes> changes,
+                               const std::map<std::string, MatrixX>& of_parts)
+    : observations_(std::make_shared<const Observations>(o)),
+      changes_(std::move(changes)),
+      sensors_(whitened(compare::channel_shapes(o.comparison().study))),
+      parts_(whitened(of_parts)) {}
+
+std::shared_ptr<const MatrixX> WhateverTheLaw::at(const effects::PlacedEffect& e) const {
+  const std::optional<subject::Place>& place = e.effect->place;
+  if (!place) return nullptr;
+  const std::string sensor = subject::sensor_of(*place);
+  if (sensor.empty() && !place->others.empty()) return nullptr;
+  const Shapes& all = sensor.empty() ? parts_ : sensors_;
+  const auto found = all.find(sensor.empty() ? place->path : sensor);
+  return found == all.end() ? nullptr : found->second;
+}
+
+std::shared_ptr<const AnyCurve> WhateverTheLaw::curve_at(const effects::PlacedEffect& e) const {
+  if (!e.effect->place || !changes_->is_known_by_statics(*e.effect->place)) return nullptr;
+  return std::make_shared<const AnyCurve>(observations_, changes_, e);
+}
+
+/// All of them at once, which takes a fraction of the time.
+WhateverTheLaw::Shapes WhateverTheLaw::whitened(const std::map<std::string, MatrixX>& all) const {
+  std::vector<MatrixX> shapes;
+  for (const auto& [name, each] : all) shapes.push_back(each);
+  const auto numbers = as_index(observations_->comparison().sigma.size());
+  const MatrixX raw = statistics::side_by_side(shapes, numbers), white = observations_->uncertainty().whitened(raw);
+  Shapes out;
+  Eigen::Index at = 0;
+  for (const auto& [name, each] : all) {
+    MatrixX seen = that_are_seen(*observations_, each, white.middleCols(at, each.cols()));
+    if (each.cols() > 0) out[name] = std::make_shared<const MatrixX>(std::move(seen));
+    at += each.cols();
+  }
+  return out;
+}
+
+}  // namespace deflect::diagnosis
