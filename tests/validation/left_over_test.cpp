@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -12,8 +13,10 @@
 #include "tests/support/springs_apart.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/effects/place_effects.h"
+#include "validation/effects/with_effect.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
+#include "validation/statistics/columns.h"
 
 namespace deflect {
 namespace {
@@ -63,6 +66,37 @@ TEST(PatternLeft, NoiseLargerThanToldIsSaid) {
   const std::string left = pattern_left(Observations(m, data, {}), m);
   ASSERT_TRUE(left.starts_with(none + "; noise ")) << left;
   EXPECT_NEAR(std::stod(left.substr(left.find("noise ") + 6)), 1.5, 0.15) << left;
+}
+
+// A contact in a joint lets it yield by |f|^(2/3), which no sum of a spring and play does. Where these two alone are
+// known, any curve at the joint explains the readings to their noise, and the two laws leave χ² far outside its spread
+// √(2n).
+TEST(AtPlaces, AnyCurveIsMoreThanTheLawsOfAPlace) {
+  const Mechanism m = test::device("arm");
+  std::vector<Effect> known;
+  std::optional<Effect> contact;
+  for (const Effect& e : place_effects(subject::Subject(m), test::all_effects())) {
+    if (e.name == "contact@joint_4.tx") contact = e;
+    if (e.name.starts_with("linear@") || e.name.starts_with("clearance@")) known.push_back(e);
+  }
+  ASSERT_TRUE(contact);
+  const measurement::Measurements data = prediction::simulate(
+      with_effect(m, *contact, 1000 * start_values(*contact), {}), prediction::campaign("random", m, 50, 15), {});
+  const Observations o(m, data, {});
+  const std::vector<Signature> all = signatures(o, known, 1);
+  const Fit null = fit_of_all(o, {}, VectorX(0));
+  std::vector<MatrixX> laws;
+  for (const Signature& s : all)
+    if (s.effect.effect->name.ends_with("@joint_4.tx")) laws.push_back(s.basis);
+  ASSERT_EQ(laws.size(), 2u);
+  const MatrixX span = statistics::orthonormal(statistics::side_by_side(laws, null.residual.size()));
+  const std::vector<AtPlace> places = at_places(all, {}, null, 1);
+  const AtPlace& most = *std::max_element(places.begin(), places.end(),
+                                          [](const AtPlace& a, const AtPlace& b) { return a.gain < b.gain; });
+  const auto numbers = static_cast<double>(o.numbers());
+  EXPECT_TRUE(most.best->effect.effect->name.ends_with("@joint_4.tx")) << most.best->effect.effect->name;
+  EXPECT_LT(null.chi2 - most.gain, numbers + 3 * std::sqrt(2 * numbers));
+  EXPECT_GT(null.chi2 - (span.transpose() * null.residual).squaredNorm(), numbers + 10 * std::sqrt(2 * numbers));
 }
 
 // What a law that is none of these does, a + b, is within the laws of one place. Three effects elsewhere add up to it
