@@ -20,7 +20,7 @@ namespace {
 constexpr double left_of_a_column = 1e-3;  // of a unit column beside the fit: less is rounding
 constexpr double together_told = 0.95;     // probability
 constexpr double half = 0.5;               // of a place's prior: its laws, or any curve
-constexpr std::size_t looked_into = 16;    // places
+constexpr std::size_t looked_into = 6;     // places; the columns of each are kept
 constexpr double beyond_chance = 30;       // in χ², of a few hundred that are looked at
 
 struct LawsAtPlace {
@@ -76,7 +76,9 @@ AtPlace explained_by(const LawsAtPlace& place, const VectorX& residual, const Ma
   if (any_curve) add(first.any_curve->columns());
   out.other_way = out.best->one_sided && out.best->start_along(residual) > 0;
   if (columns.empty()) return out;
-  const MatrixX span = statistics::orthonormal(statistics::side_by_side(columns, residual.size()), left_of_a_column);
+  const MatrixX together = statistics::side_by_side(columns, residual.size());
+  columns.clear();
+  const MatrixX span = statistics::orthonormal(together, left_of_a_column);
   out.dimension = static_cast<int>(span.cols());
   out.gain = (span.transpose() * residual).squaredNorm();
   return out;

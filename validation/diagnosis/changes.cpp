@@ -177,7 +177,7 @@ MatrixX Changes::by_any_curve(const effects::PlacedEffect& e) const {
     const VectorX change = -statistics::rows_of(study.values, *told);
     if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
   };
-  for (const double p : {0.0, 0.25, 0.5, 1.0, 2.0}) {
+  for (const double p : {0.0, 0.5, 1.0, 2.0}) {
     const auto power = [p](double f) { return f == 0 ? 0 : std::pow(std::abs(f), p); };
     add(power);
     add([power](double f) { return std::copysign(power(f), f); });

@@ -38,7 +38,7 @@ class Changes {
   MatrixX by_whatever(const subject::Place&) const;
   bool is_known_by_statics(const subject::Place&) const;
   /// Any curve of deflection δ over force f, in each freedom of the effect's place in a machine: |f|^p and
-  /// sign(f)|f|^p, p = 0 (a step, as of play), ¼, ½, 1 and 2. Contacts, play, springs that harden or soften and
+  /// sign(f)|f|^p, p = 0 (a step, as of play), ½, 1 and 2. Contacts, play, springs that harden or soften and
   /// one-sided laws are close to sums of these. Columns of the size of a motion of 1 mm; none where statics does not
   /// tell the forces.
   MatrixX by_any_curve(const effects::PlacedEffect&) const;
