@@ -141,6 +141,8 @@ TEST(WhateverTheLaw, HoldsTheLawsOfALoadAndOfAMember) {
     EXPECT_LT((s.basis - span * (span.transpose() * s.basis)).norm(), 0.01 * s.basis.norm()) << e.name;
     ++(load ? turned : softer);
   }
+  const effects::PlacedEffect last{&l.effects.back(), {}};
+  EXPECT_EQ(Changes(l.o, {last}, 1).by_any_curve(last).cols(), 0) << "statics tells forces in machines alone";
   EXPECT_GE(turned, 3u);
   EXPECT_GE(softer, 30u);
 }

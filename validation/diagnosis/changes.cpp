@@ -169,6 +169,7 @@ bool Changes::is_known_by_statics(const subject::Place& place) const {
 }
 
 MatrixX Changes::by_any_curve(const effects::PlacedEffect& e) const {
+  if (!e.effect->place || !is_known_by_statics(*e.effect->place)) return MatrixX(null_.size(), 0);
   const compare::ResidualStudy& study = observations_.comparison().study;
   std::vector<MatrixX> out;
   const auto add = [&](const subject::Transmissions::Curve& curve) {
